@@ -15,7 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Our error measure beside that of an independent script, on references disturbed by a known random factor.
+/// Compares the program's error measure with that of an independent script, for references with a known random
+/// perturbation.
 class CompareScript : public testing::TestWithParam<const char*> {};
 
 TEST_P(CompareScript, MeasuresTheSameErrors) {

@@ -24,7 +24,8 @@ const std::vector<std::string> order{"base",       "calibration",  "scene",   "s
                                      "error",      "reference",    "measure", "methods", "what_if",   "view_factors",
                                      "io",         "lab",          "cli"};
 
-/// The files that may include a third-party library, by the first folder or the name of its headers.
+/// The files that may include a third-party library, which is identified by the first folder or the name of its
+/// headers.
 struct Door {
     std::string library;
     std::regex header;
@@ -54,7 +55,7 @@ const std::vector<Door> doors{
 };
 
 struct Include {
-    std::string file;  ///< Below src/exitance.
+    std::string file;  ///< Path below src/exitance.
     int line;
     std::string header;
     std::string place() const { return file + ":" + std::to_string(line) + ": " + header; }
@@ -71,7 +72,7 @@ std::vector<Include> read_includes(const fs::path& root, const fs::path& path) {
     return found;
 }
 
-/// Every #include of the library and the program; unit tests are free in what they include.
+/// Every #include of the library and the program, except those of unit tests, which may include anything.
 const std::vector<Include>& all_includes() {
     static const std::vector<Include> includes = [] {
         const fs::path root = fs::path(test::source_folder()) / "src/exitance";
@@ -111,7 +112,7 @@ TEST(Includes, FoldersIncludeOnlyThoseBeforeThem) {
     }
 }
 
-TEST(Includes, EveryLibraryHasOneDoor) {
+TEST(Includes, OnlyListedFilesIncludeALibrary) {
     for (const Include& include : all_includes())
         for (const Door& door : doors)
             if (std::regex_match(include.header, door.header)) {
@@ -120,8 +121,9 @@ TEST(Includes, EveryLibraryHasOneDoor) {
             }
 }
 
-/// But for the program's own kinds of options, which nothing else includes.
-TEST(Includes, HeadersArePlain) {
+/// Headers only include the standard library and the project, except the program's own kinds of options, which nothing
+/// else includes.
+TEST(Includes, HeadersIncludeNoThirdPartyLibrary) {
     const std::string of_options = "cli/option_kinds.hpp";
     const std::regex third_party("(embree[34]|CGAL|tbb|oneapi|CLI|nlohmann|fmt)/.*|hdf5.*|H5.*|png\\.h");
     for (const Include& include : all_includes()) {
@@ -131,7 +133,7 @@ TEST(Includes, HeadersArePlain) {
     }
 }
 
-/// Two types of one name in one program are one to the linker, which keeps the code of either for both.
+/// If two types in one program have the same name, the linker keeps only one version of their inline code.
 TEST(Headers, DefineEveryTypeOnce) {
     const fs::path root = fs::path(test::source_folder()) / "src/exitance";
     const std::regex definition(

@@ -15,12 +15,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Folders whose numbers decide work.
+/// Folders in which numbers control the amount of work.
 const std::vector<std::string> deciding{"links",     "solution",      "gather",
                                         "evaluate",  "discontinuity", "error",
                                         "reference", "methods",       "what_if/light_groups"};
 
-/// Parts of these that no solve goes through.
+/// Exceptions, which no solve uses.
 const std::vector<std::string> apart{"evaluate/surface_levels.cpp", "reference/compare.cpp",
                                      "methods/plan/forecast.cpp"};
 
@@ -28,7 +28,7 @@ bool is_below(const std::vector<std::string>& places, const std::string& file) {
     return std::any_of(places.begin(), places.end(), [&](const std::string& p) { return file.starts_with(p); });
 }
 
-/// The numbers that nobody has to explain.
+/// True for numbers that need no explanation.
 bool is_plain(double value) {
     const std::vector<double> plain{0, 0.5, 1, 2, 4};
     return std::find(plain.begin(), plain.end(), value) != plain.end();
@@ -44,8 +44,8 @@ std::vector<double> literals(std::string line) {
     return out;
 }
 
-/// Places with a literal that decides work and is unexplained: neither in the table of calibrated numbers nor said, on
-/// its line or in the comment right above, to be given by or derived from something, or measured.
+/// Lines with a number that controls work but is neither in the table of calibrated numbers nor marked as "given by" or
+/// "derived from" something, or "measured". The mark is on the line or in the comment directly above.
 std::vector<std::string> homeless_literals(const std::string& name, std::istream& in) {
     static const std::regex marker("//.*([gG]iven by|[dD]erived from|[mM]easured) ");
     std::vector<std::string> out;
@@ -64,7 +64,7 @@ std::vector<std::string> homeless_literals(const std::string& name, std::istream
 
 }  // namespace
 
-TEST(Literals, ThatDecideWorkStandInTheTable) {
+TEST(Literals, ThatControlWorkAreInTheTable) {
     const fs::path root = fs::path(test::source_folder()) / "src/exitance";
     std::size_t files = 0;
     for (const std::string& folder : deciding)
@@ -80,7 +80,7 @@ TEST(Literals, ThatDecideWorkStandInTheTable) {
     EXPECT_GT(files, 20u);
 }
 
-TEST(Literals, AreFoundUnlessTheySayWhatTheyAreGivenBy) {
+TEST(Literals, AreFoundUnlessTheirOriginIsMarked) {
     const auto count = [](const std::string& code) {
         std::istringstream in(code);
         return homeless_literals("x.cpp", in).size();

@@ -11,8 +11,8 @@
 namespace exitance {
 namespace {
 
-/// Adds to a sum on two threads of a loop at once: each task waits for another one, in a way that orders nothing.
-/// False if the loop had one thread all the time that a task waits.
+/// Adds to a sum from two threads of a parallel loop at once. Each task waits up to `patience` for another one, without
+/// synchronization. Returns false if only one thread ran during that time.
 bool race(std::chrono::seconds patience) {
     set_threads(4);
     std::atomic<int> arrived = 0;
@@ -29,7 +29,7 @@ bool race(std::chrono::seconds patience) {
     return met;
 }
 
-/// Else what thread_sanitizer.supp is silent about would be more than other libraries.
+/// Checks that thread_sanitizer.supp only suppresses reports of other libraries.
 TEST(ThreadSanitizer, FindsARaceOfTwoThreads) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     EXPECT_DEATH(

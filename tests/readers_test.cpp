@@ -9,14 +9,14 @@
 namespace exitance {
 namespace {
 
-/// Other programs' readers, as far as this machine has them.
+/// True if this machine has the Python packages of the other readers.
 bool have_readers() {
     return run("/usr/bin/python3 -c 'import h5py, numpy, vtk'").status == 0;
 }
 
 const std::string scripts = test::source_folder() + "/tests/readers/";
 
-TEST(Readers, OfPythonAndVtkUnderstandSolutions) {
+TEST(Readers, OfPythonAndVtkReadSolutions) {
     if (bands != 3 || !have_readers()) return;
     const TemporaryFolder folder;
     ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution(600)));
@@ -25,7 +25,7 @@ TEST(Readers, OfPythonAndVtkUnderstandSolutions) {
     EXPECT_TRUE(ran.output.ends_with("good\n")) << ran.output;
 }
 
-TEST(Readers, OfPythonAndVtkUnderstandExports) {
+TEST(Readers, OfPythonAndVtkReadExports) {
     if (bands != 3 || !have_readers()) return;
     const TemporaryFolder folder;
     const Solution solution = sample_solution(600);

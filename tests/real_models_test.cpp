@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Models as users bring them, each with one thing that they do.
+/// Folder with scenes; "real" has models with typical properties of users' files, one per model.
 fs::path shared_scenes() {
     return fs::path(test::shared_folder()) / "scenes";
 }
@@ -63,14 +63,14 @@ TEST(RealModels, WhateverIsSolvedCanBeReadBack) {
     EXPECT_GT(solved, 15u);
 }
 
-TEST(RealModels, ANeedleLosesNoSolution) {
+TEST(RealModels, ANeedleShapedFaceDoesNotPreventASolution) {
     SKIP_WITHOUT_SHARED_SCENES();
     const CheckedScene checked = load_real("slivers.obj");
     ASSERT_TRUE(checked.scene);
     EXPECT_EQ(count(checked, Finding::Kind::repair), 1u);
 }
 
-TEST(RealModels, AWindowThatTurnsLikeItsWallIsOpen) {
+TEST(RealModels, AWindowOutlineInsideItsWallIsAHole) {
     SKIP_WITHOUT_SHARED_SCENES();
     const CheckedScene checked = load_real("hole_same_turn.obj");
     ASSERT_TRUE(checked.scene);
@@ -78,14 +78,15 @@ TEST(RealModels, AWindowThatTurnsLikeItsWallIsOpen) {
     EXPECT_EQ(count(checked, Finding::Kind::repair), 1u);
 }
 
-TEST(RealModels, OfFacesInOnePlaneTheLastOneIsLit) {
+TEST(RealModels, OfCoplanarFacesTheLastOneIsLit) {
     SKIP_WITHOUT_SHARED_SCENES();
     const CheckedScene checked = load_real("coplanar.obj");
     ASSERT_TRUE(checked.scene);
     const Result<Solution> solution = solve_direct(*checked.scene);
     ASSERT_TRUE(solution);
     const RadiosityFunction light(*solution);
-    // Floor, rug, and the third face, which covers both: radiosity over irradiance is the reflectance of what is seen.
+    // Floor, rug, and the third face, which covers both. Radiosity over irradiance is the reflectance of the visible
+    // face.
     const std::vector<ProbePoint> points{{{0.5, 0.5, 0.3}, {0, 0, 1}},
                                          {{1.3, 2, 0.3}, {0, 0, 1}},
                                          {{2, 1.5, 0.3}, {0, 0, 1}},
@@ -96,7 +97,7 @@ TEST(RealModels, OfFacesInOnePlaneTheLastOneIsLit) {
         EXPECT_GT(values[i].irradiance[0], 0.9) << i;
         EXPECT_NEAR(values[i].radiosity[0] / values[i].irradiance[0], reflectances[i], 1e-6) << i;
     }
-    // Rays from the lamp meet the same faces.
+    // Rays from the lamp hit the same faces.
     const Normal down{0, 0, -1};
     for (std::size_t i = 0; i < points.size(); ++i) {
         RayHit hit;
@@ -106,7 +107,7 @@ TEST(RealModels, OfFacesInOnePlaneTheLastOneIsLit) {
     }
 }
 
-TEST(RealModels, WhiteAndBentFacesAreMendedAndSaidOnce) {
+TEST(RealModels, WhiteAndBentFacesAreRepairedAndReportedOnce) {
     SKIP_WITHOUT_SHARED_SCENES();
     const CheckedScene checked = load_real("white.obj");
     ASSERT_TRUE(checked.scene);
@@ -123,7 +124,7 @@ TEST(RealModels, ALuminaireShinesAsItsDataSay) {
     ASSERT_TRUE(checked.scene) << checked.scene.error().message;
     const Result<Solution> solution = solve_direct(*checked.scene);
     ASSERT_TRUE(solution);
-    // 1000 W/(m^2 sr) of 0.04 m^2 over 2.5^2 m^2 is 6.4; the lamp's size takes 0.7% of that.
+    // 1000 W/(m^2 sr) from 0.04 m^2 at 2.5 m give 6.4 W/m^2; the size of the lamp reduces that by 0.7%.
     EXPECT_NEAR(irradiance_at(*solution, {0, 0, 0}), 6.355, 0.006);
     EXPECT_NEAR(irradiance_at(*solution, {1.5, 0, 0}), 3.16, 0.005);
     EXPECT_LT(solution->statistics.energy.defect, 0.02) << "what misses the floor is told as such";
@@ -133,7 +134,7 @@ TEST(RealModels, ALuminaireShinesAsItsDataSay) {
     for (const double x : {0.0, 1.5}) EXPECT_EQ(irradiance_at(*again, {x, 0, 0}), irradiance_at(*solution, {x, 0, 0}));
 }
 
-TEST(RealModels, PatternsOnPatternsAreLeftOutAndSaid) {
+TEST(RealModels, NestedPatternsAreOmittedAndReported) {
     SKIP_WITHOUT_SHARED_SCENES();
     const CheckedScene checked = load_real("chained_patterns.rad");
     ASSERT_TRUE(checked.scene) << checked.scene.error().message;

@@ -1,4 +1,5 @@
-// One scene in every format, the GLB written by Blender (tests/data/blender_export.py says how): the same light.
+// Solves one scene in every format and compares the light. Blender wrote the GLB file (see
+// tests/data/blender_export.py).
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -16,7 +17,7 @@
 namespace exitance {
 namespace {
 
-/// The scene in Radiance's words. What reflects has two sides there, and lights are black.
+/// Formats the scene as a Radiance file. Radiance's reflectors have two sides, and its emitters are black.
 std::string radiance_text(const SceneDescription& d) {
     std::string out;
     for (const Material& m : d.materials) {
@@ -85,9 +86,9 @@ TEST(RoundTrip, ASceneHasTheSameLightInEveryFormat) {
         for (const Scene* other : {&glb, &rad}) {
             const Solution solution = solved(*other, 0.035);
             const RadiosityFunction function(solution);
-            // Coordinates in single precision move shadow edges by 1e-7 of the scene: far below the 0.2% that is asked.
+            // Coordinates in single precision shift shadow edges by 1e-7 of the scene: far below the requested 0.2%.
             EXPECT_LT(difference(direct, function.at(points, Component::direct)), 1e-4) << other->file();
-            // Each is within 3.5% of the truth, and their noise is not the same: together sqrt(2) times as much.
+            // Each solution is within 3.5% of the exact one, with independent noise: together sqrt(2) times as much.
             EXPECT_LT(difference(total, function.at(points)), 0.05) << other->file();
         }
     }

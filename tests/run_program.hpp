@@ -31,13 +31,13 @@ inline void write_text(const std::filesystem::path& path, const std::string& tex
     std::ofstream(path, std::ios::binary) << text;
 }
 
-/// How a run of the program ended.
+/// Result of running the program.
 struct Finished {
-    int status = -1;  ///< Exit status; 1000 + the signal's number when a signal ended it.
+    int status = -1;  ///< Exit status; 1000 + the signal number if a signal ended it.
     std::string out, err;
 };
 
-/// A program (the built one unless another is named), started with these arguments; `input` is its standard input.
+/// Starts a program (by default the built one) with these arguments; `input` is its standard input.
 class RunningProgram {
   public:
     explicit RunningProgram(const std::vector<std::string>& arguments, const std::string& input = {},
@@ -59,7 +59,7 @@ class RunningProgram {
     void send(int signal) { kill(process_, signal); }
     pid_t process() const { return process_; }
 
-    /// Waits until the error stream holds `text` or the program has ended; false in the latter case.
+    /// Waits until the error stream contains `text` or the program has ended. Returns false in the latter case.
     bool wait_for(const std::string& text) {
         while (read_text(folder_ / "err").find(text) == std::string::npos) {
             if (siginfo_t info{}; waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
@@ -85,7 +85,7 @@ class RunningProgram {
     pid_t process_ = -1;
 };
 
-/// Runs the built program to its end.
+/// Runs the built program until it ends.
 inline Finished run_program(const std::vector<std::string>& arguments, const std::string& input = {}) {
     return RunningProgram(arguments, input).finish();
 }

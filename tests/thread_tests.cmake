@@ -1,9 +1,10 @@
-# Under the thread sanitizer: the tests that run on several threads, which are those of the same bits on any number of
-# threads (every parallel loop of the library has one; their names end in "Threads") and those of the queues that deal
-# out tasks. One thread's tests would only take time. A test that is named so comes in by itself.
+# Tests for the thread sanitizer: those that run on several threads. These are the tests for equal results on any number
+# of threads (every parallel loop of the library has one; their names end in "Threads") and those of the task queues.
+# Tests are selected by these names.
 
 set(thread_tests "")
-list(FILTER unit_tests EXCLUDE REGEX "/exitance/(io|lab/(study|studies|thesis|peers|cie171|flatland))/")  # which the library is built without
+# Folders that the libraries are built without.
+list(FILTER unit_tests EXCLUDE REGEX "/exitance/(io|lab/(study|studies|thesis|peers|cie171|flatland))/")
 foreach(path IN LISTS unit_tests)
     file(STRINGS ${path} found REGEX "^TEST(_P)?\\(.*(Threads\\)|TaskQueues,)")
     if(found)

@@ -1,4 +1,4 @@
-// Light near edges, against solutions of the continuous equation.
+// Compares light near edges with solutions of the continuous equation.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-TEST(OpenScenes, AreRightToTwoPercentAtEveryProbeDownToTheirDimmestEdges) {
+TEST(OpenScenes, HaveAtMostTwoPercentErrorAtEveryProbe) {
     const std::filesystem::path folder = std::filesystem::path(test::shared_folder()) / "reference" / "analytic";
     for (const char* name : {"plates_1", "plates_0.5"}) {
         const std::string scene_file = (folder / name / (std::string(name) + ".obj")).string();
@@ -31,7 +31,8 @@ TEST(OpenScenes, AreRightToTwoPercentAtEveryProbeDownToTheirDimmestEdges) {
             for (std::size_t i = 0; i < points.size(); ++i)
                 for (std::size_t k = 0; k < bands; ++k) {
                     const double E = reference->irradiance[i][k];
-                    // What is asked for is 0.5% in the mean square of the scene; in the dark, too, it is to be 2%.
+                    // The requested 0.5% is the RMS error of the scene; in dark places, too, the error must be at most
+                    // 2%.
                     EXPECT_NEAR(light[i].irradiance[k], E, 0.02 * E) << name << " point " << i;
                 }
         }

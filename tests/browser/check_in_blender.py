@@ -7,7 +7,7 @@ from mathutils import Vector
 
 model, reference, camera_words, picture = sys.argv[sys.argv.index("--") + 1:]
 bpy.ops.wm.read_factory_settings(use_empty=True)
-# By default the importer of Debian 12 calls numpy.bool, which is gone: it fails on every file.
+# With default options the importer of Debian 12 calls numpy.bool, which no longer exists, and fails.
 bpy.ops.import_scene.gltf(filepath=model, import_shading="FLAT")
 eye, target, fov = camera_words.split()
 eye, target = (Vector([float(v) for v in words.split(",")]) for words in (eye, target))
@@ -21,7 +21,7 @@ scene.collection.objects.link(camera)
 scene.camera, scene.world = camera, bpy.data.worlds.new("dark")
 scene.world.color = (0, 0, 0)
 for material in bpy.data.materials:
-    material.use_backface_culling = True  # Cycles shows backs all the same: they differ from render's
+    material.use_backface_culling = True  # Cycles ignores this and shows backs, which differ from those of `render`
 scene.render.engine = "CYCLES"
 scene.cycles.device, scene.cycles.samples, scene.cycles.use_denoising = "CPU", 16, False
 scene.cycles.max_bounces = 0

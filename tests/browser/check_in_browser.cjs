@@ -1,4 +1,4 @@
-// Called by scripts/check_in_browser, which says what it does.
+// Called by scripts/check_in_browser; see there.
 const fs = require('fs'), http = require('http'), path = require('path');
 const {execFileSync} = require('child_process');
 const {chromium} = require('playwright-core');
@@ -28,10 +28,10 @@ import {GLTFLoader} from 'three/addons/loaders/GLTFLoader.js';
 import {EXRLoader} from 'three/addons/loaders/EXRLoader.js';
 const renderer = new THREE.WebGLRenderer({canvas: document.getElementById('c'), antialias: true, preserveDrawingBuffer: true});
 renderer.setSize(${size[0]}, ${size[1]});
-// What stock three.js shows of a model, from a camera of 'exitance render' (Z up, horizontal angle).
+// Renders a model with unmodified three.js, from a camera of 'exitance render' (Z up, horizontal angle).
 window.show = async (url, eye, target, fov, exr, exposure) => {
     const model = await new GLTFLoader().loadAsync(url);
-    if (exr) {  // as docs/light_maps.md says
+    if (exr) {  // as documented in docs/light_maps.md
         const map = await new EXRLoader().loadAsync(exr);
         map.flipY = true; map.channel = 1;
         model.scene.traverse(mesh => {
@@ -59,7 +59,7 @@ const pixels = async url => {
     context.drawImage(image, 0, 0);
     return context.getImageData(0, 0, image.width, image.height).data;
 };
-// Mean difference of two pictures as a share of white, and the share of pixels that differ by more than a tenth.
+// Mean difference of two pictures as a share of white, and the share of pixels that differ by more than 0.1.
 window.compare = async (a, b) => {
     const [p, q] = [await pixels(a), await pixels(b)];
     let sum = 0, far = 0;

@@ -1,5 +1,5 @@
-# Called by scripts/check_in_godot, within Godot 3: shows res://scene.glb as stock Godot imports it, but for what its
-# importer does not read, and compares the picture with another one.
+# Called by scripts/check_in_godot, within Godot 3: shows res://scene.glb as unmodified Godot imports it, adds properties
+# that its importer ignores, and compares the picture with another one.
 #   CAMERA   'EYE TARGET FOV' as `exitance render` takes it       REFERENCE, PICTURE   files
 extends SceneTree
 
@@ -26,7 +26,7 @@ func meshes_below(node):
 		out += meshes_below(child)
 	return out
 
-# Godot 3.2 reads neither which coordinates a texture goes by, nor KHR_materials_emissive_strength.
+# Godot 3.2 ignores the texture coordinate set of a texture and KHR_materials_emissive_strength.
 func add_what_the_importer_leaves_out(model):
 	var written = {}
 	for material in gltf()["materials"]:

@@ -1,4 +1,4 @@
-// Called by scripts/check_viewer, which says what it does.
+// Called by scripts/check_viewer; see there.
 const fs = require('fs'), path = require('path');
 const {execFileSync, spawn} = require('child_process');
 const {chromium} = require('playwright-core');
@@ -201,7 +201,7 @@ async function check_layers(page) {
     execFileSync(exitance, ['render', meshed, '-o', picture, '--size', drawn.join('x'), '--camera', words, '--shadow-classes', '-q']);
     const shown = await page.evaluate(() => exitance.canvas());
     if (process.env.KEEP) fs.writeFileSync(path.join(process.env.KEEP, 'classes.png'), Buffer.from(shown.split(',')[1], 'base64'));
-    // The key that `render` draws, and the sky, are the rest.
+    // The remaining differences are the legend that `render` draws, and the sky.
     const apart = await difference(page, shown, png(picture));
     check(apart < 0.08, `shadow classes differ from render by ${(100 * apart).toFixed(2)}% of white (8% allowed: its key, the sky)`);
     await page.check('#mesh');
@@ -276,7 +276,7 @@ async function check_shots(page) {
     await page.goto(origin);
     await page.waitForFunction(() => document.body.dataset.ended || Number(document.body.dataset.shooters) > 2, null, {timeout: 120000});
     check(Number(await page.evaluate('document.body.dataset.shooters')) > 0, 'who shoots is outlined');
-    await page.goto('about:blank');  // it would report that the program is gone
+    await page.goto('about:blank');  // the page would report that the server has ended
     program.kill();
 }
 

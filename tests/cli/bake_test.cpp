@@ -35,7 +35,7 @@ TEST(ProgramBake, WritesMapsAManifestAndAModel) {
     EXPECT_NE(read_text(out + "/scene.glb").find("\"MOZ_lightmap\":{\"index\":0"), std::string::npos);
 }
 
-TEST(ProgramBake, LightGroupsHaveMapsOfTheirOwn) {
+TEST(ProgramBake, LightGroupsHaveSeparateMaps) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder), solution = folder / "room.h5", out = folder / "maps";
     ASSERT_EQ(run_program({"solve", scene, "-o", solution, "--error", "0.1", "-q"}).status, 0);
@@ -50,7 +50,7 @@ TEST(ProgramBake, LightGroupsHaveMapsOfTheirOwn) {
     EXPECT_TRUE(std::filesystem::exists(out + "/lightmap_0_0.png"));
 }
 
-TEST(ProgramBake, RefusesWhatCannotBeDone) {
+TEST(ProgramBake, RejectsInvalidOptions) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5";
     ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
@@ -62,7 +62,8 @@ TEST(ProgramBake, RefusesWhatCannotBeDone) {
     EXPECT_EQ(large.status, 2);
     EXPECT_NE(large.err.find("--density"), std::string::npos) << large.err;
     EXPECT_FALSE(std::filesystem::exists(out));
-    EXPECT_EQ(run_program({"bake", solution, "-o", solution, "--density", "4"}).status, 5);  // a file has that name
+    // A file has the name of the output folder.
+    EXPECT_EQ(run_program({"bake", solution, "-o", solution, "--density", "4"}).status, 5);
     EXPECT_EQ(run_program({"bake", folder / "absent.h5", "-o", out}).status, 3);
 }
 

@@ -20,7 +20,7 @@ std::vector<std::string> keys(const Json& json) {
 
 }  // namespace
 
-TEST(ProgramCheck, ASoundSceneIsUsableAndCounted) {
+TEST(ProgramCheck, AValidSceneIsUsableAndItsPartsAreCounted) {
     const TemporaryFolder folder;
     const Finished run = run_program({"check", write_small_room(folder)});
     EXPECT_EQ(run.status, 0);
@@ -52,7 +52,7 @@ TEST(ProgramCheck, ABrokenSceneIsBadInputWithFileAndLine) {
     EXPECT_EQ(json["errors"][0]["file"], scene);
 }
 
-TEST(ProgramCheck, MarksWhatItFindsInAPictureEvenOfABrokenScene) {
+TEST(ProgramCheck, MarksFindingsInAPictureEvenOfABrokenScene) {
     const TemporaryFolder folder;
     for (const bool broken : {false, true}) {
         const std::string scene = broken ? write_broken_scene(folder) : write_small_room(folder);
@@ -67,7 +67,7 @@ TEST(ProgramCheck, MarksWhatItFindsInAPictureEvenOfABrokenScene) {
     EXPECT_EQ(run_program({"check", folder / "room.obj", "--picture", folder / "p.jpg"}).status, 2);
 }
 
-TEST(ProgramCheck, AFaceThatLooksTheWrongWayIsNamed) {
+TEST(ProgramCheck, AFaceWithReversedOrientationIsNamed) {
     const TemporaryFolder folder;
     write_text(folder / "box.mtl", "newmtl grey\nKd 0.5 0.5 0.5\nKe 1 1 1\n");
     write_text(folder / "box.obj",

@@ -4,7 +4,7 @@
 
 namespace exitance::test {
 
-TEST(ProgramClassical, WritesSnapshotsAndTellsItsKind) {
+TEST(ProgramClassical, WritesSnapshotsAndReportsItsVariant) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder), output = folder / "s.h5";
     const Finished run = run_program({"solve", scene, "-o", output, "--json", "--method", "matrix", "--direct",
@@ -21,7 +21,7 @@ TEST(ProgramClassical, WritesSnapshotsAndTellsItsKind) {
     EXPECT_EQ(run_program({"probe", folder / "s.0002.h5", "--points", "-"}, "x,y,z,nx,ny,nz\n1,1,0,0,0,1\n").status, 0);
 }
 
-TEST(ProgramClassical, OptionsThatAreNotObeyedAreUsageErrors) {
+TEST(ProgramClassical, UnsupportedOptionsAreUsageErrors) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder), output = folder / "s.h5";
     const std::vector<std::vector<std::string>> wrong = {{"--method", "matrix", "--kernel", "point"},
@@ -40,7 +40,7 @@ TEST(ProgramClassical, OptionsThatAreNotObeyedAreUsageErrors) {
     }
 }
 
-TEST(ProgramClassical, GrowingCellsAreDeliveredAsTheyAreWithoutAGather) {
+TEST(ProgramClassical, GrowingCellsAreUnchangedWithoutAGather) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder);
     const auto light = [&](const std::vector<std::string>& more) {

@@ -27,10 +27,10 @@ TEST(ProgramCompare, ASolutionAgreesWithItsOwnProbesAndWithAFinerOne) {
 
     const Json difference = Json::parse(run_program({"compare", coarse, fine, "--json"}).out);
     EXPECT_GT(difference["relative_rms_error"], 1e-4);
-    EXPECT_LT(difference["relative_rms_error"], 0.15);  // the two demands together, and a little
+    EXPECT_LT(difference["relative_rms_error"], 0.15);  // the sum of both requested errors, with a margin
 }
 
-TEST(ProgramCompare, DrawsWhereTheErrorLies) {
+TEST(ProgramCompare, DrawsThePositionsOfErrors) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder), coarse = folder / "coarse.h5", fine = folder / "fine.h5";
     ASSERT_EQ(run_program({"solve", scene, "-o", coarse, "--error", "0.2", "-q"}).status, 0);

@@ -8,7 +8,7 @@
 namespace exitance::test {
 namespace {
 
-/// A room without a ceiling, with a pane over half of it.
+/// Writes a room without a ceiling, half of which is covered by a pane.
 std::string write_court(const TemporaryFolder& folder) {
     write_text(folder / "court.mtl", "newmtl grey\nKd 0.5 0.5 0.5\nnewmtl glass\nKd 0 0 0\nd 0.1\n");
     write_text(folder / "court.obj",
@@ -47,7 +47,7 @@ TEST(ProgramSky, ASolutionUnderASkyIsReadBack) {
     const std::string points = "x,y,z,nx,ny,nz\n3.5,2,0,0,0,1\n1,1.5,3,0,0,1\n";
     const Finished probe = run_program({"probe", folder / "s.h5", "--points", "-", "-o", "-"}, points);
     ASSERT_EQ(probe.status, 0) << probe.err;
-    // Above everything there is the whole sky, the sun, and little that is reflected upwards.
+    // Above the scene, the irradiance is that of the whole sky and the sun; little light is reflected upwards.
     const std::string last = probe.out.substr(probe.out.rfind("1,1.5,3,"));
     EXPECT_NEAR(std::stod(last.substr(std::string("1,1.5,3,0,0,1,").size())),
                 120 + 600 * std::sin(50 * 3.14159265 / 180), 2);
@@ -55,7 +55,7 @@ TEST(ProgramSky, ASolutionUnderASkyIsReadBack) {
     EXPECT_EQ(run_program({"export", folder / "s.h5", "-o", folder / "s.glb"}).status, 0);
 }
 
-TEST(ProgramSky, MirroredLightThatIsLeftOutIsReported) {
+TEST(ProgramSky, OmittedMirroredLightIsReported) {
     const TemporaryFolder folder;
     write_text(folder / "front.rad",
                "void glass pane\n0\n0\n4 .9 .9 .9 4\nvoid plastic black\n0\n0\n5 0 0 0 0 0\n"
@@ -89,11 +89,12 @@ TEST(ProgramSky, OlderGenskyIsAnOption) {
         return std::stod(probe.out.substr(probe.out.find("0.5,0.5,1,0,0,1,") + 16));
     };
     const double today = light({}), older = light({"--older-gensky"});
-    EXPECT_GT(older, 1.01 * today);  // the sun of an uniform sky stands higher by a degree: 8.6 sin h + 0.123
+    // The zenith luminance grows with the sun's altitude h, here by a degree: 8.6 sin h + 0.123.
+    EXPECT_GT(older, 1.01 * today);
     EXPECT_LT(older, 1.1 * today);
 }
 
-TEST(ProgramSky, WhatIsWrongIsAUsageError) {
+TEST(ProgramSky, InvalidOptionsAreUsageErrors) {
     const TemporaryFolder folder;
     const std::string scene = write_court(folder), out = folder / "s.h5";
     const Finished kind = run_program({"solve", scene, "-o", out, "--sky", "grey,dhi=100"});
@@ -124,7 +125,7 @@ TEST(ProgramDaylight, WritesTablesOfAYear) {
     EXPECT_EQ(lines(read_text(folder / "year/matrix.csv")), 3u);
     EXPECT_EQ(read_text(folder / "year/summary.csv").find("name,value\nsensors,2\nhours,24\noccupied_hours,10\n"), 0u);
     EXPECT_EQ(read_text(folder / "year/illuminance.csv").find("month,day,hour,E_0,E_1\n6,21,1,0,0\n"), 0u);
-    // EN 17037: half of the 24 hours are daylight, and half of those bring more than 750 lx through the open half.
+    // EN 17037: 12 of the 24 hours are daylight hours, and half of these have more than 750 lx through the open half.
     EXPECT_NE(run.out.find("\"EN17037_daylight_hours\": 12.0"), std::string::npos) << run.out;
     EXPECT_NE(run.out.find("\"EN17037_level\": 3.0"), std::string::npos) << run.out;
     EXPECT_TRUE(first_line_of(read_text(folder / "year/metrics.csv")).ends_with(",E_half_of_daylight,sunlight_hours"));

@@ -32,7 +32,7 @@ std::vector<std::string> lines_of(const std::string& path) {
     return lines;
 }
 
-/// results.csv without the columns that a clock tells.
+/// The rows of results.csv without the measured times.
 std::string without_times(const std::string& path) {
     std::string out;
     for (const std::string& line : lines_of(path)) {
@@ -55,7 +55,7 @@ TEST(ProgramExperiment, ListsAndPrintsStudies) {
     EXPECT_NE(text.out.find("[[row]]"), std::string::npos);
 }
 
-TEST(ProgramExperiment, RefusesWhatItCannotDo) {
+TEST(ProgramExperiment, RejectsInvalidStudies) {
     const TemporaryFolder folder;
     EXPECT_EQ(run_program({"experiment", "tub", "-o", folder / "x"}).status, 2);
     EXPECT_EQ(run_program({"experiment", "tube"}).status, 2);
@@ -98,7 +98,7 @@ TEST(ProgramExperiment, DoesNotRepeatTheScenesOfATable) {
         "title = \"Faces\"\ntable = \"premesh\"\n[[scene]]\nname = \"boxes\"\ngenerate = \"boxes\"\n";
     write_text(folder / "s.toml", text);
     ASSERT_EQ(run_program({"experiment", folder / "s.toml", "-o", folder / "out"}).status, 0);
-    // What is in place of the scene's rows is taken: nothing is made again.
+    // Stored rows of a scene are reused without a new run.
     std::string kept;
     for (const auto& entry : fs::directory_iterator(folder / "out/runs")) kept = entry.path().string();
     std::string rows = read_text(kept);
@@ -114,7 +114,7 @@ TEST(ProgramExperiment, DoesNotRepeatTheScenesOfATable) {
     EXPECT_NE(all.find("table,"), std::string::npos);
 }
 
-TEST(ProgramExperiment, LeavesAFolderAloneThatAnotherRunWorksIn) {
+TEST(ProgramExperiment, DoesNotUseAFolderOfAnotherActiveRun) {
     const TemporaryFolder folder;
     write_text(folder / "s.toml", tiny);
     {
@@ -128,7 +128,7 @@ TEST(ProgramExperiment, LeavesAFolderAloneThatAnotherRunWorksIn) {
     EXPECT_TRUE(FolderLock::take(folder / ""));
 }
 
-TEST(ProgramExperiment, GoesOnWhereItWasStopped) {
+TEST(ProgramExperiment, ResumesAfterAStop) {
     const TemporaryFolder folder;
     write_text(folder / "s.toml", tiny);
     ASSERT_EQ(run_program({"experiment", folder / "s.toml", "-o", folder / "whole"}).status, 0);

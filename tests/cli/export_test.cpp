@@ -49,7 +49,7 @@ TEST(ProgramExport, WritesDiscontinuityCurvesAndQuadraticTriangles) {
     EXPECT_NE(read_text(cells).find(count), std::string::npos);
 }
 
-TEST(ProgramExport, WritesCloughAndTochersElementsAsCubicTriangles) {
+TEST(ProgramExport, WritesCloughTocherElementsAsCubicTriangles) {
     const TemporaryFolder folder;
     const std::string scene = folder / "table.obj", solution = folder / "table.h5", cells = folder / "table.vtu";
     ASSERT_EQ(run_program({"generate", "table", "-o", scene, "-q"}).status, 0);
@@ -82,7 +82,7 @@ TEST(ProgramExport, WritesOneMeshOfLayers) {
     EXPECT_NE(read_text(cells).find(count), std::string::npos);
 }
 
-TEST(ProgramExport, TablesOfFacesTellTheErrorOfEachAndWhatItRestsOn) {
+TEST(ProgramExport, TablesOfFacesHaveErrorsAndTheirNumberOfPoints) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5", table = folder / "room.csv";
     ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
@@ -95,7 +95,7 @@ TEST(ProgramExport, TablesOfFacesTellTheErrorOfEachAndWhatItRestsOn) {
     while (std::getline(lines, line)) {
         const std::size_t last = line.rfind(','), before = line.rfind(',', last - 1);
         const double error = std::stod(line.substr(before + 1));
-        EXPECT_GE(error, 0) << line;  // 0 where nothing is reflected
+        EXPECT_GE(error, 0) << line;  // 0 if nothing is reflected
         EXPECT_LT(error, 0.5) << line;
         points += std::stod(line.substr(last + 1));
     }

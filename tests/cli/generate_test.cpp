@@ -13,7 +13,7 @@ TEST(ProgramGenerate, WritesASceneThatChecksWithoutFindings) {
     EXPECT_EQ(folder.count(), 2u) << "the scene and its materials";
     const Finished check = run_program({"check", scene});
     EXPECT_EQ(check.status, 0);
-    // Furniture of single sheets has open edges, which is told and no finding.
+    // Furniture made of single sheets has open edges, which are reported but not counted as findings.
     EXPECT_NE(check.out.find("The scene can be used: 59 surfaces"), std::string::npos) << check.out;
     for (const char* finding : {"error:", "warning:", "repair:"})
         EXPECT_EQ(check.out.find(finding), std::string::npos) << check.out;

@@ -18,7 +18,7 @@ std::size_t lines_in(const std::string& text) {
     return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-/// Points in free space, each of which takes 4,096 rays: some 20 s of work in all.
+/// Points in free space, each of which needs 4,096 rays: about 20 s of work.
 std::string many_points(std::size_t count = 100000) {
     std::string text = "x,y,z,nx,ny,nz\n";
     for (std::size_t i = 0; i < count; ++i) text += "0.5,0.5,0." + std::to_string(100 + i % 800) + ",0,0,1\n";
@@ -27,7 +27,7 @@ std::string many_points(std::size_t count = 100000) {
 
 }  // namespace
 
-TEST(ProgramLimits, EveryVerbTakesThem) {
+TEST(ProgramLimits, EveryVerbSupportsThem) {
     for (const std::string& verb : verbs) {
         const std::string help = run_program({verb, "--help"}).out;
         EXPECT_NE(help.find("--time-limit SECONDS"), std::string::npos) << verb;
@@ -35,7 +35,7 @@ TEST(ProgramLimits, EveryVerbTakesThem) {
     }
 }
 
-TEST(ProgramLimits, ALimitBelowWhatTheProgramItselfTakesEndsEveryVerbWithNothingWritten) {
+TEST(ProgramLimits, AMemoryLimitBelowTheProgramsOwnSizeEndsEveryVerbWithoutOutput) {
     const TemporaryFolder folder;
     ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
     const std::string solution = folder / "s.h5", scene = write_small_room(folder);
@@ -63,10 +63,10 @@ TEST(ProgramLimits, ALimitBelowWhatTheProgramItselfTakesEndsEveryVerbWithNothing
         EXPECT_FALSE(entry.path().filename().string().starts_with("out")) << entry.path();
 }
 
-TEST(ProgramLimits, ATimeLimitLeavesAWholePictureOfFewerSamples) {
+TEST(ProgramLimits, ATimeLimitLeavesACompletePictureOfFewerSamples) {
     const TemporaryFolder folder;
     ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
-    // More samples than any machine takes in this time.
+    // Requests more samples than any machine computes in this time.
     const Finished run = run_program({"render", folder / "s.h5", "-o", folder / "p.exr", "--size", "1000x800",
                                       "--samples", "1024", "--camera", "0.5,0.5,0.5 2,0.5,0.4", "--time-limit", "3"});
     EXPECT_EQ(run.status, 4) << run.err;
@@ -99,13 +99,13 @@ TEST(ProgramLimits, ATimeLimitLeavesTheFirstRowsOfAProbe) {
     EXPECT_GT(rows, 0u);
     EXPECT_LT(rows, 100000u);
     EXPECT_NE(run.err.find("the first " + std::to_string(rows) + " points are finished"), std::string::npos) << run.err;
-    // They are the rows of a run without a limit.
+    // The rows are equal to those of a run without a limit.
     const std::size_t few = std::min<std::size_t>(rows, 100);
     const Finished whole = run_program({"probe", folder / "s.h5", "--points", "-"}, many_points(few));
     EXPECT_TRUE(some.starts_with(whole.out));
 }
 
-TEST(ProgramLimits, ATimeLimitEndsABakeWithNoMaps) {
+TEST(ProgramLimits, ATimeLimitEndsABakeWithoutMaps) {
     const TemporaryFolder folder;
     ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
     const Finished run =

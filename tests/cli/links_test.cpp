@@ -8,7 +8,7 @@
 namespace exitance::test {
 namespace {
 
-/// Columns 0 and 6 of the table: receivers, and the sum of form factors.
+/// Columns 0 and 6 of the table: the receivers, and the sum of the form factors.
 std::pair<std::vector<std::string>, double> receivers_and_sum(const std::string& path) {
     std::istringstream lines(read_text(path));
     std::pair<std::vector<std::string>, double> out;
@@ -27,7 +27,7 @@ std::pair<std::vector<std::string>, double> receivers_and_sum(const std::string&
 
 }  // namespace
 
-TEST(ProgramLinks, OfAPlaceBringItAllThatItSees) {
+TEST(ProgramLinks, OfAPointCoverAllThatIsVisible) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder), table = folder / "links.csv", lines = folder / "links.obj";
     for (const std::string method : {"hierarchical", "wavelet"}) {
@@ -42,8 +42,8 @@ TEST(ProgramLinks, OfAPlaceBringItAllThatItSees) {
 
         ASSERT_EQ(run_program({"export", solution, "--links", "0.5,0.4,0", "-o", table}).status, 0);
         const auto [receivers, sum] = receivers_and_sum(table);
-        // In a closed room form factors sum to 1, but for the black lamp, to which nothing is linked: about 0.1 of the
-        // hemisphere at most.
+        // In a closed room form factors sum to 1, except for the black lamp, to which there are no links: at most 0.1
+        // of the hemisphere.
         EXPECT_GT(sum, 0.85) << method;
         EXPECT_LT(sum, 1.03) << method;
         ASSERT_EQ(run_program({"export", solution, "--links", receivers.front(), "-o", lines}).status, 0);

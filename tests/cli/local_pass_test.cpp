@@ -4,7 +4,7 @@
 
 namespace exitance::test {
 
-TEST(ProgramLocalPass, SolvesByEachRuleAndStatsTellsWhich) {
+TEST(ProgramLocalPass, SolvesByEachRuleAndStatsReportsIt) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder), output = folder / "s.h5";
     for (const std::string rule : {"a", "d", "e"}) {
@@ -17,7 +17,7 @@ TEST(ProgramLocalPass, SolvesByEachRuleAndStatsTellsWhich) {
     }
 }
 
-TEST(ProgramLocalPass, OtherMethodsAndOptionsThatAreNotObeyedAreUsageErrors) {
+TEST(ProgramLocalPass, OtherMethodsAndUnsupportedOptionsAreUsageErrors) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder), output = folder / "s.h5";
     const std::vector<std::vector<std::string>> wrong = {

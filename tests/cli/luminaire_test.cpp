@@ -15,7 +15,7 @@ constexpr const char* downlight =
     "IESNA:LM-63-2002\n[TEST] own\n[MANUFAC] nobody\nTILT=NONE\n1 4000 1 7 1 1 2 0.6 1.2 0\n1 1 20\n"
     "0 15 30 45 60 75 90\n0\n1000 965.9 866 707.1 500 258.8 0\n";
 
-TEST(ProgramLuminaire, TellsFactsAndDrawsThem) {
+TEST(ProgramLuminaire, PrintsAndDrawsFacts) {
     const TemporaryFolder folder;
     write_text(folder / "d.ies", downlight);
     const Finished text = run_program({"luminaire", folder / "d.ies", "-o", folder / "d.svg", "-o", folder / "d.obj"});
@@ -35,7 +35,7 @@ TEST(ProgramLuminaire, TellsFactsAndDrawsThem) {
     EXPECT_EQ(facts["opening"]["size"], (std::vector<double>{1.2, 0.6, 0}));
 }
 
-/// Height of what an OBJ file holds.
+/// Height of the geometry in an OBJ file.
 double height_of(const std::string& obj) {
     std::istringstream lines(obj);
     double least = 1e9, most = -1e9;
@@ -47,7 +47,7 @@ double height_of(const std::string& obj) {
     return most - least;
 }
 
-TEST(ProgramLuminaire, WritesTheTrueHeightOfAThinOpeningAndTellsAMissingOne) {
+TEST(ProgramLuminaire, WritesTheTrueHeightOfAThinOpeningAndReportsAMissingOne) {
     const TemporaryFolder folder;
     const auto run = [&](const std::string& opening) {
         std::string text = downlight;
@@ -65,7 +65,7 @@ TEST(ProgramLuminaire, WritesTheTrueHeightOfAThinOpeningAndTellsAMissingOne) {
     EXPECT_NE(run("0 0 0").err.find("a cube of 1 mm stands for it"), std::string::npos);
 }
 
-TEST(ProgramLuminaire, SaysWhereAFileIsWrong) {
+TEST(ProgramLuminaire, ReportsTheLineOfAnError) {
     const TemporaryFolder folder;
     std::string text = downlight;
     write_text(folder / "d.ies", text.replace(text.find("707.1"), 5, "7o7.1"));
@@ -80,7 +80,7 @@ constexpr const char* floor_obj =
     "mtllib floor.mtl\nv -5 -5 0\nv 5 -5 0\nv 5 5 0\nv -5 5 0\nusemtl grey\nf 1 2 3 4\n"
     "v -5 -5 3\nv 5 -5 3\nv 5 5 3\nv -5 5 3\ng ceiling\nf 8 7 6 5\n";
 
-/// Illuminance (last column) at points of a floor below a ceiling, both of them black, with luminaires from a table.
+/// Illuminance (last column) at points on a black floor below a black ceiling, with luminaires from a table.
 std::vector<double> lux_below(const TemporaryFolder& folder, const std::string& table, const std::string& points) {
     write_text(folder / "floor.obj", floor_obj);
     write_text(folder / "floor.mtl", "newmtl grey\nKd 0 0 0\n");
@@ -101,7 +101,7 @@ std::vector<double> lux_below(const TemporaryFolder& folder, const std::string& 
     return out;
 }
 
-/// The intensity of `downlight` under an angle from its axis.
+/// Intensity of `downlight` at an angle from its axis, given by the cosine of that angle.
 double intensity(double cosine) {
     const std::vector<double> table{1000, 965.9, 866, 707.1, 500, 258.8, 0};
     const double place = std::acos(std::clamp(cosine, 0.0, 1.0)) * 180 / std::numbers::pi / 15;
@@ -109,7 +109,7 @@ double intensity(double cosine) {
     return table[i] + (place - static_cast<double>(i)) * (table[i + 1] - table[i]);
 }
 
-/// Illuminance on a horizontal plane below an opening of 1.2 x 0.6 m, a sum over 400 x 200 places of it.
+/// Illuminance on a horizontal plane below an opening of 1.2 x 0.6 m, as a sum over 400 x 200 parts of the opening.
 double finely_summed(double x, double y, double height) {
     double sum = 0;
     for (int i = 0; i < 400; ++i)
@@ -121,7 +121,7 @@ double finely_summed(double x, double y, double height) {
     return sum;
 }
 
-TEST(ProgramLuminaire, LightOfAnOpeningInACeilingIsThatOfItsParts) {
+TEST(ProgramLuminaire, LightOfAnOpeningInACeilingIsTheSumOverItsParts) {
     const TemporaryFolder folder;
     const std::vector<double> lux = lux_below(folder, "file,x,y,z\nd.ies,0,0,3\n",
                                               "0,0,0,0,0,1\n2,1,0,0,0,1\n0.2,0.1,2.5,0,0,1\n0.9,0,2.9,0,0,1\n");
@@ -132,7 +132,7 @@ TEST(ProgramLuminaire, LightOfAnOpeningInACeilingIsThatOfItsParts) {
     EXPECT_NEAR(lux[3] / finely_summed(0.9, 0, 0.1), 1, 1e-3);
 }
 
-TEST(ProgramLuminaire, ATableTurnsAndDims) {
+TEST(ProgramLuminaire, ATableRotatesAndDimsLuminaires) {
     const TemporaryFolder folder;
     const std::vector<double> plain = lux_below(folder, "file,x,y,z\nd.ies,0,0,2\n", "1,0,0,0,0,1\n0,1,0,0,0,1\n");
     const std::vector<double> turned = lux_below(folder,
@@ -144,7 +144,7 @@ TEST(ProgramLuminaire, ATableTurnsAndDims) {
     EXPECT_NEAR(turned[0] / plain[1], 0.5 * 0.5 * 0.8, 1e-6);
     const std::vector<double> aimed =
         lux_below(folder, "file,x,y,z,aim_x,aim_y,aim_z\nd.ies,0,0,2,1,0,-1\n", "2,0,0,0,0,1\n-2,0,0,0,0,1\n");
-    EXPECT_NEAR(aimed[0] / (1000 * std::sqrt(0.5) / 8), 1, 0.05);  // on its axis, 2.83 m away: not quite far
+    EXPECT_NEAR(aimed[0] / (1000 * std::sqrt(0.5) / 8), 1, 0.05);  // on its axis at 2.83 m, which is not quite far away
     EXPECT_NEAR(aimed[1], 0, 0.5);
 }
 

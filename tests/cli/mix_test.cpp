@@ -7,7 +7,7 @@
 namespace exitance::test {
 namespace {
 
-/// A box of two lamps, one of which is in two places; the walls reflect no green.
+/// A box with two lamps, one of which has two faces; the walls reflect no green.
 constexpr const char* two_lamps =
     "mtllib s.mtl\n"
     "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 2\nv 2 0 2\nv 2 2 2\nv 0 2 2\n"
@@ -28,7 +28,7 @@ class ProgramMix : public testing::Test {
     }
     static void TearDownTestSuite() { delete folder; }
     static std::string path(const std::string& name) { return *folder / name; }
-    /// E on the middle of the floor, three bands.
+    /// Irradiance at the centre of the floor, three bands.
     static std::vector<double> light(const std::string& name) {
         std::ofstream(path("p.csv")) << "x,y,z,nx,ny,nz\n1,1,0,0,0,1\n";
         const Finished run = run_program({"probe", path(name), "--points", path("p.csv"), "-o", "-", "-q"});
@@ -43,10 +43,10 @@ TemporaryFolder* ProgramMix::folder = nullptr;
 
 }  // namespace
 
-TEST_F(ProgramMix, DimsLampsAndTheResultIsASolutionLikeAnyOther) {
+TEST_F(ProgramMix, DimsLampsAndWritesACompleteSolution) {
     const Finished run = run_program({"mix", path("s.h5"), "left=0", "right=2", "-o", path("d.h5")});
     ASSERT_EQ(run.status, 0) << run.err;
-    // Both lamps stand alike, so that twice the one is both.
+    // Both lamps are placed symmetrically, so twice one lamp equals both.
     EXPECT_NEAR(light("d.h5")[0], light("s.h5")[0], 0.05 * light("s.h5")[0]);
     EXPECT_EQ(run_program({"stats", path("d.h5")}).status, 0);
     EXPECT_EQ(run_program({"render", path("d.h5"), "-o", path("d.png"), "--size", "40x30"}).status, 0);
@@ -62,7 +62,7 @@ TEST_F(ProgramMix, RepaintsBandsThatHadNoReflectedLight) {
     EXPECT_NEAR(light("g.h5")[1], light("g.h5")[0], 0.05 * light("g.h5")[0]) << "red and green are alike now";
 }
 
-TEST_F(ProgramMix, SaysWhatThereIs) {
+TEST_F(ProgramMix, ListsLightGroups) {
     const Finished wrong = run_program({"mix", path("s.h5"), "middle=1", "-o", path("x.h5")});
     EXPECT_EQ(wrong.status, 2);
     EXPECT_NE(wrong.err.find("there are left, right"), std::string::npos) << wrong.err;

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Programs of the test's own in the place of peers, found first in PATH.
+/// Installs the test's own programs under the names of peers, first in PATH.
 class Peers : public testing::Test {
   protected:
     void SetUp() override {
@@ -43,7 +43,7 @@ class Peers : public testing::Test {
 }  // namespace
 
 TEST_F(Peers, AreMeasuredAtThePointsOfTheReference) {
-    // Light of a peer that tells 0 everywhere is 100% and more off, by the mean of what is right.
+    // A peer that reports 0 everywhere has an error of 100% of the mean, or more.
     make("rtrace", "while read line; do echo 0 0 0; done; echo \"$@\" > " + std::string(folder_ / "words") + "\n");
     const std::string table = results("-ab {value}");
     EXPECT_NE(table.find(",radiance,"), std::string::npos) << table;
@@ -51,14 +51,14 @@ TEST_F(Peers, AreMeasuredAtThePointsOfTheReference) {
     EXPECT_NE(read_text(folder_ / "words").find("-I+ -n 1 -ab 0 !oconv scene.rad"), std::string::npos);
 }
 
-TEST_F(Peers, ThatFailOrTellTooLittleAreRowsThatSaySo) {
+TEST_F(Peers, FailuresAndMissingOutputAreReportedInTheirRows) {
     make("rtrace", "echo 1 1 1\n");
     EXPECT_NE(results("-ab 1").find("failed: it told light of 1 points in place of 20"), std::string::npos);
     make("rtrace", "echo 'fatal: no octree' >&2; exit 1\n");
     EXPECT_NE(results("-ab 2").find("failed: fatal: no octree"), std::string::npos);
 }
 
-TEST_F(Peers, RefuseOptionsThatTheyHaveNot) {
+TEST_F(Peers, RejectUnsupportedOptions) {
     const PeerScene scene;
     const auto words = blender_peer.prepare({scene, {"samples=3", "depth=2"}, 1, folder_ / "."});
     ASSERT_FALSE(words);
@@ -70,7 +70,7 @@ TEST_F(Peers, PixelsOfPovRayAreRadiosity) {
     scene.most_light = 2;
     const Spectrum rho(0.5), emitted(0.25);
     scene.places = {{{}, rho, emitted}, {{}, {}, {}}};
-    // Two pixels, flat: 1 and 1/4 of the most light (exponent 128 + 1, and 128 - 1: mantissas of 128).
+    // Two uniform pixels, 1 and 1/4 of the maximum (exponents 128 + 1 and 128 - 1, mantissas of 128).
     const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n";
     const std::string pixels{'\x80', '\x80', '\x80', '\x81', '\x80', '\x80', '\x80', '\x7f'};
     ASSERT_TRUE(write_file(folder_ / "light.hdr", header + pixels));
@@ -83,7 +83,7 @@ TEST_F(Peers, PixelsOfPovRayAreRadiosity) {
     EXPECT_FALSE(povray_peer.read({scene, {}, 1, folder_ / "."}, {}));
 }
 
-TEST(GraphOfLoops, HasALoopAnIterationAndWhatLiesBetweenBehindBarriers) {
+TEST(GraphOfLoops, HasOneLoopPerIterationAndBarriersBetween) {
     TaskTrace trace;
     trace.begin_phase("p");
     TaskTrace::Loop loop = trace.begin_loop("l", 2, 1, 2);

@@ -10,7 +10,7 @@ namespace {
 
 const std::string points = "x,y,z,nx,ny,nz\n1,1,0,0,0,1\n2,1.5,1,0,0,1\n";
 
-/// One solution serves all tests of this file.
+/// All tests in this file share one solution.
 class ProgramProbe : public testing::Test {
   protected:
     static void SetUpTestSuite() {
@@ -48,7 +48,7 @@ TEST_F(ProgramProbe, ReadsStandardInputAndWritesStandardOutput) {
     EXPECT_TRUE(lines[2].ends_with(",,,")) << "a point in free space has no radiosity: " << lines[2];
 }
 
-TEST_F(ProgramProbe, FilesHoldWhatStandardOutputShows) {
+TEST_F(ProgramProbe, FilesEqualStandardOutput) {
     write_text(file("points.csv"), points);
     const Finished shown = run_program({"probe", solution(), "--points", file("points.csv")});
     const Finished run = run_program({"probe", solution(), "--points", file("points.csv"), "-o", file("light.csv")});
@@ -71,7 +71,7 @@ TEST_F(ProgramProbe, DirectAndIndirectLightMakeTheTotal) {
     EXPECT_NEAR(red[0] + red[1], red[2], 1e-8 * red[2]);  // ten digits are printed
 }
 
-TEST_F(ProgramProbe, PathsGiveTheLightThatTheSolutionGivesWithTheirStandardErrors) {
+TEST_F(ProgramProbe, PathsAgreeWithTheSolutionAndHaveStandardErrors) {
     const Finished run = run_program({"probe", solution(), "--points", "-", "--reference", "4096"}, points);
     ASSERT_EQ(run.status, 0) << run.err;
     const std::vector<std::string> lines = lines_of(run.out);
@@ -85,12 +85,12 @@ TEST_F(ProgramProbe, PathsGiveTheLightThatTheSolutionGivesWithTheirStandardError
     };
     const std::string own = lines_of(run_program({"probe", solution(), "--points", "-"}, points).out).at(1);
     EXPECT_GT(field(lines[1], 12), 0);
-    // The solution was asked for 10%; the paths' own error comes on top.
+    // The solution has a requested error of 10%, to which the error of the paths is added.
     EXPECT_NEAR(field(lines[1], 6) / field(own, 6), 1, 0.15);
 }
 
-TEST_F(ProgramProbe, TellsHowManyPointsLieBetweenTwoSides) {
-    // The small room with a sheet of two faces in x = 2, y < 1 on its floor.
+TEST_F(ProgramProbe, ReportsTheNumberOfPointsBetweenTwoSides) {
+    // The small room with a sheet of two faces at x = 2, y < 1 on its floor.
     const std::string scene = write_small_room(*folder_, "parted");
     std::ofstream(scene, std::ios::app) << "v 2 0 0\nv 2 1 0\nv 2 1 2\nv 2 0 2\nusemtl grey\ng sheet\n"
                                            "f 13 14 15 16\nf 16 15 14 13\n";
@@ -108,7 +108,7 @@ TEST_F(ProgramProbe, TellsHowManyPointsLieBetweenTwoSides) {
     }
 }
 
-TEST_F(ProgramProbe, PartsOfTheSolutionAreUsageErrorsBesideWhatHasNone) {
+TEST_F(ProgramProbe, PartsOfTheSolutionAreUsageErrorsWithReferences) {
     const std::vector<std::vector<std::string>> pairs{{"--reference", "4", "--component", "direct"},
                                                       {"--reference", "4", "--interpolant"},
                                                       {"--interpolant", "--component", "indirect"},
@@ -134,7 +134,7 @@ TEST_F(ProgramProbe, AnUnwritableFolderLeavesNoResult) {
     EXPECT_EQ(run_program({"probe", solution(), "--points", "-", "-o", file("absent/light.csv")}, points).status, 5);
 }
 
-TEST_F(ProgramProbe, WhatIsNotASolutionIsBadInput) {
+TEST_F(ProgramProbe, OtherFilesAreBadInput) {
     write_text(file("not.h5"), "This is no HDF5 file.\n");
     for (const std::string name : {"not.h5", "absent.h5"}) {
         const Finished run = run_program({"probe", file(name), "--points", "-"}, points);
@@ -144,7 +144,7 @@ TEST_F(ProgramProbe, WhatIsNotASolutionIsBadInput) {
     }
 }
 
-TEST_F(ProgramProbe, LeavesNothingBehindAfterASignal) {
+TEST_F(ProgramProbe, LeavesNoFileAfterASignal) {
     const TemporaryFolder folder;
     RunningProgram run({"probe", solution(), "--points", "-", "-o", folder / "E.csv", "--reference", "1000000000",
                         "--progress", "json"},

@@ -13,9 +13,9 @@
 namespace exitance::test {
 namespace {
 
-const std::string launcher = mpirun();  ///< Empty where the build has no MPI.
+const std::string launcher = mpirun();  ///< Empty if the build has no MPI.
 
-/// What a run wrote, but for what differs from run to run.
+/// The content of a solution, without statistics that differ from run to run.
 std::string light_in(const TemporaryFolder& folder, const std::string& name) {
     Result<Solution> solution = load_solution(folder / (name + ".h5"));
     if (!solution) return ADD_FAILURE() << solution.error().message, "";
@@ -25,7 +25,7 @@ std::string light_in(const TemporaryFolder& folder, const std::string& name) {
     return read_text(plain);
 }
 
-/// The process that `parent` has started last.
+/// The child process that `parent` started last.
 pid_t last_child(pid_t parent) {
     const std::string number = std::to_string(parent);
     std::istringstream children(read_text("/proc/" + number + "/task/" + number + "/children"));
@@ -38,7 +38,7 @@ class ProgramOfProcesses : public ::testing::Test {
   protected:
     void SetUp() override {
         if (launcher.empty()) GTEST_SKIP() << "the build has no MPI";
-        // More processes than processors, and as root in containers: what mpirun warns of is as wanted here.
+        // Allow more processes than processors, and root in containers; mpirun would reject both.
         ::setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1), ::setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
         ::setenv("OMPI_MCA_rmaps_base_oversubscribe", "1", 1),
             ::setenv("OMPI_MCA_hwloc_base_binding_policy", "none", 1);
@@ -59,7 +59,7 @@ class ProgramOfProcesses : public ::testing::Test {
         if (processes == 1) return run_program(words);
         return RunningProgram(launched(processes, words), {}, launcher).finish();
     }
-    /// What is kept of `several.h5`: the checkpoint, then the parts of processes 1, 2, ...
+    /// Checkpoint files of `several.h5`: the checkpoint, then the parts of processes 1, 2, ...
     std::vector<std::string> kept_files() const {
         std::vector<std::string> files;
         for (const auto& entry : std::filesystem::directory_iterator(folder / "."))
@@ -68,7 +68,7 @@ class ProgramOfProcesses : public ::testing::Test {
         std::sort(files.begin(), files.end());
         return files;
     }
-    /// A solve of `several.h5` that is asked to stop while it gathers.
+    /// Solves `several.h5` and stops it during the gather.
     void stop_in_the_gather(int processes, const std::string& error) const {
         const std::vector<std::string> words =
             solve("several", {"--error", error, "--checkpoint-every", "1e-9", "--resume", "--progress", "json"});
@@ -87,7 +87,7 @@ class ProgramOfProcesses : public ::testing::Test {
     std::string scene;
 };
 
-/// How often `text` stands in `all`.
+/// Number of occurrences of `text` in `all`.
 std::size_t times(const std::string& all, const std::string& text) {
     std::size_t count = 0;
     for (std::size_t at = all.find(text); at != std::string::npos; at = all.find(text, at + 1)) ++count;
@@ -103,7 +103,7 @@ TEST_F(ProgramOfProcesses, WriteTheFileThatOneWrites) {
     for (const std::vector<std::string>& form : forms) {
         ASSERT_EQ(run_program(solve("one", form)).status, 0);
         double bytes_of_two = 0, messages_of_two = 0, fetched_of_four = 0, fetches_of_four = 0;
-        const bool is_linear = form.back() == "linear";  // of which one number is enough
+        const bool is_linear = form.back() == "linear";  // one number of processes is enough for linear elements
         for (int processes = is_linear ? 3 : 2; processes <= (is_linear ? 3 : 4); ++processes) {
             std::vector<std::string> words = form;
             words.insert(words.end(), {"--json", "--threads", processes == 2 ? "2" : "1"});
@@ -116,12 +116,13 @@ TEST_F(ProgramOfProcesses, WriteTheFileThatOneWrites) {
             EXPECT_EQ(written->links.links.empty(), form.back() != "--keep-links");
             std::filesystem::remove(folder / "one.plain");
             EXPECT_TRUE(light_in(folder, "several") == light_in(folder, "one")) << processes << " processes";
-            // What one process would hand on goes to all others: so many bytes and messages, and no other ones.
+            // Each process sends its results to all others, so bytes and messages have exactly these numbers.
             std::map<std::string, double>& figures = written->statistics.figures;
             const double bytes = figures["message_bytes_solve"], messages = figures["messages_solve"], p = processes;
             if (processes == 2) bytes_of_two = bytes, messages_of_two = messages;
             EXPECT_GT(bytes, 0);
-            // What others read goes to them alone; two know what four would.
+            // Fetched values are sent only to the process that reads them. The run of two computes the numbers for
+            // four.
             EXPECT_GT(figures["message_bytes_fetch"], 0);
             if (processes == 2) {
                 fetched_of_four = figures["message_bytes_fetch_of_twice"];
@@ -144,15 +145,15 @@ TEST_F(ProgramOfProcesses, WriteTheFileThatOneWrites) {
     }
 }
 
-/// A limit too low for one process alone is enough for each of two on a node, where what both hold stands once and
-/// counts half for each.
-TEST_F(ProgramOfProcesses, CountTheirShareOfCommonMemoryAgainstTheirLimit) {
+/// A limit that is too low for a single process is enough for each of two on a node, since half of their shared memory
+/// counts for each.
+TEST_F(ProgramOfProcesses, CountTheirShareOfSharedMemoryForTheirLimit) {
     const std::vector<std::string> error{"--error", "0.1"};
     ASSERT_EQ(run_program(solve("one", error)).status, 0);
     const auto under = [&](int mib) {
         return solve("several", {"--error", "0.1", "--memory-limit", std::to_string(mib) + "M"});
     };
-    // The smallest limit that lets the scene be read is too low for the coarsest mesh.
+    // The smallest limit with which the scene can be read is too low for the coarsest mesh.
     const std::string before = "--memory-limit: ";
     int limit = 1;
     for (bool is_planned = false; !is_planned;) {
@@ -171,7 +172,7 @@ TEST_F(ProgramOfProcesses, CountTheirShareOfCommonMemoryAgainstTheirLimit) {
     EXPECT_EQ(run_on(2, under(1)).status, 5);
 }
 
-TEST_F(ProgramOfProcesses, RefuseWhatOneAloneCanDo) {
+TEST_F(ProgramOfProcesses, RejectWhatOnlyASingleProcessSupports) {
     const Finished method = run_on(2, solve("none", {"--method", "progressive"}));
     EXPECT_EQ(method.status, 2);
     EXPECT_EQ(times(method.err, "progressive does not run over several processes"), 1u) << method.err;
@@ -185,7 +186,7 @@ TEST_F(ProgramOfProcesses, RefuseWhatOneAloneCanDo) {
     EXPECT_FALSE(std::filesystem::exists(folder / "none.h5"));
 }
 
-TEST_F(ProgramOfProcesses, FailTogetherAndSaySoOnce) {
+TEST_F(ProgramOfProcesses, FailTogetherWithOneMessage) {
     const std::string broken = write_broken_scene(folder);
     const Finished input = run_on(3, {"solve", broken, "-o", folder / "broken.h5"});
     EXPECT_EQ(input.status, 3);
@@ -195,20 +196,20 @@ TEST_F(ProgramOfProcesses, FailTogetherAndSaySoOnce) {
     EXPECT_EQ(times(output.err, "error: "), 1u) << output.err;
 }
 
-TEST_F(ProgramOfProcesses, TakeAMethodThatRunsOverThemWhereTheirChoiceWouldNot) {
+TEST_F(ProgramOfProcesses, ChooseAMethodThatSupportsSeveralProcesses) {
     const std::vector<std::string> fine{"--error-interpolant", "0.01", "--time-limit", "0.5"};
     const Finished run = run_on(2, solve("auto", fine));
     EXPECT_TRUE(run.status == 0 || run.status == 4 || run.status == 5) << run.err;
     EXPECT_NE(run.err.find("does not run over processes"), std::string::npos) << run.err;
 }
 
-TEST_F(ProgramOfProcesses, StopTogetherWhenTimeIsUp) {
+TEST_F(ProgramOfProcesses, StopTogetherAtTheTimeLimit) {
     const Finished run = run_on(3, solve("limited", {"--error", "0.0003", "--time-limit", "4", "--json"}));
     EXPECT_EQ(run.status, 4) << run.err;
     EXPECT_TRUE(load_solution(folder / "limited.h5"));
 }
 
-TEST_F(ProgramOfProcesses, GoOnFromACheckpointInAnotherNumber) {
+TEST_F(ProgramOfProcesses, ResumeFromACheckpointOfAnotherNumberOfProcesses) {
     const std::string error = "0.02";
     ASSERT_EQ(run_program(solve("one", {"--error", error})).status, 0);
     const std::string kept = folder / "several.h5.checkpoint";
@@ -233,7 +234,7 @@ TEST_F(ProgramOfProcesses, GoOnFromACheckpointInAnotherNumber) {
     EXPECT_TRUE(light_in(folder, "several") == light_in(folder, "one"));
 }
 
-TEST_F(ProgramOfProcesses, KeepAPartEachThatAnyNumberGoesOnFrom) {
+TEST_F(ProgramOfProcesses, WritePartsThatAnyNumberOfProcessesCanResume) {
     const std::string error = "0.02";
     ASSERT_EQ(run_program(solve("one", {"--error", error})).status, 0);
     for (const auto& [before, after] : {std::pair{1, 2}, {2, 1}, {3, 2}, {4, 3}}) {
@@ -257,7 +258,7 @@ TEST_F(ProgramOfProcesses, KeepAPartEachThatAnyNumberGoesOnFrom) {
     }
 }
 
-TEST_F(ProgramOfProcesses, RefuseACheckpointWithoutThePartsThatItWasWrittenWith) {
+TEST_F(ProgramOfProcesses, RejectACheckpointWithMissingOrOtherParts) {
     const std::string error = "0.02";
     stop_in_the_gather(3, error);
     ASSERT_EQ(kept_files().size(), 3u);

@@ -6,7 +6,7 @@
 
 namespace exitance::test {
 
-TEST(ProgramRender, MakesAPictureOfTheSizeAskedForAndRefusesOtherEndings) {
+TEST(ProgramRender, MakesAPictureOfTheRequestedSizeAndRejectsOtherEndings) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5", picture = folder / "room.png";
     ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
@@ -46,7 +46,7 @@ TEST(ProgramRender, MakesAPictureOfTheSizeAskedForAndRefusesOtherEndings) {
     EXPECT_EQ(run_program({"render", solution, "-o", folder / "absent/room.png", "--size", "4x4"}).status, 5);
 }
 
-TEST(ProgramRender, DrawsTheMethodsOwnElementsOrThoseOfExport) {
+TEST(ProgramRender, DrawsTheElementsOfTheMethodOrOfExport) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5";
     ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
@@ -91,7 +91,7 @@ TEST(ProgramRender, ShowsOrdersOfEdgesAndShadowClassesOfADiscontinuityMesh) {
     EXPECT_EQ(render(meshed, "events.png", {"--shadow-classes", "--false-colour", "illuminance"}).status, 2);
 }
 
-TEST(ProgramRender, KnowsProjectionsAndWritesLinearPictures) {
+TEST(ProgramRender, SupportsProjectionsAndWritesLinearPictures) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5";
     ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
@@ -110,7 +110,7 @@ TEST(ProgramRender, KnowsProjectionsAndWritesLinearPictures) {
     EXPECT_NE(read_text(hdr).find("-Y 16 +X 32\n"), std::string::npos);
 }
 
-TEST(ProgramRender, LeavesNothingBehindAfterASignal) {
+TEST(ProgramRender, LeavesNoFileAfterASignal) {
     const TemporaryFolder folder;
     ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
     RunningProgram run(
@@ -119,10 +119,10 @@ TEST(ProgramRender, LeavesNothingBehindAfterASignal) {
     run.send(SIGINT);
     EXPECT_EQ(run.finish().status, 130);
     EXPECT_FALSE(std::filesystem::exists(folder / "s.png"));
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / ""), {}), 1);  // the solution alone
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / ""), {}), 1);  // only the solution
 }
 
-TEST(ProgramRender, TakesTheCamerasThatCameWithAScene) {
+TEST(ProgramRender, SupportsTheCamerasOfAScene) {
     const TemporaryFolder folder;
     const Solution solution = sample_solution();
     ASSERT_FALSE(solution.scene.cameras().empty());

@@ -11,7 +11,7 @@
 namespace exitance::test {
 namespace {
 
-/// The numbers after a key, up to the closing bracket.
+/// Returns the numbers after a key, up to the closing bracket.
 std::vector<double> numbers_after(const std::string& json, const std::string& key, std::size_t from = 0) {
     std::vector<double> out;
     std::size_t at = json.find("\"" + key + "\": [", from);
@@ -38,7 +38,7 @@ TEST(ProgramReport, IsOnePageWithItsNumbersBesideIt) {
         EXPECT_NE(html.find("<section id=\"" + id + "\">"), std::string::npos) << id;
     EXPECT_EQ(html.find("src=\"http"), std::string::npos);
     EXPECT_EQ(html.find("href=\"http"), std::string::npos);
-    // The twin stands within the page as it is, and the page's tables show its numbers.
+    // The page contains the JSON file unchanged, and its tables show the same numbers.
     EXPECT_NE(html.find(json), std::string::npos);
     std::smatch mean;
     ASSERT_TRUE(
@@ -66,7 +66,7 @@ TEST(ProgramReport, IsOnePageWithItsNumbersBesideIt) {
     }
 }
 
-TEST(ProgramReport, TellsNamesAsTextAndLuxWhenAsked) {
+TEST(ProgramReport, EscapesNamesAndShowsLuxOnRequest) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder), solution = folder / "room.h5", page = folder / "room.html";
     std::string text = read_text(scene);
@@ -84,7 +84,7 @@ TEST(ProgramReport, TellsNamesAsTextAndLuxWhenAsked) {
     EXPECT_NE(read_text(folder / "room.json").find("\"unit\": \"lx\""), std::string::npos);
 }
 
-TEST(ProgramReport, RefusesWhatCannotBeDone) {
+TEST(ProgramReport, RejectsInvalidOptions) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5", page = folder / "room.html";
     ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
@@ -124,7 +124,7 @@ TEST(ProgramReport, LuxAreWattsByTheEfficacy) {
               0);
 }
 
-TEST(ProgramReport, MeasuresWorkingPlanesAsStandardsWantThem) {
+TEST(ProgramReport, MeasuresWorkingPlanesByStandards) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5";
     ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
@@ -141,7 +141,7 @@ TEST(ProgramReport, MeasuresWorkingPlanesAsStandardsWantThem) {
     const auto json = nlohmann::json::parse(read_text(folder / "r.json"));
     ASSERT_EQ(json["grids"].size(), 3u);
     const auto& plane = json["grids"][0];
-    // 4 x 3 m less 0.5 m on every side: 3 x 2 m, p = 0.2 x 5^log10(3) = 0.431 m, so 7 x 5 points.
+    // 4 x 3 m without 0.5 m on every side are 3 x 2 m. With p = 0.2 x 5^log10(3) = 0.431 m, there are 7 x 5 points.
     EXPECT_EQ(plane["columns"], 7);
     EXPECT_EQ(plane["rows"], 5);
     EXPECT_EQ(plane["name"], "0.75 m above floor");
@@ -150,7 +150,7 @@ TEST(ProgramReport, MeasuresWorkingPlanesAsStandardsWantThem) {
     for (const double v : plane["values"]) sum += v / 35, least = std::min(least, v);
     EXPECT_NEAR(plane["mean"], sum, 1e-4 * sum);
     EXPECT_NEAR(plane["uniformity"], least / sum, 1e-4);
-    // The same points by `probe`, in watts, with the factor.
+    // `probe` at the same points, in watts times the factor.
     const auto& p = plane["points"][9];
     const Finished probe =
         run_program({"probe", solution, "--points", "-", "--unit", "lux"},
@@ -164,7 +164,7 @@ TEST(ProgramReport, MeasuresWorkingPlanesAsStandardsWantThem) {
     const double term = std::pow(source["luminance"].get<double>() / source["position"].get<double>(), 2) *
                         source["solid_angle"].get<double>();
     EXPECT_NEAR(observer["ugr"], 8 * std::log10(0.25 * term / observer["background"].get<double>()), 1e-2);
-    // The sixth observer has the lamp overhead.
+    // For the sixth observer, the lamp is overhead.
     EXPECT_TRUE(json["observers"][5]["ugr"].is_null());
     EXPECT_TRUE(json["observers"][5]["sources"].empty());
     ASSERT_EQ(json["observers"][5]["left_out"].size(), 1u);
@@ -185,7 +185,7 @@ TEST(ProgramReport, MeasuresWorkingPlanesAsStandardsWantThem) {
                                                                                        {"--maintenance", "1.2"}})
         EXPECT_EQ(report(wrong).status, 2) << wrong[1];
     EXPECT_EQ(report({"--observers", folder / "none.csv"}).status, 3);
-    // Tables alone, without a page.
+    // Writes only tables, without a page.
     EXPECT_EQ(run_program({"report", solution, "--plane", "0.75", "--tables", folder / "u", "-q"}).status, 0);
     EXPECT_TRUE(std::filesystem::exists(folder / "u/plane_1.csv"));
     EXPECT_EQ(run_program({"report", solution, "-q"}).status, 2);

@@ -6,7 +6,7 @@
 namespace exitance::test {
 namespace {
 
-/// Exported files hold every bit of the interpolant, and what is probed those of the rest.
+/// All light of a solution, exactly: the exported file has the interpolant, and probed points depend on the rest.
 std::string light_of(const TemporaryFolder& folder, const std::string& name) {
     const std::string solution = folder / (name + ".h5"), mesh = folder / (name + ".vtkhdf");
     EXPECT_EQ(run_program({"export", solution, "-o", mesh}).status, 0);
@@ -25,7 +25,7 @@ std::vector<std::string> solve(const std::string& scene, const TemporaryFolder& 
 
 }  // namespace
 
-TEST(ProgramResume, ASolveThatWasStoppedKilledOrLimitedGoesOnToTheSameBits) {
+TEST(ProgramResume, AStoppedKilledOrLimitedSolveResumesToTheSameBits) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder);
     ASSERT_EQ(run_program(solve(scene, folder, "whole", {})).status, 0);
@@ -53,7 +53,7 @@ TEST(ProgramResume, ASolveThatWasStoppedKilledOrLimitedGoesOnToTheSameBits) {
     EXPECT_EQ(light_of(folder, "limited"), light_of(folder, "whole"));
 }
 
-TEST(ProgramResume, AnotherSolvesCheckpointIsRefusedWithStatusThree) {
+TEST(ProgramResume, ACheckpointOfAnotherSolveGivesStatusThree) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder);
     const std::vector<std::string> limited{"--checkpoint-every", "1e-9", "--time-limit", "0.08"};
@@ -64,7 +64,7 @@ TEST(ProgramResume, AnotherSolvesCheckpointIsRefusedWithStatusThree) {
     EXPECT_EQ(other.status, 3);
     EXPECT_NE(other.err.find("--seed was 1 and is 7"), std::string::npos) << other.err;
     EXPECT_NE(other.err.find("room.h5.checkpoint"), std::string::npos) << other.err;
-    // Another build may lay its state out otherwise; bytes after a program's end make it another one.
+    // Another build may store its state differently. Bytes appended to the program make it another build.
     const std::string build = folder / "exitance";
     std::filesystem::copy_file(test::program(), build);
     std::ofstream(build, std::ios::binary | std::ios::app) << "another";
@@ -75,7 +75,7 @@ TEST(ProgramResume, AnotherSolvesCheckpointIsRefusedWithStatusThree) {
     EXPECT_EQ(run_program(solve(scene, folder, "room", {"--resume"})).status, 0);
 }
 
-TEST(ProgramResume, WithoutACheckpointTheSolveBeginsAndSaysSo) {
+TEST(ProgramResume, WithoutACheckpointTheSolveStartsWithAMessage) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder);
     const Finished run =

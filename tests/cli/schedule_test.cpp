@@ -31,7 +31,7 @@ std::string light_of(const TemporaryFolder& folder, const std::string& name) {
 
 }  // namespace
 
-TEST(ProgramSchedule, AllSchedulesGiveTheSameLightAndSayTheirName) {
+TEST(ProgramSchedule, AllSchedulesGiveTheSameLightAndReportTheirName) {
     const TemporaryFolder folder;
     std::string first;
     for (const std::string schedule : {"static", "dynamic", "stealing"}) {
@@ -45,7 +45,7 @@ TEST(ProgramSchedule, AllSchedulesGiveTheSameLightAndSayTheirName) {
     EXPECT_EQ(run_program({"solve", "x.obj", "--schedule", "chaotic"}).status, 2);
 }
 
-TEST(ProgramTrace, TasksHaveParentsAndThoseOfOneWorkerFollowOneAnother) {
+TEST(ProgramTrace, TasksHaveParentsAndDoNotOverlapPerWorker) {
     const TemporaryFolder folder;
     const std::string file = folder / "trace.json";
     const std::vector<std::string> options = {"--threads", "2", "--method", "wavelet", "--epsilon", "0.02"};
@@ -71,7 +71,7 @@ TEST(ProgramTrace, TasksHaveParentsAndThoseOfOneWorkerFollowOneAnother) {
     for (const char* name : {"direct light", "judge links", "gather links", "interpolate"})
         EXPECT_TRUE(names.count(name)) << name;
     EXPECT_EQ(tasks.size(), 2u);
-    const double half_a_nanosecond = 0.0005;  // times are written in thousandths of a microsecond
+    const double half_a_nanosecond = 0.0005;  // times are written with a resolution of a nanosecond
     for (auto& [worker, spans] : tasks) {
         std::sort(spans.begin(), spans.end());
         for (std::size_t i = 1; i < spans.size(); ++i)
@@ -98,7 +98,7 @@ TEST(ProgramTrace, TasksHaveParentsAndThoseOfOneWorkerFollowOneAnother) {
         }
 }
 
-TEST(ProgramTrace, AFileThatCannotBeWrittenEndsBeforeTheWork) {
+TEST(ProgramTrace, AnUnwritableFileEndsBeforeTheWork) {
     const TemporaryFolder folder;
     const Finished run = run_program(
         {"solve", write_small_room(folder), "-o", folder / "room.h5", "--trace", folder / "absent/trace.json"});

@@ -6,8 +6,8 @@
 
 namespace exitance::test {
 
-/// A closed grey room of 4 x 3 x 2.5 m with a square lamp that hangs below its ceiling: 7 faces. Returns the OBJ's
-/// path.
+/// Writes a closed grey room of 4 x 3 x 2.5 m with a square lamp that hangs below its ceiling: 7 faces. Returns the
+/// path of the OBJ file.
 inline std::string write_small_room(const TemporaryFolder& folder, const std::string& name = "room") {
     write_text(folder / (name + ".mtl"),
                "newmtl grey\nKd 0.5 0.4 0.3\nKe 0 0 0\n"
@@ -23,7 +23,7 @@ inline std::string write_small_room(const TemporaryFolder& folder, const std::st
     return folder / (name + ".obj");
 }
 
-/// A scene with a fault in line 9: a face whose corner does not exist.
+/// Writes a scene with an error in line 9: a face whose corner does not exist.
 inline std::string write_broken_scene(const TemporaryFolder& folder) {
     write_text(folder / "broken.mtl", "newmtl grey\nKd 0.5 0.5 0.5\n");
     write_text(folder / "broken.obj",

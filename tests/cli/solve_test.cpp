@@ -59,7 +59,8 @@ const std::vector<std::string> statistics_keys{"method",
                                                "initial_links",
                                                "coefficient_memory_bytes"};
 
-/// A black floor below a lamp of 1 m^2, its bands as given, turned by an angle that is no multiple of 90 degrees.
+/// A black floor below a lamp of 1 m^2 with the given radiance per band, rotated by an angle that is no multiple of 90
+/// degrees.
 std::string write_lamp(const TemporaryFolder& folder, const std::string& radiance) {
     write_text(folder / "lamp.obj",
                "mtllib lamp.mtl\nv 0 0 0\nv 4 3 0\nv 1 7 0\nv -3 4 0\nusemtl floor\nf 1 2 3 4\n"
@@ -71,7 +72,7 @@ std::string write_lamp(const TemporaryFolder& folder, const std::string& radianc
 }  // namespace
 
 TEST(ProgramSolve, EnergyIsOneNumberInTheUnitOfTheScene) {
-    // M = pi L over 1 m^2: lm by the weights of the bands, W by their mean.
+    // M = pi L over 1 m^2: lm with the luminous weights of the bands, W with their mean.
     constexpr double pi = 3.14159265358979;
     struct Case {
         std::string radiance, quantity;
@@ -124,7 +125,7 @@ TEST(ProgramSolve, JsonHasTheKeysOfTheContractInTheirOrderAndStatsAgrees) {
     EXPECT_EQ(kept, made);
 }
 
-/// A closed room with a lamp, and a closed room without one beside it.
+/// A closed room with a lamp, and next to it a closed room without one.
 std::string write_lit_and_dark_room(const TemporaryFolder& folder) {
     const std::string scene = write_small_room(folder);
     std::ofstream(scene, std::ios::app)
@@ -144,14 +145,15 @@ TEST(ProgramSolve, ARoomWithoutLightHasAMeanOfZeroAndAReferenceForItsError) {
     const Json &lit = rooms[0], &dark = rooms[1];
     EXPECT_EQ(keys(lit), (std::vector<std::string>{"area", "mean", "reference", "error"}));
     EXPECT_GT(lit["mean"], 0.1);
-    EXPECT_NEAR(lit["reference"].get<double>() / lit["mean"].get<double>(), 1, 1e-12);  // sums in another order
+    // The sums have different orders.
+    EXPECT_NEAR(lit["reference"].get<double>() / lit["mean"].get<double>(), 1, 1e-12);
     EXPECT_EQ(dark["mean"], 0.0);
     EXPECT_GT(dark["reference"], 0.0);
     EXPECT_EQ(Json::parse(run_program({"stats", solution, "--json"}).out)["rooms"], rooms);
     EXPECT_NE(run_program({"stats", solution}).out.find("48 m^2: 0 W/m^2"), std::string::npos);
 }
 
-TEST(ProgramSolve, PeakMemoryIsItsOwnNotThatOfWhoStartsIt) {
+TEST(ProgramSolve, PeakMemoryExcludesTheParentProcess) {
     const TemporaryFolder folder;
     const std::vector<char> held(std::size_t(400) << 20, 1);
     const Finished run =
@@ -160,7 +162,7 @@ TEST(ProgramSolve, PeakMemoryIsItsOwnNotThatOfWhoStartsIt) {
     EXPECT_LT(Json::parse(run.out)["peak_memory_bytes"], held.size());
 }
 
-TEST(ProgramSolve, TheLineOfTimesTellsEveryPhaseThatTookAny) {
+TEST(ProgramSolve, TheLineOfTimesListsEveryPhaseThatTookTime) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5";
     ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.05"}).status, 0);
@@ -172,7 +174,7 @@ TEST(ProgramSolve, TheLineOfTimesTellsEveryPhaseThatTookAny) {
     EXPECT_GT(seconds["gather"], 0.001);
 }
 
-TEST(ProgramSolve, ContactsCloserThanRoundingCutElementsOnlySoOften) {
+TEST(ProgramSolve, ContactsCloserThanRoundingDoNotSplitElementsForever) {
     const TemporaryFolder folder;
     const std::string scene = test::source_folder() + "/tests/data/nearly_parallel_boxes.obj";
     const Finished run = run_program({"solve", scene, "-o", folder / "s.h5", "--error", "0.2", "-q"});
@@ -188,7 +190,7 @@ TEST(ProgramSolve, AnUnwritableFolderEndsBeforeTheWorkWithoutAResult) {
     EXPECT_EQ(folder.count(), 2u) << "the scene's two files and nothing else";
 }
 
-TEST(ProgramSolve, WhatIsNoFileIsWrittenAndNotReadBack) {
+TEST(ProgramSolve, DevicesAreWrittenAndNotReadBack) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder);
     EXPECT_EQ(run_program({"solve", scene, "-o", "/dev/null", "--error", "0.2", "-q"}).status, 0);
@@ -208,7 +210,7 @@ TEST(ProgramSolve, AMissingOutputIsAUsageError) {
     EXPECT_EQ(run_program({"solve", write_small_room(folder)}).status, 2);
 }
 
-TEST(ProgramSolve, AnErrorThatTimeForbidsLeavesAResultAndStatusFour) {
+TEST(ProgramSolve, AnErrorBeyondTheTimeLimitLeavesAResultAndStatusFour) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5";
     const Finished run = run_program(
@@ -230,7 +232,7 @@ TEST(ProgramSolve, ARunWithoutAnEstimateOfItsLightWritesNothingAndHasStatusFive)
     EXPECT_FALSE(std::filesystem::exists(solution));
 }
 
-TEST(ProgramSolve, ASignalEndsTheWorkAndLightThatIsThereIsWritten) {
+TEST(ProgramSolve, ASignalEndsTheWorkAndAvailableLightIsWritten) {
     for (const auto& [signal, status] : {std::pair{SIGINT, 130}, {SIGTERM, 143}}) {
         const TemporaryFolder folder;
         const std::string solution = folder / "room.h5";
@@ -273,7 +275,7 @@ TEST(ProgramSolve, ADryRunForecastsAndWritesNothing) {
     EXPECT_EQ(folder.count(), 2u);
 }
 
-TEST(ProgramSolve, ProgressAsJsonIsALineAnEventAndPhasesComeInOrder) {
+TEST(ProgramSolve, ProgressAsJsonHasALinePerEventAndPhasesInOrder) {
     const TemporaryFolder folder;
     const Finished run = run_program(
         {"solve", write_small_room(folder), "-o", folder / "room.h5", "--error", "0.1", "--progress", "json"});
@@ -289,7 +291,7 @@ TEST(ProgramSolve, ProgressAsJsonIsALineAnEventAndPhasesComeInOrder) {
     EXPECT_EQ(phases.back(), "write");
 }
 
-TEST(ProgramSolve, QuietSaysNothingAndFindsTheSame) {
+TEST(ProgramSolve, QuietPrintsNothingAndGivesTheSameResult) {
     const TemporaryFolder folder;
     const Finished run =
         run_program({"solve", write_small_room(folder), "-o", folder / "room.h5", "--error", "0.1", "-q"});

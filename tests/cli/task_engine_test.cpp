@@ -29,7 +29,7 @@ std::string light_of(const TemporaryFolder& folder, const std::string& name) {
 
 }  // namespace
 
-TEST(ProgramTaskEngine, GivesTheSameLightUnderEveryScheduleAndTellsItsCounts) {
+TEST(ProgramTaskEngine, GivesTheSameLightUnderEveryScheduleAndReportsCounts) {
     const TemporaryFolder folder;
     std::string first;
     for (const std::string schedule : {"static", "dynamic", "stealing"}) {
@@ -76,7 +76,7 @@ TEST(ProgramTaskEngine, TheTraceHasTheGraphOfTasks) {
     EXPECT_GT(made, 20u);
 }
 
-TEST(ProgramTaskEngine, RefusesOptionsThatItDoesNotObey) {
+TEST(ProgramTaskEngine, RejectsUnsupportedOptions) {
     const TemporaryFolder folder;
     for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{{"--error", "0.02"},
                                                                                       {"--clusters", "on"},

@@ -9,7 +9,7 @@ namespace exitance::test {
 
 using Json = nlohmann::ordered_json;
 
-TEST(TimeToError, MeasuresTheErrorThatCompareMeasures) {
+TEST(TimeToError, MeasuresTheSameErrorAsCompare) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder), fine = folder / "fine.h5", same = folder / "same.h5";
     ASSERT_EQ(run_program({"solve", scene, "-o", fine, "--error", "0.05", "-q"}).status, 0);
@@ -31,7 +31,8 @@ TEST(TimeToError, MeasuresTheErrorThatCompareMeasures) {
     EXPECT_GT(row["seconds"], 0);
     EXPECT_GT(row["memory_bytes"], 1 << 20);
     EXPECT_GT(row["error"], 1e-6);
-    EXPECT_NEAR(row["error"].get<double>() / own["relative_rms_error"].get<double>(), 1, 1e-4);  // of ten-digit tables
+    // Computed from tables of ten digits.
+    EXPECT_NEAR(row["error"].get<double>() / own["relative_rms_error"].get<double>(), 1, 1e-4);
     EXPECT_NEAR(row["bias"].get<double>(), own["bias"].get<double>(), 1e-7);
 }
 

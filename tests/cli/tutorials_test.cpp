@@ -10,7 +10,7 @@ namespace {
 
 const std::filesystem::path tutorials = std::filesystem::path(test::source_folder()) / "docs/tutorials";
 
-/// The same commands on less work: nothing that they do is left out.
+/// Coarser versions of the same commands, which run all of them in less time.
 std::string made_quick(std::string commands) {
     const std::vector<std::pair<std::string, std::string>> coarser{{"--error 0\\.[0-9]+", "--error 0.2"},
                                                                    {"--size [0-9]+x[0-9]+", "--size 24x15"},
@@ -21,7 +21,7 @@ std::string made_quick(std::string commands) {
     return commands;
 }
 
-/// The blocks of a page that say `sh run`, as one script.
+/// The blocks of a page that are marked `sh run`, as one script.
 std::string commands_of(const std::string& page) {
     std::string out;
     const std::string text = read_text(tutorials / page), begin = "```sh run\n";
@@ -34,7 +34,7 @@ std::string commands_of(const std::string& page) {
 
 class Tutorials : public testing::TestWithParam<const char*> {};
 
-TEST_P(Tutorials, RunsAsItIsWritten) {
+TEST_P(Tutorials, RunsAsWritten) {
     const std::string page = std::string(GetParam()) + ".md", commands = commands_of(page);
     ASSERT_NE(commands, "");
     const TemporaryFolder folder;
@@ -46,7 +46,7 @@ TEST_P(Tutorials, RunsAsItIsWritten) {
     EXPECT_TRUE(run.out.ends_with("the end\n")) << run.out << run.err;
 }
 
-TEST_P(Tutorials, ShowsPicturesThatAreThere) {
+TEST_P(Tutorials, ShowsExistingPictures) {
     const std::string text = read_text(tutorials / (std::string(GetParam()) + ".md"));
     for (std::size_t at = 0; (at = text.find("](", at)) != std::string::npos; ++at) {
         const std::string target = text.substr(at + 2, text.find(')', at) - at - 2);

@@ -38,7 +38,7 @@ TEST(ProgramUsage, OptionsOfGrowingCellsAreErrorsWithOtherMethods) {
     }
 }
 
-TEST(ProgramUsage, OptionsThatAMethodDoesNotObeyNameTheMethodsThatDo) {
+TEST(ProgramUsage, UnsupportedOptionsNameTheMethodsThatSupportThem) {
     const Finished run = run_program({"solve", "room.obj", "--method", "hierarchical", "--overshooting", "-o", "s.h5"});
     EXPECT_EQ(run.status, 2);
     EXPECT_NE(run.err.find("--overshooting"), std::string::npos) << run.err;

@@ -20,7 +20,7 @@ bool has_page() {
     return std::filesystem::exists(std::filesystem::path(test::program()).parent_path() / "../viewer/index.html");
 }
 
-/// What a server on this machine answers to a request, to the end of the connection.
+/// Sends a request to a server on this machine and returns its answer, until the connection is closed.
 std::string ask(int port, const std::string& request) {
     const int s = socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in address{};
@@ -36,7 +36,7 @@ std::string ask(int port, const std::string& request) {
     return out;
 }
 
-/// One that nobody listens on at present.
+/// A port that is free at present.
 int free_port() {
     const int s = socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in address{};
@@ -50,7 +50,7 @@ int free_port() {
 
 }  // namespace
 
-/// A part as the page reads it.
+/// A part, decoded as the page decodes it.
 struct ReadPart {
     explicit ReadPart(const std::string& bytes) {
         std::uint32_t counts[2];
@@ -75,7 +75,7 @@ TEST(ViewerData, APartHoldsAllElementsAndTheirLight) {
     const std::string bytes = viewer_part(solution, ViewerLayer::exported, 0);
     const ReadPart part(bytes);
     ASSERT_TRUE(part.whole);
-    // The faces cover what the leaves cover.
+    // The faces cover the same area as the leaves.
     const auto at = [&](std::size_t i) {
         return Point{part.positions[3 * i], part.positions[3 * i + 1], part.positions[3 * i + 2]};
     };
@@ -90,7 +90,7 @@ TEST(ViewerData, APartHoldsAllElementsAndTheirLight) {
     EXPECT_EQ(3 * first, part.positions.size());
     for (const ElementId leaf : solution.interpolant.tree.leaves()) leaves += solution.interpolant.tree.area(leaf);
     EXPECT_NEAR(area, leaves, 1e-5 * leaves);
-    // Light alone is the same light.
+    // The light without geometry is the same.
     const std::string alone = viewer_part_light(solution, ViewerLayer::exported, 0);
     ASSERT_TRUE(alone.starts_with("EXL1"));
     EXPECT_EQ(alone.substr(8), bytes.substr(12 + 4 * part.positions.size(), 4 * part.light.size()));
@@ -151,7 +151,7 @@ TEST(ViewerData, AFrameHoldsThePictureFromTheBottomUp) {
     }
 }
 
-TEST(ViewerData, SaysHowColoursMakeOneNumberOfTheScenesUnit) {
+TEST(ViewerData, HasTheWeightsOfColoursInTheScenesUnit) {
     if constexpr (bands != 3) GTEST_SKIP() << "the bands of this build weigh alike";
     const Camera camera{{0.1, 0.1, 0.5}, {1.5, 0.5, 0.5}, 70};
     const auto facts = [&](bool photometric) { return viewer_scene_json(sample_solution(40, photometric), camera); };
@@ -182,7 +182,7 @@ TEST(ProgramView, AnswersItsOwnPageAndNobodyElse) {
     EXPECT_EQ(get("/data/frame?camera=0.1,0.1,0.5,1.5,0.5,0.5,70&size=1e6,1e6&samples=1", host), "HTTP/1.1 400");
     EXPECT_EQ(get("/data/point?at=1,2", host), "HTTP/1.1 400");
     EXPECT_EQ(get("/data/line?at=0,0,0,1,1,1,0,0,0", host), "HTTP/1.1 400");
-    // Nothing is compressed, which would take longer than all else.
+    // Nothing is compressed, which would take longer than the transfer.
     const std::string plain = ask(port, "GET / HTTP/1.1\r\n" + host + "Accept-Encoding: gzip, br\r\n\r\n");
     EXPECT_EQ(plain.find("Content-Encoding"), std::string::npos);
     EXPECT_NE(plain.find("</html>"), std::string::npos);
@@ -224,7 +224,7 @@ TEST(ProgramView, DimsAndPaintsAsMixDoes) {
     EXPECT_EQ(run.finish().status, 130);
 }
 
-TEST(ProgramRender, TakesNumberedPicturesAlongAPath) {
+TEST(ProgramRender, RendersNumberedPicturesAlongAPath) {
     const TemporaryFolder folder;
     ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
     write_text(folder / "p.csv", "time,ex,ey,ez,tx,ty,tz,fov\n0,-1,1,1,2,2,1,60\n1,-2,1,1,2,2,1,60\n");
@@ -248,9 +248,9 @@ TEST(ProgramRender, TakesNumberedPicturesAlongAPath) {
 TEST(ProgramRender, MakesAVideoByFfmpegAndSaysWhereThatIsMissing) {
     const TemporaryFolder folder;
     ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
-    // Unequal rows: 0.24 s at 25 pictures a second are 7.
+    // Keyframes at unequal times: 0.24 s at 25 pictures per second are 7 pictures.
     write_text(folder / "p.csv", "0,-1,1,1,2,2,1,60\n0.2,-2,1,1,2,2,1,60\n0.24,-3,1,1,2,2,1,60\n");
-    // It counts the pictures and writes its last word, the video.
+    // A fake ffmpeg, which counts the pictures and writes its last argument, the video.
     write_text(folder / "ffmpeg",
                "#!/bin/bash\nfor last; do :; done\nfor ((i = 1; i <= $#; ++i)); do [[ ${!i} == -i ]] && j=$((i + 1)); "
                "done\nset -- \"${!j%/*}\"/frame.*.png\necho \"$# pictures\" >\"$last\"\n[[ $1 != *.0001.png ]]; exit "

@@ -35,7 +35,7 @@ TEST(ProgramViewFactors, TheTableHasARowAFaceAndClosedRoomsSumToOne) {
         ASSERT_EQ(fields.size(), 10u);
         const double row_sum = std::stod(fields[2]);
         EXPECT_LE(row_sum, 1.0001);
-        // The floor and the lamp's front see none of the lamp's black back, so that their rows are closed.
+        // From the floor and the lamp's front, the lamp's black back is not visible, so their rows sum to 1.
         if (rows == 0 || rows == 6) {
             EXPECT_NEAR(row_sum, 1, 1e-4);
         }
@@ -62,10 +62,10 @@ TEST(ProgramViewFactors, RowErrorsAndTheirCheckAreReported) {
     ASSERT_EQ(json.status, 0) << json.err;
     const nlohmann::json facts = nlohmann::json::parse(json.out);
     EXPECT_LE(facts["row_error"], 3e-3);
-    EXPECT_LE(facts["row_error_checked"], 6e-3);  // the rays' noise is within R
+    EXPECT_LE(facts["row_error_checked"], 6e-3);  // the noise of the rays is within R
     EXPECT_GT(facts["entries"], 20);
     EXPECT_EQ(facts["dropped"], 0);
-    EXPECT_LE(facts["closure_defect"], 1e-2);  // of one row's own noise
+    EXPECT_LE(facts["closure_defect"], 1e-2);  // the noise of one row
     EXPECT_TRUE(facts["reciprocity_defect"].is_number());
     EXPECT_EQ(read_text(folder / "a.h5"), read_text(folder / "b.h5"));
     EXPECT_FALSE(std::filesystem::exists(folder / "a.h5.rows"));
@@ -73,7 +73,7 @@ TEST(ProgramViewFactors, RowErrorsAndTheirCheckAreReported) {
         run_program({"viewfactors", scene, "-o", folder / "c.h5", "--error", "1e-3", "--tolerance", "1e-3"}).status, 2);
 }
 
-TEST(ProgramViewFactors, RaysSpeakInTheSummaryAndInJson) {
+TEST(ProgramViewFactors, ChecksByRaysAreInTheSummaryAndInJson) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder);
     const Finished words =
@@ -85,7 +85,7 @@ TEST(ProgramViewFactors, RaysSpeakInTheSummaryAndInJson) {
     ASSERT_EQ(json.status, 0) << json.err;
     const nlohmann::json facts = nlohmann::json::parse(json.out);
     EXPECT_EQ(facts["check"]["entries"], 20);
-    EXPECT_LT(facts["check"]["largest_deviation_in_standard_errors"], 5);  // of 20 drawn
+    EXPECT_LT(facts["check"]["largest_deviation_in_standard_errors"], 5);  // the largest of 20 random entries
     EXPECT_LE(facts["entry_reciprocity_defect"], 1e-4);
     EXPECT_EQ(facts["pairs_unsettled"], 0);
     EXPECT_EQ(read_text(folder / "a.mtx"), read_text(folder / "b.mtx"));
@@ -94,7 +94,7 @@ TEST(ProgramViewFactors, RaysSpeakInTheSummaryAndInJson) {
     EXPECT_EQ(none.out.find("by lot"), std::string::npos);
 }
 
-/// Blocks on a floor: work for some seconds at a small tolerance.
+/// Writes blocks on a floor, which take some seconds at a small tolerance.
 std::string write_long_work(const TemporaryFolder& folder) {
     std::string text = "v 0 0 0\nv 40 0 0\nv 40 40 0\nv 0 40 0\nf 1 2 3 4\n";
     for (int k = 0, v = 5; k < 100; ++k, v += 8) {
@@ -118,7 +118,7 @@ std::size_t files_in(const TemporaryFolder& folder) {
     return count;
 }
 
-TEST(ProgramViewFactors, ALimitBeforeTheFirstRowLeavesNothing) {
+TEST(ProgramViewFactors, ALimitBeforeTheFirstRowLeavesNoFile) {
     const TemporaryFolder folder;
     const std::string scene = write_long_work(folder);
     for (const char* demand : {"--error", "--tolerance"}) {
@@ -130,7 +130,7 @@ TEST(ProgramViewFactors, ALimitBeforeTheFirstRowLeavesNothing) {
     }
 }
 
-/// Sends a signal once the first rows are kept beside the output; returns the exit status.
+/// Sends a signal once the first rows are in the work file next to the output. Returns the exit status.
 int interrupt_after_rows(const std::vector<std::string>& words, const std::string& rows, int signal) {
     RunningProgram program(words);
     std::error_code none;
@@ -159,7 +159,7 @@ TEST(ProgramViewFactors, ASignalKeepsFinishedRowsAndResumeGivesTheSameBytes) {
     EXPECT_EQ(read_text(folder / "f.h5"), read_text(folder / "whole.h5"));
 }
 
-TEST(ProgramViewFactors, ResumeOfOtherWorkIsRefused) {
+TEST(ProgramViewFactors, ResumeOfOtherWorkIsAnError) {
     const TemporaryFolder folder;
     const std::string scene = write_long_work(folder);
     const std::string output = folder / "f.h5";
@@ -182,8 +182,8 @@ TEST(ProgramViewFactors, ReadsView3dAndStl) {
     std::string line;
     std::getline(table, line), std::getline(table, line);
     const std::vector<std::string> fields = fields_of(line);
-    ASSERT_EQ(fields.size(), 5u);                                // two rows: the triangles are one surface
-    EXPECT_NEAR(std::stod(fields[4]), 0.199824895698387, 1e-4);  // unit squares, one apart
+    ASSERT_EQ(fields.size(), 5u);                                // two rows: the triangles belong to one surface
+    EXPECT_NEAR(std::stod(fields[4]), 0.199824895698387, 1e-4);  // unit squares at distance 1
     write_text(folder / "one.stl",
                "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
                "endloop\nendfacet\nendsolid s\n");

@@ -25,14 +25,14 @@
 namespace exitance::fuzz {
 namespace {
 
-constexpr int longest = 5;              // seconds of processor time
-constexpr int longest_wait = 10;        // minutes: for a file that is never there
-constexpr std::uint64_t batch = 256;    // files that a worker reads
-enum WorkerEnd { done, faulty, lost };  // its exit status; lost: in the first step, which may happen
+constexpr int max_cpu_seconds = 5;      // seconds of processor time
+constexpr int max_wait_minutes = 10;    // minutes, for a reader that waits for something that never happens
+constexpr std::uint64_t batch = 256;    // files per worker
+enum WorkerEnd { done, faulty, lost };  // exit status of a worker; lost: ended in the first step, which is allowed
 
 enum class Step { none, rehearsing, reading };
 
-/// What is at work, shared with workers.
+/// Current state, shared with workers.
 struct AtWork {
     std::uint64_t round = 0;
     Step step = Step::none;
@@ -41,7 +41,7 @@ struct AtWork {
 };
 AtWork* at_work = nullptr;
 bool is_worker = false;
-const char* bytes_at_work = nullptr;  // to be written to path_at_work; null when they are there
+const char* bytes_at_work = nullptr;  // content for path_at_work; null if the file exists
 std::size_t size_at_work = 0;
 char path_at_work[256] = "";
 
@@ -63,15 +63,16 @@ void end_by_crash(int) {
     end("crashes: ");
 }
 
-/// Timers run on from file to file, so that a round costs no system call for them: how often has this found the same?
-void look_at_time(int signal) {
+/// Handles the timers, which keep running across files, so that starting a file needs no system call. Ends the process
+/// if too many ticks in a row found the same file.
+void check_time(int signal) {
     static std::uint64_t seen[2];
     static int times[2];
     const int kind = signal == SIGALRM ? 1 : 0;
     const bool same = at_work->step != Step::none && seen[kind] == at_work->round;
     seen[kind] = at_work->round;
     times[kind] = same ? times[kind] + 1 : 0;
-    if (times[kind] >= (kind == 1 ? longest_wait : longest)) end("hangs: ");
+    if (times[kind] >= (kind == 1 ? max_wait_minutes : max_cpu_seconds)) end("hangs: ");
 }
 
 void set_timers(bool on) {
@@ -84,7 +85,7 @@ std::size_t limit_for(std::size_t bytes) {
     return 10 * bytes + (std::size_t(64) << 20);
 }
 
-/// Runs `work` with no more memory than a copy of the process gets for the smallest file.
+/// Runs `work` with the memory limit of a process copy that reads the smallest file.
 template <class Work>
 bool with_little_memory(const Work& work) {
     std::size_t pages = 0;
@@ -108,7 +109,7 @@ void read_watched(const Target& target, const std::string& bytes) {
     limit_memory(0);
 }
 
-/// The damaged files of one seed, one after the other.
+/// Reads the damaged files of one seed.
 class Attack {
   public:
     Attack(const Target& target, const AttackOptions& options)
@@ -142,7 +143,7 @@ class Attack {
                       static_cast<unsigned long long>(options_.seed), static_cast<unsigned long long>(round));
     }
 
-    /// The next file by the reader as it is.
+    /// Makes the next file and reads it with the unchanged reader.
     void read_whole() {
         make();
         const double before = elapsed();
@@ -157,7 +158,7 @@ class Attack {
         end("grows: ");
     }
 
-    /// The next files by a worker.
+    /// Lets a worker read the next files.
     void send_worker() {
         set_timers(false);
         const pid_t worker = ::fork();
@@ -211,7 +212,7 @@ void watch_signals() {
     if (shared == MAP_FAILED) std::abort();
     at_work = new (shared) AtWork;
     for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) ::signal(signal, end_by_crash);
-    for (const int signal : {SIGALRM, SIGPROF}) ::signal(signal, look_at_time);
+    for (const int signal : {SIGALRM, SIGPROF}) ::signal(signal, check_time);
 }
 
 void end_with_fault() {

@@ -12,20 +12,21 @@ struct AttackOptions {
     std::uint64_t rounds = ~std::uint64_t(0), seed = 1;
 };
 
-/// From now on a crash, 5 s of the processor for one file, or ten minutes of waiting end the process with status 1, a
-/// word about it and the path of the file at fault.
+/// Installs signal handlers. After that, a crash, 5 s of processor time for one file, or ten minutes of waiting end the
+/// process with status 1, and with a message that has the file's path.
 void watch_signals();
 
-/// Ends the process so, for a fault that no signal tells of.
+/// Ends the process in the same way, for a fault without a signal.
 [[noreturn]] void end_with_fault();
 
-/// Reads the file at `path`, watched.
+/// Reads the file at `path` with these limits.
 void read_file_watched(const Target& target, const std::string& path);
 
-/// Gives a reader damaged files until the time is over, and says how many they were. Files are made in memory and are
-/// written out, as fuzz-READER-SEED-ROUND.bin, when one of them is at fault. A reader that has its files read by a copy
-/// of the process first is spared most of those copies: a worker process reads hundreds of files in both steps, and is
-/// replaced when the first step breaks it; what goes wrong in the second one is tried out on the reader as it is.
+/// Gives damaged files to a reader until the time is over, and prints their number. Files are made in memory; a faulty
+/// one is written to fuzz-READER-SEED-ROUND.bin.
+/// Some readers first read every file in a copy of the process, which is slow. For these, a worker process reads
+/// hundreds of files in two steps: as that copy would, then as the reader. If the first step crashes, the worker is
+/// replaced. If the second step fails, the file is read again by the unchanged reader.
 void attack(const Target& target, const AttackOptions& options);
 
 }  // namespace exitance::fuzz

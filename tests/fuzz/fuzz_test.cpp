@@ -15,12 +15,13 @@ void PrintTo(const Target& target, std::ostream* out) {
 
 namespace {
 
-constexpr std::uint64_t usual_rounds = has_address_sanitizer ? 100 : 400;  // each ten times as slow
+constexpr std::uint64_t default_rounds =
+    has_address_sanitizer ? 100 : 400;  // files take ten times as long with the sanitizer
 
-/// How many damaged files every reader is given; EXITANCE_FUZZ_ROUNDS in the environment asks for more.
+/// Number of damaged files per reader; the environment variable EXITANCE_FUZZ_ROUNDS overrides it.
 std::uint64_t rounds() {
     const char* asked = std::getenv("EXITANCE_FUZZ_ROUNDS");
-    return asked ? std::strtoull(asked, nullptr, 10) : usual_rounds;
+    return asked ? std::strtoull(asked, nullptr, 10) : default_rounds;
 }
 
 class Readers : public testing::TestWithParam<Target> {};

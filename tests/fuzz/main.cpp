@@ -1,9 +1,9 @@
 // exitance-fuzz READER [--seconds N] [--rounds N] [--seed N] [FILE...]
 //
-// Gives a reader damaged files until the time is over, or the files named. Ends with status 1 and the path of the file
-// when one makes the reader crash, run for more than 5 s (of its own: it may have to wait for the processor), or ask at
-// a time for more memory than ten times the file's size and 64 MiB, or makes a copy of the process, in which a reader
-// tries a file out, hold as much. The file that did it is left in the working folder.
+// Gives a reader damaged files until the time is over, or the named files. Ends with status 1 and the file's path if a
+// file makes the reader crash, use more than 5 s of processor time, or request more memory at a time than 64 MiB plus
+// ten times the file's size. The same limit applies to the memory of a process copy in which a reader tries a file
+// first. The faulty file is left in the working folder.
 
 #include <cstdio>
 #include <cstdlib>

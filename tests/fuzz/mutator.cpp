@@ -10,14 +10,15 @@
 namespace exitance::fuzz {
 namespace {
 
-constexpr std::size_t largest = std::size_t(1) << 20;  ///< Bytes; doubling is not to run away.
+constexpr std::size_t max_bytes = std::size_t(1)
+                                  << 20;  ///< Limit on the bytes of a file, since repetition could grow without bound.
 
-/// Draws for one damaged copy.
+/// Random choices for one damaged copy.
 class Dice {
   public:
     Dice(std::uint64_t seed, std::uint64_t round) : random_(hash(seed, round), Stream::mesh) {}
     std::uint64_t bits() { return random_.bits(); }
-    /// In [0, n); 0 for n = 0.
+    /// Random number in [0, n); 0 for n = 0.
     std::size_t below(std::size_t n) { return n == 0 ? 0 : static_cast<std::size_t>(random_.bits() % n); }
 
   private:
@@ -62,7 +63,7 @@ bool is_word(char c) {
     return is_number(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 
-/// The stretch of such characters around a place, or after it.
+/// The range of characters for which `belongs` is true at or after a position.
 template <class Belongs>
 std::pair<std::size_t, std::size_t> stretch(const std::string& s, std::size_t at, const Belongs& belongs) {
     while (at < s.size() && !belongs(s[at])) ++at;
@@ -80,10 +81,10 @@ void set_bytes(std::string& s, Dice& dice) {
     const std::size_t width = std::size_t(1) << dice.below(4);
     if (s.size() < width) return;
     const std::uint64_t value = dice.below(4) == 0 ? dice.bits() : odd_integers[dice.below(odd_integers.size())];
-    std::memcpy(s.data() + dice.below(s.size() - width + 1), &value, width);  // little end first, as in GLB and HDF5
+    std::memcpy(s.data() + dice.below(s.size() - width + 1), &value, width);  // little-endian, as in GLB and HDF5
 }
 
-/// Half the time the length is kept, for formats that count their bytes.
+/// Replaces a number. In half of the cases the length is kept, for formats that count bytes.
 void put_number(std::string& s, Dice& dice) {
     const auto [first, last] = stretch(s, dice.below(s.size()), is_number);
     if (first == last) return;
@@ -117,7 +118,7 @@ void repeat(std::string& s, Dice& dice) {
     const std::size_t at = dice.below(s.size());
     const std::string part = s.substr(at, 1 + dice.below(std::size_t(1) << dice.below(10)));
     const std::size_t wanted = std::size_t(1) << dice.below(dice.below(8) == 0 ? 12 : 3);
-    const std::size_t room = (largest - std::min(largest, s.size())) / part.size();
+    const std::size_t room = (max_bytes - std::min(max_bytes, s.size())) / part.size();
     std::string copies;
     for (std::size_t n = std::min(wanted, room); n > 0; --n) copies += part;
     s.insert(at, copies);
@@ -156,7 +157,7 @@ void change(std::string& s, const std::vector<std::string>& corpus, Dice& dice) 
         case 10:
             return splice(s, corpus[dice.below(corpus.size())], dice);
         default:
-            if (dice.below(4) == 0) s.resize(dice.below(s.size()));  // seldom: most of what follows would be lost
+            if (dice.below(4) == 0) s.resize(dice.below(s.size()));  // rare, since most later changes would be lost
     }
 }
 
@@ -167,7 +168,7 @@ std::string Mutator::make(std::uint64_t round) const {
     if (corpus_.empty()) return {};
     std::string out = corpus_[dice.below(corpus_.size())];
     for (std::size_t n = 1 + dice.below(8); n > 0 && !out.empty(); --n) change(out, corpus_, dice);
-    if (out.size() > largest) out.resize(largest);
+    if (out.size() > max_bytes) out.resize(max_bytes);
     return out;
 }
 

@@ -6,12 +6,12 @@
 
 namespace exitance::fuzz {
 
-/// Damaged copies of good files: bits turned, bytes, words and numbers changed, stretches cut out, doubled or taken
-/// from another file, ends cut off; one to eight such changes each. Text and binary numbers alike become those that
-/// programs stumble over. The same seed and round give the same bytes.
+/// Makes damaged copies of valid files with one to eight changes each: flipped bits; changed bytes, words and numbers;
+/// ranges removed, repeated or copied from another file; truncation. Numbers, as text or binary, become values that
+/// programs often mishandle. Equal seeds and rounds give equal bytes.
 class Mutator {
   public:
-    /// The corpus is to outlive it.
+    /// `corpus` must outlive this object.
     Mutator(const std::vector<std::string>& corpus, std::uint64_t seed) : corpus_(corpus), seed_(seed) {}
 
     std::string make(std::uint64_t round) const;

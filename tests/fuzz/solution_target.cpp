@@ -26,7 +26,7 @@ struct Range {
     std::size_t begin, end;
 };
 
-/// The messages of every object header of a file.
+/// The message ranges of all object headers in a file.
 std::vector<Range> headers_in(const std::string& bytes) {
     std::vector<Range> out;
     for (std::size_t at = bytes.find("OHDR"); at != bytes.npos && at + 16 < bytes.size();
@@ -40,7 +40,7 @@ std::vector<Range> headers_in(const std::string& bytes) {
     return out;
 }
 
-/// Where the small data sets of a file have their values: in their headers, in the message "layout" of class "compact".
+/// The ranges of values of small data sets, which are in object headers, in the message "layout" of class "compact".
 std::vector<Range> values_in(const std::string& bytes) {
     std::vector<Range> out;
     for (const Range& header : headers_in(bytes))
@@ -114,7 +114,7 @@ std::vector<std::string> value_corpus() {
 
 namespace {
 
-/// The solution that a script makes.
+/// Makes the solution that a script defines.
 std::string with_values(const std::string& script) {
     static const std::vector<std::string> good = solution_corpus();
     static const std::vector<std::vector<Range>> values = {values_in(good.at(0)), values_in(good.at(1))};
@@ -126,7 +126,7 @@ std::string with_values(const std::string& script) {
         const Range& range = values[which][place % values[which].size()];
         const std::size_t at = range.begin + place / values[which].size() % (range.end - range.begin);
         const auto kind = static_cast<unsigned char>(script[i + 3]);
-        // A byte as it comes, or a number that is none, is infinite, huge, largest, or 0.
+        // Either a given byte, or NaN, infinity, a huge number, the largest integer, or 0.
         static const std::array<std::string, 5> special = {
             std::string("\0\0\0\0\0\0\xf8\x7f", 8), std::string("\0\0\0\0\0\0\xf0\x7f", 8),
             std::string("\0\0\0\0\0\0\x50\x7e", 8), std::string("\xff\xff\xff\xff", 4), std::string(8, '\0')};

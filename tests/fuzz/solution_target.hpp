@@ -5,20 +5,21 @@
 
 namespace exitance::fuzz {
 
-/// Solutions as they are written, small ones.
+/// Small valid solution files.
 std::vector<std::string> solution_corpus();
 
-/// Loads a solution, and if it is one, asks for light and means of it.
+/// Loads a solution and, if it is valid, evaluates light and mean values.
 void read_solution_bytes(const std::string& bytes);
 
-/// Checksums of the metadata as they would be, had it been written so: what stands behind them is reached.
+/// Corrects the checksums of the metadata, so that reading continues beyond them.
 void mend_solution(std::string& bytes);
 
-/// A solution whose container is whole, but not what it holds: the bytes say which values become what.
+/// A corpus of scripts; the bytes of a script define which values in a valid solution file are replaced.
 std::vector<std::string> value_corpus();
 void read_solution_with_values(const std::string& script);
 
-/// The same in two steps (Target::rehearse): what the library reads in a copy of the process, here, and the rest.
+/// Two steps for the same (see Target::rehearse): first the reading that otherwise happens in a copy of the process,
+/// then the rest.
 bool rehearse_solution_bytes(const std::string& bytes);
 bool rehearse_solution_with_values(const std::string& script);
 void read_rehearsed_solution();

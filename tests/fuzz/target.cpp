@@ -14,7 +14,7 @@
 namespace exitance::fuzz {
 namespace {
 
-/// A disk is kept waiting for, thousands of small files a second.
+/// Uses memory if possible: a disk would be slow for thousands of small files per second.
 std::filesystem::path folder_in_memory() {
     constexpr const char* shared_memory = "/dev/shm";
     return ::access(shared_memory, W_OK | X_OK) == 0 ? shared_memory : std::filesystem::temp_directory_path();
@@ -47,7 +47,7 @@ std::vector<std::string> corpus_folder(std::string_view name) {
 std::string file_with(const std::string& bytes, const std::string& name) {
     static const TemporaryFolder folder(folder_in_memory());
     const std::string path = folder / name;
-    ::unlink(path.c_str());  // who has the last one open keeps it
+    ::unlink(path.c_str());  // a process that has the previous file open keeps it
     const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0600);
     if (file < 0 || ::write(file, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) std::abort();
     ::close(file);

@@ -28,7 +28,7 @@ void read_mtl_bytes(const std::string& bytes) {
 void read_glb_bytes(const std::string& bytes) {
     (void)load_scene(file_with(bytes, "s.glb"));
 }
-/// The lengths of the container and of its two chunks.
+/// Corrects the lengths of the container and its two chunks.
 void mend_glb(std::string& bytes) {
     constexpr std::size_t header = 20;
     if (bytes.size() < header + 8) return;
@@ -62,7 +62,7 @@ void read_csv_bytes(const std::string& bytes) {
     (void)load_probe_points(file_with(bytes, "p.csv"));
 }
 
-/// What a file says must be possible to build, too.
+/// Checks that the luminaire of an accepted file can be built, too.
 void build(const Result<Photometry>& photometry) {
     if (photometry && !make_luminaire_body(*photometry).profile.is_sane()) std::abort();
 }

@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 
-// The C library's allocator under its other names; those that everybody calls are defined below.
+// Other names of the C library's allocator functions, whose usual names are defined below.
 extern "C" {
 void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
@@ -92,7 +92,7 @@ void free(void* p) {
 namespace exitance::fuzz {
 
 void limit_memory(std::size_t bytes) {
-    // A copy of the process reads as users' programs do: there the reader itself is to see to its limits.
+    // Copies of the process have no limit here, as for users: the reader itself limits them.
     [[maybe_unused]] static const int watched = ::pthread_atfork(nullptr, nullptr, [] { limit = 0; });
     held = 0, most = 0;
     limit = bytes;
@@ -102,7 +102,7 @@ std::size_t most_held_by_copies() {
     rusage self{}, copies{};
     ::getrusage(RUSAGE_SELF, &self);
     ::getrusage(RUSAGE_CHILDREN, &copies);
-    return static_cast<std::size_t>(std::max(0L, copies.ru_maxrss - self.ru_maxrss)) * 1024;  // Linux counts it in KiB
+    return static_cast<std::size_t>(std::max(0L, copies.ru_maxrss - self.ru_maxrss)) * 1024;  // Linux counts in KiB
 }
 
 std::size_t most_held() {

@@ -18,7 +18,7 @@ def words(values):
 
 
 def png(path, row):
-    """A picture of one row of pixels."""
+    """Writes a picture with one row of pixels."""
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
@@ -48,7 +48,7 @@ def write_faces(scene, folder):
             textured = bool(scene.materials[face.material].texture)
             for p in face.points:
                 out.write(f"v {words(p)}\n")
-                if textured:  # the same place of the picture wherever the scene is, one repetition a face
+                if textured:  # texture coordinates do not depend on the transformation; one repetition per face
                     out.write(f"vt {face.parent % 4 / 4 + 0.125} 0.5\n")
             n = len(face.points)
             out.write("f " + " ".join(f"{i}/{i}" if textured else str(i) for i in range(-n, 0)) + "\n")
@@ -56,12 +56,12 @@ def write_faces(scene, folder):
 
 
 def to_gltf(v):
-    """Y is up there."""
+    """Converts Z up to glTF's Y up."""
     return [v[0], v[2], -v[1]]
 
 
 def node_matrix(position, ahead, up):
-    """Of a camera or a spot, which look along -z of their own."""
+    """Rotation of a camera or a spot, whose direction is its own -z."""
     ahead = ahead / np.linalg.norm(ahead)
     right = np.cross(ahead, up)
     right /= np.linalg.norm(right)
@@ -91,7 +91,7 @@ def write_camera_and_lights(scene, folder):
 
 
 def aimed(axis):
-    """The turn by the shortest way from the vertical to the opposite of a luminaire's axis."""
+    """Shortest rotation from the vertical to the opposite of a luminaire's axis."""
     up = -axis
     k = np.cross([0, 0, 1], up)
     sine = np.linalg.norm(k)
@@ -103,7 +103,7 @@ def aimed(axis):
 
 
 def write_luminaires(scene, folder):
-    """Candela fall off faster in C90 than in C0; candela and the opening's size follow the scale."""
+    """Writes a photometric file. Intensity decreases faster in C90 than in C0; it and the opening's size follow the scale."""
     angles, planes = list(range(0, 91, 5)), [0, 22.5, 45, 67.5, 90]
     with open(os.path.join(folder, "lamp.ies"), "w") as out:
         out.write("IESNA:LM-63-2002\n[TEST] invariance\n[MANUFAC] none\nTILT=NONE\n")
@@ -124,7 +124,7 @@ def write_luminaires(scene, folder):
 
 
 def write_weather(folder):
-    """One clear day of summer, one dull day of winter."""
+    """Writes the weather of a clear day in summer and an overcast day in winter."""
     path = os.path.join(folder, "weather.epw")
     with open(path, "w") as out:
         out.write("LOCATION,Town,-,CHE,test,0,47.4,8.5,1.0,400\n" + "HEADER\n" * 7)
@@ -136,7 +136,7 @@ def write_weather(folder):
 
 
 def write_scene(scene, folder):
-    """Returns the scene's files and the options of `solve` that go with them."""
+    """Returns the scene's files and the options of `solve` for them."""
     os.makedirs(folder, exist_ok=True)
     write_materials(scene, folder)
     files, options = [write_faces(scene, folder), write_camera_and_lights(scene, folder)], []

@@ -1,4 +1,4 @@
-"""The scenes of the invariance test: small ones of different kinds, as plain values that transformations can change."""
+"""Scenes of the invariance test: small scenes of different kinds, as plain values that transformations can change."""
 import dataclasses
 import math
 
@@ -10,15 +10,15 @@ class Face:
     group: str
     material: str
     points: np.ndarray  # n x 3, metres, counter-clockwise seen from the front
-    parent: int = -1  # number of the face of the original scene that this one is, or is a part of
+    parent: int = -1  # index of the face in the original scene that contains this face
 
 
 @dataclasses.dataclass
 class Material:
     reflectance: tuple
     radiance: tuple = (0, 0, 0)  # W/(m^2 sr)
-    transmission: float = 0  # of clear glass at right angles; 0: opaque
-    texture: tuple = ()  # sRGB bytes of the pixels of a row, repeated over the face
+    transmission: float = 0  # transmittance of clear glass at normal incidence; 0: opaque
+    texture: tuple = ()  # sRGB bytes of a row of pixels, repeated over the face
 
     @property
     def exitance(self):
@@ -29,14 +29,14 @@ class Material:
 class PointLight:
     position: np.ndarray
     intensity: float  # W/sr
-    direction: np.ndarray = None  # of a spot
-    angle: float = 0  # half of a spot's cone, degrees
+    direction: np.ndarray = None  # None if it is not a spot
+    angle: float = 0  # half the opening angle of a spot, degrees
 
 
 @dataclasses.dataclass
 class Luminaire:
     position: np.ndarray
-    axes: np.ndarray  # columns: the directions of C0, C90 and up, the opposite of its axis
+    axes: np.ndarray  # columns: the directions of C0, C90, and up (opposite to its axis)
 
 
 @dataclasses.dataclass
@@ -47,14 +47,14 @@ class Scene:
     eye: np.ndarray
     target: np.ndarray
     plane: np.ndarray  # measuring plane: rows are a corner and two edges, metres
-    mesh_size: float  # of uniform meshes, metres
+    mesh_size: float  # element size of uniform meshes, metres
     up: np.ndarray = dataclasses.field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
     sky: str = ""
     north: float = 0  # degrees clockwise from y, seen from above
     lights: list = dataclasses.field(default_factory=list)
     luminaires: list = dataclasses.field(default_factory=list)
-    lamp_group: str = "lamp"  # a light group
-    scale: float = 1  # lengths of this copy, by those of the original
+    lamp_group: str = "lamp"  # name of its light group
+    scale: float = 1  # lengths of this copy divided by those of the original
     is_lit: bool = True
     is_faulty: bool = False
 
@@ -69,7 +69,7 @@ MATERIALS = {
 
 
 def box(low, high, group, material, inward=False, without=""):
-    """Faces of an upright box; `without` names those that are left out by letters: west, east, south, north, below, top."""
+    """Faces of an upright box without those whose letters are in `without`: west, east, south, north, below, top."""
     (x0, y0, z0), (x1, y1, z1) = low, high
     sides = {
         "w": [(x0, y0, z0), (x0, y0, z1), (x0, y1, z1), (x0, y1, z0)],
@@ -83,14 +83,14 @@ def box(low, high, group, material, inward=False, without=""):
 
 
 def turned(faces, degrees, about):
-    """Faces turned about a vertical axis."""
+    """Rotates faces about a vertical axis."""
     a = math.radians(degrees)
     turn = np.array([[math.cos(a), -math.sin(a), 0], [math.sin(a), math.cos(a), 0], [0, 0, 1]])
     return [Face(f.group, f.material, (f.points - about) @ turn.T + about) for f in faces]
 
 
 def lamp_below(x0, y0, x1, y1, z, group="lamp"):
-    """A rectangle that shines down."""
+    """A rectangle that emits downwards."""
     return [Face(group, LAMP, np.array([(x0, y0, z), (x0, y1, z), (x1, y1, z), (x1, y0, z)], float))]
 
 
@@ -118,7 +118,7 @@ def court():
 
 
 def window():
-    """A room with a pane in its eastern wall, whose reveals are as thin as the wall."""
+    """A room with a pane in its eastern wall, which has no thickness."""
     y0, y1, z0, z1 = 0.8, 2.2, 0.9, 2.0
     wall = [[(4, 0, 0), (4, 0, z0), (4, 3, z0), (4, 3, 0)], [(4, 0, z1), (4, 0, 2.5), (4, 3, 2.5), (4, 3, z1)],
             [(4, 0, z0), (4, 0, z1), (4, y0, z1), (4, y0, z0)], [(4, y1, z0), (4, y1, z1), (4, 3, z1), (4, 3, z0)]]
@@ -146,7 +146,7 @@ def slats():
 
 
 def stairs():
-    """A flight of five steps; both of its sides are concave polygons."""
+    """A flight of five steps whose sides are concave polygons."""
     faces, n, run, rise = [], 5, 0.3, 0.18
     outline = [(1, 0)]
     for i in range(n):
@@ -161,7 +161,7 @@ def stairs():
 
 
 def concave_room():
-    """A room on an L, its floor and its ceiling one concave polygon each."""
+    """An L-shaped room whose floor and ceiling are one concave polygon each."""
     plan = [(0, 0), (4, 0), (4, 1.4), (1.6, 1.4), (1.6, 3), (0, 3)]
     floor = np.array([(x, y, 0.0) for x, y in plan])
     faces = [Face("floor", WHITE, floor), Face("ceiling", GREY, (floor + (0, 0, 2.5))[::-1].copy())]
@@ -172,7 +172,7 @@ def concave_room():
 
 
 def piercing():
-    """Triangles that cross one another, seen from both sides."""
+    """Intersecting triangles with two sides."""
     corners = [[(0.8, 0.8, 0.4), (2.6, 1.0, 0.9), (1.4, 2.4, 1.6)], [(2.5, 2.3, 0.5), (1.0, 1.2, 1.5), (2.8, 1.1, 1.2)],
                [(0.7, 1.9, 1.1), (2.3, 0.6, 0.6), (2.2, 2.2, 1.3)]]
     faces = []
@@ -224,7 +224,7 @@ def enclosure():
 
 
 def faulty():
-    """Faces with faults: one that crosses itself, a bent one, one with a spike, a repeated one and one without area."""
+    """Faulty faces: self-intersecting, bent, with a spike, repeated, and without area."""
     def face(group, *points):
         return Face(group, RED, np.array(points, float))
 

@@ -1,4 +1,4 @@
-"""Changes of a scene that do not change its light, and of points and directions along with it."""
+"""Changes of a scene that do not affect its light, and the same changes of points and directions."""
 import copy
 import math
 import random
@@ -35,13 +35,13 @@ class Similarity:
         scene.plane = np.vstack([self.points(scene.plane[0]), self.scale * self.directions(scene.plane[1:])])
         scene.mesh_size *= self.scale
         scene.scale *= self.scale
-        # The angle that the scene turned by about the vertical, which north follows.
+        # North rotates with the scene about the vertical.
         scene.north = (scene.north - math.degrees(math.atan2(self.turn[1, 0], self.turn[0, 0]))) % 360
         return scene
 
 
 class Unmoved(Similarity):
-    """Changes the faces where they are."""
+    """Changes the description of faces without moving them."""
 
     def __init__(self, change):
         super().__init__()
@@ -54,14 +54,14 @@ class Unmoved(Similarity):
 
 
 def reorder(scene, rng):
-    """Other order of the faces, other first corners."""
+    """Permutes the faces and changes their first corners."""
     rng.shuffle(scene.faces)
     for face in scene.faces:
         face.points = np.roll(face.points, rng.randrange(len(face.points)), axis=0)
 
 
 def is_inside(p, outline):
-    """By the even-odd rule; 2D."""
+    """Tests whether a point is in an outline by the even-odd rule, in 2D."""
     inside = False
     for a, b in zip(outline, np.roll(outline, -1, axis=0)):
         if (a[1] > p[1]) != (b[1] > p[1]) and p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]):
@@ -78,7 +78,7 @@ def crosses(a, b, c, d):
 
 
 def in_plane(points):
-    """The points in two dimensions, counter-clockwise."""
+    """Projects the points to two dimensions, counter-clockwise."""
     normal = newell(points)
     u = points[1] - points[0]
     u = u / np.linalg.norm(u)
@@ -87,13 +87,13 @@ def in_plane(points):
 
 
 def newell(points):
-    """Twice the area, along the normal."""
+    """Normal vector with twice the area as its length."""
     q = points - points[0]
     return np.cross(q, np.roll(q, -1, axis=0)).sum(axis=0)
 
 
 def halves(points):
-    """A polygon as two, cut along a chord between middles of edges or corners that lies inside; the most even cut."""
+    """Splits a polygon along an inner chord between corners or between midpoints of edges, into the most equal parts."""
     n = len(points)
     more = np.empty((2 * n, 3))
     more[0::2], more[1::2] = points, (points + np.roll(points, -1, axis=0)) / 2
@@ -102,7 +102,7 @@ def halves(points):
     best = None
     for i in range(2 * n):
         for j in range(i + 2, 2 * n - (i == 0)):
-            if (i + j) % 2:  # between a corner and a middle: both kinds of chords alone do
+            if (i + j) % 2:  # skip chords between a corner and a midpoint: the other two kinds are enough
                 continue
             middle = (flat[i] + flat[j]) / 2
             edges = [(flat[k], flat[(k + 1) % (2 * n)]) for k in range(2 * n)]
@@ -132,7 +132,7 @@ def cut(scene, _rng):
 
 
 def jitter(scene, rng):
-    """Corners moved by up to 1e-12 of the scene's size; those at one place stay at one place."""
+    """Moves corners by up to 1e-12 of the scene's size; coincident corners stay coincident."""
     corners = np.vstack([face.points for face in scene.faces])
     step = 1e-12 * np.linalg.norm(corners.max(axis=0) - corners.min(axis=0))
     moved = {}
@@ -152,7 +152,7 @@ QUARTER = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]], float)
 
 
 def transformations(scene):
-    """By name, the copy as it is first. Skies keep their vertical: scenes below them turn about it alone."""
+    """Transformations by name, first the identity. Scenes with a sky are only rotated about the vertical."""
     axis = (0, 0, 1) if scene.sky else (1, 2, 3)
     return {
         "as it is": Similarity(),

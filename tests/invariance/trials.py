@@ -1,4 +1,4 @@
-"""Methods and verbs, each as a trial: what it runs on a copy of a scene, and how the results of two copies are compared."""
+"""Trials of methods and verbs: each runs on a copy of a scene and defines how results of two copies are compared."""
 import csv
 import dataclasses
 import json
@@ -19,8 +19,8 @@ from transformations import in_plane, is_inside, newell
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "readers"))
 from exr import read_exr  # noqa: E402
 
-ESTIMATE_FACTOR = 1.25  # an estimate is right if the error is at most this times it, and it at most twice the error
-ROUNDING = 1e-3  # of the light: what errors and estimates may differ by in any case
+ESTIMATE_FACTOR = 1.25  # an estimate is correct if error <= ESTIMATE_FACTOR * estimate and estimate <= 2 * error
+ROUNDING = 1e-3  # relative difference that is always allowed for errors and estimates
 
 
 @dataclasses.dataclass
@@ -28,7 +28,7 @@ class Copy:
     """A copy of a scene on disk."""
     scene: object
     transformation: object
-    name: str  # of the transformation
+    name: str  # name of the transformation
     folder: str
     files: list
     options: list
@@ -36,18 +36,18 @@ class Copy:
 
 @dataclasses.dataclass
 class Outcome:
-    """What a run gave: a refusal, or values with their error."""
+    """Result of a run: an error message, or values with their error."""
     status: int
     message: str = ""
     values: object = None  # an array, compared by its root mean square
-    reflected: float = 1  # what differences are relative to
-    error: float = None  # relative error of the values that the program reports
+    reflected: float = 1  # reference value for relative differences
+    error: float = None  # relative error that the program reports for the values
     noise: object = None  # standard errors of the values
     command: str = ""
 
 
 class Program:
-    """The program; runs are ended after so many seconds of processor time."""
+    """Runs the program, with a limit on processor time in seconds."""
 
     def __init__(self, path, time_limit):
         self.path, self.time_limit = path, time_limit
@@ -66,20 +66,20 @@ class Program:
 
 
 def kind_of(message):
-    """A message without names of files and numbers."""
+    """Removes file names and numbers from a message."""
     message = message.strip().split("\n")[0]
     message = re.sub(r"\S*/\S*", "FILE", message)
     return re.sub(r"[-+]?\d[\d.,]*(e[-+]?\d+)?", "N", message)
 
 
 class Points:
-    """Points uniform in area over the fronts of a scene, as numbers of faces and places; the same on all copies."""
+    """Points distributed uniformly over the fronts of a scene, as face indices and positions; the same on all copies."""
 
     def __init__(self, scene, count):
         faces = [f for f in scene.faces if not scene.materials[f.material].transmission]
         areas = np.array([np.linalg.norm(newell(f.points)) / 2 for f in faces])
         random = np.random.default_rng(1)
-        # The k-th of so many equal parts of the area has one point.
+        # Stratified: each of `count` equal parts of the area has one point.
         at = np.searchsorted(np.cumsum(areas), (np.arange(count) + random.random(count)) / count * areas.sum())
         self.places, self.normals, self.exitance = np.empty((count, 3)), np.empty((count, 3)), np.empty((count, 3))
         for k, number in enumerate(np.minimum(at, len(faces) - 1)):
@@ -112,7 +112,7 @@ def refused(ran, program):
 
 
 def solve(program, copy, options, name="s.h5"):
-    """Path of the solution or None, what the program says of it, and the finished run."""
+    """Returns the path of the solution or None, the program's output about it, and the finished run."""
     path = os.path.join(copy.folder, name)
     ran = program("solve", *copy.files, *copy.options, *options, "-o", path, "--threads", 1, "--json", "-q")
     return (path, json.loads(ran.stdout), ran) if ran.returncode in (0, 4) else (None, None, ran)
@@ -137,7 +137,7 @@ def light_at(program, copy, points, path, error, command, *options):
 
 
 class Method:
-    """`solve` by one method, its light at points compared."""
+    """`solve` with one method; compares the light at points."""
 
     def __init__(self, name, options, cuts=True):
         self.name, self.options, self.cuts = name, options, cuts
@@ -179,7 +179,7 @@ class Reference:
 
 
 class Picture:
-    """`render` from a camera of the scene; means over 4 x 4 pixels, so that a tie at an outline does not decide."""
+    """`render` from a camera of the scene; compares means over 4 x 4 pixels, so that ties at outlines do not matter."""
     name, cuts, needs_light = "render", True, True
 
     def run(self, program, copy, points, context):
@@ -197,7 +197,7 @@ class Picture:
 
 
 class LightMaps:
-    """`bake`: the maps, linear between texels, at points on the surfaces."""
+    """`bake`: the maps at points on the surfaces, interpolated linearly between texels."""
     name, cuts, needs_light = "bake", True, True
 
     def run(self, program, copy, points, context):
@@ -213,8 +213,8 @@ class LightMaps:
         baked = self.texels(folder, copy.transformation.points(points.places), copy.transformation.directions(points.normals),
                             1e-6 * context.size(copy))
         exact = columns(probed(program, copy, points, path)[0], "E_")
-        # A texel is a mean: its difference from the light at a point is the maps' own resolution.
-        baked[exact.sum(axis=1) == 0] = np.nan  # maps go on below what stands on a face
+        # A texel is a mean value; its difference from the light at a point is the resolution error of the maps.
+        baked[exact.sum(axis=1) == 0] = np.nan  # maps continue below objects on a face
         kept = np.isfinite(baked)
         resolution = math.sqrt(np.mean((baked - exact)[kept]**2)) / exact[kept].mean()
         return Outcome(0, values=baked, reflected=float(exact.mean()),
@@ -237,7 +237,7 @@ class LightMaps:
                 i, j = min(int(x[k]), chart["width"] - 2), min(int(y[k]), chart["height"] - 2)
                 at = slice(chart["y"] + j, chart["y"] + j + 2), slice(chart["x"] + i, chart["x"] + i + 2)
                 around = np.stack([channels[b][at] for b in "RGB"], axis=2).astype(float)
-                # Where texels differ by much, a shadow ends, and the maps are no better than their texels are small.
+                # Where texels differ much, at edges of shadows, the error of the maps depends on the texel size.
                 if channels["coverage"][at].min() == 1 and (np.ptp(around, axis=(0, 1)) <= 0.1 * around.mean(axis=(0, 1))).all():
                     weights = np.outer([1 - (y[k] - j), y[k] - j], [1 - (x[k] - i), x[k] - i])
                     out[k] = (weights[:, :, None] * around).sum(axis=(0, 1))
@@ -245,7 +245,7 @@ class LightMaps:
 
 
 def parents(copy, values, areas):
-    """Means over the faces of the original scene, of a row a face; luminaires' faces come last and are left out."""
+    """Means over the faces of the original scene, from one row per face; faces of luminaires are last and ignored."""
     kept = [f.parent for f in copy.scene.faces if not copy.scene.materials[f.material].transmission]
     count = max(kept) + 1
     values, areas = values[:len(kept)], areas[:len(kept)]
@@ -278,7 +278,7 @@ class Table:
 
 
 class LitMesh:
-    """`export` of a model: light of each group, from the triangles' corners."""
+    """`export` of a model: light of each group, from the corners of its triangles."""
     name, cuts, needs_light = "export .glb", True, True
 
     def run(self, program, copy, points, context):
@@ -330,7 +330,7 @@ class LitMesh:
 
 
 class Grid:
-    """`report --grid`: irradiance of a measuring plane in the open."""
+    """`report --grid`: irradiance on a measuring plane, at points that no object covers."""
     name, cuts, needs_light = "report --grid", True, True
 
     def run(self, program, copy, points, context):
@@ -367,7 +367,7 @@ class Mixed:
         told = json.loads(ran.stdout).get("relative_error_estimate") if ran.stdout else None
         command = program.last
         out = light_at(program, copy, points, mixed, told if told is not None else facts["relative_error_estimate"], command)
-        if out.values is not None:  # half of the lamp's own light
+        if out.values is not None:  # ignore the lamp's faces, whose own light is halved
             lamps = points.exitance.sum(axis=1) > 0
             out.values[lamps] = 0
             out.reflected = float(out.values.mean())
@@ -375,7 +375,7 @@ class Mixed:
 
 
 class Daylight:
-    """`daylight`: two days of weather. Reflected light is gathered by 2048 rays: 2.2% of it at a sensor, at most."""
+    """`daylight`: two days of weather. Reflected light is gathered with 2048 rays: an error of at most 2.2% of it at a sensor."""
     name, cuts, needs_light = "daylight", True, True
 
     def run(self, program, copy, points, context):
@@ -403,7 +403,7 @@ class Daylight:
 
 
 class ViewFactors:
-    """`viewfactors`: entries between the faces of the original scene, each within the tolerance of itself."""
+    """`viewfactors`: entries between the faces of the original scene, each with a relative tolerance."""
     name, cuts, needs_light = "viewfactors", True, False
     tolerance = 1e-3
 
@@ -423,13 +423,13 @@ class ViewFactors:
         np.add.at(power, (np.array(kept)[:, None], np.array(kept)[None, :]), areas[:, None] * factors)
         np.add.at(of, kept, areas)
         entries = power / np.maximum(of, 1e-300)[:, None]
-        # Smaller ones have no tolerance of their own.
+        # Smaller entries have no relative tolerance.
         scale = np.maximum(entries, 1e-6 * self.tolerance**-0.5)
         return Outcome(0, values=np.log(scale), reflected=1, error=self.tolerance, command=program.last)
 
 
 class Findings:
-    """`check`: the same findings, by kind."""
+    """`check`: the findings of each kind are the same."""
     name, cuts, needs_light = "check", False, False
 
     def run(self, program, copy, points, context):

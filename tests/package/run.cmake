@@ -1,5 +1,5 @@
-# Installs BUILD into a fresh prefix, then configures, builds and runs a project that only knows that prefix: a program that
-# links the static library, and one that links a shared object made of it.
+# Installs BUILD into an empty prefix, then configures, builds and runs a project that only uses that prefix: a program that
+# links the static library, and one that links a shared object made from it.
 
 set(prefix ${BUILD}/tests/package/prefix)
 set(user_build ${BUILD}/tests/package/build)

@@ -6,7 +6,7 @@ import numpy as np
 
 
 def read_exr(path):
-    """Header attributes as bytes by name, and channels as height x width arrays by name."""
+    """Returns header attributes (bytes) and channels (height x width arrays), both by name."""
     data = open(path, "rb").read()
     assert data[:4] == b"\x76\x2f\x31\x01" and data[4] == 2
     at = 8
@@ -41,7 +41,7 @@ def read_exr(path):
         raw, whole = data[offset + 8:offset + 8 + size], lines * width * 4 * len(names)
         if size < whole:
             bytes_ = np.frombuffer(zlib.decompress(raw), np.uint8).astype(np.int64)
-            bytes_ = (np.cumsum(bytes_) - 128 * np.arange(len(bytes_))) % 256  # each is a difference plus 128
+            bytes_ = (np.cumsum(bytes_) - 128 * np.arange(len(bytes_))) % 256  # each byte is a difference plus 128
             half = (len(bytes_) + 1) // 2
             woven = np.empty(len(bytes_), np.uint8)
             woven[0::2], woven[1::2] = bytes_[:half], bytes_[half:]

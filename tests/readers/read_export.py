@@ -53,7 +53,7 @@ for name in ("surface", "region", "material", "group"):
 assert b"W/m^2" in open(folder + "s.vtu", "rb").read(200) and b"W/m^2" in open(folder + "s.obj", "rb").read(200)
 area, flux = of_vtk(vtu)
 
-# glTF by hand first, so that every accessor is looked at, and by VTK's reader after.
+# First decode the glTF file directly, to check every accessor, then with VTK's reader.
 data = open(folder + "s.glb", "rb").read()
 magic, version, length, json_length, kind = struct.unpack_from("<4sIII4s", data)
 assert (magic, version, length, kind) == (b"glTF", 2, len(data), b"JSON") and json_length % 4 == 0
@@ -97,7 +97,7 @@ for mesh in gltf["meshes"]:
         a, f = area_and_flux(values["POSITION"].astype(float), cells, values["_RADIOSITY"])
         glb_area, glb_flux = glb_area + a, glb_flux + f
 assert np.isclose(glb_area, area, rtol=1e-5)
-# Quadrilaterals may be cut along either diagonal; their values are random here, so that the flux depends on it.
+# Quadrilaterals may be split along either diagonal. Values are random here, so the flux depends on the choice.
 assert np.allclose(glb_flux, flux, rtol=0.05), (glb_flux, flux)
 
 reader = vtk.vtkGLTFReader()
@@ -120,7 +120,7 @@ with open(folder + "s.csv", newline="") as f:
     rows = list(csv.DictReader(f))
 assert np.isclose(sum(float(r["area [m^2]"]) for r in rows), area, rtol=1e-6)
 table = [sum(float(r["area [m^2]"]) * float(r["B_" + b + " [W/m^2]"]) for r in rows) for b in "rgb"]
-# The table integrates bilinear elements exactly, triangles do not.
+# The table integrates bilinear elements exactly; triangles only approximate them.
 assert np.allclose(table, flux, rtol=0.05), (table, flux)
 assert [int(r["line"]) for r in rows] == list(range(10, 21)) and rows[9]["material"] == "sign \u00e9"
 print("good")

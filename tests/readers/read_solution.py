@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Reads a solution with h5py and with VTK and checks one against the other: read_solution.py SOLUTION.h5"""
+"""Reads a solution with h5py and with VTK and compares both: read_solution.py SOLUTION.h5"""
 import sys
 
 import h5py
@@ -9,7 +9,7 @@ from vtk.util.numpy_support import vtk_to_numpy
 
 path = sys.argv[1]
 with h5py.File(path) as f:
-    # The three lines of the documentation.
+    # The three lines in the documentation.
     points = f["VTKHDF/Points"][:]
     radiosity = f["VTKHDF/PointData/radiosity"][:]
     irradiance = f["VTKHDF/PointData/irradiance"][:]

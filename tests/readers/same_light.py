@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Do solutions hold the same bits, but for /exitance/statistics?   same_light.py A.h5 B.h5 ...   Needs h5py."""
+"""Checks that solutions are identical except for /exitance/statistics:   same_light.py A.h5 B.h5 ...   Needs h5py."""
 
 import sys
 
@@ -8,7 +8,7 @@ import numpy as np
 
 
 def content(path):
-    """Every data set and attribute by name, as bytes with type and shape."""
+    """Returns every data set and attribute by name, as bytes with type and shape."""
     found = {}
 
     def add(name, value):

@@ -6,13 +6,14 @@
 
 namespace exitance::test {
 
-/// A convex sheet that hides from both sides.
+/// A convex polygon that blocks from both sides.
 inline ConvexBlocker sheet(const std::vector<Point>& outline) {
     const Normal n = normalized(area_vector(outline));
     return make_sheet(outline, {n, dot(n, outline[0])});
 }
 
-/// A closed body of six faces, the corners counted by bits; `shear` moves the upper ones (metres).
+/// A closed body of six faces. The bits of a corner's index are its x, y and z; `shear` moves the upper corners
+/// (metres).
 inline ConvexBlocker box(const Point& lo, const Point& hi, const Vec3& shear = {}) {
     ConvexBlocker body;
     for (int i = 0; i < 8; ++i)

@@ -7,7 +7,7 @@
 
 namespace exitance {
 
-/// A member of a scene family; the test ends when there is no such scene.
+/// Builds a member of a scene family; aborts the test if there is no such scene.
 inline Scene built_scene(const std::string& family, const std::map<std::string, std::string>& parameters = {}) {
     Result<SceneDescription> description = generate_scene(family, parameters);
     EXI_CHECK(static_cast<bool>(description));
@@ -16,8 +16,8 @@ inline Scene built_scene(const std::string& family, const std::map<std::string, 
     return std::move(*checked.scene);
 }
 
-/// A closed box of a, b and c metres whose faces all have one reflectance; its ceiling emits `exitance` W/m^2, and the
-/// other faces `elsewhere`.
+/// A closed box of a x b x c metres with one reflectance. Its ceiling emits `exitance` W/m^2, the other faces
+/// `elsewhere` W/m^2.
 inline Scene box_scene(double a, double b, double c, double reflectance, double exitance, double elsewhere = 0) {
     SceneDescription d;
     d.file = "box.obj";

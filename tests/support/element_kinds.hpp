@@ -4,7 +4,7 @@
 
 namespace exitance::test {
 
-/// A parallelogram, a triangle and a parallelogram cut into a triangle and a cell with five corners.
+/// A parallelogram, a triangle, and a parallelogram that is split into a triangle and a cell with five corners.
 inline ElementTree elements_of_every_kind() {
     ElementTree tree;
     const Patch square{{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, Patch::Shape::parallelogram};

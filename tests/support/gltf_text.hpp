@@ -9,7 +9,7 @@
 
 namespace exitance::test {
 
-/// A glTF file in the making: numbers go to the buffer, and every array has an accessor and a view of its own.
+/// Builds a glTF file. Numbers are added to the buffer, and every array gets its own accessor and view.
 class GltfText {
   public:
     int positions(const std::vector<Point>& points) {
@@ -21,7 +21,7 @@ class GltfText {
     int indices(const std::vector<std::uint16_t>& numbers) {
         return add(numbers.data(), numbers.size() * 2, 5123, "SCALAR", numbers.size());
     }
-    /// Any bytes, as an array of `count` of a type (5120 to 5126).
+    /// Adds bytes as an array of `count` items of a glTF component type (5120 to 5126).
     int add(const void* bytes, std::size_t size, int component, const char* type, std::size_t count) {
         const int view = add_view(bytes, size);
         accessors += (accessors.empty() ? "" : ",") + std::string("{\"bufferView\":") + std::to_string(view) +
@@ -49,7 +49,7 @@ class GltfText {
                                    (buffer_uri.empty() ? "" : ",\"uri\":\"" + buffer_uri + "\"") + "}]") +
                more + "}";
     }
-    /// The binary container.
+    /// Returns the binary container.
     std::string glb() const {
         std::string text = json();
         text.resize((text.size() + 3) / 4 * 4, ' ');

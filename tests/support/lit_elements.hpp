@@ -4,7 +4,7 @@
 
 namespace exitance {
 
-/// The elements of a scene, half a metre at most, as links see them, and light b(x) that they reflect.
+/// Elements of a scene of at most 0.5 m with link sites, and reflected light b(x) at their nodes.
 struct LitElements {
     Stage stage;
     ElementTree tree;

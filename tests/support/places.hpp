@@ -4,11 +4,11 @@
 
 namespace exitance::test {
 
-/// Where things are that tests read and run. One file is told by the build, so that a copy of the repository elsewhere
-/// compiles all others alike.
-std::string source_folder();  ///< Of the repository.
-std::string shared_folder();  ///< Of scenes and references that are not part of it; it may not be there.
-std::string program();        ///< The program that was built.
-std::string mpirun();         ///< Starts several processes; empty where the build has no MPI.
+/// Paths that tests use. Only places.cpp depends on them, so that in another copy of the repository all other files
+/// compile identically.
+std::string source_folder();  ///< The repository.
+std::string shared_folder();  ///< Scenes and references outside the repository; may not exist.
+std::string program();        ///< The built program.
+std::string mpirun();         ///< Program that starts several processes; empty if the build has no MPI.
 
 }  // namespace exitance::test

@@ -7,7 +7,7 @@
 
 namespace exitance {
 
-/// What a command prints on both its outputs, and how it ended.
+/// Output of a command, on both streams, and its exit status.
 struct Ran {
     int status = -1;
     std::string output;

@@ -8,9 +8,9 @@
 
 namespace exitance {
 
-/// A room of 2 m x 1 m x 1 m: its floor cut into two faces, a luminous strip in its ceiling, and a free-standing
-/// triangle seen from both sides; a spot, parallel light and a camera. Eleven faces on lines 10 to 20, four materials,
-/// three groups. `photometric`: its light is in lumens.
+/// A room of 2 m x 1 m x 1 m. Its floor is divided into two faces, its ceiling has a luminous strip, and a triangle
+/// with two sides is inside. There are a spot, parallel light and a camera. Eleven faces in lines 10 to 20, four
+/// materials, three groups. If `photometric`, its light is in lumens.
 inline Scene sample_scene(bool photometric = false) {
     SceneDescription d;
     d.photometric = photometric;
@@ -50,11 +50,11 @@ inline Scene sample_scene(bool photometric = false) {
                 {"sun", PunctualLight::Kind::directional, {}, {0.6, 0, -0.8}, grey(9, 8, 7)}};
     d.cameras = {{"door", {0.1, 0.1, 0.5}, {1.5, 0.5, 0.5}, {0, 0, 1}, 70, 0}};
     CheckedScene made = make_scene(d);
-    if (!made.scene) std::abort();  // the sample is good input
+    if (!made.scene) std::abort();  // the sample is valid
     return *made.scene;
 }
 
-/// A tree over a scene whose regions are rectangles and triangles, cut at random; values at random.
+/// A function on a randomly split tree with random values, for a scene whose regions are rectangles and triangles.
 inline ElementFunction sample_function(const Scene& scene, std::uint64_t seed, int cuts) {
     ElementFunction f;
     for (RegionId r : scene.regions().ids()) {

@@ -5,7 +5,7 @@
 
 namespace exitance {
 
-/// The solution of a scene; the test ends when there is none.
+/// Returns the solution of a scene; aborts the test if there is none.
 inline Solution solved(const Scene& scene, const SolveOptions& options) {
     Progress progress;
     const StopRequest stop;

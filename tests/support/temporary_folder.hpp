@@ -6,7 +6,7 @@
 
 namespace exitance {
 
-/// A folder for the files of one test, gone with it.
+/// A folder for the files of one test, which the destructor removes.
 class TemporaryFolder {
   public:
     explicit TemporaryFolder(const std::filesystem::path& parent = std::filesystem::temp_directory_path()) {
@@ -20,7 +20,7 @@ class TemporaryFolder {
 
     std::string operator/(const std::string& name) const { return (path_ / name).string(); }
 
-    /// How many files are in it, for tests that nothing is left behind.
+    /// Number of files in the folder, for tests that no files are left.
     std::size_t count() const {
         const std::filesystem::directory_iterator all(path_);
         return static_cast<std::size_t>(std::distance(begin(all), end(all)));

@@ -34,7 +34,7 @@ inline Scene make(const std::vector<Face>& faces) {
     return std::move(*checked.scene);
 }
 
-/// An L of 3 x 3 m, 1 m wide, whose faces look inwards and all emit alike.
+/// An L-shaped room of 3 x 3 m, 1 m wide, whose faces point inwards and emit equally.
 inline std::vector<Face> l_room(double height, double exitance) {
     const std::vector<Vec2> L = {{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}};
     std::vector<Face> faces = {{{}, exitance}, {{}, exitance}};
@@ -52,7 +52,7 @@ inline Vec3 any_in_cube(RandomStream& random) {
     return {x, y, random.uniform() - 0.5};
 }
 
-/// The faces of a box, fronts inwards.
+/// Faces of a box, with fronts inwards.
 inline std::vector<Face> closed_box(const Point& lo, const Vec3& size) {
     const auto face = [&](std::initializer_list<int> corners) {
         Face f;
@@ -64,7 +64,7 @@ inline std::vector<Face> closed_box(const Point& lo, const Vec3& size) {
             face({2, 3, 7, 6}), face({0, 2, 6, 4}), face({1, 5, 7, 3})};
 }
 
-/// `count` triangles of about the given size in a cube of side 1 around `middle`.
+/// `count` random triangles of about `size` in a cube of side 1 around `middle`.
 inline std::vector<Face> triangle_soup(std::size_t count, double size, std::uint64_t seed, const Point& middle = {}) {
     RandomStream random(seed, Stream::mesh, count);
     std::vector<Face> faces;
@@ -76,7 +76,7 @@ inline std::vector<Face> triangle_soup(std::size_t count, double size, std::uint
     return faces;
 }
 
-/// The first face on a ray, by looking at all of them in double precision.
+/// The first face on a ray, found by testing all faces in double precision.
 inline SurfaceId first_on_ray(const Scene& scene, const Point& origin, const Vec3& direction, double& distance,
                               RegionId own = {}) {
     SurfaceId first;

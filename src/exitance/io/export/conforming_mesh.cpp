@@ -12,8 +12,8 @@ namespace {
 
 using Values = std::array<float, bands>;
 
-/// Metres within which places are one: eight steps of single precision at the largest coordinate. A strip as wide as
-/// one step has any direction for its normal; so wide it is tilted by less than a tenth.
+/// Distance, in metres, within which corners are merged: eight units of single precision at the largest coordinate. A
+/// strip of one unit's width has an arbitrary normal; at this width the normal is tilted by less than 0.1.
 double tolerance_of(const ElementMesh& mesh) {
     double largest = 0;
     for (const Point& p : mesh.points) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
@@ -27,7 +27,8 @@ Values between(const Values& a, const Values& b, double t) {
     return out;
 }
 
-/// A corner of a polygon to be: a place, and where between two points of the mesh its values stand.
+/// A corner of an output polygon: its position, and the edge of the input mesh between whose ends its values are
+/// interpolated at `t`.
 struct Corner {
     std::uint32_t place, from, to;
     double t = 0;
@@ -50,8 +51,8 @@ class Conformer {
         tree_ = Bvh(boxes);
     }
 
-    /// The corners of a polygon and those of others on its edges; empty when it has no area. Two corners of another
-    /// place in a row never occur.
+    /// Corners of a polygon and, on its edges, those of others; empty if it has no area. Consecutive corners always
+    /// differ in position.
     std::vector<Corner> corners(std::size_t polygon) const {
         std::vector<std::uint32_t> own;
         const std::uint32_t begin = mesh_.first_point[polygon], end = mesh_.first_point[polygon + 1];
@@ -70,7 +71,7 @@ class Conformer {
     const Point& point(std::uint32_t place) const { return mesh_.points[place]; }
 
   private:
-    /// Is a polygon nowhere wider than places are?
+    /// True if a polygon is nowhere wider than the tolerance.
     bool is_sliver(std::span<const std::uint32_t> corners) const {
         std::vector<Point> outline;
         for (const std::uint32_t i : corners) outline.push_back(point(place_[i]));
@@ -102,8 +103,8 @@ class Conformer {
 
     const ElementMesh& mesh_;
     double tolerance_;
-    std::vector<std::uint32_t> place_;                             ///< Of every point: the first point at its place.
-    std::vector<std::pair<std::int32_t, std::uint32_t>> corners_;  ///< Of every region: the places of its corners.
+    std::vector<std::uint32_t> place_;                             ///< Per point: the first point at the same position.
+    std::vector<std::pair<std::int32_t, std::uint32_t>> corners_;  ///< Region and position of every corner of a region.
     Bvh tree_;
 };
 

@@ -4,20 +4,20 @@
 
 namespace exitance {
 
-/// A mesh without T-vertices within a region, for programs that hold places in single precision: there a corner that
-/// stands on a neighbour's edge no longer lies on it, and a crack opens that shows as sparks and keeps faces from being
-/// joined again.
+/// A mesh without T-vertices inside regions, for programs that store positions in single precision. Rounding would move
+/// a corner on a neighbour's edge off that edge, which opens visible cracks and prevents faces from being merged.
 struct ConformingMesh {
     ElementMesh mesh;
-    /// Per polygon: is its last point not a corner but its middle, to be joined to every edge? So it is where corners
-    /// lie on straight edges: triangles between such corners alone would have no area.
+    /// Per polygon: true if its last point is its centre, which is to be connected to every edge. This applies to
+    /// polygons with corners on straight edges, where triangles between corners alone could have no area.
     std::vector<bool> has_middle;
 };
 
-/// Corners nearer than a few roundings of single precision become one place, every polygon gets the corners of others
-/// of its region that stand on its edges (with values between those of the edge's ends), and polygons that shrink to
-/// less than a triangle go. Corners of other regions stay out: where two walls meet they come as close to each other as
-/// they like, and the triangle between two such has no direction. Expected O(n log n).
+/// Makes a conforming mesh in three steps. Corners that differ by a few units of single precision are merged. Each edge
+/// gets the corners of the region's other polygons that are on it, with interpolated values. Polygons that become
+/// degenerate are removed.
+/// Corners of other regions are ignored: where two walls meet they may be arbitrarily close, and a triangle between
+/// them would have an undefined normal. Expected O(n log n).
 ConformingMesh make_conforming(const ElementMesh& mesh);
 
 }  // namespace exitance

@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// Which face a leaf shows; only regions of several faces need a search.
+/// Finds the face that a leaf shows. Only regions of several faces need a search.
 class FaceFinder {
   public:
     explicit FaceFinder(const Scene& scene) : scene_(scene) {}
@@ -28,8 +28,9 @@ class FaceFinder {
     std::optional<Locator> locator_;
 };
 
-/// Clough and Tocher's elements as VTK's Lagrange triangles of degree three, which hold them exactly: three each,
-/// between an edge and the centroid. Corners and the thirds of edges across which light is continuous are shared.
+/// Converts Clough-Tocher elements to VTK's Lagrange triangles of degree three, which represent them exactly: three per
+/// element, each between an edge and the centroid. Corners, and points of edges across which light is continuous, are
+/// shared.
 class CubicCells {
   public:
     static constexpr std::size_t nodes = 10;
@@ -51,7 +52,8 @@ class CubicCells {
         }
         for (std::size_t i = 0; i < 3; ++i) {
             const Weights &a = at[i], &b = at[(i + 1) % 3];
-            std::uint32_t& shared = thirds_[from_.nodes[t][3 + i]];  // the first that comes runs from a to b
+            // The element that creates the points defines their direction, a to b.
+            std::uint32_t& shared = thirds_[from_.nodes[t][3 + i]];
             edge[i] = shared;
             if (shared != none) continue;
             shared = edge[i] = put(t, between(a, b, 1), mesh);
@@ -94,7 +96,8 @@ class CubicCells {
     }
 
     const SixNodeMesh& from_;
-    std::vector<std::uint32_t> corner_, thirds_;  ///< Points by node: of corners; the first third by an edge's middle.
+    /// Points by node: corners, and the first inner point of an edge by the edge's middle node.
+    std::vector<std::uint32_t> corner_, thirds_;
 };
 
 }  // namespace

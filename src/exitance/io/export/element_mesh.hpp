@@ -10,14 +10,14 @@
 
 namespace exitance {
 
-/// The leaves of a solution's interpolant as polygons for other programs. Every polygon has points of its own, since
-/// light may jump from one to the next; they go counter-clockwise seen from its front.
+/// The leaves of a solution's interpolant as polygons for other programs. Each polygon has its own points, since light
+/// may be discontinuous between leaves. Points are counter-clockwise seen from the front.
 struct ElementMesh {
-    std::vector<std::uint32_t> first_point = {0};  ///< Per polygon, and one past the last.
-    std::vector<std::uint32_t> connectivity;       ///< Points of the polygons; empty: one after the other.
+    std::vector<std::uint32_t> first_point = {0};  ///< Per polygon, plus the end of the last one.
+    std::vector<std::uint32_t> connectivity;       ///< Point indices of the polygons; empty: points are in order.
     std::vector<Point> points;
     std::vector<std::array<float, bands>> irradiance, radiosity;  ///< Per point, W/m^2.
-    /// Per polygon. A region of many faces may have leaves that lie on several of them: the face at the leaf's centre.
+    /// Per polygon. If a leaf covers several faces of its region, `surface` is the face at its centre.
     std::vector<std::int32_t> surface, region, material, group;
 
     std::size_t size() const { return surface.size(); }
@@ -25,24 +25,24 @@ struct ElementMesh {
     std::array<std::pair<const char*, const std::vector<std::int32_t>*>, 4> cell_ids() const {
         return {{{"surface", &surface}, {"region", &region}, {"material", &material}, {"group", &group}}};
     }
-    /// Polygons; triangles of six nodes, corners, then the middles of the edges; or triangles of ten, corners, thirds
-    /// of the edges 01, 12, 20, and the centroid, through which cubic polynomials lead.
+    /// Polygons; triangles of six nodes (corners, then the middles of the edges); or cubic triangles of ten nodes
+    /// (corners, two points on each of the edges 01, 12, 20, and the centroid).
     enum class Cells : std::uint8_t { polygons, quadratic, cubic } cells = Cells::polygons;
 
-    /// Points of all cells, and what VTK calls each cell.
+    /// Point indices of all cells, and VTK's type of each cell.
     std::vector<std::int64_t> cell_points() const;
     std::vector<std::uint8_t> cell_types() const;
 };
 
 ElementMesh make_element_mesh(const Solution& solution);
 
-/// Its corners, one after the other, where nobody needs the whole of it.
+/// Iterates over the corners of an element mesh without storing the mesh.
 class CornerWalk {
   public:
-    /// The tree must outlive it.
+    /// `tree` must outlive this object.
     explicit CornerWalk(const ElementTree& tree) : tree_(tree) {}
 
-    /// Goes to the next corner, at first to the first one; there has to be one.
+    /// Moves to the next corner, which must exist; the first call moves to the first corner.
     void next();
     ElementId leaf() const { return leaf_; }
     Vec2 uv() const { return corners_[at_]; }
@@ -54,19 +54,19 @@ class CornerWalk {
     std::vector<Vec2> corners_;
 };
 
-/// The face that each leaf of a solution's interpolant shows.
+/// Returns the face that each leaf of a solution's interpolant shows.
 std::vector<std::int32_t> faces_of_leaves(const Solution& solution);
 
-/// The same with the quadratic triangles of a discontinuity mesh, whose nodes are shared, where there is one; of Clough
-/// and Tocher's elements, three cubic triangles each.
+/// Like make_element_mesh(), but for a solution with a discontinuity mesh returns its quadratic triangles, with shared
+/// nodes. Clough-Tocher elements become three cubic triangles each.
 ElementMesh make_cells(const Solution& solution);
 
-/// VTK's type of a polygon of so many corners: triangle, quadrilateral or polygon.
+/// VTK's cell type of a polygon: triangle, quadrilateral or polygon.
 constexpr std::uint8_t vtk_cell_type(std::size_t corners) {
     return corners == 3 ? 5 : corners == 4 ? 9 : 7;
 }
 
-/// Numbers in rows, one row after the other, where they stand.
+/// The numbers in rows of `n` as one span, without copying.
 template <class T, std::size_t n>
 std::span<const T> numbers_of(const std::vector<std::array<T, n>>& rows) {
     static_assert(sizeof(std::array<T, n>) == n * sizeof(T));

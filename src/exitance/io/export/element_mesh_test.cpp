@@ -8,8 +8,8 @@
 namespace exitance {
 namespace {
 
-/// Lagrange's polynomials of degree three on a triangle, in the order in which VTK has a cell's points: corners, two on
-/// each of the edges 01, 12, 20, the centroid.
+/// Cubic Lagrange polynomials on a triangle, in VTK's order of points: corners, two on each of the edges 01, 12, 20,
+/// the centroid.
 std::array<double, 10> lagrange(const std::array<double, 3>& L) {
     std::array<double, 10> out;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -22,7 +22,7 @@ std::array<double, 10> lagrange(const std::array<double, 3>& L) {
     return out;
 }
 
-TEST(ElementMesh, CubicCellsHoldCloughAndTochersElementsExactly) {
+TEST(ElementMesh, CubicCellsRepresentCloughTocherElementsExactly) {
     Solution s{.scene = test::make({{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, 1}})};
     SixNodeMesh& mesh = s.discontinuity;
     RandomStream random(1, Stream::mesh);
@@ -40,7 +40,7 @@ TEST(ElementMesh, CubicCellsHoldCloughAndTochersElementsExactly) {
     const ElementMesh cells = make_cells(s);
     ASSERT_EQ(cells.size(), 6u);
     EXPECT_EQ(cells.cell_types(), std::vector<std::uint8_t>(6, 69));
-    // Shared: four corners, two thirds of the diagonal.
+    // Four corners and two points of the diagonal are shared.
     EXPECT_EQ(cells.points.size(), 4u + 5 * 2 + 2 * 10);
     const SixNodeLocator locator(mesh, s.scene);
     constexpr double rounding = 1e-6;  // of 32-bit floats

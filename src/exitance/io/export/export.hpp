@@ -6,7 +6,7 @@
 
 namespace exitance {
 
-/// Writes the interpolant of a solution for other programs; the ending says how:
+/// Writes the interpolant of a solution for other programs, in the format of the path's ending:
 /// .vtkhdf, .vtu   elements with radiosity and irradiance, for ParaView
 /// .glb            triangles with light as vertex attributes, glTF 2.0
 /// .obj            polygons with display colours at the vertices, and a .mtl beside it

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// A text as a field of CSV: between quotation marks where it needs them.
+/// Formats a text as a field of CSV, quoted if necessary.
 std::string field(const std::string& text) {
     if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string out = "\"";

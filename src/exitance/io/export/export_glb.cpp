@@ -17,22 +17,22 @@ namespace {
 
 using Float3 = std::array<float, 3>;
 
-/// glTF has Y up where scenes have Z up.
+/// Converts Z up to glTF's Y up.
 Float3 y_up(const Vec3& v) {
     return {static_cast<float>(v.x), static_cast<float>(v.z), static_cast<float>(-v.y)};
 }
 
-/// Polygons of one group and one material, as a range of all vertices and of all indices.
+/// Polygons of one group and material: a range of the vertices and of the indices.
 struct Primitive {
     std::size_t group = 0, material = 0;
     std::size_t first_vertex = 0, vertices = 0, first_index = 0, indices = 0;
     Float3 lo = {HUGE_VALF, HUGE_VALF, HUGE_VALF}, hi = {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
 };
 
-/// The arrays of the binary chunk, and what they are divided into.
+/// Arrays of the binary chunk, and their division into primitives.
 struct Triangles {
     std::vector<Float3> position, normal, radiosity, irradiance, colour;
-    std::vector<std::uint32_t> index;  ///< Counted from the first vertex of its primitive.
+    std::vector<std::uint32_t> index;  ///< Relative to the first vertex of the primitive.
     std::vector<Primitive> primitives;
 };
 
@@ -67,7 +67,7 @@ Triangles make_triangles(const Solution& solution, const ToneMap& tone) {
             Float3 radiosity, irradiance;
             for (std::size_t b = 0; b < bands; ++b) light[b] = static_cast<double>(mesh.irradiance[p][b]);
             for (std::size_t b = 0; b < 3; ++b) {
-                const std::size_t band = bands == 3 ? b : b * (bands - 1) / 2;  // as the tone map chooses them
+                const std::size_t band = bands == 3 ? b : b * (bands - 1) / 2;  // the same bands as in the tone map
                 radiosity[b] = mesh.radiosity[p][band], irradiance[b] = mesh.irradiance[p][band];
             }
             const DisplayColour colour = tone(light);
@@ -107,11 +107,11 @@ std::string material_json(const Material& material) {
         out, json_triple(radiance), strength);
 }
 
-/// Byte ranges of the binary chunk: five vertex arrays of one length, then the indices.
+/// Order of the binary chunk: five vertex arrays of the same length, then the indices.
 constexpr const char* attribute_names[] = {"POSITION", "NORMAL", "_RADIOSITY", "_IRRADIANCE", "COLOR_0"};
 constexpr std::size_t attributes = std::size(attribute_names);
 
-/// Items of JSON arrays, with commas between them.
+/// Builds JSON lists, with commas between items.
 struct Lists {
     std::string nodes, meshes, accessors;
     std::size_t node_count = 0, accessor_count = 0;
@@ -138,7 +138,7 @@ std::string primitive_json(const Primitive& p, Lists& lists) {
     return fmt::format("{{\"attributes\":{{{}}},\"indices\":{},\"material\":{}}}", names, indices, p.material);
 }
 
-/// A node and a mesh a group; a primitive a material in it.
+/// Adds one node and one mesh per group, with one primitive per material.
 void add_groups(const Scene& scene, std::span<const Primitive> primitives, Lists& lists) {
     for (std::size_t first = 0, last = 0; first < primitives.size(); first = last) {
         std::string items;

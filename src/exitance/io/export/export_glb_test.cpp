@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A .glb taken apart after the specification of glTF 2.0.
+/// A .glb file, parsed by the glTF 2.0 specification.
 struct Glb {
     json text;
     std::string binary;
@@ -43,7 +43,7 @@ struct Glb {
         std::memcpy(&value, bytes.data() + at, 4);
         return value;
     }
-    /// The numbers of an accessor; all of them must lie within its view, and the view within the buffer.
+    /// Returns the numbers of an accessor and checks that they are within its view, and the view within the buffer.
     template <class T>
     std::vector<T> numbers(const json& index) const {
         const json& a = text["accessors"][index.get<std::size_t>()];
@@ -72,7 +72,7 @@ Glb exported(const Solution& solution) {
     return Glb(*read_whole_file(folder / "s.glb"));
 }
 
-TEST(ExportGlb, EveryAccessorHoldsWhatTheSpecificationAsksFor) {
+TEST(ExportGlb, EveryAccessorSatisfiesTheSpecification) {
     const Glb glb = exported(sample_solution(300));
     EXPECT_EQ(glb.text["asset"]["version"], "2.0");
     EXPECT_EQ(glb.text["nodes"].size(), glb.text["meshes"].size() + glb.text["cameras"].size() +
@@ -99,7 +99,8 @@ TEST(ExportGlb, EveryAccessorHoldsWhatTheSpecificationAsksFor) {
             for (std::size_t i = 0; i < index.size(); i += 3) {
                 const Point a = row(position, index[i]), b = row(position, index[i + 1]),
                             c = row(position, index[i + 2]);
-                EXPECT_GT(dot(cross(b - a, c - a), row(normal, index[i])), 0);  // it has an area, and this is its front
+                // It has an area, and its normal is on the front.
+                EXPECT_GT(dot(cross(b - a, c - a), row(normal, index[i])), 0);
                 EXPECT_NEAR(norm(row(normal, index[i])), 1, 1e-6);
             }
             const json& material = glb.text["materials"][primitive["material"].get<std::size_t>()];
@@ -108,7 +109,7 @@ TEST(ExportGlb, EveryAccessorHoldsWhatTheSpecificationAsksFor) {
             const auto B = glb.numbers<float>(attributes["_RADIOSITY"]),
                        E = glb.numbers<float>(attributes["_IRRADIANCE"]);
             for (std::size_t k = 0; k < B.size(); ++k) {
-                double M = 0;  // pi times what it emits
+                double M = 0;  // pi times the emitted radiance
                 if (material.contains("emissiveFactor"))
                     M = pi * material["emissiveFactor"][k % 3].get<double>() *
                         material["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"].get<double>();
@@ -119,7 +120,7 @@ TEST(ExportGlb, EveryAccessorHoldsWhatTheSpecificationAsksFor) {
     EXPECT_GT(triangles, 600u);
 }
 
-TEST(ExportGlb, ReadBackAsASceneItHasTheSameSurfacesAndDirectLight) {
+TEST(ExportGlb, IsReadBackWithTheSameSurfacesAndDirectLight) {
     if (bands != 3) return;
     const TemporaryFolder folder;
     const Solution solution = sample_solution(300);
@@ -138,15 +139,15 @@ TEST(ExportGlb, ReadBackAsASceneItHasTheSameSurfacesAndDirectLight) {
     const Stage before(solution.scene), after(*back.scene);
     DirectLight::Workspace workspace;
     for (const ProbePoint& p : points_uniform_in_area(solution.scene, 300, 1)) {
-        const Point above = p.x + 1e-4 * p.n;  // free of both scenes' surfaces, which are micrometres apart
+        const Point above = p.x + 1e-4 * p.n;  // in front of both scenes' surfaces, which differ by micrometres
         const Spectrum a = before.direct.irradiance(above, p.n, RegionId(), workspace);
         const Spectrum b = after.direct.irradiance(above, p.n, RegionId(), workspace);
         light += mean(a), difference += std::abs(mean(a - b));
     }
-    EXPECT_LT(difference, 1e-5 * light);  // coordinates in single precision: 1e-7 of the room's size
+    EXPECT_LT(difference, 1e-5 * light);  // coordinates in single precision have errors of 1e-7 of the room's size
 }
 
-TEST(ExportGlb, NamesThatAreNoUtf8AreTakenForLatin1) {
+TEST(ExportGlb, NamesThatAreNotUtf8AreReadAsLatin1) {
     EXPECT_EQ(json_text("caf\xe9 \"1\"\n"), "\"caf\\u00e9 \\\"1\\\"\\u000a\"");
     EXPECT_EQ(json_text("caf\xc3\xa9"), "\"caf\xc3\xa9\"");
 }

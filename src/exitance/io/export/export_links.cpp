@@ -13,7 +13,7 @@
 namespace exitance {
 namespace {
 
-/// All of `text` as numbers between commas; nothing when it is something else.
+/// Parses comma-separated numbers; empty if `text` is anything else.
 std::optional<std::vector<double>> numbers(std::string_view text) {
     std::vector<double> out;
     for (;;) {
@@ -36,7 +36,7 @@ std::size_t level(const ElementTree& tree, ElementId e) {
     return out;
 }
 
-/// The elements that hold the point of the surfaces nearest to `p`, the leaf last.
+/// The elements that contain the surface point nearest to `p`, from the root to the leaf.
 std::vector<ElementId> path_to(const ElementTree& tree, const Point& p) {
     ElementTree::Place best;
     double least = HUGE_VAL;
@@ -52,7 +52,7 @@ std::vector<ElementId> path_to(const ElementTree& tree, const Point& p) {
     return out;
 }
 
-/// The receivers that are asked for.
+/// The receivers that `which` selects.
 Result<std::vector<ElementId>> receivers(const ElementTree& tree, const std::string& which) {
     const auto given = numbers(which);
     if (given && given->size() == 3) return path_to(tree, {(*given)[0], (*given)[1], (*given)[2]});
@@ -80,7 +80,7 @@ std::string as_table(const ElementTree& tree, std::span<const KeptLink> links) {
     return out;
 }
 
-/// Of links, each once.
+/// The sources of the links, each once.
 std::vector<ElementId> sources_of(std::span<const KeptLink> links) {
     std::vector<ElementId> out;
     for (const KeptLink& link : links) out.push_back(link.source);
@@ -89,7 +89,7 @@ std::vector<ElementId> sources_of(std::span<const KeptLink> links) {
     return out;
 }
 
-/// Elements as polygons, each once, and links as lines.
+/// Formats the elements as polygons, each once, and the links as lines.
 std::string as_lines(const ElementTree& tree, std::span<const ElementId> path, std::span<const KeptLink> links) {
     std::string out = "# Links of a hierarchy; metres\n";
     std::size_t vertices = 0;

@@ -12,17 +12,17 @@ std::string triple(const Float3& v) {
     return fmt::format("[{},{},{}]", v[0], v[1], v[2]);
 }
 
-/// Meshes of lines, as a JSON list, and their vertices.
+/// Line meshes as JSON lists, and their vertices.
 class LineMeshes {
   public:
-    /// Two points a line, metres, Z up.
+    /// Adds a mesh of lines, two points per line, metres, Z up.
     void add(const char* name, std::span<const Point> ends, const Float3& colour) {
         if (ends.empty()) return;
         Float3 lo, hi;
         lo.fill(HUGE_VALF), hi.fill(-HUGE_VALF);
         const std::size_t first = vertices_.size();
         for (const Point& p : ends) {
-            // glTF has Y up.
+            // Z up becomes glTF's Y up.
             const Float3 at{static_cast<float>(p.x), static_cast<float>(p.z), static_cast<float>(-p.y)};
             for (std::size_t axis = 0; axis < 3; ++axis)
                 lo[axis] = std::min(lo[axis], at[axis]), hi[axis] = std::max(hi[axis], at[axis]);

@@ -9,8 +9,8 @@
 
 namespace exitance {
 
-/// Links as a glTF scene of lines (.glb, Y up, metres): the outlines of receivers and sources, and a line from the
-/// middle of one to that of the other for each link; a mesh and an unlit colour each.
+/// Writes links as a glTF scene of lines (.glb, Y up, metres): the outlines of receivers, the outlines of sources, and
+/// a line between the centres of each link's elements. Each of the three is a mesh with its own unlit colour.
 Result<void> write_links_glb(const ElementTree& tree, std::span<const ElementId> receivers,
                              std::span<const ElementId> sources, std::span<const KeptLink> links,
                              const std::string& path);

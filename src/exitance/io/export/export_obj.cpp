@@ -13,7 +13,7 @@
 namespace exitance {
 namespace {
 
-/// A name as one word that OBJ and MTL can hold.
+/// Converts a name to one word, as OBJ and MTL require. An empty name becomes `otherwise` with the number.
 std::string word(const std::string& name, std::size_t number, const char* otherwise) {
     std::string out = name.empty() ? otherwise + std::to_string(number) : name;
     for (char& c : out)
@@ -21,7 +21,7 @@ std::string word(const std::string& name, std::size_t number, const char* otherw
     return out;
 }
 
-/// The names of materials as words, each of them another.
+/// The names of materials as unique words.
 std::vector<std::string> material_words(const Scene& scene) {
     std::vector<std::string> words;
     for (MaterialId m : scene.materials().ids()) {

@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// Base64 of bytes that come piece by piece.
+/// Encodes bytes as Base64 in pieces.
 class Base64 {
   public:
     explicit Base64(AtomicFile& file) : file_(file) {}

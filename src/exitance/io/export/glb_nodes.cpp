@@ -10,15 +10,16 @@
 namespace exitance {
 namespace {
 
-constexpr double aspect = 1.6;  ///< Width by height of a camera's picture: scenes keep the width's angle alone.
+/// Assumed ratio of width to height of a camera's picture, since scenes only store the horizontal angle.
+constexpr double aspect = 1.6;
 
 Vec3 y_up(const Vec3& v) {
     return {v.x, v.z, -v.y};
 }
 
-/// A node's matrix, column by column: what looks along -z goes along `ahead` (Z up, as are `up` and `at`).
+/// A node's matrix by columns. It turns -z to `ahead`; `ahead`, `up` and `at` are in coordinates with Z up.
 std::string matrix(const Vec3& ahead, const Vec3& up, const Point& at) {
-    const Vec3 none;  // added, it turns -0 into 0
+    const Vec3 none;  // adding it turns -0 into 0
     const Vec3 z = none - normalized(y_up(ahead));
     const Vec3 x = none + (norm(cross(y_up(up), z)) > 1e-6 ? normalized(cross(y_up(up), z)) : Frame(z).u);
     const Vec3 y = none + cross(z, x), o = none + y_up(at);
@@ -26,7 +27,8 @@ std::string matrix(const Vec3& ahead, const Vec3& up, const Point& at) {
                        o.x, o.y, o.z);
 }
 
-/// Colours are at most 1 in glTF; what is brighter is in the intensity. Candela, or lux of parallel light.
+/// Formats a light, with an intensity in candela (lux for parallel light). Since glTF limits colours to 1, the
+/// intensity is the largest component.
 std::string light_json(const PunctualLight& light) {
     const auto [r, g, b] = red_green_blue(light.intensity);
     const double strength = std::max({r, g, b, 1e-30});
@@ -74,7 +76,7 @@ std::string json_text(const std::string& text) {
         const auto byte = static_cast<unsigned char>(c);
         if (c == '"' || c == '\\')
             out += '\\', out += c;
-        else if (byte < 0x20 || (byte >= 0x80 && !utf8))  // what is no UTF-8 is taken for Latin-1
+        else if (byte < 0x20 || (byte >= 0x80 && !utf8))  // text that is not UTF-8 is read as Latin-1
             out += fmt::format("\\u{:04x}", static_cast<unsigned>(byte));
         else
             out += c;
@@ -87,7 +89,7 @@ GlbNodes make_light_and_camera_nodes(const Scene& scene) {
     GlbNodes out;
     const auto add = [&](std::string& to, const std::string& item) { to += (to.empty() ? "" : ",") + item; };
     const auto add_node = [&](const std::string& name, const std::string& what, const std::string& place) {
-        const bool stays = place == "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]";  // the default is not to be written
+        const bool stays = place == "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]";  // the default need not be written
         const std::string matrix_entry = stays ? "" : ",\"matrix\":" + place;
         add(out.nodes, fmt::format("{{\"name\":{},{}{}}}", json_text(name), what, matrix_entry));
         ++out.count;

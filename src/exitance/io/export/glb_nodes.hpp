@@ -6,14 +6,14 @@
 
 namespace exitance {
 
-/// A text between quotation marks, as JSON wants it.
+/// Returns a text as a JSON string, with quotation marks.
 std::string json_text(const std::string& text);
 
-/// What stands in a scene besides surfaces, as parts of a glTF document (JSON without the brackets around it): lights
-/// of KHR_lights_punctual and cameras, and a node for each, Y up.
+/// The lights and cameras of a scene as parts of a glTF document (JSON lists without brackets): KHR_lights_punctual,
+/// cameras, and one node for each of these, Y up.
 struct GlbNodes {
     std::string nodes, lights, cameras;
-    std::size_t count = 0;  ///< Of the nodes.
+    std::size_t count = 0;  ///< Number of nodes.
 };
 GlbNodes make_light_and_camera_nodes(const Scene& scene);
 

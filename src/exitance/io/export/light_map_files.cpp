@@ -15,7 +15,7 @@
 namespace exitance {
 namespace {
 
-/// lightmap_0, or lightmap_0_2 for the light of group 2 alone.
+/// File name without ending: lightmap_0, or lightmap_0_2 for light group 2 only.
 std::string map_stem(std::size_t map, std::optional<std::size_t> group = {}) {
     return group ? fmt::format("lightmap_{}_{}", map, *group) : fmt::format("lightmap_{}", map);
 }
@@ -36,7 +36,7 @@ LinearImage numbers(const Scene& scene, const LightMaps& light, std::size_t m, L
     return image;
 }
 
-/// The scale at which what maps show besides lamps lies around middle grey.
+/// Tone map that brings the maps, except lamps, to middle grey on average.
 ToneMap preview_tones(const Scene& scene, const LightMaps& light, LightMapQuantity quantity) {
     double sum = 0, weight = 0;
     for (std::size_t m = 0; m < light.maps.size(); ++m)
@@ -68,7 +68,7 @@ std::string triple(const Vec3& v) {
     return fmt::format("[{},{},{}]", v.x, v.y, v.z);
 }
 
-/// The texels that a face touches, and where they are.
+/// Formats the texels that a face touches, with their position in space.
 std::string chart_json(const Scene& scene, SurfaceId s, const Chart& chart) {
     constexpr double rounding = 1e-6;
     Vec2 lo{HUGE_VAL, HUGE_VAL}, hi{-HUGE_VAL, -HUGE_VAL};
@@ -119,7 +119,7 @@ std::string manifest(const Scene& scene, const LightMaps& light, LightMapQuantit
     return text + "\n  ]\n}\n";
 }
 
-/// Every map as numbers and as a picture.
+/// Writes every map as an .exr file and as a picture.
 Result<void> write_pictures(const Scene& scene, const LightMaps& light, std::optional<std::size_t> group,
                             const LightMapFormat& format, const std::string& folder) {
     const ToneMap tones = preview_tones(scene, light, format.quantity);

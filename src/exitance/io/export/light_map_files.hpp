@@ -11,45 +11,47 @@
 
 namespace exitance {
 
-/// What a light map's texels hold: what arrives, or what leaves, B = M + rho E. W/m^2.
+/// Quantity in the texels of a light map: irradiance E, or radiosity B = M + rho E, W/m^2.
 enum class LightMapQuantity : std::uint8_t { irradiance, radiosity };
 
 constexpr std::array<std::pair<LightMapQuantity, std::string_view>, 2> light_map_quantity_names{
     {{LightMapQuantity::irradiance, "irradiance"}, {LightMapQuantity::radiosity, "radiosity"}}};
 
-/// How the .glb shows its light (write_light_map_glb).
+/// Representation of light in the .glb (write_light_map_glb).
 enum class LightMapMaterial : std::uint8_t {
-    emissive,      ///< Light as emission of black surfaces.
-    unlit,         ///< KHR_materials_unlit: a picture of the light as base colour.
-    moz_lightmap,  ///< MOZ_lightmap beside a base colour.
+    emissive,      ///< Light is the emission of black surfaces.
+    unlit,         ///< KHR_materials_unlit: a picture of the light is the base colour.
+    moz_lightmap,  ///< MOZ_lightmap in addition to a base colour.
 };
 
 struct LightMapFormat {
     LightMapQuantity quantity = LightMapQuantity::irradiance;
     Precision precision = Precision::single;
     LightMapMaterial material = LightMapMaterial::emissive;
-    std::string scene_file;  ///< Where the scene's own textures are, if it is glTF; empty: nowhere.
+    std::string scene_file;  ///< glTF file with the scene's own textures; empty: none.
 };
 
-/// Writes the maps of one light group alone, number `group`, which lie on the charts that all light has:
-/// lightmap_N_G.exr and .png, its own exposure. Makes the folder where there is none.
+/// Writes the maps of one light group, number `group`, in the same charts as those of all light: lightmap_N_G.exr, and
+/// .png with its own exposure. Creates the folder if necessary.
 Result<void> write_group_light_maps(const Scene& lit_by_group, const LightMaps& light, std::size_t group,
                                     const LightMapFormat& format, const std::string& folder);
 
-/// Writes what a folder of light maps holds, and makes the folder where there is none:
-/// lightmap_N.exr   the numbers: R, G, B in W/m^2; `coverage`: the share of a texel that lies on its surface
-/// lightmap_N.png   the same for people, toned
-/// scene.glb        the scene with second texture coordinates
-/// lightmaps.json   which texels belong to which face, and the `groups` that were written; written last
+/// Writes all files of a folder of light maps, and creates the folder if necessary:
+///
+///     lightmap_N.exr   values: R, G, B in W/m^2; `coverage`: share of a texel that is on its surface
+///     lightmap_N.png   the same as a tone-mapped picture
+///     scene.glb        the scene with texture coordinates for the maps
+///     lightmaps.json   texels of each face, and the `groups` that were written; written last
+///
 /// Each file appears whole or not at all.
 Result<void> write_light_maps(const Solution& solution, const LightMaps& light, const LightMapFormat& format,
                               std::span<const std::string> groups, const std::string& folder);
 
-/// The value of a texel of a chart in a quantity, W/m^2.
+/// Value of a texel of a chart in the given quantity, W/m^2.
 Spectrum texel_value(const Scene& scene, const LightMap& map, const Chart& chart, std::size_t index,
                      LightMapQuantity quantity);
 
-/// Calls visit(chart, index) for every texel of a map's charts, their padding included.
+/// Calls visit(chart, index) for every texel of a map's charts, including padding.
 template <class Visit>
 void for_each_texel(const LightMaps& light, std::size_t map, const Visit& visit) {
     for (const Chart& chart : light.charts) {
@@ -60,15 +62,15 @@ void for_each_texel(const LightMaps& light, std::size_t map, const Visit& visit)
     }
 }
 
-/// Binary glTF 2.0: a triangle mesh of the input's faces, Y up, metres. TEXCOORD_0 and 1: the scene's own texture
-/// coordinates, as many as it has; without any, TEXCOORD_0 are places in the face's plane, metres. The next one: places
-/// in the light maps. Colours are radiosity times `tone.scale`:
-///  emissive      black surfaces that emit rho E (stored from 0 to a peak), lamps a constant. Nothing but the light
-///  that
-///                was computed is seen, whatever lights a viewer brings along;
-///  unlit         the picture of B, toned by `tone`;
-///  moz_lightmap  reflectance as base colour, E in the extension, pi times as strong since such light maps are divided
-///                by pi again.
+/// Writes binary glTF 2.0: a triangle mesh of the input faces, Y up, metres. The first texture coordinates are the
+/// scene's own sets; if it has none, TEXCOORD_0 is the position in the face's plane, metres. The last set is the
+/// position in the light maps. Colours are radiosity times `tone.scale`:
+///
+///     emissive      black surfaces emit rho E (stored from 0 to a peak), and lamps a constant; lights of a viewer add
+///                   nothing
+///     unlit         the picture of B, tone mapped by `tone`
+///     moz_lightmap  the reflectance is the base colour, and E is in the extension, times pi, since viewers divide such
+///                   light maps by pi
 Result<void> write_light_map_glb(const Solution& solution, const LightMaps& light, const LightMapFormat& format,
                                  const ToneMap& tone, const std::string& path);
 

@@ -18,12 +18,12 @@ namespace {
 using Float3 = std::array<float, 3>;
 using Float2 = std::array<float, 2>;
 
-/// glTF has Y up where scenes have Z up.
+/// Converts Z up to glTF's Y up.
 Float3 y_up(const Vec3& v) {
     return {static_cast<float>(v.x), static_cast<float>(v.z), static_cast<float>(-v.y)};
 }
 
-/// Faces of one group, material and map: a range of all vertices and of all indices.
+/// Faces of one group, material and map: a range of the vertices and of the indices.
 struct Primitive {
     std::uint32_t group = 0, material = 0, map = 0;
     std::size_t first_vertex = 0, vertices = 0, first_index = 0, indices = 0;
@@ -34,8 +34,9 @@ struct Primitive {
 
 struct Mesh {
     std::vector<Float3> position, normal;
-    std::vector<Float2> place, second_place, map_place;  ///< Second ones: of the scene, or none.
-    std::vector<std::uint32_t> index;                    ///< Counted from the first vertex of its primitive.
+    /// Texture coordinates: of the scene or of the plane; the scene's second set or none; in the maps.
+    std::vector<Float2> place, second_place, map_place;
+    std::vector<std::uint32_t> index;  ///< Relative to the first vertex of the primitive.
     std::vector<Primitive> primitives;
 };
 
@@ -91,12 +92,12 @@ Mesh make_mesh(const Scene& scene, const LightMaps& light, const SceneTextures* 
 }
 
 struct TextureLevels {
-    double peak = 1;             ///< What the brightest colour of a texture stands for, W/m^2.
-    std::vector<Spectrum> mean;  ///< Mean irradiance of a material, W/m^2.
+    double peak = 1;             ///< Value of the brightest colour of a texture, W/m^2.
+    std::vector<Spectrum> mean;  ///< Mean irradiance per material, W/m^2.
 };
 
 TextureLevels find_levels(const Scene& scene, const LightMaps& light, const LightMaps& shown, const ToneMap& tone) {
-    // Eight bits are spent on what a display shows: two stops above white are kept, at least.
+    // The eight bits cover the range of a display and at least two stops above white.
     constexpr double whites = 4;
     TextureLevels levels;
     levels.mean.resize(scene.materials().size());
@@ -117,7 +118,7 @@ TextureLevels find_levels(const Scene& scene, const LightMaps& light, const Ligh
     return levels;
 }
 
-/// One of the arrays that vertices have a row of each in.
+/// An array with one row per vertex.
 struct VertexArray {
     std::string name;
     std::size_t stride;  ///< Bytes.
@@ -134,7 +135,7 @@ std::vector<VertexArray> vertex_arrays(const Mesh& mesh) {
     return out;
 }
 
-/// What a texture shows: light over the peak, or the toned picture of it with what surfaces emit by themselves.
+/// The texture of a map: light divided by the peak or, for unlit materials, the tone-mapped picture including emission.
 Image texture(const Scene& scene, const LightMaps& shown, std::size_t m, LightMapMaterial way, const ToneMap& tone,
               double peak) {
     const LightMap& map = shown.maps[m];
@@ -155,7 +156,7 @@ std::string triple(const Triple& v) {
     return fmt::format("[{},{},{}]", v[0], v[1], v[2]);
 }
 
-/// Emission of these colours, above 1 by its strength; `texture` is empty or ",...".
+/// Formats an emissive colour; components above 1 are expressed by its strength. `texture` is empty or ",...".
 std::string emission(std::array<double, 3> colour, const std::string& texture, std::string& extensions) {
     const double strength = std::max({colour[0], colour[1], colour[2], 1e-30});
     for (double& c : colour) c /= strength;
@@ -163,12 +164,12 @@ std::string emission(std::array<double, 3> colour, const std::string& texture, s
     return fmt::format(",\"emissiveFactor\":{}{}", triple(colour), texture);
 }
 
-/// Pictures of a document and textures that show them: the maps, then one a material that has a picture of its own.
+/// Images and textures of a document: the maps, then one per material with its own picture.
 struct Textures {
     std::vector<std::string> files;  ///< PNG or JPEG.
     std::string images, textures, samplers;
-    int light_set = 1;                    ///< Which texture coordinates are places in the maps.
-    Field<MaterialId, std::string> base;  ///< Of every material, what it says of its own picture, or nothing.
+    int light_set = 1;                    ///< Number of the texture coordinate set for the maps.
+    Field<MaterialId, std::string> base;  ///< Per material: reference to its own picture, or empty.
 
     void add_file(const std::string& file, const std::string& name, const std::string& kind, std::size_t first_view) {
         images += fmt::format("{}{{\"name\":{},\"mimeType\":\"{}\",\"bufferView\":{}}}", images.empty() ? "" : ",",
@@ -199,16 +200,16 @@ std::string material_json(const Scene& scene, MaterialId id, std::size_t map, Li
         const Spectrum radiosity = material.exitance + material.reflectance * levels.mean[id.value];
         emitted = emission(red_green_blue(tone.scale * radiosity), "", extensions);
     } else if (way == LightMapMaterial::emissive) {
-        // The factor is grey: the importer of Blender 3.4 mixes up coloured ones.
+        // The factor is grey, since the importer of Blender 3.4 confuses the channels of coloured ones.
         const double strength = tone.scale * levels.peak;
         emitted = emission({strength, strength, strength}, ",\"emissiveTexture\":" + light, extensions);
     } else {
-        // Of a textured one the picture says it, as far as a factor of 1 goes.
+        // For a textured material, the picture has the reflectance; factors above 1 are not possible.
         base = base_texture.empty() ? fmt::format("[{},{},{},1]", rho[0], rho[1], rho[2]) : "[1,1,1,1]";
         extensions = fmt::format(",\"MOZ_lightmap\":{{\"index\":{},\"texCoord\":{},\"intensity\":{}}}", map,
                                  textures.light_set, pi * tone.scale * levels.peak);
     }
-    // A black surface without highlights, told in both ways: a viewer's own lights add nothing.
+    // Two extensions make the surface black without highlights, so that a viewer's lights add nothing.
     if (way != LightMapMaterial::unlit)
         extensions += ",\"KHR_materials_specular\":{\"specularFactor\":0},\"KHR_materials_ior\":{\"ior\":1}";
     return fmt::format(
@@ -221,7 +222,7 @@ void add(std::string& list, const std::string& item) {
     list += (list.empty() ? "" : ",") + item;
 }
 
-/// JSON of a document in the making; the binary chunk has a view an array, then one a texture.
+/// Builds the JSON of a document. The binary chunk has one view per array, then one per texture.
 class Document {
   public:
     Document(const Scene& scene, const Mesh& mesh, const Textures& textures)
@@ -243,13 +244,13 @@ class Document {
         }
     }
 
-    /// Material and map of every material of the document.
+    /// Material and map of each material of the document.
     const std::vector<std::pair<std::uint32_t, std::uint32_t>>& materials() const { return material_of_; }
 
     std::string text(const std::string& materials, const std::string& used, const ToneMap& tone,
                      const TextureLevels& levels) {
         GlbNodes placed = make_light_and_camera_nodes(scene_);
-        // Lights are in the maps already: a viewer must not add them again. Cameras follow them among the nodes.
+        // Lights are already in the maps, so viewers must not add them. Cameras come after lights among the nodes.
         std::string cameras;
         if (scene_.lights().empty() && placed.count > 0) {
             add(nodes_, placed.nodes), cameras = fmt::format("\"cameras\":[{}],", placed.cameras);
@@ -307,7 +308,7 @@ class Document {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> material_of_;
 };
 
-/// The maps as pictures, and the scene's own pictures where materials show them.
+/// The maps as pictures, and the scene's own pictures if materials show them.
 Result<Textures> make_textures(const Scene& scene, const LightMaps& shown, LightMapMaterial way, const ToneMap& tone,
                                double peak, const SceneTextures* own) {
     constexpr int clamp = 33071;
@@ -315,7 +316,7 @@ Result<Textures> make_textures(const Scene& scene, const LightMaps& shown, Light
     const bool two_sets = own && own->has_second_set();
     out.light_set = two_sets ? 2 : 1;
     out.base.resize(scene.materials().size());
-    const std::size_t first_view = two_sets ? 6 : 5;  // after the arrays of vertices and indices
+    const std::size_t first_view = two_sets ? 6 : 5;  // after the vertex arrays and the indices
     for (std::size_t m = 0; m < shown.maps.size(); ++m) {
         const Result<std::string> png = encode_png(texture(scene, shown, m, way, tone, peak), {});
         if (!png) return png.error();
@@ -326,7 +327,7 @@ Result<Textures> make_textures(const Scene& scene, const LightMaps& shown, Light
     for (std::size_t p = 0; p < own->pictures.size(); ++p)
         out.add_file({own->pictures[p].file.begin(), own->pictures[p].file.end()}, fmt::format("picture_{}", p),
                      own->pictures[p].kind, first_view);
-    std::map<std::array<int, 3>, std::size_t> numbers;  // of textures, by picture and wraps
+    std::map<std::array<int, 3>, std::size_t> numbers;  // of textures, by picture and wrap modes
     for (MaterialId id : scene.materials().ids()) {
         const SceneTextures::Coat& coat = own->coats[id];
         if (coat.picture < 0 || own->places[coat.set].empty()) continue;

@@ -14,8 +14,8 @@
 namespace exitance {
 namespace {
 
-/// A floor of 2 x 1 m whose left half is white and whose right half is black, by a picture of 2 x 1 pixels, with two
-/// sets of texture coordinates; a lamp above it.
+/// A floor of 2 x 1 m with a picture of 2 x 1 pixels, which makes the left half white and the right half black, and
+/// with two sets of texture coordinates; a lamp above it.
 std::string write_textured_floor(const TemporaryFolder& folder) {
     Image picture(2, 1);
     picture.rgb = {255, 255, 255, 0, 0, 0};
@@ -79,7 +79,7 @@ TEST(LightMapModel, ReflectedLightFollowsTheTextureAndKeepsItsMean) {
     ASSERT_NEAR(s.scene.materials()[MaterialId(0)].reflectance[0], 0.5, 1e-12);
     ASSERT_NEAR(s.scene.material(floor).reflectance[0], 0.75, 0.02)
         << "the triangle's own part is white by three quarters";
-    // Its two triangles have colours, regions and charts of their own.
+    // The floor's two triangles have separate colours, regions and charts.
     const auto read = [&](const LightMaps& maps, const Point& p) {
         const SurfaceId triangle(p.y > -0.5 * p.x ? 1 : 0);
         const Chart& chart = light.charts[s.scene.surfaces()[triangle].region.value];
@@ -89,9 +89,9 @@ TEST(LightMapModel, ReflectedLightFollowsTheTextureAndKeepsItsMean) {
                                 chart.y + static_cast<int>(std::floor(place.y))))[0];
     };
     const auto at = [&](const Point& p) { return read(reflected, p); };
-    EXPECT_NEAR(at({0.25, -0.5, 0}), 0.95 * 4, 1e-6);  // 1 is too much for a reflectance
+    EXPECT_NEAR(at({0.25, -0.5, 0}), 0.95 * 4, 1e-6);  // a reflectance of 1 is reduced to 0.95
     EXPECT_NEAR(at({1.75, -0.5, 0}), 0, 1e-6);
-    EXPECT_NEAR(at({1.05, -0.3, 0}), 0.45 * 4, 0.05);   // between the middles of both pixels it goes over
+    EXPECT_NEAR(at({1.05, -0.3, 0}), 0.45 * 4, 0.05);   // interpolated between the centres of both pixels
     EXPECT_NEAR(at({-0.05, -0.5, 0}), 0.95 * 4, 1e-6);  // beyond the border
     const LightMaps plain = reflected_maps(s.scene, light, nullptr);
     EXPECT_NEAR(read(plain, {0.25, -0.5, 0}), 4 * s.scene.material(floor).reflectance[0], 1e-6);
@@ -114,7 +114,7 @@ TEST(LightMapModel, KeepsPicturesAndBothSetsOfCoordinates) {
         ASSERT_TRUE(again);
         EXPECT_EQ(again->pictures.size(), 2u);
     }
-    ASSERT_TRUE(write_light_map_glb(s, light, {}, {}, folder / "out.glb"));  // its file is not told
+    ASSERT_TRUE(write_light_map_glb(s, light, {}, {}, folder / "out.glb"));  // without the scene file
     const Result<std::string> out = read_whole_file(folder / "out.glb");
     EXPECT_EQ(out->find("\"TEXCOORD_2\""), std::string::npos);
     EXPECT_FALSE(load_scene_textures(s.scene, ""));

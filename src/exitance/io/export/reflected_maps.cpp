@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// What red, green and blue of a picture mean for each band.
+/// Converts red, green and blue of a picture to bands.
 Spectrum spread(const std::array<double, 3>& rgb) {
     Spectrum out;
     if (bands == 1) return Spectrum((rgb[0] + rgb[1] + rgb[2]) / 3);
@@ -20,12 +20,12 @@ Spectrum spread(const std::array<double, 3>& rgb) {
     return out;
 }
 
-/// Sums reflectances over the texels of one map.
+/// Accumulates reflectances in the texels of one map.
 class ReflectanceMap {
   public:
     ReflectanceMap(const LightMap& map) : map_(map), sum_(map.size.texels()), weight_(map.size.texels()) {}
 
-    /// One triangle of a face: `corner` of it, and the places of these in the picture.
+    /// Adds one triangle of a face: its corners, and their texture coordinates in the picture.
     void add(const Chart& chart, const std::array<Point, 3>& corner, const std::array<Vec2, 3>& place,
              const SceneTextures::Coat& coat, const TextureArea& picture, const Spectrum& reflectance) {
         const Patch patch{corner[0], corner[1] - corner[0], corner[2] - corner[0], Patch::Shape::triangle};
@@ -41,7 +41,7 @@ class ReflectanceMap {
             const Vec2 uv = patch.coordinates(chart.at(at));
             return place[0] + uv.x * (place[1] - place[0]) + uv.y * (place[2] - place[0]);
         };
-        // Sixteen points a texel: each stands for a quarter of its width.
+        // Each texel has sixteen sample points, each averaged over a quarter of the texel's width.
         const Vec2 right = in_picture({1, 0}) - in_picture({0, 0}), down = in_picture({0, 1}) - in_picture({0, 0});
         const double size = 0.25 * std::max(std::hypot(right.x * picture.width(), right.y * picture.height()),
                                             std::hypot(down.x * picture.width(), down.y * picture.height()));
@@ -108,7 +108,7 @@ LightMaps reflected_maps(const Scene& scene, const LightMaps& light, const Scene
         for_each_texel(light, m, [&](const Chart& chart, std::size_t i) {
             const Spectrum reflected = maps[m].at(i, scene.material(chart.region).reflectance) * map.at(i);
             for (std::size_t b = 0; b < bands; ++b) map.irradiance[i][b] = static_cast<float>(reflected[b]);
-            // What is beyond a border is to go on with the texture.
+            // Texels beyond a border are extrapolated again, so that they continue the texture.
             if (textures && map.source[i] == LightMap::Source::extrapolated)
                 map.source[i] = map.share[i] > 0 ? LightMap::Source::buried : LightMap::Source::nothing;
         });

@@ -5,9 +5,9 @@
 
 namespace exitance {
 
-/// Light maps of what surfaces reflect, rho E in W/m^2: `irradiance` of the maps returned. Where a surface has a
-/// texture rho follows it, such that its mean over the picture is the reflectance that the light was computed with (at
-/// most 0.95); a texel holds the mean over the part of it that lies on its face. Elsewhere rho is the material's.
+/// Computes light maps of reflected light, rho E in W/m^2, which the returned maps store as `irradiance`. On textured
+/// surfaces rho follows the texture, scaled so that its mean over the picture is the reflectance used in the solution
+/// (rho is at most 0.95). A texel has the mean over its part on the face. Without a texture, rho is the material's.
 LightMaps reflected_maps(const Scene& scene, const LightMaps& light, const SceneTextures* textures);
 
 }  // namespace exitance

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Of the links that a picked element has, so many are drawn.
+/// Limit on the links that are drawn for a selected element.
 constexpr std::size_t most_links = 400;
 
 json numbers(const Point& p) {
@@ -23,8 +23,8 @@ json numbers(const Spectrum& s) {
     return red_green_blue(s);
 }
 
-/// The weights of red, green and blue in one number of light in the scene's unit. Colours made of other than three
-/// bands weigh alike.
+/// Weights of red, green and blue for one number in the scene's unit. If the number of bands is not three, the weights
+/// are equal.
 json colour_weights(const Scene& scene) {
     if constexpr (bands != 3) return {1.0 / 3, 1.0 / 3, 1.0 / 3};
     json out = json::array();
@@ -36,7 +36,7 @@ json colour_weights(const Scene& scene) {
     return out;
 }
 
-/// What is linked to the element that holds a point, or to one that it is part of.
+/// The links to the element that contains a point, and to its ancestors.
 json links_at(const Solution& solution, RegionId region, const Point& x) {
     json out = json::array();
     if (solution.links.links.empty()) return out;

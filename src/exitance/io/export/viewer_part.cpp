@@ -16,7 +16,7 @@ static_assert(std::endian::native == std::endian::little, "numbers travel as the
 constexpr std::uint32_t none = 0xffffffffu, six_nodes = 256 + 6;
 constexpr std::uint32_t no_label = 255;
 
-/// Values at the corners of a leaf, where they are not those of the layer's function.
+/// Values at the corners of a leaf, if they differ from those of the layer's function.
 using CornerValues = std::vector<Spectrum>;
 
 struct Part {
@@ -48,12 +48,12 @@ std::uint32_t labels_of(std::uint32_t shadow, const std::array<std::uint32_t, 3>
 
 const ElementFunction& function_of(const Solution& solution, ViewerLayer layer) {
     if (layer == ViewerLayer::exported) return solution.interpolant;
-    // Kept links lead between the elements of the method; without them its delivered elements stand for these.
+    // Kept links connect the elements of the method. Without them, its delivered elements are used.
     const bool keeps = layer == ViewerLayer::raw && !solution.links.links.empty();
     return keeps ? solution.links.elements : solution.indirect;
 }
 
-/// Is what `export` writes a mesh of triangles with six nodes?
+/// True if `export` writes a mesh of triangles with six nodes.
 bool has_triangles(const Solution& solution, ViewerLayer layer) {
     return layer == ViewerLayer::exported && !solution.discontinuity.empty();
 }
@@ -74,12 +74,12 @@ void add_triangle(Part& part, const Scene& scene, const SixNodeMesh& mesh, std::
     part.add_face(six_nodes, scene, mesh.region[t], t, labels_of(shadow, orders));
 }
 
-/// Has an element of this solution's method one value?
+/// True if the method has one value per element.
 bool is_constant(const Solution& solution) {
     return solution.statistics.basis == "constant" || solution.statistics.basis == "haar";
 }
 
-/// What the method itself knows of some leaves: their light at the corners, one value a leaf for a constant basis.
+/// The method's own values of some leaves: light at the corners; for a constant basis, the same value at all corners.
 std::vector<CornerValues> raw_values(const RadiosityFunction& light, const ElementFunction& f,
                                      std::span<const ElementId> leaves) {
     const Solution& solution = light.solution();

@@ -26,7 +26,7 @@ Error cannot_write(const std::string& path, int error) {
     return {ErrorCode::cannot_write, std::string("cannot be written: ") + std::strerror(error), path, hint};
 }
 
-/// The place behind symbolic links, so that renaming replaces the file and not the link.
+/// Resolves symbolic links, so that renaming replaces the file and not the link.
 std::string resolved(const std::string& path) {
     char* real = ::realpath(path.c_str(), nullptr);
     std::string target = real ? real : path;
@@ -44,8 +44,8 @@ int write_all(int file, const char* data, std::size_t size) {
     return 0;
 }
 
-/// The rights that a newly made file gets; reading the mask means setting it.
-mode_t usual_mode() {
+/// Permissions of a newly created file. The umask can only be read by setting it, so it is set and restored.
+mode_t new_file_mode() {
     const mode_t mask = ::umask(022);
     ::umask(mask);
     return 0666 & ~mask;
@@ -53,16 +53,17 @@ mode_t usual_mode() {
 
 }  // namespace
 
-/// The name of a file that is not whole yet, where a handler of signals may read it.
+/// Name of an uncommitted temporary file, stored where signal handlers may read it.
 struct AtomicFile::Unfinished {
-    static constexpr std::size_t longest_path = 4096;
+    static constexpr std::size_t max_path_bytes = 4096;
     enum State : int { free, taken, named };
     std::atomic<int> state{free};
-    std::array<char, longest_path> path{};
+    std::array<char, max_path_bytes> path{};
 
-    /// A free entry takes the name; null where there is none, or the name is too long: then such a file may stay.
+    /// Stores `name` in a free entry. Returns null if no entry is free or the name is too long; signal handlers then
+    /// leave that file behind.
     static Unfinished* enter(const std::string& name) {
-        if (name.size() >= longest_path) return nullptr;
+        if (name.size() >= max_path_bytes) return nullptr;
         for (Unfinished& entry : all) {
             int expected = free;
             if (!entry.state.compare_exchange_strong(expected, taken)) continue;
@@ -99,15 +100,15 @@ Result<AtomicFile> AtomicFile::create(const std::string& path) {
         if (out.file_ < 0) return cannot_write(path, errno);
         return out;
     }
-    if (exists && ::access(path.c_str(), W_OK) != 0) return cannot_write(path, errno);  // as a plain open would
+    if (exists && ::access(path.c_str(), W_OK) != 0) return cannot_write(path, errno);  // a plain open would fail too
     out.target_ = exists ? resolved(path) : path;
-    const std::size_t name = out.target_.rfind('/') + 1;  // 0 when there is no folder
+    const std::size_t name = out.target_.rfind('/') + 1;  // 0 if the path has no folder
     std::string temporary = out.target_.substr(0, name) + "." + out.target_.substr(name) + ".XXXXXX";
     out.file_ = ::mkostemp(temporary.data(), O_CLOEXEC);
     if (out.file_ < 0) return cannot_write(path, errno);
     out.temporary_ = temporary;
     out.unfinished_ = Unfinished::enter(temporary);
-    ::fchmod(out.file_, exists ? present.st_mode & 07777 : usual_mode());
+    ::fchmod(out.file_, exists ? present.st_mode & 07777 : new_file_mode());
     return out;
 }
 
@@ -161,7 +162,7 @@ void AtomicFile::write(std::string_view text) {
     }
 }
 
-/// The file that write_at() writes to.
+/// Returns the file that write_at() writes to.
 int AtomicFile::seekable() {
     if (!temporary_.empty()) return file_;
     if (kept_ < 0 && (kept_ = ::memfd_create("exitance", MFD_CLOEXEC)) < 0 && error_ == 0) error_ = errno;
@@ -193,7 +194,7 @@ void AtomicFile::read_at(std::size_t place, std::span<std::byte> bytes) {
     std::fill(bytes.begin(), bytes.end(), std::byte{0});
 }
 
-/// Writes what stands in memory to where it belongs.
+/// Copies the memory file to the path that is written to directly.
 void AtomicFile::pass_on_kept() {
     std::array<std::byte, 1 << 16> block;
     struct stat held;
@@ -216,7 +217,7 @@ Result<void> AtomicFile::commit() {
         if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
             error_ = errno;
         } else {
-            temporary_.clear();  // a power cut may still bring the old file back, but whole: the folder is not flushed
+            temporary_.clear();  // a power failure may restore the old file, whole: the folder is not flushed
         }
     }
     abandon();

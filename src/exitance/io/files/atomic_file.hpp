@@ -9,10 +9,11 @@
 
 namespace exitance {
 
-/// A file that appears whole or not at all: written beside its place in the same folder, flushed to the disk, renamed.
-/// A file of that name stays as it is until then; a symbolic link goes on to lead to the same place. What is not a
-/// plain file (a pipe, a terminal, /dev/null) is written to directly. Without commit() nothing is left behind.
-/// Failures are ErrorCode::cannot_write, with the path and what the system says.
+/// Writes a file that appears whole or not at all: the content goes to a temporary file in the same folder, which
+/// commit() flushes to the disk and renames. Until then an existing file of that name is unchanged. If the path is a
+/// symbolic link, the link is kept and its target is replaced. A path that is not a plain file (a pipe, a terminal,
+/// /dev/null) is written to directly. Without commit() no file is left.
+/// Errors: ErrorCode::cannot_write, with the path and the system's reason.
 class AtomicFile {
   public:
     static Result<AtomicFile> create(const std::string& path);
@@ -22,21 +23,21 @@ class AtomicFile {
     AtomicFile& operator=(AtomicFile&& other) noexcept;
     ~AtomicFile();
 
-    /// Gathers small pieces; a failure is remembered and reported by commit(), so that loops need not look.
+    /// Appends to the file, buffered. commit() reports a failure, so callers need not check after each call.
     void write(std::string_view text);
     void write(std::span<const std::byte> bytes) {
         write(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
     }
-    /// The same anywhere in the file, for what goes back and forth in it; not together with write(). What is no plain
-    /// file gets it all by commit(), in its order.
+    /// Writes `bytes` at offset `place`, in bytes, for formats that are not written in order. Must not be combined with
+    /// write(). If the path is not a plain file, the content is collected in memory and commit() writes it in order.
     void write_at(std::size_t place, std::span<const std::byte> bytes);
-    /// What stands there; zeros where nothing was written, or could be.
+    /// Reads back the bytes at offset `place`: zeros where nothing was written or reading fails.
     void read_at(std::size_t place, std::span<std::byte> bytes);
-    /// Has the system refused anything so far?
+    /// True if a write has failed so far.
     bool failed() const { return error_ != 0; }
     Result<void> commit();
 
-    /// See remove_unfinished_files.
+    /// Removes the temporary files of all AtomicFiles; see remove_unfinished_files().
     static void remove_unfinished() noexcept;
 
   private:
@@ -46,23 +47,23 @@ class AtomicFile {
     int seekable();
     void pass_on_kept();
 
-    std::string path_;       ///< As the user wrote it, for messages.
-    std::string target_;     ///< Where it is renamed to.
-    std::string temporary_;  ///< Empty when written to directly.
+    std::string path_;       ///< The path as the user wrote it, for messages.
+    std::string target_;     ///< The final path, with links resolved.
+    std::string temporary_;  ///< Path of the temporary file; empty if the path is written to directly.
     struct Unfinished;
-    Unfinished* unfinished_ = nullptr;  ///< Its entry among the files that handlers of signals remove.
+    Unfinished* unfinished_ = nullptr;  ///< Entry in the list of files that signal handlers remove.
     std::string buffer_;
     int file_ = -1;
-    int kept_ = -1;  ///< A file in memory that stands for one that is not plain until commit().
-    int error_ = 0;  ///< The first failure, as errno.
+    int kept_ = -1;  ///< Memory file that collects write_at() for a path that is not a plain file; -1: none.
+    int error_ = 0;  ///< errno of the first failure.
     bool sync_ = true;
 };
 
-/// Removes what has been written beside the places of all files that are not whole yet. Async-signal-safe: for handlers
-/// that end the program.
+/// Removes the temporary files of all files that have not been committed. Async-signal-safe: for signal handlers that
+/// end the program.
 void remove_unfinished_files() noexcept;
 
-/// Writes a file in one go.
+/// Writes a whole file, as AtomicFile does.
 Result<void> write_file(const std::string& path, std::string_view content);
 
 }  // namespace exitance

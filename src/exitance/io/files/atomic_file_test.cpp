@@ -24,13 +24,13 @@ class AtomicFiles : public testing::Test {
     TemporaryFolder folder;
 };
 
-TEST_F(AtomicFiles, AppearWithTheirContentAndNothingBeside) {
+TEST_F(AtomicFiles, AppearWithTheirContentAndLeaveNoOtherFile) {
     ASSERT_TRUE(write_file(folder / "a.txt", "light"));
     EXPECT_EQ(read(folder / "a.txt"), "light");
     EXPECT_EQ(folder.count(), 1u);
 }
 
-TEST_F(AtomicFiles, LeaveTheOldFileUntilTheyAreWhole) {
+TEST_F(AtomicFiles, KeepTheOldFileUntilCommit) {
     const fs::path path = folder / "a.txt";
     ASSERT_TRUE(write_file(path.string(), "old"));
     {
@@ -43,7 +43,7 @@ TEST_F(AtomicFiles, LeaveTheOldFileUntilTheyAreWhole) {
     EXPECT_EQ(folder.count(), 1u);
 }
 
-TEST_F(AtomicFiles, GatherManySmallPieces) {
+TEST_F(AtomicFiles, AcceptManySmallPieces) {
     Result<AtomicFile> file = AtomicFile::create(folder / "a.txt");
     ASSERT_TRUE(file);
     std::string all;
@@ -56,7 +56,7 @@ TEST_F(AtomicFiles, GatherManySmallPieces) {
     EXPECT_EQ(read(folder / "a.txt"), all);
 }
 
-TEST_F(AtomicFiles, SayWhyTheyCannotBeWritten) {
+TEST_F(AtomicFiles, ReportWhyTheyCannotBeWritten) {
     const std::string missing = folder / "no/a.txt";
     const Result<void> written = write_file(missing, "x");
     ASSERT_FALSE(written);
@@ -74,7 +74,7 @@ TEST_F(AtomicFiles, FullDisksAreReported) {
     EXPECT_NE(written.error().message.find("No space"), std::string::npos);
 }
 
-TEST_F(AtomicFiles, WriteThroughLinksAndKeepRights) {
+TEST_F(AtomicFiles, FollowLinksAndKeepPermissions) {
     ASSERT_TRUE(write_file(folder / "a.txt", "old"));
     fs::permissions(folder / "a.txt", fs::perms::owner_read | fs::perms::owner_write);
     fs::create_symlink("a.txt", folder / "link");
@@ -96,7 +96,7 @@ TEST_F(AtomicFiles, AreWrittenAndReadAnywhere) {
     EXPECT_FALSE(fs::exists(folder / "a.txt"));
     ASSERT_TRUE(file->commit());
     EXPECT_EQ(read(folder / "a.txt"), "raylight");
-    // What cannot be gone back and forth in gets all of it in the end.
+    // A path without random access gets the whole content at the end.
     if (!fs::exists("/dev/full")) return;
     Result<AtomicFile> full = AtomicFile::create("/dev/full");
     ASSERT_TRUE(full);
@@ -112,7 +112,7 @@ TEST_F(AtomicFiles, DevicesAreWrittenToDirectly) {
     EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
 
-TEST_F(AtomicFiles, AreRemovedBySignalsBeforeTheyAreWhole) {
+TEST_F(AtomicFiles, AreRemovedBySignalsBeforeCommit) {
     Result<AtomicFile> file = AtomicFile::create(folder / "a");
     ASSERT_TRUE(file);
     const AtomicFile moved = std::move(*file);

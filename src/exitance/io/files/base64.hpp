@@ -6,7 +6,7 @@
 
 namespace exitance {
 
-/// Bytes as text of 64 characters [RFC 4648], four for three bytes, filled up with '='.
+/// Encodes bytes as Base64 [RFC 4648]: four characters per three bytes, padded with '='.
 std::string base64(std::span<const std::byte> bytes);
 
 }  // namespace exitance

@@ -16,10 +16,10 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_output = std::size_t{16} << 20;
-constexpr double grace = 2;      // seconds between being asked to end and being made to
-constexpr int first_glance = 1;  // milliseconds between looks at a child, at first and later
-constexpr int last_glance = 50;
+constexpr std::size_t max_output_bytes = std::size_t{16} << 20;
+constexpr double kill_delay = 2;  // seconds between SIGTERM and SIGKILL
+constexpr int first_poll_ms = 1;  // milliseconds between checks whether the child has ended: the first, and the longest
+constexpr int max_poll_ms = 50;
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
@@ -31,7 +31,8 @@ std::string content(std::FILE* file) {
     std::rewind(file);
     std::string text;
     std::array<char, 65536> block;
-    for (std::size_t n = 0; text.size() < most_output && (n = std::fread(block.data(), 1, block.size(), file)) > 0;)
+    for (std::size_t n = 0;
+         text.size() < max_output_bytes && (n = std::fread(block.data(), 1, block.size(), file)) > 0;)
         text.append(block.data(), n);
     return text;
 }
@@ -49,9 +50,9 @@ bool ChildProcess::start(const std::vector<std::string>& words, int in, int out,
     pointers.push_back(nullptr);
     const pid_t parent = ::getpid();
     process_ = ::fork();
-    if (process_ > 0) ::setpgid(process_, process_);  // as the child does itself: whoever comes first
+    if (process_ > 0) ::setpgid(process_, process_);  // parent and child both set it, so it is set whichever runs first
     if (process_ != 0) return process_ > 0;
-    // Nothing but system calls from here on: other threads may have held any lock.
+    // Only async-signal-safe system calls are allowed below: another thread may have held any lock during fork().
     ::setpgid(0, 0);
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     for (const int signal : {SIGINT, SIGTERM, SIGPIPE}) ::signal(signal, SIG_DFL);
@@ -107,11 +108,11 @@ ProgramRun run_program(const std::vector<std::string>& words, const std::string&
         return run;
     double asked_at = -1;
     bool ended = false;
-    for (int glance = first_glance; !(ended = child.has_ended()); glance = std::min(2 * glance, last_glance)) {
+    for (int glance = first_poll_ms; !(ended = child.has_ended()); glance = std::min(2 * glance, max_poll_ms)) {
         run.stopped |= stop.requested();
         run.out_of_time |= watch.seconds() > most_seconds;
         if (asked_at < 0 && (run.stopped || run.out_of_time)) child.ask_to_end(), asked_at = watch.seconds();
-        if (asked_at >= 0 && watch.seconds() > asked_at + grace) break;
+        if (asked_at >= 0 && watch.seconds() > asked_at + kill_delay) break;
         ::poll(nullptr, 0, glance);
     }
     run.seconds = watch.seconds();

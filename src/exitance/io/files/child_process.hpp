@@ -11,7 +11,7 @@
 
 namespace exitance {
 
-/// A program in a process group of its own, which does not outlive this object, nor this program.
+/// A child process in its own process group. It is killed when this object is destroyed or this program ends.
 class ChildProcess {
   public:
     ChildProcess() = default;
@@ -19,19 +19,22 @@ class ChildProcess {
     ChildProcess& operator=(const ChildProcess&) = delete;
     ~ChildProcess();
 
-    /// Starts `words` (the first is looked up in PATH) in `folder` (empty: this one) with these open files as its
-    /// standard input, output and error stream. No shell has a hand in it. False where the system has no process left.
+    /// Starts a program without a shell.
+    /// words    the program, looked up in PATH, and its arguments
+    /// in, out, err  open files that become its standard input, output and error stream
+    /// folder   its working folder; empty: the current one
+    /// returns  false if the system cannot create a process
     bool start(const std::vector<std::string>& words, int in, int out, int err, const std::string& folder);
-    /// Does not wait.
+    /// Checks whether the process has ended, without waiting.
     bool has_ended();
-    /// Asks it to end (SIGTERM).
+    /// Sends SIGTERM to the process.
     void ask_to_end();
 
-    // Of one that has ended.
+    // Valid once the process has ended:
     bool succeeded() const { return status() == 0; }
-    int status() const;  ///< Its exit status; 1000 + the signal's number when a signal ended it.
-    double processor_seconds() const { return processor_seconds_; }  ///< Of user and system, all threads.
-    std::size_t peak_bytes() const { return peak_bytes_; }           ///< Of resident memory.
+    int status() const;  ///< Exit status; 1000 + the signal number if a signal ended it.
+    double processor_seconds() const { return processor_seconds_; }  ///< User and system time of all threads.
+    std::size_t peak_bytes() const { return peak_bytes_; }           ///< Peak resident memory.
 
   private:
     void end();
@@ -42,20 +45,20 @@ class ChildProcess {
     std::size_t peak_bytes_ = 0;
 };
 
-/// Is there a program of this name in PATH, or at this path?
+/// True if `name` is a program in PATH, or the path of one.
 bool is_program(const std::string& name);
 
-/// How a run of a program ended.
+/// Result of running a program.
 struct ProgramRun {
-    int status = -1;  ///< As of ChildProcess; -1: it could not be started.
+    int status = -1;  ///< As ChildProcess::status(); -1: it could not be started.
     bool out_of_time = false, stopped = false;
     double seconds = 0, processor_seconds = 0;
     std::size_t peak_bytes = 0;
-    std::string out, err;  ///< The first 16 MB of each.
+    std::string out, err;  ///< Standard output and error stream, at most 16 MB each.
 };
 
-/// Runs a program to its end. After `most_seconds`, or when a stop is asked for, it is asked to end, and made to two
-/// seconds later. Its standard input is `input`, a file (empty: nothing).
+/// Runs a program until it ends. After `most_seconds`, or when a stop is requested, the program gets SIGTERM, and two
+/// seconds later SIGKILL. `input` is the path of a file for its standard input; empty: no input.
 ProgramRun run_program(const std::vector<std::string>& words, const std::string& folder, double most_seconds,
                        const StopRequest& stop, const std::string& input = "");
 

@@ -17,7 +17,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t max_rows = 8784 * 100;  ///< Hours of a century, or minutes of a year and a half.
+constexpr std::size_t max_rows = 8784 * 100;  ///< Hours of 100 years, or minutes of about 1.7 years.
 
 std::string_view trimmed(std::string_view text) {
     constexpr std::string_view blanks = " \t\"";
@@ -25,7 +25,8 @@ std::string_view trimmed(std::string_view text) {
     return first == text.npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-/// Fields of a line without blanks and quotation marks about them; a separator within quotation marks is text.
+/// Splits a line into fields and trims blanks and quotation marks. A separator within quotation marks is part of a
+/// field.
 std::vector<std::string_view> fields_of(std::string_view line, char separator) {
     std::vector<std::string_view> out;
     bool in_quotes = false;
@@ -39,7 +40,7 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
     return out;
 }
 
-/// The separator that occurs most often.
+/// Returns the most frequent separator in `line`.
 char separator_of(std::string_view line) {
     char out = ',';
     for (const char c : {';', '\t'})
@@ -58,14 +59,14 @@ std::optional<double> number_within(std::string_view word, double least, double 
     return value && *value >= least && *value <= most ? value : std::nullopt;
 }
 
-/// Global, direct normal and diffuse horizontal light in one unit; what is missing has no value.
+/// Global, direct normal and diffuse horizontal light in one unit; a missing value is empty.
 struct Light {
     std::optional<double> global, direct, diffuse;
 
     bool any_above_zero() const { return global.value_or(0) > 0 || direct.value_or(0) > 0 || diffuse.value_or(0) > 0; }
 };
 
-/// A line of numbers.
+/// One line of data.
 struct Row {
     int year = 2021, month = 1, day = 1, hour = 1;
     double minute = 0;
@@ -73,7 +74,7 @@ struct Row {
     int line = 0;
 };
 
-// Fields of a row, counted from 0.
+// Columns of a row, counted from 0.
 constexpr std::size_t minute_field = 4, first_watts_field = 13, first_lux_field = 16;
 
 bool is_blank_line(std::string_view line) {
@@ -84,7 +85,8 @@ bool starts_with_number(const std::vector<std::string_view>& fields) {
     return parse_number(fields[0]).has_value();
 }
 
-/// A leap day stands for that of a leap year: typical years put months of several years together.
+/// Corrects the date of a row and returns false if there is no such date. 29 February becomes that of a leap year,
+/// since typical years combine months of different years.
 bool mend_date(Row& row) {
     constexpr int unknown_year = 2021, leap_year = 2020;
     if (row.year < 1) row.year = unknown_year;
@@ -118,8 +120,8 @@ class EpwReader {
     std::vector<Row> rows_;
     bool has_location_ = false, has_data_periods_ = false;
     char separator_ = ',';
-    int stray_line_ = 0;              ///< The first line of numbers in the header that is no hour.
-    std::size_t by_illuminance_ = 0;  ///< Number of lines that take light from illuminances.
+    int stray_line_ = 0;  ///< First line of numbers in the header that has too few fields for an hour; 0: none.
+    std::size_t by_illuminance_ = 0;  ///< Number of lines whose light is computed from illuminances.
 };
 
 Error EpwReader::error_at(int line, std::string message, std::string hint) const {
@@ -145,13 +147,13 @@ Result<void> EpwReader::read_location(std::string_view line) {
     return {};
 }
 
-/// A line before the first hour.
+/// Reads a line above the first hour.
 Result<void> EpwReader::read_header(const std::vector<std::string_view>& fields) {
     if (!starts_with_number(fields)) {
         has_data_periods_ |= is_key(fields[0], "DATA PERIODS");
         return {};
     }
-    // In the header, numbers of fewer fields than an hour has may belong to a line that was broken.
+    // Before DATA PERIODS, a line with fewer numbers than an hour may be the rest of a broken header line.
     if (!has_data_periods_ && fields.size() < first_lux_field) {
         if (stray_line_ == 0) stray_line_ = lines_.line();
         return {};
@@ -162,7 +164,7 @@ Result<void> EpwReader::read_header(const std::vector<std::string_view>& fields)
     return read_row(fields);
 }
 
-/// Numbers of three fields from `first` on; negative ones, and those from `missing` on, are missing.
+/// Reads three fields from `first` on. Negative numbers, and numbers of at least `missing`, count as missing.
 Result<Light> EpwReader::read_light(const std::vector<std::string_view>& fields, std::size_t first,
                                     double missing) const {
     std::array<std::optional<double>, 3> value;
@@ -192,7 +194,7 @@ Result<void> EpwReader::read_row(const std::vector<std::string_view>& fields) {
     if (!mend_date(row) || row.hour > 24)
         return lines_.error(fmt::format("{}-{}-{}, hour {}, is no date", row.year, row.month, row.day, row.hour));
     row.minute = parse_number(fields[minute_field]).value_or(0);
-    constexpr double missing_watts = 9999, missing_lux = 999'900;  // as EnergyPlus' format has it
+    constexpr double missing_watts = 9999, missing_lux = 999'900;  // limits in EnergyPlus' definition of the format
     const Result<Light> watts = read_light(fields, first_watts_field, missing_watts);
     if (!watts) return watts.error();
     const Result<Light> lux = read_light(fields, first_lux_field, missing_lux);
@@ -210,7 +212,7 @@ Result<void> EpwReader::read_line(std::string_view line) {
     return rows_.empty() ? read_header(fields) : read_row(fields);
 }
 
-/// Hours that begin at 0 to 23 become those that end at 1 to 24.
+/// Changes hours counted from 0 to 23 by their beginning to 1 to 24 by their end.
 Result<void> EpwReader::count_hours_from_one() {
     const auto is_hour = [](int hour) { return [hour](const Row& row) { return row.hour == hour; }; };
     const auto zero = std::find_if(rows_.begin(), rows_.end(), is_hour(0));
@@ -222,19 +224,21 @@ Result<void> EpwReader::count_hours_from_one() {
     return {};
 }
 
-/// Finds what is missing by global = diffuse + direct sin h, if the two others are known. `sine` computes sin h.
+/// Computes a missing diffuse or direct part from global = diffuse + direct sin h, if the other two are known. `sine`
+/// computes sin h, where h is the sun's altitude.
 template <class Sine>
 void fill_in(Light& light, const Sine& sine) {
-    constexpr double least_sine = 0.05;  // lower suns make large direct light of a small difference
+    constexpr double min_sine = 0.05;  // for a lower sun, a small difference would give large direct light
     if (!light.global || light.direct.has_value() == light.diffuse.has_value()) return;
     const double h = sine();
     if (light.direct)
         light.diffuse = std::max(0.0, *light.global - *light.direct * std::max(0.0, h));
-    else if (h > least_sine || *light.global <= *light.diffuse)
-        light.direct = std::max(0.0, *light.global - *light.diffuse) / std::max(h, least_sine);
+    else if (h > min_sine || *light.global <= *light.diffuse)
+        light.direct = std::max(0.0, *light.global - *light.diffuse) / std::max(h, min_sine);
 }
 
-/// Direct and diffuse irradiance of a line, W/m^2, `hour` being the middle of its time; false if they are not known.
+/// Computes direct and diffuse irradiance of a line, W/m^2. `hour` is the middle of the line's time. Returns false if
+/// they are unknown.
 bool EpwReader::find_light(const Row& row, double hour, double& direct, double& diffuse) {
     const auto sine = [&] {
         const LocalTime time{row.year, row.month, row.day, hour, out_.zone};
@@ -257,7 +261,7 @@ bool EpwReader::find_light(const Row& row, double hour, double& direct, double& 
     return true;
 }
 
-/// The hour of some lines, which divide it evenly in their order: the mean of those that are known.
+/// Averages the lines of one hour, which divide it evenly in their order. Lines without known light are ignored.
 WeatherHour EpwReader::mean_of(std::span<const Row* const> rows) {
     const Row& first = *rows.front();
     WeatherHour out{first.year, first.month, first.day, first.hour};
@@ -273,12 +277,12 @@ WeatherHour EpwReader::mean_of(std::span<const Row* const> rows) {
     return out;
 }
 
-/// Hours in the order of their first lines.
+/// Groups the rows into hours, in the order of their first lines.
 Result<void> EpwReader::make_hours() {
     using Key = std::tuple<int, int, int, int>;
     std::map<Key, std::size_t> numbers;
     std::vector<std::vector<const Row*>> hours;
-    // Columns that are 0 in the whole file have been left empty.
+    // A quantity that is 0 in the whole file was not measured.
     const auto has_light = [&](Light Row::*columns) {
         return std::any_of(rows_.begin(), rows_.end(), [&](const Row& row) { return (row.*columns).any_above_zero(); });
     };
@@ -303,7 +307,7 @@ Result<void> EpwReader::make_hours() {
 }
 
 Result<Weather> EpwReader::read() {
-    constexpr char control_z = '\x1a';  // ends a file of DOS
+    constexpr char control_z = '\x1a';  // end of file in DOS
     bool ended = false;
     while (!ended) {
         const std::optional<std::string_view> line = lines_.next();

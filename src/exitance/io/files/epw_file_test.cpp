@@ -13,7 +13,7 @@ namespace {
 constexpr const char* location = "LOCATION,Town,-,CHE,test,0,47.4,8.5,1.0,400\n";
 constexpr const char* periods = "DATA PERIODS,1,1,Data,Sunday, 1/ 1,12/31\n";
 
-/// A line of an hour; light as the file has it, global, direct and diffuse, then the same in lx.
+/// One hour of a weather file. `watts` and `lux` hold global, direct and diffuse light.
 std::string line(int month, int day, int hour, const std::string& minute, const std::string& watts,
                  const std::string& lux = "999999,999999,999999", char separator = ',') {
     std::string out = "2019," + std::to_string(month) + "," + std::to_string(day) + "," + std::to_string(hour) + "," +
@@ -23,7 +23,7 @@ std::string line(int month, int day, int hour, const std::string& minute, const 
     return out;
 }
 
-/// The irradiances of an hour of a short day.
+/// Irradiances at an hour of a short day.
 std::string watts_of(int hour) {
     return hour > 8 && hour < 17 ? "300,400," + std::to_string(90 + hour) : "0,0,0";
 }
@@ -51,7 +51,7 @@ class EpwFile : public ::testing::Test {
                    ? "none"
                    : weather.error().where.substr(weather.error().where.rfind('/') + 1) + " " + weather.error().message;
     }
-    /// Expects the hours of `day_of_hours`.
+    /// Expects the 24 hours that `day_of_hours` writes.
     void expect_day(const Weather& weather, const char* name) {
         ASSERT_EQ(weather.hours.size(), 24u) << name;
         for (int i = 0; i < 24; ++i) {
@@ -69,7 +69,7 @@ class EpwFile : public ::testing::Test {
 
 }  // namespace
 
-TEST_F(EpwFile, HoursAreFoundBehindAnyHeader) {
+TEST_F(EpwFile, HoursAreFoundAfterAnyHeader) {
     const std::string day = day_of_hours(6, 21);
     const auto expect_no_warning = [&](const std::string& text, const char* name) {
         const Weather weather = good(text);
@@ -84,7 +84,7 @@ TEST_F(EpwFile, HoursAreFoundBehindAnyHeader) {
     expect_no_warning(location + comments + day, "no data periods");
     expect_no_warning(location + comments + comments + periods + day, "many lines");
     expect_no_warning(location + comments + periods + "Year,Month,Day,Hour\n" + day, "names of columns");
-    // A comment that was broken into two lines may begin with a number.
+    // The second half of a broken comment may begin with a number.
     expect_no_warning(location + std::string("COMMENTS 1,years 1991 to\n2005,made\n") + periods + day, "broken line");
     std::string lower = location + comments + periods;
     for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -106,7 +106,7 @@ TEST_F(EpwFile, HoursAreFoundBehindAnyHeader) {
     expect_no_warning("LOCATION,\"Town, Airport\",-,CHE,test,0, 47.4 ,8.5,1.0,400\n" + day, "quoted comma");
 }
 
-TEST_F(EpwFile, LinesThatAreNoHoursAreErrors) {
+TEST_F(EpwFile, MalformedHoursAreErrors) {
     const std::string hour = line(6, 21, 1, "0", "0,0,1");
     EXPECT_EQ(fault("2019,1,1\n").substr(0, 7), "w.epw:1");
     EXPECT_EQ(fault("").substr(0, 5), "w.epw");
@@ -122,14 +122,14 @@ TEST_F(EpwFile, LinesThatAreNoHoursAreErrors) {
     EXPECT_EQ(fault(location + half_day).substr(0, 7), "w.epw:2");
 }
 
-TEST_F(EpwFile, HoursMayBeInAnyOrderButComeOnce) {
+TEST_F(EpwFile, HoursMayBeInAnyOrderButNotTwice) {
     const std::string one = line(1, 1, 1, "0", "0,0,1"), two = line(1, 1, 2, "0", "0,0,2");
     EXPECT_EQ(good(location + two + one).hours[1].diffuse_horizontal, 1);
     EXPECT_EQ(fault(location + one + two + one).substr(0, 7), "w.epw:4");
     EXPECT_NE(fault(location + one + two + one).find("comes twice"), std::string::npos);
 }
 
-TEST_F(EpwFile, LinesOfPartsOfAnHourAreAveraged) {
+TEST_F(EpwFile, LinesOfTheSameHourAreAveraged) {
     const std::string header = std::string(location) + "DATA PERIODS,1,4,Data,Sunday, 1/ 1,12/31\n";
     const Weather quarters =
         good(header + line(6, 21, 10, "15", "0,100,10") + line(6, 21, 10, "30", "0,200,20") +
@@ -138,10 +138,10 @@ TEST_F(EpwFile, LinesOfPartsOfAnHourAreAveraged) {
     EXPECT_EQ(quarters.hours[0].direct_normal, 250);
     EXPECT_EQ(quarters.hours[0].diffuse_horizontal, 25);
     EXPECT_EQ(quarters.hours[1].direct_normal, 8);
-    // What is missing in one line is left out of the mean.
+    // A line without known light does not count in the mean.
     const Weather gap = good(header + line(6, 21, 10, "30", "9999,9999,9999") + line(6, 21, 10, "60", "0,400,40"));
     EXPECT_EQ(gap.hours[0].direct_normal, 400);
-    // Each part follows from global light by the sun in its own middle.
+    // Each half is computed from global light with the sun's altitude in its own middle.
     const Weather halves = good(header + line(6, 21, 8, "30", "300,9999,100") + line(6, 21, 8, "60", "400,9999,100"));
     const auto direct = [&](double global, double hour) {
         const SunPosition sun = sun_position({2019, 6, 21, hour, 1}, {47.4, 8.5, 400});
@@ -159,7 +159,7 @@ TEST_F(EpwFile, HoursFromZeroAreShifted) {
               std::string::npos);
 }
 
-TEST_F(EpwFile, IlluminancesStandInForMissingIrradiances) {
+TEST_F(EpwFile, MissingIrradiancesFollowFromIlluminances) {
     for (const char* missing : {"9999,9999,9999", "99999,99999,99999", ",,", "-1,-1,-1", "9999999999,9999,9999"}) {
         const Weather weather = good(location + line(6, 21, 12, "0", missing, "70000,50000,12000"));
         EXPECT_NEAR(weather.hours[0].direct_normal, 500, 1e-9) << missing;
@@ -167,13 +167,13 @@ TEST_F(EpwFile, IlluminancesStandInForMissingIrradiances) {
         ASSERT_EQ(weather.warnings.size(), 1u);
         EXPECT_NE(weather.warnings[0].find("follow from their illuminances"), std::string::npos);
     }
-    // Irradiances come first; one of the two may come from its illuminance.
+    // Irradiances have priority; one of the two may be computed from its illuminance.
     const Weather both = good(location + line(6, 21, 12, "0", "9999,9999,90", "70000,50000,12000") +
                               line(6, 21, 13, "0", "500,600,80", "1,1,1"));
     EXPECT_NEAR(both.hours[0].direct_normal, 500, 1e-9);
     EXPECT_EQ(both.hours[0].diffuse_horizontal, 90);
     EXPECT_EQ(both.hours[1].direct_normal, 600);
-    // Columns of zeros are no light that is known, of irradiances in the whole file, of illuminances by day.
+    // Columns of zeros count as unknown: irradiances if zero in the whole file, illuminances if zero by day.
     const Weather zeros = good(location + line(6, 21, 12, "0", "0,0,0", "70000,50000,12000"));
     EXPECT_NEAR(zeros.hours[0].direct_normal, 500, 1e-9);
     const Weather day =
@@ -189,7 +189,7 @@ TEST_F(EpwFile, IlluminancesStandInForMissingIrradiances) {
               std::string::npos);
 }
 
-TEST_F(EpwFile, AYearIsToldFromOtherTimes) {
+TEST_F(EpwFile, NotAYearReportsMissingAndRepeatedHours) {
     constexpr int days[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
     std::string year, june, leap_day = day_of_hours(2, 29);
     for (int month = 1; month <= 12; ++month)

@@ -29,7 +29,7 @@ Result<void> write_film(const std::string& folder, double rate, const std::strin
     const fs::path target = fs::absolute(path);
     const fs::path part =
         target.parent_path() / fmt::format(".{}.part{}", target.stem().string(), target.extension().string());
-    // Most players want even sizes, and colours at half the resolution; a GIF has a palette.
+    // Most players require even sizes and 4:2:0 chroma subsampling. A GIF needs a palette.
     std::vector<std::string> words{"ffmpeg",
                                    "-nostdin",
                                    "-y",

@@ -6,14 +6,14 @@
 
 namespace exitance {
 
-/// Is this the ending of a video that `write_film` makes: .mp4, .mkv, .webm, .gif?
+/// True if the path has the ending of a video that `write_film` supports: .mp4, .mkv, .webm, .gif.
 bool is_film(const std::string& path);
 
-/// An error that says what to do where ffmpeg is not in PATH.
+/// Returns an error with advice if ffmpeg is not in PATH.
 Result<void> find_film_program(const std::string& path);
 
-/// Makes a video of the pictures frame.0001.png, frame.0002.png, ... of a folder, `rate` of them a second, by ffmpeg,
-/// with the codec that it takes for the ending. The video appears whole or not at all.
+/// Encodes the pictures frame.0001.png, frame.0002.png, ... in `folder` as a video, with ffmpeg's default codec for the
+/// ending of `path`. `rate` is in pictures per second. The video appears whole or not at all.
 Result<void> write_film(const std::string& folder, double rate, const std::string& path);
 
 }  // namespace exitance

@@ -6,11 +6,11 @@
 
 namespace exitance {
 
-/// A folder that one process alone works in, as long as this lives; it ends with the process however that ends. No file
-/// is made. File systems that know no locks give it to everyone.
+/// Exclusive lock of a folder for one process, held while this object exists and released when the process ends in any
+/// way. Creates no file. On file systems without locks, taking the lock always succeeds.
 class FolderLock {
   public:
-    /// ErrorCode::cannot_write when another process has it.
+    /// Locks `folder`. Error: ErrorCode::cannot_write if another process holds the lock.
     static Result<FolderLock> take(const std::string& folder);
 
     FolderLock(FolderLock&& other) noexcept;

@@ -17,7 +17,7 @@ const std::vector<std::string>& place_columns() {
     return names;
 }
 
-/// A direction of length 1; nothing when there is no direction. What has the length already keeps its digits.
+/// Scales `v` to length 1; empty if it has no direction. A vector that already has that length keeps its digits.
 std::optional<Normal> unit(const Vec3& v) {
     const double length = norm(v);
     if (!(length > 1e-100) || !std::isfinite(length)) return {};
@@ -26,7 +26,7 @@ std::optional<Normal> unit(const Vec3& v) {
 
 constexpr const char* no_direction = "the normal has no direction";
 
-/// Numbers for a row; as many as one row can need, at most 24 characters each.
+/// Text buffer for one row, large enough for all its numbers (at most 24 characters each).
 class Row {
   public:
     void exact(double value) { end_ = std::to_chars(end_, limit(), value).ptr, *end_++ = ','; }

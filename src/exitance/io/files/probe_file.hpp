@@ -12,7 +12,7 @@
 
 namespace exitance {
 
-/// Where irradiance is asked for. Metres; normals of length 1.
+/// Points at which irradiance is evaluated: positions in metres and unit normals.
 struct ProbePoints {
     std::vector<Point> points;
     std::vector<Normal> normals;
@@ -20,14 +20,14 @@ struct ProbePoints {
     std::size_t size() const { return points.size(); }
 };
 
-/// Points as they come from a file, some at a time: CSV with the header x,y,z,nx,ny,nz (in any order, among other
-/// columns), or, when the name ends in .pts or the text begins with a number, "x y z dx dy dz" a line. "-" is standard
-/// input. Normals of another length are brought to 1; one without direction is an error.
+/// Reads probe points from a file, in batches. A CSV file has the columns x,y,z,nx,ny,nz, in any order, among other
+/// columns. If the name ends in .pts or the text begins with a number, the file has lines "x y z dx dy dz". "-" is
+/// standard input. Normals are scaled to length 1; a normal without a direction is an error.
 class ProbeReader {
   public:
     static Result<ProbeReader> open(const std::string& path);
 
-    /// Replaces `out` by up to `most` further points; none are left when it stays empty.
+    /// Replaces `out` by the next points, at most `most`. It is empty at the end of the file.
     Result<void> next(ProbePoints& out, std::size_t most);
 
   private:
@@ -35,37 +35,37 @@ class ProbeReader {
     explicit ProbeReader(LineReader lines, std::string first) : lines_(std::move(lines)), first_(std::move(first)) {}
     Result<bool> next_row(std::array<double, 6>& row);
 
-    std::optional<NumberTable> table_;  ///< Of a CSV file.
-    std::optional<LineReader> lines_;   ///< Of a file of plain lines.
-    std::optional<std::string> first_;  ///< A plain line already read.
+    std::optional<NumberTable> table_;  ///< For a CSV file.
+    std::optional<LineReader> lines_;   ///< For a file of plain lines.
+    std::optional<std::string> first_;  ///< First plain line, read when the format was detected.
 };
 
-/// All points of a file.
+/// Reads all points of a file.
 Result<ProbePoints> load_probe_points(const std::string& path);
 
-/// Points with known irradiance, as references have them.
+/// Points with known irradiance, from a reference solution.
 struct ProbeReference {
     ProbePoints probes;
     std::vector<Spectrum> irradiance;       ///< W/m^2
     std::vector<Spectrum> standard_errors;  ///< W/m^2; empty when the file has none.
 };
 
-/// Reads a CSV with x,y,z,nx,ny,nz, E_* and, where given, se_*.
+/// Reads reference points from a CSV file with the columns x,y,z,nx,ny,nz, E_* and, optionally, se_*.
 Result<ProbeReference> load_probe_reference(const std::string& path);
 
-/// Writes a CSV with the columns x,y,z,nx,ny,nz, E_*, then B_* (unless left out), then se_* (when asked for), a row a
-/// point; "-" is standard output. Coordinates as they were read, light with 10 significant digits.
+/// Writes a CSV file with the columns x,y,z,nx,ny,nz, E_*, then B_* (optional), then se_* (optional), one row per
+/// point. "-" is standard output. Coordinates are written exactly, light with 10 significant digits.
 class ProbeWriter {
   public:
     struct Columns {
         bool radiosity = true;
         bool standard_errors = false;
-        /// Irradiance as one number in a last column, `lux` or `watt`.
+        /// Adds a last column with irradiance as one number, in `lux` or `watt`.
         std::optional<LightUnit> unit = {};
     };
     static Result<ProbeWriter> create(const std::string& path, Columns columns);
 
-    /// `radiosity` is nothing for a point in free space: its fields stay empty.
+    /// Writes a row. `radiosity` is empty for a point in free space: its fields stay empty.
     void add(const Point& x, const Normal& n, const Spectrum& irradiance, const std::optional<Spectrum>& radiosity = {},
              const Spectrum& standard_error = {});
     Result<void> commit() { return file_.commit(); }
@@ -77,7 +77,7 @@ class ProbeWriter {
     Columns columns_;
 };
 
-/// What a band is called in column names: r, g, b where there are three, else 1, 2, ...
+/// Returns the name of a band in column names: r, g, b if there are three bands, else 1, 2, ...
 std::string band_name(std::size_t band);
 
 }  // namespace exitance

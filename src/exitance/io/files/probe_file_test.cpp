@@ -22,7 +22,7 @@ class ProbeFiles : public testing::Test {
     TemporaryFolder folder;
 };
 
-TEST_F(ProbeFiles, HoldColumnsInAnyOrderAmongOthers) {
+TEST_F(ProbeFiles, MayHaveColumnsInAnyOrderAmongOthers) {
     const auto read = load_probe_points(file("p.csv",
                                              "\xef\xbb\xbfname, z,y,x ,\"nz\",ny,nx,E_r\r\n"
                                              "\"a,b\",3,2,1,1,0,0,\r\n"
@@ -47,7 +47,7 @@ TEST_F(ProbeFiles, MayBePlainLinesOfSixNumbers) {
     }
 }
 
-TEST_F(ProbeFiles, CanBeReadSomeAtATime) {
+TEST_F(ProbeFiles, CanBeReadInBatches) {
     std::string text = "x,y,z,nx,ny,nz\n";
     for (int i = 0; i < 1000; ++i) text += std::to_string(i) + ",0,0,0,0,1\n";
     Result<ProbeReader> reader = ProbeReader::open(file("p.csv", text));
@@ -61,7 +61,7 @@ TEST_F(ProbeFiles, CanBeReadSomeAtATime) {
     EXPECT_EQ(count, 1000);
 }
 
-TEST_F(ProbeFiles, SayInWhichLineTheyAreWrong) {
+TEST_F(ProbeFiles, ReportTheLineOfAnError) {
     const std::string header = "x,y,z,nx,ny,nz\n1,2,3,0,0,1\n";
     const struct {
         std::string name, text, where, message;
@@ -88,14 +88,14 @@ TEST_F(ProbeFiles, SayInWhichLineTheyAreWrong) {
     EXPECT_EQ(load_probe_points(fs::path(folder / "").parent_path().string()).error().code, ErrorCode::cannot_read);
 }
 
-TEST_F(ProbeFiles, LinesAreNotBoundByTheSizeOfABlock) {
+TEST_F(ProbeFiles, LinesMayBeLongerThanABlock) {
     const auto read = load_probe_points(
         file("p.csv", "x,y,z,nx,ny,nz,note\n1,2,3,0,0,1," + std::string(1 << 20, 'n') + "\n4,5,6,0,0,1,\n"));
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->points[1], (Point{4, 5, 6}));
 }
 
-TEST_F(ProbeFiles, ComeBackAsTheyWereWritten) {
+TEST_F(ProbeFiles, AreReadBackAsWritten) {
     if (bands != 3) return;
     const std::string path = folder / "o.csv";
     Result<ProbeWriter> writer = ProbeWriter::create(path, {.radiosity = true, .standard_errors = true});
@@ -119,7 +119,7 @@ TEST_F(ProbeFiles, ComeBackAsTheyWereWritten) {
     ASSERT_TRUE(read) << read.error().message;
     EXPECT_EQ(read->probes.points[0], p);
     EXPECT_EQ(read->probes.normals[0], n);
-    EXPECT_NEAR(read->irradiance[0][0], e[0], 1e-10);  // 10 digits
+    EXPECT_NEAR(read->irradiance[0][0], e[0], 1e-10);  // written with 10 digits
     EXPECT_EQ(read->standard_errors[1], se);
 }
 

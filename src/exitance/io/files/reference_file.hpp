@@ -7,10 +7,10 @@
 
 namespace exitance {
 
-/// Reads a CSV with x,y,z,nx,ny,nz, E_* and, where given, se_*.
+/// Reads reference points from a CSV file with the columns x,y,z,nx,ny,nz, E_* and, optionally, se_*.
 Result<ReferencePoints> load_reference_points(const std::string& path);
 
-/// Writes one, with se_* where there are standard errors.
+/// Writes reference points in the same format, with se_* if there are standard errors.
 Result<void> write_reference_points(const std::string& path, const ReferencePoints& reference);
 
 }  // namespace exitance

@@ -19,15 +19,15 @@ namespace {
 
 constexpr int crash_signals[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU};
 
-/// Seconds by the clock after which a copy has not computed but waited, for a lock say that another thread held when
-/// the copy was made: that tells nothing about the file.
-unsigned longest_wait(rlim_t seconds) {
+/// Elapsed seconds after which the copy is ended. It is then waiting, e.g. for a lock that another thread held at the
+/// fork, which does not show that the file is bad.
+unsigned max_wait_seconds(rlim_t seconds) {
     return static_cast<unsigned>(std::min<rlim_t>(30 + 10 * seconds, std::numeric_limits<int>::max()));
 }
 
-enum Outcome { went_well, failed, lacks_memory };  ///< The copy's exit status.
+enum Outcome { went_well, failed, lacks_memory };  ///< Exit status of the copy.
 
-/// From now on no more than `bytes` beyond what this process has mapped.
+/// Limits the address space of this process to its current size plus `bytes`.
 void limit_memory(std::size_t bytes) {
     std::size_t pages = 0;
     if (has_address_sanitizer || !(std::ifstream("/proc/self/statm") >> pages)) return;
@@ -42,12 +42,12 @@ void limit_memory(std::size_t bytes) {
 [[noreturn]] void perform(const std::function<bool()>& work, rlim_t seconds, std::size_t memory) {
     for (const int signal : crash_signals) ::signal(signal, SIG_DFL);
     ::signal(SIGALRM, SIG_DFL);
-    ::alarm(longest_wait(seconds));
+    ::alarm(max_wait_seconds(seconds));
     const rlimit time = {seconds, seconds + 1}, no_core = {0, 0};
     ::setrlimit(RLIMIT_CPU, &time);
     ::setrlimit(RLIMIT_CORE, &no_core);
     const int nowhere = ::open("/dev/null", O_WRONLY);
-    if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);  // the C library's last words about a broken heap
+    if (nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);  // hides the C library's messages about a corrupt heap
     limit_memory(memory);
     try {
         ::_exit(work() ? went_well : failed);
@@ -65,7 +65,7 @@ std::optional<std::string> rehearse(const std::function<bool()>& work, double se
     if (copy == 0) perform(work, limit, memory);
     int status = 0;
     while (::waitpid(copy, &status, 0) < 0)
-        if (errno != EINTR) return {};  // somebody else has waited for it
+        if (errno != EINTR) return {};  // another thread has already waited for the copy
     if (WIFEXITED(status) && WEXITSTATUS(status) == lacks_memory)
         return "asks for more than " + std::to_string((memory >> 20) + 1) + " MiB";
     if (WIFEXITED(status) && WEXITSTATUS(status) == failed) return "fails";
@@ -75,7 +75,7 @@ std::optional<std::string> rehearse(const std::function<bool()>& work, double se
     if (signal == SIGXCPU) return "takes more than " + std::to_string(limit) + " s";
     for (const int crash : crash_signals)
         if (signal == crash) return "crashes";
-    return {};  // ended from outside, or by its waiting
+    return {};  // ended by another process, or by the limit of elapsed time
 }
 
 }  // namespace exitance

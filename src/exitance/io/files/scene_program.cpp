@@ -18,8 +18,8 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_output = std::size_t{256} << 20;
-constexpr int glance = 50;  ///< Milliseconds between looks at the stop request.
+constexpr std::size_t max_output_bytes = std::size_t{256} << 20;
+constexpr int poll_ms = 50;  ///< Milliseconds between checks of the stop request.
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
@@ -27,7 +27,7 @@ Error bad(std::string message, std::string hint = "") {
     return {ErrorCode::bad_input, std::move(message), "", std::move(hint)};
 }
 
-/// A pipe's two ends, closed when it goes.
+/// Both ends of a pipe, closed by the destructor.
 struct Pipe {
     std::array<int, 2> end{-1, -1};
     bool open() { return ::pipe2(end.data(), O_CLOEXEC) == 0; }
@@ -38,12 +38,12 @@ struct Pipe {
     ~Pipe() { close(0), close(1); }
 };
 
-/// What comes through a pipe until it is closed; false where a stop was asked for, or it is too much.
+/// Reads from a pipe until it is closed. Returns false if a stop was requested or the output is too long.
 bool read_all(int from, const StopRequest& stop, std::string& out) {
     std::array<char, 65536> block;
-    while (out.size() <= most_output && !stop.requested()) {
+    while (out.size() <= max_output_bytes && !stop.requested()) {
         pollfd waiting{from, POLLIN, 0};
-        if (::poll(&waiting, 1, glance) <= 0) continue;
+        if (::poll(&waiting, 1, poll_ms) <= 0) continue;
         const ssize_t n = ::read(from, block.data(), block.size());
         if (n == 0) return true;
         if (n < 0 && errno != EINTR && errno != EAGAIN) return true;
@@ -94,7 +94,7 @@ Result<std::string> run_scene_program(const std::vector<std::string>& words, con
     while (whole && !stop.requested() && !(ended = child.has_ended())) ::poll(nullptr, 0, 1);
     if (stop.requested() && !ended)
         return Error{ErrorCode::limit, fmt::format("'{}' was still running when a stop was asked for", name), "", ""};
-    if (!whole) return bad(fmt::format("'{}' prints more than {} MB", name, most_output >> 20));
+    if (!whole) return bad(fmt::format("'{}' prints more than {} MB", name, max_output_bytes >> 20));
     if (!child.succeeded()) return bad(fmt::format("'{}' fails: {}", name, shown(first_line(err.get()))));
     return text;
 }

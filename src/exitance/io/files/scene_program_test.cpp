@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = StopRequest::Clock;
 
-/// Programs of the test's own in the place of Radiance's, found first in PATH.
+/// Installs the test's own programs under the names of Radiance's, first in PATH.
 class ScenePrograms : public testing::Test {
   protected:
     void SetUp() override {
@@ -46,7 +46,7 @@ constexpr const char* square = "echo $1 polygon $2 0 0 12 0 0 0 1 0 0 1 1 0 0 1 
 
 }  // namespace
 
-TEST_F(ScenePrograms, AreGivenTheirInputAndSayWhyTheyFail) {
+TEST_F(ScenePrograms, GetTheirInputAndReportWhyTheyFail) {
     make("genprism", "cat; echo \"$1 and $2\"\n");
     const auto printed = run_scene_program({"genprism", "a b", "*"}, "first\n", "", never_);
     ASSERT_TRUE(printed) << printed.error().message;
@@ -58,7 +58,7 @@ TEST_F(ScenePrograms, AreGivenTheirInputAndSayWhyTheyFail) {
     EXPECT_NE(run_scene_program({"genclock"}, "", "", never_).error().message.find("not installed"), std::string::npos);
 }
 
-TEST_F(ScenePrograms, EndWhenAStopIsAskedFor) {
+TEST_F(ScenePrograms, EndWhenAStopIsRequested) {
     make("gensurf", "echo $$ > " + std::string(folder_ / "pid") + "\nsleep 1000 & sleep 1000\n");
     StopRequest stop;
     stop.set_deadline(Clock::now() + std::chrono::milliseconds(400));
@@ -73,7 +73,7 @@ TEST_F(ScenePrograms, EndWhenAStopIsAskedFor) {
     }
 }
 
-TEST_F(ScenePrograms, RunOnlyWhereTheyAreAskedFor) {
+TEST_F(ScenePrograms, RunOnlyIfTheUserAllowsThem) {
     const std::string mark = folder_ / "mark";
     make("genprism", std::string("touch ") + mark + "\n" + square);
     const std::string text = std::string(grey) + "!genprism grey box 1 2 3\nlamp polygon l 0 0 9 0 0 1 1 0 1 0 1 1\n";
@@ -88,7 +88,7 @@ TEST_F(ScenePrograms, RunOnlyWhereTheyAreAskedFor) {
     EXPECT_EQ(read.scene->surfaces()[SurfaceId(0)].line, 3);
 }
 
-TEST_F(ScenePrograms, WhatTheyPrintGoesThroughXform) {
+TEST_F(ScenePrograms, HaveTheirOutputTransformedByXform) {
     make("genprism", square);
     const CheckedScene s = load(std::string(grey) +
                                     "!genprism grey box 1 2 3 | xform -n two -t 0 0 1 -a 2 -t 5 0 0 | xform -s 2\n"

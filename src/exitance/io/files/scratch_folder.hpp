@@ -8,7 +8,7 @@
 
 namespace exitance {
 
-/// A folder among the system's temporary files, gone with this object.
+/// A folder in the system's temporary folder, which the destructor removes with its content.
 class ScratchFolder {
   public:
     static Result<ScratchFolder> make(const std::string& name) {

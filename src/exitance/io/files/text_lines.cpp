@@ -71,7 +71,7 @@ std::string shown(std::string_view text) {
         const auto byte = [&](std::size_t k) {
             return i + k < text.size() ? static_cast<unsigned char>(text[i + k]) : 0u;
         };
-        // UTF-8: the first byte says how many follow, each of them 10xxxxxx.
+        // UTF-8: the first byte determines how many of the form 10xxxxxx follow.
         const unsigned first = byte(0);
         std::size_t length = first < 0x80 ? 1 : first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
         bool good = first >= 0x20 && first != 0x7f && (first < 0x80 || (first >= 0xc2 && first <= 0xf4));
@@ -90,7 +90,7 @@ NumberKind number_of_word(std::string_view word, double& value) {
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (word.empty() || end != word.data() + word.size() || error == std::errc::invalid_argument)
         return NumberKind::not_a_number;
-    // Out of range is also what is too small: that is zero for every purpose here.
+    // Out of range includes numbers that are too small: strtod() makes them zero.
     if (error == std::errc::result_out_of_range) value = std::strtod(std::string(word).c_str(), nullptr);
     return std::isfinite(value) ? NumberKind::finite : NumberKind::not_finite;
 }

@@ -15,7 +15,7 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t block_bytes = 1 << 18;
-constexpr std::size_t longest_line = 1 << 24;  ///< Longer ones are no text.
+constexpr std::size_t max_line_bytes = 1 << 24;  ///< A longer line shows that the file is not text.
 
 std::string_view trimmed(std::string_view text) {
     const auto blank = [](char c) { return c == ' ' || c == '\t'; };
@@ -24,7 +24,7 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-/// The next field of a CSV line, without blanks and quotation marks; `line` moves on past it and its comma.
+/// Takes the next field of a CSV line, without blanks and quotation marks. `line` then begins after the field's comma.
 std::string_view next_field(std::string_view& line) {
     std::size_t end = line.find(',');
     const std::string_view start = trimmed(line);
@@ -42,7 +42,7 @@ std::string_view next_field(std::string_view& line) {
     return trimmed(field);
 }
 
-/// Something from a file as it can stand in a message.
+/// Quotes text from a file for a message: at most 40 characters, only printable ASCII.
 std::string quoted(std::string_view text) {
     std::string out = "\"";
     for (char c : text.substr(0, 40)) out += c >= ' ' && c <= '~' ? c : '?';
@@ -56,7 +56,7 @@ Result<LineReader> LineReader::open(const std::string& path) {
     out.name_ = path == "-" ? "standard input" : path;
     out.file_ = path == "-" ? ::dup(STDIN_FILENO) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     out.error_ = out.file_ < 0 ? errno : 0;
-    if (out.error_ == 0) out.fill();  // a folder opens, but cannot be read
+    if (out.error_ == 0) out.fill();  // a folder can be opened, but not read
     if (out.failed()) return out.read_error();
     if (std::string_view(out.buffer_).substr(0, out.end_).starts_with("\xef\xbb\xbf")) out.begin_ = 3;
     return out;
@@ -84,14 +84,14 @@ Error LineReader::error(std::string message, std::string hint) const {
     return {ErrorCode::bad_input, std::move(message), name_ + ":" + std::to_string(line_), std::move(hint)};
 }
 
-/// More bytes behind what is left; false when there are none.
+/// Reads more bytes after those not yet used; false at the end of the file.
 bool LineReader::fill() {
     if (at_end_ || failed()) return false;
     if (begin_ > 0) {
         std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
         end_ -= begin_, begin_ = 0;
     }
-    if (end_ > longest_line) return error_ = EFBIG, false;
+    if (end_ > max_line_bytes) return error_ = EFBIG, false;
     if (buffer_.size() - end_ < block_bytes) buffer_.resize(end_ + std::max(block_bytes, end_));
     ssize_t n = 0;
     do n = ::read(file_, buffer_.data() + end_, buffer_.size() - end_);
@@ -113,7 +113,7 @@ std::optional<std::string_view> LineReader::next() {
             looked_at = length;
             if (fill()) continue;
             if (failed() || length == 0) return {};
-            start = buffer_.data() + begin_;  // the last line has no end of its own
+            start = buffer_.data() + begin_;  // the last line has no line end
         }
         begin_ += length + (found ? 1 : 0);
         ++line_;
@@ -137,7 +137,7 @@ std::optional<double> parse_number(std::string_view text) {
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (end != text.data() + text.size() || text.empty()) return {};
     if (failure == std::errc::result_out_of_range) {
-        // Too small is as good as 0; too large is no number that we can work with.
+        // A number that is too small becomes 0; one that is too large is rejected.
         const std::size_t exponent = text.find_first_of("eE");
         if (exponent != std::string_view::npos && text.substr(exponent + 1).starts_with('-')) return 0.0;
         return {};
@@ -180,7 +180,7 @@ Result<NumberTable> NumberTable::open(LineReader lines, std::string_view header,
             return table.lines_.error("the header has no column " + table.names_[i], "it needs " + all);
         }
     table.has_.assign(found.begin() + static_cast<std::ptrdiff_t>(table.required_), found.end());
-    // What follows the last column of interest need not be looked at.
+    // Columns after the last requested one are not parsed.
     while (!table.slot_.empty() && table.slot_.back() < 0) table.slot_.pop_back();
     return table;
 }

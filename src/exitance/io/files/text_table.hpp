@@ -10,7 +10,7 @@
 
 namespace exitance {
 
-/// The lines of a text file, one after the other, in memory that does not grow with the file; "-" is standard input.
+/// Reads a text file line by line, in memory that does not grow with the file. "-" is standard input.
 class LineReader {
   public:
     static Result<LineReader> open(const std::string& path);
@@ -19,16 +19,16 @@ class LineReader {
     LineReader& operator=(LineReader&&) = delete;
     ~LineReader();
 
-    /// The next line without its end (LF or CRLF); nothing at the end of the file or when reading failed. Valid until
-    /// the next call.
+    /// Returns the next line without its end (LF or CRLF); empty at the end of the file and after a read error. Valid
+    /// until the next call.
     std::optional<std::string_view> next();
-    /// The next line that is neither blank nor a comment (#).
+    /// Returns the next line that is neither blank nor a comment (#).
     std::optional<std::string_view> next_content();
 
     bool failed() const { return error_ != 0; }
-    Error read_error() const;                                       ///< When failed().
-    Error error(std::string message, std::string hint = {}) const;  ///< bad_input at the present line.
-    int line() const { return line_; }                              ///< Of the line returned last, from 1.
+    Error read_error() const;                                       ///< Only valid if failed().
+    Error error(std::string message, std::string hint = {}) const;  ///< bad_input at the current line.
+    int line() const { return line_; }                              ///< Number of the line returned last, from 1.
 
   private:
     LineReader() = default;
@@ -40,21 +40,21 @@ class LineReader {
     bool at_end_ = false;
 };
 
-/// A number that fills all of `text` but for blanks around it; nothing when it is none, or too large.
+/// Parses `text`, apart from blanks around it, as one number; empty if it is not a number or is too large.
 std::optional<double> parse_number(std::string_view text);
 
-/// Numbers of a CSV file with a header, by the names of their columns, in any order; further columns are ignored.
+/// Reads numbers from a CSV file with a header. Columns are found by name, in any order; others are ignored.
 class NumberTable {
   public:
-    /// Columns that must be there come first in every row, those that may be there after them.
+    /// Opens a file. In each row, the `required` columns come first, then the `optional` ones.
     static Result<NumberTable> open(const std::string& path, const std::vector<std::string>& required,
                                     const std::vector<std::string>& optional = {});
-    /// The same, its lines so far read by somebody else up to the header.
+    /// Continues with `lines`, from which the caller has read up to and including the header.
     static Result<NumberTable> open(LineReader lines, std::string_view header, const std::vector<std::string>& required,
                                     const std::vector<std::string>& optional = {});
 
     bool has(std::size_t optional_column) const { return has_[optional_column]; }
-    /// Reads the next row; false at the end. What is missing or empty among the optional columns is NaN.
+    /// Reads the next row; false at the end. A missing or empty optional field is NaN.
     Result<bool> next(std::span<double> row);
     const LineReader& lines() const { return lines_; }
 
@@ -62,7 +62,7 @@ class NumberTable {
     explicit NumberTable(LineReader lines) : lines_(std::move(lines)) {}
 
     LineReader lines_;
-    std::vector<int> slot_;  ///< Per column of the file: where its number goes, or -1.
+    std::vector<int> slot_;  ///< Position in the row per column of the file, or -1.
     std::vector<std::string> names_;
     std::size_t required_ = 0;
     std::vector<bool> has_;

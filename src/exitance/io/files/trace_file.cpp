@@ -10,11 +10,11 @@
 namespace exitance {
 namespace {
 
-/// A span of time on a line; `arguments` begins with the comma after the id.
+/// Formats a time span on a line of the trace. `arguments` is appended after the id and begins with a comma.
 std::string event(std::string_view name, const char* kind, std::size_t line, double begin, double end, std::uint64_t id,
                   std::string_view arguments) {
     constexpr double micro = 1e6;
-    // Ends are rounded like beginnings, so that rounding makes no overlaps.
+    // Both ends are rounded down, so that rounding creates no overlaps.
     const double from = std::floor(begin * micro * 1000) / 1000, to = std::floor(end * micro * 1000) / 1000;
     return fmt::format(
         ",\n{{\"name\":\"{}\",\"cat\":\"{}\",\"ph\":\"X\",\"pid\":1,\"tid\":{},\"ts\":{:.3f},\"dur\":{:.3f},"
@@ -38,7 +38,8 @@ std::string describe(const TaskTrace::Loop& loop, const TaskTrace::Task& task) {
     return out;
 }
 
-/// Iterations as loops, and tasks whose parent is the task that made them: roots' is their iteration.
+/// Writes iterations as loops, and their tasks. The parent of a task is the task that created it; that of a root task
+/// is its iteration.
 void write_graph(const TaskTrace& trace, const TaskGraph& graph, AtomicFile& file) {
     const std::uint64_t first_task = graph.id + graph.iterations.size();
     for (std::size_t i = 0; i < graph.iterations.size(); ++i) {

@@ -7,8 +7,9 @@
 
 namespace exitance {
 
-/// Writes what parallel loops did as JSON in the Chrome trace format, which Perfetto and about:tracing open: phases and
-/// loops on the first line, a line a worker below. Docs: formats.md. Appears whole or not at all.
+/// Writes the recorded parallel loops as JSON in the Chrome trace format, which Perfetto and about:tracing can open:
+/// phases and loops on the first line, then one line per worker. Format: docs/formats.md. The file appears whole or not
+/// at all.
 Result<void> write_trace(const TaskTrace& trace, const std::string& path);
 
 }  // namespace exitance

@@ -20,7 +20,7 @@ Error cannot_read(const std::string& path, const char* what, int reason) {
 Result<std::string> read_whole_file(const std::string& path) {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored)) return cannot_read(path, "cannot be read", EISDIR);
-    // A device has no end: a scene that names /dev/zero as its material file is not to hang the program.
+    // A device has no end: a scene that names /dev/zero as its material file must not hang the program.
     const auto type = std::filesystem::status(path, ignored).type();
     if (type == std::filesystem::file_type::character || type == std::filesystem::file_type::block)
         return cannot_read(path, "cannot be read", ENODEV);
@@ -43,7 +43,7 @@ std::string found_beside(const std::string& path, std::string_view name) {
     std::error_code ignored;
     const std::string as_said = beside(path, name);
     if (fs::is_regular_file(as_said, ignored)) return as_said;
-    // Written elsewhere: with its slashes, in its folders, by a system that takes capitals for small letters.
+    // Names from other systems may have backslashes, unknown folders, or different capitals.
     std::string slashed(name);
     std::replace(slashed.begin(), slashed.end(), '\\', '/');
     const auto small = [](std::string text) {

@@ -7,17 +7,17 @@
 
 namespace exitance {
 
-/// The content of a file. Error: cannot_read, with the system's reason.
+/// Returns the content of a file. Error: cannot_read, with the system's reason.
 Result<std::string> read_whole_file(const std::string& path);
 
-/// The path of a file that `name` in the file `path` refers to: relative to the folder of `path`.
+/// Returns the path of a file that the file `path` refers to as `name`, relative to the folder of `path`.
 std::string beside(const std::string& path, std::string_view name);
 
-/// The same, found even where it was named on another system: with backslashes, by folders that are not here, or with
-/// other capitals. As it is named where there is none.
+/// Like beside(), but also finds files whose names were written on another system: with backslashes, with folders that
+/// do not exist here, or with different capitals. Returns beside(path, name) if there is no such file.
 std::string found_beside(const std::string& path, std::string_view name);
 
-/// The ending of a file name in small letters, ".obj", or nothing.
+/// Returns the ending of a file name in small letters, such as ".obj"; may be empty.
 std::string ending(const std::string& path);
 
 }  // namespace exitance

@@ -19,11 +19,11 @@ class Luminaires {
 
     double lumens_to_light = 1;
     void add(const PlacedLuminaire& luminaire);
-    /// What the path of luminaires means, without a file.
-    void know(const std::string& path, Photometry photometry);
+    /// Uses `photometry` for luminaires with this path, in place of a file.
+    void use_photometry(const std::string& path, Photometry photometry);
 
   private:
-    /// A photometric file and what has been made of it.
+    /// A photometric file with the faces and the profile made from it.
     struct Lamp {
         bool is_read = false;
         Photometry photometry;
@@ -52,11 +52,11 @@ const Luminaires::Lamp* Luminaires::lamp_of(const PlacedLuminaire& luminaire) {
         return nullptr;
     }
     findings_.insert(findings_.end(), read->findings.begin(), read->findings.end());
-    know(luminaire.path, std::move(*read));
+    use_photometry(luminaire.path, std::move(*read));
     return &lamp;
 }
 
-void Luminaires::know(const std::string& path, Photometry photometry) {
+void Luminaires::use_photometry(const std::string& path, Photometry photometry) {
     Lamp& lamp = lamps_[path];
     lamp.photometry = std::move(photometry);
     lamp.body = make_luminaire_body(lamp.photometry);
@@ -65,7 +65,7 @@ void Luminaires::know(const std::string& path, Photometry photometry) {
     lamp.is_read = true;
 }
 
-/// Faces that are alike in how they shine share a material.
+/// Returns the material of a luminaire's face; faces with equal emission share a material.
 std::uint32_t Luminaires::material_of(const Lamp& lamp, const PlacedLuminaire& luminaire, double table_exitance,
                                       double factor) {
     const auto world = [&](const Vec3& v) { return v.x * luminaire.x + v.y * luminaire.y + v.z * luminaire.z; };
@@ -116,7 +116,7 @@ void Luminaires::add(const PlacedLuminaire& luminaire) {
 void add_luminaire(const Photometry& photometry, const PlacedLuminaire& luminaire, SceneDescription& scene) {
     std::vector<Finding> none;
     Luminaires one(scene, none);
-    one.know(luminaire.path, photometry);
+    one.use_photometry(luminaire.path, photometry);
     one.add(luminaire);
 }
 

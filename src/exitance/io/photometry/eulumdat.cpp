@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-constexpr double most_planes = 3600, most_angles = 20000, most_candelas = 4e6, brightest = 1e12;
+constexpr double max_planes = 3600, max_angles = 20000, max_candelas = 4e6, max_value = 1e12;
 
 class EulumdatReader {
   public:
@@ -66,7 +66,7 @@ Result<std::string> EulumdatReader::text(const char* what) {
     return shown(trimmed(lines_[at_++]));
 }
 
-/// The number of a line; the decimal sign may be a comma.
+/// Reads the number of the next line; the decimal separator may be a comma.
 Result<double> EulumdatReader::number(const std::string& what) {
     if (at_ >= lines_.size()) return error(fmt::format("ends before {}", what), "is it whole?");
     const std::string_view line = trimmed(lines_[at_]);
@@ -99,9 +99,9 @@ Result<std::size_t> EulumdatReader::count(const char* what, double least, double
     return static_cast<std::size_t>(*value);
 }
 
-// ------------------------------------------------------------------------------------------------- in front
+// ------------------------------------------------------------------------------------------------- header
 
-/// Lines 1 to 12.
+/// Reads lines 1 to 12: names, symmetry and counts.
 Result<void> EulumdatReader::read_counts() {
     static constexpr std::array<const char*, 5> symmetries{"none", "about the axis", "about the plane of C0",
                                                            "about the plane of C90", "in each quadrant"};
@@ -113,7 +113,7 @@ Result<void> EulumdatReader::read_counts() {
     const Result<std::size_t> symmetry = count("kind of symmetry", 0, 4);
     if (!symmetry) return symmetry.error();
     symmetry_ = *symmetry, out_.symmetry = symmetries[symmetry_];
-    const Result<std::size_t> planes = count("number of C planes", 1, most_planes);
+    const Result<std::size_t> planes = count("number of C planes", 1, max_planes);
     if (!planes) return planes.error();
     planes_ = *planes;
     if ((symmetry_ == 2 && planes_ % 2 != 0) || (symmetry_ >= 3 && planes_ % 4 != 0)) {
@@ -123,10 +123,10 @@ Result<void> EulumdatReader::read_counts() {
     }
     const std::array<std::pair<double*, const char*>, 1> step{{{&plane_step_, "the step of C planes"}}};
     if (const Result<void> read = numbers(step); !read) return read;
-    const Result<std::size_t> angles = count("number of angles gamma", 2, most_angles);
+    const Result<std::size_t> angles = count("number of angles gamma", 2, max_angles);
     if (!angles) return angles.error();
     angles_ = *angles;
-    if (static_cast<double>(planes_) * static_cast<double>(angles_) > most_candelas)
+    if (static_cast<double>(planes_) * static_cast<double>(angles_) > max_candelas)
         return error(fmt::format("{} intensities are more than are read", planes_ * angles_));
     const std::array<std::pair<double*, const char*>, 1> other{{{&angle_step_, "the step of angles gamma"}}};
     if (const Result<void> read = numbers(other); !read) return read;
@@ -138,7 +138,7 @@ Result<void> EulumdatReader::read_counts() {
     return {};
 }
 
-/// Lines 13 to 25.
+/// Reads lines 13 to 25: sizes and factors.
 Result<void> EulumdatReader::read_sizes() {
     double downward = 0;
     const std::array<std::pair<double*, const char*>, 13> fields{{{&length_, "the luminaire's length"},
@@ -170,7 +170,7 @@ Result<void> EulumdatReader::read_sizes() {
     return {};
 }
 
-/// Sets of lamps, each six lines, and the ten direct ratios after them.
+/// Reads the lamp sets, six lines each, and the ten direct ratios that follow.
 Result<void> EulumdatReader::read_lamps() {
     const Result<std::size_t> sets = count("number of sets of lamps", 1, 20);
     if (!sets) return sets.error();
@@ -187,7 +187,7 @@ Result<void> EulumdatReader::read_lamps() {
         const Result<double> watts = number("the watts of the lamps");
         if (!watts) return watts.error();
         if (i > 0) continue;
-        if (!(*flux > 0 && *flux < brightest)) {
+        if (!(*flux > 0 && *flux < max_value)) {
             at_ -= 4;
             return error(fmt::format("the lamps' flux is {:g} lm", *flux), "intensities are given for 1000 lm of it");
         }
@@ -241,7 +241,7 @@ std::size_t EulumdatReader::stored_planes() const {
     }
 }
 
-/// Lines up to the first that is no number.
+/// Number of lines up to the first that is not a number.
 std::size_t EulumdatReader::numbers_left() const {
     std::size_t n = 0;
     for (std::size_t i = at_; i < lines_.size(); ++i, ++n) {
@@ -254,7 +254,7 @@ std::size_t EulumdatReader::numbers_left() const {
 }
 
 Result<void> EulumdatReader::read_table() {
-    // No memory for what the file cannot hold.
+    // Check first, so that no memory is allocated for data that the file cannot contain.
     if (lines_.size() - std::min(at_, lines_.size()) < planes_ + angles_)
         return at_ = lines_.size(), error("ends before the intensities", "is it whole?");
     const Result<std::vector<double>> circle = read_angles(planes_, "C plane", 360);
@@ -275,7 +275,7 @@ Result<void> EulumdatReader::read_table() {
             const Result<double> value =
                 number(fmt::format("intensity {} of {}", p * angles_ + g + 1, stored * angles_));
             if (!value) return value.error();
-            if (!(*value >= 0 && *value * factor <= brightest)) {
+            if (!(*value >= 0 && *value * factor <= max_value)) {
                 --at_;
                 return error(fmt::format("the intensity {:g} is none", *value), "0 or more");
             }
@@ -296,12 +296,13 @@ Result<void> EulumdatReader::read_table() {
     return {};
 }
 
-/// The stored planes, completed by their symmetry, into phi and candela.
+/// Completes the stored planes by their symmetry and stores them in phi and candela.
 Result<void> EulumdatReader::take_planes(const std::vector<double>& circle, std::vector<std::vector<double>> rows) {
     Planes planes;
     for (std::size_t p = 0; p < rows.size(); ++p) {
         const std::size_t place = symmetry_ == 3 ? (3 * planes_ / 4 + p) % planes_ : p;
-        // Those about the plane of C90 are C270, over C0, to C90: mirrored at C90 - C270 they are C90 to C270.
+        // With symmetry about the plane of C90, the stored planes go from C270 over C0 to C90. Mirrored at the plane
+        // C90 - C270, they go from C90 to C270.
         const double c = circle[place];
         planes.angle.push_back(symmetry_ == 3 ? std::fmod(540 - c, 360) : c);
         planes.rows.push_back(std::move(rows[p]));
@@ -325,9 +326,9 @@ Result<void> EulumdatReader::take_planes(const std::vector<double>& circle, std:
     return {};
 }
 
-// ------------------------------------------------------------------------------------------------- what it is of
+// ------------------------------------------------------------------------------------------------- opening
 
-/// The length lies in C90 - C270, across the luminaire's x axis.
+/// Sets the luminous opening. EULUMDAT measures the length along C90 - C270, at right angles to the luminaire's x axis.
 void EulumdatReader::set_opening() {
     using Shape = Opening::Shape;
     constexpr double metre = 1e-3;

@@ -13,7 +13,7 @@
 namespace exitance {
 namespace {
 
-constexpr double height = 2, spacing = 0.25 * height;  ///< H, and how far the luminaires are apart, metres.
+constexpr double height = 2, spacing = 0.25 * height;  ///< Mounting height H and distance of luminaires, metres.
 constexpr double degree = pi / 180;
 
 constexpr std::array<std::pair<double, double>, 19> rooms{{{2, 2},
@@ -38,13 +38,12 @@ constexpr std::array<std::pair<double, double>, 19> rooms{{{2, 2},
 constexpr std::array<std::array<double, 3>, 5> reflectances{
     {{0.7, 0.5, 0.2}, {0.7, 0.3, 0.2}, {0.5, 0.5, 0.2}, {0.5, 0.3, 0.2}, {0.3, 0.3, 0.2}}};
 
-/// The luminaire's frame turned so that the line of sight goes along y.
+/// Converts a direction to the luminaire's frame; the line of sight is y.
 Vec3 in_luminaire(const Vec3& d, bool crosswise) {
     return crosswise ? Vec3{d.y, -d.x, d.z} : d;
 }
 
-/// Flux of one luminaire that goes in directions below and above the horizontal: lm, and offsets where it comes to the
-/// plane of the eye.
+/// A sample of a luminaire's flux, lm, and the offset of the point at which it meets the plane of the eye, metres.
 struct Ray {
     double dx = 0, dy = 0, flux = 0;
 };
@@ -73,21 +72,21 @@ Emission emission_of(const Photometry& p, bool crosswise) {
     return out;
 }
 
-/// Places of luminaires along a side.
+/// Positions of luminaires along a side of the room, metres.
 std::vector<double> places(double length) {
     std::vector<double> out;
     for (double at = spacing / 2; at < length; at += spacing) out.push_back(at);
     return out;
 }
 
-/// Share of places that an offset leaves within a side.
+/// Share of luminaire positions from which an offset ends inside the room.
 double share_within(const std::vector<double>& at, double offset, double length) {
     const auto within =
         std::count_if(at.begin(), at.end(), [&](double a) { return a + offset >= 0 && a + offset <= length; });
     return static_cast<double>(within) / static_cast<double>(at.size());
 }
 
-/// Form factor between opposite rectangles of a by b at distance c.
+/// Form factor between opposite rectangles of a x b at distance c.
 double opposite_factor(double a, double b, double c) {
     const double x = a / c, y = b / c, u = std::sqrt(1 + x * x), v = std::sqrt(1 + y * y);
     return 2 / (pi * x * y) *
@@ -95,8 +94,7 @@ double opposite_factor(double a, double b, double c) {
             x * std::atan(x) - y * std::atan(y));
 }
 
-/// Mean indirect illuminance of the walls, lx: light goes to and fro between ceiling, walls and floor until nothing is
-/// left.
+/// Mean indirect illuminance of the walls, lx, including all interreflections between ceiling, walls and floor.
 double wall_light(const GlareTableRow& room, double width, double length, double to_floor, double to_walls,
                   double to_ceiling) {
     const double across = opposite_factor(width, length, height);
@@ -115,7 +113,7 @@ double wall_light(const GlareTableRow& room, double width, double length, double
     return indirect[1];
 }
 
-/// Projected area of a luminaire's opening by direction, m^2.
+/// Projected area of a luminaire's opening in a direction, m^2.
 class OpeningArea {
   public:
     explicit OpeningArea(const Photometry& p) : is_point_(p.opening.shape == Opening::Shape::point) {
@@ -134,7 +132,7 @@ class OpeningArea {
     std::vector<Vec3> faces_;
 };
 
-/// Sum of L^2 omega / p^2 over the luminaires ahead that CIE 117 counts.
+/// Sum of L^2 omega / p^2 over the luminaires in view that CIE 117 counts.
 double glare_sum(const Photometry& p, const OpeningArea& opening, const std::vector<double>& xs,
                  const std::vector<double>& ys, double width, bool crosswise) {
     constexpr Normal view{0, 1, 0};
@@ -151,7 +149,7 @@ double glare_sum(const Photometry& p, const OpeningArea& opening, const std::vec
     return sum;
 }
 
-/// What of a room does not depend on its reflectances.
+/// Quantities of a room that do not depend on its reflectances.
 struct DirectLightOfRoom {
     double to_floor = 0, to_walls = 0, to_ceiling = 0;  ///< lm
     double glare = 0;                                   ///< sum of L^2 omega / p^2

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// A Lambertian opening of 0.3 x 0.3 m, or of other sides, with 300 cd straight down.
+/// A Lambertian opening with sides of x and y metres, and `candela` cd straight down.
 Photometry panel(double x = 0.3, double y = 0.3, double candela = 300) {
     Photometry p;
     p.opening = {Opening::Shape::rectangle, {x, y, 0}};
@@ -26,9 +26,10 @@ const GlareTableRow& room(const std::vector<GlareTableRow>& table, double x, dou
                          [&](const GlareTableRow& r) { return r.x == x && r.y == y && r.walls == walls; });
 }
 
-/// The luminaires of a standard room of X by Y mounting heights (2 m), as R, T and whether they count, all by hand:
-/// 0.5 m apart, the first 0.25 m from the walls. Those nearer than R = 2 m / 1.7 are overhead; none between 1.6 (R =
-/// 1.25 m) and 2.67 (0.75 m) decides between the ends of Guth's rows. 85 degrees from the nadir are 22.86 m.
+/// Luminaires of a standard room of X by Y mounting heights (2 m), as R, T and whether they count, computed
+/// independently: 0.5 m apart, the first 0.25 m from the walls. Those nearer than R = 2 m / 1.7 are overhead. No
+/// luminaire has H / R between 1.6 (R = 1.25 m) and 2.67 (R = 0.75 m), so the exact limit of Guth's rows does not
+/// matter. 85 degrees from the nadir are at 22.86 m.
 struct Hanging {
     double R, T;
     bool counts;
@@ -43,15 +44,15 @@ std::vector<Hanging> hanging_in(double x, double y) {
     return out;
 }
 
-/// Guth's formula for a luminaire 2 m above the eye.
+/// Guth's position index for a luminaire 2 m above the eye.
 double guth(double R, double T) {
     const double sigma = std::atan2(std::hypot(T, 2), R) * 180 / pi, tau = std::atan2(T, 2) * 180 / pi;
     return std::exp((35.2 - 0.31889 * tau - 1.22 * std::exp(-2 * tau / 9)) * 1e-3 * sigma +
                     (21 + 0.26667 * tau - 0.002963 * tau * tau) * 1e-5 * sigma * sigma);
 }
 
-/// Mean indirect illuminance of the walls of a room of 70/50/20 whose luminaires send `to_floor` and `to_walls`, lm. F
-/// is the form factor between floor and ceiling.
+/// Mean indirect illuminance of the walls of a room with reflectances 70/50/20 whose luminaires send `to_floor` and
+/// `to_walls`, lm. F is the form factor between floor and ceiling.
 double wall_illuminance(double x, double y, double F, double to_floor, double to_walls) {
     const double floor = 4 * x * y, walls = 8 * (x + y), wf = (1 - F) * floor / walls;
     double c = 0, w = 0, f = 0;
@@ -62,9 +63,10 @@ double wall_illuminance(double x, double y, double F, double to_floor, double to
     return w;
 }
 
-TEST(GlareTable, OfALambertianPanelIsThatWorkedOutByHand) {
-    // 64 panels in 2H x 2H, L = 300 / 0.09 = 3333.3 cd/m^2; 384 in 8H x 12H. A uniform ceiling of Lambertian light: F
-    // between floor and ceiling of 4 x 4 x 2 m is 0.41525, of 16 x 24 x 2 m 0.82036; phi = pi 300 lm a panel.
+TEST(GlareTable, OfALambertianPanelAgreesWithAHandCalculation) {
+    // There are 64 panels in 2H x 2H, with L = 300 / 0.09 = 3333.3 cd/m^2, and 384 in 8H x 12H. They act as a uniform
+    // Lambertian ceiling: F between floor and ceiling is 0.41525 for 4 x 4 x 2 m and 0.82036 for 16 x 24 x 2 m; the
+    // flux is pi 300 lm per panel.
     const std::vector<GlareTableRow> table = make_glare_table(panel());
     ASSERT_EQ(table.size(), 95u);
     const double L = 300 / 0.09;
@@ -82,8 +84,9 @@ TEST(GlareTable, OfALambertianPanelIsThatWorkedOutByHand) {
     }
 }
 
-TEST(GlareTable, OfANarrowDownlightCountsNothingOverhead) {
-    // A beam of 3800 cd about the axis and a weak rest, of an opening 66 mm across. Those overhead would add 12.
+TEST(GlareTable, OfANarrowDownlightIgnoresLuminairesOverhead) {
+    // A beam of 3800 cd around the axis and weak light elsewhere, from an opening of 66 mm diameter. Luminaires
+    // overhead would add 12 to the UGR.
     const auto candela = [](double degrees) {
         return 3800 * std::exp(-std::pow(degrees / 16, 2)) + 12 * std::cos(degrees * pi / 180);
     };
@@ -99,7 +102,7 @@ TEST(GlareTable, OfANarrowDownlightCountsNothingOverhead) {
         const double r2 = h.R * h.R + h.T * h.T + 4, gamma = std::acos(2 / std::sqrt(r2)) * 180 / pi;
         const double area = pi * 0.033 * 0.033 * 2 / std::sqrt(r2), index = guth(h.R, h.T);
         if (h.counts) sum += candela(gamma) * candela(gamma) / (area * r2 * index * index);
-        constexpr int parts = 80;  // of a side of the floor
+        constexpr int parts = 80;  // parts per side of the floor
         for (int i = 0; i < parts * parts; ++i) {
             const double dx = (i % parts + 0.5) * 4 / parts - (h.T + 2), dy = (i / parts + 0.5) * 4 / parts - h.R;
             const double d2 = dx * dx + dy * dy + 4;
@@ -112,15 +115,15 @@ TEST(GlareTable, OfANarrowDownlightCountsNothingOverhead) {
     EXPECT_NEAR(found, 8 * std::log10(0.25 * pi / E * sum), 0.1) << "rays of the table by 1 and 2.5 degrees";
 }
 
-TEST(GlareTable, HasNoValueWhereAllLightGoesStraightDown) {
+TEST(GlareTable, HasNoValueIfAllLightGoesStraightDown) {
     Photometry p = panel();
     for (std::size_t t = 0; t < p.theta.size(); ++t)
-        if (p.theta[t] > 25) p.candela[t] = 0;  // the first luminaires that count are seen under 32 degrees
+        if (p.theta[t] > 25) p.candela[t] = 0;  // the nearest luminaires that count are seen at 32 degrees
     for (const GlareTableRow& row : make_glare_table(p)) EXPECT_FALSE(std::isfinite(row.crosswise));
 }
 
-TEST(GlareTable, OfAPointIsThatOfASmallSource) {
-    // L^2 omega = I^2 / (0.005 m^2 r^2) in every direction; of a plane opening I^2 / (A cos gamma r^2).
+TEST(GlareTable, OfAPointEqualsThatOfASmallSource) {
+    // L^2 omega is I^2 / (0.005 m^2 r^2) in every direction for a point, I^2 / (A cos gamma r^2) for a plane opening.
     Photometry point = panel();
     point.opening = {};
     double of_panel = 0, of_point = 0;
@@ -134,8 +137,8 @@ TEST(GlareTable, OfAPointIsThatOfASmallSource) {
     EXPECT_NEAR(higher, 8 * std::log10(of_point / of_panel), 1e-3) << "a table by degrees is linear between them";
 }
 
-TEST(GlareTable, OfABoxAsThinAsAMillimetreIsThatOfItsTrueHeight) {
-    // Seen under gamma a box of a x b x h shows a b cos gamma + a h sin gamma along the side a (the line of sight).
+TEST(GlareTable, OfAThinBoxUsesItsTrueHeight) {
+    // At angle gamma, a box of a x b x h has the projected area a b cos gamma + a h sin gamma if seen along b.
     for (const double height : {0.001, 0.003, 0.02}) {
         Photometry box = panel();
         box.opening = {Opening::Shape::box, {0.024, 0.6, height}};
@@ -163,7 +166,7 @@ TEST(GlareTable, RisesWithFluxAndFallsWithReflectance) {
     EXPECT_GT(room(once, 8, 12).endwise, room(once, 2, 2).endwise);
 }
 
-TEST(GlareTable, IsWrittenInTenthsAndWithoutValuesWhereNothingShines) {
+TEST(GlareTable, IsWrittenWithOneDecimalAndEmptyWithoutGlare) {
     const std::string text = glare_table_csv(make_glare_table(panel()));
     EXPECT_EQ(text.find("ceiling,walls,floor,X,Y,crosswise,endwise\n70,50,20,2,2,"), 0u);
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 96);

@@ -11,7 +11,7 @@
 namespace exitance {
 namespace {
 
-constexpr double most_angles = 20000, most_candelas = 4e6, brightest = 1e12;
+constexpr double max_angles = 20000, max_candelas = 4e6, max_value = 1e12;
 constexpr double foot = 0.3048;
 
 std::string_view trimmed(std::string_view text) {
@@ -20,7 +20,7 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// The numbers in front of the table, by their places in the file.
+/// Numbers before the table, in the order of the file.
 struct Header {
     double lamps = 0, lumens = 0, multiplier = 0, verticals = 0, horizontals = 0, type = 0, units = 0, width = 0,
            length = 0, height = 0, ballast = 0, third = 0, watts = 0;
@@ -50,15 +50,16 @@ class IesReader {
     IesText text_;
     Photometry out_;
     std::string tilt_;
-    bool has_blpf_ = false;  ///< In files of 1986 and 1991 the third factor counts.
+    /// In files of 1986 and 1991, the third factor is the ballast-lamp photometric factor and is applied.
+    bool has_blpf_ = false;
     Header header_;
 };
 
 // ------------------------------------------------------------------------------------------------- text
 
 void IesReader::read_label(std::string_view line) {
-    constexpr std::size_t most_keywords = 10000;
-    if (out_.keywords.size() >= most_keywords) return;
+    constexpr std::size_t max_keywords = 10000;
+    if (out_.keywords.size() >= max_keywords) return;
     const std::string_view words = trimmed(line);
     const std::size_t close = words.find(']');
     if (!words.starts_with('[') || close == std::string_view::npos) {
@@ -72,7 +73,7 @@ void IesReader::read_label(std::string_view line) {
         out_.keywords.emplace_back(shown(key), shown(value));
 }
 
-/// Everything up to the line of TILT.
+/// Reads all lines up to the TILT line.
 Result<void> IesReader::read_labels() {
     out_.format = "LM-63-1986";
     has_blpf_ = true;
@@ -97,9 +98,9 @@ Result<void> IesReader::read_labels() {
     return text_.error("there is no line that begins with TILT=", "every edition of LM-63 has one");
 }
 
-/// What a lamp loses when the luminaire is tilted plays no part in fixed luminaires: it is parsed and left alone.
+/// Reads the tilt factors and ignores them: they describe the loss of a lamp in a tilted luminaire.
 Result<void> IesReader::read_tilt() {
-    constexpr double most_pairs = 10000;
+    constexpr double max_pairs = 10000;
     if (tilt_ == "NONE") return {};
     if (tilt_ != "INCLUDE") {
         tell(out_, Finding::Kind::warning, text_.line_number() - 1,
@@ -110,7 +111,7 @@ Result<void> IesReader::read_tilt() {
     if (!geometry) return geometry.error();
     const Result<double> pairs = text_.number("the number of angles of tilt");
     if (!pairs) return pairs.error();
-    if (*pairs != std::floor(*pairs) || *pairs < 0 || *pairs > most_pairs)
+    if (*pairs != std::floor(*pairs) || *pairs < 0 || *pairs > max_pairs)
         return text_.error(fmt::format("{} is no number of angles of tilt", *pairs));
     bool all_one = true;
     for (int i = 0; i < 2 * static_cast<int>(*pairs); ++i) {
@@ -152,21 +153,21 @@ Result<void> IesReader::read_header() {
 
 Result<void> IesReader::check_header() {
     Header& h = header_;
-    const auto is_count = [](double v) { return v == std::floor(v) && v >= 1 && v <= most_angles; };
+    const auto is_count = [](double v) { return v == std::floor(v) && v >= 1 && v <= max_angles; };
     if (!is_count(h.verticals)) return text_.error(fmt::format("{:g} is no number of vertical angles", h.verticals));
     if (!is_count(h.horizontals))
         return text_.error(fmt::format("{:g} is no number of horizontal angles", h.horizontals));
-    if (h.verticals * h.horizontals > most_candelas)
+    if (h.verticals * h.horizontals > max_candelas)
         return text_.error(fmt::format("{:g} intensities are more than are read", h.verticals * h.horizontals));
     if (h.verticals < 2) return text_.error("there is one vertical angle alone", "a distribution has at least two");
-    // Each takes a digit and a blank.
+    // Each intensity takes at least a digit and a blank.
     if (2 * h.verticals * h.horizontals > static_cast<double>(text_.bytes_left()) + 2)
         return text_.error(fmt::format("ends before {:g} intensities", h.verticals * h.horizontals), "is it whole?");
     if (h.type != 1 && h.type != 2 && h.type != 3)
         return text_.error(fmt::format("{:g} is no type of photometry", h.type), "1 is C, 2 is B, 3 is A");
     if (h.units != 1 && h.units != 2)
         return text_.error(fmt::format("{:g} is no kind of units", h.units), "1 is feet, 2 is metres");
-    if (!(h.multiplier > 0 && h.multiplier < brightest))
+    if (!(h.multiplier > 0 && h.multiplier < max_value))
         return text_.error(fmt::format("the multiplier is {:g}", h.multiplier), "intensities are multiplied by it");
     if (!(h.ballast > 0 && h.ballast < 1e6))
         return text_.error(fmt::format("the ballast factor is {:g}", h.ballast), "intensities are multiplied by it");
@@ -216,7 +217,7 @@ Result<void> IesReader::read_table() {
             const Result<double> value = text_.number(
                 fmt::format("intensity {} of {}", h * vertical->size() + v + 1, horizontal->size() * vertical->size()));
             if (!value) return value.error();
-            if (!(*value >= 0 && *value * factor <= brightest))
+            if (!(*value >= 0 && *value * factor <= max_value))
                 return text_.error(fmt::format("the intensity {:g} cd is none", *value), "0 or more");
             row.push_back(*value * factor);
         }
@@ -254,8 +255,8 @@ Result<void> IesReader::make_type_c(const std::vector<double>& vertical, Planes 
     return {};
 }
 
-/// Type B turns about the axis of H, type A about that of V: with that axis upright both are as type C is. The angle
-/// about the axis becomes phi, the other one, from -90 to 90, theta from 0 to 180.
+/// Type B rotates about the axis of H, type A about that of V. With that axis as the polar axis, both have the form of
+/// type C: the angle about the axis becomes phi, and the other, from -90 to 90, becomes theta from 0 to 180.
 Result<void> IesReader::make_types_ab(const std::vector<double>& vertical, const Planes& planes) {
     std::vector<double> v = vertical, h = planes.angle;
     const bool mirrored_v = v.front() == 0, mirrored_h = h.front() == 0 && h.size() > 1;
@@ -277,14 +278,14 @@ Result<void> IesReader::make_types_ab(const std::vector<double>& vertical, const
     out_.type = is_b ? Photometry::Type::b : Photometry::Type::a;
     const std::vector<double>& polar = is_b ? h : v;
     const std::vector<double>& around = is_b ? v : h;
-    const std::vector<std::vector<double>> rows = is_b ? by_v : transposed(by_v);  // one an angle around
+    const std::vector<std::vector<double>> rows = is_b ? by_v : transposed(by_v);  // one row per angle around the axis
     std::vector<double> theta;
     for (const double a : polar) theta.push_back(std::clamp(90 + a, 0.0, 180.0));
     const Planes circle = around_axis(around, rows);
     for (std::size_t i = 1; i < circle.angle.size(); ++i)
         if (!(circle.angle[i] > circle.angle[i - 1])) return text_.error("angles lie too close to one another");
     set_table(out_, theta, circle);
-    // Beam along the luminaire's -z; V towards +x, H towards +y. The table's -z is where the polar angle is -90.
+    // The beam is along the luminaire's -z, V towards +x, H towards +y. The polar angle -90 is along the table's -z.
     if (is_b)
         // d = (cos H sin V, sin H, -cos H cos V): the axis is y, phi = V from -z towards x.
         out_.axis_z = {0, 1, 0}, out_.axis_x = {0, 0, -1}, out_.axis_y = {1, 0, 0};
@@ -303,7 +304,7 @@ Opening IesReader::opening() const {
     Opening out{Shape::box, {std::abs(l), std::abs(w), std::abs(h)}};
     Vec3& s = out.size;
     const bool round = (w < 0 || l < 0) && !(w > 0) && !(l > 0);
-    if (round && !(w < 0 && l < 0)) s.x = s.y = std::max(s.x, s.y);  // one diameter alone, as old files have it
+    if (round && !(w < 0 && l < 0)) s.x = s.y = std::max(s.x, s.y);  // old files may give only one diameter
     if (s.x == 0 && s.y == 0 && s.z == 0) return {Shape::point, {}};
     if (round)
         out.shape = h == 0 ? Shape::ellipse : h > 0 ? Shape::cylinder_z : Shape::ellipsoid;

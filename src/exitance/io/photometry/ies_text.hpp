@@ -10,7 +10,7 @@
 
 namespace exitance {
 
-/// Lines ended by LF, CR LF or CR, and numbers between blanks, commas and the ends of lines.
+/// Splits a text into lines that end with LF, CR LF or CR, and into numbers separated by blanks, commas or line ends.
 class IesText {
   public:
     IesText(std::string_view text, const std::string& name) : rest_(text), name_(name) {
@@ -26,10 +26,10 @@ class IesText {
         return out;
     }
 
-    /// The next number; an error that says what it should have been.
+    /// Returns the next number. Error: it is missing or malformed; `what` names it in the message.
     Result<double> number(const std::string& what);
 
-    /// Is there anything behind the numbers?
+    /// True if only blanks are left.
     bool at_end() {
         skip_blanks();
         return rest_.empty() || rest_[0] == '\x1a';

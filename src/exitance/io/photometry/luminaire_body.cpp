@@ -12,10 +12,12 @@ using Shape = Opening::Shape;
 using Polygons = std::vector<std::vector<Point>>;
 
 constexpr double degree = pi / 180;
-constexpr int sides = 24;  ///< Of a round edge: it has normals where tables of 1, 3, 5 and 15 degrees have entries.
+/// Sides of a round edge: their normals are at angles that tables of 1, 3, 5 and 15 degrees contain.
+constexpr int sides = 24;
 constexpr int bands_of_sphere = 8, sides_of_sphere = 16;
 
-/// A regular polygon of the area of a circle of diameter 1, its edges' normals at multiples of 360 / n degrees.
+/// A regular polygon with the area of a circle of diameter 1. The normals of its edges are at multiples of 360 / n
+/// degrees.
 std::vector<Vec2> round_outline(int n) {
     const double radius = 0.5 * std::sqrt(2 * pi / (n * std::sin(2 * pi / n)));
     std::vector<Vec2> out;
@@ -30,7 +32,7 @@ std::vector<Vec2> square_outline() {
     return {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}};
 }
 
-/// An outline swept along z from -1/2 to 1/2: sides and both ends.
+/// Prism with the given outline along z from -1/2 to 1/2: sides and both ends.
 Polygons prism(const std::vector<Vec2>& outline) {
     Polygons out;
     const std::size_t n = outline.size();
@@ -45,7 +47,7 @@ Polygons prism(const std::vector<Vec2>& outline) {
     return out;
 }
 
-/// A polyhedron of the area of a sphere of diameter 1: bands of trapezia between caps of triangles.
+/// Polyhedron with the surface area of a sphere of diameter 1: bands of trapezia and two caps of triangles.
 Polygons ball() {
     const auto at = [](int band, int i) {
         const double t = pi * band / bands_of_sphere, p = 2 * pi * (i + 0.5) / sides_of_sphere;
@@ -67,7 +69,8 @@ Polygons ball() {
     return out;
 }
 
-/// A cylinder along x or y is one along z with its axes renamed in a circle, so often: fronts stay in front.
+/// Number of cyclic rotations of the axes that turn a cylinder along z into this shape. Rotations keep the orientation
+/// of faces.
 int turns_of(Shape shape) {
     return shape == Shape::cylinder_x ? 1 : shape == Shape::cylinder_y ? 2 : 0;
 }
@@ -110,8 +113,7 @@ Polygons polygons_of(Shape shape, const Vec3& size) {
     return out;
 }
 
-/// Cuts the dark upper parts off the sides of a box, of which the luminous ones are left in `faces`; returns the
-/// others.
+/// Cuts the dark upper parts off the sides of a box. The luminous parts stay in `faces`; returns the dark parts.
 Polygons cut_dark_sides(const Opening& opening, const Vec3& size, Polygons& faces) {
     Polygons dark;
     for (std::vector<Point>& face : faces) {
@@ -128,45 +130,46 @@ Polygons cut_dark_sides(const Opening& opening, const Vec3& size, Polygons& face
     return dark;
 }
 
-/// The size of a whole box whose sides have the areas of the luminous ones of an opening, so that it shows the same
-/// area in every direction. A pair of sides without light has a millionth of the area of the bottom: the light that
-/// goes exactly their way is lost, as that along a plane opening is.
+/// Size of a box without dark parts whose sides have the areas of the luminous parts, so that its projected area is the
+/// same in every direction. A pair of dark sides gets a millionth of the bottom's area, so the light exactly in its
+/// direction is lost, as for a plane opening.
 Vec3 box_of_same_areas(const Opening& opening, const Vec3& size) {
     if (!(opening.dark_x > 0 || opening.dark_y > 0)) return size;
-    const double z = size.x * size.y, least = 1e-6 * z;
-    const double x = std::max(least, size.y * (size.z - opening.dark_x));
-    const double y = std::max(least, size.x * (size.z - opening.dark_y));
+    const double z = size.x * size.y, min_area = 1e-6 * z;
+    const double x = std::max(min_area, size.y * (size.z - opening.dark_x));
+    const double y = std::max(min_area, size.x * (size.z - opening.dark_y));
     return {std::sqrt(y * z / x), std::sqrt(x * z / y), std::sqrt(x * y / z)};
 }
 
-/// Area that a convex body shows in the direction d.
+/// Projected area of a convex body in direction d.
 double projected_area(const std::vector<Vec3>& areas, const Vec3& d) {
     double sum = 0;
     for (const Vec3& a : areas) sum += std::max(0.0, dot(a, d));
     return sum;
 }
 
-/// The table's angles with those of a finer grid between them.
+/// Merges the table's angles with a regular grid.
 std::vector<double> refined(const std::vector<double>& at, double last, double step) {
     std::vector<double> out = at.size() > 1 ? at : std::vector<double>{0, last};
     for (int i = 0; i * step <= last; ++i) out.push_back(i * step);
     std::sort(out.begin(), out.end());
-    constexpr double alike = 1e-7;
-    out.erase(std::unique(out.begin(), out.end(), [](double a, double b) { return b - a < alike; }), out.end());
+    constexpr double angle_tolerance = 1e-7;
+    out.erase(std::unique(out.begin(), out.end(), [](double a, double b) { return b - a < angle_tolerance; }),
+              out.end());
     return out;
 }
 
-/// Angles from the axis of a cylinder, degrees: closer where it is seen nearly end-on and its projected area, end +
-/// side sin a, changes fast, so that 1 over it is as good as linear between them; through those of the table.
+/// Angles from a cylinder's axis, degrees, including those of `table`. They are denser near the axis, where the
+/// projected area, end + side sin a, changes fast, so that its inverse is nearly linear between neighbouring angles.
 std::vector<double> graded(const std::vector<double>& table, double end, double side, double step) {
-    constexpr double growth = 0.04;  // linear to 4e-4
+    constexpr double growth = 0.04;  // the error of linear interpolation is below 4e-4
     const double bend = end / side / degree;
     std::vector<double> rise{0};
     while (rise.back() < 90) rise.push_back(rise.back() + std::min(step, growth * (rise.back() + bend)));
     std::vector<double> out;
     for (const double a : rise) out.push_back(a * 90 / rise.back());
     for (std::size_t i = rise.size() - 1; i-- > 0;) out.push_back(180 - out[i]);
-    // The nearest angle moves to one of the table, so that no step becomes tiny.
+    // Move the nearest angle to each angle of the table, which avoids tiny steps.
     for (const double t : table) {
         const auto after = std::lower_bound(out.begin(), out.end(), t);
         if (after == out.begin() || after == out.end()) continue;
@@ -177,11 +180,11 @@ std::vector<double> graded(const std::vector<double>& table, double end, double 
     return out;
 }
 
-/// Radiance as a table of its own: intensity over the body's projected area, on a grid fine enough that this area is
-/// as good as linear between its angles.
+/// Tabulates the radiance: intensity over the body's projected area, on a grid on which this area is nearly linear
+/// between angles.
 void bake(const Photometry& p, const std::vector<Vec3>& areas, double step, bool is_cylinder, LuminaireBody& body) {
     EmissionProfile& out = body.profile;
-    // In the frame of a cylinder that does not stand the file's angles are nowhere.
+    // In the frame of a horizontal cylinder, the table's angles are not grid lines.
     const bool is_own = body.axis_z == p.axis_z;
     const std::vector<double> none;
     out.axes[0] = {EmissionProfile::Angle::phi, 0, refined(is_own ? p.phi : none, 360, step)};
@@ -205,7 +208,7 @@ void add_profile(const Photometry& p, const Vec3& size, const std::vector<Vec3>&
     // EmissionProfile::Body::box measures the box along the axes of the table, which are the body's in type C.
     const bool is_box = (shape == Shape::box || shape == Shape::point) && p.type == Photometry::Type::c;
     if (!is_flat(shape) && !is_box) {
-        // Degrees, by how far the body's edges lie off the lines of the table, and how blunt they are.
+        // Step in degrees: smaller if the body's edges deviate from grid lines or are sharp.
         const double step = shape == Shape::cylinder_z || shape == Shape::box ? 1
                             : shape == Shape::ellipsoid                       ? 0.25
                                                                               : 0.5;
@@ -257,8 +260,8 @@ LuminaireBody make_luminaire_body(const Photometry& p) {
         most = std::max(most, exitance);
         out.faces.push_back({polygons[i], exitance});
     }
-    // What a table that ends at 90 degrees sends upwards by rounding is no light; of a plane opening the dark side is
-    // left out, since the other one blocks light by itself.
+    // A table that ends at 90 degrees gives upper faces only rounding errors, which are set to 0. The dark side of a
+    // plane opening is removed, since the other side alone blocks light.
     constexpr double negligible = 1e-7;
     for (LuminaireBody::Face& face : out.faces)
         if (face.exitance < negligible * most) face.exitance = 0;

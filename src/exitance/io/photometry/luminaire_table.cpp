@@ -22,7 +22,7 @@ std::string trimmed(std::string_view text) {
     return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
 }
 
-/// Fields between commas; in double quotes a comma is text, and two quotes are one.
+/// Splits a line at commas. A comma in double quotes is text, and two quotes in such a field are one.
 std::vector<std::string> fields_of(std::string_view line) {
     std::vector<std::string> out;
     std::string field;
@@ -42,7 +42,7 @@ std::vector<std::string> fields_of(std::string_view line) {
     return out;
 }
 
-/// Of one row, by the columns above; empty where there is none.
+/// Fields of one row, in the order of `columns`; empty if missing.
 using Row = std::array<std::string, columns.size()>;
 
 class TableReader {
@@ -57,7 +57,7 @@ class TableReader {
 
     LineReader lines_;
     const std::string& path_;
-    std::vector<std::size_t> slots_;  ///< Of the file's columns.
+    std::vector<std::size_t> slots_;  ///< Index into `columns` per column of the file.
 };
 
 Result<void> TableReader::read_header(std::string_view header) {
@@ -150,7 +150,7 @@ Result<std::vector<PlacedLuminaire>> TableReader::read() {
 void aim(PlacedLuminaire& l, const Normal& direction, double rotation) {
     const double a = rotation * pi / 180, c = std::cos(a), s = std::sin(a);
     l.x = {c, s, 0}, l.y = {-s, c, 0}, l.z = {0, 0, 1};
-    // The turn by the shortest way takes the vertical to -direction; what points straight up turns over about x.
+    // The shortest rotation takes the vertical to -direction. A luminaire that points straight up is rotated about x.
     const Normal up = -direction;
     const Vec3 axis = cross(Vec3{0, 0, 1}, up);
     const double sine = norm(axis);
@@ -161,7 +161,7 @@ void aim(PlacedLuminaire& l, const Normal& direction, double rotation) {
     }
     const Vec3 k = axis / sine;
     for (Vec3* v : {&l.x, &l.y, &l.z})
-        *v = normalized(up.z * *v + sine * cross(k, *v) + (1 - up.z) * dot(k, *v) * k);  // Rodrigues
+        *v = normalized(up.z * *v + sine * cross(k, *v) + (1 - up.z) * dot(k, *v) * k);  // Rodrigues' rotation formula
 }
 
 Result<std::vector<PlacedLuminaire>> load_luminaire_table(const std::string& path) {

@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// Warns of extents that the file gives as 0 and that the opening's body needs.
+/// Warns of missing extents that are replaced by defaults.
 void warn_of_missing_extent(Photometry& p) {
     if (p.opening.shape == Opening::Shape::point)
         tell(p, Finding::Kind::warning, 0,

@@ -8,19 +8,20 @@
 
 namespace exitance {
 
-/// Reads an IES LM-63 file (1986 to 2019; types A, B and C with all their symmetries) from its text. Everything that
-/// leaves the light in doubt is an error with its line: counts that do not fit, angles that do not rise, negative or
-/// unreadable numbers, a multiplier of 0, a missing TILT line. What files are known to say wrongly and harmlessly is
-/// repaired and told. `name` is what messages call the file. O(numbers).
+/// Reads the text of an IES LM-63 file (1986 to 2019; types A, B and C with all their symmetries). `name` is the file's
+/// name in messages. O(numbers).
+/// Errors, with their line: everything that makes the light ambiguous, such as wrong counts, angles that do not ascend,
+/// negative or unreadable numbers, a multiplier of 0, or no TILT line. Known harmless mistakes are repaired and
+/// reported.
 Result<Photometry> read_ies(std::string_view text, const std::string& name);
 
-/// The same of EULUMDAT. Of several sets of lamps the first is taken, since sets are alternatives.
+/// Reads an EULUMDAT file in the same way. Lamp sets are alternatives; the first is used.
 Result<Photometry> read_eulumdat(std::string_view text, const std::string& name);
 
-/// Reads a file by its ending, .ies or .ldt (in any case).
+/// Reads a photometric file in the format of its ending, .ies or .ldt (in any case).
 Result<Photometry> load_photometry(const std::string& path);
 
-/// Is that the name of a photometric file?
+/// True if the path has the ending of a photometric file.
 bool names_photometry(const std::string& path);
 
 }  // namespace exitance

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double degree = pi / 180;
 
-/// Between which entries an angle lies; `inside` is false beyond both ends.
+/// Position of an angle between two table entries; `inside` is false beyond both ends.
 struct Place {
     std::size_t first = 0;
     double t = 0;
@@ -24,11 +24,11 @@ Place find(const std::vector<double>& at, double angle) {
     return {i, std::clamp((angle - at[i]) / (at[i + 1] - at[i]), 0.0, 1.0)};
 }
 
-/// Integral of the line through (t0, f0) and (t1, f1) times sin t, radians.
+/// Integral of f(t) sin t over [t0, t1], radians, where f is linear from f0 to f1.
 double segment(double t0, double t1, double f0, double f1) {
     const double b = (f1 - f0) / (t1 - t0), a = f0 - b * t0;
     const auto primitive = [&](double t) { return -a * std::cos(t) + b * (std::sin(t) - t * std::cos(t)); };
-    // Over a short step the primitives are alike to many digits: there the middle says as much.
+    // Over a short step, the difference of primitives would cancel; the midpoint rule is as accurate.
     if (t1 - t0 < 1e-4) return 0.5 * (f0 + f1) * std::sin(0.5 * (t0 + t1)) * (t1 - t0);
     return primitive(t1) - primitive(t0);
 }
@@ -102,7 +102,7 @@ double Photometry::flux(double from, double to) const {
 }
 
 BeamSpread beam_spread(const Photometry& p, const Vec3& towards, double share) {
-    constexpr int steps = 900;  // a tenth of a degree
+    constexpr int steps = 900;  // steps of 0.1 degrees
     const auto at = [&](const Normal& axis, double angle) {
         return p.intensity(std::cos(angle * degree) * axis + std::sin(angle * degree) * towards);
     };
@@ -115,7 +115,7 @@ BeamSpread beam_spread(const Photometry& p, const Vec3& towards, double share) {
     double most = largest(axis);
     if (!(most > 0)) axis = {0, 0, 1}, most = largest(axis);
     if (!(most > 0)) return {};
-    // To the last direction of a side that holds the share, the step after it bisected.
+    // Find the last direction of a side with that share, then bisect the next step.
     const auto side = [&](double sign) {
         const auto holds = [&](double angle) { return at(axis, sign * angle) >= share * most; };
         for (int i = steps; i >= 0; --i) {

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double degree = pi / 180;
 
-/// A file of type C, its opening and angles as given, I = f(theta, phi).
+/// Text of an IES file, of type C by default, with the given opening and angles and I = f(theta, phi).
 template <class F>
 std::string ies(const std::string& opening, const std::vector<double>& vertical, const std::vector<double>& horizontal,
                 F f, const std::string& edition = "IESNA:LM-63-2002", int type = 1) {
@@ -50,7 +50,7 @@ Vec3 direction(double theta, double phi) {
     return {std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), -std::cos(theta)};
 }
 
-TEST(Photometry, SamplesHaveTheirFluxAndBadOnesAPlace) {
+TEST(Photometry, SamplesHaveTheExpectedFluxAndBadOnesAreErrors) {
     const std::filesystem::path folder = std::filesystem::path(test::shared_folder()) / "formats/samples";
     if (!std::filesystem::exists(folder / "expected.json")) return;
     std::ifstream in(folder / "expected.json");
@@ -66,7 +66,7 @@ TEST(Photometry, SamplesHaveTheirFluxAndBadOnesAPlace) {
     }
 }
 
-TEST(Photometry, EverySymmetryIsWrittenOut) {
+TEST(Photometry, EverySymmetryIsExpanded) {
     const auto f = [](double t, double p) { return 100 * std::max(0.0, std::cos(t)) * (2 + std::cos(2 * p)); };
     const std::vector<double> v = steps(0, 90, 5);
     const Photometry full = read(ies("0.6 0.6 0", v, steps(0, 360, 10), f));
@@ -78,7 +78,7 @@ TEST(Photometry, EverySymmetryIsWrittenOut) {
     }
 }
 
-TEST(Photometry, BeyondItsAnglesATableIsDark) {
+TEST(Photometry, IntensityIsZeroBeyondTheTablesAngles) {
     const Photometry p = read(ies("0.6 0.6 0", steps(0, 60, 10), {0}, [](double, double) { return 100; }));
     EXPECT_DOUBLE_EQ(p.intensity(direction(59.9 * degree, 1)), 100);
     EXPECT_DOUBLE_EQ(p.intensity(direction(60.1 * degree, 1)), 0);
@@ -86,7 +86,7 @@ TEST(Photometry, BeyondItsAnglesATableIsDark) {
 }
 
 TEST(Photometry, TypesAAndBHaveTheirBeamAlongTheAxis) {
-    // Brightest where V = 30 degrees, H = -20: towards +x and -y of the luminaire.
+    // Brightest at V = 30 degrees, H = -20: towards +x and -y of the luminaire.
     const auto f = [](double v, double h) {
         return 1000 * std::max(0.0, 1 - 2 * (std::abs(v - pi / 6) + std::abs(h + pi / 9)));
     };
@@ -116,7 +116,7 @@ Box extent(const LuminaireBody& body) {
     return box;
 }
 
-/// Intensity of all faces together, far away: sum of L A cos.
+/// Total intensity of all faces, far away: sum of L A cos.
 double far_intensity(const LuminaireBody& body, const Vec3& d) {
     double sum = 0;
     for (const LuminaireBody::Face& face : body.faces) {
@@ -138,17 +138,17 @@ TEST(LuminaireBody, EveryShapeHasTheFilesFluxAndIntensity) {
         ASSERT_TRUE(body.profile.is_sane()) << opening;
         EXPECT_NEAR(body.flux() / p.flux(), 1, 1e-3) << opening;
         double worst = 0;
-        for (int i = 0; i < 1000; ++i) {  // Fibonacci's points
+        for (int i = 0; i < 1000; ++i) {  // Fibonacci points
             const double z = 1 - (2 * i + 1) / 1000.0, phi = i * 2.399963229728653, r = std::sqrt(1 - z * z);
             const Vec3 d{r * std::cos(phi), r * std::sin(phi), z};
-            if (p.opening.size.z == 0 && std::abs(z) < 0.02) continue;  // an edge-on opening
+            if (p.opening.size.z == 0 && std::abs(z) < 0.02) continue;  // an opening seen edge-on
             worst = std::max(worst, std::abs(far_intensity(body, d) / p.intensity(d) - 1));
         }
         EXPECT_LT(worst, 1e-3) << opening;
     }
 }
 
-TEST(LuminaireBody, OfABoxWithDarkSidesShinesWhereTheFileSays) {
+TEST(LuminaireBody, OfABoxWithDarkSidesEmitsFromItsLuminousParts) {
     const auto f = [](double t, double p) { return 300 + 200 * std::cos(t) * (1 + 0.3 * std::sin(t) * std::cos(p)); };
     for (const Vec2& dark : {Vec2{0.2, 0}, Vec2{0, 0.2}, Vec2{0.15, 0}, Vec2{0, 0.05}}) {
         Photometry p = read(ies("0.3 0.6 0.2", steps(0, 180, 10), steps(0, 360, 15), f));
@@ -170,7 +170,7 @@ TEST(LuminaireBody, OfABoxWithDarkSidesShinesWhereTheFileSays) {
     }
 }
 
-TEST(LuminaireBody, TypeBKeepsItsFluxWhateverItsShape) {
+TEST(LuminaireBody, TypeBKeepsItsFluxForEveryShape) {
     const auto f = [](double v, double h) { return 1000 * std::pow(std::cos(v) * std::cos(h), 3); };
     for (const char* opening : {"0.3 0.6 0", "0.3 0.3 0.2"}) {
         const Photometry p = read(ies(opening, steps(-90, 90, 5), steps(0, 90, 5), f, "IESNA:LM-63-2002", 2));
@@ -178,7 +178,7 @@ TEST(LuminaireBody, TypeBKeepsItsFluxWhateverItsShape) {
     }
 }
 
-TEST(LuminaireBody, KeepsEveryExtentThatTheFileGives) {
+TEST(LuminaireBody, KeepsEveryExtentOfTheFile) {
     const auto even = [](double, double) { return 100.0; };
     struct Case {
         const char* opening;  // width, length, height, metres
@@ -190,7 +190,7 @@ TEST(LuminaireBody, KeepsEveryExtentThatTheFileGives) {
         const Box box = extent(make_luminaire_body(read(ies(c.opening, steps(0, 180, 10), {0}, even))));
         for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(box.size()[k], c.size[k], 1e-12) << c.opening;
     }
-    // Round ones are polygons of the same area, about 1.2% wider than the circle at their corners.
+    // Round openings are polygons of the same area, about 1.2% wider than the circle at their corners.
     for (const auto& [opening, diameter, height] : {std::tuple{"-0.066 -0.066 0.001", 0.066, 0.001},
                                                     {"-0.003 -0.003 0.4", 0.003, 0.4},
                                                     {"-0.002 -0.002 0", 0.002, 0.0}}) {
@@ -200,7 +200,7 @@ TEST(LuminaireBody, KeepsEveryExtentThatTheFileGives) {
     }
 }
 
-TEST(LuminaireBody, GivesAnExtentOnlyWhereTheFileHasNone) {
+TEST(LuminaireBody, AddsAnExtentOnlyIfTheFileHasNone) {
     const auto even = [](double, double) { return 100.0; };
     const Box line = extent(make_luminaire_body(read(ies("0 1.2 0", steps(0, 180, 10), {0}, even))));
     EXPECT_EQ(line.size(), (Vec3{1.2, strip_width, 0}));
@@ -211,13 +211,14 @@ TEST(LuminaireBody, GivesAnExtentOnlyWhereTheFileHasNone) {
     EXPECT_EQ(point.size(), (Vec3{0.001, 0.001, 0.001}));
 }
 
-/// An EULUMDAT file of even light below, whose opening is 600 x 300 mm or round, with luminous heights, mm.
+/// Text of an EULUMDAT file with constant intensity below the horizontal. The opening is 600 x 300 mm or round, with
+/// the given luminous heights, mm.
 std::string eulumdat(const std::string& length_and_width, const std::string& heights) {
     return "maker\n3\n1\n1\n0\n3\n45\nreport\nlamp\nnumber\nfile\ndate\n700\n400\n100\n" + length_and_width + heights +
            "100\n100\n1\n0\n1\n1\nLED\n1000\n3000\n80\n10\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n0\n45\n90\n100\n100\n100\n";
 }
 
-TEST(PhotometricFile, KnowsTheLuminousHeightOfEachSide) {
+TEST(PhotometricFile, ReadsTheLuminousHeightOfEachSide) {
     const auto read_opening = [](const std::string& text, std::size_t warnings) {
         const Result<Photometry> p = read_eulumdat(text, "own.ldt");
         EXPECT_TRUE(p) << p.error().message;
@@ -240,7 +241,7 @@ TEST(PhotometricFile, KnowsTheLuminousHeightOfEachSide) {
     EXPECT_EQ(read_opening(eulumdat("600\n0\n", "50\n0\n50\n50\n"), 1).size.z, 0.05);
 }
 
-TEST(PhotometricFile, WarnsOfExtentsThatItDoesNotGive) {
+TEST(PhotometricFile, WarnsOfMissingExtents) {
     const TemporaryFolder folder;
     const auto warnings = [&](const char* opening) {
         std::ofstream(folder / "l.ies") << ies(opening, steps(0, 90, 10), {0}, cosine);
@@ -257,7 +258,7 @@ TEST(PhotometricFile, WarnsOfExtentsThatItDoesNotGive) {
     EXPECT_NE(warnings("0 0 0").find("a cube of 1 mm"), std::string::npos);
 }
 
-TEST(LuminaireBody, APlaneOpeningShinesOnlyWhereTheTableDoes) {
+TEST(LuminaireBody, APlaneOpeningEmitsOnlyWhereTheTableDoes) {
     EXPECT_EQ(make_luminaire_body(read(ies("0.6 1.2 0", steps(0, 90, 5), {0}, cosine))).faces.size(), 1u);
     const Photometry both =
         read(ies("0.6 1.2 0", steps(0, 180, 5), {0}, [](double t, double) { return std::abs(std::cos(t)); }));

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double degree = pi / 180, radius = 220, middle = 260;
 
-/// 1, 2 or 5 times a power of ten, so that about four of them make `most`.
+/// A step of 1, 2 or 5 times a power of ten, about a quarter of `most`.
 double round_step(double most) {
     const double power = std::pow(10, std::floor(std::log10(most / 4)));
     for (const double factor : {1.0, 2.0, 5.0})
@@ -32,7 +32,7 @@ std::string escaped(const std::string& text) {
     return out;
 }
 
-/// Both halves of a plane as one closed line.
+/// Draws both halves of a plane as one closed curve.
 std::string curve(const Photometry& p, const Vec3& towards, double scale) {
     std::string path;
     for (int i = -180; i <= 180; ++i) {

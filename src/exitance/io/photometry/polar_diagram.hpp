@@ -6,8 +6,8 @@
 
 namespace exitance {
 
-/// The intensity in the planes C0-C180 (solid) and C90-C270 (dashed) about the axis, as lighting designers draw it:
-/// down is down, circles in round steps of cd (cd per 1000 lm of the lamps where these are known). A whole SVG file.
+/// Draws the intensity in the planes C0-C180 (solid) and C90-C270 (dashed) as a polar diagram, with down at the bottom.
+/// Circles are at round steps of cd (cd per 1000 lm of the lamps, if known). Returns an SVG file.
 std::string polar_diagram(const Photometry& photometry);
 
 }  // namespace exitance

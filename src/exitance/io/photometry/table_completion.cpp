@@ -6,13 +6,13 @@
 namespace exitance {
 namespace {
 
-constexpr double rounding = 1e-6;  ///< Degrees: angles closer than this are one.
+constexpr double rounding = 1e-6;  ///< Degrees: angles closer than this are equal.
 
 bool same(double a, double b) {
     return std::abs(a - b) < rounding;
 }
 
-/// Adds what lies on the other side of the planes at `from` and `to`: the plane at angle `mirror` - a is that at a.
+/// Adds the mirror images of planes: the plane at angle `mirror` - a is equal to that at a.
 Planes mirrored(const Planes& in, double mirror) {
     Planes out = in;
     for (std::size_t i = in.angle.size(); i-- > 0;) {
@@ -24,7 +24,7 @@ Planes mirrored(const Planes& in, double mirror) {
     return out;
 }
 
-/// Rising angles, each once, both 0 and 360 among them.
+/// Sorts planes by angle and removes duplicates, so that both 0 and 360 are included.
 Planes sorted_circle(const Planes& in) {
     std::vector<std::size_t> order(in.angle.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -112,7 +112,7 @@ void set_table(Photometry& p, std::vector<double> theta, const Planes& planes) {
         return std::any_of(planes.rows.begin(), planes.rows.end(),
                            [&](const std::vector<double>& row) { return (front ? row.front() : row.back()) > 0; });
     };
-    // Beyond its angles a table is 0: with a step where it does not end at 0 by itself.
+    // Outside its angles the table is 0. If it does not end at 0, entries are added for the jump.
     const bool below = theta.front() > rounding, above = theta.back() < 180 - rounding;
     const bool step_below = below && edge(true), step_above = above && edge(false);
     p.theta.clear(), p.candela.clear();

@@ -6,29 +6,29 @@
 
 namespace exitance {
 
-/// The planes of a file of type C as they stand there: angles about the vertical, rising, and a row of intensities
-/// each.
+/// Planes of a type C file before completion: their angles about the vertical, ascending, and one row of intensities
+/// per plane.
 struct Planes {
     std::vector<double> angle;  ///< Degrees.
     std::vector<std::vector<double>> rows;
 };
 
-/// Writes out the symmetry of planes from 0 to 90 (in quadrants), from 0 to 180 (about the plane of C0), or from 90 to
-/// 270 (about that of C90); closes a circle that stops before 360 with its first plane. The result goes from 0 to 360.
-/// The angles must be one of these; see has_known_range.
+/// Completes planes by their symmetry: from 0 to 90 (quadrants), from 0 to 180 (symmetric about the C0 plane), or from
+/// 90 to 270 (about the C90 plane). If they end before 360, the first plane is repeated there. Returns planes from 0 to
+/// 360. The angles must satisfy has_known_range().
 Planes completed(const Planes& planes);
 
-/// One plane at 0, 0..90, 0..180, 90..270, 0..360, or 0.. beyond 180.
+/// True for one plane, or planes over 0..90, 0..180, 90..270, 0..360, or from 0 to any angle above 180.
 bool has_known_range(const std::vector<double>& angles);
 
-/// A table over -m..m from one over 0..m, both ends included.
+/// Extends a table over 0..m to -m..m by symmetry.
 void mirror(std::vector<double>& at, std::vector<std::vector<double>>& rows);
 std::vector<std::vector<double>> transposed(const std::vector<std::vector<double>>& rows);
 
-/// Planes at angles from -90 to 90 as a circle from 0 to 360: those below 0 as 360 less, and 0 in between.
+/// Converts planes at angles from -90 to 90 to a circle from 0 to 360; in the other half the intensity is 0.
 Planes around_axis(const std::vector<double>& around, const std::vector<std::vector<double>>& rows);
 
-/// Puts planes (from completed(), or one) into the table, 0 beyond the vertical angles given.
+/// Stores planes, one or from completed(), in the table. Beyond the given vertical angles the intensity is 0.
 void set_table(Photometry& p, std::vector<double> theta, const Planes& planes);
 
 }  // namespace exitance

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int glyph_width = 5, glyph_height = 7, advance = 6;
 
-/// Seven rows of five bits, the leftmost the highest. '^' is drawn as a raised 2 and swallows the digit after it.
+/// Seven rows of five bits; the highest bit is leftmost. '^' is drawn as a raised 2, and the digit after it is skipped.
 struct Glyph {
     char letter;
     std::array<std::uint8_t, glyph_height> rows;
@@ -34,7 +34,7 @@ constexpr Glyph glyphs[] = {
     {'x', {0x00, 0x00, 0x11, 0x0a, 0x04, 0x0a, 0x11}}, {'y', {0x00, 0x00, 0x11, 0x11, 0x0f, 0x01, 0x0e}},
 };
 
-/// Calls visit(letter, column) for each glyph of a text; returns how many columns there are.
+/// Calls visit(letter, column) for each glyph of a text; returns the number of columns.
 template <class Visit>
 int lay_out(std::string_view text, const Visit& visit) {
     int column = 0;

@@ -25,7 +25,7 @@ constexpr std::array<Look, 5> looks = {{{"broken", {220, 20, 30}},
                                         {"turned", {20, 90, 230}},
                                         {"open edge", {0, 150, 70}}}};
 
-/// A parallel view of a box into a rectangle of the picture.
+/// A parallel projection of a box into a rectangle of the picture.
 class SceneView {
   public:
     SceneView(Image& image, const Box& box, const Vec3& from, int left, int width, int height)
@@ -66,10 +66,10 @@ class SceneView {
 
     Image& image_;
     int left_, width_, height_;
-    Vec3 towards_, right_, up_;  ///< Towards the eye; the picture's axes.
+    Vec3 towards_, right_, up_;  ///< Direction towards the eye, and the picture's axes.
     Point middle_;
     double scale_ = 1;
-    std::vector<float> depth_;  ///< Towards the eye, pixels.
+    std::vector<float> depth_;  ///< Distance towards the eye, in pixels.
 };
 
 void SceneView::fill(const Seen& a, const Seen& b, const Seen& c, Rgb colour) {
@@ -102,7 +102,7 @@ void SceneView::draw_face(std::span<const Point> outline) {
         fill(see(outline[t[0]]), see(outline[t[1]]), see(outline[t[2]]), {shade, shade, shade});
 }
 
-/// The outline in a line of three pixels, on top of everything.
+/// Draws an outline three pixels wide on top of everything.
 void SceneView::draw_mark(std::span<const Point> outline, Rgb colour) {
     for (std::size_t i = 0; i < outline.size(); ++i) {
         const Seen a = see(outline[i]), b = see(outline[(i + 1) % outline.size()]);
@@ -151,7 +151,7 @@ Image check_picture(const SceneDescription& scene, std::span<const Mark> marks, 
             const double turn = side == 0 ? 1 : -1;
             SceneView view(image, box, {0.6 * turn, -0.9 * turn, 0.75}, side * half, half, inner);
             for (const auto& outline : outlines) view.draw_face(outline);
-            for (std::size_t kind = looks.size(); kind-- > 0;)  // the worst last, on top
+            for (std::size_t kind = looks.size(); kind-- > 0;)  // the most serious kind last, on top
                 for (const Mark& mark : marks)
                     if (static_cast<std::size_t>(mark.kind) == kind) view.draw_mark(mark.outline, looks[kind].colour);
         }

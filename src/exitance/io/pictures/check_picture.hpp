@@ -7,9 +7,9 @@
 
 namespace exitance {
 
-/// A picture of a scene as its file gives it, whether it can be used or not, with what was found marked in colours: two
-/// parallel views from above, from opposite sides, faces drawn where their fronts are seen (so that one looks into
-/// rooms), marks on top of everything, and a legend with how many there are of each. O(faces + pixels).
+/// Draws a scene as its file defines it, valid or not, with the findings marked in colours: two parallel views from
+/// above, from opposite sides. Faces are drawn only if their front is visible, so that one can look into rooms. Marks
+/// are on top of everything, and a legend lists their numbers. O(faces + pixels).
 Image check_picture(const SceneDescription& scene, std::span<const Mark> marks, int width, int height);
 
 }  // namespace exitance

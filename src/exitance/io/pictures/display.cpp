@@ -8,10 +8,10 @@ namespace exitance {
 
 namespace {
 
-/// Radiosity of what a pixel shows besides emitters, times its share of the pixel.
+/// Radiosity of the non-emitting surfaces in a pixel, times their share of the pixel.
 Spectrum reflected(const Pixel& pixel) {
     Spectrum light = pixel.front * pixel.radiosity - pixel.emitting * pixel.from_lamps;
-    for (double& value : light.value) value = std::max(value, 0.0);  // rounding
+    for (double& value : light.value) value = std::max(value, 0.0);  // removes rounding errors below 0
     return light;
 }
 
@@ -31,7 +31,7 @@ double automatic_exposure(const Picture& picture) {
 }
 
 Image display_image(const Picture& picture, const ToneMap& tones) {
-    constexpr double back_of_surface = 0.02;  // linear: told apart from nothing, and from anything lit
+    constexpr double back_of_surface = 0.02;  // linear; distinguishable from black and from anything lit
     Image image(picture.size.width, picture.size.height);
     parallel_for(picture.pixels.size(), 1024, [&](std::size_t i) {
         const Pixel& pixel = picture.pixels[i];

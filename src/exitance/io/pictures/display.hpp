@@ -8,15 +8,16 @@
 
 namespace exitance {
 
-/// The scale at which what a picture shows of reflected light lies around middle grey: 0.18 over its logarithmic mean,
-/// W/m^2 the unit. Emitters are left out, unless nothing else is to be seen.
+/// Exposure that brings reflected light to middle grey: 0.18 over the logarithmic mean of the picture, per W/m^2.
+/// Emitters are ignored unless nothing else is visible.
 double automatic_exposure(const Picture& picture);
 
-/// A picture as an eye might see it: radiosity through the tone map, sRGB. Emitters in a pixel are toned by themselves,
-/// so that their edges stay smooth. Backs of surfaces are nearly black, what shows no surface is black.
+/// Converts a picture for display: radiosity through the tone map, sRGB. Emitters in a pixel are tone mapped
+/// separately, so that their edges stay smooth. Backs of surfaces are nearly black, and pixels without a surface are
+/// black.
 Image display_image(const Picture& picture, const ToneMap& tones);
 
-/// Darkens the marked pixels: the mesh over a picture.
+/// Darkens the marked pixels, which are the edges of the mesh.
 void draw_edges(Image& image, const std::vector<bool>& edges);
 
 }  // namespace exitance

@@ -7,9 +7,9 @@
 namespace exitance {
 namespace {
 
-constexpr double points_a_mm = 72 / 25.4;
-constexpr double mean_width = 0.556;    ///< Of Helvetica's digits, over the font's height.
-constexpr double middle_height = 0.35;  ///< How far the middle of digits stands above their base.
+constexpr double points_per_mm = 72 / 25.4;
+constexpr double mean_width = 0.556;    ///< Width of Helvetica's digits over the font height.
+constexpr double middle_height = 0.35;  ///< Height of the middle of digits above the baseline, over the font height.
 
 std::string escaped(const std::string& words) {
     std::string out;
@@ -17,7 +17,7 @@ std::string escaped(const std::string& words) {
     return out;
 }
 
-/// UTF-8 as a string of PDF in ISO 8859-1.
+/// Converts UTF-8 to a PDF string in ISO 8859-1.
 std::string pdf_words(const std::string& words) {
     std::string out;
     for (std::size_t i = 0; i < words.size(); ++i) {
@@ -54,8 +54,9 @@ std::string page_content(const Drawing& drawing) {
     const auto colour = [&](const Rgb& c, const char* name) {
         fmt::format_to(to, "{:.3f} {:.3f} {:.3f} {}\n", c[0] / 255.0, c[1] / 255.0, c[2] / 255.0, name);
     };
-    // Millimetres with y downwards; text is turned back.
-    fmt::format_to(to, "{0:.6f} 0 0 -{0:.6f} 0 {1:.4f} cm\n1 j 1 J\nq\n", points_a_mm, points_a_mm * drawing.size.y);
+    // The page is in millimetres with y downwards; text is mirrored back.
+    fmt::format_to(to, "{0:.6f} 0 0 -{0:.6f} 0 {1:.4f} cm\n1 j 1 J\nq\n", points_per_mm,
+                   points_per_mm * drawing.size.y);
     const Vec2 clip{drawing.clip_hi.x - drawing.clip_lo.x, drawing.clip_hi.y - drawing.clip_lo.y};
     fmt::format_to(to, "{:.3f} {:.3f} {:.3f} {:.3f} re W n\n", drawing.clip_lo.x, drawing.clip_lo.y, clip.x, clip.y);
     for (const Drawing::Line& line : drawing.lines) {
@@ -114,7 +115,7 @@ std::string pdf_of(const Drawing& drawing) {
         "<< /Type /Catalog /Pages 2 0 R >>", "<< /Type /Pages /Kids [3 0 R] /Count 1 >>",
         fmt::format("<< /Type /Page /Parent 2 0 R /MediaBox [0 0 {:.3f} {:.3f}] /Contents 4 0 R /Resources << /Font << "
                     "/F 5 0 R >> >> >>",
-                    points_a_mm * drawing.size.x, points_a_mm * drawing.size.y),
+                    points_per_mm * drawing.size.x, points_per_mm * drawing.size.y),
         fmt::format("<< /Length {} >>\nstream\n{}endstream", content.size(), content),
         "<< /Type /Font /Subtype /Type1 /BaseFont /Helvetica /Encoding /WinAnsiEncoding >>"};
     std::string out = "%PDF-1.4\n%\xe2\xe3\xcf\xd3\n", table;

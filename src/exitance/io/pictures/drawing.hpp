@@ -8,33 +8,33 @@
 
 namespace exitance {
 
-/// Lines and words on a sheet, in millimetres from its upper left corner, y downwards: what becomes a file for people
-/// who print and measure.
+/// Lines and texts on a sheet, in millimetres from its upper left corner, y downwards, for files that are printed and
+/// measured.
 struct Drawing {
     struct Line {
-        std::vector<Vec2> points;  ///< From two on; a piece each pair where `pieces`.
+        std::vector<Vec2> points;  ///< At least two; every pair is a separate segment if `pieces`.
         Rgb colour{0, 0, 0};
         double width = 0.2;  ///< mm
         bool dashed = false, closed = false, pieces = false;
     };
     struct Text {
-        Vec2 at;  ///< Of the middle of its line, or of its left end.
+        Vec2 at;  ///< Centre of the text, or the middle of its left end.
         std::string words;
-        double height = 2.5;  ///< mm, of the font.
+        double height = 2.5;  ///< Font height, mm.
         Rgb colour{0, 0, 0};
         bool centred = false, on_white = false;
     };
-    Vec2 size;              ///< Of the sheet, mm.
-    Vec2 clip_lo, clip_hi;  ///< No line is drawn outside.
+    Vec2 size;              ///< Size of the sheet, mm.
+    Vec2 clip_lo, clip_hi;  ///< Lines are clipped to this rectangle.
     std::vector<Line> lines;
     std::vector<Text> texts;
 };
 
-/// As SVG 1.1, with its size in millimetres.
+/// Formats a drawing as SVG 1.1, with its size in millimetres.
 std::string svg_of(const Drawing& drawing);
 
-/// As PDF 1.4, one page of that size; words in Helvetica, which every reader has. Other characters than those of
-/// ISO 8859-1 become question marks.
+/// Formats a drawing as PDF 1.4, one page of the drawing's size. Text is in Helvetica, which every reader has.
+/// Characters outside ISO 8859-1 become question marks.
 std::string pdf_of(const Drawing& drawing);
 
 }  // namespace exitance

@@ -13,7 +13,7 @@ Drawing sample() {
     return d;
 }
 
-TEST(Drawing, AsSvgHasItsSizeInMillimetresAndEscapedWords) {
+TEST(Drawing, AsSvgHasItsSizeInMillimetresAndEscapedText) {
     const std::string svg = svg_of(sample());
     EXPECT_NE(svg.find("width=\"100.00mm\" height=\"50.00mm\""), std::string::npos);
     EXPECT_NE(svg.find("M1.00 2.00L3.00 4.00M5.00 6.00L7.00 8.00"), std::string::npos) << svg;
@@ -21,7 +21,7 @@ TEST(Drawing, AsSvgHasItsSizeInMillimetresAndEscapedWords) {
     EXPECT_EQ(svg.substr(svg.size() - 7), "</svg>\n");
 }
 
-TEST(Drawing, AsPdfPointsToEveryObject) {
+TEST(Drawing, AsPdfHasACorrectObjectTable) {
     const std::string pdf = pdf_of(sample());
     EXPECT_EQ(pdf.substr(0, 8), "%PDF-1.4");
     EXPECT_NE(pdf.find("MediaBox [0 0 283.465 141.732]"), std::string::npos);

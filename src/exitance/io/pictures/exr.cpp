@@ -16,7 +16,7 @@
 namespace exitance {
 namespace {
 
-/// A file in memory, so that it can be put into its place at once.
+/// A file in memory, which is then written to disk as a whole.
 class MemoryFile : public Imf::OStream {
   public:
     MemoryFile() : OStream("") {}
@@ -61,7 +61,7 @@ Result<void> write_exr(const std::string& path, const LinearImage& image, const 
             if (half) halves.push_back(to_half(channel.values));
             const void* values =
                 half ? static_cast<const void*>(halves.back().data()) : static_cast<const void*>(channel.values.data());
-            char* first = static_cast<char*>(const_cast<void*>(values));  // it only reads
+            char* first = static_cast<char*>(const_cast<void*>(values));  // OpenEXR only reads from it
             frame.insert(channel.name, Imf::Slice(type, first, bytes, bytes * static_cast<std::size_t>(image.width)));
         }
         MemoryFile memory;

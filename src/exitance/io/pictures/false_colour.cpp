@@ -14,8 +14,8 @@ constexpr Rgb white{255, 255, 255}, night{20, 20, 24}, back_of_surface{58, 58, 6
 
 using Anchors = std::array<Rgb, 9>;
 
-/// Nine colours of each, between which sRGB values are interpolated: viridis and inferno (Smith and van der Walt,
-/// 2015), turbo (Mikhailov, 2019).
+/// Nine colours of each palette, between which sRGB values are interpolated: viridis and inferno (Smith and van der
+/// Walt, 2015), turbo (Mikhailov, 2019).
 const Anchors& anchors_of(Palette palette) {
     static constexpr Anchors viridis{{{68, 1, 84},
                                       {71, 44, 122},
@@ -66,7 +66,7 @@ const Anchors& anchors_of(Palette palette) {
     return viridis;
 }
 
-/// The colour at t in [0, 1].
+/// Colour of a palette at t in [0, 1].
 Rgb colour_at(Palette palette, double t) {
     const Anchors& anchors = anchors_of(palette);
     const double at = std::clamp(t, 0.0, 1.0) * (anchors.size() - 1);
@@ -83,7 +83,7 @@ Rgb band_colour(const ColourScale& scale, std::size_t band) {
     return colour_at(scale.palette, count > 1 ? static_cast<double>(band) / static_cast<double>(count - 1) : 0.5);
 }
 
-/// So many bands of equal width, or of equal ratio.
+/// Limits of `count` bands of equal width or equal ratio.
 std::vector<double> even_steps(double lo, double hi, bool by_ratio, std::size_t count) {
     std::vector<double> steps;
     for (std::size_t k = 0; k <= count; ++k) {
@@ -114,12 +114,12 @@ std::vector<double> steps_by_ratio(double lo, double hi) {
     return steps;
 }
 
-/// Round steps, those at the ends in place of the range's own.
+/// Round steps that include the range.
 std::vector<double> round_steps(double lo, double hi, bool by_ratio) {
     return by_ratio ? steps_by_ratio(lo, hi) : linear_steps(lo, hi);
 }
 
-/// Round steps within a range, and its ends.
+/// Round steps inside a range, plus its ends.
 std::vector<double> steps_within(double lo, double hi, bool by_ratio) {
     std::vector<double> steps = round_steps(lo, hi, by_ratio);
     const double near = 1e-6 * (hi - lo);
@@ -181,7 +181,7 @@ Rgb ColourScale::colour(double value) const {
 
 namespace {
 
-/// What the scale of a picture has to show, and whether by ratios; nothing where all is dark.
+/// Range of values for the scale of a picture; empty if nothing is lit.
 std::optional<std::pair<double, double>> range_of(const Picture& picture, Quantity quantity) {
     std::vector<double> values;
     for (const Pixel& pixel : picture.pixels)
@@ -203,9 +203,9 @@ ColourScale make_colour_scale(const Picture& picture, Quantity quantity, const S
     const auto range = choice.range ? choice.range : range_of(picture, quantity);
     if (!range) return scale;
     auto [lo, hi] = *range;
-    constexpr double wide = 30, least_ratio = 1e-4;  // below this share of the brightest all is dark
+    constexpr double wide = 30, min_ratio = 1e-4;  // values below this share of the maximum count as dark
     const bool by_ratio = choice.by_ratio || (!choice.range && hi > wide * lo);
-    if (by_ratio) lo = std::max(lo, least_ratio * hi);
+    if (by_ratio) lo = std::max(lo, min_ratio * hi);
     if (!choice.range && !by_ratio) lo = std::min(lo, 0.98 * hi);
     scale.steps = choice.range ? steps_within(lo, hi, by_ratio) : round_steps(lo, hi, by_ratio);
     if (choice.bands)
@@ -227,7 +227,7 @@ Image false_colour_image(const Picture& picture, Quantity quantity, const Colour
     return image;
 }
 
-/// A column of colours, darkest at the bottom, each border with its value; the title in two lines above.
+/// Draws a column of colours, darkest at the bottom, with the value of each border, and the title in two lines above.
 void draw_legend(Image& image, const std::string& text, const ColourScale& scale) {
     const int s = std::max(1, std::min(image.width / 600, image.height / 375));
     const std::size_t gap = text.find(' ');
@@ -248,7 +248,7 @@ void draw_legend(Image& image, const std::string& text, const ColourScale& scale
             scale.smooth ? colour_at(scale.palette, place) : band_colour(scale, static_cast<std::size_t>(y / band));
         fill_rectangle(image, left + margin, bottom - y - 1, 11 * s, 1, colour);
     }
-    const int every = band < 9 * s ? (9 * s + band - 1) / band : 1;  // names must not touch
+    const int every = band < 9 * s ? (9 * s + band - 1) / band : 1;  // keeps labels from overlapping
     for (int i = 0; i <= count; i += every)
         draw_text(image, left + margin + 16 * s, bottom - band * i - 3 * s, names[static_cast<std::size_t>(i)], s,
                   white);

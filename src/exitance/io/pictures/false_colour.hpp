@@ -11,50 +11,50 @@
 
 namespace exitance {
 
-/// What a picture in false colours shows: the mean of the bands, or the mean as the eye weighs them, which is cd/m^2 or
-/// lx in photometric scenes.
+/// Quantity of a picture in false colours: the mean of the bands, or their luminous mean, which is cd/m^2 or lx in
+/// photometric scenes.
 enum class Quantity { radiosity, irradiance, luminance, illuminance };
 
-/// "illuminance lx": its name, and its unit in scenes of watts or of lumens.
+/// Name and unit of a quantity, such as "illuminance lx", for radiometric or photometric scenes.
 std::string title(Quantity quantity, bool photometric);
 
 enum class Palette { viridis, inferno, turbo, grey };
 
 double value_of(const Pixel& pixel, Quantity quantity);
 
-/// What of a scale users choose.
+/// User options for a colour scale.
 struct ScaleChoice {
-    std::optional<std::pair<double, double>> range = {};  ///< None: as the picture has it.
-    bool by_ratio = false;                                ///< Steps of equal ratios; else where the light asks for it.
-    std::optional<std::size_t> bands = {};                ///< So many colours; none: round steps.
-    bool smooth = false;                                  ///< Colours run into one another.
+    std::optional<std::pair<double, double>> range = {};  ///< None: the range of the picture.
+    bool by_ratio = false;                  ///< Steps of equal ratio; otherwise depends on the range of light.
+    std::optional<std::size_t> bands = {};  ///< Number of colours; none: round steps.
+    bool smooth = false;                    ///< Interpolates between colours.
     Palette palette = Palette::viridis;
 };
 
-/// Values in rising order between which one colour stands each: as a rule round ones at equal steps (1, 2 or 5 times a
-/// power of ten), or 1-2-5 steps where the light spans more than a factor of thirty.
+/// A scale with one colour between each pair of ascending values. By default these are round numbers at equal distances
+/// (1, 2 or 5 times a power of ten), or 1-2-5 steps if the values span more than a factor of thirty.
 struct ColourScale {
     std::vector<double> steps;  ///< At least two.
     Palette palette = Palette::viridis;
     bool smooth = false;
     std::vector<std::string> names() const;
 
-    /// Which colour shows a value, in [0, steps.size() - 2]: what lies outside goes to the ends.
+    /// Index of the colour of a value, in [0, steps.size() - 2]; values outside the scale get the first or last colour.
     std::size_t band(double value) const;
     std::size_t band_count() const { return steps.size() - 1; }
-    /// Where in the scale a value lies, from 0 to 1: between its steps, evenly from one to the next.
+    /// Position of a value in the scale, from 0 to 1; each step has the same length, with linear interpolation inside.
     double place(double value) const;
     Rgb colour(double value) const;
 };
 
-/// A scale for the surfaces in a picture; emitters, brighter by far, are left out, and so is one pixel in a hundred at
-/// either end.
+/// Makes a scale for the surfaces in a picture. Emitters, which are much brighter, and 1% of the pixels at each end are
+/// ignored.
 ColourScale make_colour_scale(const Picture& picture, Quantity quantity, const ScaleChoice& choice = {});
 
-/// The picture in false colours, darkest first (but for turbo, lightness rises evenly).
+/// Draws the picture in false colours, dark for low values; lightness rises evenly, except for turbo.
 Image false_colour_image(const Picture& picture, Quantity quantity, const ColourScale& scale);
 
-/// Draws what the colours mean into the upper right corner, under a title: its name, then its unit.
+/// Draws a legend into the upper right corner, under a title that consists of the name and the unit.
 void draw_legend(Image& image, const std::string& title, const ColourScale& scale);
 
 }  // namespace exitance

@@ -11,7 +11,7 @@ namespace {
 
 using Rgbe = std::array<std::uint8_t, 4>;
 
-/// Three mantissas of eight bits and an exponent for all: value = mantissa 2^(exponent - 136).
+/// Encodes three mantissas of eight bits with a common exponent: value = mantissa 2^(exponent - 136).
 Rgbe shared_exponent(float r, float g, float b) {
     const float largest = std::max({r, g, b});
     if (!(largest > 1e-32f)) return {0, 0, 0, 0};
@@ -23,8 +23,8 @@ Rgbe shared_exponent(float r, float g, float b) {
     return {mantissa(r), mantissa(g), mantissa(b), static_cast<std::uint8_t>(exponent + 128)};
 }
 
-/// One byte of every pixel of a row: runs of 4 to 127 equal bytes as (128 + length, byte), others as they are, at most
-/// 128 after their number.
+/// Encodes one byte of every pixel of a row. Runs of 4 to 127 equal bytes become (128 + length, byte); other bytes are
+/// copied after their count, at most 128.
 void encode_runs(const std::vector<std::uint8_t>& bytes, std::string& out) {
     const auto run_at = [&](std::size_t i) {
         std::size_t n = 1;
@@ -55,7 +55,7 @@ Result<void> write_hdr(const std::string& path, const LinearImage& image, const 
         "EXPOSURE=1\nPRIMARIES=0.64 0.33 0.30 0.60 0.15 0.06 0.3127 0.3290\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n",
         image.height, image.width);
     const auto width = static_cast<std::size_t>(image.width);
-    const bool runs = image.width >= 8 && image.width < 32768;  // others are known by their first bytes
+    const bool runs = image.width >= 8 && image.width < 32768;  // rows of other widths are stored without runs
     std::vector<Rgbe> row(width);
     std::vector<std::uint8_t> bytes(width);
     for (std::size_t y = 0; y < static_cast<std::size_t>(image.height); ++y) {

@@ -10,13 +10,13 @@ namespace {
 
 constexpr int no_line = -1;
 
-/// A piece of a line within a square of four pixels' middles, in pixels; and which step of the scale it is at.
+/// A segment of an isoline inside a square of four pixel centres, in pixels, and the index of its step.
 struct Segment {
     Vec2 a, b;
     int step;
 };
 
-/// Marching squares [Lorensen87] over the squares whose corners show one surface.
+/// Applies marching squares [Lorensen87] to the squares whose corners show the same surface.
 std::vector<Segment> find_segments(const Picture& picture, const ColourScale& scale) {
     std::vector<Segment> out;
     const auto pixel = [&](int x, int y) -> const Pixel& {
@@ -53,7 +53,7 @@ std::vector<Segment> find_segments(const Picture& picture, const ColourScale& sc
     return out;
 }
 
-/// The step of a line through each pixel.
+/// Index of the step whose line crosses each pixel.
 std::vector<int> lines_of(const std::vector<Segment>& segments, PictureSize size) {
     std::vector<int> lines(size.pixels(), no_line);
     for (const Segment& s : segments) {
@@ -65,7 +65,7 @@ std::vector<int> lines_of(const std::vector<Segment>& segments, PictureSize size
     return lines;
 }
 
-/// The pixels of the line through one pixel, in the order in which they are reached; takes them off `lines`.
+/// Collects the pixels of the line that contains `from`, in the order of the search, and removes them from `lines`.
 std::vector<std::size_t> take_line(std::vector<int>& lines, std::size_t from, PictureSize size) {
     const int step = lines[from];
     std::vector<std::size_t> line{from};
@@ -98,7 +98,7 @@ double distance(Vec2 p, const Segment& s) {
     return std::hypot(off.x, off.y);
 }
 
-/// Lines `wide` pixels wide with soft borders: white on what is dark, dark on what is bright.
+/// Draws lines `wide` pixels wide with smooth borders: white on dark pixels, dark on bright ones.
 void draw_segments(Image& image, const std::vector<Segment>& segments, double wide) {
     std::vector<float> share(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
     for (const Segment& s : segments) {
@@ -148,7 +148,7 @@ void draw_isolux(Image& image, const Picture& picture, const ColourScale& scale,
         const std::string& name = names[static_cast<std::size_t>(lines[from])];
         const std::vector<std::size_t> line = take_line(lines, from, picture.size);
         if (line.size() < shortest) continue;
-        for (const double along : {0.5, 0.35, 0.65, 0.2, 0.8}) {  // the first place that is free
+        for (const double along : {0.5, 0.35, 0.65, 0.2, 0.8}) {  // the first free position
             const auto at = static_cast<int>(line[static_cast<std::size_t>(along * static_cast<double>(line.size()))]);
             const int width = text_width(name, s) + 4 * s, height = 11 * s;
             const Label label{at % image.width - width / 2, at / image.width - height / 2, width, height};

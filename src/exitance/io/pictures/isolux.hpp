@@ -4,8 +4,8 @@
 
 namespace exitance {
 
-/// Draws lines of equal illuminance at the steps of `scale`, through the light between pixels' middles, each surface by
-/// itself, with their values on the longer ones, and in the lower left corner `title`, which says what they show.
+/// Draws isolines of illuminance at the steps of `scale`, interpolated between pixel centres, separately for each
+/// surface. Longer lines are labelled with their values; `title` is in the lower left corner.
 void draw_isolux(Image& image, const Picture& picture, const ColourScale& scale, const std::string& title);
 
 }  // namespace exitance

@@ -18,26 +18,27 @@ Picture ramp(int width, int height) {
     return picture;
 }
 
-TEST(Isolux, LinesStandWhereLightPassesTheStepsAndNotBetweenSurfaces) {
+TEST(Isolux, LinesAreAtTheStepsAndNotBetweenSurfaces) {
     const Picture picture = ramp(200, 40);
     Image image(200, 40);
     draw_isolux(image, picture, {{0, 25, 50, 75, 100}}, "illuminance lx");
     const auto is_drawn = [&](int x, int y) { return image.at(x, y)[0] > 0; };
     for (const int y : {1, 3, 5}) {
-        EXPECT_TRUE(is_drawn(49, y) && is_drawn(99, y) && is_drawn(149, y));  // 25, 50 and 75 lx begin at the next
+        // Lines of 25, 50 and 75 lx are between this pixel and the next.
+        EXPECT_TRUE(is_drawn(49, y) && is_drawn(99, y) && is_drawn(149, y));
         EXPECT_FALSE(is_drawn(60, y) || is_drawn(120, y));
     }
-    EXPECT_TRUE(is_drawn(99, 22));  // half the light on the lower surface: 25 lx
+    EXPECT_TRUE(is_drawn(99, 22));  // the lower surface has half the light: 25 lx
     int on_border = 0;
     for (int x = 0; x < 200; ++x) on_border += is_drawn(x, 19);
     EXPECT_LT(on_border, 10);
 }
 
-TEST(Isolux, LongLinesCarryTheirValues) {
+TEST(Isolux, LongLinesAreLabelled) {
     const Picture picture = ramp(200, 160);
     Image image(200, 160);
     draw_isolux(image, picture, {{0, 50, 100}}, "illuminance lx");
-    int paper = 0;  // the colour behind the figures, on the line of 50 lx
+    int paper = 0;  // pixels of the label's background, on the line of 50 lx
     for (int y = 0; y < 80; ++y) paper += image.at(94, y)[2] == 24;
     EXPECT_GT(paper, 5);
 }

@@ -14,7 +14,7 @@
 namespace exitance {
 namespace {
 
-/// A picture of light over twelve orders of magnitude, every other row of one value.
+/// A picture of light over twelve orders of magnitude; every other row has one value.
 Picture sample_picture(int width, int height) {
     Picture picture{{width, height}, std::vector<Pixel>(static_cast<std::size_t>(width * height))};
     RandomStream random(1, Stream::mesh);
@@ -28,7 +28,7 @@ Picture sample_picture(int width, int height) {
     return picture;
 }
 
-/// Reads what write_hdr writes, after the format's description.
+/// Decodes a file of write_hdr() by the format's description.
 std::vector<std::array<double, 3>> read_hdr(const std::string& content, std::size_t width, std::size_t height) {
     const std::string size = "\n\n-Y " + std::to_string(height) + " +X " + std::to_string(width) + "\n";
     std::size_t at = content.find(size) + size.size();
@@ -75,7 +75,7 @@ TEST(WriteHdr, HoldsRadianceWithinAPercentOfThePixelsBrightestBand) {
         for (std::size_t i = 0; i < pixels.size(); ++i) {
             const auto value = [&](std::size_t c) { return static_cast<double>(image.channels[c].values[i]); };
             const double brightest = std::max({value(0), value(1), value(2)});
-            for (std::size_t c = 0; c < 3; ++c)  // half a step of the mantissa, which has at least 128
+            for (std::size_t c = 0; c < 3; ++c)  // half a step of the mantissa, which is at least 128
                 EXPECT_NEAR(pixels[i][c], value(c), brightest / 256 * 1.0001);
         }
     }

@@ -11,22 +11,22 @@
 
 namespace exitance {
 
-/// A colour and what it means.
+/// A colour of a legend with its meaning.
 struct KeyEntry {
     std::string name;  ///< Small letters and digits.
     Rgb colour;
 };
 
-/// Faces in full light, penumbra and umbra, and emitters, each in a plain colour; backs of surfaces and what shows none
-/// are nearly black.
+/// Draws faces in full light, in penumbra and in umbra, and emitters, each in one colour. Backs of surfaces and pixels
+/// without a surface are nearly black.
 Image shadow_class_image(const SixNodeMesh& mesh, const Scene& scene, const MeshView& view);
 std::vector<KeyEntry> shadow_class_key();
 
-/// Draws edges in the colours of their orders, those that no event made faintly.
+/// Draws edges in the colours of their orders; edges without a discontinuity are faint.
 void draw_ordered_edges(Image& image, std::span<const std::optional<CurveOrder>> edges);
 std::vector<KeyEntry> edge_order_key();
 
-/// Draws what colours mean into the upper left corner.
+/// Draws a legend into the upper left corner.
 void draw_key(Image& image, std::span<const KeyEntry> key);
 
 }  // namespace exitance

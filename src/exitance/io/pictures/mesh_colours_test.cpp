@@ -10,7 +10,7 @@ Rgb colour_at(const Image& image, int x, int y) {
     return {p[0], p[1], p[2]};
 }
 
-TEST(MeshColours, EdgesHaveTheColourThatTheKeyNamesAndConstructionEdgesStayFaint) {
+TEST(MeshColours, EdgesHaveTheColoursOfTheLegendAndOthersAreFaint) {
     Image image(4, 1);
     std::fill(image.rgb.begin(), image.rgb.end(), std::uint8_t(200));
     const std::vector<std::optional<CurveOrder>> edges = {CurveOrder::d0, CurveOrder::d2, CurveOrder::none,
@@ -23,7 +23,7 @@ TEST(MeshColours, EdgesHaveTheColourThatTheKeyNamesAndConstructionEdgesStayFaint
     EXPECT_EQ(colour_at(image, 3, 0), (Rgb{200, 200, 200}));
 }
 
-TEST(MeshColours, TheKeyShowsEveryColourAndFitsAnyPicture) {
+TEST(MeshColours, TheLegendShowsEveryColourAndFitsAnyPicture) {
     Image image(300, 200);
     draw_key(image, shadow_class_key());
     for (const KeyEntry& entry : shadow_class_key()) {

@@ -17,7 +17,7 @@ void append(png_structp png, png_bytep bytes, png_size_t count) {
 
 void ignore_flush(png_structp) {}
 
-/// libpng reports errors by a jump: nothing with a destructor may live in this function.
+/// libpng reports errors by longjmp(): no object with a destructor may exist in this function.
 bool encode(png_structp png, png_infop info, const Image& image, png_textp texts, int text_count, std::string& out) {
     if (setjmp(png_jmpbuf(png))) return false;
     png_set_write_fn(png, &out, append, ignore_flush);
@@ -47,7 +47,7 @@ void take(png_structp png, png_bytep out, png_size_t count) {
 }
 void ignore_warning(png_structp, png_const_charp) {}
 
-/// libpng reports errors by a jump: nothing with a destructor may live in this function.
+/// libpng reports errors by longjmp(): no object with a destructor may exist in this function.
 bool decode_rows(png_structp png, png_infop info, Source& source, std::vector<std::uint8_t>& row, MeanOfRows& mean) {
     if (setjmp(png_jmpbuf(png))) return false;
     png_set_read_fn(png, &source, take);
@@ -62,7 +62,7 @@ bool decode_rows(png_structp png, png_infop info, Source& source, std::vector<st
     if (png_get_rowbytes(png, info) != std::size_t(3) * width) return false;
     row.resize(std::size_t(3) * width);
     const bool interlaced = png_get_interlace_type(png, info) == PNG_INTERLACE_ADAM7;
-    // Each pass of an interlaced picture is a small picture of its own; together they hold every pixel once.
+    // Each pass of an interlaced picture is a smaller picture; together they contain every pixel once.
     for (int pass = 0; pass < (interlaced ? PNG_INTERLACE_ADAM7_PASSES : 1); ++pass) {
         const png_uint_32 columns = interlaced ? PNG_PASS_COLS(width, pass) : width;
         const png_uint_32 rows = interlaced ? PNG_PASS_ROWS(height, pass) : height;

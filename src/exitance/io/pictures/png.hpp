@@ -9,7 +9,7 @@
 
 namespace exitance {
 
-/// A picture of eight bits a channel, sRGB: red, green, blue, rows from top to bottom.
+/// A picture with eight bits per channel, sRGB: red, green, blue, rows from top to bottom.
 struct Image {
     int width = 0, height = 0;
     std::vector<std::uint8_t> rgb;
@@ -22,13 +22,13 @@ struct Image {
     const std::uint8_t* at(int x, int y) const { return const_cast<Image*>(this)->at(x, y); }
 };
 
-/// Keywords and what they say, stored with a picture (tEXt). Latin-1.
+/// Texts stored with a picture (tEXt), as pairs of keyword and text. Latin-1.
 using ImageTexts = std::vector<std::pair<std::string, std::string>>;
 
-/// A picture as the bytes of a PNG file.
+/// Encodes a picture as PNG.
 Result<std::string> encode_png(const Image& image, const ImageTexts& texts);
 
-/// Writes a PNG; it appears whole or not at all.
+/// Writes a PNG file, which appears whole or not at all.
 Result<void> write_png(const std::string& path, const Image& image, const ImageTexts& texts);
 
 }  // namespace exitance

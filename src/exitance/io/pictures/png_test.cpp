@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-TEST(Png, BeginsAndEndsAsPngDoesAndSaysWhatItIsTold) {
+TEST(Png, HasTheStructureOfPngAndItsTexts) {
     const TemporaryFolder folder;
     Image image(5, 3);
     fill_rectangle(image, -2, 1, 4, 9, {10, 200, 30});
@@ -23,7 +23,7 @@ TEST(Png, BeginsAndEndsAsPngDoesAndSaysWhatItIsTold) {
     EXPECT_EQ(bytes->substr(16, 8), std::string("\0\0\0\5\0\0\0\3", 8));  // width and height
 }
 
-TEST(Png, IsAbsentWhereItCannotBeWritten) {
+TEST(Png, IsAbsentIfItCannotBeWritten) {
     const TemporaryFolder folder;
     const Result<void> written = write_png(folder / "absent/a.png", Image(2, 2), {});
     ASSERT_FALSE(static_cast<bool>(written));
@@ -40,7 +40,7 @@ Picture ramp(double lo, double hi) {
     return picture;
 }
 
-TEST(FalseColour, StepsAreRoundAndHoldWhatIsShown) {
+TEST(FalseColour, StepsAreRoundAndIncludeTheValues) {
     const ColourScale linear = make_colour_scale(ramp(5.3, 39), Quantity::irradiance);
     EXPECT_EQ(linear.names().front(), "5");
     EXPECT_EQ(linear.names()[1], "10");
@@ -55,7 +55,7 @@ TEST(FalseColour, StepsAreRoundAndHoldWhatIsShown) {
     }
 }
 
-TEST(FalseColour, ScalesHaveTheRangeTheBandsAndTheCourseThatAreAskedFor) {
+TEST(FalseColour, ScalesHaveTheRequestedRangeBandsAndSpacing) {
     const Picture picture = ramp(5.3, 39);
     const auto scale = [&](const ScaleChoice& choice) {
         return make_colour_scale(picture, Quantity::irradiance, choice);
@@ -74,7 +74,7 @@ TEST(FalseColour, ScalesHaveTheRangeTheBandsAndTheCourseThatAreAskedFor) {
     EXPECT_NEAR(smooth.place(50), 0.5, 1e-12);
 }
 
-TEST(FalseColour, ScaleStandsInTheDarkAndInUniformLight) {
+TEST(FalseColour, ScaleIsValidInDarknessAndUniformLight) {
     EXPECT_GE(make_colour_scale(ramp(0, 0), Quantity::irradiance).band_count(), 1u);
     EXPECT_GE(make_colour_scale(ramp(3, 3), Quantity::radiosity).band_count(), 1u);
     EXPECT_GE(make_colour_scale(ramp(3, 3), Quantity::illuminance).band_count(), 1u);
@@ -83,7 +83,7 @@ TEST(FalseColour, ScaleStandsInTheDarkAndInUniformLight) {
 
 TEST(FalseColour, LegendStaysWithinASmallPicture) {
     Image image(20, 10);
-    draw_legend(image, "luminance cd/m^2", {{0, 1, 2, 5, 10}});  // sanitizers would tell
+    draw_legend(image, "luminance cd/m^2", {{0, 1, 2, 5, 10}});  // sanitizers detect writes outside the picture
     EXPECT_EQ(image.rgb.size(), 600u);
 }
 

@@ -6,7 +6,7 @@ namespace exitance {
 
 namespace {
 
-/// [Narkowicz15], its argument scaled so that 0.18 becomes 0.18.
+/// The curve of [Narkowicz15], with its argument scaled so that 0.18 is mapped to 0.18.
 double filmic(double light) {
     const double x = 0.7232 * light;
     return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);

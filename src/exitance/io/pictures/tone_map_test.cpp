@@ -5,7 +5,7 @@
 namespace exitance {
 namespace {
 
-TEST(ToneMap, EveryCurveRisesFromBlackToWhiteByWayOfMiddleGrey) {
+TEST(ToneMap, EveryCurveRisesFromBlackOverMiddleGreyToWhite) {
     for (const ToneCurve curve : {ToneCurve::photographic, ToneCurve::filmic, ToneCurve::linear}) {
         const ToneMap tones{2, 4, curve};
         double before = 0;

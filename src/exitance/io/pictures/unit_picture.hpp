@@ -5,7 +5,8 @@
 
 namespace exitance {
 
-/// The same picture with light as one number in a unit, alike in all bands: every kind of mean shows that number.
+/// Converts the light of a picture to one number in `unit`, stored in all bands, so that any mean of bands gives that
+/// number.
 Picture in_unit(Picture picture, const LightUnit& unit);
 
 }  // namespace exitance

@@ -74,7 +74,7 @@ Result<void> write_views(const std::string& path, const DaylightResults& results
     return write_file(path, text);
 }
 
-/// The level that three quarters of the eyes reach.
+/// The highest level that at least three quarters of the eye points reach.
 int view_level(const std::vector<ViewOut>& views) {
     constexpr double wanted = 0.75;
     for (int level = 3; level > 0; --level) {

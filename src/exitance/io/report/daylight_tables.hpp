@@ -8,7 +8,7 @@
 
 namespace exitance {
 
-/// Everything that a year's daylight comes to.
+/// Results of a daylight simulation over a year.
 struct DaylightResults {
     std::vector<ProbePoint> sensors;
     std::vector<DaylightHour> hours;
@@ -17,21 +17,22 @@ struct DaylightResults {
     std::vector<DaylightMetrics> metrics;
     DaylightSummary summary;
     DaylightProvision provision;
-    std::vector<double> sunlight;  ///< Hours of it at each sensor on one cloudless day.
-    std::vector<Point> eyes;       ///< Whose views out were asked for.
+    std::vector<double> sunlight;  ///< Hours of direct sunlight at each sensor on a cloudless day.
+    std::vector<Point> eyes;       ///< Eye points whose views out were requested.
     std::vector<ViewOut> views;
 };
 
-/// Tables with a header, numbers between commas, in a folder that is made where it is missing:
-///     illuminance.csv  month, day, hour, and a column a sensor: lx
-///     sun.csv          the same of what comes straight from the sun
-///     metrics.csv      a row a sensor: place, DF, DA, UDI, hours of sun, what EN 17037 asks for
-///     view.csv         a row an eye: place, angle, distance, layers and level of the view out (where asked for)
-///     matrix.csv       a row a sensor, a column a patch of the sky: lx of 1 cd/m^2
-///     summary.csv      name, value
+/// Writes CSV tables to a folder, which is created if necessary:
+///
+///     illuminance.csv  month, day, hour, and one column per sensor: lx
+///     sun.csv          the same for direct light of the sun
+///     metrics.csv      one row per sensor: position, DF, DA, UDI, hours of sun, results for EN 17037
+///     view.csv         one row per eye point: position, angle, distance, layers and level of the view out (if
+///     requested) matrix.csv       one row per sensor, one column per sky patch: lx for 1 cd/m^2 summary.csv      name,
+///     value
 Result<void> write_daylight(const std::string& folder, const DaylightResults& results);
 
-/// What summary.csv holds.
+/// Names and values in summary.csv.
 std::vector<std::pair<std::string, double>> summary_values(const DaylightResults& results);
 
 }  // namespace exitance

@@ -7,22 +7,22 @@
 
 namespace exitance {
 
-/// The points of a grid as a picture of one pixel each, the first row at the bottom; those that do not count are empty.
+/// A picture with one pixel per grid point, the first row at the bottom. Pixels of points covered by objects are empty.
 Picture picture_of_points(const GridLight& light, const std::vector<double>& values);
 
-/// The same with light between the points, by bilinear interpolation, about `wanted` pixels wide; what hides a point
-/// hides its cell.
+/// Interpolates such a picture bilinearly to a width of about `wanted` pixels. The cell around a covered point is
+/// empty.
 Picture smooth_picture(const Picture& points, int wanted);
 
-/// A pixel of one value.
+/// A visible pixel with this irradiance in all bands.
 Pixel lit_pixel(double value);
 
-/// A piece of a line of equal light, in the plan's units, y downwards.
+/// A segment of an isoline, in the plan's units, y downwards.
 struct ContourSegment {
     Vec2 a, b;
 };
 
-/// Lines of equal light in a picture that fills a plan of that size: marching squares, [Lorensen87] in the plane.
+/// Isolines of `level` in a picture that is scaled to the size `plan`: marching squares, the 2D form of [Lorensen87].
 std::vector<ContourSegment> contour(const Picture& picture, Vec2 plan, double level);
 
 }  // namespace exitance

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-constexpr double plan_width = 640;  ///< Of the longer side, in the picture's own units.
+constexpr double plan_width = 640;  ///< Length of the longer side, in SVG units.
 
 Quantity quantity(const LightUnit& unit) {
     return unit.is_lux() ? Quantity::illuminance : Quantity::irradiance;
@@ -31,11 +31,11 @@ std::string lines(const Picture& picture, Vec2 plan, const ColourScale& scale) {
     return svg;
 }
 
-/// Every point with its value, where there is room for that.
+/// Prints the value of every point if cells are wide enough.
 std::string values(const ReportFigures::Grid& grid, Vec2 cell) {
-    constexpr double least_width = 34;
+    constexpr double min_cell_width = 34;
     const GridLight& light = *grid.light;
-    if (cell.x < least_width) return "";
+    if (cell.x < min_cell_width) return "";
     std::string svg;
     for (int y = 0; y < light.rows; ++y)
         for (int x = 0; x < light.columns; ++x) {
@@ -51,7 +51,7 @@ std::string legend(const ColourScale& scale, const LightUnit& unit) {
     std::string html;
     const std::vector<std::string> names = scale.names();
     for (std::size_t band = 0; band < scale.band_count(); ++band) {
-        // A picture of one pixel tells the colour.
+        // A picture of one pixel gives the colour.
         const double value = 0.5 * (scale.steps[band] + scale.steps[band + 1]);
         const Picture pixel{{1, 1}, {lit_pixel(value)}};
         const Image colour = false_colour_image(pixel, quantity(unit), scale);

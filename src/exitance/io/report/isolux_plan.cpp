@@ -10,16 +10,16 @@
 namespace exitance {
 namespace {
 
-constexpr double sheet = 180;              ///< Of the longer side of the plan at most, mm.
-constexpr double around = 8, header = 16;  ///< Room about the plan, and for its title, mm.
+constexpr double sheet = 180;              ///< Limit of the plan's longer side, mm.
+constexpr double around = 8, header = 16;  ///< Margins around the plan, and space for its title, mm.
 constexpr Rgb wall{40, 40, 44}, lamp{200, 120, 0}, pale{120, 120, 126};
 
-/// What turns places of the scene into places on the sheet.
+/// Maps points of the scene to the sheet.
 struct Plan {
     Point origin;
     Normal u, v, n;
     double to_mm = 1;
-    Vec2 corner;  ///< Where the origin stands on the sheet.
+    Vec2 corner;  ///< Position of the origin on the sheet.
     int scale = 1;
 
     Vec2 at(const Point& p) const {
@@ -34,7 +34,7 @@ int round_scale(double length) {
     return 50000;
 }
 
-/// Where a plane cuts a polygon: pieces of a line.
+/// Adds the line segments in which the plan's plane cuts a polygon.
 void add_section(std::span<const Point> outline, const Plan& plan, std::vector<Vec2>& pieces) {
     std::vector<Vec2> crossings;
     for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -66,8 +66,8 @@ void draw_scene(const Scene& scene, const Plan& plan, Drawing& out) {
 
 void draw_points(const ReportFigures::Grid& grid, const Plan& plan, Drawing& out) {
     const GridLight& light = *grid.light;
-    constexpr double least_cell = 4.5;  // mm: a number of three digits
-    if (plan.to_mm * std::min(light.step_u, light.step_v) < least_cell) return;
+    constexpr double min_cell = 4.5;  // mm; fits a number of three digits
+    if (plan.to_mm * std::min(light.step_u, light.step_v) < min_cell) return;
     for (std::size_t i = 0; i < light.points.size(); ++i)
         if (light.is_open[i])
             out.texts.push_back({plan.at(light.points[i]), short_figure(grid.values[i]), 1.6, pale, true, false});
@@ -85,10 +85,10 @@ void draw_lines(const ReportFigures::Grid& grid, const LightUnit& unit, const Pl
     for (std::size_t i = 0; i < scale.steps.size(); ++i) {
         const std::vector<ContourSegment> segments = contour(smooth, size, scale.steps[i]);
         if (segments.empty()) continue;
-        constexpr double bright = 0.85;  // the palette's last colours do not stand out from white
+        constexpr double max_brightness = 0.85;  // the palette's brightest colours would not be visible on white
         const double place =
             scale.steps.size() > 1 ? static_cast<double>(i) / static_cast<double>(scale.steps.size() - 1) : 0;
-        const double value = scale.steps.front() + bright * place * (scale.steps.back() - scale.steps.front());
+        const double value = scale.steps.front() + max_brightness * place * (scale.steps.back() - scale.steps.front());
         Drawing::Line line{{}, scale.colour(value), 0.3};
         line.pieces = true;
         for (const ContourSegment& s : segments)
@@ -98,7 +98,7 @@ void draw_lines(const ReportFigures::Grid& grid, const LightUnit& unit, const Pl
     }
 }
 
-/// A bar of a round length in metres.
+/// Draws a bar with a round length in metres.
 void draw_scale_bar(const Plan& plan, Drawing& out) {
     double length = 1;
     while (length * plan.to_mm > 50) length /= 2;

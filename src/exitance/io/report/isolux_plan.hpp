@@ -5,8 +5,8 @@
 
 namespace exitance {
 
-/// A plan of a measuring plane to a round scale (1:5 to 1:5000), for a sheet of about A4: what the plane cuts, outlines
-/// of the emitters (dashed), the values of its points, lines of equal light with their values, and its figures.
+/// Draws a plan of a measuring plane at a round scale (1:5 to 1:50000) for about an A4 sheet: the section of the scene,
+/// outlines of emitters (dashed), the values at its points, labelled isolines, and its figures.
 Drawing isolux_plan(const ReportFigures::Grid& grid, const LightUnit& unit, const Scene& scene);
 
 }  // namespace exitance

@@ -17,43 +17,44 @@
 namespace exitance {
 
 struct ReportPicture {
-    std::string caption, camera;  ///< The camera as `render --camera` takes it.
+    std::string caption, camera;  ///< `camera` is in the syntax of `render --camera`.
     Image image;
 };
 
-/// Somebody in the room, and how glaring it is there.
+/// An observer in the room, with the glare at this position.
 struct ObserverGlare {
     Observer observer;
     Glare glare;
 };
 
-/// What a report tells. Its solution must outlive it.
+/// Content of a report. The solution must outlive it.
 struct ReportContent {
     const Solution* solution = nullptr;
-    LightUnit unit;  ///< Of all numbers of light.
+    LightUnit unit;  ///< Unit of all light values.
     std::vector<ReportPicture> pictures;
     std::vector<GridLight> grids;
-    double maintenance = 1;  ///< What values of grids are multiplied by.
+    double maintenance = 1;  ///< Maintenance factor of the values of grids.
     std::vector<ObserverGlare> observers;
     std::vector<SurfacePoints> surfaces;
-    std::size_t surfaces_left_out = 0;  ///< Smaller faces than those above.
+    std::size_t surfaces_left_out = 0;  ///< Number of faces too small to be listed.
     ErrorPercentile error;
-    std::optional<LightMaps> viewer;  ///< What the embedded viewer shows; none where it would be too large.
-    Camera view;                      ///< Where that begins.
-    std::string statistics;           ///< As `stats --json` prints them.
-    /// Parts that were requested and not finished, because a limit or a signal has stopped the run.
+    std::optional<LightMaps> viewer;  ///< Light maps for the embedded viewer; none if it would be too large.
+    Camera view;                      ///< Initial view of the viewer.
+    std::string statistics;           ///< Output of `stats --json`.
+    /// Requested parts that are missing because a limit or a signal stopped the run.
     std::vector<std::string> unfinished;
 };
 
-/// Writes the page, which refers to nothing outside of itself, and beside it its numbers as JSON (report.html,
-/// report.json). Each appears whole or not at all.
+/// Writes the page, which needs no other files, and in the same folder its numbers as JSON (report.html, report.json).
+/// Each appears whole or not at all.
 Result<void> write_report(const ReportContent& content, const std::string& path);
 
-/// Writes, into a folder that is made where it is missing:
-///     planes.csv           a row a measuring plane: name, kind, place, Em, U0, Ud, ...
-///     plane_1.csv, ...     a row a point: place, normal, value
-///     plane_1.svg, .pdf    a plan to scale with lines of equal light
-///     observers.csv        a row an observer: place, line of sight, UGR, background, sources (where there are any)
+/// Writes tables and plans to a folder, which is created if necessary:
+///
+///     planes.csv           one row per measuring plane: name, kind, position, Em, U0, Ud, ...
+///     plane_1.csv, ...     one row per point: position, normal, value
+///     plane_1.svg, .pdf    a plan to scale with isolines
+///     observers.csv        one row per observer: position, line of sight, UGR, background, sources (if there are any)
 Result<void> write_report_tables(const ReportContent& content, const std::string& folder);
 
 }  // namespace exitance

@@ -91,7 +91,7 @@ std::string face_json(const ReportFigures::Face& face) {
         levels(face.irradiance), face.irradiance.count > 0 ? figure(face.radiosity) : "null", face.irradiance.count);
 }
 
-/// Items of a JSON array, one a line.
+/// Formats the items of a JSON array, one per line.
 template <class Items, class Text>
 std::string list(const Items& items, const Text& text) {
     std::string out;

@@ -4,7 +4,7 @@
 
 namespace exitance {
 
-/// The numbers of a report, found once for the page and for its JSON twin.
+/// Numbers of a report, computed once for the page and for the JSON file.
 struct ReportFigures {
     struct Face {
         SurfaceId surface;
@@ -19,47 +19,47 @@ struct ReportFigures {
         std::array<double, 3> reflectance, radiance;
         std::size_t faces = 0;
         double area = 0;        ///< m^2
-        double irradiance = 0;  ///< Mean over its faces by area.
+        double irradiance = 0;  ///< Area-weighted mean over its faces.
     };
     struct Grid {
         const GridLight* light;
-        std::vector<double> values;  ///< Of every point.
-        Levels levels;               ///< Of those in the open.
-        std::size_t hidden = 0;      ///< How many are not.
+        std::vector<double> values;  ///< One per point.
+        Levels levels;               ///< Statistics of the points that no object covers.
+        std::size_t hidden = 0;      ///< Number of covered points.
     };
-    std::vector<Face> faces;  ///< By area, largest first.
+    std::vector<Face> faces;  ///< From the largest to the smallest.
     std::vector<MaterialUse> materials;
     std::vector<Grid> grids;
-    double area = 0;  ///< Of all surfaces, m^2.
+    double area = 0;  ///< Total area of the surfaces, m^2.
 };
 
 ReportFigures find_figures(const ReportContent& content);
 
-/// "W/m²" or "lx".
+/// Symbol of a unit: "W/m²" or "lx".
 const char* symbol(const LightUnit& unit);
 
-/// A number as pages and files show it: five significant digits.
+/// Formats a number with five significant digits, for pages and files.
 std::string figure(double value);
 
-/// The same for narrow places: three significant digits, without powers of ten up to a million.
+/// Formats a number with three significant digits for narrow cells, without exponents up to a million.
 std::string short_figure(double value);
 
-/// The numbers as JSON.
+/// Formats the numbers as JSON.
 std::string report_json(const ReportContent& content, const ReportFigures& figures);
 
-/// The observers of a report as items of a JSON array, and as a part of the page (empty without any).
+/// Formats the observers of a report as an item of a JSON array, and as a part of the page (empty if there are none).
 std::string observer_json(const ObserverGlare& observer);
 std::string observers_html(const ReportContent& content);
-/// Text within HTML.
+/// Escapes text for HTML.
 std::string escaped(const std::string& text);
 
-/// A plan of a grid in false colours with lines of equal light (SVG), and what the colours mean (HTML).
+/// Draws a plan of a grid in false colours with isolines (SVG), with a legend (HTML).
 std::string grid_plan(const ReportFigures::Grid& grid, const LightUnit& unit);
 
-/// A canvas that shows the scene with its light maps, and the script that turns it (HTML); empty without maps.
+/// A canvas that shows the scene with its light maps, and the script that rotates it (HTML); empty without maps.
 Result<std::string> report_viewer(const ReportContent& content);
 
-/// A picture within a page: its address.
+/// Encodes a picture as a data: URL.
 Result<std::string> data_address(const Image& image);
 
 }  // namespace exitance

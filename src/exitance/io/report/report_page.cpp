@@ -219,7 +219,7 @@ std::string warnings(const SolveStatistics& s) {
     return html.empty() ? "<p>None.</p>\n" : html;
 }
 
-/// JSON within a page: nothing in it may look like the end of its element.
+/// Escapes JSON for an HTML element, so that it cannot contain a closing tag.
 std::string embedded(std::string json) {
     for (std::size_t at = 0; (at = json.find("</", at)) != std::string::npos; at += 3) json.replace(at, 2, "<\\/");
     return json;

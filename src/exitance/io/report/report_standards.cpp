@@ -14,12 +14,12 @@ std::string triple(const Vec3& v, const char* between) {
     return fmt::format("{:.6g}{}{:.6g}{}{:.6g}", v.x, between, v.y, between, v.z);
 }
 
-/// A number of a table; nothing where there is none.
+/// Formats a number of a table; empty if it is not finite.
 std::string cell(double value) {
     return std::isfinite(value) ? figure(value) : "";
 }
 
-/// A field of a table.
+/// Formats a quoted CSV field.
 std::string quoted(const std::string& text) {
     std::string out = "\"";
     for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
@@ -67,7 +67,7 @@ std::string observers_csv(const ReportContent& content) {
     return text;
 }
 
-/// A rating as the page shows it: below 10 as "< 10" [CIE117], "-" where nothing counts.
+/// Formats a UGR for the page: below 10 as "< 10" [CIE117], "-" if no source counts.
 std::string rating_words(double rating) {
     return !std::isfinite(rating) ? "-" : rating < 10 ? "&lt; 10" : fmt::format("{:.1f}", rating);
 }

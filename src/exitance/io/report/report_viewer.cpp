@@ -11,7 +11,7 @@
 namespace exitance {
 namespace {
 
-/// What a picture of a map shows: radiosity, toned.
+/// Picture of a map's radiosity, tone mapped.
 Image toned_map(const Scene& scene, const LightMaps& light, std::size_t m, const ToneMap& tone) {
     const LightMap& map = light.maps[m];
     Image image(map.size.width, map.size.height);
@@ -23,7 +23,7 @@ Image toned_map(const Scene& scene, const LightMaps& light, std::size_t m, const
     return image;
 }
 
-/// Corners (x, y, z, u, v) and triangles of all faces in one map.
+/// Corners (x, y, z, u, v) and triangles of all faces that are in one map.
 struct Triangles {
     std::vector<float> corners;
     std::vector<std::uint32_t> index;

@@ -11,8 +11,8 @@
 namespace exitance {
 namespace {
 
-/// Every face in triangles, each with points of its own, some of them cut once more at a random place of an edge, so
-/// that neighbours meet in T-vertices.
+/// Splits every face into triangles with points of their own. Some triangles are split again at a random position on an
+/// edge, so that neighbours meet in T-vertices.
 SceneDescription cut_up(const SceneDescription& whole) {
     SceneDescription out = whole;
     out.points.clear(), out.faces.clear();
@@ -40,7 +40,7 @@ SceneDescription cut_up(const SceneDescription& whole) {
     return out;
 }
 
-/// Regions of both scenes, ordered alike whatever their surfaces' numbers are.
+/// Expects equal regions in the scene and its split copy, in the same order although surface numbers differ.
 void expect_same_regions(const SceneDescription& description, const std::string& name) {
     const CheckedScene whole = make_scene(description), cut = make_scene(cut_up(description));
     ASSERT_TRUE(whole.scene && cut.scene) << name;
@@ -55,7 +55,7 @@ void expect_same_regions(const SceneDescription& description, const std::string&
     }
 }
 
-TEST(Regions, OfACutUpSceneAreThoseOfTheWholeToTheLastBit) {
+TEST(Regions, AreIdenticalInASplitScene) {
     for (const SceneFamily& family : scene_families()) {
         const auto scene = generate_scene(family.name, {});
         ASSERT_TRUE(scene);
@@ -66,7 +66,7 @@ TEST(Regions, OfACutUpSceneAreThoseOfTheWholeToTheLastBit) {
     expect_same_regions(*turned, "turned");
 }
 
-TEST(Regions, OfPublishedScenesDoNotDependOnHowTheyAreCut) {
+TEST(Regions, OfPublishedScenesDoNotDependOnSplits) {
     for (const char* name : {"room", "largeroom", "office_2x2x3", "degenerate/slivers", "degenerate/coords_1e6",
                              "degenerate/coplanar_touching", "degenerate/t_vertices", "degenerate/nonplanar_1e-6"}) {
         const std::string path = test::shared_folder() + "/scenes/" + name + ".obj";

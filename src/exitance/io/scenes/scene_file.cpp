@@ -25,7 +25,7 @@ LoadedScene refused(ErrorCode code, const std::string& path, std::string message
     return {{Error{code, message, path, hint}, {{Finding::Kind::error, path, 0, message, hint}}}};
 }
 
-/// The error about a scene of panes alone, with the materials that made its faces panes.
+/// Makes the error for a scene that consists of panes only, naming the materials that made its faces panes.
 Finding only_glass(const ReadScene& read) {
     const std::vector<std::string>& by = read.glazed_by;
     const std::size_t count = read.description.panes.size();
@@ -37,8 +37,8 @@ Finding only_glass(const ReadScene& read) {
             "make a material opaque (in MTL: 'd 1'), or add faces that light does not pass straight"};
 }
 
-/// Findings of the reader and of the checks together. A file with errors is still looked at in full, but not warned
-/// about light that may be among what could not be read.
+/// Combines the findings of the reader and of the scene's checks. A file with errors is still checked completely, but
+/// without warnings about light, since unreadable parts may contain the emitters.
 CheckedScene checked(ReadScene read, const SceneLines& lines, bool turn_bodies) {
     if (read.description.faces.empty() && !read.description.panes.empty() && !has_errors(read.findings))
         read.findings.push_back(only_glass(read));
@@ -58,7 +58,7 @@ CheckedScene checked(ReadScene read, const SceneLines& lines, bool turn_bodies) 
     return out;
 }
 
-/// Repairs become errors.
+/// Turns repairs into errors.
 void refuse_repairs(CheckedScene& scene) {
     for (Finding& finding : scene.findings)
         if (finding.kind == Finding::Kind::repair) finding.kind = Finding::Kind::error;
@@ -66,7 +66,7 @@ void refuse_repairs(CheckedScene& scene) {
     if (has_errors(scene.findings)) scene.scene = error_of(scene.findings);
 }
 
-/// For files under other names: the container's first bytes.
+/// Detects binary glTF under other file names by its first bytes.
 bool looks_like_gltf(const std::string& path) {
     char magic[4] = {};
     std::ifstream(path, std::ios::binary).read(magic, sizeof magic);
@@ -90,7 +90,7 @@ void append(std::vector<T>& all, std::vector<T>& more) {
     all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-/// Adds a scene's description to another's.
+/// Appends the description of one scene to another.
 void append(SceneDescription& all, SceneDescription more) {
     const auto size = [](const auto& pool) { return static_cast<std::uint32_t>(pool.size()); };
     const std::uint32_t points = size(all.points), materials = size(all.materials), groups = size(all.groups),
@@ -114,13 +114,13 @@ int last_line(const SceneDescription& description) {
     return last;
 }
 
-/// glTF says metres and Y up.
+/// True for glTF, which defines metres and Y up.
 bool says_units(Reader reader) {
     return reader == Reader(read_gltf);
 }
 
-/// Converts what a file that does not say its units holds to metres and Z up. Radiances and their profiles stay: they
-/// do not depend on the unit of length.
+/// Converts a file without defined units to metres and Z up. Radiances and emission profiles do not depend on the unit
+/// of length and are unchanged.
 void convert_units(SceneDescription& d, const LoadOptions& options) {
     const double scale = options.metres_per_unit.value_or(1);
     const bool turns = options.y_is_up.value_or(false);
@@ -138,7 +138,7 @@ void convert_units(SceneDescription& d, const LoadOptions& options) {
     }
 }
 
-/// Why --length-unit or --up cannot be used with these files; none if it can.
+/// Returns an error if --length-unit or --up cannot be used with these files.
 std::optional<Error> refuse_units(std::span<const std::string> paths, const LoadOptions& options) {
     const auto all = [&](const auto& is) {
         return std::all_of(paths.begin(), paths.end(), [&](const std::string& p) { return is(reader_of(p)); });
@@ -154,7 +154,7 @@ std::optional<Error> refuse_units(std::span<const std::string> paths, const Load
     return std::nullopt;
 }
 
-/// All files as one; those of no known kind are left to the caller.
+/// Reads all files into one scene, except files of unknown formats.
 ReadScene read_files(std::span<const std::string> paths, const LoadOptions& options) {
     std::vector<std::string> radiance;
     for (const std::string& path : paths)
@@ -186,7 +186,7 @@ ReadScene read_files(std::span<const std::string> paths, const LoadOptions& opti
     return all;
 }
 
-/// The sky that is asked for takes the place of what the files have.
+/// Replaces the distant light of the files by the requested sky.
 void give_sky(const ChosenSky& sky, ReadScene& read) {
     SceneDescription& description = read.description;
     if (!description.distant.empty())
@@ -197,7 +197,7 @@ void give_sky(const ChosenSky& sky, ReadScene& read) {
     description.distant = photometric ? sky.in_lumens : sky.in_watts;
 }
 
-/// Those that files place, and those of the table.
+/// Adds the luminaires of the scene files and those of the table.
 void add_luminaires(ReadScene& read, const LoadOptions& options) {
     std::vector<PlacedLuminaire> all = std::move(read.luminaires);
     if (!options.luminaires.empty()) {
@@ -212,7 +212,8 @@ void add_luminaires(ReadScene& read, const LoadOptions& options) {
     add_luminaires(all, options.photometric, read.description, read.findings);
 }
 
-/// Repairs that take light from the scene are errors if none is left: all results would be 0 for want of a file.
+/// Reports repairs that remove light from the scene. They are errors if nothing emits then, since all results would be
+/// 0.
 void judge_darkening(ReadScene& read) {
     const SceneDescription& d = read.description;
     const bool emits = !d.distant.empty() || !d.lights.empty() ||

@@ -9,12 +9,12 @@
 namespace exitance {
 namespace {
 
-/// What is to become of a hard or malformed file.
+/// Expected result of reading a hard or malformed file.
 struct Expected {
     std::string file;
-    std::size_t surfaces;  ///< 0: the file is refused.
+    std::size_t surfaces;  ///< 0: the file is rejected.
     std::size_t regions;
-    std::vector<std::string> said;  ///< "E x.obj:3" for an error there, W for a warning, R for a repair.
+    std::vector<std::string> said;  ///< Findings: "E x.obj:3" is an error in line 3, W a warning, R a repair.
 };
 
 const std::vector<Expected> expectations = {
@@ -62,7 +62,7 @@ std::string said(const Finding& f) {
     return kind + std::filesystem::path(f.file).filename().string() + ":" + std::to_string(f.line);
 }
 
-TEST(SceneFile, HardAndMalformedFilesAreAcceptedRepairedOrRefusedByName) {
+TEST(SceneFile, HardAndMalformedFilesAreAcceptedRepairedOrRejected) {
     const std::filesystem::path folder = std::filesystem::path(test::shared_folder()) / "scenes" / "degenerate";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "there are no shared scenes";
     for (const Expected& e : expectations) {
@@ -82,7 +82,7 @@ TEST(SceneFile, HardAndMalformedFilesAreAcceptedRepairedOrRefusedByName) {
     }
 }
 
-TEST(SceneFile, StrictReadingMakesErrorsOfRepairs) {
+TEST(SceneFile, StrictReadingTurnsRepairsIntoErrors) {
     const std::filesystem::path folder = std::filesystem::path(test::shared_folder()) / "scenes" / "degenerate";
     if (!std::filesystem::exists(folder)) GTEST_SKIP() << "there are no shared scenes";
     for (const char* file : {"nonplanar_5cm.obj", "reflectance_1.obj", "zero_area_face.obj"}) {
@@ -103,7 +103,7 @@ TEST(SceneFile, EveryPublishedSceneIsAccepted) {
         double faces = 0, regions = 0;
         for (const Surface& s : checked.scene->surfaces()) faces += s.area;
         for (const Region& r : checked.scene->regions()) regions += r.area;
-        EXPECT_NEAR(regions, faces, 1e-9 * faces) << entry.path();  // corners of bent faces are moved
+        EXPECT_NEAR(regions, faces, 1e-9 * faces) << entry.path();  // the corners of bent faces are moved
     }
 }
 

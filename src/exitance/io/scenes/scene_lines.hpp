@@ -7,16 +7,16 @@
 
 namespace exitance {
 
-/// The lines of several files counted on from one to the next, so that one number says file and line.
+/// Numbers the lines of several files consecutively, so that one number identifies file and line.
 class SceneLines {
   public:
-    /// Adds a file of so many lines; returns what is to be added to its own line numbers.
+    /// Adds a file with `lines` lines. Returns the offset to add to its own line numbers.
     int add(const std::string& file, int lines);
-    /// Adds the files of another book; returns what is to be added to its numbers.
+    /// Adds the files of `more`. Returns the offset to add to its numbers.
     int append(const SceneLines& more);
     bool empty() const { return files_.empty(); }
 
-    /// Puts file and line of its own into a finding that has a number of this book, in its message too.
+    /// Replaces the number in a finding, and in its message, by the file and its own line number.
     void place(Finding& finding) const;
 
   private:

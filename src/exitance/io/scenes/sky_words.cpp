@@ -15,13 +15,13 @@
 namespace exitance {
 namespace {
 
-constexpr double usual_ground = 0.2;  ///< Reflectance.
+constexpr double default_ground = 0.2;  ///< Reflectance.
 
 Error wrong(std::string message, std::string hint = "") {
     return {ErrorCode::usage, std::move(message), "--sky", std::move(hint)};
 }
 
-/// A number that words give, and what it must lie in.
+/// A numeric parameter of a sky, with its valid range.
 struct Named {
     const char* name;
     double least, most;
@@ -55,7 +55,7 @@ struct Words {
     }
 };
 
-/// "[YYYY-]MM-DDThh:mm[:ss]"
+/// Parses "[YYYY-]MM-DDThh:mm[:ss]".
 bool read_time(std::string_view word, Words& out) {
     std::vector<int> parts;
     std::string marks;
@@ -130,7 +130,7 @@ int cie_type(const std::string& kind) {
     return type && *type >= 1 && *type <= 15 ? static_cast<int>(*type) : 0;
 }
 
-/// Where the sun stands, towards it; none where words do not say.
+/// Direction towards the sun; empty if the words do not define it.
 Result<std::optional<Normal>> find_sun(const Words& words, const Weather* weather) {
     const double north = words.get("north", 0);
     if (words.has("altitude") != words.has("azimuth"))
@@ -154,7 +154,7 @@ Result<std::optional<Normal>> find_sun(const Words& words, const Weather* weathe
     return std::optional(sky_direction(at.altitude, at.azimuth, north));
 }
 
-/// Sky, sun and the glow of the ground for irradiances in one unit.
+/// Makes sky, sun and reflected light of the ground from irradiances in one unit.
 DistantLight make_light(const SkyModel& sky, const Normal& sun, double diffuse, double direct, double ground) {
     DistantLight out;
     if (diffuse > 0) out.domes.push_back({sky, Spectrum(diffuse)});
@@ -202,7 +202,7 @@ Result<ChosenSky> parse_sky(const std::string& text, const Weather* weather) {
         return wrong("dni, the irradiance by the sun of a plane that faces it, is missing", "dni=700 (W/m^2)");
     const double diffuse = words.get("dhi", hour ? hour->diffuse_horizontal : 0);
     double direct = words.get("dni", hour ? hour->direct_normal : 0);
-    if (plain && !words.has("dni")) direct = 0;  // there is no sun in it
+    if (plain && !words.has("dni")) direct = 0;  // uniform and overcast skies have no sun by default
     const bool goes_by_sun = perez || direct > 0 || (type > 0 && !(type == 1 || type == 3 || type == 5));
     if (goes_by_sun && !*sun)
         return wrong(fmt::format("where the sun stands is missing for {}", words.kind),
@@ -221,7 +221,7 @@ Result<ChosenSky> parse_sky(const std::string& text, const Weather* weather) {
         sky = perez_sky({diffuse, direct, day}, towards);
     }
     if (!sky.normalize()) return wrong("this sky has no light");
-    const double ground = words.get("ground", usual_ground);
+    const double ground = words.get("ground", default_ground);
     const bool in_lumens = words.has("efficacy_direct") || words.has("efficacy_diffuse");
     ChosenSky out;
     out.in_watts = make_light(sky, towards, diffuse, direct, ground);

@@ -49,7 +49,7 @@ TEST(SkyWords, MakeSkySunAndGround) {
         EXPECT_TRUE(parse_sky(std::string(kind) + ",dhi=100,altitude=30,azimuth=200", nullptr)) << kind;
 }
 
-TEST(SkyWords, SayWhatIsWrong) {
+TEST(SkyWords, ReportErrors) {
     EXPECT_EQ(fault("blue,dhi=1"), "'blue' is no kind of sky");
     EXPECT_EQ(fault("cie16,dhi=1"), "'cie16' is no kind of sky");
     EXPECT_EQ(fault("uniform"), "dhi, the irradiance of the ground by the sky, is missing");
@@ -70,7 +70,7 @@ TEST(SkyWords, SayWhatIsWrong) {
     EXPECT_EQ(fault("perez,dhi=10,dni=5,altitude=-20,azimuth=0"), "the sun is below the horizon, and dni is not 0");
 }
 
-TEST(WeatherFile, TellsPlaceAndIrradiances) {
+TEST(WeatherFile, SuppliesPlaceAndIrradiances) {
     const TemporaryFolder folder;
     const std::string path = folder / "w.epw";
     ASSERT_TRUE(
@@ -91,7 +91,7 @@ TEST(WeatherFile, TellsPlaceAndIrradiances) {
     EXPECT_FALSE(parse_sky("perez", &*weather));
 }
 
-TEST(WeatherFile, LeapDaysAndMissingIrradiancesAreMended) {
+TEST(WeatherFile, LeapDaysAndMissingIrradiancesAreHandled) {
     const TemporaryFolder folder;
     const std::string path = folder / "w.epw";
     std::string no_diffuse = hour_text(6, 21, 12, "600", "9999"), no_direct = hour_text(6, 21, 13, "9999", "120");
@@ -118,7 +118,7 @@ TEST(WeatherFile, LeapDaysAndMissingIrradiancesAreMended) {
     EXPECT_TRUE(weather->hours[3].is_missing);
 }
 
-TEST(WeatherFile, FaultsAreToldWithTheirLine) {
+TEST(WeatherFile, ErrorsNameTheirLine) {
     const TemporaryFolder folder;
     const std::string path = folder / "w.epw";
     const auto first = [&](const std::string& text) {

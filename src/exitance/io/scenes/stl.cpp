@@ -15,8 +15,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "binary STL is read as it lies in memory");
 
-constexpr std::size_t header_bytes = 84;    ///< Of a binary file: 80 of text and the number of triangles.
-constexpr std::size_t triangle_bytes = 50;  ///< Normal, three corners, and two bytes of anything.
+constexpr std::size_t header_bytes = 84;    ///< Binary file: 80 bytes of text and the number of triangles.
+constexpr std::size_t triangle_bytes = 50;  ///< Normal, three corners, and two unused bytes.
 
 class StlReader {
   public:
@@ -48,7 +48,7 @@ class StlReader {
         std::memcpy(&count, bytes.data() + header_bytes - sizeof count, sizeof count);
         return count;
     }
-    /// By its length: some binary files begin with "solid", too.
+    /// Detects a binary file by its length: some binary files also begin with "solid".
     static bool is_binary(const std::string& bytes) {
         return bytes.size() >= header_bytes &&
                bytes.size() == header_bytes + triangle_bytes * std::size_t(count_of(bytes));

@@ -30,7 +30,7 @@ std::string binary(const std::string& header, std::uint32_t count, const std::st
     return bytes + triangles;
 }
 
-TEST(Stl, AsciiGivesATriangleAFacetAndAGroupASolid) {
+TEST(Stl, AsciiFacetsBecomeTrianglesAndSolidsGroups) {
     const std::string facet =
         "  facet normal 0 0 1\n outer loop\n vertex 0 0 0\n vertex 1e0 0 0\n vertex 0 2 0\n endloop\n endfacet\n";
     const ReadScene scene = read("solid one thing\n" + facet + facet + "endsolid\nsolid\n" + facet + "endsolid\n");
@@ -42,7 +42,7 @@ TEST(Stl, AsciiGivesATriangleAFacetAndAGroupASolid) {
     EXPECT_EQ(scene.description.points[2].y, 2);
 }
 
-TEST(Stl, BinaryIsToldByItsLengthEvenIfItBeginsLikeText) {
+TEST(Stl, BinaryIsDetectedByItsLengthEvenIfItBeginsLikeText) {
     const ReadScene scene =
         read(binary("solid from a program that ought to know better", 2, triangle(3) + triangle(4)));
     EXPECT_TRUE(scene.findings.empty());
@@ -50,7 +50,7 @@ TEST(Stl, BinaryIsToldByItsLengthEvenIfItBeginsLikeText) {
     EXPECT_EQ(scene.description.points[5].z, 4);
 }
 
-TEST(Stl, WhatIsBrokenIsAnError) {
+TEST(Stl, BrokenFilesAreErrors) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (const std::string& bytes :
          {binary("x", 3, triangle(0)), binary("x", 1, triangle(nan)), std::string("hello"), std::string(),

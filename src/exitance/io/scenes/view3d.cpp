@@ -18,19 +18,20 @@
 namespace exitance {
 namespace {
 
-constexpr double least_emittance = 0.001, most_emittance = 0.999;  // as View3D clamps them
-constexpr double bent = 3e-5;  ///< Of a quadrangle's size: further off its plane it is refused.
+constexpr double min_emittance = 0.001, max_emittance = 0.999;  // View3D's limits
+/// Largest distance of a quadrangle's corner from its plane, as a share of its size.
+constexpr double max_bend = 3e-5;
 
 using Polygon = std::vector<Point>;
 
-/// What a file calls a surface, of any kind.
+/// A surface of the file, of any kind.
 struct Piece {
     char kind = 'S';
     int line = 0;
-    std::vector<Polygon> parts;  ///< Convex unless it crosses itself; several where others were cut out.
+    std::vector<Polygon> parts;  ///< Convex unless it crosses itself; several after other surfaces were cut out.
     bool crosses_itself = false;
     Normal normal;
-    std::size_t base = 0, merged = 0;  ///< Numbers of other surfaces, 0: none.
+    std::size_t base = 0, merged = 0;  ///< Numbers of other surfaces; 0: none.
     double emittance = 0.9;
     std::string name;
 };
@@ -159,7 +160,7 @@ class View3dReader {
         pieces_.push_back(std::move(piece));
     }
 
-    /// Keeps the numbers in step.
+    /// Adds an empty piece for a faulty surface, so that the following surfaces keep their numbers.
     void refuse(Piece piece, const std::string& why) {
         if (!why.empty()) error(line_, why);
         piece.parts.clear();
@@ -192,11 +193,11 @@ class View3dReader {
         const std::string_view word = items.word();
         if (!word.empty() && number_of_word(word, piece.emittance) != NumberKind::finite)
             error(line_, fmt::format("emittance '{}' is not a number", shown(word)));
-        piece.emittance = std::clamp(piece.emittance, least_emittance, most_emittance);
+        piece.emittance = std::clamp(piece.emittance, min_emittance, max_emittance);
         piece.name = std::string(items.word());
     }
 
-    /// Numbers of a surface of `F 3a`, on as many lines as they take.
+    /// Reads the numbers of an `F 3a` surface, which may continue on several lines.
     void read_plane(TextLines& items) {
         Piece& piece = pieces_.back();
         while (!items.rest().empty()) {
@@ -227,8 +228,8 @@ class View3dReader {
         check_shape(piece);
     }
 
-    /// Sets the normal; refuses an outline that is concave or out of plane. One that crosses itself is split by the
-    /// scene's checks.
+    /// Sets the normal and rejects a concave or non-planar outline. The scene's checks split an outline that crosses
+    /// itself.
     void check_shape(Piece& piece) {
         const Polygon& p = piece.parts.front();
         const Vec3 area = area_vector(p);
@@ -237,7 +238,7 @@ class View3dReader {
         EdgePair where{};
         const Normal n = normal_of_corners(p);
         piece.crosses_itself = norm(n) > 0 && crosses_itself(p, n, 1e-9 * size, where);
-        if (!(norm(area) > 1e-14 * size * size)) return;  // left out or split by the scene's checks, which report it
+        if (!(norm(area) > 1e-14 * size * size)) return;  // the scene's checks remove or split it, and report it
         piece.normal = normalized(area);
         if (piece.crosses_itself) return;
         bool convex = true;
@@ -247,10 +248,11 @@ class View3dReader {
             off = std::max(off, std::abs(dot(piece.normal, p[i] - p[0])));
         }
         if (!convex) error(piece.line, "quadrangle is not convex", "split it, and merge the pieces by 'cmb'");
-        if (off > bent * size) error(piece.line, fmt::format("quadrangle is {:.3g} m out of plane", off));
+        if (off > max_bend * size) error(piece.line, fmt::format("quadrangle is {:.3g} m out of plane", off));
     }
 
-    /// What windows and null surfaces leave of their bases: the outer side of one edge after the other.
+    /// Cuts subsurfaces and null surfaces out of their bases: for each edge, the part of the base outside it is kept
+    /// and the rest goes to the next edge.
     void cut_out() {
         for (const Piece& piece : pieces_) {
             if (piece.base == 0 || piece.parts.empty()) continue;
@@ -335,9 +337,9 @@ class View3dReader {
     std::vector<Piece> pieces_;
     std::map<double, std::uint32_t> materials_;
     bool planes_ = false, ended_ = false;
-    bool waiting_ = false;         ///< For numbers of the last surface.
-    char shape_ = 0;               ///< Of it.
-    std::vector<double> numbers_;  ///< So far.
+    bool waiting_ = false;         ///< The last surface is not complete.
+    char shape_ = 0;               ///< Shape of the incomplete surface.
+    std::vector<double> numbers_;  ///< Numbers read for it.
     int line_ = 0;
 };
 

@@ -59,8 +59,8 @@ TEST(View3d, MergedPiecesAreOneGroup) {
     EXPECT_EQ(scene.description.groups[scene.description.faces[2].group], "surface 3");
 }
 
-TEST(View3d, PlanesOfTheOtherFormStandWhereTheyShould) {
-    // Facing north (azimuth 0), upright: u runs to -x, v upwards.
+TEST(View3d, PlanesOfFormatF3aHaveTheRightPosition) {
+    // Azimuth 0 faces north; the plane is upright: u points to -x, v up.
     const CheckedScene checked = load("F 3a\nS 1 R 0 0 .9 wall\n10 20 1 0 90\n 3 2\nE\n");
     ASSERT_TRUE(checked.scene);
     const Surface& wall = checked.scene->surfaces()[SurfaceId(0)];
@@ -70,7 +70,7 @@ TEST(View3d, PlanesOfTheOtherFormStandWhereTheyShould) {
     EXPECT_NEAR(checked.scene->box().hi.z, 3, 1e-12);
 }
 
-TEST(View3d, WhatView3dRefusesIsAnErrorWithItsLine) {
+TEST(View3d, InputThatView3dRejectsIsAnErrorWithItsLine) {
     const std::pair<std::string, int> wrong[] = {
         {"F 3\nV 2 0 0 0\n", 2},                                                                  // out of order
         {"F 3\n" + square + "S 1 1 2 3 4 0 0 .9\nS 2 1 2 3 0 0 1 .9\nS 3 1 2 3 0 0 2 .9\n", 12},  // chained cmb
@@ -78,7 +78,7 @@ TEST(View3d, WhatView3dRefusesIsAnErrorWithItsLine) {
         {"F 3\n" + square + "S 1 1 2 3 99 0 0 .9\n", 10},
         {"F 3\n" + square + "S 1 1 2 3 4 0 0 .9\nM 2 5 8 7 6 1 0 .9\n", 11},
         {"F 2\n", 1},
-        {"F 3a\nS 1 R 0 0 .9\n1 2 3\n", 2},  // ends within
+        {"F 3a\nS 1 R 0 0 .9\n1 2 3\n", 2},  // ends within a surface
     };
     for (const auto& [text, line] : wrong) {
         const ReadScene scene = read(text);

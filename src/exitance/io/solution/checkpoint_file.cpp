@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view first_line = "exitance checkpoint 2\n";
 
-/// Numbers drawn into one hash.
+/// Hash of a sequence of numbers.
 class Fingerprint {
   public:
     void add(double v) { hash_ = hash(hash_, std::bit_cast<std::uint64_t>(v)); }
@@ -36,7 +36,7 @@ Error damaged(const std::string& path) {
             "without --resume the solve begins anew"};
 }
 
-/// What the checkpoint is of and the run is not; "" where they agree.
+/// Describes the first fact that differs; empty if all are equal.
 std::string difference(const CheckpointFacts& kept, const CheckpointFacts& own) {
     for (const auto& [name, value] : own) {
         const auto at = std::find_if(kept.begin(), kept.end(), [&, &n = name](const auto& f) { return f.first == n; });
@@ -46,7 +46,7 @@ std::string difference(const CheckpointFacts& kept, const CheckpointFacts& own) 
     return kept.size() == own.size() ? "" : "it was made by another version";
 }
 
-/// States are laid out as the program that runs has them; its file tells it from any other.
+/// Checksum of the running program's file, since the layout of states depends on the program.
 const std::string& program_fingerprint() {
     static const std::string text = [] {
         const Result<std::string> program = read_whole_file("/proc/self/exe");
@@ -65,7 +65,7 @@ std::string scene_fingerprint(const Scene& scene) {
         all.add(surface.material.value), all.add(surface.region.value);
     }
     for (const Material& material : scene.materials()) {
-        all.add(material.reflectance), all.add(material.exitance);
+        all.add(material.reflectance), all.add(material.exitance), all.add(material.through);
         if (!material.is_directed()) continue;
         const DirectedEmission& emission = material.emission;
         all.add(static_cast<double>(emission.profile.value)), all.add(emission.scale);
@@ -118,7 +118,7 @@ Result<bool> CheckpointFile::load() {
     return as_first(is_there);
 }
 
-/// By the first process.
+/// Reads the checkpoint in the first process.
 Result<bool> CheckpointFile::read() {
     std::error_code ignored;
     if (!std::filesystem::exists(path_, ignored)) return false;
@@ -180,13 +180,13 @@ void CheckpointFile::keep(std::string dealt) {
         }
         return write(std::move(parts), std::move(dealt));
     });
-    // What was kept before goes when this stands; where this does not, its parts go.
+    // Remove the parts of the previous checkpoint on success, or those of the failed one.
     if (is_first_process())
         remove_checkpoint_parts(path_, written_ ? 0 : generation_, written_ ? generation_ : generation_ + 1);
     watch_.restart();
 }
 
-/// What is written last: of the first process, `dealt` its part.
+/// Writes the main file, after all parts. `dealt` is the part of the first process.
 Result<void> CheckpointFile::write(std::vector<CheckpointPart> parts, std::string dealt) const {
     std::vector<std::string> names, values;
     for (const auto& [name, value] : facts_) names.push_back(name), values.push_back(value);

@@ -11,28 +11,28 @@
 
 namespace exitance {
 
-/// What a checkpoint is of, by name: a run goes on from it only where all of this is the same.
+/// Names and values that identify the work of a checkpoint: a run resumes from it only if all of them are equal.
 using CheckpointFacts = std::vector<std::pair<std::string, std::string>>;
 
-/// A hash of all that the light of a scene depends on, and of the numbers of its faces, as text.
+/// Returns a hash, as text, of everything that determines the light of a scene, and of the order of its faces.
 std::string scene_fingerprint(const Scene& scene);
 
-/// The state of a solve in a file beside its result, with a checksum; replaced whole or not at all. Of several
-/// processes each writes its part, the first one in that file (`checkpoint_parts.hpp`); any number of them reads it.
-/// Read by the program that wrote it and on the same kind of machine only. All.
+/// The state of a solve in a file, with a checksum; written whole or not at all. With several processes, each writes
+/// its part, the first one in this file (see `checkpoint_parts.hpp`); any number of processes can read it. Only the
+/// same program on the same kind of machine can read it. All functions are collective.
 class CheckpointFile final : public CheckpointStore {
   public:
-    /// The program's version and build are added to the facts. `every`: seconds from one checkpoint to the next, as the
-    /// first process sees them; infinite: write none.
+    /// Adds the program's version and build to `facts`. `every` is the time between checkpoints, in seconds, measured
+    /// by the first process; infinity: no checkpoints.
     CheckpointFile(std::string path, CheckpointFacts facts, double every);
 
-    /// Reads the file, so that the solve goes on from there. False where there is none. An error (bad_input) names what
-    /// the file is of and this run is not, or says which file is damaged or missing.
+    /// Reads the checkpoint from which the solve resumes. Returns false if there is none. Error (bad_input): a fact
+    /// differs, or a file is damaged or missing; the message says which.
     Result<bool> load();
     bool is_due() const override;
     void keep(std::string dealt) override;
     std::string resumed() override { return std::exchange(state_, {}); }
-    /// How the last writing went. Where it failed, what was kept before stands.
+    /// Result of the last keep(). If it failed, the previous checkpoint is unchanged.
     const Result<void>& written() const { return written_; }
     void remove() const;
 
@@ -44,7 +44,7 @@ class CheckpointFile final : public CheckpointStore {
     CheckpointFacts facts_;
     double every_;
     Stopwatch watch_;
-    std::uint64_t generation_ = 0;  ///< Of what was read or written last.
+    std::uint64_t generation_ = 0;  ///< Generation that was read or written last.
     std::string state_;
     Result<void> written_;
 };

@@ -14,14 +14,14 @@ namespace exitance {
 namespace {
 
 const CheckpointFacts facts{{"seed", "1"}, {"error", "0.02"}};
-constexpr double at_once = 0, never = std::numeric_limits<double>::infinity();
+constexpr double always = 0, never = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-TEST(CheckpointFile, GivesBackTheStateThatWasKeptLast) {
+TEST(CheckpointFile, ReturnsTheStateThatWasKeptLast) {
     const TemporaryFolder folder;
     const std::string path = folder / "room.h5.checkpoint";
-    CheckpointFile file(path, facts, at_once);
+    CheckpointFile file(path, facts, always);
     EXPECT_FALSE(*file.load()) << "there is none";
     EXPECT_TRUE(file.is_due());
     EXPECT_FALSE(CheckpointFile(path, facts, never).is_due());
@@ -34,10 +34,10 @@ TEST(CheckpointFile, GivesBackTheStateThatWasKeptLast) {
     EXPECT_EQ(folder.count(), 0u);
 }
 
-TEST(CheckpointFile, AnotherRunIsRefusedByTheNameOfWhatDiffers) {
+TEST(CheckpointFile, ARunWithOtherFactsIsAnErrorThatNamesTheDifference) {
     const TemporaryFolder folder;
     const std::string path = folder / "room.h5.checkpoint";
-    CheckpointFile(path, facts, at_once).keep("state");
+    CheckpointFile(path, facts, always).keep("state");
     CheckpointFile other(path, {{"seed", "1"}, {"error", "0.01"}}, never);
     const Result<bool> loaded = other.load();
     ASSERT_FALSE(loaded);
@@ -45,10 +45,10 @@ TEST(CheckpointFile, AnotherRunIsRefusedByTheNameOfWhatDiffers) {
     EXPECT_NE(loaded.error().message.find("error was 0.02 and is 0.01"), std::string::npos) << loaded.error().message;
 }
 
-TEST(CheckpointFile, DamageIsNoticedWhereverItIs) {
+TEST(CheckpointFile, DamageIsDetectedAnywhere) {
     const TemporaryFolder folder;
     const std::string path = folder / "room.h5.checkpoint";
-    CheckpointFile(path, facts, at_once).keep("state");
+    CheckpointFile(path, facts, always).keep("state");
     const std::string good = *read_whole_file(path);
     for (std::size_t i = 0; i <= good.size(); ++i) {
         std::string bad = good.substr(0, i);
@@ -61,15 +61,15 @@ TEST(CheckpointFile, DamageIsNoticedWhereverItIs) {
     }
 }
 
-TEST(CheckpointFile, AFolderThatIsGoneIsToldAndNothingMore) {
+TEST(CheckpointFile, AMissingFolderIsReportedWithoutOtherEffects) {
     const TemporaryFolder folder;
-    CheckpointFile file(folder / "absent/room.checkpoint", facts, at_once);
+    CheckpointFile file(folder / "absent/room.checkpoint", facts, always);
     file.keep("state");
     ASSERT_FALSE(file.written());
     EXPECT_EQ(file.written().error().code, ErrorCode::cannot_write);
 }
 
-TEST(SceneFingerprint, TellsScenesApart) {
+TEST(SceneFingerprint, DiffersBetweenScenes) {
     EXPECT_EQ(scene_fingerprint(sample_scene()), scene_fingerprint(sample_scene()));
     EXPECT_NE(scene_fingerprint(sample_scene()), scene_fingerprint(box_scene(1, 1, 1, 0.5, 1, 0)));
     EXPECT_NE(scene_fingerprint(box_scene(1, 1, 1, 0.5, 1, 0)), scene_fingerprint(box_scene(1, 1, 1, 0.6, 1, 0)));

@@ -17,7 +17,7 @@
 namespace exitance {
 namespace {
 
-/// The generation in the name of a part of `checkpoint`, both without folders; none in other names.
+/// Returns the generation if `name` is a part of `checkpoint` (file names without folders); otherwise empty.
 std::optional<std::uint64_t> generation_in(std::string_view name, std::string_view checkpoint) {
     if (!name.starts_with(checkpoint)) return {};
     std::array<std::uint64_t, 2> numbers{};  // generation, process
@@ -32,12 +32,12 @@ std::optional<std::uint64_t> generation_in(std::string_view name, std::string_vi
     return at == end ? std::optional(numbers[0]) : std::nullopt;
 }
 
-/// All parts beside the checkpoint, with their generations.
+/// Calls `take` for each part of a checkpoint, with its generation.
 void for_each_part(const std::string& checkpoint,
                    const std::function<void(const std::filesystem::path&, std::uint64_t)>& take) {
     const std::filesystem::path path(checkpoint);
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-    std::vector<std::filesystem::path> names;  // before any of them is removed
+    std::vector<std::filesystem::path> names;  // complete before `take` may remove files
     std::error_code failed;
     for (std::filesystem::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
         names.push_back(at->path());

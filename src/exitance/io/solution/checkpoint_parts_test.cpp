@@ -18,7 +18,7 @@ void write(const std::string& path, std::string_view bytes) {
 
 }  // namespace
 
-TEST(CheckpointParts, AreReadAsTheyWereWrittenOrRefusedByName) {
+TEST(CheckpointParts, AreReadAsWrittenOrAreErrorsThatNameTheFile) {
     const TemporaryFolder folder;
     const std::string checkpoint = folder / "room.h5.checkpoint", path = checkpoint_part_path(checkpoint, 7, 2);
     EXPECT_EQ(path, checkpoint + ".7.2");
@@ -43,7 +43,7 @@ TEST(CheckpointParts, AreReadAsTheyWereWrittenOrRefusedByName) {
     expect_refused("is missing");
 }
 
-TEST(CheckpointParts, AreRemovedByGenerationAndNothingElseIs) {
+TEST(CheckpointParts, AreRemovedByGenerationWithoutOtherFiles) {
     const TemporaryFolder folder;
     const std::string checkpoint = folder / "room.h5.checkpoint";
     EXPECT_EQ(last_checkpoint_generation(checkpoint), 0u);

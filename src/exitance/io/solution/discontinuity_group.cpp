@@ -35,7 +35,7 @@ bool is_order(std::uint8_t v) {
     return v <= 4 || v == 255;
 }
 
-/// Why the numbers make no mesh, if they do not.
+/// Returns the reason why a mesh is invalid, or nothing.
 std::optional<std::string> find_nonsense(const SixNodeMesh& mesh, std::size_t region_count) {
     for (const Point& p : mesh.points)
         if (!is_finite(p)) return "holds a point that is not finite";

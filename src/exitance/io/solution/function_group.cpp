@@ -8,7 +8,8 @@ namespace {
 
 constexpr std::uint32_t none = ElementId::none_value;
 
-/// Cuts a tree anew in the order in which its elements came to be; why not, when the file makes no sense.
+/// Rebuilds a tree by repeating its splits in the order of the element ids. Reports an error if the data are
+/// inconsistent.
 class Replay {
   public:
     Replay(Hdf5Reader& file, const std::string& group, std::size_t region_count)
@@ -57,7 +58,7 @@ class Replay {
                           {p[6], p[7], p[8]},
                           shape_[i] == 1 ? Patch::Shape::triangle : Patch::Shape::parallelogram};
         const double squared_area = squared_norm(cross(patch.a, patch.b));
-        if (!(squared_area > 0 && std::isfinite(1 / squared_area))) return false;  // no place would have coordinates
+        if (!(squared_area > 0 && std::isfinite(1 / squared_area))) return false;  // points would not have coordinates
         tree.add_root(RegionId(region_[i]), patch);
         return true;
     }
@@ -84,12 +85,12 @@ class Replay {
         if (parent_[first] != e.value || parent_[first + 1] != e.value) return false;
         const double* line = &line_[3 * static_cast<std::size_t>(found - line_element_.begin())];
         if (tree.split_by_line(e, {{line[0], line[1]}, line[2]}, 0).is_none()) return false;
-        // Slivers cut from slivers keep few digits of their areas; the same cuts give the same ones again.
+        // Repeatedly split slivers have inaccurate areas, but the same splits reproduce the same values.
         const double a = tree.area(ElementId(first)), b = tree.area(ElementId(first + 1));
         return a > 0 && b > 0 && a + b <= 1.5 * tree.area(e);
     }
 
-    /// Fans come in the order in which they were cut.
+    /// Fans are stored in the order in which they were split.
     bool split_fan(ElementTree& tree, ElementId e) {
         if (fans_read_ == fan_element_.size() || fan_element_[fans_read_] != e.value) return false;
         const std::size_t places = fan_places_[fans_read_++], first = tree.size();
@@ -98,7 +99,7 @@ class Replay {
         Fan fan;
         for (std::size_t i = 0; i < places; ++i) {
             const double* at = &fan_[2 * (fan_places_read_ + i)];
-            constexpr double around = 1e-6;  // an element may end so far from its frame by rounding
+            constexpr double around = 1e-6;  // an element may exceed its frame by this much due to rounding
             for (int k = 0; k < 2; ++k)
                 if (!(at[k] >= -around && at[k] <= 1 + around)) return false;
             (i == 0 ? fan.apex : fan.border.emplace_back()) = {at[0], at[1]};
@@ -123,7 +124,7 @@ class Replay {
     std::size_t region_count_;
 };
 
-/// The values of a function, those of its leaves in the order of their ids.
+/// Writes the values of a function, leaf by leaf in the order of their ids.
 void write_values(Hdf5Writer& file, const std::string& name, const ElementFunction& function) {
     const ElementTree& tree = function.tree;
     const auto corners_of = [&](ElementId e) {
@@ -145,7 +146,7 @@ void write_values(Hdf5Writer& file, const std::string& name, const ElementFuncti
                            });
 }
 
-/// How elements came to be, a row each.
+/// Writes how each element was created, one row per element.
 void write_elements(Hdf5Writer& file, const std::string& group, const ElementTree& tree) {
     file.write_rows<std::uint32_t>(
         group + "/parent", tree.size(), 1, {"1", "parent of an element; 4294967295 for a root"},

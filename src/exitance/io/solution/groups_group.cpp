@@ -42,7 +42,7 @@ std::vector<Spectrum> spectra(Hdf5Reader& file, const std::string& name, std::si
     return out;
 }
 
-/// What is switched together, as pairs of group and number.
+/// Reads the emitters of each group, as pairs of group and index.
 void read_emitters(Hdf5Reader& file, const std::string& group, const Scene& scene, LightGroups& out) {
     const auto materials = file.read<std::uint32_t>(group + "/materials", 2);
     const auto lights = file.read<std::uint32_t>(group + "/lights", 2);
@@ -64,7 +64,7 @@ void read_emitters(Hdf5Reader& file, const std::string& group, const Scene& scen
     }
 }
 
-/// The light of all groups at so many corners.
+/// Reads the light of all groups at `corners` corners.
 void read_values(Hdf5Reader& file, const std::string& name, std::size_t corners, std::vector<LightGroup>& groups,
                  CornerValues LightGroup::*values) {
     const auto all = file.read<float>(name, bands, groups.size() * corners);
@@ -73,7 +73,7 @@ void read_values(Hdf5Reader& file, const std::string& name, std::size_t corners,
     for (std::size_t g = 0; g < groups.size(); ++g) groups[g].*values = part_of(all, g, corners);
 }
 
-/// Elements of a tree, in order of their ids or not.
+/// Reads element ids of a tree with `count` elements, in any order.
 std::vector<std::uint32_t> read_elements(Hdf5Reader& file, const std::string& name, std::size_t count) {
     std::vector<std::uint32_t> out = file.read<std::uint32_t>(name, 1);
     for (const std::uint32_t e : out)
@@ -101,7 +101,7 @@ void read_transport(Hdf5Reader& file, const std::string& group, const Solution& 
     if (!file.failed() && std::isfinite(error[0])) out.error = error[0];
 }
 
-/// What each group is by itself.
+/// Reads the values that belong to each group alone.
 void read_facts(Hdf5Reader& file, const std::string& group, std::vector<LightGroup>& groups) {
     const auto factor = file.read<double>(group + "/factor", 1, groups.size());
     const auto error = file.read<double>(group + "/error", 1, groups.size());
@@ -132,7 +132,7 @@ void write_light_groups(Hdf5Writer& file, const std::string& group, const LightG
     const auto in = [&](const char* name) { return group + "/" + name; };
     std::string names;
     std::vector<double> factor, error, reflected;
-    std::vector<std::uint32_t> materials, lights, distant;  // pairs of group and number
+    std::vector<std::uint32_t> materials, lights, distant;  // pairs of group and index
     for (std::uint32_t g = 0; g < groups.groups.size(); ++g) {
         const LightGroup& one = groups.groups[g];
         std::string name = one.emitters.name;

@@ -7,7 +7,7 @@ namespace exitance {
 
 std::uint32_t hdf5_checksum(std::string_view bytes) {
     std::size_t at = 0;
-    const auto word = [&] {  // little-endian; zeros past the end
+    const auto word = [&] {  // little-endian, with zeros after the end
         std::uint32_t w = 0;
         for (std::size_t k = 0; k < 4; ++k, ++at)
             if (at < bytes.size()) w |= std::uint32_t(static_cast<unsigned char>(bytes[at])) << 8 * k;

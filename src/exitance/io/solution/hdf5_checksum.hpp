@@ -5,7 +5,7 @@
 
 namespace exitance {
 
-/// The checksum that HDF5's metadata carries: the hash lookup3. Source: [Jenkins06]. O(n).
+/// The checksum of HDF5's metadata: the hash function lookup3. Source: [Jenkins06]. O(n).
 std::uint32_t hdf5_checksum(std::string_view bytes);
 
 }  // namespace exitance

@@ -15,13 +15,14 @@
 namespace exitance {
 namespace {
 
-// Files are little-endian, and chunks go into them as they stand in memory.
+// Files are little-endian, and chunks are stored with the byte order of memory.
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::size_t checksum_bytes = 4;
-constexpr std::size_t largest_chunk = 1 << 20;  ///< Bytes of a chunk that is unpacked here: four times what is written.
+/// Limit on the bytes of a chunk unpacked here: four times the size that is written.
+constexpr std::size_t max_chunk_bytes = 1 << 20;
 
-/// First bytes of all items, then second bytes, and so on.
+/// Stores the first bytes of all items, then the second bytes, and so on.
 void shuffle(std::span<const std::byte> items, std::size_t item_bytes, std::byte* out) {
     const std::size_t count = items.size() / item_bytes;
     for (std::size_t k = 0; k < item_bytes; ++k)
@@ -35,10 +36,10 @@ void unshuffle(std::span<const std::byte> bytes, std::size_t item_bytes, std::sp
         for (std::size_t i = 0; i < count; ++i) items[i * item_bytes + k] = *in++;
 }
 
-/// Fletcher's checksum of big-endian words of 16 bits, as the library has it.
+/// Fletcher's checksum of big-endian words of 16 bits, as defined by the HDF5 library.
 std::uint32_t fletcher32(std::span<const std::byte> bytes) {
     EXI_ASSERT(bytes.size() % 2 == 0);
-    constexpr std::size_t before_carry = 360;  // so many words fit into 32 bits
+    constexpr std::size_t before_carry = 360;  // number of words whose sums fit into 32 bits
     std::uint32_t low = 0, high = 0;
     const auto fold = [](std::uint32_t sum) { return (sum & 0xffff) + (sum >> 16); };
     const auto byte = [&](std::size_t i) { return static_cast<std::uint32_t>(bytes[i]); };
@@ -94,10 +95,10 @@ bool Hdf5Filters::unpack(std::span<const std::byte> packed, std::span<std::byte>
 
 namespace {
 
-/// How a set is stored, where Hdf5Writer has stored it.
+/// Storage of a data set that was written by Hdf5Writer.
 struct Stored {
     Hdf5Filters filters;
-    std::size_t rows = 0, together = 0;  ///< In all, and in a chunk.
+    std::size_t rows = 0, together = 0;  ///< Number of rows of the set, and of each chunk.
 };
 
 bool has_filter(hid_t creation, unsigned i, H5Z_filter_t wanted) {
@@ -121,11 +122,11 @@ std::optional<Stored> stored_as(hid_t set, Hdf5Type type, std::size_t columns) {
     else if (filters != 1 || !has_filter(creation, 0, H5Z_FILTER_FLETCHER32))
         return {};
     const bool whole_rows = extent[1] == columns && chunk[1] == columns && out.together > 0;
-    if (!whole_rows || out.together > largest_chunk / (columns * out.filters.item_bytes)) return {};
+    if (!whole_rows || out.together > max_chunk_bytes / (columns * out.filters.item_bytes)) return {};
     return out;
 }
 
-/// A chunk as it stands in the file; false where it has more bytes than it can have, or not all filters.
+/// Reads a chunk as stored in the file. Returns false if it has more than `most` bytes or lacks a filter.
 bool read_packed(hid_t set, std::size_t first_row, std::size_t most, std::vector<std::byte>& packed) {
     const std::array<hsize_t, 2> at{first_row, 0};
     hsize_t size = 0;
@@ -158,7 +159,7 @@ bool read_hdf5_chunks(std::int64_t set, Hdf5Type type, std::size_t columns, std:
                              is_good[k] = stored->filters.unpack(packed[k], out.subspan(begin, size));
                              return;
                          }
-                         std::vector<std::byte> whole(chunk_bytes);  // the last one goes on past the last row
+                         std::vector<std::byte> whole(chunk_bytes);  // the last chunk extends beyond the last row
                          is_good[k] = stored->filters.unpack(packed[k], whole);
                          std::copy_n(whole.begin(), size, out.begin() + static_cast<std::ptrdiff_t>(begin));
                      },

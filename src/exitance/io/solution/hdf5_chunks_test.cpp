@@ -21,7 +21,7 @@ std::vector<std::byte> noise(std::size_t size) {
     return out;
 }
 
-TEST(Hdf5Chunks, ComeBackAsTheyWerePacked) {
+TEST(Hdf5Chunks, AreUnpackedAsPacked) {
     for (const std::size_t item_bytes : {1, 2, 4, 8})
         for (const std::size_t items : {1, 7, 1000, 32768})
             for (const bool is_noise : {false, true}) {
@@ -38,7 +38,7 @@ TEST(Hdf5Chunks, ComeBackAsTheyWerePacked) {
             }
 }
 
-TEST(Hdf5Chunks, DoNotComeBackWhereAByteIsAnotherOrTheSizeIs) {
+TEST(Hdf5Chunks, AreNotUnpackedIfAByteOrTheSizeDiffers) {
     const std::vector<std::byte> chunk = noise(4000);
     for (const bool deflates : {false, true}) {
         const Hdf5Filters filters{4, deflates};
@@ -57,7 +57,7 @@ TEST(Hdf5Chunks, DoNotComeBackWhereAByteIsAnotherOrTheSizeIs) {
     }
 }
 
-/// Sets of every kind, of several chunks each; numbers that shrink, and some that do not.
+/// Writes sets of every type with several chunks each, of compressible and incompressible numbers.
 void write_sets(const std::string& path) {
     Hdf5Writer out(path);
     std::vector<std::uint32_t> ids(200001);
@@ -75,12 +75,12 @@ void write_sets(const std::string& path) {
     ASSERT_TRUE(out.commit());
 }
 
-TEST(Hdf5Chunks, AreWhatTheLibraryReadsToo) {
+TEST(Hdf5Chunks, AgreeWithTheLibrary) {
     const TemporaryFolder folder;
     write_sets(folder / "f.h5");
     Result<Hdf5Reader> in = Hdf5Reader::open(folder / "f.h5");
     ASSERT_TRUE(in) << in.error().message;
-    // Numbers of another width are converted, by the library, which then unpacks as well.
+    // Numbers of another width are converted and therefore unpacked by the library.
     const auto same = [&](const auto& own, const auto& by_library) {
         return !own.empty() && own.size() == by_library.size() &&
                std::equal(own.begin(), own.end(), by_library.begin(),
@@ -106,7 +106,7 @@ TEST(Hdf5Chunks, AreTheSameBytesOnAnyNumberOfThreads) {
     EXPECT_TRUE(files[0] == files[1]);
 }
 
-TEST(Hdf5Chunks, ThatAreDamagedAreSaidToBe) {
+TEST(Hdf5Chunks, AreReportedIfDamaged) {
     const TemporaryFolder folder;
     write_sets(folder / "f.h5");
     const std::string whole = *read_whole_file(folder / "f.h5");
@@ -114,7 +114,7 @@ TEST(Hdf5Chunks, ThatAreDamagedAreSaidToBe) {
     constexpr std::size_t places = 40;
     for (std::size_t k = 0; k < places; ++k) {
         std::string damaged = whole;
-        damaged[whole.size() / 2 + hash(3, k) % (whole.size() / 4)] ^= 4;  // among numbers
+        damaged[whole.size() / 2 + hash(3, k) % (whole.size() / 4)] ^= 4;  // within the numbers
         const std::string path = folder / "damaged.h5";
         ASSERT_TRUE(write_file(path, damaged));
         Result<Hdf5Reader> in = Hdf5Reader::open(path);

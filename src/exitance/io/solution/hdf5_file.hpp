@@ -15,7 +15,7 @@
 
 namespace exitance {
 
-/// The numbers that data sets hold.
+/// Number types of data sets.
 enum class Hdf5Type { uint8, int32, uint32, int64, float32, float64, uint16 };
 
 template <class T>
@@ -29,16 +29,16 @@ constexpr Hdf5Type hdf5_type() {
     if constexpr (std::is_same_v<T, double>) return Hdf5Type::float64;
 }
 
-/// What a data set says about itself, as attributes.
+/// Description of a data set, stored as attributes.
 struct Hdf5Label {
-    const char* units;      ///< "m", "W/m^2" (see `Hdf5Writer::use_lumens`), or "1" for pure numbers.
-    const char* long_name;  ///< A few words.
+    const char* units;      ///< "m", "W/m^2" (see `Hdf5Writer::use_lumens`), or "1" for dimensionless numbers.
+    const char* long_name;  ///< Description in a few words.
 };
 
-/// An HDF5 file in the making, which appears whole or not at all (AtomicFile). It is written as it grows, so that it
-/// takes next to no memory; what the disk refuses is remembered by us, and not the library's to deal with. The same
-/// calls give the same bytes: no times, no pointers. The first failure is remembered, what follows it does nothing, and
-/// commit() reports it. One thread at a time.
+/// Writes an HDF5 file, which appears whole or not at all (see AtomicFile). Data are written as they arrive, in little
+/// memory. Equal calls give equal bytes: the file contains no times and no pointers. After the first failure further
+/// calls do nothing, and commit() reports it. Disk errors are handled by AtomicFile, not by the library. One thread at
+/// a time.
 class Hdf5Writer {
   public:
     explicit Hdf5Writer(const std::string& path);
@@ -46,15 +46,16 @@ class Hdf5Writer {
     Hdf5Writer& operator=(const Hdf5Writer&) = delete;
     ~Hdf5Writer();
 
-    /// Light is in lumens: from here on labels say lm where their units say W.
+    /// Declares light to be in lumens: from now on, W in the units of labels becomes lm.
     void use_lumens() { in_lumens_ = true; }
 
-    /// Groups are made before what goes into them. Names are paths from the root, "exitance/scene".
+    /// Creates a group. It must exist before its members are written. Names are paths from the root, such as
+    /// "exitance/scene".
     void make_group(const std::string& name);
 
-    /// Numbers in rows of `columns`; one column makes a one-dimensional set. Big sets are compressed (shuffled, gzip
-    /// level 1) or carry a checksum, small ones stand in the header, under its checksum, so that a damaged file is
-    /// noticed. All threads pack.
+    /// Writes numbers in rows of `columns`; with one column, the set is one-dimensional. Large sets are compressed
+    /// (shuffled, gzip level 1) or have a checksum; small ones are in the header, under its checksum, so that damage is
+    /// detected. All threads pack chunks.
     template <class T>
     void write(const std::string& name, std::span<const T> values, std::size_t columns, Hdf5Label label) {
         write_numbers(name, values.data(), hdf5_type<T>(), values.size() / columns, columns, label);
@@ -63,7 +64,8 @@ class Hdf5Writer {
     void write(const std::string& name, const std::vector<T>& values, std::size_t columns, Hdf5Label label) {
         write(name, std::span<const T>(values), columns, label);
     }
-    /// The same where nobody holds them: make(i, row) writes row i, and is called for every i from 0 on in its order.
+    /// Writes rows that need not be in memory: make(i, row) computes row i and is called for every i in ascending
+    /// order.
     template <class T, class Make>
     void write_rows(const std::string& name, std::size_t rows, std::size_t columns, Hdf5Label label, const Make& make) {
         write_blocks(name, hdf5_type<T>(), rows, columns, label, [&](std::size_t first, std::size_t count, void* out) {
@@ -72,7 +74,7 @@ class Hdf5Writer {
         });
     }
     void write_text(const std::string& name, std::string_view text, Hdf5Label label);
-    /// Padded to the longest.
+    /// Pads the texts to the length of the longest.
     void write_texts(const std::string& name, const std::vector<std::string>& texts, Hdf5Label label);
 
     void set_attribute(const std::string& object, const char* name, std::string_view text);
@@ -85,7 +87,7 @@ class Hdf5Writer {
         set_numbers(object, name, &value, hdf5_type<T>(), 1, false);
     }
 
-    /// The file is whole.
+    /// Completes the file.
     Result<void> commit();
 
   private:
@@ -107,15 +109,15 @@ class Hdf5Writer {
 
     std::string path_;
     Result<AtomicFile> output_;
-    std::int64_t file_ = -1;  ///< The library's handle.
+    std::int64_t file_ = -1;  ///< Handle of the library.
     std::string failure_;
     bool in_lumens_ = false;
 };
 
-/// An HDF5 file that is read, and not trusted: sizes are compared with what the file really holds before anything is
-/// allocated, and the library reads everything once in a process of its own before it does here. A function that fails
-/// returns something empty and remembers the first failure, which names the file and the object; look at failed()
-/// before using what was read. One thread at a time.
+/// Reads an HDF5 file that may be damaged or malicious. Sizes are compared with the actual content of the file before
+/// memory is allocated, and the library first reads the whole file in a separate process. A function that fails returns
+/// an empty result and stores the first error, which names the file and the object; check failed() before using
+/// results. One thread at a time.
 class Hdf5Reader {
   public:
     static Result<Hdf5Reader> open(const std::string& path, Rehearsed rehearsed = Rehearsed::not_yet);
@@ -130,8 +132,8 @@ class Hdf5Reader {
 
     bool has(const std::string& name) const;
 
-    /// Rows of `columns` numbers; with `rows` given, just so many. Numbers are converted between widths, not between
-    /// integers and fractions.
+    /// Reads rows of `columns` numbers; exactly `rows` if given. Integers are converted to integers of other widths and
+    /// floating-point numbers to others, but not one to the other.
     template <class T>
     std::vector<T> read(const std::string& name, std::size_t columns = 1, std::optional<std::size_t> rows = {}) {
         std::vector<T> out;
@@ -144,7 +146,7 @@ class Hdf5Reader {
     std::string read_text(const std::string& name);
     std::vector<std::string> read_texts(const std::string& name, std::optional<std::size_t> count = {});
 
-    /// Attributes; nothing when there is none of that name and kind, which is not a failure.
+    /// Return an attribute; empty if there is none with that name and type, which is not an error.
     std::optional<std::string> text_attribute(const std::string& object, const char* name);
     std::optional<double> number_attribute(const std::string& object, const char* name);
     std::optional<std::int64_t> integer_attribute(const std::string& object, const char* name);
@@ -152,7 +154,7 @@ class Hdf5Reader {
 
     bool failed() const { return error_.has_value(); }
     const Error& error() const { return *error_; }
-    /// Remembers that what was read from `name` makes no sense; `what` goes on from "data set NAME ".
+    /// Reports that the content of data set `name` is invalid. `what` continues the sentence "data set NAME ".
     void fail(const std::string& name, const std::string& what);
 
   private:
@@ -164,9 +166,9 @@ class Hdf5Reader {
 
     std::string path_;
     std::int64_t file_ = -1;
-    std::int64_t set_ = -1;  ///< Between open_numbers and read_numbers.
+    std::int64_t set_ = -1;  ///< Open data set, between open_numbers() and read_numbers().
     std::string set_name_;
-    std::uint64_t bytes_ = 0;  ///< Of the file.
+    std::uint64_t bytes_ = 0;  ///< Size of the file.
     std::optional<Error> error_;
 };
 

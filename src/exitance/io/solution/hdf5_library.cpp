@@ -8,8 +8,8 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t largest_chunk = 1 << 26;  ///< Bytes that we agree to read.
-constexpr double gzip_at_best = 1100;           ///< Deflate cannot shrink more than 1032 times.
+constexpr std::size_t max_chunk_bytes = 1 << 26;  ///< Limit on the bytes of a chunk.
+constexpr double max_compression = 1100;          ///< Limit on the compression ratio; deflate's is 1032.
 
 }  // namespace
 
@@ -96,8 +96,8 @@ bool holds_really(std::int64_t set, std::size_t item_bytes, std::size_t items, s
         if (rank < 1 || rank > 2) return false;
         double bytes = static_cast<double>(item_bytes);
         for (hsize_t extent : chunk) bytes *= static_cast<double>(std::max<hsize_t>(extent, 1));
-        if (bytes > static_cast<double>(largest_chunk)) return false;
-        if (H5Pget_nfilters(creation) > 0) grows = gzip_at_best;
+        if (bytes > static_cast<double>(max_chunk_bytes)) return false;
+        if (H5Pget_nfilters(creation) > 0) grows = max_compression;
     }
     const hsize_t held = H5Dget_storage_size(set);
     if (items > hdf5_room_for(file_bytes) / std::max<std::size_t>(item_bytes, 8)) return false;

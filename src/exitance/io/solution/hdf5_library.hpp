@@ -7,7 +7,7 @@
 
 namespace exitance {
 
-/// A handle of the HDF5 library, given back at the end of its scope. Negative when what made it failed.
+/// Owns a handle of the HDF5 library. Negative if the call that created it failed.
 class Hdf5Handle {
   public:
     explicit Hdf5Handle(std::int64_t id) : id_(id) {}
@@ -20,28 +20,29 @@ class Hdf5Handle {
     std::int64_t id_;
 };
 
-/// The library's type of such numbers in memory, and in files: little-endian there, wherever they are written.
+/// The library's type for numbers in memory, and in files, where they are always little-endian.
 std::int64_t hdf5_native_type(Hdf5Type type);
 std::int64_t hdf5_stored_type(Hdf5Type type);
 
-/// The library's own words for the failure at hand, as far down as they go: " (bad object header)", or nothing.
+/// The library's innermost message about the current error, such as " (bad object header)"; may be empty.
 std::string hdf5_says();
 
-/// No words of the library on standard error.
+/// Stops the library from printing messages to standard error.
 void quieten_hdf5();
 
-/// What is agreed to be read: anything else goes little-trodden ways of the library.
+/// True for text of fixed length. Other types are not read, since rarely used parts of the library are less robust.
 bool is_fixed_text(std::int64_t type);
-/// A number whose bits all count, in the order of some machine.
+/// True for a number without padding bits, in either byte order.
 bool is_plain_number(std::int64_t type);
 
-/// What reading a file may take at a time, bytes: what is written shrinks little, since most of it are digits of light.
+/// Limit on the memory for reading a file, bytes. Files shrink little by compression, since most of their content is
+/// digits of light.
 constexpr std::size_t hdf5_room_for(std::uint64_t file_bytes) {
     return 10 * static_cast<std::size_t>(file_bytes) + (std::size_t{64} << 20);
 }
 
-/// May a set of so many items be read: do the bytes that the file holds for it make so many, after unpacking, and are
-/// they no more than a file of this size may ask for, 8 bytes each at most?
+/// True if a data set may be read: the bytes stored for it can unpack to `items` items of `item_bytes`, and the items,
+/// with at least 8 bytes each, fit into hdf5_room_for(file_bytes).
 bool holds_really(std::int64_t set, std::size_t item_bytes, std::size_t items, std::uint64_t file_bytes);
 
 }  // namespace exitance

@@ -11,11 +11,11 @@
 namespace exitance {
 namespace {
 
-/// A file as a driver of the library has it: what the library knows of it stands first.
+/// An open file of this driver. The library requires its own data to be first.
 struct Open {
     H5FD_t common;
     AtomicFile* output;
-    haddr_t claimed, written;  ///< Where the library's part of the file ends, and what has been written to it.
+    haddr_t claimed, written;  ///< End of the library's allocated space, and of the bytes written.
 };
 
 H5FD_t* open_file(const char*, unsigned, hid_t access, haddr_t) {
@@ -35,7 +35,7 @@ herr_t close_file(H5FD_t* file) {
     return 0;
 }
 
-/// Small things are gathered, as in the library's own drivers.
+/// Enables buffering of small pieces, as the library's own drivers do.
 herr_t query(const H5FD_t*, unsigned long* flags) {
     *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
              H5FD_FEAT_AGGREGATE_SMALLDATA;
@@ -64,7 +64,7 @@ herr_t write(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t place, std::size_t size, c
     return 0;
 }
 
-/// The file ends where the library says.
+/// Extends the file to the allocated size.
 herr_t truncate(H5FD_t* file, hid_t, hbool_t) {
     Open& f = of(file);
     if (f.written >= f.claimed) return 0;
@@ -78,7 +78,7 @@ H5FD_class_t make_driver() {
     H5FD_class_t d{};
 #ifdef H5FD_CLASS_VERSION
     d.version = H5FD_CLASS_VERSION;
-    d.value = static_cast<H5FD_class_value_t>(512);  // of those that are free for testing
+    d.value = static_cast<H5FD_class_value_t>(512);  // one of the values reserved for testing
 #endif
     d.name = "exitance";
     d.maxaddr = (haddr_t(1) << 62) - 1;

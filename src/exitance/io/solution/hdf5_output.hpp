@@ -6,9 +6,8 @@
 
 namespace exitance {
 
-/// Has the library write a file that it makes with this list of properties to `output`, which must outlive it. What the
-/// system refuses is kept there: to the library everything is written, since it does not come to an end with files that
-/// it can neither write nor give up.
+/// Makes the library write a file created with this property list to `output`, which must outlive the file. System
+/// errors are stored in `output` and hidden from the library, which cannot close a file that it fails to write.
 void set_hdf5_output(std::int64_t file_access, AtomicFile& output);
 
 }  // namespace exitance

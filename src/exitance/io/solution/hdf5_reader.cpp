@@ -13,7 +13,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t largest_text = 1 << 26;  ///< Bytes.
+constexpr std::size_t max_text_bytes = 1 << 26;  ///< Limit on the length of a text, bytes.
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void Hdf5Reader::fail(const std::string& name, const std::string& what) {
 }
 
 bool Hdf5Reader::has(const std::string& name) const {
-    // Every part of the path has to be there before the library may be asked for the next.
+    // Each part of the path must exist before the next one may be looked up.
     for (std::size_t end = name.find('/');; end = name.find('/', end + 1)) {
         if (H5Lexists(file_, name.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
         if (end == std::string::npos) return true;
@@ -99,7 +99,7 @@ std::string Hdf5Reader::read_text(const std::string& name) {
     const std::size_t length = H5Tget_size(type);
     if (!is_fixed_text(type) || H5Sget_simple_extent_npoints(space) != 1)
         return fail(name, "is not one text of fixed length"), "";
-    if (length > largest_text || !holds_really(set, length, 1, bytes_))
+    if (length > max_text_bytes || !holds_really(set, length, 1, bytes_))
         return fail(name, "claims a text longer than the file holds"), "";
     std::string text(length, '\0');
     if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) return fail(name, "cannot be read"), "";
@@ -119,7 +119,7 @@ std::vector<std::string> Hdf5Reader::read_texts(const std::string& name, std::op
     if (count && extent != *count)
         return fail(name, "has " + std::to_string(extent) + " rows in place of " + std::to_string(*count)),
                std::vector<std::string>();
-    if (length > largest_text || extent >= (std::uint64_t{1} << 32) || !holds_really(set, length, extent, bytes_))
+    if (length > max_text_bytes || extent >= (std::uint64_t{1} << 32) || !holds_really(set, length, extent, bytes_))
         return fail(name, "claims more texts than the file holds"), std::vector<std::string>();
     std::string padded(length * extent, '\0');
     if (extent > 0 && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, padded.data()) < 0)
@@ -134,7 +134,7 @@ std::vector<std::string> Hdf5Reader::read_texts(const std::string& name, std::op
 
 namespace {
 
-/// A scalar attribute of the class asked for, or a negative handle.
+/// Opens a scalar attribute of type class `kind`; returns a negative handle if there is none.
 hid_t open_scalar(hid_t file, const std::string& object, const char* name, H5T_class_t kind) {
     if (H5Aexists_by_name(file, object.c_str(), name, H5P_DEFAULT) <= 0) return -1;
     const hid_t attribute = H5Aopen_by_name(file, object.c_str(), name, H5P_DEFAULT, H5P_DEFAULT);

@@ -12,16 +12,17 @@
 namespace exitance {
 namespace {
 
-/// Reads every data set and attribute of solutions, as they stand in the file, into the same buffer.
+/// Reads every data set and attribute of a solution into one reused buffer.
 class Rehearsal {
   public:
     explicit Rehearsal(std::uint64_t file_bytes) : file_bytes_(file_bytes) {}
 
-    /// Could everything be opened? What fails the first time is not always refused the next time, half made as it is.
+    /// True if all objects could be opened. An object that failed must not be opened again: the library may accept its
+    /// incomplete state.
     bool read(hid_t file) { return H5Lexists(file, "exitance", H5P_DEFAULT) <= 0 || object(file, "exitance"); }
 
   private:
-    /// How many items of a kind that we read, or none.
+    /// Number of items if they are of a supported type, otherwise 0.
     static std::size_t items_of(hid_t type, hid_t space) {
         const hssize_t count = H5Sget_simple_extent_npoints(space);
         const bool known = H5Tget_size(type) > 0 && (is_fixed_text(type) || is_plain_number(type));
@@ -30,7 +31,7 @@ class Rehearsal {
 
     char* room(std::size_t bytes) {
         if (buffer_.size() < bytes) {
-            buffer_ = {};  // given back before more is taken
+            buffer_ = {};  // freed before the larger one is allocated
             buffer_.resize(bytes);
         }
         return buffer_.data();
@@ -70,7 +71,7 @@ class Rehearsal {
         return true;
     }
 
-    /// An object and all below it.
+    /// Reads an object and everything below it.
     bool object(hid_t from, const char* name) {
         const Hdf5Handle object(H5Oopen(from, name, H5P_DEFAULT));
         H5O_info_t info;
@@ -83,10 +84,10 @@ class Rehearsal {
 
     std::uint64_t file_bytes_;
     std::vector<char> buffer_;
-    std::set<haddr_t> seen_;  ///< Addresses of objects: links may lead back.
+    std::set<haddr_t> seen_;  ///< Addresses of visited objects, since links may form cycles.
 };
 
-/// Remembers whether the library got less memory than it asked for. It says so where a call fails, and only there.
+/// Detects whether the library ran out of memory, which it only reports in the error messages of a failing call.
 class MemoryWatch {
   public:
     MemoryWatch() { H5Eset_auto2(H5E_DEFAULT, look, &lacking_); }

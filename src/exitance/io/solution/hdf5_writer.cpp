@@ -13,8 +13,8 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t big_bytes = 4096;       ///< From here on compression pays.
-constexpr std::size_t chunk_bytes = 1 << 18;  ///< A quarter of the library's cache of chunks.
+constexpr std::size_t min_compressed_bytes = 4096;  ///< Data sets of at least this size are compressed.
+constexpr std::size_t chunk_bytes = 1 << 18;        ///< A quarter of the library's chunk cache.
 
 hid_t text_type(std::size_t length, bool ascii) {
     const hid_t type = H5Tcopy(H5T_C_S1);
@@ -24,12 +24,12 @@ hid_t text_type(std::size_t length, bool ascii) {
     return type;
 }
 
-/// How many rows are packed together.
+/// Number of rows per chunk.
 std::size_t rows_of_chunk(std::size_t row_bytes, std::size_t rows) {
     return std::clamp<std::size_t>(chunk_bytes / row_bytes, 1, std::max<std::size_t>(rows, 1));
 }
 
-/// The digits of light do not shrink: deflating them takes long and gains a sixth. They get a checksum instead.
+/// Selects the filter: light values (float32) get a checksum, since deflating them is slow and saves only a sixth.
 Hdf5Filters filters_of(Hdf5Type type) {
     return {H5Tget_size(hdf5_native_type(type)), type != Hdf5Type::float32};
 }
@@ -38,7 +38,7 @@ bool is_ascii(std::string_view text) {
     return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 128; });
 }
 
-/// Metadata in the layout of version 1.10: every block of it carries a checksum.
+/// Uses the metadata layout of version 1.10, in which every block has a checksum.
 hid_t file_access(AtomicFile& output) {
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
@@ -47,7 +47,7 @@ hid_t file_access(AtomicFile& output) {
     return access;
 }
 
-/// No times; few members stay inside the header.
+/// Stores no times; groups with few members are kept inside the header.
 hid_t group_creation(hid_t of_class) {
     const hid_t creation = H5Pcreate(of_class);
     H5Pset_obj_track_times(creation, false);
@@ -84,7 +84,7 @@ void Hdf5Writer::make_group(const std::string& name) {
     if (group < 0) fail("group " + name);
 }
 
-/// The library's handle of a new set without values; negative where it fails.
+/// Creates a data set without values and returns its handle; negative on failure.
 std::int64_t Hdf5Writer::make_set(const std::string& name, std::int64_t file_type, std::span<const std::size_t> shape,
                                   std::size_t item_bytes) {
     const int rank = static_cast<int>(shape.size());
@@ -96,12 +96,12 @@ std::int64_t Hdf5Writer::make_set(const std::string& name, std::int64_t file_typ
     const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE));
     H5Pset_obj_track_times(creation, false);
     H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
-    if (items * item_bytes < big_bytes) {
+    if (items * item_bytes < min_compressed_bytes) {
         if (items > 0) H5Pset_layout(creation, H5D_COMPACT);  // in the header, under its checksum
     } else if (rank > 0) {
         chunk[0] = rows_of_chunk(items / shape[0] * item_bytes, shape[0]);
         H5Pset_chunk(creation, rank, chunk.data());
-        // As `filters_of` has it.
+        // These must agree with `filters_of`.
         if (H5Tequal(file_type, hdf5_stored_type(Hdf5Type::float32)) > 0) {
             H5Pset_fletcher32(creation);
         } else {
@@ -130,7 +130,7 @@ void Hdf5Writer::write_set(const std::string& name, const void* data, std::int64
     describe(name, label);
 }
 
-/// Rows from `first` on, made into whole chunks, packed by all threads, and written in their order.
+/// Computes the rows of a few chunks at a time, packs them with all threads, and writes them in order.
 bool Hdf5Writer::write_chunks(std::int64_t set, Hdf5Type type, std::size_t rows, std::size_t columns,
                               const MakeBlock& make) {
     const Hdf5Filters filters = filters_of(type);
@@ -163,7 +163,7 @@ void Hdf5Writer::write_blocks(const std::string& name, Hdf5Type type, std::size_
     const Hdf5Handle set(
         make_set(name, hdf5_stored_type(type), std::span(extent).first(columns == 1 ? 1 : 2), item_bytes));
     bool is_written = set >= 0;
-    if (is_written && bytes >= big_bytes) {
+    if (is_written && bytes >= min_compressed_bytes) {
         is_written = write_chunks(set, type, rows, columns, make);
     } else if (is_written && bytes > 0) {
         std::vector<std::byte> all(bytes);
@@ -226,7 +226,7 @@ void Hdf5Writer::set_numbers(const std::string& object, const char* name, const 
 Result<void> Hdf5Writer::commit() {
     if (!output_) return output_.error();
     if (file_ >= 0 && H5Fclose(std::exchange(file_, -1)) < 0) fail("the file");
-    // What the disk has refused comes first: the library may have failed for it.
+    // A disk error is reported first, since it may have caused the library's failure.
     const Result<void> written = failure_.empty() || output_->failed() ? output_->commit() : Result<void>();
     if (!written) return written;
     if (!failure_.empty()) return Error{ErrorCode::cannot_write, "cannot be written: " + failure_, path_, ""};

@@ -12,11 +12,13 @@ void archive_each(Archive& a, Things& things) {
 
 }  // namespace
 
-// What a scene is made of, beyond plain values.
+// Serialization of the parts of a scene that are not plain values. Bindings name every member, so that none is
+// forgotten.
 
 template <class Archive>
 void archive(Archive& a, Material& m) {
-    a(m.name, m.reflectance, m.exitance, m.emission);
+    auto& [name, reflectance, exitance, emission, through] = m;
+    a(name, reflectance, exitance, emission, through);
 }
 
 template <class Archive>
@@ -31,7 +33,8 @@ void archive(Archive& a, EmissionProfile& p) {
 
 template <class Archive>
 void archive(Archive& a, Region& r) {
-    a(r.material, r.plane, r.area, r.surfaces, r.loops, r.level);
+    auto& [material, plane, area, surfaces, loops, level, behind] = r;
+    a(material, plane, area, surfaces, loops, level, behind);
 }
 
 template <class Archive>
@@ -54,13 +57,13 @@ void StoredScene::archive_all(Archive& a, Scene& s) {
     a(s.file_, s.surfaces_, s.corners_, s.emitters_, s.photometric_, s.box_);
     archive_each(a, s.materials_), archive_each(a, s.profiles_), archive_each(a, s.groups_);
     archive_each(a, s.regions_);
-    // A sky's facets are made where they are needed, and point to its domes.
+    // The facets of a sky are computed on demand and refer to its domes, so they are not stored.
     a(s.lights_, s.distant_.domes, s.distant_.discs, s.panes_, s.cameras_);
 }
 
 std::string StoredScene::bytes_of(const Scene& scene) {
     ArchiveWriter writer;
-    archive_all(writer, const_cast<Scene&>(scene));  // a writer changes nothing
+    archive_all(writer, const_cast<Scene&>(scene));  // writing does not change the scene
     return writer.take();
 }
 

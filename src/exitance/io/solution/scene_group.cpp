@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// Lights and views, which few scenes have: without them the file has no sets for them.
+/// Writes lights and views. Few scenes have any; without them the data sets are omitted.
 void write_lights(Hdf5Writer& file, const std::string& group, const std::vector<PunctualLight>& lights) {
     if (lights.empty()) return;
     const auto in = [&](const char* name) { return group + "/" + name; };
@@ -86,7 +86,7 @@ std::vector<SceneCamera> read_cameras(Hdf5Reader& file, const std::string& group
     return out;
 }
 
-/// Writes columns of a pool, named by what they hold.
+/// Writes columns of a pool, named by their content.
 template <class Pool>
 class PoolWriter {
   public:
@@ -188,7 +188,7 @@ struct MaterialColumns {
     }
 };
 
-/// Columns of the faces, but for their regions.
+/// Columns of the faces, except their regions.
 struct FaceColumns {
     std::vector<std::uint32_t> corner_count, first_corner, material, group;
     std::vector<std::int32_t> line;
@@ -214,7 +214,7 @@ struct FaceColumns {
     }
 };
 
-/// Columns of the regions, and of which region every face is a part of.
+/// Columns of the regions, and the region of each face.
 struct RegionColumns {
     std::vector<double> area;
     std::vector<std::uint32_t> of_face, material;

@@ -5,7 +5,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t numbers = 9;  ///< Of a sky.
+constexpr std::size_t numbers = 9;  ///< Numbers per sky.
 enum Flags : std::uint8_t { intermediate = 1, blends_ground = 2, below = 4, all_flags = 7 };
 
 }  // namespace

@@ -6,7 +6,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::int64_t format = 1;  ///< Raised when older programs could not read the file.
+constexpr std::int64_t format = 1;  ///< Format number; raised if older programs cannot read the file.
 
 std::vector<LightFormGroup>& known_groups() {
     static std::vector<LightFormGroup> groups;

@@ -9,14 +9,13 @@ namespace exitance {
 
 struct LightGroups;
 
-/// Writes a solution as HDF5: /VTKHDF for other programs, /exitance to come back from bit for bit. Equal solutions give
-/// equal files but for /exitance/statistics. The file appears whole or not at all (ErrorCode::cannot_write).
-/// `groups` go with it where there are any.
+/// Writes a solution as HDF5: /VTKHDF for other programs, and /exitance, from which it is restored bit for bit. Equal
+/// solutions give equal files, except for /exitance/statistics. Light groups are included if `groups` is not null. The
+/// file appears whole or not at all. Error: ErrorCode::cannot_write.
 Result<void> write_solution(const std::string& path, const Solution& solution, const LightGroups* groups = nullptr);
 
-/// Reads what write_solution wrote. A file that is damaged, or made up, is an error (ErrorCode::bad_input, or
-/// ErrorCode::cannot_read when it cannot be opened) that names the file and the data set.
-/// Its light groups, if it has any, are read where they are asked for.
+/// Reads a file of write_solution(), with its light groups if `groups` is not null. Error: ErrorCode::cannot_read if
+/// the file cannot be opened; ErrorCode::bad_input for a damaged or forged file, naming the file and the data set.
 Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed = Rehearsed::not_yet,
                                LightGroups* groups = nullptr);
 

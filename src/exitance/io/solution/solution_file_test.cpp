@@ -12,7 +12,7 @@
 #include "support/sample_solution.hpp"
 #include "support/temporary_folder.hpp"
 
-/// HDF5 1.10 loses some of its own memory when it meets damaged metadata; builds that look for leaks pass over that.
+/// HDF5 1.10 leaks memory when it finds damaged metadata; the leak sanitizer ignores its leaks.
 extern "C" const char* __lsan_default_suppressions() {
     return "leak:libhdf5";
 }
@@ -99,7 +99,7 @@ void expect_same(const ElementFunction& a, const ElementFunction& b) {
     }
 }
 
-TEST_F(SolutionFiles, BringASolutionBackBitForBit) {
+TEST_F(SolutionFiles, RestoreASolutionBitForBit) {
     const Solution s = sample_solution();
     const Result<void> written = write_solution(path("s.h5"), s);
     ASSERT_TRUE(written) << written.error().message;
@@ -121,7 +121,7 @@ TEST_F(SolutionFiles, BringASolutionBackBitForBit) {
     EXPECT_EQ(s.statistics.energy.defect, t->statistics.energy.defect);
 }
 
-TEST_F(SolutionFiles, SayTheUnitOfEnergyAndOfLight) {
+TEST_F(SolutionFiles, NameTheUnitsOfEnergyAndLight) {
     for (const bool photometric : {false, true}) {
         const Solution s = sample_solution(40, photometric);
         ASSERT_TRUE(write_solution(path("s.h5"), s));
@@ -135,7 +135,7 @@ TEST_F(SolutionFiles, SayTheUnitOfEnergyAndOfLight) {
     }
 }
 
-TEST_F(SolutionFiles, OfOlderProgramsHoldTheEnergyOfAllBandsTogether) {
+TEST_F(SolutionFiles, WithoutEnergyUnitHoldTheSumOfAllBands) {
     Hdf5Writer out(path("old.h5"));
     out.make_group("statistics");
     out.set_attribute("statistics", "energy_emitted", 9.0 * bands);
@@ -148,7 +148,7 @@ TEST_F(SolutionFiles, OfOlderProgramsHoldTheEnergyOfAllBandsTogether) {
     EXPECT_EQ(statistics.energy.defect, 0.25);
 }
 
-TEST_F(SolutionFiles, HoldADiscontinuityMeshAndRefuseOneThatMakesNoSense) {
+TEST_F(SolutionFiles, HoldADiscontinuityMeshAndRejectAnInvalidOne) {
     Solution s = sample_solution();
     SixNodeMesh& mesh = s.discontinuity;
     mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0, 0}, {0.5, 0.5, 0}, {0, 0.5, 0}};
@@ -187,7 +187,7 @@ TEST_F(SolutionFiles, HoldADiscontinuityMeshAndRefuseOneThatMakesNoSense) {
     ASSERT_TRUE(smooth) << smooth.error().message;
     EXPECT_TRUE(smooth->discontinuity.gradients == mesh.gradients && smooth->discontinuity.slopes == mesh.slopes);
     EXPECT_EQ(smooth->discontinuity.gradient_of, mesh.gradient_of);
-    // Nothing that evaluates light may see this one: its group is written alone.
+    // The invalid mesh must not be evaluated, so its group is written alone.
     mesh.gradient_of[0][2] = 2;
     Hdf5Writer out(path("bad.h5"));
     write_discontinuity(out, "mesh", mesh);
@@ -228,7 +228,7 @@ TEST_F(SolutionFiles, HoldManyElements) {
     expect_same(s.interpolant, t->interpolant);
 }
 
-TEST_F(SolutionFiles, ThatAreNoneAreErrors) {
+TEST_F(SolutionFiles, OfOtherKindsAreErrors) {
     EXPECT_EQ(load_solution(path("none.h5")).error().code, ErrorCode::cannot_read);
     EXPECT_EQ(load_solution(fs::path(folder / "").parent_path().string()).error().code, ErrorCode::cannot_read);
     put("empty.h5", "");
@@ -241,7 +241,7 @@ TEST_F(SolutionFiles, ThatAreNoneAreErrors) {
     }
 }
 
-TEST_F(SolutionFiles, CutOffAnywhereAreErrors) {
+TEST_F(SolutionFiles, TruncatedAnywhereAreErrors) {
     ASSERT_TRUE(write_solution(path("s.h5"), sample_solution()));
     const std::string whole = bytes("s.h5");
     for (int i = 0; i < 60; ++i) {
@@ -262,11 +262,11 @@ TEST_F(SolutionFiles, WithFlippedBitsNeverCrash) {
         put("flipped.h5", flipped);
         noticed += load_solution(path("flipped.h5")) ? 0 : 1;
     }
-    // Most of a small file is padding between blocks; what is data or metadata carries a checksum.
+    // Most of a small file is padding between blocks; data and metadata have checksums.
     EXPECT_GT(noticed, 100);
 }
 
-TEST_F(SolutionFiles, SayWhyTheyCannotBeWritten) {
+TEST_F(SolutionFiles, ReportWhyTheyCannotBeWritten) {
     const Result<void> written = write_solution(path("no/s.h5"), sample_solution());
     ASSERT_FALSE(written);
     EXPECT_EQ(written.error().code, ErrorCode::cannot_write);

@@ -10,16 +10,16 @@
 
 namespace exitance {
 
-// The parts of a solution's file. The readers check every count and index; what they return is safe to use unless
-// reader.failed() afterwards.
+// Parts of a solution file. The readers check every count and index; their results are safe to use unless
+// reader.failed() is true afterwards.
 
-/// A scene as it is in memory, regions and all, so that it comes back bit for bit.
+/// A scene including its regions, stored so that it is restored bit for bit.
 class StoredScene {
   public:
     static void write(Hdf5Writer& file, const std::string& group, const Scene& scene);
     static Scene read(Hdf5Reader& file, const std::string& group);
 
-    /// The same in memory, for another process of the same program; without facets of the sky, which no file has.
+    /// Versions in memory, for another process of the same program. As in files, the facets of the sky are not stored.
     static std::string bytes_of(const Scene& scene);
     static Result<Scene> from_bytes(std::string_view bytes);
 
@@ -28,20 +28,20 @@ class StoredScene {
     static void archive_all(Archive& archive, Scene& scene);
 };
 
-/// How materials emit that do not do so diffusely; nothing where all do.
+/// Directional emission of materials; nothing is stored if all emit diffusely.
 void write_emission(Hdf5Writer& file, const std::string& group, const Field<MaterialId, Material>& materials,
                     const Field<ProfileId, EmissionProfile>& profiles);
 Field<ProfileId, EmissionProfile> read_profiles(Hdf5Reader& file, const std::string& group);
-/// One for every material.
+/// Returns one entry per material.
 std::vector<DirectedEmission> read_emission(Hdf5Reader& file, const std::string& group, std::size_t material_count,
                                             std::size_t profile_count);
 
-/// A tree as its roots' patches and how every element was cut, which gives all patches back bit for bit; values in the
-/// order of the leaves and their patches' corners.
+/// A tree as the patches of its roots and the split of every element, from which all patches are restored bit for bit,
+/// and the values at the corners of the leaves, in order.
 void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function);
 ElementFunction read_function(Hdf5Reader& file, const std::string& group, std::size_t region_count);
 
-/// The links of a hierarchy, with their elements as a function.
+/// Links of a hierarchy, with their elements as a function.
 void write_links(Hdf5Writer& file, const std::string& group, const KeptLinks& links);
 KeptLinks read_links(Hdf5Reader& file, const std::string& group, std::size_t region_count);
 
@@ -62,19 +62,19 @@ struct LightFormGroup {
 void add_light_form_group(const LightFormGroup& group);
 std::span<const LightFormGroup> light_form_groups();
 
-/// Light by groups, for `mix`.
+/// Light by groups, for the command `mix`.
 void write_light_groups(Hdf5Writer& file, const std::string& group, const LightGroups& groups);
 LightGroups read_light_groups(Hdf5Reader& file, const std::string& group, const Solution& solution);
 
-/// Everything that may differ from run to run. `own`: the unit of the scene's light.
+/// Statistics, which may differ from run to run. `own`: the unit of the scene's light.
 void write_statistics(Hdf5Writer& file, const std::string& group, const SolveStatistics& statistics,
                       const LightUnit& own);
-/// The energy of an older file, which is the sum of the bands, is divided
-/// by their number: exactly that of a scene in watts, and of one in lumens whose light has no colour.
+/// Converts the energy of files that store the sum of the bands to the mean, which is exact for scenes in watts, and
+/// for scenes in lumens whose light has no colour.
 SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group);
 
-/// The group /VTKHDF that ParaView opens: the leaves of the interpolant as polygons, each with points of its own,
-/// since light may jump from one to the next; or the quadratic or cubic triangles of a discontinuity mesh.
+/// The group /VTKHDF, which ParaView reads: the leaves of the interpolant as polygons with separate points, since light
+/// may be discontinuous between leaves; or the quadratic or cubic triangles of a discontinuity mesh.
 void write_vtkhdf(Hdf5Writer& file, const Solution& solution);
 
 }  // namespace exitance

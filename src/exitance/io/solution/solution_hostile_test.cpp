@@ -18,7 +18,7 @@ namespace {
 
 constexpr Hdf5Label label = {"1", "made up"};
 
-/// The parts of a file of one square cut into four, of which one at a time is made wrong.
+/// The data of a file with one square split into four. Tests change one of them.
 struct Parts {
     std::vector<std::uint32_t> parent = {0xffffffffu, 0, 0, 0, 0}, root_region = {0};
     std::vector<std::uint8_t> cut = {3, 0, 0, 0, 0}, root_shape = {0};
@@ -49,7 +49,7 @@ struct Parts {
     }
 };
 
-TEST(HostileSolutions, MakeNoTreeOfNonsense) {
+TEST(HostileSolutions, WithInvalidTreesAreErrors) {
     const TemporaryFolder folder;
     const auto outcome = [&](const auto& change) {
         Parts p;
@@ -74,7 +74,7 @@ TEST(HostileSolutions, MakeNoTreeOfNonsense) {
     EXPECT_EQ(outcome([](Parts& p) { p.values.resize(15 * bands); }), "data set f/values has 15 rows in place of 16");
 }
 
-TEST(HostileSolutions, CutNothingAlongLinesThatMissIt) {
+TEST(HostileSolutions, WithLinesThatMissTheirElementAreErrors) {
     const TemporaryFolder folder;
     Parts p;
     p.parent = {0xffffffffu, 0, 0}, p.cut = {4, 0, 0}, p.ratio = {0.5, 0.5, 0.5};
@@ -87,7 +87,7 @@ TEST(HostileSolutions, CutNothingAlongLinesThatMissIt) {
     }
 }
 
-TEST(HostileSolutions, MakeNoFansOfNonsense) {
+TEST(HostileSolutions, WithInvalidFansAreErrors) {
     const TemporaryFolder folder;
     Parts good;
     good.parent = {0xffffffffu, 0, 0, 0}, good.cut = {5, 0, 0, 0}, good.ratio = {0.5, 0.5, 0.5, 0.5};
@@ -111,8 +111,8 @@ TEST(HostileSolutions, MakeNoFansOfNonsense) {
     EXPECT_EQ(outcome([](Parts& p) { p.parent[3] = 1; }), no_tree);
 }
 
-TEST(HostileSolutions, SliversCutFromSliversAreNone) {
-    // Thin triangles that a solve halves again and again keep few digits of their areas.
+TEST(HostileSolutions, RepeatedlySplitSliversAreAccepted) {
+    // Triangles such as a solve makes by repeatedly halving thin ones, whose areas are inaccurate.
     Solution s = sample_solution();
     RandomStream random(3, Stream::mesh);
     s.indirect = sample_function(s.scene, 1, 0);
@@ -138,7 +138,7 @@ TEST(HostileSolutions, SliversCutFromSliversAreNone) {
     EXPECT_EQ(back->indirect.tree.size(), s.indirect.tree.size());
 }
 
-TEST(HostileSolutions, WithElementsApartFromTheSceneAreErrors) {
+TEST(HostileSolutions, WithElementsOutsideTheSceneAreErrors) {
     const TemporaryFolder folder;
     const auto outcome = [&](const auto& change) {
         Solution s = sample_solution();
@@ -168,21 +168,21 @@ TEST(HostileSolutions, WithElementsApartFromTheSceneAreErrors) {
     EXPECT_NE(outcome(with_root(bad)).find("does not lie on its region"), std::string::npos);
     bad = good, bad.a = 1e150 * good.a;
     EXPECT_NE(outcome(with_root(bad)), "");
-    bad = good, bad.b = bad.a;  // no area, no coordinates
+    bad = good, bad.b = bad.a;  // no area, so no coordinates
     EXPECT_NE(outcome(with_root(bad)).find("makes no tree at element 0"), std::string::npos);
 }
 
-TEST(HostileSolutions, AreDarkAtPointsThatAreNotFinite) {
-    // A damaged scene may have rays hit there.
+TEST(HostileSolutions, AreDarkAtNonFinitePoints) {
+    // In a damaged scene, rays may hit such points.
     const Solution s = sample_solution();
     const ElementLocator locator(s.indirect.tree, s.scene.regions().size());
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (RegionId r : s.scene.regions().ids()) EXPECT_EQ(s.indirect.at(locator.find(r, {nan, nan, nan})), Spectrum());
 }
 
-TEST(Hdf5Writers, WriteRowsAsTheyWriteArrays) {
+TEST(Hdf5Writers, WriteRowsAndArraysEqually) {
     const TemporaryFolder folder;
-    std::vector<double> values(3 * 50000);  // several chunks, the last of them not whole
+    std::vector<double> values(3 * 50000);  // several chunks, the last one incomplete
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sqrt(static_cast<double>(i));
     for (const bool by_rows : {false, true}) {
         Hdf5Writer out(folder / (by_rows ? "rows.h5" : "array.h5"));
@@ -200,7 +200,7 @@ TEST(Hdf5Writers, WriteRowsAsTheyWriteArrays) {
     EXPECT_EQ(*read_whole_file(folder / "rows.h5"), *read_whole_file(folder / "array.h5"));
 }
 
-TEST(Hdf5Writers, SayWhatTheDiskRefuses) {
+TEST(Hdf5Writers, ReportDiskErrors) {
     if (!std::filesystem::exists("/dev/full")) return;
     Hdf5Writer out("/dev/full");
     out.write("a", std::vector<double>(100000, 1.0), 1, label);
@@ -213,7 +213,7 @@ TEST(Hdf5Writers, SayWhatTheDiskRefuses) {
     EXPECT_FALSE(nowhere.commit());
 }
 
-TEST(HostileSolutions, MayNotChangeTheKindOfASet) {
+TEST(HostileSolutions, WithOtherDataSetTypesAreErrors) {
     const TemporaryFolder folder;
     Hdf5Writer out(folder / "f.h5");
     out.write("a", std::vector<double>{1, 2, 3, 4}, 2, label);
@@ -239,9 +239,9 @@ TEST(HostileSolutions, MayNotChangeTheKindOfASet) {
     EXPECT_TRUE(wrong([](auto& in) { in.template read<double>("g"); }).starts_with("data set g cannot be opened"));
 }
 
-TEST(HostileSolutions, WhoseMetadataCrashTheLibraryAreErrors) {
-    // The attributes of a data set are said to lie in a heap too, at an address where there is none: version 1.10.8 of
-    // the library crashes on it, others may not.
+TEST(HostileSolutions, WithMetadataThatCrashTheLibraryAreErrors) {
+    // Metadata that claim that the attributes of a data set are also in a heap, at an address without one. Version
+    // 1.10.8 of the library crashes on it; others may not.
     std::string bytes = fuzz::solution_corpus().at(0);
     const std::string heap = std::string("\x15\x12\0\x04\0\0", 6) + std::string(16, '\xff');
     const std::string first_attribute("\x0c\x1c\0\0\x03\0\x06\0\x08\0\x04\0\0units", 18);
@@ -256,8 +256,8 @@ TEST(HostileSolutions, WhoseMetadataCrashTheLibraryAreErrors) {
     EXPECT_TRUE(back || said.starts_with("is damaged")) << said;
 }
 
-TEST(HostileSolutions, WhoseMetadataAskForMuchMemoryAreErrors) {
-    // The second part of a header is said to be 32 TiB long: version 1.10.8 of the library makes room for it.
+TEST(HostileSolutions, WithMetadataThatRequestMuchMemoryAreErrors) {
+    // A header that claims a second part of 32 TiB, for which version 1.10.8 of the library allocates memory.
     const std::string bytes = fuzz::solution_corpus().at(0), goes_on("\x10\x10\0\0", 4);
     const TemporaryFolder folder;
     std::size_t refused = 0;

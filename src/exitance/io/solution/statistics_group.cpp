@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* energy_unit = "energy_unit";
 
-/// Every figure by its name in the file, for writing and for reading.
+/// Calls `visit` for every figure with its name in the file, for writing and for reading.
 template <class Statistics, class Visit>
 void for_figures(Statistics& s, const Visit& visit) {
     visit("method", s.method);
@@ -43,7 +43,7 @@ void for_figures(Statistics& s, const Visit& visit) {
     visit("stopped_by", s.stopped_by);
 }
 
-/// The same of discontinuity meshing.
+/// The figures of discontinuity meshing.
 template <class Counts, class Visit>
 void for_counts(Counts& c, const Visit& visit) {
     visit("curves_d0", c.d0);
@@ -126,7 +126,7 @@ void write_statistics(Hdf5Writer& file, const std::string& group, const SolveSta
 
 SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group) {
     SolveStatistics statistics;
-    for_figures(statistics, [&]<class T>(const char* name, T& value) {  // a figure that is missing keeps its default
+    for_figures(statistics, [&]<class T>(const char* name, T& value) {  // a missing figure keeps its default
         if constexpr (std::is_same_v<T, std::optional<double>>)
             value = file.number_attribute(group, name);
         else if constexpr (std::is_same_v<T, std::string>)
@@ -138,7 +138,7 @@ SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group) {
     });
     if (!file.text_attribute(group, energy_unit))
         for (double* sum : {&statistics.energy.emitted, &statistics.energy.absorbed, &statistics.energy.escaped})
-            *sum /= static_cast<double>(bands);  // older files hold the sum of the bands
+            *sum /= static_cast<double>(bands);  // without a unit, the file has the sum of the bands
     if (const std::string of_mesh = group + "/discontinuity"; file.has(of_mesh)) {
         DiscontinuityCounts& counts = statistics.discontinuity.emplace();
         for_counts(counts, [&](const char* name, std::size_t& count) {
@@ -158,7 +158,8 @@ SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group) {
             statistics.elements_by_level.push_back(static_cast<std::size_t>(std::max<std::int64_t>(0, count)));
     if (const std::string rooms = group + "/rooms"; file.has(rooms)) {
         const std::vector<double> values = file.read<double>(rooms, 3);
-        for (std::size_t i = 0; i + 2 < values.size(); i += 3)  // older files have no references: the means were those
+        // Without references in the file, the means serve as references.
+        for (std::size_t i = 0; i + 2 < values.size(); i += 3)
             statistics.rooms.push_back({values[i], values[i + 1], values[i + 2], values[i + 1]});
         if (const std::string references = group + "/room_references"; file.has(references)) {
             const std::vector<double> given = file.read<double>(references);

@@ -11,7 +11,7 @@
 
 namespace exitance {
 
-/// Coordinates one after the other.
+/// Coordinates in a row: x, y, z of each point.
 inline std::vector<double> flat(const std::vector<Point>& points) {
     std::vector<double> out;
     out.reserve(3 * points.size());
@@ -19,7 +19,7 @@ inline std::vector<double> flat(const std::vector<Point>& points) {
     return out;
 }
 
-/// One column of a pool, as the file holds it.
+/// One column of a pool, with the type of the file.
 template <class T, class Pool, class Get>
 std::vector<T> column(const Pool& pool, const Get& get) {
     std::vector<T> out;
@@ -38,7 +38,7 @@ std::vector<double> spectra(const Pool& pool, const Get& get) {
     return out;
 }
 
-/// Reads columns of a group and checks what is in them.
+/// Reads columns of a group and validates them.
 class Columns {
   public:
     Columns(Hdf5Reader& file, const std::string& group) : file_(file), group_(group + "/") {}
@@ -61,7 +61,7 @@ class Columns {
                        std::vector<std::uint32_t>();
         return values;
     }
-    /// Counts that add up to `sum`, each at least `least`.
+    /// Reads counts that must add up to `sum`, each at least `least`.
     std::vector<std::uint32_t> counts(const char* name, std::size_t least, std::size_t sum,
                                       std::optional<std::size_t> rows = {}) {
         std::vector<std::uint32_t> values = read<std::uint32_t>(name, 1, rows);
@@ -92,7 +92,7 @@ class Columns {
     std::string group_;
 };
 
-/// A row of a set with a column a band.
+/// Returns a row of a data set with one column per band.
 inline Spectrum spectrum(const std::vector<double>& values, std::size_t row) {
     Spectrum s;
     for (std::size_t b = 0; b < bands; ++b) s[b] = values[row * bands + b];

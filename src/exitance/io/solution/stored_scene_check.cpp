@@ -3,36 +3,36 @@
 namespace exitance {
 namespace {
 
-constexpr double largest = 1e60;  ///< Metres; squares of areas stay finite.
-constexpr double alike = 1e-3;    ///< Relative; faces of one region may be tilted by so much (Tolerances::tilt).
+constexpr double max_value = 1e60;  ///< Limit of coordinates and exitances; squares of areas stay finite.
+constexpr double tolerance = 1e-3;  ///< Relative; faces of one region may be tilted by this much (Tolerances::tilt).
 
 bool is_sane(const Point& p) {
-    return std::abs(p.x) < largest && std::abs(p.y) < largest && std::abs(p.z) < largest;
+    return std::abs(p.x) < max_value && std::abs(p.y) < max_value && std::abs(p.z) < max_value;
 }
 
 bool is_sane(const Material& material) {
     bool sane = true;
     for (std::size_t b = 0; b < bands; ++b)
         sane &= material.reflectance[b] >= 0 && material.reflectance[b] < 1 && material.exitance[b] >= 0 &&
-                material.exitance[b] < largest;
+                material.exitance[b] < max_value;
     return sane;
 }
 
-/// Are a face's area and normal those of its corners, and does it lie in the plane of its region?
+/// True if a face's area and normal match its corners and it is in the plane of its region.
 bool is_sane(const Scene& scene, SurfaceId s) {
     const Surface& face = scene.surfaces()[s];
     const std::span<const Point> outline = scene.outline(s);
     const Vec3 area = area_vector(outline);
-    if (!(face.area > 0) || !(std::abs(norm(area) - face.area) <= alike * face.area)) return false;
-    if (!(dot(area, face.normal) >= (1 - alike) * face.area)) return false;
+    if (!(face.area > 0) || !(std::abs(norm(area) - face.area) <= tolerance * face.area)) return false;
+    if (!(dot(area, face.normal) >= (1 - tolerance) * face.area)) return false;
     const Region& region = scene.regions()[face.region];
-    if (face.material != region.material || !(dot(face.normal, region.plane.n) > 1 - alike)) return false;
+    if (face.material != region.material || !(dot(face.normal, region.plane.n) > 1 - tolerance)) return false;
     for (const Point& p : outline)
-        if (!(std::abs(region.plane.signed_distance(p)) <= alike * scene.size())) return false;
+        if (!(std::abs(region.plane.signed_distance(p)) <= tolerance * scene.size())) return false;
     return true;
 }
 
-/// Is a region's area that of its loops, and do these lie in its plane?
+/// True if a region's area matches its loops and these are in its plane.
 bool is_sane(const Scene& scene, RegionId r) {
     const Region& region = scene.regions()[r];
     if (!(region.area > 0) || !(std::abs(norm(region.plane.n) - 1) <= 1e-6)) return false;
@@ -40,9 +40,9 @@ bool is_sane(const Scene& scene, RegionId r) {
     for (const auto& loop : region.loops) {
         area += dot(area_vector(loop), region.plane.n);
         for (const Point& p : loop)
-            if (!is_sane(p) || !(std::abs(region.plane.signed_distance(p)) <= alike * scene.size())) return false;
+            if (!is_sane(p) || !(std::abs(region.plane.signed_distance(p)) <= tolerance * scene.size())) return false;
     }
-    if (!(std::abs(area - region.area) <= alike * region.area)) return false;
+    if (!(std::abs(area - region.area) <= tolerance * region.area)) return false;
     for (SurfaceId s : region.surfaces)
         if (scene.surfaces()[s].region != r) return false;
     return true;
@@ -51,7 +51,7 @@ bool is_sane(const Scene& scene, RegionId r) {
 }  // namespace
 
 std::optional<std::string> find_nonsense(const ElementTree& tree, const Scene& scene) {
-    const double slack = alike * scene.size();
+    const double slack = tolerance * scene.size();
     const Point lo = scene.box().lo - Vec3{slack, slack, slack}, hi = scene.box().hi + Vec3{slack, slack, slack};
     for (ElementId root : tree.roots()) {
         const Patch& patch = tree.patch(root);
@@ -70,7 +70,7 @@ std::optional<std::string> find_nonsense(const Scene& scene) {
     const Box& box = scene.box();
     if (!is_sane(box.lo) || !is_sane(box.hi) || !(scene.size() > 0) || min(box.lo, box.hi) != box.lo)
         return "the box is none";
-    const double slack = alike * scene.size();
+    const double slack = tolerance * scene.size();
     for (const Material& m : scene.materials())
         if (!is_sane(m)) return "material '" + m.name + "' reflects or emits what nothing can";
     for (SurfaceId s : scene.surfaces().ids()) {

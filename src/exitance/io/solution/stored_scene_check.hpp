@@ -7,13 +7,13 @@
 
 namespace exitance {
 
-/// Why a scene from a file is none that make_scene could have made: values out of range, normals and areas that are not
-/// those of their corners, regions apart from their faces. Indices must be good already. Empty when nothing is wrong.
-/// O(corners).
+/// Returns the reason why a scene from a file cannot have been made by make_scene: values out of range, normals or
+/// areas that differ from those of the corners, regions that do not match their faces. Empty if the scene is valid.
+/// Indices must be valid already. O(corners).
 std::optional<std::string> find_nonsense(const Scene& scene);
 
-/// Why the roots of a function from a file are none of the scene's elements: they lie off the plane of their region or
-/// outside the scene. O(roots).
+/// Returns the reason why the roots of a tree cannot be elements of the scene: they are not in the plane of their
+/// region, or are outside the scene. Empty if the tree is valid. O(roots).
 std::optional<std::string> find_nonsense(const ElementTree& tree, const Scene& scene);
 
 }  // namespace exitance

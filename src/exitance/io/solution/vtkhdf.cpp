@@ -46,7 +46,7 @@ void write_mesh(Hdf5Writer& file, const ElementMesh& mesh) {
     for (const auto& [name, ids] : mesh.cell_ids()) file.write(in_cells(name), *ids, 1, of_ids);
 }
 
-/// The same of the leaves of the interpolant, which are made as they are written: there may be many.
+/// Writes the leaves of the interpolant as cells. Rows are computed while they are written, since there may be many.
 class LeafWriter {
   public:
     LeafWriter(Hdf5Writer& file, const Solution& solution) : file_(file), solution_(solution) {
@@ -76,7 +76,7 @@ class LeafWriter {
     }
 
   private:
-    /// The next leaf at every call.
+    /// Iterates over the leaves.
     class LeafWalk {
       public:
         explicit LeafWalk(const ElementTree& tree) : tree_(tree) {}

@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::array<char, 8> magic = {'E', 'X', 'I', 'R', 'O', 'W', 'S', '1'};
 
-/// What precedes the entries of a record.
+/// Header of a record, followed by its entries.
 struct RecordHead {
-    std::uint64_t checksum;  ///< Of all that follows.
+    std::uint64_t checksum;  ///< Hash of the rest of the record.
     std::uint64_t entries, rays;
     std::uint32_t face, round;
     double cast_density, missed, missed_variance, bound;

@@ -10,20 +10,23 @@
 
 namespace exitance {
 
-/// Rows of view factors in a work file, one record with a checksum after the other, so that a run that was ended in any
-/// way can go on from those that are whole. Read by the program that wrote it and on the same kind of machine only.
+/// A work file with rows of view factors, one checksummed record per row, so that an interrupted run can resume from
+/// the rows that are complete. Only the same program on the same kind of machine can read it.
 class RawRowFile final : public RawRowStore {
   public:
-    /// Opens the work file. Without `resume` an old one is emptied; with it, its rows are read if `work` is the same: a
-    /// line that names the scene, the options and the program. Errors: bad_input for another work or a file of another
-    /// kind, cannot_write.
+    /// Opens the work file.
+    /// path    the file; without `resume` its content is deleted
+    /// work    a line that identifies the scene, the options and the program
+    /// resume  whether to read the rows of an earlier run with the same `work`
+    /// faces   number of faces of the scene
+    /// Errors: bad_input if the file belongs to other work or is of another kind, cannot_write.
     static Result<RawRowFile> open(const std::string& path, const std::string& work, bool resume, std::size_t faces);
 
     std::vector<RawRow> resumed() override { return std::move(resumed_); }
     void keep(const RawRow& row) override;
     void flush() override;
 
-    /// False if the disk refused something: the rows kept end there.
+    /// False if a write has failed: rows after that point are not in the file.
     bool is_whole() const { return !failed_; }
     const std::string& path() const { return path_; }
     /// Closes and removes the file.
@@ -34,7 +37,7 @@ class RawRowFile final : public RawRowStore {
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
     RawRowFile() = default;
-    /// Reads all whole records; returns the length of what they take.
+    /// Reads all complete records and returns their total length, bytes.
     long read_records(std::size_t faces);
 
     std::string path_;

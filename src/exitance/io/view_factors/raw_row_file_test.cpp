@@ -16,7 +16,7 @@ RawRow row_of(std::uint32_t face) {
     return row;
 }
 
-/// Two rows of three faces.
+/// Writes rows 0 and 2 of a scene of three faces.
 std::string write_two(const TemporaryFolder& folder) {
     Result<RawRowFile> file = RawRowFile::open(folder / "F.rows", "work", false, 3);
     EXPECT_TRUE(file);
@@ -25,7 +25,7 @@ std::string write_two(const TemporaryFolder& folder) {
     return folder / "F.rows";
 }
 
-TEST(RawRowFile, GivesRowsBack) {
+TEST(RawRowFile, ReadsRowsBack) {
     const TemporaryFolder folder;
     Result<RawRowFile> file = RawRowFile::open(write_two(folder), "work", true, 3);
     ASSERT_TRUE(file);
@@ -37,7 +37,7 @@ TEST(RawRowFile, GivesRowsBack) {
     EXPECT_EQ(rows[1].entries[2].F, row_of(2).entries[2].F);
 }
 
-TEST(RawRowFile, ARowThatWasCutOffOrDamagedIsLeftOutAndWrittenOver) {
+TEST(RawRowFile, TruncatedAndDamagedRowsAreIgnoredAndOverwritten) {
     for (const bool cut : {true, false}) {
         const TemporaryFolder folder;
         const std::string path = write_two(folder);
@@ -60,7 +60,7 @@ TEST(RawRowFile, ARowThatWasCutOffOrDamagedIsLeftOutAndWrittenOver) {
     }
 }
 
-TEST(RawRowFile, RowsOfOtherWorkAreRefusedAndWithoutResumeEmptied) {
+TEST(RawRowFile, RowsOfOtherWorkAreRejectedOrWithoutResumeDeleted) {
     const TemporaryFolder folder;
     const std::string path = write_two(folder);
     const Result<RawRowFile> other = RawRowFile::open(path, "other work", true, 3);

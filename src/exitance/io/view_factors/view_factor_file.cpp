@@ -18,7 +18,8 @@ void append(std::string& text, const char* format, Values... values) {
     text.append(buffer, static_cast<std::size_t>(length));
 }
 
-/// As by %.17g: no digit is lost; millions of entries are most of what writing takes.
+/// Appends `value` as %.17g would, without loss, but faster: formatting millions of entries dominates the time to
+/// write.
 void append_exactly(std::string& text, double value) {
     char buffer[64];
     text.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 17).ptr);
@@ -28,7 +29,7 @@ Error stopped() {
     return {ErrorCode::limit, "stopped while view factors were written", "", "allow more time"};
 }
 
-/// A format of text: what comes before the rows, each row, and what comes after them.
+/// A text format: text before the rows, each row, and text after them.
 class TextFormat {
   public:
     explicit TextFormat(const SparseFactors& table) : table_(table) {}
@@ -38,7 +39,7 @@ class TextFormat {
     virtual void end(std::string& /*text*/) const {}
 
   protected:
-    /// Calls take(F) for every column of a row, zeros included.
+    /// Calls take(F) for every column of a row, including zeros.
     template <class Take>
     void for_all_columns(std::size_t i, const Take& take) const {
         const std::span<const std::uint32_t> columns = table_.row_columns(i);
@@ -122,7 +123,7 @@ std::string whole_text(const TextFormat& format, std::size_t rows) {
     return text;
 }
 
-/// A row at a time: a large table is never held as text.
+/// Writes one row at a time, so that the text of a large table is never in memory as a whole.
 Result<void> write_text(const std::string& path, const TextFormat& format, std::size_t rows, const StopRequest& stop) {
     Result<AtomicFile> file = AtomicFile::create(path);
     if (!file) return file.error();
@@ -140,7 +141,7 @@ Result<void> write_text(const std::string& path, const TextFormat& format, std::
     return file->commit();
 }
 
-/// Compressed rows, by the names that SciPy gives their parts.
+/// Writes compressed sparse rows, with SciPy's names for their arrays.
 Result<void> write_hdf5(const std::string& path, const SparseFactors& table, const StopRequest& stop) {
     if (stop.requested()) return stopped();
     const std::string group = "view_factors";

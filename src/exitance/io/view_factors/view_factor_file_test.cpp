@@ -17,7 +17,7 @@ SparseFactors two_faces() {
     return sparse_from({{1, 2}, {0.5, 0.25}, {0, 1.0 / 3, 1.0 / 6, 0}, {1.0 / 3, 1.0 / 6}, 0});
 }
 
-TEST(ViewFactorFile, CsvGivesTheSameDoublesBack) {
+TEST(ViewFactorFile, CsvKeepsDoublesExactly) {
     std::istringstream in(view_factors_csv(two_faces()));
     std::string line;
     std::getline(in, line);
@@ -41,11 +41,11 @@ TEST(ViewFactorFile, VfHoldsHeaderAreasRowsAndEmittances) {
     in >> area[0] >> area[1] >> F[0] >> F[1] >> F[2] >> F[3] >> emittance[0] >> emittance[1];
     ASSERT_TRUE(in);
     EXPECT_EQ(area[1], 2);
-    EXPECT_NEAR(F[2], 1.0 / 6, 5e-7);  // six decimals
+    EXPECT_NEAR(F[2], 1.0 / 6, 5e-7);  // written with six decimals
     EXPECT_EQ(emittance[1], 0.25);
 }
 
-TEST(ViewFactorFile, MatrixMarketHoldsWhatIsNotZero) {
+TEST(ViewFactorFile, MatrixMarketHoldsNonzeroEntries) {
     std::istringstream in(view_factors_mtx(two_faces()));
     std::string line, last;
     std::getline(in, line);
@@ -87,7 +87,7 @@ TEST(ViewFactorFile, Hdf5IsReadBack) {
     EXPECT_FALSE(read_view_factors(folder / "absent.h5"));
 }
 
-TEST(ViewFactorFile, RowsThatAreNotFinishedAreLeftOutOfCsvAndToldInMatrixMarket) {
+TEST(ViewFactorFile, UnfinishedRowsAreOmittedFromCsvAndNamedInMatrixMarket) {
     SparseFactors table = two_faces();
     table.finished = {1, 0}, table.starts = {0, 1, 1}, table.columns.resize(1), table.values.resize(1);
     const std::string csv = view_factors_csv(table), mtx = view_factors_mtx(table);
@@ -95,7 +95,7 @@ TEST(ViewFactorFile, RowsThatAreNotFinishedAreLeftOutOfCsvAndToldInMatrixMarket)
     EXPECT_NE(mtx.find("% 1 rows are not finished\n2 2 1\n"), std::string::npos) << mtx;
 }
 
-TEST(ViewFactorFile, AStopLeavesNothingInAnyFormat) {
+TEST(ViewFactorFile, AStopLeavesNoFileInAnyFormat) {
     const TemporaryFolder folder;
     StopRequest stop;
     stop.interrupt();

@@ -8,7 +8,7 @@ namespace {
 
 using Contents = LightLayer::Contents;
 
-/// All sheets, one after the other.
+/// All sheets, concatenated.
 struct FlatSheets {
     std::vector<std::uint32_t> region, source, counts, faces, wide;
     std::vector<double> colour, box;
@@ -41,7 +41,7 @@ void add(FlatSheets& out, const LightLayers::Sheet& sheet) {
     for (const auto& t : c.wide) out.wide.insert(out.wide.end(), t.begin(), t.end());
 }
 
-/// Rows that are taken one after the other; nothing once they have run out.
+/// Reads consecutive rows; take() returns false at the end.
 template <class T>
 class RowReader {
   public:

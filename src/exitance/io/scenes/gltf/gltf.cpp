@@ -1,4 +1,4 @@
-// What tinygltf's model says about its data is believed only after it has been checked here.
+// Data read by tinygltf is used only after the checks in this file.
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
@@ -88,7 +88,7 @@ bool GltfReader::check_extensions() {
     return true;
 }
 
-/// The bytes of a buffer view, if they are all there.
+/// Returns the bytes of a buffer view; empty if some of them are missing.
 std::optional<std::span<const std::uint8_t>> GltfReader::view_bytes(int view) const {
     if (!names_one(view, in_.bufferViews)) return std::nullopt;
     const tinygltf::BufferView& v = in_.bufferViews[static_cast<std::size_t>(view)];
@@ -98,7 +98,7 @@ std::optional<std::span<const std::uint8_t>> GltfReader::view_bytes(int view) co
     return std::span(bytes).subspan(v.byteOffset, v.byteLength);
 }
 
-/// What an accessor says about itself.
+/// Describes an accessor, with the bytes it refers to.
 GltfAccessor GltfReader::accessor_of(const tinygltf::Accessor& in) const {
     GltfAccessor a;
     a.component = in.componentType, a.count = in.count, a.normalized = in.normalized;
@@ -115,7 +115,8 @@ GltfAccessor GltfReader::accessor_of(const tinygltf::Accessor& in) const {
     return a;
 }
 
-/// What an accessor holds; false, with an error that calls it `what`, unless all of it is there.
+/// Gets the rows of an accessor. Reports an error, in which `what` names the data, and returns false if rows are
+/// missing.
 bool GltfReader::rows(int accessor, int type, bool is_index, const std::string& what, GltfRows& out) {
     if (!names_one(accessor, in_.accessors))
         return error(fmt::format("{} name accessor {} of {}", what, accessor, in_.accessors.size()));
@@ -134,7 +135,7 @@ bool GltfReader::read_primitive(const tinygltf::Primitive& in, const std::string
         case TINYGLTF_MODE_LINE:
         case TINYGLTF_MODE_LINE_LOOP:
         case TINYGLTF_MODE_LINE_STRIP:
-            return true;  // without area
+            return true;  // points and lines have no area
         case TINYGLTF_MODE_TRIANGLE_STRIP:
             p.mode = GltfModel::Mode::strip;
             break;
@@ -152,7 +153,7 @@ bool GltfReader::read_primitive(const tinygltf::Primitive& in, const std::string
             return error(fmt::format("mesh '{}' is compressed (Draco), which is not read", mesh),
                          "export it again without compression");
     const auto position = in.attributes.find("POSITION");
-    if (position == in.attributes.end()) return true;  // the specification has such primitives passed over
+    if (position == in.attributes.end()) return true;  // the specification requires readers to skip such primitives
     p.accessor = position->second;
     if (!rows(p.accessor, TINYGLTF_TYPE_VEC3, false, fmt::format("positions of mesh '{}'", mesh), p.positions))
         return false;
@@ -217,7 +218,7 @@ GltfModel::TextureUse GltfReader::texture_use(int index, int place_set,
     return out;
 }
 
-/// Pictures stay where they are in buffers; those beside the file move to the model.
+/// Collects the pictures: those in buffers are referenced, those in separate files move to the model.
 void GltfReader::read_pictures() {
     for (tinygltf::Image& image : in_.images) {
         if (image.bufferView >= 0) {
@@ -239,7 +240,7 @@ bool GltfReader::read_meshes() {
     return true;
 }
 
-/// The mean of a texture's picture; white, with a warning, where it cannot be read.
+/// Mean colour of a texture; white, with a warning, if it cannot be read.
 GltfModel::Colour GltfReader::texture_mean(int texture, const ByteCurve& decode, const std::string& material) {
     const auto unread = [&](const std::string& why) {
         warn(fmt::format("a texture of material '{}' {}: it counts as white", material, why));
@@ -272,7 +273,7 @@ GltfModel::Colour times(const GltfModel::Colour& a, const GltfModel::Colour& b, 
     return {s * a.r * b.r, s * a.g * b.g, s * a.b * b.b};
 }
 
-/// Three or more numbers of an extension's array; `otherwise` for all if there are none.
+/// Reads the first three numbers of an array of an extension; all are `otherwise` if there is no such array.
 GltfModel::Colour colour_in(const tinygltf::Value& extension, const char* key, double otherwise) {
     GltfModel::Colour out{otherwise, otherwise, otherwise};
     if (!extension.Has(key) || extension.Get(key).ArrayLen() < 3) return out;
@@ -282,7 +283,7 @@ GltfModel::Colour colour_in(const tinygltf::Value& extension, const char* key, d
     return out;
 }
 
-/// The reference to a texture in an extension.
+/// Reads a texture reference of an extension.
 tinygltf::TextureInfo texture_in(const tinygltf::Value& extension, const char* key) {
     tinygltf::TextureInfo out;
     if (!extension.Has(key) || !extension.Get(key).IsObject()) return out;
@@ -297,8 +298,8 @@ tinygltf::TextureInfo texture_in(const tinygltf::Value& extension, const char* k
     return out;
 }
 
-/// The diffuse part of a material: the base colour, of which the metallic share does not reflect diffusely; or, of the
-/// older KHR_materials_pbrSpecularGlossiness, which takes precedence, the diffuse colour.
+/// The diffuse part of a material: the base colour, of which the metallic share does not reflect diffusely. The diffuse
+/// colour of the older KHR_materials_pbrSpecularGlossiness takes precedence.
 struct DiffusePart {
     GltfModel::Colour factor;
     tinygltf::TextureInfo texture;
@@ -323,7 +324,7 @@ void GltfReader::read_materials() {
         m.name = name_or(shown(in.name), "material", i);
         m.base = times(diffuse.factor, texture_mean(diffuse.texture.index, srgb_curve(), m.name));
         m.metallic = diffuse.metallic;
-        if (m.metallic > 0)  // metalness is the texture's blue
+        if (m.metallic > 0)  // metalness is the texture's blue channel
             m.metallic *= texture_mean(diffuse.metallic_texture, linear_curve(), m.name).b;
         const double strength = number_in(in.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1);
         m.emission = times(colour_of(in.emissiveFactor, 0), {1, 1, 1}, strength);

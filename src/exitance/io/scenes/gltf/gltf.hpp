@@ -6,12 +6,12 @@
 
 namespace exitance {
 
-/// Reads glTF 2.0, as JSON (.gltf) or binary (.glb): the triangles of the default scene with their nodes' transforms,
-/// (x, y, z) -> (x, -z, y), metres. A group is a node. Of a material: base colour times 1 - metalness is the
-/// reflectance, at most 0.95; emissive factor times KHR_materials_emissive_strength the radiance; textures by their
-/// means; double-sided ones become two faces. The winding decides which side is the front; under a mirroring transform
-/// it is turned, as glTF says. KHR_lights_punctual become lights, cameras become views. What is left out is among the
-/// findings. O(triangles).
+/// Reads glTF 2.0, as JSON (.gltf) or binary (.glb): the triangles of the default scene, with the transforms of their
+/// nodes, in metres. Coordinates are converted to Z up: (x, y, z) -> (x, -z, y). Each node becomes a group.
+/// Materials: the reflectance is the base colour times 1 - metalness, at most 0.95; the radiance is the emissive factor
+/// times KHR_materials_emissive_strength. Textures give each face the mean of the part that it shows. A double-sided
+/// triangle becomes two faces. The winding determines the front; it is reversed under a mirroring transform, as glTF
+/// requires. KHR_lights_punctual become lights, cameras become views. The findings list omitted parts. O(triangles).
 ReadScene read_gltf(const std::string& path);
 
 }  // namespace exitance

@@ -31,7 +31,7 @@ std::optional<GltfRows::Number> number_of(int component) {
     }
 }
 
-/// Do `count` rows of `row` bytes, `stride` apart, fit into what is left of `bytes` after `offset`?
+/// True if `count` rows of `row` bytes, `stride` bytes apart, fit into `bytes` bytes from `offset` on.
 bool fits(std::size_t bytes, std::size_t offset, std::size_t stride, std::size_t row, std::size_t count) {
     if (count == 0) return true;
     if (offset > bytes || row > bytes - offset || stride == 0) return false;
@@ -64,7 +64,7 @@ Result<GltfRows> GltfAccessorCheck::rows(const GltfAccessor& a, std::size_t widt
     return a.sparse ? fill_sparse(a, width, *number, out, what) : Result<GltfRows>(out);
 }
 
-/// Rows of which some are replaced: a copy of them, bounded by the file's size.
+/// Copies the rows and replaces the sparse ones. The copies are bounded by the file's size.
 Result<GltfRows> GltfAccessorCheck::fill_sparse(const GltfAccessor& a, std::size_t width, GltfRows::Number number,
                                                 const GltfRows& base, const std::string& what) {
     const GltfAccessor::Sparse& sparse = *a.sparse;

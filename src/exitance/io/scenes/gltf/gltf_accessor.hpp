@@ -11,37 +11,38 @@
 
 namespace exitance {
 
-/// What a glTF file says about rows of numbers, before it is believed.
+/// Unchecked description of rows of numbers in a glTF file.
 struct GltfAccessor {
-    using Bytes = std::optional<std::span<const std::uint8_t>>;  ///< Of a buffer view; nothing: they are not there.
+    using Bytes = std::optional<std::span<const std::uint8_t>>;  ///< Bytes of a buffer view; empty if they are missing.
 
-    int component = 0;  ///< The file's number of a kind of number: 5120 to 5126.
+    int component = 0;  ///< glTF's code of the number type: 5120 to 5126.
     std::size_t count = 0;
     bool normalized = false;
-    int view = -1;           ///< The number of the buffer view, -1 for rows of zeros,
-    Bytes bytes = {};        ///< what it holds,
-    std::size_t first = 0;   ///< where the rows begin in it,
-    std::size_t stride = 0;  ///< and how far apart they are; 0: close together.
+    int view = -1;           ///< Index of the buffer view; -1 for rows of zeros.
+    Bytes bytes = {};        ///< Content of the buffer view.
+    std::size_t first = 0;   ///< Offset of the first row, bytes.
+    std::size_t stride = 0;  ///< Distance of rows, bytes; 0: contiguous.
 
     struct Sparse {
         std::int64_t count = 0;
         int place_component = 0;
         Bytes places = {}, values = {};
-        std::int64_t first_place = 0, first_value = 0;  ///< Bytes.
+        std::int64_t first_place = 0, first_value = 0;  ///< Offsets, bytes.
     };
     std::optional<Sparse> sparse = {};  ///< Rows that are replaced.
 };
 
-/// Checks accessors of one file. Only sparse ones are copied, all of them together to at most eight times the bytes of
-/// the file.
+/// Checks the accessors of one file. Only sparse accessors are copied; all copies together have at most eight times the
+/// bytes of the file.
 class GltfAccessorCheck {
   public:
-    /// file_bytes  of the file or the largest of its buffers
-    /// copies      what rows point into that no buffer holds
+    /// file_bytes  size of the file or of its largest buffer, bytes
+    /// copies      receives the copied rows; rows returned by rows() point into it
     GltfAccessorCheck(std::uint64_t file_bytes, std::vector<std::vector<std::uint8_t>>& copies)
         : file_bytes_(file_bytes), copies_(copies) {}
 
-    /// The rows, of `width` numbers, if all of them are there; an error calls them `what`. O(1) but for sparse ones.
+    /// Returns the rows, each of `width` numbers. Error if rows are missing; `what` names the data in the message. O(1)
+    /// except for sparse accessors.
     Result<GltfRows> rows(const GltfAccessor& a, std::size_t width, bool is_index, const std::string& what);
 
   private:

@@ -16,7 +16,7 @@
 
 namespace exitance {
 
-/// Rows of numbers in the bytes of a buffer, every byte of them known to be there.
+/// Rows of numbers in a buffer, all bytes of which are known to exist.
 class GltfRows {
   public:
     enum class Number : std::uint8_t { int8, uint8, int16, uint16, uint32, float32 };
@@ -26,10 +26,10 @@ class GltfRows {
         : first_(first), stride_(stride), count_(count), number_(number), normalized_(normalized) {}
 
     std::size_t size() const { return count_; }
-    /// Number k of a row; of integers that stand for fractions, the fraction.
+    /// Number `k` of a row. Normalized integers are converted to fractions.
     double at(std::size_t row, std::size_t k) const;
     std::uint32_t index(std::size_t row) const;
-    /// Copies rows of `bytes` bytes each to where they stand close together.
+    /// Copies the rows, of `bytes` bytes each, contiguously to `out`.
     void copy_to(std::uint8_t* out, std::size_t bytes) const {
         for (std::size_t i = 0; i < count_; ++i) std::memcpy(out + i * bytes, first_ + i * stride_, bytes);
     }
@@ -51,17 +51,16 @@ class GltfRows {
     bool normalized_ = false;
 };
 
-/// What a glTF file says, as far as light cares; indices are checked, numbers of a kind. Y up, metres.
+/// The parts of a glTF file that matter for light, with checked indices and consistent counts. Y up, metres.
 struct GltfModel {
     enum class Mode : std::uint8_t { triangles, strip, fan };
     struct Primitive {
         GltfRows positions, indices;
         bool has_indices = false;
-        int accessor = -1;  ///< Of the positions: primitives that share it share their points.
+        int accessor = -1;  ///< Accessor of the positions: primitives with the same one share their points.
         int material = -1;
         Mode mode = Mode::triangles;
-        std::array<GltfRows, 2>
-            places;  ///< TEXCOORD_0 and 1 where textures were asked for; of no rows where there are none.
+        std::array<GltfRows, 2> places;  ///< TEXCOORD_0 and 1 if textures were requested; empty if missing.
     };
     struct Mesh {
         std::string name;
@@ -70,7 +69,7 @@ struct GltfModel {
     struct Colour {
         double r = 0, g = 0, b = 0;
     };
-    /// A picture, which set of places, how places go beyond its borders (glTF's numbers), and KHR_texture_transform.
+    /// A texture: its picture, the set of texture coordinates, glTF's wrap modes, and KHR_texture_transform.
     struct TextureUse {
         int picture = -1, place_set = 0, wrap_s = 10497, wrap_t = 10497;
         std::array<double, 6> transform = {1, 0, 0, 0, 1, 0};  ///< s' = t0 s + t1 t + t2, t' = t3 s + t4 t + t5
@@ -84,20 +83,21 @@ struct GltfModel {
         std::string name;
         Colour base, emission;  ///< Factors times the means of their textures; emission in W/(m^2 sr).
         double metallic = 1;
-        double diffuse_transmission = 0;  ///< Of KHR_materials_diffuse_transmission: of what leaves diffusely.
-        double transmission = 0;  ///< Of KHR_materials_transmission: share of the light that goes straight through.
+        /// KHR_materials_diffuse_transmission: transmitted share of the light that leaves diffusely.
+        double diffuse_transmission = 0;
+        double transmission = 0;  ///< KHR_materials_transmission: share of light that passes without scattering.
         bool double_sided = false, transparent = false;
-        TextureUse base_texture, emission_texture;  ///< Where textures were asked for.
+        TextureUse base_texture, emission_texture;  ///< Set if textures were requested.
     };
     struct View {
         std::string name;
-        double yfov = 1, aspect = 0;  ///< Radians from bottom to top; width over height, 0 if not said.
+        double yfov = 1, aspect = 0;  ///< Vertical field of view, radians; width over height, 0 if unknown.
         double xmag = 0;              ///< Half the width of an orthographic view, m; 0: perspective.
     };
     struct Lamp {
         std::string name;
         PunctualLight::Kind kind = PunctualLight::Kind::point;
-        Colour intensity;  ///< Colour times intensity: cd, of parallel light lx.
+        Colour intensity;  ///< Colour times intensity, cd; lx for parallel light.
         double inner_cone = 0, outer_cone = pi / 4;
         bool has_range = false;
     };
@@ -105,7 +105,7 @@ struct GltfModel {
         std::string name;
         Affine to_parent;
         int mesh = -1, view = -1, lamp = -1;
-        bool is_deformed = false;  ///< By a skin or morph targets, which stay in their rest pose.
+        bool is_deformed = false;  ///< Has a skin or morph targets; these are ignored.
         std::vector<int> children;
     };
 
@@ -116,23 +116,25 @@ struct GltfModel {
     std::vector<Node> nodes;
     std::vector<int> roots;  ///< Nodes of the default scene.
 
-    std::vector<std::span<const std::uint8_t>> pictures;  ///< Files, where textures were asked for; none: not there.
+    std::vector<std::span<const std::uint8_t>> pictures;  ///< Files, if textures were requested; empty if missing.
 
-    std::vector<std::vector<std::uint8_t>> bytes;  ///< What the rows point into; moved, never copied.
+    std::vector<std::vector<std::uint8_t>> bytes;  ///< Memory that the rows point into; moved, never copied.
 
     GltfModel() = default;
     GltfModel(GltfModel&&) = default;
     GltfModel& operator=(GltfModel&&) = default;
 };
 
-/// Translation, rotation (a quaternion: x, y, z, w) and scale of a node, or the 16 numbers of its matrix by columns, as
-/// one map; what is empty changes nothing. Nothing where numbers are not finite or a quaternion is 0.
+/// Returns the transform of a node from its matrix (16 numbers, by columns), or from its rotation (a quaternion x, y,
+/// z, w), scale and translation. Empty arguments have no effect. Empty if numbers are not finite or the quaternion is
+/// 0.
 std::optional<Affine> gltf_transform(std::span<const double> matrix, std::span<const double> rotation,
                                      std::span<const double> scale, std::span<const double> translation);
 
-/// Reads the model out of glTF's JSON or binary container; buffers and pictures beside the file are read too. What can
-/// be done without goes to `findings`. Every index, count, offset and stride is checked against the data before use,
-/// and nothing is copied out of buffers. `with_textures`: places and pictures, too; those that are faulty are left out.
+/// Reads a model from glTF's JSON or binary container, with the buffers and pictures in separate files. Faults in
+/// optional parts are added to `findings`. Every index, count, offset and stride is checked against the data before
+/// use, and no data are copied out of buffers. `with_textures` also reads texture coordinates and pictures; faulty ones
+/// are omitted.
 Result<GltfModel> load_gltf_model(const std::string& path, std::vector<Finding>& findings, bool with_textures = false);
 
 }  // namespace exitance

@@ -1,4 +1,4 @@
-// tinygltf parses the JSON, base64 and the container.
+// Calls tinygltf, which parses the JSON, base64 and the container.
 #include "exitance/io/scenes/gltf/gltf_parse.hpp"
 
 #include <fmt/format.h>
@@ -14,13 +14,13 @@
 namespace exitance {
 namespace {
 
-/// Files beside the scene, and how many bytes of them there may be in all.
+/// Files in the scene's folder, and a limit on the bytes that may be read from them.
 struct Folder {
     std::string path;
     std::uint64_t bytes_left = std::uint64_t(4) << 30;
 };
 
-/// tinygltf also looks into the current folder, where the file's neighbours are not.
+/// Restricts tinygltf to the scene's folder: it would also search the current folder.
 bool exists(const std::string& path, void* user) {
     const auto& folder = *static_cast<Folder*>(user);
     std::error_code ignored;
@@ -43,7 +43,7 @@ bool read_bytes(std::vector<unsigned char>* out, std::string* error, const std::
 bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
     return false;
 }
-/// Pictures are decoded later, if at all. Those in buffers are left there: their place has not been checked yet.
+/// Stores a picture undecoded. Pictures in buffers stay there, since their offsets have not been checked.
 bool keep_picture(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
                   int size, void*) {
     if (image->bufferView < 0 && size > 0) image->image.assign(bytes, bytes + size);
@@ -90,7 +90,7 @@ std::optional<Error> parse_gltf(const std::string& bytes, const std::string& pat
     } catch (const std::exception& e) {
         done = false, problem = e.what();
     }
-    // Compressed meshes have accessors without data, over which the reader falls first.
+    // Compressed meshes have accessors without data, which make tinygltf fail first.
     if (!done && bytes.find("KHR_draco_mesh_compression") != bytes.npos)
         return bad("has meshes that are compressed (Draco), which is not read", "export it again without compression");
     if (!done) {

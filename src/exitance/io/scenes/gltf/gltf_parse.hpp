@@ -11,8 +11,8 @@ class Model;
 
 namespace exitance {
 
-/// glTF's JSON, or the binary container of it, with the buffers and pictures beside the file, as tinygltf reads them:
-/// `out` says what the file says, which may be anything. Returns why the file is refused, if it is.
+/// Parses glTF's JSON or binary container and reads the buffers and pictures in separate files, with tinygltf. The
+/// content of `out` is unchecked. Returns an error if the file cannot be parsed.
 std::optional<Error> parse_gltf(const std::string& bytes, const std::string& path, tinygltf::Model& out);
 
 }  // namespace exitance

@@ -14,10 +14,11 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_triangles = 20'000'000;  ///< Of all instances: a small file can ask for any number.
-constexpr double most_reflectance = 0.95;
+/// Limit for all instances together: a small file can create any number.
+constexpr std::size_t max_triangles = 20'000'000;
+constexpr double max_reflectance = 0.95;
 
-/// Y up to Z up.
+/// Rotates Y up to Z up.
 constexpr Affine upright{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}, {}};
 
 Spectrum spread(const GltfModel::Colour& c) {
@@ -28,7 +29,7 @@ Spectrum spread(const GltfModel::Colour& c) {
     return out;
 }
 
-/// Glass that transmits less is drawn as what it reflects.
+/// True if a material is imported as panes. Glass that transmits less is imported as a reflector.
 bool is_clear_glass(const GltfModel::Material& m) {
     constexpr double min_transmission = 0.5;
     return m.transmission >= min_transmission;
@@ -79,12 +80,12 @@ class SceneMaker {
     std::uint32_t default_material_ = 0;
     bool has_default_ = false;
     std::size_t triangles_ = 0, deformed_ = 0;
-    /// Points of the primitives at hand: which round an index was used in last, and what it became.
+    /// For the points of the current primitive: the round in which a vertex was used last, and the scene's point.
     std::vector<std::pair<std::uint32_t, std::uint32_t>> used_;
     std::uint32_t round_ = 0;
     int accessor_ = -1;
-    TexturedFaces textured_{out_, most_reflectance};
-    std::map<int, std::optional<TextureArea>> pictures_;  ///< Those that are shown; none: cannot be read.
+    TexturedFaces textured_{out_, max_reflectance};
+    std::map<int, std::optional<TextureArea>> pictures_;  ///< Textures in use; empty: cannot be read.
 };
 
 void SceneMaker::make_materials() {
@@ -96,7 +97,7 @@ void SceneMaker::make_materials() {
     }
 }
 
-/// One warning of a kind, with the first name and how many more.
+/// Warns once per kind of omitted property, with the first material's name and the number of others.
 void SceneMaker::report_materials() {
     const auto list = [&](const auto& belongs, const std::string& says, const std::string& hint) {
         std::size_t count = 0;
@@ -108,8 +109,8 @@ void SceneMaker::report_materials() {
                              count > 1 ? fmt::format(" and {} more", count - 1) : std::string(), says),
                  hint);
     };
-    list([&](std::size_t i) { return max(out_.materials[i].reflectance) > most_reflectance; },
-         fmt::format("would reflect more than {}: that much it is", most_reflectance),
+    list([&](std::size_t i) { return max(out_.materials[i].reflectance) > max_reflectance; },
+         fmt::format("would reflect more than {}: that much it is", max_reflectance),
          "white is the default of glTF; walls reflect 0.5 to 0.85");
     list([&](std::size_t i) { return in_.materials[i].metallic >= 1 && !out_.materials[i].emits(); },
          "is metal: nothing of it reflects diffusely", "set the metallic factor to 0, glTF's default is 1");
@@ -118,7 +119,7 @@ void SceneMaker::report_materials() {
     list([&](std::size_t i) { return is_clear_glass(in_.materials[i]); },
          "lets light through: its faces are panes of clear glass", "");
     for (Material& m : out_.materials)
-        for (double& v : m.reflectance.value) v = std::min(v, most_reflectance);
+        for (double& v : m.reflectance.value) v = std::min(v, max_reflectance);
 }
 
 std::uint32_t SceneMaker::material_of(int material) {
@@ -132,7 +133,7 @@ std::uint32_t SceneMaker::material_of(int material) {
     return default_material_;
 }
 
-/// The point that a vertex of the mesh at hand has become.
+/// Returns the scene's point for a vertex of the current mesh.
 std::uint32_t SceneMaker::corner(const GltfModel::Primitive& p, const Affine& to_world, std::uint32_t index) {
     auto& [round, point] = used_[index];
     if (round != round_) {
@@ -142,7 +143,7 @@ std::uint32_t SceneMaker::corner(const GltfModel::Primitive& p, const Affine& to
     return point;
 }
 
-/// Adds a triangle of glass as a pane; returns whether it is one.
+/// Adds a glass triangle as a pane. Returns false if it is not glass.
 bool SceneMaker::add_pane(const std::array<std::uint32_t, 3>& c, std::uint32_t material) {
     if (material >= in_.materials.size() || !is_clear_glass(in_.materials[material])) return false;
     const GltfModel::Material& m = in_.materials[material];
@@ -154,7 +155,7 @@ bool SceneMaker::add_pane(const std::array<std::uint32_t, 3>& c, std::uint32_t m
     return true;
 }
 
-/// The part of a texture that a triangle shows.
+/// Part of a texture that is shown on a triangle.
 ShownPart SceneMaker::shown(const GltfModel::TextureUse& texture, const GltfModel::Primitive& p,
                             const std::array<std::uint32_t, 3>& vertices) {
     if (texture.picture < 0 || static_cast<std::size_t>(texture.picture) >= in_.pictures.size()) return {};
@@ -164,7 +165,7 @@ ShownPart SceneMaker::shown(const GltfModel::TextureUse& texture, const GltfMode
     if (is_new) {
         Result<TextureArea> area =
             TextureArea::of(in_.pictures[static_cast<std::size_t>(texture.picture)], srgb_curve());
-        if (area) picture->second = std::move(*area);  // else that was told with the material
+        if (area) picture->second = std::move(*area);  // a failure was reported with the material
     }
     if (!picture->second) return {};
     std::array<Vec2, 3> outline;
@@ -198,8 +199,8 @@ void SceneMaker::add_triangle(std::array<std::uint32_t, 3> c, bool double_sided,
 bool SceneMaker::add_primitive(const GltfModel::Primitive& p, const GltfModel::Mesh& mesh, const Affine& to_world) {
     const std::size_t count = p.has_indices ? p.indices.size() : p.positions.size();
     const std::size_t triangles = p.mode == GltfModel::Mode::triangles ? count / 3 : count < 3 ? 0 : count - 2;
-    if (triangles > most_triangles - std::min(triangles_, most_triangles))
-        return error(fmt::format("there are more than {} triangles", most_triangles),
+    if (triangles > max_triangles - std::min(triangles_, max_triangles))
+        return error(fmt::format("there are more than {} triangles", max_triangles),
                      "instances count as often as they stand there: leave some out");
     if (used_.size() < p.positions.size()) used_.resize(p.positions.size());
     if (p.accessor != accessor_) accessor_ = p.accessor, ++round_;
@@ -215,7 +216,7 @@ bool SceneMaker::add_primitive(const GltfModel::Primitive& p, const GltfModel::M
         else
             at = {t + 1, t + 2, 0};
         std::array<std::uint32_t, 3> c{};
-        bool restart = false;  // the largest number of its kind begins a new strip in some programs' files
+        bool restart = false;  // the largest index starts a new strip in files of some programs
         for (std::size_t k = 0; k < 3; ++k) {
             c[k] = p.has_indices ? p.indices.index(at[k]) : static_cast<std::uint32_t>(at[k]);
             restart |= c[k] == 0xffffffffu;
@@ -223,7 +224,7 @@ bool SceneMaker::add_primitive(const GltfModel::Primitive& p, const GltfModel::M
                 return error(fmt::format("mesh '{}' names vertex {} of {}", mesh.name, c[k], p.positions.size()));
         }
         if (restart || (p.mode != GltfModel::Mode::triangles && (c[0] == c[1] || c[1] == c[2] || c[2] == c[0])))
-            continue;  // strips turn corners by triangles without area
+            continue;  // strips contain triangles without area to change direction
         const ShownColour colour = colour_of(p, c);
         for (std::uint32_t& i : c) i = corner(p, to_world, i);
         if (mirrored) std::swap(c[1], c[2]);
@@ -255,7 +256,7 @@ void SceneMaker::add_lamp(const GltfModel::Lamp& lamp, const Affine& to_world) {
     if (lamp.has_range)
         warn(fmt::format("light '{}' has a range: light does not end there, so it is passed over", lamp.name));
     out_.lights.push_back(std::move(light));
-    out_.photometric = true;  // candela and lux
+    out_.photometric = true;  // intensities are in candela and lux
 }
 
 void SceneMaker::add_view(const GltfModel::View& view, const Affine& to_world) {
@@ -275,7 +276,8 @@ void SceneMaker::add_view(const GltfModel::View& view, const Affine& to_world) {
     out_.cameras.push_back(std::move(camera));
 }
 
-/// The name of a photometric file, without the number by which programs tell copies apart ("a.ies.001"); or nothing.
+/// Returns the name of a photometric file without the number that programs append to copies ("a.ies.001"); empty for
+/// other names.
 std::string photometric_name(std::string name) {
     if (const std::size_t dot = name.find_last_of('.');
         dot != std::string::npos && dot + 1 < name.size() && name.find_first_not_of("0123456789", dot + 1) == name.npos)
@@ -283,7 +285,8 @@ std::string photometric_name(std::string name) {
     return names_photometry(name) ? name : "";
 }
 
-/// An empty node with the name of a photometric file is a luminaire: turned by nothing it shines down, its C0 along x.
+/// Adds a luminaire for an empty node that is named as a photometric file. Without rotation it shines down, with its C0
+/// plane along x.
 void SceneMaker::add_luminaire(const std::string& name, const Affine& to_world) {
     PlacedLuminaire out;
     out.path = beside(out_.file, name), out.file = out_.file, out.position = to_world.origin;
@@ -294,7 +297,7 @@ void SceneMaker::add_luminaire(const std::string& name, const Affine& to_world) 
     luminaires_.push_back(std::move(out));
 }
 
-/// Every node once, parents first; a node that is reached twice is no tree's.
+/// Visits every node once, parents first. A node that is reached twice is an error.
 bool SceneMaker::visit_nodes() {
     struct Visit {
         int node;

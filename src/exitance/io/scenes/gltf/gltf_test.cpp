@@ -17,7 +17,7 @@ namespace {
 
 using test::GltfText;
 
-/// A triangle of half a square metre in glTF's floor plane (y = 0), seen from above; mesh 0, without a node yet.
+/// A triangle of 0.5 m^2 in glTF's floor plane (y = 0) that faces up: mesh 0, without a node.
 GltfText triangle(const std::string& material = "") {
     GltfText text;
     text.positions({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}});
@@ -55,7 +55,7 @@ class GltfFiles : public testing::Test {
 
 }  // namespace
 
-TEST_F(GltfFiles, YIsUpInTheFileAndZInTheScene) {
+TEST_F(GltfFiles, ConvertYUpToZUp) {
     GltfText text = triangle();
     text.nodes = R"({"mesh":0,"name":"floor","translation":[1,2,3]})";
     const Scene s = scene(text);
@@ -66,9 +66,9 @@ TEST_F(GltfFiles, YIsUpInTheFileAndZInTheScene) {
     EXPECT_EQ(s.groups()[s.surfaces()[SurfaceId(0)].group], "floor");
 }
 
-TEST_F(GltfFiles, ParentsTurnAndScaleTheirChildren) {
+TEST_F(GltfFiles, ParentsTransformTheirChildren) {
     GltfText text = triangle();
-    // The parent turns 90 degrees about y and doubles; the child moves by (1, 0, 0): (1, 0, 0) -> (0, 0, -2).
+    // The parent rotates by 90 degrees about y and scales by 2; the child moves by (1, 0, 0): (1, 0, 0) -> (0, 0, -2).
     text.nodes = R"({"children":[1],"rotation":[0,0.70710678118654757,0,0.70710678118654757],"scale":[2,2,2]},
                     {"mesh":0,"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 1,0,0,1]})";
     const Scene s = scene(text);
@@ -89,7 +89,7 @@ TEST_F(GltfFiles, AMirroredInstanceKeepsItsFrontOutside) {
 
 TEST_F(GltfFiles, StripsAndFansAreTrianglesOfOneOrientation) {
     GltfText text;
-    text.positions({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 1}});  // z, then x: a strip over a square
+    text.positions({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 1}});  // z varies before x: a strip over a square
     text.positions({{0, 1, 0}, {0, 1, 1}, {1, 1, 1}, {1, 1, 0}});  // a fan
     text.meshes = R"({"primitives":[{"attributes":{"POSITION":0},"mode":5},{"attributes":{"POSITION":1},"mode":6}]})";
     text.nodes = R"({"mesh":0})";
@@ -137,7 +137,7 @@ TEST_F(GltfFiles, MaterialsGiveReflectanceAndRadiance) {
     }
 }
 
-TEST_F(GltfFiles, WhiteIsTooMuchAndSaidOnce) {
+TEST_F(GltfFiles, WhiteIsReducedAndReportedOnce) {
     GltfText text = triangle(R"({"pbrMetallicRoughness":{"metallicFactor":0}},
                                 {"name":"snow","pbrMetallicRoughness":{"metallicFactor":0}})");
     text.nodes = R"({"mesh":0})";
@@ -147,8 +147,8 @@ TEST_F(GltfFiles, WhiteIsTooMuchAndSaidOnce) {
     EXPECT_EQ(warnings(s, "0.95"), 1u);
 }
 
-TEST_F(GltfFiles, ATextureCountsByItsMeanLight) {
-    Image image(2, 1);  // white and black: a mean of one half, not of sRGB's 0.5 (0.21)
+TEST_F(GltfFiles, ATextureIsReplacedByItsMean) {
+    Image image(2, 1);  // white and black: the mean of light is 1/2, that of sRGB codes would give 0.21
     std::fill_n(image.rgb.begin(), 3, std::uint8_t(255));
     ASSERT_TRUE(write_png(folder_ / "half.png", image, {}));
     const std::string png = *read_whole_file(folder_ / "half.png");
@@ -167,7 +167,7 @@ TEST_F(GltfFiles, ATextureCountsByItsMeanLight) {
 }
 
 TEST_F(GltfFiles, ATriangleTakesItsPartOfAnAtlas) {
-    Image atlas(8, 8);  // the upper half white, the lower one black
+    Image atlas(8, 8);  // upper half white, lower half black
     std::fill_n(atlas.rgb.begin(), 3 * 32, std::uint8_t(255));
     ASSERT_TRUE(write_png(folder_ / "atlas.png", atlas, {}));
     GltfText text = triangle(
@@ -241,13 +241,13 @@ TEST_F(GltfFiles, PositionsMayBeQuantizedOrSparse) {
     for (const Surface& surface : s.surfaces()) EXPECT_NEAR(surface.area, 0.5, 1e-12);
 }
 
-TEST_F(GltfFiles, BuffersMayStandBesideTheFileOrInIt) {
+TEST_F(GltfFiles, BuffersMayBeInsideOrOutsideTheFile) {
     GltfText text = triangle();
     text.nodes = R"({"mesh":0})";
     ASSERT_TRUE(write_file(folder_ / "a b.bin", text.data));
     ASSERT_TRUE(write_file(folder_ / "s.gltf", text.json("a%20b.bin")));
     EXPECT_TRUE(load_scene(folder_ / "s.gltf").scene);
-    // Nine floats and three indices in base64, as the two arrays stand in the buffer.
+    // Nine floats and three indices in base64, as in the buffer.
     ASSERT_TRUE(write_file(folder_ / "t.gltf", text.json("data:application/octet-stream;base64,"
                                                          "AAAAAAAAAAAAAAAAAAAAAAAAAAAAAIA/AACAPwAAAAAAAAAAAAABAAIA")));
     const CheckedScene embedded = load_scene(folder_ / "t.gltf");
@@ -257,13 +257,13 @@ TEST_F(GltfFiles, BuffersMayStandBesideTheFileOrInIt) {
     EXPECT_FALSE(load_scene(folder_ / "u.gltf").scene);
 }
 
-TEST_F(GltfFiles, ABinaryFileIsKnownByItsFirstBytes) {
+TEST_F(GltfFiles, ABinaryFileIsDetectedByItsFirstBytes) {
     GltfText text = triangle();
     text.nodes = R"({"mesh":0})";
     EXPECT_TRUE(load(text, "scene.bin").scene);
 }
 
-TEST_F(GltfFiles, WhatIsNotThereIsRefused) {
+TEST_F(GltfFiles, MissingDataAreErrors) {
     GltfText text = triangle();
     text.nodes = R"({"mesh":0})";
     const auto replaced = [&](const std::string& what, const std::string& with) {
@@ -287,14 +287,14 @@ TEST_F(GltfFiles, WhatIsNotThereIsRefused) {
     EXPECT_NE(first_error(text).find("vertex 7 of 3"), std::string::npos) << first_error(text);
 }
 
-TEST_F(GltfFiles, ExtensionsThatAreNeededButUnknownAreRefused) {
+TEST_F(GltfFiles, UnknownRequiredExtensionsAreErrors) {
     GltfText text = triangle();
     text.nodes = R"({"mesh":0})";
     text.more = R"(,"extensionsRequired":["KHR_draco_mesh_compression"])";
     EXPECT_NE(first_error(text).find("KHR_draco_mesh_compression"), std::string::npos);
 }
 
-TEST_F(GltfFiles, JsonTooDeepToFollowIsRefused) {
+TEST_F(GltfFiles, DeeplyNestedJsonIsAnError) {
     GltfText text = triangle();
     text.nodes = R"({"mesh":0,"extras":)" + std::string(100000, '[') + std::string(100000, ']') + "}";
     EXPECT_NE(first_error(text).find("nested"), std::string::npos);

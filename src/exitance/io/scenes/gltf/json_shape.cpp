@@ -6,14 +6,14 @@ namespace exitance {
 
 JsonShape shape_of_json(std::string_view json) {
     JsonShape out;
-    std::size_t depth = 0, list = 0;  // the depth at which a list of buffers stands, 0 outside one
-    bool named = false;               // was the last string "buffers"?
+    std::size_t depth = 0, list = 0;  // depth of the current list of buffers; 0 outside one
+    bool named = false;               // whether the last string was "buffers"
     for (std::size_t i = 0; i < json.size(); ++i) {
         const char c = json[i];
         if (c == '"') {
             const std::size_t first = ++i;
             while (i < json.size() && json[i] != '"') i += json[i] == '\\' ? 2 : 1;
-            // Names may be written with escapes, so that whatever has one counts.
+            // A name with escapes may be "buffers", so it counts as one.
             const std::string_view name = json.substr(first, std::min(i, json.size()) - first);
             named = name == "buffers" || name.find('\\') != name.npos;
         } else if (c == '[' || c == '{') {

@@ -5,14 +5,14 @@
 
 namespace exitance {
 
-/// The bounds of JSON that tinygltf is trusted with: it recurses over nested values, and copies the binary chunk for
-/// every buffer without a name of its own.
+/// Properties of a JSON text that are limited before tinygltf parses it: tinygltf recurses over nested values and
+/// copies the binary chunk for every buffer without a URI.
 struct JsonShape {
-    std::size_t depth = 0;    ///< Of lists and objects within each other.
-    std::size_t buffers = 0;  ///< Objects in lists called "buffers", or more.
+    std::size_t depth = 0;    ///< Nesting depth of lists and objects.
+    std::size_t buffers = 0;  ///< Upper bound of the number of objects in lists named "buffers".
 };
 
-/// O(bytes), without recursion; of text that is no JSON something harmless.
+/// Computes the shape in O(bytes), without recursion. Text that is not JSON gives an arbitrary, harmless result.
 JsonShape shape_of_json(std::string_view json);
 
 }  // namespace exitance

@@ -18,7 +18,7 @@ std::string band_name(std::size_t band, std::size_t count) {
     return count == 3 ? rgb[band] : fmt::format("band {}", band);
 }
 
-/// Values of a file for the bands of this build: as they are, one for all, or three spread over what there is.
+/// Converts a file's values to the bands of this build: unchanged, one for all, or three mapped to more or fewer bands.
 Spectrum spread(const std::vector<double>& values) {
     Spectrum out;
     if (values.size() == 3 && bands == 1) return Spectrum((values[0] + values[1] + values[2]) / 3);
@@ -59,7 +59,7 @@ class MtlReader {
     bool open_ = false, has_reflectance_ = false;
     int line_ = 0;
     std::size_t white_materials_ = 0;
-    int white_line_ = 0;  ///< Of the first of these,
+    int white_line_ = 0;  ///< Line of the first of these.
     std::string white_name_;
     MtlExtras& extras_;
     double opacity_ = 1;              ///< d
@@ -112,7 +112,7 @@ void MtlReader::start_material() {
     line_ = lines_.number();
 }
 
-/// How much passes. What cannot be read changes nothing: many files have nonsense here.
+/// Reads how much light passes. Unreadable values are ignored: many files have nonsense here.
 void MtlReader::read_filter(std::string_view key) {
     if (!open_) return;
     std::vector<double> values;
@@ -132,7 +132,7 @@ void MtlReader::read_filter(std::string_view key) {
         filter_ = spread(values.size() == 3 ? values : std::vector<double>(3, values[0]));
 }
 
-/// The name follows options of one or more words each; a name may hold blanks where there are none.
+/// Reads the name after options of one or more words each. Without options, the name may contain blanks.
 void MtlReader::read_texture(std::string& name) {
     if (!open_) return;
     if (!lines_.rest().starts_with('-')) {
@@ -182,7 +182,7 @@ void MtlReader::take_glass() {
     const bool is_glass = opacity_ < 1 || (filter_ && (illum_ == 4 || illum_ == 6 || illum_ == 7 || illum_ == 9));
     if (!is_glass || material_.emits()) return;
     const Spectrum passes = (opacity_ < 1 ? 1 - opacity_ : 1) * filter_.value_or(Spectrum(1.0));
-    // Leaves, curtains and faded surfaces are no glass.
+    // Materials that transmit less, such as leaves and curtains, are not glass.
     constexpr double least = 0.5;
     if (!(mean(passes) > least)) return opaque_.add(line_, material_.name);
     extras_.glass.emplace(material_.name,
@@ -224,7 +224,7 @@ void MtlReader::end_material() {
     materials_.push_back(std::move(material_));
 }
 
-/// Reads Kd or Ke of the material at hand; Ke arrives as radiance and is kept as exitance.
+/// Reads Kd or Ke of the current material. Ke is a radiance and is stored as exitance.
 void MtlReader::read_values(const std::string& key, Spectrum Material::*value) {
     if (!open_) return error(fmt::format("'{}' comes before any 'newmtl'", key));
     const bool reflectance = key == "Kd";

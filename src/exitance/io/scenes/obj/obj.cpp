@@ -18,7 +18,7 @@ namespace exitance {
 namespace {
 
 constexpr const char* default_material = "default";
-constexpr long long most_points = 0xfffffffe;
+constexpr long long max_points = 0xfffffffe;
 
 class ObjReader {
   public:
@@ -49,7 +49,7 @@ class ObjReader {
         find(Finding::Kind::error, lines_.number(), std::move(message), std::move(hint));
     }
 
-    /// A material as 'usemtl' names it; what it means is known when all libraries are read.
+    /// A material name in 'usemtl'. It is resolved after all libraries have been read.
     struct Use {
         std::string name;
         int line;
@@ -63,9 +63,9 @@ class ObjReader {
     std::uint32_t use_ = 0, group_ = 0;
     bool has_use_ = false, has_group_ = false, library_missing_ = false, has_library_ = false;
     MtlExtras extras_;
-    std::vector<std::uint32_t> broken_;  ///< Points that could not be read, ascending.
-    std::vector<Vec2> places_;           ///< vt, with (0, 0) at a picture's upper left.
-    /// By face, its corners' places; none where it names none.
+    std::vector<std::uint32_t> broken_;  ///< Points that could not be read, in ascending order.
+    std::vector<Vec2> places_;           ///< vt, with (0, 0) at the picture's upper left.
+    /// Per face, the texture coordinates of its corners; empty if it has none.
     std::vector<std::vector<std::uint32_t>> places_of_face_;
 };
 
@@ -110,7 +110,7 @@ void ObjReader::read_point() {
     points.push_back(p);
 }
 
-/// What cannot be read is no place at all, and the faces that name it show all of their picture.
+/// Reads a texture coordinate. An unreadable one becomes NaN, and faces that use it show the whole picture.
 void ObjReader::read_place() {
     Vec2 place;
     const bool is_place = number_of_word(lines_.word(), place.x) == NumberKind::finite;
@@ -132,7 +132,7 @@ void ObjReader::read_face() {
         if (!index) return error(fmt::format("face names '{}', which is not a vertex number", shown(word)));
         if (*index == 0) return error("face names vertex 0", "vertices are numbered from 1");
         if (*index < -count) return error(fmt::format("face names vertex {}, of {} before it", *index, count));
-        if (*index > most_points) return error(fmt::format("face names vertex {}", *index));
+        if (*index > max_points) return error(fmt::format("face names vertex {}", *index));
         face.corners.push_back(static_cast<std::uint32_t>(*index > 0 ? *index - 1 : count + *index));
         add_place(word, places);
     }
@@ -150,18 +150,18 @@ void ObjReader::read_face() {
     places_of_face_.push_back(std::move(places));
 }
 
-/// The second number of a corner: "1/2/3".
+/// Reads the texture coordinate of a corner, the second number of "1/2/3".
 void ObjReader::add_place(std::string_view corner, std::vector<std::uint32_t>& out) const {
     const std::size_t slash = corner.find('/');
     if (slash == corner.npos) return;
     const std::string_view rest = corner.substr(slash + 1);
     const auto index = parse_integer(rest.substr(0, rest.find('/')));
     const auto count = static_cast<long long>(places_.size());
-    if (!index || *index == 0 || *index < -count || *index > most_points) return;
+    if (!index || *index == 0 || *index < -count || *index > max_points) return;
     out.push_back(static_cast<std::uint32_t>(*index > 0 ? *index - 1 : count + *index));
 }
 
-/// Names are separated by blanks; a name may also hold blanks when it is the only one.
+/// Reads libraries whose names are separated by blanks, or a single one whose name contains blanks.
 void ObjReader::read_libraries() {
     std::error_code ignored;
     if (lines_.rest().empty()) return error("'mtllib' without a file name");
@@ -199,7 +199,7 @@ void ObjReader::use_group(std::string_view name) {
     has_group_ = true;
 }
 
-/// Vertices may stand after the faces that name them; so only now is it known which there are.
+/// Checks indices after the whole file has been read: vertices may follow the faces that use them.
 void ObjReader::check_indices() {
     const std::vector<Point>& points = out_.description.points;
     std::vector<SceneDescription::Face>& faces = out_.description.faces;
@@ -252,7 +252,7 @@ void ObjReader::resolve_materials() {
     take_panes();
 }
 
-/// Where a face's corners are in its picture; none where that is not said.
+/// Texture coordinates of a face's corners; empty if it has none.
 std::vector<Vec2> ObjReader::places_of(std::size_t face) const {
     std::vector<Vec2> out;
     for (const std::uint32_t place : places_of_face_[face]) {
@@ -262,7 +262,7 @@ std::vector<Vec2> ObjReader::places_of(std::size_t face) const {
     return out;
 }
 
-/// Faces take the colours of their parts of pictures.
+/// Gives textured faces the colours of their parts of pictures.
 void ObjReader::take_textures() {
     if (extras_.pictures.empty()) return;
     SceneDescription& d = out_.description;
@@ -287,7 +287,7 @@ void ObjReader::take_textures() {
         find(finding->kind, 0, finding->message, finding->hint);
 }
 
-/// Faces of glass become panes.
+/// Turns faces of glass into panes.
 void ObjReader::take_panes() {
     if (extras_.glass.empty()) return;
     SceneDescription& d = out_.description;

@@ -13,7 +13,7 @@
 namespace exitance {
 namespace {
 
-/// A folder of its own for every test, gone with it.
+/// Creates a folder for each test and removes it afterwards.
 class ObjFiles : public testing::Test {
   protected:
     ObjFiles()
@@ -27,7 +27,7 @@ class ObjFiles : public testing::Test {
         EXPECT_TRUE(write_file(path, text));
         return path;
     }
-    /// A floor and a light, and what the test adds.
+    /// Loads a file with the text of a test.
     CheckedScene load(const std::string& text) { return load_scene(write("s.obj", text)); }
     std::string first_error(const std::string& text) {
         const auto scene = load(text);
@@ -53,7 +53,7 @@ TEST_F(ObjFiles, ReflectanceIsKeptAndRadianceBecomesExitance) {
     EXPECT_EQ(s.scene->groups()[s.scene->surfaces()[SurfaceId(1)].group], "floor");
 }
 
-TEST_F(ObjFiles, SlashesCommentsCarriageReturnsContinuedLinesAndRelativeNumbersAreUnderstood) {
+TEST_F(ObjFiles, SlashesCommentsLineEndsContinuedLinesAndRelativeIndicesAreRead) {
     const auto s = load(
         "# c\r\nmtllib m.mtl # here\r\nv 0 0 0\r\nv +1 0 0 1.0\r\nv 1 1e0 0\r\nv 0 \\\r\n 1 0\r\nvt 0 0\r\nvn 0 0 1\r\n"
         "usemtl grey\r\nf 1/1/1 2//1 \\\r\n 3/1 4\r\nusemtl light\r\nf -1 -2 -3 -4");
@@ -89,7 +89,7 @@ TEST_F(ObjFiles, EveryErrorNamesItsFileAndLine) {
     EXPECT_EQ(first_error(""), "s.obj:1: there are no polygons");
 }
 
-TEST_F(ObjFiles, WithoutAMaterialFileEverythingIsGreyAndThatIsTold) {
+TEST_F(ObjFiles, WithoutAMaterialFileEverythingIsGreyWithAWarning) {
     const auto s = load("usemtl grey\n" + points + "f 1 2 3\nusemtl red\nf 1 3 4\n");
     ASSERT_TRUE(s.scene);
     EXPECT_EQ(s.scene->material(SurfaceId(0)).reflectance[0], 0.5);
@@ -101,7 +101,7 @@ TEST_F(ObjFiles, WithoutAMaterialFileEverythingIsGreyAndThatIsTold) {
         std::string::npos);
 }
 
-TEST_F(ObjFiles, UnknownMaterialsReflectOneHalfAndAreToldOnce) {
+TEST_F(ObjFiles, UnknownMaterialsReflectOneHalfAndAreReportedOnce) {
     const auto s =
         load("mtllib m.mtl\n" + points + "usemtl light\nf 1 2 3\nusemtl red\nf 1 3 4\nusemtl blue\nf 4 3 2 1\n");
     ASSERT_TRUE(s.scene);
@@ -111,7 +111,7 @@ TEST_F(ObjFiles, UnknownMaterialsReflectOneHalfAndAreToldOnce) {
     EXPECT_NE(s.findings[0].message.find("material 'red' and 1 more are in no material file"), std::string::npos);
 }
 
-TEST_F(ObjFiles, AMissingMaterialFileIsAnErrorOnlyIfNothingShines) {
+TEST_F(ObjFiles, AMissingMaterialFileIsAnErrorOnlyIfNothingEmits) {
     const std::string text = "mtllib none.mtl m.mtl\n" + points + "usemtl grey\nf 1 2 3\n";
     const auto s = load(text + "usemtl light\nf 1 3 4\n");
     ASSERT_TRUE(s.scene);
@@ -125,7 +125,7 @@ TEST_F(ObjFiles, AMissingMaterialFileIsAnErrorOnlyIfNothingShines) {
     EXPECT_FALSE(load_scene(path).scene);
 }
 
-TEST_F(ObjFiles, ASceneOfGlassAloneSaysWhatMadeItSo) {
+TEST_F(ObjFiles, ASceneOfGlassOnlyNamesItsMaterials) {
     write("g.mtl", "newmtl water\nKd 0 0 0\nd 0.1\n");
     EXPECT_EQ(first_error("mtllib g.mtl\nusemtl water\n" + points + "f 1 2 3\nf 1 3 4\n")
                   .find("s.obj: all 2 faces are panes of clear glass by material 'water' ("),
@@ -146,7 +146,7 @@ TEST_F(ObjFiles, UnitsAndAxesAreThoseOfTheOptions) {
     EXPECT_EQ(load_scene(std::span(&rad, 1), options).scene.error().where, "--up");
 }
 
-TEST_F(ObjFiles, PicturesAreFoundWhateverSystemNamedThem) {
+TEST_F(ObjFiles, PicturesAreFoundByPathsOfOtherSystems) {
     Image grey(1, 1);
     grey.rgb = {188, 188, 188};
     ASSERT_TRUE(write_png(folder_ + "/Brick.PNG", grey, {}));
@@ -158,7 +158,7 @@ TEST_F(ObjFiles, PicturesAreFoundWhateverSystemNamedThem) {
     }
 }
 
-TEST_F(ObjFiles, EveryErrorOfAMaterialNamesItBandValueAndLine) {
+TEST_F(ObjFiles, EveryMaterialErrorNamesMaterialBandValueAndLine) {
     const auto error_of_material = [&](const std::string& lines) {
         write("bad.mtl", "newmtl red\n" + lines);
         return first_error("mtllib bad.mtl\nusemtl red\n" + points + "f 1 2 3\n");
@@ -181,30 +181,30 @@ TEST_F(ObjFiles, AllErrorsAreReportedTogetherWithThoseOfShapes) {
     ASSERT_FALSE(s.scene);
     std::vector<int> lines;
     for (const Finding& f : s.findings) lines.push_back(f.line);
-    EXPECT_EQ(lines, (std::vector<int>{7, 8, 9}));  // the face of line 10 needs the vertex that was reported already
+    EXPECT_EQ(lines, (std::vector<int>{7, 8, 9}));  // the face in line 10 uses a vertex whose error was reported
 }
 
 TEST_F(ObjFiles, FacesWithoutMaterialGetANamedDefaultAndAWarning) {
     const auto s = load(points + "f 1 2 3 4\n");
     ASSERT_TRUE(s.scene);
     EXPECT_EQ(s.scene->material(SurfaceId(0)).name, "default");
-    ASSERT_EQ(s.findings.size(), 2u);  // and that nothing emits
+    ASSERT_EQ(s.findings.size(), 2u);  // the second warning: nothing emits
     EXPECT_EQ(s.findings[0].kind, Finding::Kind::warning);
 }
 
-TEST_F(ObjFiles, FilesThatAreMissingOrUnknownAreRefused) {
+TEST_F(ObjFiles, MissingFilesAndUnknownFormatsAreErrors) {
     EXPECT_EQ(load_scene(folder_ + "/none.obj").scene.error().code, ErrorCode::cannot_read);
     EXPECT_EQ(load_scene(folder_).scene.error().code, ErrorCode::bad_input);
     EXPECT_EQ(load_scene(write("s.stl", "solid")).scene.error().code, ErrorCode::bad_input);
     EXPECT_EQ(load_obj(folder_ + "/none.obj").error().where, folder_ + "/none.obj");
 }
 
-TEST_F(ObjFiles, TextInUtf16IsRefusedByName) {
+TEST_F(ObjFiles, TextInUtf16IsAnErrorThatNamesIt) {
     const std::string wide("\xff\xfev\0 \0\x31\0", 8);
     EXPECT_EQ(first_error(wide), "s.obj: is text in UTF-16");
 }
 
-TEST_F(ObjFiles, MessagesShowNamesAsTextWhateverTheirBytes) {
+TEST_F(ObjFiles, MessagesShowNamesAsValidText) {
     const auto said = [&](const std::string& name) {
         const auto s = load("mtllib m.mtl\n" + points + "usemtl light\nf 1 2 3\nusemtl " + name + "\nf 1 3 4\n");
         return s.findings.size() == 1 ? s.findings[0].message.substr(0, s.findings[0].message.find(':')) : "";
@@ -214,7 +214,7 @@ TEST_F(ObjFiles, MessagesShowNamesAsTextWhateverTheirBytes) {
     EXPECT_LT(first_error("v " + std::string(100000, 'x') + " 0 0\n").size(), 120u);
 }
 
-TEST_F(ObjFiles, BytesOfAnyKindAreNoDanger) {
+TEST_F(ObjFiles, ArbitraryBytesDoNotCrashTheReader) {
     std::string bytes;
     for (int i = 0; i < 4096; ++i) bytes += static_cast<char>(i * 7919 >> 3);
     EXPECT_FALSE(load(bytes).scene);

@@ -48,7 +48,7 @@ std::string obj_text(const SceneDescription& scene, const std::string& library) 
 
 Result<void> write_obj(const SceneDescription& scene, const std::string& path) {
     const std::filesystem::path library = std::filesystem::path(path).replace_extension(".mtl");
-    // The library first: whoever sees the new scene also finds its materials.
+    // The library is written first, so that a program that reads the new scene finds its materials.
     if (auto written = write_file(library.string(), mtl_text(scene)); !written) return written;
     return write_file(path, obj_text(scene, library.filename().string()));
 }

@@ -6,8 +6,8 @@
 
 namespace exitance {
 
-/// Writes a scene as OBJ, with an MTL file of the same name beside it; all numbers come back as they were, emission but
-/// for rounding. Both files appear whole or not at all. Error: cannot_write.
+/// Writes a scene as OBJ, with an MTL file of the same name in the same folder. Reading restores all numbers exactly,
+/// except emission, which is rounded. Each file appears whole or not at all. Error: cannot_write.
 Result<void> write_obj(const SceneDescription& scene, const std::string& path);
 
 }  // namespace exitance

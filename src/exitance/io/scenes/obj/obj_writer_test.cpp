@@ -12,12 +12,12 @@
 namespace exitance {
 namespace {
 
-/// Where the published test scenes are, when they are.
+/// Path of a published test scene, which may not exist.
 std::filesystem::path published(const std::string& file) {
     return std::filesystem::path(test::shared_folder()) / "scenes" / file;
 }
 
-TEST(ObjWriter, WhatIsWrittenIsReadBackAsItWas) {
+TEST(ObjWriter, ScenesAreReadBackAsWritten) {
     const std::string path = testing::TempDir() + "exitance-written.obj";
     for (const SceneFamily& family : scene_families()) {
         const auto scene = generate_scene(family.name, {});
@@ -43,7 +43,7 @@ TEST(ObjWriter, WhatIsWrittenIsReadBackAsItWas) {
     std::filesystem::remove(testing::TempDir() + "exitance-written.mtl");
 }
 
-TEST(ObjWriter, AFolderThatIsNotThereIsAnError) {
+TEST(ObjWriter, AMissingFolderIsAnError) {
     const auto written = write_obj(SceneDescription{}, testing::TempDir() + "no/such/folder/x.obj");
     ASSERT_FALSE(written);
     EXPECT_EQ(written.error().code, ErrorCode::cannot_write);
@@ -79,13 +79,13 @@ TEST(SceneFamilies, AgreeWithThePublishedScenes) {
             ASSERT_EQ(read->faces[f].corners.size(), made->faces[f].corners.size());
             for (std::size_t c = 0; c < made->faces[f].corners.size(); ++c) {
                 const Point p = read->points[read->faces[f].corners[c]], q = made->points[made->faces[f].corners[c]];
-                EXPECT_LT(norm(p - q), 1e-9) << made->file;  // files carry 12 digits
+                EXPECT_LT(norm(p - q), 1e-9) << made->file;  // files have 12 digits
             }
             const Material &a = read->materials[read->faces[f].material], &b = made->materials[made->faces[f].material];
             EXPECT_EQ(a.name, b.name);
             for (std::size_t k = 0; k < bands; ++k) {
                 EXPECT_EQ(a.reflectance[k], b.reflectance[k]);
-                EXPECT_NEAR(a.exitance[k], b.exitance[k], 1e-6 * b.exitance[k]);  // files carry 6 digits
+                EXPECT_NEAR(a.exitance[k], b.exitance[k], 1e-6 * b.exitance[k]);  // files have 6 digits
             }
         }
     }

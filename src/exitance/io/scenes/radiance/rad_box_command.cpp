@@ -24,7 +24,7 @@ Result<std::string> box_command_output(const CommandWords& words) {
                          fmt::format("genbox's size '{}' is no number above 0", shown(words[3 + k])), "",
                          "genbox material name x y z"};
     const bool inwards = words.size() > 6;
-    // Corners counter-clockwise seen from outside.
+    // Corner indices, counter-clockwise seen from outside.
     constexpr std::array<std::array<unsigned, 4>, 6> sides{
         {{1, 5, 4, 0}, {4, 6, 2, 0}, {6, 7, 3, 2}, {5, 1, 3, 7}, {1, 0, 2, 3}, {4, 5, 7, 6}}};
     std::string out;

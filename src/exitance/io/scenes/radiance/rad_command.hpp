@@ -10,8 +10,9 @@ namespace exitance {
 
 using CommandWords = std::vector<std::string>;
 
-/// The programs of a command in a Radiance file, each with its arguments: "genbox a b 1 2 3 | xform -t 1 0 0". Words
-/// may stand in quotes. What only a shell understands (;, <, >, &, $, `, \\ and patterns of file names) is an error.
+/// Splits a command of a Radiance file, such as "genbox a b 1 2 3 | xform -t 1 0 0", into its programs with their
+/// arguments. Words may be quoted. Error: characters with a meaning to shells (;, <, >, &, $, `, \\ and patterns of
+/// file names).
 Result<std::vector<CommandWords>> parse_command(std::string_view command);
 
 }  // namespace exitance

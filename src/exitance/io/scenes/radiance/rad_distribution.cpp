@@ -22,7 +22,7 @@ Error bad(std::string message, std::string hint = "") {
 
 // ------------------------------------------------------------------------------------------------ tables
 
-/// Numbers of a data file, '#' beginning comments.
+/// Reads the numbers of a data file, in which '#' begins comments.
 class Numbers {
   public:
     explicit Numbers(std::string_view text) : words_(text) {}
@@ -42,12 +42,12 @@ class Numbers {
     RadWords words_;
 };
 
-constexpr double most_entries = 4e6;
+constexpr double max_entries = 4e6;
 
-/// Angles from begin to end, or listed where these are one number.
+/// Reads the angles of an axis: evenly spaced from begin to end, or a list if these are equal.
 std::optional<std::vector<double>> read_axis(Numbers& numbers) {
     const auto begin = numbers.next(), end = begin ? numbers.next() : std::nullopt;
-    const auto count = end ? numbers.count(most_entries) : std::nullopt;
+    const auto count = end ? numbers.count(max_entries) : std::nullopt;
     if (!count) return std::nullopt;
     std::vector<double> out(*count);
     for (std::size_t i = 0; i < *count; ++i) {
@@ -63,7 +63,7 @@ std::optional<std::vector<double>> read_axis(Numbers& numbers) {
     return out;
 }
 
-/// Turns axes that run downwards.
+/// Reverses descending axes.
 void make_ascending(EmissionProfile& p) {
     const std::size_t rows = p.axes[0].at.size(), columns = p.axes[1].at.size();
     if (rows > 1 && p.axes[0].at[1] < p.axes[0].at[0]) {
@@ -81,7 +81,7 @@ void make_ascending(EmissionProfile& p) {
     }
 }
 
-/// A table of so many dimensions as `angles` names: 1 or 2.
+/// Reads a table of one or two dimensions.
 Result<void> read_table(std::string_view text, std::size_t dimensions, EmissionProfile& p) {
     Numbers numbers(text);
     const auto wrong = [&](const std::string& what) {
@@ -97,7 +97,7 @@ Result<void> read_table(std::string_view text, std::size_t dimensions, EmissionP
         p.axes[i].at = std::move(*axis);
     }
     const double entries = static_cast<double>(p.axes[0].at.size()) * static_cast<double>(p.axes[1].at.size());
-    if (entries > most_entries) return wrong(fmt::format("it has {:g} entries", entries));
+    if (entries > max_entries) return wrong(fmt::format("it has {:g} entries", entries));
     for (std::size_t i = 0; i < static_cast<std::size_t>(entries); ++i) {
         const auto value = numbers.next();
         if (!value) return wrong(fmt::format("it has {} of {} values", i, entries));
@@ -109,7 +109,7 @@ Result<void> read_table(std::string_view text, std::size_t dimensions, EmissionP
 
 // ------------------------------------------------------------------------------------------------ words
 
-/// "src_phi2+90": an angle of source.cal and what is added to it.
+/// Parses an angle of source.cal with an offset, such as "src_phi2+90".
 std::optional<EmissionProfile::Axis> axis_of(std::string_view word) {
     static constexpr std::array<std::pair<std::string_view, Angle>, 9> known{{{"src_theta", Angle::theta},
                                                                               {"src_phi", Angle::phi},
@@ -131,7 +131,7 @@ std::optional<EmissionProfile::Axis> axis_of(std::string_view word) {
     return axis;
 }
 
-/// By the name of a function of source.cal: what makes radiance of the table's values.
+/// Selects the conversion from table values to radiance by the name of a function of source.cal.
 Result<void> read_body(std::string_view function, const std::vector<double>& numbers, EmissionProfile& p) {
     const auto lacks = [&](std::size_t wanted) {
         return bad(fmt::format("{} takes {} numbers, not {}", function, wanted, numbers.size()));
@@ -160,7 +160,7 @@ Result<std::string> read_beside(const std::string& name, const RadPattern& patte
     return read_whole_file(std::filesystem::exists(near, ignored) ? near : beside(scene_file, name));
 }
 
-/// FUNC FILE source.cal ANGLE [ANGLE] [transform]
+/// Reads the words FUNC FILE source.cal ANGLE [ANGLE] [transform].
 Result<RadDistribution> read_data(const RadPattern& pattern, const std::string& scene_file) {
     const std::vector<std::string>& words = pattern.primitive.words;
     if (words.size() < 4)
@@ -187,7 +187,7 @@ Result<RadDistribution> read_data(const RadPattern& pattern, const std::string& 
     return out;
 }
 
-/// FUNC(number) source.cal [transform]
+/// Reads the words FUNC(number) source.cal [transform].
 Result<RadDistribution> read_function(const RadPattern& pattern) {
     const std::vector<std::string>& words = pattern.primitive.words;
     const std::size_t open = words.empty() ? std::string::npos : words[0].find('(');

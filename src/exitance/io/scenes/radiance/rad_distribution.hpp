@@ -5,17 +5,17 @@
 
 namespace exitance {
 
-/// What a pattern says of an emitter's light: radiance (of an emitter of radiance 1) by direction, and where the
-/// lamp's axes go.
+/// Directional distribution of an emitter: its radiance by direction, relative to the emitter's, and the orientation of
+/// the lamp's axes.
 struct RadDistribution {
     EmissionProfile profile;
     Affine to_world;
 };
 
-/// Reads `brightdata` as conversion programs write it: a table over one angle of source.cal or two, made radiance by
-/// corr, flatcorr, boxcorr, lboxcorr (as boxcorr) or cylcorr; and `brightfunc` where its function is one of these of a
-/// number. Everything else is an error that says so. The table stands beside the pattern's file, or beside
-/// `scene_file`. Source: Radiance's source.cal.
+/// Reads the distribution of a `brightdata` pattern as conversion programs write it: a table over one or two angles of
+/// source.cal, converted to radiance by corr, flatcorr, boxcorr, lboxcorr (treated as boxcorr) or cylcorr. A
+/// `brightfunc` pattern is supported if its function is one of these with a number. The table is searched in the folder
+/// of the pattern's file, then in that of `scene_file`. Error: anything else. Source: Radiance's source.cal.
 Result<RadDistribution> read_distribution(const RadPattern& pattern, const std::string& scene_file);
 
 }  // namespace exitance

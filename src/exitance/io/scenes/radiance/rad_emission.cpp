@@ -9,10 +9,10 @@
 namespace exitance {
 namespace {
 
-constexpr double alike = 1e-9;  ///< Directions that differ by less are one.
+constexpr double direction_tolerance = 1e-9;  ///< Directions that differ by less are equal.
 
 std::int64_t rounded(double v) {
-    return std::llround(v / alike);
+    return std::llround(v / direction_tolerance);
 }
 
 }  // namespace

@@ -8,23 +8,23 @@
 
 namespace exitance {
 
-/// Where something stands in Radiance's files.
+/// Position in Radiance files.
 struct RadPlace {
     const std::string& file;
     int line = 0;
 };
 
-/// Findings of the reader of Radiance's files: errors and warnings one by one, parts that are left out once per kind.
+/// Collects findings of the Radiance reader: all errors and warnings, and one note per kind of omitted part.
 class RadFindings {
   public:
     void error(const RadPlace& at, std::string message, std::string hint = "");
     void warning(const RadPlace& at, std::string message);
-    /// `what` is left out.
+    /// Notes that `what` is omitted.
     void note(const std::string& what, const RadPlace& at);
 
     bool failed() const { return errors_.size() > 0; }
     std::size_t error_count() const { return errors_.size(); }
-    /// Hands all of it over.
+    /// Returns all findings and clears the list.
     std::vector<Finding> take();
 
   private:

@@ -21,7 +21,7 @@ Spectrum spread(const std::vector<double>& rgb, double factor) {
     return out;
 }
 
-/// How many numbers a material has at least.
+/// Minimum number of numeric arguments of a material type.
 std::size_t numbers_of(const std::string& type) {
     if (type.starts_with("trans")) return type.ends_with('2') ? 6 : 7;
     if (is_one_of(type, {"plastic", "metal"})) return 5;
@@ -29,15 +29,15 @@ std::size_t numbers_of(const std::string& type) {
     return 3;
 }
 
-/// Materials whose gloss a function or a table tells, as the plain ones that have the same diffuse parts; empty for
-/// others, and where numbers are missing. Of BRTDfunc the front counts, for both sides.
+/// Converts a material whose gloss depends on a function or table to the plain material with the same diffuse part.
+/// Empty for other materials and if numbers are missing. For BRTDfunc, the front's values apply to both sides.
 std::optional<RadPrimitive> without_function(const RadPrimitive& p) {
     RadPrimitive plain = p;
     const bool passes = is_one_of(p.type, {"transfunc", "transdata"}), is_brtd = p.type == "BRTDfunc",
                is_ashik = p.type == "ashik2";
     const bool reflects = is_one_of(p.type, {"plasfunc", "plasdata", "metfunc", "metdata"});
-    const std::size_t least = passes ? 6 : is_brtd ? 9 : is_ashik ? 8 : 4;
-    if ((!passes && !is_brtd && !is_ashik && !reflects) || p.numbers.size() < least) return std::nullopt;
+    const std::size_t min_numbers = passes ? 6 : is_brtd ? 9 : is_ashik ? 8 : 4;
+    if ((!passes && !is_brtd && !is_ashik && !reflects) || p.numbers.size() < min_numbers) return std::nullopt;
     const std::vector<double>& n = p.numbers;
     plain.type = passes ? "trans" : "plastic";
     plain.numbers = {n[0], n[1], n[2], is_brtd || is_ashik ? 0 : n[3], 0};
@@ -56,7 +56,7 @@ void RadMaterials::add_material(const RadPrimitive& p, RadMeaning::Kind kind, co
 Spectrum RadMaterials::reflectance_of(const RadPrimitive& p, const std::string& file) {
     const RadPlace at{file, p.line};
     const double specular = p.numbers[3];
-    // Two roughnesses stand elsewhere; what goes through comes after them.
+    // The specular reflectance is followed by one or two roughnesses; the transmitted shares are last.
     const bool passes = p.type.starts_with("trans");
     const double through = passes ? p.numbers[p.numbers.size() - 2] : 0, clear = passes ? p.numbers.back() : 0;
     if (passes && !(through >= 0 && through <= 1 && clear >= 0 && clear <= 1))
@@ -71,7 +71,7 @@ Spectrum RadMaterials::reflectance_of(const RadPrimitive& p, const std::string& 
     return reflectance;
 }
 
-/// glass mod id 0 0 3 R G B, or 4 with an index of refraction.
+/// Reads glass mod id 0 0 3 R G B, or with 4 numbers, the last of which is the index of refraction.
 void RadMaterials::add_glass(const RadPrimitive& p, const std::string& file) {
     const RadPlace at{file, p.line};
     Pane pane;
@@ -95,7 +95,7 @@ void RadMaterials::add_glass(const RadPrimitive& p, const std::string& file) {
     glass.push_back(std::move(pane));
 }
 
-/// Materials by their diffuse parts; false if the primitive is none.
+/// Adds a material by its diffuse part; false if the primitive is not a material.
 bool RadMaterials::take_material(const RadPrimitive& p, const std::string& file) {
     const RadPlace at{file, p.line};
     if (const std::optional<RadPrimitive> plain = without_function(p)) {
@@ -112,11 +112,11 @@ bool RadMaterials::take_material(const RadPrimitive& p, const std::string& file)
                                         numbers_of(p.type)));
         return true;
     }
-    meanings_[p.name] = below(p, file);  // patterns that the material lies on change its light, too
+    meanings_[p.name] = below(p, file);  // patterns below the material change its light, too
     if (reflects) {
         add_material(p, RadMeaning::Kind::reflects, reflectance_of(p, file), {});
         if (p.type.starts_with("trans")) {
-            // What is transmitted diffusely, of all that leaves diffusely: both have the material's colour.
+            // Diffusely transmitted share of the light that leaves diffusely: both parts have the material's colour.
             const double through = p.numbers[p.numbers.size() - 2], diffuse = through * (1 - p.numbers.back());
             if (diffuse > 0) materials.back().through = std::min(1.0, diffuse / (1 - through + diffuse));
         }
@@ -153,7 +153,7 @@ const RadMeaning* RadMaterials::meaning_of(const RadPrimitive& p, const std::str
     if (found == meanings_.end() && p.modifier != "void")
         findings_.error(at, fmt::format("material '{}' is not defined before '{}'", shown(p.modifier), shown(p.name)),
                         "files of one scene are read in the order given, materials first");
-    else if (found == meanings_.end())  // as those that mkillum is to fill
+    else if (found == meanings_.end())  // such as those that mkillum replaces
         findings_.note("surfaces of void, which light passes", at);
     else if (found->second.kind == RadMeaning::Kind::pattern)
         findings_.error(at, fmt::format("'{}' has no material that is read", shown(p.name)),
@@ -172,7 +172,7 @@ void RadMaterials::take_alias(const RadPrimitive& p, const std::string& file) {
     meanings_[p.name] = same;
 }
 
-/// Mixtures go for their first material, or the second where the first is void.
+/// A mixture is replaced by its first material, or by the second if the first is void.
 void RadMaterials::take_mixture(const RadPrimitive& p, const std::string& file) {
     findings_.note("mixtures, which are of their first material", {file, p.line});
     for (std::size_t i = 0; i < std::min<std::size_t>(2, p.words.size()); ++i) {

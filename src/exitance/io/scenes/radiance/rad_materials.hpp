@@ -9,36 +9,36 @@
 
 namespace exitance {
 
-/// A pattern that changes what its material sends: which file and place it stands in decides where its data are.
+/// A pattern that changes the light of its material. Its data are searched relative to `file`.
 struct RadPattern {
     RadPrimitive primitive;
     std::string file;
-    Affine to_world;  ///< Of the file that it stands in.
+    Affine to_world;  ///< Transform of the file that contains the pattern.
 };
 
-/// What the name of a modifier stands for: a material, or patterns that have none yet.
+/// Meaning of a modifier's name: a material, or patterns without a material.
 struct RadMeaning {
     static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
     enum class Kind : std::uint8_t { pattern, reflects, emits, glass, left_out };
     Kind kind = Kind::pattern;
-    std::uint32_t material = 0;       ///< Of the scene; of glass its index in `RadMaterials::glass`.
-    std::uint32_t pattern = none;     ///< Of those that change light, the uppermost.
-    std::uint32_t pattern_count = 0;  ///< How many lie on one another.
+    std::uint32_t material = 0;       ///< Index into the scene's materials; for glass, into `RadMaterials::glass`.
+    std::uint32_t pattern = none;     ///< Uppermost pattern that changes light.
+    std::uint32_t pattern_count = 0;  ///< Number of nested patterns.
 };
 
-/// The modifiers of Radiance's files, by name: materials by their diffuse parts, patterns, aliases, mixtures.
+/// The modifiers of Radiance files by name: materials (only their diffuse parts), patterns, aliases, mixtures.
 class RadMaterials {
   public:
     explicit RadMaterials(RadFindings& findings) : findings_(findings) {}
 
-    /// Takes a primitive that is no surface.
+    /// Adds a primitive that is not a surface.
     void take(RadPrimitive p, const std::string& file, const Affine& to_world);
 
-    /// What the modifier of a surface stands for; nothing, and an error, where it is no material.
+    /// Meaning of a surface's modifier; null, with an error, if it is not a material.
     const RadMeaning* meaning_of(const RadPrimitive& surface, const std::string& file);
 
     std::vector<Material> materials;
-    std::vector<Pane> glass;  ///< Without corners.
+    std::vector<Pane> glass;  ///< Panes without corners.
     std::vector<RadPattern> patterns;
 
   private:
@@ -50,7 +50,7 @@ class RadMaterials {
     void add_material(const RadPrimitive& p, RadMeaning::Kind kind, const Spectrum& reflectance,
                       const Spectrum& radiance);
     Spectrum reflectance_of(const RadPrimitive& p, const std::string& file);
-    /// What lies under a primitive; nothing for void. An error where the name is not known.
+    /// Meaning of a primitive's own modifier; empty for void. An unknown name is an error.
     RadMeaning below(const RadPrimitive& p, const std::string& file);
 
     RadFindings& findings_;

@@ -11,26 +11,26 @@
 namespace exitance {
 namespace {
 
-constexpr double solar_irradiance = 1367, solar_illuminance = 127'500;  ///< W/m^2 and lx, outside the atmosphere.
-constexpr double lumens_per_watt = 179;                                 ///< Radiance's white.
+constexpr double solar_irradiance = 1367, solar_illuminance = 127'500;  ///< Outside the atmosphere, W/m^2 and lx.
+constexpr double lumens_per_watt = 179;  ///< Radiance's luminous efficacy of white light.
 
-/// Sky and sun as Perez' model takes them.
+/// Sky and sun in the parameters of Perez' model.
 struct Perez {
-    double zenith_angle = 0;         ///< Of the sun, radians, at most that of the horizon.
-    int day = 0;                     ///< Of the year, from 1.
-    double water = 2;                ///< cm of it in the air.
-    double diffuse = 0, direct = 0;  ///< W/m^2, horizontal and normal.
+    double zenith_angle = 0;         ///< Angle of the sun from the zenith, radians, at most pi / 2.
+    int day = 0;                     ///< Day of the year, from 1.
+    double water = 2;                ///< Precipitable water, cm.
+    double diffuse = 0, direct = 0;  ///< Horizontal and normal irradiance, W/m^2.
     double diffuse_lux = 0, direct_lux = 0;
     double clearness = 1, brightness = 0.01;
 
     double cubed() const { return 1.041 * std::pow(zenith_angle, 3); }
-    /// Irradiance by the sun outside the atmosphere, W/m^2, for the Earth's distance on that day.
+    /// Solar irradiance outside the atmosphere, W/m^2, at the Earth's distance on that day.
     double extraterrestrial() const {
         const double angle = 2 * pi * (day - 1) / 365;
         return solar_irradiance * (1.00011 + 0.034221 * std::cos(angle) + 0.00128 * std::sin(angle) +
                                    0.000719 * std::cos(2 * angle) + 0.000077 * std::sin(2 * angle));
     }
-    /// That irradiance over the air's optical mass [Kasten66].
+    /// Extraterrestrial irradiance divided by the optical air mass [Kasten66].
     double reference() const {
         const double mass = 1 / (std::cos(zenith_angle) + 0.15 * std::pow(93.885 - zenith_angle * 180 / pi, -1.253));
         return extraterrestrial() / mass;
@@ -40,7 +40,7 @@ struct Perez {
         clearness = ((diffuse + direct) / diffuse + cubed()) / (1 + cubed());
         limit();
     }
-    /// The ranges of gendaylit. No light at all has no clearness, and keeps none.
+    /// Clamps to the ranges of gendaylit. Without any light the clearness is NaN and stays NaN.
     void limit() {
         constexpr double clearest = 12.01, of_clearer = clearest - 0.001;
         clearness = clearness > clearest ? of_clearer : clearness < 1 ? 1 : clearness;
@@ -55,7 +55,7 @@ std::size_t bin_of(double clearness) {
 
 using Row = std::array<double, 4>;
 
-/// lm/W of the sky's light on a horizontal plane [Perez90].
+/// Luminous efficacy of sky light on a horizontal plane, lm/W [Perez90].
 double diffuse_efficacy(const Perez& p) {
     constexpr std::array<Row, 8> rows{{{97.24, -0.46, 12.00, -8.91},
                                        {107.22, 1.15, 0.59, -3.95},
@@ -69,7 +69,7 @@ double diffuse_efficacy(const Perez& p) {
     return r[0] + r[1] * p.water + r[2] * std::cos(p.zenith_angle) + r[3] * std::log(p.brightness);
 }
 
-/// lm/W of the sun's [Perez90].
+/// Luminous efficacy of sun light, lm/W [Perez90].
 double direct_efficacy(const Perez& p) {
     constexpr std::array<Row, 8> rows{{{57.20, -4.55, -2.98, 117.12},
                                        {98.99, -3.46, -1.21, 12.38},
@@ -83,16 +83,16 @@ double direct_efficacy(const Perez& p) {
     return std::max(0.0, r[0] + r[1] * p.water + r[2] * std::exp(5.73 * p.zenith_angle - 5) + r[3] * p.brightness);
 }
 
-/// Finds the irradiances that belong to the illuminances: the efficacies depend on them.
+/// Computes irradiances from illuminances by iteration, since the efficacies depend on the irradiances.
 void find_irradiances(Perez& p) {
     p.diffuse = p.diffuse_lux * solar_irradiance / solar_illuminance;
     p.direct = p.direct_lux * solar_irradiance / solar_illuminance;
     p.find_parameters();
-    constexpr int rounds = 9;               // as the program has it
-    constexpr double least_efficacy = 0.1;  // lm/W: below it the program has no sun
+    constexpr int rounds = 9;             // as in gendaylit
+    constexpr double min_efficacy = 0.1;  // lm/W; below it, gendaylit ignores the sun
     for (int i = 0; i < rounds; ++i) {
         const double of_sky = diffuse_efficacy(p), of_sun = direct_efficacy(p);
-        p.diffuse = p.diffuse_lux / of_sky, p.direct = of_sun < least_efficacy ? 0 : p.direct_lux / of_sun;
+        p.diffuse = p.diffuse_lux / of_sky, p.direct = of_sun < min_efficacy ? 0 : p.direct_lux / of_sun;
         p.find_parameters();
     }
 }
@@ -106,7 +106,7 @@ void split_global(double global, double sine, Perez& p) {
     p.diffuse = share * k * outside, p.direct = (1 - share) * k * outside / sine;
 }
 
-/// The sum over Tregenza's 145 directions by which gendaylit scales its sky: about its horizontal irradiance.
+/// Sum over Tregenza's 145 directions by which gendaylit scales its sky: an approximation of its horizontal irradiance.
 double tregenza_sum(const SkyModel& sky) {
     constexpr std::array<int, 8> patches{30, 30, 24, 24, 18, 12, 6, 1};
     const double towards_sun = std::atan2(sky.sun.y, sky.sun.x);
@@ -125,7 +125,7 @@ Error wrong(std::string message, std::string hint = "") {
     return {ErrorCode::bad_input, "gendaylit: " + message, "", std::move(hint)};
 }
 
-/// Why gendaylit prints a sky without light; empty: it does not.
+/// Reason why gendaylit prints a sky without light; empty if it has light.
 std::string darkness(const RadSkyWords& in, const Perez& p) {
     const bool in_lux = in.input == 'L';
     const double direct = in_lux ? p.direct_lux : p.direct, diffuse = in_lux ? p.diffuse_lux : p.diffuse;
@@ -138,11 +138,11 @@ std::string darkness(const RadSkyWords& in, const Perez& p) {
     return "";
 }
 
-/// The numbers of the line as irradiances, illuminances and parameters.
+/// Converts the numbers of the line to irradiances, illuminances and parameters.
 Result<Perez> read_input(const RadSkyWords& in) {
     Perez p;
     p.zenith_angle = std::min(0.5 * pi - in.altitude, 0.5 * pi);
-    constexpr int day_of_angles = 0, day_of_angles_before = 150;  // as the programs have it where there is no date
+    constexpr int day_of_angles = 0, day_of_angles_before = 150;  // as in the programs, for lines without a date
     p.day = in.month > 0 ? day_of_year(2021, in.month, in.day) : in.older ? day_of_angles_before : day_of_angles;
     p.water = std::exp(0.07 * in.dew_point - 0.075);
     const double first = std::max(0.0, in.first), second = std::max(0.0, in.second), sine = std::sin(in.altitude);
@@ -176,7 +176,7 @@ Result<Perez> read_input(const RadSkyWords& in) {
     return p;
 }
 
-/// The brightness function; `k`: the scale, the ground, and a to e.
+/// Formats the brightness function. `k`: scale, ground, and Perez' a to e.
 std::string perez_function(const std::array<double, 7>& k, const Vec3& sun) {
     std::string out = "void brightfunc skyfunc\n2 skybright perezlum.cal\n0\n10";
     for (const double v : k) out += fmt::format(" {:.9g}", v);
@@ -212,7 +212,7 @@ Result<PrintedSky> gendaylit_output(const RadSkyWords& in) {
     const Perez& p = *read;
     const Vec3 sun = in.sun();
     std::string dark = in.is_night ? "the sun is below the horizon at that hour" : darkness(in, p);
-    Normal above = sun;  // or on the horizon
+    Normal above = sun;  // or its projection to the horizon
     if (above.z < 0) above = {-std::sin(in.azimuth), -std::cos(in.azimuth), 0};
     const SkyModel sky = perez_sky_of({p.clearness, p.brightness}, above);
     if (dark.empty() && sky.b > 0) dark = "Perez' sky has no such state";

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// Of a primitive's numbers: each of these makes a shape or says why not.
+/// Converts the numbers of a primitive. Each function makes a shape or reports an error.
 class ShapeReader {
   public:
     ShapeReader(const RadPrimitive& p, const std::string& file, RadFindings& findings)

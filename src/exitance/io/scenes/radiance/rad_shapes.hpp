@@ -6,17 +6,17 @@
 
 namespace exitance {
 
-/// Is this a type of surface that facets make up?
+/// True for a surface type that is converted to facets.
 bool is_rad_shape(const std::string& type);
 
-/// The polygons of a surface: polygon, ring, sphere, bubble, cone, cup, cylinder, tube.
+/// Polygons of a surface: polygon, ring, sphere, bubble, cone, cup, cylinder, tube.
 struct RadShape {
     Facets facets;
-    bool inwards = false;    ///< Their fronts are the inside.
-    bool is_closed = false;  ///< Nothing sees their backs.
+    bool inwards = false;    ///< The fronts are inside.
+    bool is_closed = false;  ///< The backs cannot be seen.
 };
 
-/// Nothing, and an error among the findings, where the numbers make no shape.
+/// Converts a surface to polygons. Empty, with an error among the findings, if its numbers do not define a shape.
 std::optional<RadShape> rad_shape(const RadPrimitive& p, const std::string& file, RadFindings& findings);
 
 }  // namespace exitance

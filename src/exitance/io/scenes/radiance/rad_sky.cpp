@@ -13,7 +13,7 @@ Error no_sky(std::string message) {
     return {ErrorCode::bad_input, std::move(message), "", "skies as gensky and gendaylit print them are known"};
 }
 
-/// The sun of a pattern in the world; an error where its transform tilts the sky.
+/// Direction of the sun in the world. Error: the pattern's transform tilts the sky.
 Result<Normal> sun_of(const RadPattern& pattern, const Vec3& given) {
     const Vec3 up = pattern.to_world.vector({0, 0, 1}), sun = pattern.to_world.vector(given);
     constexpr double slack = 1e-6;
@@ -24,7 +24,7 @@ Result<Normal> sun_of(const RadPattern& pattern, const Vec3& given) {
 
 enum class Kind { clear = 1, overcast = 2, uniform = 3, intermediate = 4 };
 
-/// gensky's, by Radiance's skybright.cal.
+/// gensky's sky, from Radiance's skybright.cal.
 Result<SkyModel> gensky(const RadPattern& pattern) {
     const std::vector<double>& v = pattern.primitive.numbers;
     if (v.size() != 3 && v.size() != 7) return no_sky(fmt::format("skybr has {} numbers, not 3 or 7", v.size()));
@@ -57,7 +57,7 @@ Result<SkyModel> gensky(const RadPattern& pattern) {
     return no_sky(fmt::format("skybr has no kind {:g}", v[0]));
 }
 
-/// gendaylit's, by Radiance's perezlum.cal.
+/// gendaylit's sky, from Radiance's perezlum.cal.
 Result<SkyModel> gendaylit(const RadPattern& pattern) {
     const std::vector<double>& v = pattern.primitive.numbers;
     if (v.size() != 10) return no_sky(fmt::format("skybright has {} numbers, not 10", v.size()));

@@ -20,7 +20,7 @@ Error wrong(const RadSkyWords& in, std::string message, std::string hint = "") {
     return {ErrorCode::bad_input, fmt::format("{}: {}", in.program, message), "", std::move(hint)};
 }
 
-/// Time zones by their names, and their meridians, degrees west.
+/// Time zone names with their meridians, degrees west.
 struct Zone {
     const char* name;
     double meridian;
@@ -31,7 +31,8 @@ constexpr std::array<Zone, 27> zones{
      {"GMT", 0},   {"BST", -15},   {"CET", -15},   {"CEST", -30}, {"EET", -30},   {"EEST", -45}, {"GST", -60},
      {"GDT", -75}, {"IST", -82.5}, {"IDT", -97.5}, {"JST", -135}, {"NZST", -180}, {"NZDT", -195}}};
 
-/// gendaylit takes numbers alone, from 0 to below 24: the program reads "14:30EST" as 14 without a word.
+/// Checks an hour for gendaylit, which only reads numbers from 0 to below 24: it takes "14:30EST" as 14 without a
+/// warning.
 Result<void> read_plain_hour(double hour, bool goes_on, RadSkyWords& out) {
     if (goes_on)
         return wrong(out, "minutes after ':' and names of time zones are not read, and the program ignores them",
@@ -40,7 +41,7 @@ Result<void> read_plain_hour(double hour, bool goes_on, RadSkyWords& out) {
     return {};
 }
 
-/// "14", "14.5", "14:30", "14:30EDT", "+14.5" (solar time).
+/// Parses "14", "14.5", "14:30", "14:30EDT", "+14.5" (solar time).
 Result<void> read_hour(std::string_view word, RadSkyWords& out) {
     const Error bad = wrong(out, fmt::format("'{}' is no time", shown(std::string(word))),
                             "such as 14.5, 14:30, 14:30EST, or +14.5 for solar time");
@@ -63,7 +64,7 @@ Result<void> read_hour(std::string_view word, RadSkyWords& out) {
     return {};
 }
 
-/// Month, day and time, or the sun's place; the rest is options.
+/// Reads month, day and time, or the sun's angles; options follow.
 Result<RadSkyWords> read_head(const CommandWords& words) {
     RadSkyWords out;
     out.program = words[0];
@@ -86,7 +87,7 @@ Result<RadSkyWords> read_head(const CommandWords& words) {
     return out;
 }
 
-/// The option's next word as a number.
+/// Reads the word after an option as a number.
 Result<double> number_after(const CommandWords& words, std::size_t& i, const RadSkyWords& in) {
     const std::string option = words[i];
     const std::optional<double> value = ++i < words.size() ? parse_number(words[i]) : std::nullopt;
@@ -94,7 +95,7 @@ Result<double> number_after(const CommandWords& words, std::size_t& i, const Rad
     return *value;
 }
 
-/// Takes the number of an option that has one.
+/// Stores the number of an option.
 void take_number(char option, double value, RadSkyWords& out) {
     switch (option) {
         case 'g':
@@ -108,7 +109,7 @@ void take_number(char option, double value, RadSkyWords& out) {
             return;
         case 'm':
             if (!out.has_meridian) out.meridian = value;
-            return;  // a zone's name wins
+            return;  // a time zone's name has priority
         case 'y':
             out.year = static_cast<int>(std::clamp(value, -9999.0, 9999.0));
             return;
@@ -119,7 +120,7 @@ void take_number(char option, double value, RadSkyWords& out) {
             out.output = value;
             return;
         case 'd':
-            if (std::abs(value) <= 40) out.dew_point = value;  // others count as the default, as in the program
+            if (std::abs(value) <= 40) out.dew_point = value;  // gendaylit ignores other values, too
             return;
         case 'E':
             out.input = 'E', out.first = value;
@@ -223,8 +224,8 @@ Result<PrintedSky> sky_command_output(const CommandWords& words, bool older) {
     if (const Result<void> read = read_options(words, *in); !read) return read.error();
     place_rad_sun(*in);
     const bool overcast = in->kind == 'c' || in->kind == 'u';
-    constexpr double highest = 87 * pi / 180;  // as the programs have it
-    if (!overcast) in->altitude = std::min(in->altitude, highest);
+    constexpr double max_altitude = 87 * pi / 180;  // limit of both programs
+    if (!overcast) in->altitude = std::min(in->altitude, max_altitude);
     return in->program == "gendaylit" ? gendaylit_output(*in) : PrintedSky{gensky(*in)};
 }
 

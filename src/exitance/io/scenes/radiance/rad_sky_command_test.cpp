@@ -18,7 +18,7 @@ CommandWords words_of(const std::string& line) {
     return out;
 }
 
-/// The numbers that follow a line, such as "solar source sun".
+/// Returns the numbers after a line such as "solar source sun".
 std::vector<double> numbers_after(const std::string& text, const std::string& line) {
     const std::size_t at = text.find(line);
     EXPECT_NE(at, std::string::npos) << text;
@@ -46,15 +46,15 @@ std::vector<std::string> warnings(const std::string& line) {
     return printed ? printed->warnings : std::vector<std::string>();
 }
 
-/// Earth's distance factor of irradiance on a day of the year.
+/// Factor of solar irradiance from the Earth's distance on a day of the year.
 double orbit(double day) {
     const double angle = 2 * pi * (day - 1) / 365;
     return 1.00011 + 0.034221 * std::cos(angle) + 0.00128 * std::sin(angle) + 0.000719 * std::cos(2 * angle) +
            0.000077 * std::sin(2 * angle);
 }
 
-TEST(RadSkyCommand, GenskyPrintsWhatTheProgramPrints) {
-    // Printed by the program of 2021, in its four digits.
+TEST(RadSkyCommand, GenskyAgreesWithTheProgram) {
+    // The program of 2021 printed these values, with four digits.
     const std::string text = output("gensky 12 09 14:00 -a 51 -o 0 -m 0");
     const std::vector<double> light = numbers_after(text, "void light solar"), sun = numbers_after(text, "source sun");
     EXPECT_NEAR(light[0], 2.629e6, 0.5e3);
@@ -71,8 +71,8 @@ TEST(RadSkyCommand, GenskyPrintsWhatTheProgramPrints) {
     EXPECT_TRUE(warnings("gensky 12 09 14:00 -a 51 -o 0 -m 0").empty());
 }
 
-TEST(RadSkyCommand, OlderGenskyPrintsWhatThatProgramPrinted) {
-    // A published run of the older program: light 6.73e+06, this sun, ground ambient level 14.6.
+TEST(RadSkyCommand, OlderGenskyAgreesWithThatProgram) {
+    // A published run of the older program printed light 6.73e+06, this sun, and ground ambient level 14.6.
     const std::string text = output("gensky 3 20 10 -a 40 -o 98 -m 105 -g 1", true);
     const std::vector<double> light = numbers_after(text, "void light solar"), sun = numbers_after(text, "source sun");
     EXPECT_NEAR(light[0], 6.73e6, 0.005e6);
@@ -82,8 +82,8 @@ TEST(RadSkyCommand, OlderGenskyPrintsWhatThatProgramPrinted) {
     const std::vector<double> sky = numbers_after(text, "skyfunc");
     ASSERT_EQ(sky.size(), 7u);
     EXPECT_NEAR(sky[2] - 6e-5 / pi * light[0] * sun[2], 14.6, 0.05);
-    // The declination of the two programs differs by its sine's period, 368 and 365 days: at noon, by solar time, the
-    // sun's altitude is 90 degrees less the latitude and plus the declination.
+    // The declinations of the two programs differ in the period of the sine, 368 and 365 days. At solar noon, the sun's
+    // altitude is 90 degrees - latitude + declination.
     const auto noon = [](bool older) {
         return std::asin(numbers_after(output("gensky 10 23 +12 -a 20", older), "source sun")[2]);
     };
@@ -92,8 +92,8 @@ TEST(RadSkyCommand, OlderGenskyPrintsWhatThatProgramPrinted) {
     EXPECT_NEAR(noon(true), 70 * pi / 180 + 0.4093 * std::sin(2 * pi / 368 * day), 1e-8);
 }
 
-TEST(RadSkyCommand, AYearGivesThePlaceOfAnAlmanac) {
-    // The two algorithms agree within 0.02 degrees (the almanac's is right to 0.01 without refraction).
+TEST(RadSkyCommand, AYearSelectsTheAlmanacPosition) {
+    // The two algorithms agree within 0.02 degrees (the almanac's error is 0.01 without refraction).
     for (const int year : {1960, 1999, 2021, 2024})
         for (const double hour : {8.0, 12.25, 16.5}) {
             const std::string date = "gensky 3 1 " + std::to_string(hour);
@@ -103,22 +103,22 @@ TEST(RadSkyCommand, AYearGivesThePlaceOfAnAlmanac) {
             const Normal right = sky_direction(at.altitude, at.azimuth);
             EXPECT_GT(sun[0] * right.x + sun[1] * right.y + sun[2] * right.z, std::cos(0.02 * pi / 180)) << hour;
         }
-    // With solar time only the declination follows from the year.
+    // With solar time, only the declination depends on the year.
     const std::vector<double> noon = numbers_after(output("gensky 6 21 +12 -a 45 -y 2021"), "source sun");
     EXPECT_NEAR(std::asin(noon[2]) * 180 / pi, 45 + 23.44, 0.01);
     EXPECT_NEAR(noon[0], 0, 1e-8);
 }
 
-TEST(RadSkyCommand, GenskyScalesItsSkyByWhatIsGiven) {
+TEST(RadSkyCommand, GenskyScalesItsSkyByTheOptions) {
     EXPECT_NEAR(numbers_after(output("gensky -ang 45 0 -c -B 100"), "skyfunc")[1], 100 / (pi * 7 / 9), 1e-5);
     EXPECT_NEAR(numbers_after(output("gensky -ang 45 0 -u -B 100 -g 0.5"), "skyfunc")[2], 50 / pi, 1e-6);
     EXPECT_NEAR(numbers_after(output("gensky -ang 30 0 +s -R 300"), "void light solar")[0], 300 / (5.98e-5 * 0.5), 1);
     EXPECT_EQ(output("gensky -ang 30 0 -s").find("source sun"), std::string::npos);
-    // Solar noon of an equinox or so: the sun stands in the south, at 90 degrees less the latitude.
+    // Solar noon near the equinox: the sun is in the south, at 90 degrees minus the latitude.
     const std::vector<double> sun = numbers_after(output("gensky 3 22 +12 -a 40"), "source sun");
     EXPECT_NEAR(sun[0], 0, 1e-8);
     EXPECT_NEAR(std::asin(sun[2]) * 180 / pi, 50, 0.1);
-    // A year's position is that of an almanac; the short formula lies within a degree of it.
+    // With a year, the position is the almanac's; the short formula agrees within a degree.
     const std::vector<double> year = numbers_after(output("gensky 6 21 9:30EST -a 42 -o 71 -y 2021"), "source sun"),
                               plain = numbers_after(output("gensky 6 21 9.5 -a 42 -o 71 -m 75"), "source sun");
     EXPECT_GT(year[0] * plain[0] + year[1] * plain[1] + year[2] * plain[2], std::cos(pi / 180));
@@ -131,26 +131,28 @@ TEST(RadSkyCommand, GendaylitHasPerezSky) {
     ASSERT_EQ(sky.size(), 10u);
     EXPECT_NEAR(light[0] * 2 * pi * (1 - std::cos(0.2665 * pi / 180)), 600, 1e-5);
     EXPECT_EQ(sky[1], 0);
-    // Clearness ((150 + 600) / 150 + k) / (1 + k), k = 1.041 (50 degrees)^3 = 0.6918: the fifth bin, to 4.5.
+    // The clearness is ((150 + 600) / 150 + k) / (1 + k) with k = 1.041 (50 degrees)^3 = 0.6918, in the fifth bin (up
+    // to 4.5).
     const double Z = 50 * pi / 180, k = 1.041 * Z * Z * Z, clearness = (5 + k) / (1 + k);
     ASSERT_TRUE(clearness > 2.8 && clearness < 4.5);
     const double mass = 1 / (std::cos(Z) + 0.15 * std::pow(93.885 - 50, -1.253));
-    const double delta = 150 * mass / (1367 * orbit(0));  // no date: the program's day 0
+    const double delta = 150 * mass / (1367 * orbit(0));  // without a date, the program uses day 0
     EXPECT_NEAR(sky[2], -1.0156 - 0.3670 * Z + delta * (1.0078 + 1.4051 * Z), 1e-7);
     EXPECT_NEAR(sky[5], -3.4 - 0.1078 * Z + delta * (-1.0750 + 1.5702 * Z), 1e-7);
-    // The same state by its parameters.
+    // The same state, given by its parameters.
     const std::vector<double> by_state = numbers_after(
         output("gendaylit -ang 40 30 -O 1 -P " + std::to_string(clearness) + " " + std::to_string(delta)), "skyfunc");
     EXPECT_NEAR(by_state[0], sky[0], 1e-3 * sky[0]);
-    // Illuminances lead back to about the irradiances that they come from.
+    // Illuminances computed from irradiances agree approximately with the original irradiances.
     const std::vector<double> lumens =
         numbers_after(output("gendaylit -ang 40 30 -W 600 150 -O 2"), "void light solar");
     const double direct = lumens[0] / light[0] * 600;
     EXPECT_NEAR(direct / 600, 95, 15);
 }
 
-TEST(RadSkyCommand, GendaylitCountsAnglesAsDayZero) {
-    // -P: irradiances are those outside the atmosphere on the day times the state, so that their ratio is the orbit's.
+TEST(RadSkyCommand, GendaylitUsesDayZeroForAngles) {
+    // With -P, irradiances are proportional to extraterrestrial irradiance, so their ratio is that of the orbit
+    // factors.
     const auto scale = [](const std::string& line, bool older) {
         return numbers_after(output(line, older), "skyfunc")[0];
     };
@@ -162,7 +164,8 @@ TEST(RadSkyCommand, GendaylitCountsAnglesAsDayZero) {
 }
 
 TEST(RadSkyCommand, GendaylitPrintsSkiesOfNightHours) {
-    // Below the horizon the sun counts as on it, for the state and for the sky's coefficients; its direction stays.
+    // A sun below the horizon is treated as on the horizon for the state and the sky's coefficients; its direction is
+    // unchanged.
     const std::string line = "gendaylit -ang -7 80 -W 0 23";
     const std::vector<double> sky = numbers_after(output(line), "skyfunc");
     ASSERT_EQ(sky.size(), 10u);
@@ -171,14 +174,14 @@ TEST(RadSkyCommand, GendaylitPrintsSkiesOfNightHours) {
     ASSERT_TRUE(delta > 0.01 && delta < 0.6);
     EXPECT_NEAR(sky[2], 1.3525 - 0.2576 * Z + delta * (-0.2690 - 1.4366 * Z), 1e-8);
     EXPECT_TRUE(warnings(line).empty());
-    // Its illuminance is the irradiance times the efficacy of [Perez90], over 179 lm/W. The program takes its sky's sum
-    // over 145 directions for the integral, and the sun as standing on the horizon there: 6% off.
+    // The illuminance is the irradiance times the efficacy of [Perez90], over 179 lm/W. The program replaces the
+    // integral over the sky by a sum over 145 directions and puts the sun on the horizon: a difference of 6%.
     SkyModel model;
     model.a = sky[2], model.b = sky[3], model.c = sky[4], model.d = sky[5], model.e = sky[6];
     model.sun = {sky[7], sky[8], sky[9]};
     const double irradiance = pi * sky[0] * horizontal_mean(model);
     EXPECT_NEAR(irradiance, 23 * (97.24 - 2 * 0.46 - 8.91 * std::log(delta)) / 179, 0.08 * irradiance);
-    // Dates whose hour is before sunrise or after sunset have no light, and it is said.
+    // Dates with an hour before sunrise or after sunset have no light, with a warning.
     for (const char* dark :
          {"gendaylit 3 20 +2 -a 40 -W 100 10", "gendaylit 12 1 +22 -a 40 -P 2 0.1", "gendaylit -ang -1 0 -G 100 10",
           "gendaylit -ang -1 0 -E 100", "gendaylit -ang 30 0 -W 0 0", "gendaylit -ang 30 0 -W 1400 100",
@@ -188,15 +191,17 @@ TEST(RadSkyCommand, GendaylitPrintsSkiesOfNightHours) {
         ASSERT_EQ(warnings(dark).size(), 1u) << dark;
         EXPECT_NE(warnings(dark)[0].find("no light"), std::string::npos);
     }
-    // With an interval the hour about sunrise counts by the middle of its light: 6 h at the equinox.
+    // With an interval, the hour of sunrise is replaced by the middle of its daylight: sunrise is at 6 h at the
+    // equinox.
     EXPECT_TRUE(warnings("gendaylit 3 22 +5.75 -a 40 -W 50 40 -i 60").empty());
     EXPECT_EQ(warnings("gendaylit 3 22 +5.25 -a 40 -W 50 40 -i 60").size(), 1u);
     const double rising = numbers_after(output("gendaylit 3 22 +5.75 -a 40 -W 50 40 -i 60"), "skyfunc")[9];
-    EXPECT_NEAR(std::asin(rising) * 180 / pi, 0.125 * 15 * std::cos(40 * pi / 180), 0.05);  // (6 + 6.25) / 2 h
+    // Daylight is from 6 to 6.25 h.
+    EXPECT_NEAR(std::asin(rising) * 180 / pi, 0.125 * 15 * std::cos(40 * pi / 180), 0.05);
 }
 
-TEST(RadSkyCommand, GendaylitReadsGlobalLightAndDewPoints) {
-    // Erbs: k = 0.2, below 0.22: the diffuse share is 1 - 0.09 k.
+TEST(RadSkyCommand, GendaylitSupportsGlobalLightAndDewPoint) {
+    // For k = 0.2, below 0.22, the diffuse share is 1 - 0.09 k [Erbs82].
     const double outside = 1367 * orbit(0) * 0.5;  // at 30 degrees
     const std::string global = std::to_string(0.2 * outside);
     const std::vector<double> split = numbers_after(output("gendaylit -ang 30 0 -O 1 -E " + global), "skyfunc");
@@ -204,18 +209,18 @@ TEST(RadSkyCommand, GendaylitReadsGlobalLightAndDewPoints) {
     const std::vector<double> same = numbers_after(
         output("gendaylit -ang 30 0 -O 1 -W " + std::to_string(direct) + " " + std::to_string(diffuse)), "skyfunc");
     for (std::size_t i = 0; i < same.size(); ++i) EXPECT_NEAR(split[i], same[i], 1e-5 * (1 + std::abs(same[i])));
-    // More water in the air: more lumens for a watt of diffuse light [Perez90]; none of watts (-O 1).
+    // More water in the air gives more lumens per watt of diffuse light [Perez90], but no change in watts (-O 1).
     const auto scale = [](const std::string& line) { return numbers_after(output(line), "skyfunc")[0]; };
     EXPECT_GT(scale("gendaylit -ang 40 0 -W 500 150 -d 20"), 1.01 * scale("gendaylit -ang 40 0 -W 500 150 -d 0"));
     EXPECT_EQ(scale("gendaylit -ang 40 0 -W 500 150 -O 1 -d 20"), scale("gendaylit -ang 40 0 -W 500 150 -O 1"));
     EXPECT_EQ(output("gendaylit -ang 40 0 -W 500 150 -c").find("source sun"), std::string::npos);
-    // No diffuse light leaves the sun alone.
+    // Without diffuse light only the sun is left.
     const std::string sun_alone = output("gendaylit -ang 40 0 -O 1 -W 500 0");
     EXPECT_EQ(numbers_after(sun_alone, "skyfunc")[0], 0);
     EXPECT_NE(sun_alone.find("source sun"), std::string::npos);
 }
 
-TEST(RadSkyCommand, WhatIsNotReadIsNamed) {
+TEST(RadSkyCommand, UnsupportedWordsAreNamed) {
     const auto fault = [](const std::string& line) {
         const Result<PrintedSky> text = sky_command_output(words_of(line));
         return text ? "" : text.error().message + "|" + text.error().hint;

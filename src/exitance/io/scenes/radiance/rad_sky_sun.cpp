@@ -8,12 +8,13 @@ namespace {
 
 constexpr double degree = pi / 180;
 
-/// Declination in radians, and the solar time, hours.
+/// Declination, radians, and solar time, hours.
 struct SolarDay {
     double declination = 0, time = 12;
 };
 
-/// Declination by the day of the year, from 1: a sine, whose period had an error of three days until November 2019.
+/// Declination on a day of the year, from 1. `older` uses the period before November 2019, which was three days too
+/// long.
 double declination_of(int day, bool older) {
     const double period = older ? 368 : 365;
     return 0.4093 * std::sin(2 * pi / period * (day - 81));
@@ -23,19 +24,20 @@ double within(double value, double period) {
     return value - period * std::floor(value / period);
 }
 
-/// Declination and solar time of a moment of a year [Michalsky88].
+/// Declination and solar time at a time of a given year [Michalsky88].
 SolarDay almanac_day(const RadSkyWords& in) {
-    const double days = julian_day({*in.year, in.month, in.day, in.hour, -in.meridian / 15}) - 2451545;  // since 2000
+    // Days since 2000-01-01 12:00 UT.
+    const double days = julian_day({*in.year, in.month, in.day, in.hour, -in.meridian / 15}) - 2451545;
     const double mean_longitude = 280.460 + 0.9856474 * days, anomaly = (357.528 + 0.9856003 * days) * degree;
     const double longitude = (mean_longitude + 1.915 * std::sin(anomaly) + 0.020 * std::sin(2 * anomaly)) * degree;
     const double obliquity = (23.439 - 4e-7 * days) * degree;
     const double ascension = std::atan2(std::sin(longitude) * std::cos(obliquity), std::cos(longitude)) / degree;
     const double universal = 24 * (days - std::floor(days)) + 12;
-    const double sidereal = 6.697375 + 0.0657098242 * days + universal - in.longitude / 15;  // hours, of the place
+    const double sidereal = 6.697375 + 0.0657098242 * days + universal - in.longitude / 15;  // hours, local
     return {std::asin(std::sin(obliquity) * std::sin(longitude)), within(sidereal - ascension / 15 + 12, 24)};
 }
 
-/// The moment's declination and solar time. `day` of the year.
+/// Declination and solar time on a `day` of the year.
 SolarDay solar_day(const RadSkyWords& in, int day) {
     SolarDay out{declination_of(day, in.older), in.hour};
     if (in.year) {
@@ -48,8 +50,8 @@ SolarDay solar_day(const RadSkyWords& in, int day) {
     return out;
 }
 
-/// Moves the time of an interval about sunrise or sunset to the middle of its light. Returns whether there is none.
-/// Where the sun neither rises nor sets on that day nothing changes, as in the program.
+/// Moves `time` to the middle of the interval's daylight if the interval contains sunrise or sunset. Returns true if
+/// the interval is dark. As in gendaylit, nothing changes if the sun does not rise or set on that day.
 bool is_dark_interval(const RadSkyWords& in, int day, double& time) {
     const double cosine = -std::tan(in.latitude) * std::tan(declination_of(day, in.older));
     if (!(std::abs(cosine) <= 1)) return false;

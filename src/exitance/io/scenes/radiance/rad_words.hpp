@@ -7,18 +7,20 @@
 
 namespace exitance {
 
-/// Words of a Radiance file. '#' at the start of one begins a comment. A word that begins with ' or " goes on to the
-/// same sign, blanks included. A word that begins with '!' is a command, which takes the rest of its line.
+/// Splits a Radiance file into words. '#' at the start of a word begins a comment. A word that begins with ' or " ends
+/// at the same mark and may contain blanks. A word that begins with '!' is a command, which extends to the end of its
+/// line.
 class RadWords {
   public:
     explicit RadWords(std::string_view text) : rest_(text) {}
 
-    /// Nothing at the end, or where a quoted word has no end.
+    /// Returns the next word; empty at the end of the text, or if a quoted word is not closed.
     std::optional<std::string_view> next();
-    /// After a word that begins with '!': the rest of the command, a backslash at the end of a line going on.
+    /// Returns the rest of a command, after a word that begins with '!'. A backslash at the end of a line continues it.
     std::string rest_of_command();
-    int line() const { return line_; }                  ///< Of the last word.
-    bool was_quoted() const { return was_quoted_; }     ///< The last word: what it begins with means nothing.
+    int line() const { return line_; }  ///< Line of the last word.
+    /// The last word was quoted, so its first character has no special meaning.
+    bool was_quoted() const { return was_quoted_; }
     bool is_open_quote() const { return open_quote_; }  ///< The text ended within a quoted word.
 
   private:
@@ -41,14 +43,14 @@ struct RadPrimitive {
     int line = 0;
 };
 
-/// What is wrong with a primitive, and where.
+/// Fault of a primitive, with its line.
 struct RadFault {
     int line = 0;
     std::string message;
 };
 
-/// Reads what follows a modifier: type, name and three counted lists, of an alias one word. Where the next primitive
-/// begins is not known after a fault.
+/// Reads a primitive after its modifier: type, name, and three lists with counts (for an alias, one word). After a
+/// fault, the beginning of the next primitive is unknown.
 std::optional<RadFault> read_primitive(RadWords& words, RadPrimitive& out);
 
 }  // namespace exitance

@@ -24,16 +24,16 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_copies = 100'000, deepest = 16;
+constexpr std::size_t max_copies = 100'000, max_depth = 16;
 
-/// A text that is being read, and where it stands among those that call it.
+/// A text being read, and how it was called.
 struct Call {
-    const std::string* name;  ///< Of the file; of a command's output what it came from.
+    const std::string* name;  ///< Path of the file, or a description of the command that printed the text.
     Affine to_world;
     std::string prefix;
-    std::string material;  ///< Of all its surfaces, in place of their own; empty: their own.
-    int first_line = 0;    ///< SceneLines of its file.
-    int command_line = 0;  ///< Of the command that printed it, in the same count; 0 for files.
+    std::string material;  ///< Replaces the materials of all surfaces; empty: they keep their own.
+    int first_line = 0;    ///< Offset of the file's lines in SceneLines.
+    int command_line = 0;  ///< SceneLines number of the command that printed the text; 0 for files.
     std::size_t depth = 0;
 };
 
@@ -78,18 +78,18 @@ class RadianceReader {
 
     std::span<const std::string> paths_;
     const LoadOptions& options_;
-    std::string root_;  ///< The one of them that is being read: what commands name stands beside it.
+    std::string root_;  ///< Path of the root file being read: commands search files in its folder.
     ReadScene out_;
     RadFindings findings_;
     RadMaterials materials_{findings_};
     RadEmission emission_{materials_, findings_, root_};
-    std::unordered_map<std::string, std::string> texts_;      ///< Files that commands name, read once.
-    std::list<std::pair<std::string, std::string>> outputs_;  ///< What commands were, and what they printed.
+    std::unordered_map<std::string, std::string> texts_;      ///< Files named in commands, each read once.
+    std::list<std::pair<std::string, std::string>> outputs_;  ///< Description and output of commands.
     std::unordered_map<std::string, int> first_lines_;
     std::unordered_map<std::string, std::uint32_t> groups_;
-    std::vector<const std::string*> open_;  ///< Names of texts being read, which may not call themselves.
+    std::vector<const std::string*> open_;  ///< Names of the texts being read, to detect recursion.
     std::size_t copies_ = 0, bytes_ = 0;
-    /// Balls that shine inwards, diffusely, by their faces.
+    /// Spheres that emit inwards without a directional distribution, as ranges of faces.
     struct Bubble {
         std::size_t first = 0, last = 0;
         std::uint32_t material = 0;
@@ -99,7 +99,7 @@ class RadianceReader {
     std::set<std::string> glass_names_;  ///< Modifiers of the panes so far.
 };
 
-/// Patterns on what reflects.
+/// Notes that patterns on reflecting materials are omitted.
 void RadianceReader::note_patterns(const RadMeaning& meaning) {
     if (meaning.pattern_count == 0) return;
     const RadPattern& pattern = materials_.patterns[meaning.pattern];
@@ -114,10 +114,10 @@ void RadianceReader::take_surface(const RadPrimitive& p, const Call& call) {
     const bool emits = meaning->kind == RadMeaning::Kind::emits;
     if (!emits) note_patterns(*meaning);
     auto& d = out_.description;
-    // A line of text can ask for any number of copies. Most scenes have no more than these.
-    if (const std::size_t most = 300'000 + bytes_ / 20; d.faces.size() + 2 * shape->facets.size() > most) {
+    // Limits the number of faces: one line can request any number of copies. Few scenes have more faces than this.
+    if (const std::size_t max_faces = 300'000 + bytes_ / 20; d.faces.size() + 2 * shape->facets.size() > max_faces) {
         if (!findings_.failed())
-            findings_.error({file, p.line}, fmt::format("copies make more than {} faces", most),
+            findings_.error({file, p.line}, fmt::format("copies make more than {} faces", max_faces),
                             "write the copies to a file with Radiance's own xform, and read that");
         return;
     }
@@ -152,14 +152,14 @@ void RadianceReader::take_surface(const RadPrimitive& p, const Call& call) {
             face.material = *material;
         }
         d.faces.push_back(face);
-        // What reflects is seen from both sides; of a ball the other one is nowhere in view.
+        // Reflecting surfaces have two sides, but the inside of a closed body cannot be seen.
         if (meaning->kind != RadMeaning::Kind::reflects || shape->is_closed) continue;
         std::reverse(face.corners.begin(), face.corners.end());
         d.faces.push_back(std::move(face));
     }
 }
 
-/// A light infinitely far away: the sun's disc, a sky, the glow of the ground.
+/// Adds a distant light: the sun's disc, a sky, or the reflected light of the ground.
 void RadianceReader::take_source(const RadPrimitive& p, const Call& call) {
     const RadPlace at{*call.name, p.line};
     const RadMeaning* meaning = materials_.meaning_of(p, at.file);
@@ -176,7 +176,7 @@ void RadianceReader::take_source(const RadPrimitive& p, const Call& call) {
         const Result<SkyModel> sky = meaning->pattern_count == 1
                                          ? sky_of_pattern(materials_.patterns[meaning->pattern])
                                          : Error{ErrorCode::bad_input, "it lies on another pattern", "", ""};
-        constexpr double wide = 0.2;  // radians: more than any sun
+        constexpr double wide = 0.2;  // radians; larger than any sun
         if (!sky && angle > wide)
             return findings_.note("skies with patterns that gensky and gendaylit do not print", at);
         if (!sky)
@@ -223,7 +223,7 @@ Result<void> RadianceReader::add_file(const std::string& name, Copied& out) {
     return {};
 }
 
-/// Text of a line `!gensky` or `!gendaylit`; its warnings become findings.
+/// Returns the output of `!gensky` or `!gendaylit`; their warnings become findings.
 Result<std::string> RadianceReader::sky_text(const CommandWords& words, const RadPlace& at) {
     Result<PrintedSky> printed = sky_command_output(words, options_.older_sky_programs);
     if (!printed) return printed.error();
@@ -231,7 +231,7 @@ Result<std::string> RadianceReader::sky_text(const CommandWords& words, const Ra
     return std::move(printed->text);
 }
 
-/// What a row of programs prints, each reading what the one before it prints.
+/// Adds the output of a pipeline of programs.
 Result<void> RadianceReader::add_output(std::span<const CommandWords> stages, int line, const Call& call, Copied& out) {
     const bool is_known = (is_sky_command(stages[0]) || is_box_command(stages[0])) && stages.size() == 1;
     if (!options_.run_commands && !is_known)
@@ -245,7 +245,7 @@ Result<void> RadianceReader::add_output(std::span<const CommandWords> stages, in
         Result<std::string> printed =
             is_known ? is_box_command(words) ? box_command_output(words) : sky_text(words, {*call.name, line})
                      : run_scene_program(words, text, folder_of(root_), options_.stop ? *options_.stop : never);
-        // Options that are not read here are left to the program, where that may be run.
+        // With --run-commands, the program itself handles options that are not supported here.
         if (is_known && !printed && options_.run_commands)
             printed = run_scene_program(words, text, folder_of(root_), options_.stop ? *options_.stop : never);
         if (!printed) return printed.error();
@@ -259,7 +259,7 @@ Result<void> RadianceReader::add_output(std::span<const CommandWords> stages, in
     return {};
 }
 
-/// Copies are made here: by a first xform of a file, and by those that end a row of programs.
+/// Makes the copies of xform commands: a first xform with a file, and those at the end of a pipeline.
 Result<RadianceReader::Copied> RadianceReader::copied_by(const std::vector<CommandWords>& stages, int line,
                                                          const Call& call) {
     Copied out;
@@ -274,7 +274,7 @@ Result<RadianceReader::Copied> RadianceReader::copied_by(const std::vector<Comma
     std::size_t run = stages.size();
     std::vector<Xform> last;
     for (; run > 0 && stages[run - 1][0] == "xform"; --run) {
-        Result<Xform> xform = parse_xform({stages[run - 1].begin() + 1, stages[run - 1].end()}, most_copies);
+        Result<Xform> xform = parse_xform({stages[run - 1].begin() + 1, stages[run - 1].end()}, max_copies);
         if (!xform) return xform.error();
         if (xform->files.empty() != (run > 1))
             return Error{ErrorCode::bad_input,
@@ -286,22 +286,22 @@ Result<RadianceReader::Copied> RadianceReader::copied_by(const std::vector<Comma
         run > 0 ? add_output(std::span(stages).first(run), line, call, out) : add_file(last.back().files[0], out);
     if (!added) return added.error();
     std::size_t copies = 1;
-    for (const Xform& xform : last) copies = std::min(2 * most_copies, copies * xform.copies.size());
+    for (const Xform& xform : last) copies = std::min(2 * max_copies, copies * xform.copies.size());
     copies_ += copies;
-    if (copies_ > most_copies)
-        return Error{ErrorCode::bad_input, fmt::format("there are more than {} copies", most_copies), "", ""};
+    if (copies_ > max_copies)
+        return Error{ErrorCode::bad_input, fmt::format("there are more than {} copies", max_copies), "", ""};
     for (auto xform = last.rbegin(); xform != last.rend(); ++xform) multiply(*xform);
     return out;
 }
 
 void RadianceReader::run_command(const std::string& command, int line, const Call& call) {
     const RadPlace at{*call.name, line};
-    if (call.depth >= deepest) return findings_.error(at, fmt::format("files call each other {} deep", deepest));
+    if (call.depth >= max_depth) return findings_.error(at, fmt::format("files call each other {} deep", max_depth));
     const Result<std::vector<CommandWords>> stages = parse_command(command);
     if (!stages) return findings_.error(at, stages.error().message, stages.error().hint);
     const CommandWords& first = stages->front();
     const Result<Xform> xform =
-        first[0] == "xform" ? parse_xform({first.begin() + 1, first.end()}, most_copies) : Result<Xform>(Xform());
+        first[0] == "xform" ? parse_xform({first.begin() + 1, first.end()}, max_copies) : Result<Xform>(Xform());
     if (!xform || xform->files.size() < 2) return read_copies(*stages, line, call);
     for (const std::string& file : xform->files) {
         std::vector<CommandWords> of_one = *stages;
@@ -316,7 +316,7 @@ void RadianceReader::read_copies(const std::vector<CommandWords>& stages, int li
     const Result<Copied> copied = copied_by(stages, line, call);
     if (!copied) return findings_.error({*call.name, line}, copied.error().message, copied.error().hint);
     for (const Affine& copy : copied->copies) {
-        if (findings_.failed()) return;  // once is enough to say what is wrong with a file
+        if (findings_.failed()) return;  // the first copy has reported the file's errors
         read_text(*copied->text, {copied->name, call.to_world * copy, call.prefix + copied->prefix,
                                   call.material.empty() ? copied->material : call.material, copied->first_line,
                                   copied->command_line, call.depth + 1});
@@ -341,7 +341,7 @@ void RadianceReader::read_text(std::string_view text, const Call& call) {
         p.modifier = *word;
         if (const auto fault = read_primitive(words, p)) {
             findings_.error({*call.name, fault->line}, fault->message);
-            break;  // where the next one begins is anybody's guess
+            break;  // the beginning of the next primitive is unknown
         }
         if (findings_.failed() && call.depth > 0) break;
         take(std::move(p), call);
@@ -349,8 +349,8 @@ void RadianceReader::read_text(std::string_view text, const Call& call) {
     open_.pop_back();
 }
 
-/// A ball that shines evenly on everything within it brings the light of a uniform sky, above and below, to every
-/// point, however large it is: it becomes one, and what is lost on it is lost to the sky.
+/// Replaces a sphere that emits evenly inwards and contains the whole scene by a uniform sky above and below, which
+/// gives every point the same light at any radius. Light that reaches the sphere is lost to the sky.
 void RadianceReader::open_up() {
     SceneDescription& d = out_.description;
     if (bubbles_.size() != 1) return;
@@ -360,7 +360,8 @@ void RadianceReader::open_up() {
         for (const std::uint32_t c : d.faces[i].corners)
             (i >= bubble.first && i < bubble.last ? box : rest).add(d.points[c]);
     const Vec3 half = 0.5 * box.size();
-    constexpr double ball = 1e-2, well_within = 0.9;  // the facets lie within the ball by less than that
+    // Shares of the radius: a limit for the deviation of facets from the sphere, and for the scene inside it.
+    constexpr double ball = 1e-2, well_within = 0.9;
     const double radius = half.x;
     const bool is_ball = std::abs(half.y - radius) < ball * radius && std::abs(half.z - radius) < ball * radius;
     if (!is_ball || rest.is_empty()) return;
@@ -387,7 +388,7 @@ ReadScene RadianceReader::read() {
         }
         bytes_ += text->size();
         read_text(*text, {&path, {}, "", "", first_line(path, *text), 0, 0});
-        if (findings_.failed()) break;  // what it defines is missed by those that follow
+        if (findings_.failed()) break;  // later files may use names that it failed to define
     }
     if (!findings_.failed()) open_up();
     out_.description.materials = std::move(materials_.materials);

@@ -8,13 +8,15 @@
 
 namespace exitance {
 
-/// Reads a Radiance scene description (.rad): polygon, ring, sphere, bubble, cone, cup, cylinder and tube with plastic,
-/// metal, trans, light, glow and illum, by their diffuse parts; `source` as a disc, or as a sky where gensky or
-/// gendaylit printed it; aliases;
-/// `!gensky`, `!gendaylit`, and `!xform` of further files, done here; other commands only where `run_commands` says so.
-/// `light` by `brightdata` as conversion programs write it. Files of one scene share their names, in the order given.
-/// Metres. What reflects does so from both sides, what emits from its front. What is left out is among the findings.
-/// O(size of the files, copies counted).
+/// Reads Radiance scene descriptions (.rad), in metres.
+/// Surfaces: polygon, ring, sphere, bubble, cone, cup, cylinder and tube. Reflecting faces get two sides, emitting ones
+/// only a front.
+/// Materials: the diffuse parts of plastic, metal, trans, light, glow and illum; aliases; `light` with `brightdata` as
+/// conversion programs write it.
+/// `source`: a disc, or a sky that gensky or gendaylit printed.
+/// Commands: `!gensky`, `!gendaylit`, and `!xform` of other files are evaluated here; others need `run_commands`.
+/// Files of one scene share their names, in the given order. The findings list omitted parts. O(size of the files, with
+/// copies).
 ReadScene read_radiance(std::span<const std::string> paths, const LoadOptions& options);
 ReadScene read_radiance(const std::string& path);
 

@@ -44,7 +44,7 @@ class RadianceFiles : public testing::Test {
 
 }  // namespace
 
-TEST_F(RadianceFiles, WhatReflectsHasTwoSidesAndWhatEmitsOne) {
+TEST_F(RadianceFiles, ReflectorsHaveTwoSidesAndEmittersOne) {
     const Scene s = scene(std::string("grey ") + square + "lamp polygon l 0 0 9 0 0 1 1 0 1 0 1 1\n");
     ASSERT_EQ(s.surfaces().size(), 3u);
     EXPECT_EQ(s.surfaces()[SurfaceId(0)].normal, (Normal{0, 0, 1}));
@@ -56,7 +56,7 @@ TEST_F(RadianceFiles, WhatReflectsHasTwoSidesAndWhatEmitsOne) {
     EXPECT_EQ(s.groups()[s.surfaces()[SurfaceId(2)].group], "l");
 }
 
-TEST_F(RadianceFiles, OnlyTheDiffusePartCountsAndTheRestIsSaidOnce) {
+TEST_F(RadianceFiles, OnlyTheDiffusePartIsReadAndTheRestIsNotedOnce) {
     const CheckedScene s = load(
         "void metal gold 0 0 5 .8 .8 .8 .25 .05\nvoid metal silver 0 0 5 .8 .8 .8 .5 .05\n"
         "void trans paper 0 0 7 .8 .8 .8 0 0 .5 0\nvoid glass pane 0 0 3 .9 .9 .9\n"
@@ -91,7 +91,7 @@ TEST_F(RadianceFiles, RoundShapesHaveTheRightArea) {
     }
 }
 
-TEST_F(RadianceFiles, OutsidesFaceOutAndInsidesIn) {
+TEST_F(RadianceFiles, CylindersAndConesFaceOutTubesAndCupsIn) {
     const auto outwards = [&](const std::string& text) {
         const Scene s = scene(text);
         std::size_t count = 0;
@@ -111,7 +111,7 @@ TEST_F(RadianceFiles, OutsidesFaceOutAndInsidesIn) {
         EXPECT_GT(dot(area_vector(facet), centroid(facet) - Point{1, 2, 3}), 0);
 }
 
-TEST_F(RadianceFiles, CommandsOfXformAreDoneHere) {
+TEST_F(RadianceFiles, XformIsEvaluatedWithoutTheProgram) {
     ASSERT_TRUE(write_file(folder_ / "part.rad", std::string("lamp ") + square));
     const Scene s = scene("!xform -n row -rz 90 -s 2 -t 0 0 1 -a 3 -t 5 0 0 \\\n part.rad\n");
     ASSERT_EQ(s.surfaces().size(), 3u);
@@ -128,12 +128,12 @@ TEST_F(RadianceFiles, CommandsOfXformAreDoneHere) {
     EXPECT_EQ(mirrored.surfaces()[SurfaceId(0)].normal, (Normal{0, 0, -1}));
 }
 
-TEST_F(RadianceFiles, XformTakesSeveralFilesAndAMaterialForAll) {
+TEST_F(RadianceFiles, XformSupportsSeveralFilesAndAMaterialForAll) {
     ASSERT_TRUE(write_file(folder_ / "part.rad", std::string("lamp ") + square));
     ASSERT_TRUE(
         write_file(folder_ / "other.rad", "void plastic own 0 0 5 .1 .1 .1 0 0\n!xform -m own -t 5 0 0 part.rad\n"));
     const Scene s = scene("!xform -m lamp -t 0 0 3 part.rad other.rad\n!xform -m grey part.rad\n");
-    ASSERT_EQ(s.surfaces().size(), 4u);  // what reflects does so on both sides
+    ASSERT_EQ(s.surfaces().size(), 4u);  // reflecting faces have two sides
     for (std::size_t i = 0; i < 2; ++i) {
         EXPECT_GT(mean(s.material(SurfaceId(i)).exitance), 0) << "the material of the outer command";
         EXPECT_EQ(s.outline(SurfaceId(i))[0].z, 3);
@@ -141,7 +141,7 @@ TEST_F(RadianceFiles, XformTakesSeveralFilesAndAMaterialForAll) {
     EXPECT_EQ(mean(s.material(SurfaceId(2)).exitance), 0);
 }
 
-TEST_F(RadianceFiles, GlossByFunctionsLeavesTheDiffusePart) {
+TEST_F(RadianceFiles, MaterialsWithGlossFunctionsKeepTheirDiffusePart) {
     const Scene s = scene(
         "void plasfunc a 2 f f.cal 0 4 .5 .4 .3 .2\na polygon p 0 0 9 0 0 0 1 0 0 0 1 0\n"
         "void BRTDfunc b 10 0 0 0 0 0 0 0 0 0 . 0 9 .1 .2 .3 .1 .2 .3 0 0 0\nb polygon q 0 0 9 0 0 1 1 0 1 0 1 1\n"
@@ -160,7 +160,7 @@ TEST_F(RadianceFiles, LightPassesSurfacesOfVoid) {
     EXPECT_EQ(s.findings.size(), 1u);
 }
 
-TEST_F(RadianceFiles, PlainBoxesAreMadeHere) {
+TEST_F(RadianceFiles, PlainBoxesNeedNoProgram) {
     const Scene out = scene("!genbox lamp box 1 2 3\n"), in = scene("!genbox lamp box 1 2 3 -i | xform -t 5 0 0\n");
     ASSERT_EQ(out.surfaces().size(), 6u);
     ASSERT_EQ(in.surfaces().size(), 6u);
@@ -185,7 +185,7 @@ TEST(Xform, ArraysMakeGridsAndIterationsRepeat) {
     EXPECT_FALSE(parse_xform({"-a", "50", "-a", "50", "f"}, 100));
 }
 
-TEST_F(RadianceFiles, OtherCommandsAreRefusedWithAWayOut) {
+TEST_F(RadianceFiles, OtherCommandsAreErrorsWithAHint) {
     const CheckedScene s = load("!genbox grey box 1 2 3 -r 0.1\n");
     ASSERT_FALSE(s.scene);
     EXPECT_EQ(s.scene.error().where, folder_ / "s.rad:4");
@@ -198,7 +198,7 @@ TEST_F(RadianceFiles, OtherCommandsAreRefusedWithAWayOut) {
     EXPECT_NE(first_error("!xform s.rad\n").find("calls itself"), std::string::npos);
 }
 
-TEST_F(RadianceFiles, AliasesAndPatternsLeadToTheirMaterial) {
+TEST_F(RadianceFiles, AliasesAndPatternsResolveToTheirMaterial) {
     const Scene s = scene(
         "void alias stone grey\ngrey brightfunc dirt 2 dirt dirt.cal 0 1 .5\n"
         "stone polygon a 0 0 9 0 0 0 1 0 0 0 1 0\ndirt polygon b 0 0 9 0 0 1 1 0 1 0 1 1\n"
@@ -206,7 +206,7 @@ TEST_F(RadianceFiles, AliasesAndPatternsLeadToTheirMaterial) {
     for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(s.material(SurfaceId(i)).name, "grey");
 }
 
-TEST_F(RadianceFiles, WordsMayStandInQuotes) {
+TEST_F(RadianceFiles, WordsMayBeQuoted) {
     const Scene s = scene(
         "'void' plastic \"a #name with blanks\" 0 0 5 .5 .4 .3 0 0\n'a #name with blanks' polygon '!p' 0 0 9 0 0 0 1 0 "
         "0 0 1 0\n"
@@ -218,7 +218,7 @@ TEST_F(RadianceFiles, WordsMayStandInQuotes) {
     EXPECT_EQ(first_error("void plastic 'a 0 0 5 .5 .4 .3 0 0\n"), "s.rad:4: a quoted word does not end on its line");
 }
 
-TEST_F(RadianceFiles, PatternsLieOnPatternsAndMixturesAreOfTheirFirstMaterial) {
+TEST_F(RadianceFiles, PatternsMayBeNestedAndMixturesUseTheirFirstMaterial) {
     const CheckedScene s = load(
         "void brightfunc dusty 4 dirt dirt.cal -s 2 0 1 .15\ndusty texfunc rough 2 a b.cal 0 0\n"
         "rough plastic tile 0 0 5 .5 .5 .5 0 0\ntile colorfunc spots 4 r g b c.cal 0 0\nspots brightfunc more 2 a "
@@ -236,7 +236,7 @@ TEST_F(RadianceFiles, PatternsLieOnPatternsAndMixturesAreOfTheirFirstMaterial) {
               "s.rad:5: 'p' has no material that is read");
 }
 
-TEST_F(RadianceFiles, WhatCannotBeReadUnderAnEmitterIsAnError) {
+TEST_F(RadianceFiles, UnreadablePatternsOfEmittersAreErrors) {
     const std::string pattern = "lamp brightfunc d 2 ripple ripple.cal 0 0\n";
     EXPECT_EQ(first_error(pattern + "d polygon p 0 0 9 0 0 0 1 0 0 0 1 0\n"),
               "s.rad:5: 'p' emits by the brightfunc 'd', which cannot be read: the function 'ripple' is not known");
@@ -261,7 +261,7 @@ TEST_F(RadianceFiles, LinesOfGenskyAndGendaylitNeedNoProgram) {
          {"!gensky 3 20 10 -a 40 -o 98 -m 105", "!gendaylit 3 20 10 -a 40 -o 98 -m 105 -W 600 100"}) {
         const Scene s = scene(std::string(line) + "\n" + glow + square);
         ASSERT_EQ(s.distant().discs.size(), 1u) << line;
-        EXPECT_NEAR(s.distant().discs[0].towards.z, 0.685564, 1e-6) << line;  // by hand, period 365
+        EXPECT_NEAR(s.distant().discs[0].towards.z, 0.685564, 1e-6) << line;  // computed by hand, period 365
         EXPECT_EQ(s.distant().domes.size(), 1u) << line;
         const Scene turned = scene(std::string(line) + " | xform -rz 90\n" + glow + square);
         EXPECT_NEAR(turned.distant().discs[0].towards.x, -s.distant().discs[0].towards.y, 1e-9) << line;
@@ -299,7 +299,7 @@ TEST_F(RadianceFiles, SkiesOfGenskyAndGendaylitAreReadInClosedForm) {
         0.9 * blended(perez, 8), 1e-6 * perez);
 }
 
-TEST_F(RadianceFiles, AShiningBallAboutEverythingIsAUniformSky) {
+TEST_F(RadianceFiles, AnEmittingSphereAroundTheSceneIsAUniformSky) {
     const Scene around = scene(std::string("lamp bubble b 0 0 4 0 0 0 50\ngrey ") + square);
     EXPECT_EQ(around.surfaces().size(), 2u);
     ASSERT_EQ(around.distant().domes.size(), 2u);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int n = sides_of_round;
 
-/// Points of a circle in the plane of u and v.
+/// Points on a circle in the plane of u and v.
 std::vector<Point> circle(const Point& centre, const Frame& frame, double radius) {
     std::vector<Point> out;
     for (int i = 0; i < n; ++i) {
@@ -19,7 +19,7 @@ std::vector<Point> circle(const Point& centre, const Frame& frame, double radius
     return out;
 }
 
-/// The band between two circles of equal numbers of points, either shrunk to its first point.
+/// Adds the facets between two circles with the same number of points. Either may be a single point, its first.
 void add_band(const std::vector<Point>& lower, const std::vector<Point>& upper, bool lower_is_point,
               bool upper_is_point, Facets& out) {
     for (std::size_t i = 0; i < lower.size(); ++i) {
@@ -35,7 +35,8 @@ void add_band(const std::vector<Point>& lower, const std::vector<Point>& upper, 
 }  // namespace
 
 Facets ring_facets(const Point& centre, const Normal& normal, double inner, double outer) {
-    const double wider = std::sqrt(pi / (0.5 * n * std::sin(2 * pi / n)));  // the area of an n-gon and of its circle
+    // Makes the polygon's area that of the circle.
+    const double wider = std::sqrt(pi / (0.5 * n * std::sin(2 * pi / n)));
     const Frame frame(normal);
     if (inner <= 0) return {circle(centre, frame, wider * outer)};
     Facets out;
@@ -44,7 +45,7 @@ Facets ring_facets(const Point& centre, const Normal& normal, double inner, doub
 }
 
 Facets cone_facets(const Point& from, const Point& to, double radius_from, double radius_to) {
-    const double wider = pi / (n * std::sin(pi / n));  // the girth of an n-gon and of its circle
+    const double wider = pi / (n * std::sin(pi / n));  // makes the polygon's perimeter that of the circle
     const Frame frame(normalized(to - from));
     Facets out;
     add_band(circle(from, frame, wider * radius_from), circle(to, frame, wider * radius_to), radius_from <= 0,

@@ -7,16 +7,16 @@
 
 namespace exitance {
 
-/// Round surfaces as planar polygons, 32 around: counter-clockwise seen from outside (of a ring: from where its normal
-/// points). Radii are larger by what makes the area right: exactly for rings, spheres and cylinders, within 0.5% for
-/// cones of any slope; no point is farther than 0.5% of the radius from where it should be.
+/// Approximate round surfaces by planar polygons with 32 sides, counter-clockwise seen from outside (for a ring: from
+/// the side of its normal). Radii are enlarged so that the area is exact for rings, spheres and cylinders and within
+/// 0.5% for cones of any slope. No point deviates by more than 0.5% of the radius.
 inline constexpr int sides_of_round = 32;
 
 using Facets = std::vector<std::vector<Point>>;
 
-/// Between two radii about an axis of length 1, the inner one perhaps 0.
+/// Ring between two radii around an axis of length 1; the inner radius may be 0.
 Facets ring_facets(const Point& centre, const Normal& normal, double inner, double outer);
-/// The mantle between two discs, either radius perhaps 0.
+/// Lateral surface between two discs; either radius may be 0.
 Facets cone_facets(const Point& from, const Point& to, double radius_from, double radius_to);
 Facets sphere_facets(const Point& centre, double radius);
 

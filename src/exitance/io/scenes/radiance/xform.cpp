@@ -19,7 +19,7 @@ Affine scaled(double x, double y, double z) {
     return {{x, 0, 0}, {0, y, 0}, {0, 0, z}, {}};
 }
 
-/// Right-handed about an axis. Quarter turns are exact: walls stay in their planes.
+/// Right-handed rotation about an axis. Quarter turns are exact, so that axis-parallel walls stay planar.
 Affine turned(char axis, double degrees) {
     const double quarters = degrees / 90;
     double c = std::cos(degrees * pi / 180), s = std::sin(degrees * pi / 180);
@@ -35,7 +35,7 @@ Affine power(const Affine& a, std::size_t times) {
     return out;
 }
 
-/// A stretch of transforms, and how it is repeated.
+/// A sequence of transforms and its repetition.
 struct Stretch {
     Affine once;
     std::size_t times = 1;

@@ -8,22 +8,22 @@
 
 namespace exitance {
 
-/// What a Radiance command `xform ... file` asks for.
+/// Parsed arguments of a Radiance command `xform ... file`.
 struct Xform {
-    std::vector<std::string> files;    ///< Empty: it is given none.
-    std::vector<std::string> options;  ///< All words that name no file.
-    std::string name;                  ///< Goes before the names of what is in the files, or empty.
-    std::string material;              ///< Of all surfaces in the files, in place of their own, or empty.
-    std::vector<Affine> copies;        ///< One, or as many as an array has.
+    std::vector<std::string> files;    ///< May be empty.
+    std::vector<std::string> options;  ///< All words that do not name files.
+    std::string name;                  ///< Prefix for the names in the files, or empty.
+    std::string material;        ///< Replaces the materials of all surfaces in the files; empty: they keep their own.
+    std::vector<Affine> copies;  ///< One transform per copy: one, or more for an array.
 };
 
-/// Understands the words after `xform`: -t x y z, -rx, -ry, -rz degrees, -s factor, -mx, -my, -mz, -i times, -a copies,
-/// -n name, -m material, and -c, -e, which change nothing here. Transforms apply in the order given; those after -i so
-/// many times, those after -a once for the second copy, twice for the third; several -a make a grid. At most
-/// `most_copies` of them. Everything else is an error that says so.
+/// Parses the words after `xform`: -t x y z, -rx, -ry, -rz degrees, -s factor, -mx, -my, -mz, -i times, -a copies, -n
+/// name, -m material; -c and -e have no effect. Transforms are applied in the given order. Those after -i are repeated;
+/// those after -a are applied once for the second copy, twice for the third, and so on. Several -a make a grid of at
+/// most `most_copies` copies. Error: everything else.
 Result<Xform> parse_xform(const std::vector<std::string>& words, std::size_t most_copies);
 
-/// The same for a transform by itself, without a file and copies.
+/// Parses a single transform, without files and copies.
 Result<Affine> parse_transform(const std::vector<std::string>& words);
 
 }  // namespace exitance

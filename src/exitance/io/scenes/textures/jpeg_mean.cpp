@@ -11,7 +11,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::uint64_t most_held = std::uint64_t(512) << 20;  ///< Bytes.
+constexpr std::uint64_t max_held_bytes = std::uint64_t(512) << 20;  ///< Memory limit, bytes.
 
 struct Failure {
     jpeg_error_mgr manager;
@@ -24,13 +24,14 @@ struct Failure {
 }
 void ignore(j_common_ptr) {}
 
-/// Ends pictures that come in more passes than any program writes (ten): each goes over all of the picture again.
+/// Stops decoding pictures with more scans than any program writes (ten): each scan costs a pass over the whole
+/// picture.
 void count_passes(j_common_ptr info) {
-    constexpr int most = 24;
-    if (info->is_decompressor && reinterpret_cast<j_decompress_ptr>(info)->input_scan_number > most) fail(info);
+    constexpr int max_scans = 24;
+    if (info->is_decompressor && reinterpret_cast<j_decompress_ptr>(info)->input_scan_number > max_scans) fail(info);
 }
 
-/// libjpeg reports errors by a jump: nothing with a destructor may live in this function.
+/// libjpeg reports errors by longjmp(): no object with a destructor may exist in this function.
 template <class Rows>
 bool decode_rows(jpeg_decompress_struct& info, Failure& failure, std::span<const std::uint8_t> file,
                  std::vector<std::uint8_t>& row, Rows& out) {
@@ -42,10 +43,10 @@ bool decode_rows(jpeg_decompress_struct& info, Failure& failure, std::span<const
     jpeg_read_header(&info, TRUE);
     const std::uint64_t pixels = std::uint64_t(info.image_width) * info.image_height;
     if (pixels > most_texture_pixels) return false;
-    // Pictures in several passes are held whole, as two bytes a coefficient; and each pass goes over all of it. Few
-    // bytes cannot say much of many pixels: a thousandth of a bit each is less than any program writes.
+    // Pictures with several scans are held in memory, two bytes per coefficient, and every scan passes over all of
+    // them. A file with less than 0.001 bits per pixel is rejected: no program compresses that much.
     const std::uint64_t held = pixels * 2 * static_cast<unsigned>(info.num_components);
-    if (jpeg_has_multiple_scans(&info) && (held > most_held || pixels > 8000 * std::uint64_t(file.size())))
+    if (jpeg_has_multiple_scans(&info) && (held > max_held_bytes || pixels > 8000 * std::uint64_t(file.size())))
         return false;
     info.out_color_space = JCS_RGB;
     jpeg_start_decompress(&info);
@@ -59,7 +60,7 @@ bool decode_rows(jpeg_decompress_struct& info, Failure& failure, std::span<const
     return true;
 }
 
-/// All rows, one after the other.
+/// Collects all rows of a picture.
 struct AllRows {
     TexturePixels pixels;
     void add(const std::uint8_t* rgb, std::size_t count) {

@@ -7,8 +7,8 @@
 namespace exitance {
 namespace {
 
-// 16 x 16 pixels in four squares of one colour each: red and blue are 200 and 40 left, 40 and 200 right, green is 100
-// above and 60 below. Written with quality 100, once in one pass over the picture and once in ten.
+// A picture of 16 x 16 pixels in four squares, each of one colour: red and blue are 200 and 40 on the left, 40 and 200
+// on the right; green is 100 above and 60 below. Written with quality 100, once with one scan and once with ten.
 constexpr std::string_view baseline =
     "ffd8ffdb0043000101010101010101010101010101010101010101010101010101010101010101010101010101010101"
     "0101010101010101010101010101010101010101010101ffc00011080010001003011100021100031100ffc400150001"
@@ -34,18 +34,18 @@ std::vector<std::uint8_t> bytes_of(std::string_view hex) {
     return out;
 }
 
-TEST(MeanColour, OfAProgressiveJpegIsThatOfABaselineOne) {
+TEST(MeanColour, IsEqualForProgressiveAndBaselineJpeg) {
     for (const std::string_view hex : {baseline, progressive}) {
         const Result<std::array<double, 3>> mean = mean_colour(bytes_of(hex), linear_curve());
         ASSERT_TRUE(mean);
-        constexpr double step = 1.5 / 255;  // integers in another colour space
+        constexpr double step = 1.5 / 255;  // rounding in another colour space
         EXPECT_NEAR((*mean)[0], 120.0 / 255, step);
         EXPECT_NEAR((*mean)[1], 80.0 / 255, step);
         EXPECT_NEAR((*mean)[2], 120.0 / 255, step);
     }
 }
 
-TEST(MeanColour, OfAJpegThatEndsEarlyIsAnErrorOrAColour) {
+TEST(MeanColour, OfATruncatedJpegIsAnErrorOrAColour) {
     const std::vector<std::uint8_t> whole = bytes_of(progressive);
     for (std::size_t length = 0; length < whole.size(); length += 7) {
         const Result<std::array<double, 3>> mean = mean_colour(std::span(whole).first(length), linear_curve());

@@ -11,10 +11,10 @@
 namespace exitance {
 namespace {
 
-/// Y up to Z up.
+/// Rotates Y up to Z up.
 constexpr Affine upright{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}, {}};
 
-/// Numbers of a triangle's vertices.
+/// Vertex indices of triangle `t`.
 std::array<std::size_t, 3> vertices_of(const GltfModel::Primitive& p, std::size_t t) {
     std::array<std::size_t, 3> at = {3 * t, 3 * t + 1, 3 * t + 2};
     if (p.mode == GltfModel::Mode::strip) at = {t, t + 1 + t % 2, t + 2 - t % 2};
@@ -66,7 +66,7 @@ class TextureFinder {
             const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
             if (!(norm(normal) > 0)) continue;
             const Point middle = (corner[0] + corner[1] + corner[2]) / 3;
-            // Faces may have been turned, or be the other side of a sheet.
+            // Faces may have been reversed, or be the back of a double-sided triangle.
             for (const double side : {1.0, -1.0})
                 if (const SurfaceId s = locator_.find(middle, side * normalized(normal)); !s.is_none())
                     add_places(p, v, corner, s);
@@ -94,7 +94,7 @@ class TextureFinder {
         }
     }
 
-    /// Barycentric coordinates in a triangle.
+    /// Computes barycentric coordinates in a triangle.
     struct Patch3 {
         explicit Patch3(const std::array<Point, 3>& c)
             : corner(c), n(cross(c[1] - c[0], c[2] - c[0])), area(squared_norm(n)) {}
@@ -152,7 +152,7 @@ std::string find_scene_file(const Scene& scene, const std::string& beside) {
 
 std::optional<SceneTextures> load_scene_textures(const Scene& scene, const std::string& path) {
     if (ending(path) != ".glb" && ending(path) != ".gltf") return std::nullopt;
-    std::vector<Finding> findings;  // told when the scene was solved
+    std::vector<Finding> findings;  // reported when the scene was read for solving
     const Result<GltfModel> model = load_gltf_model(path, findings, true);
     if (!model) return std::nullopt;
     return TextureFinder(scene, *model).find();

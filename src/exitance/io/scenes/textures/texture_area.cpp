@@ -6,11 +6,11 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_held = std::size_t(1) << 22;  ///< Pixels of the finest level.
-constexpr int places_a_side = 32;
+constexpr std::size_t max_held_pixels = std::size_t(1) << 22;  ///< Limit on the pixels of the finest level.
+constexpr int samples_per_side = 32;
 constexpr double golden = 0.6180339887498949;
 
-/// Where a coordinate is in a row of pixels.
+/// Index of the pixel at a texture coordinate, in a row of `count` pixels.
 std::size_t pixel(double place, std::size_t count, TextureArea::Wrap wrap) {
     double t = std::isfinite(place) ? place : 0;
     if (wrap == TextureArea::Wrap::clamp) t = std::clamp(t, 0.0, 1.0);
@@ -19,8 +19,8 @@ std::size_t pixel(double place, std::size_t count, TextureArea::Wrap wrap) {
     return std::min(count - 1, static_cast<std::size_t>(t * static_cast<double>(count)));
 }
 
-/// Means of blocks of `factor` x `factor` pixels, `value(x, y, channel)` of them; the last ones of a row or column may
-/// be smaller.
+/// Averages blocks of `factor` x `factor` pixels; the last blocks of rows and columns may be smaller. `value(x, y,
+/// channel)` returns a pixel's value.
 template <class Value>
 std::vector<std::uint16_t> means_of_blocks(std::size_t width, std::size_t height, std::size_t factor, Value&& value) {
     std::vector<std::uint16_t> out;
@@ -50,7 +50,7 @@ Result<TextureArea> TextureArea::of(std::span<const std::uint8_t> file, const By
 TextureArea TextureArea::of(const TexturePixels& pixels, const ByteCurve& decode) {
     TextureArea out;
     std::size_t factor = 1;
-    while (pixels.width * pixels.height / (factor * factor) > most_held) factor *= 2;
+    while (pixels.width * pixels.height / (factor * factor) > max_held_pixels) factor *= 2;
     const auto halved = [](std::size_t n, std::size_t by) { return (n + by - 1) / by; };
     out.levels_.push_back(
         {halved(pixels.width, factor), halved(pixels.height, factor),
@@ -92,8 +92,8 @@ TextureArea::Colour TextureArea::smoothed(const Vec2& place, double size, Wrap w
     return sum;
 }
 
-/// The coarsest whose pixels are not wider than a step in either direction: coarser ones would mix in what lies beside
-/// the face.
+/// The coarsest level whose pixels are not wider than `step` in either direction: coarser pixels would include light
+/// from outside the face.
 const TextureArea::Level& TextureArea::level_for(const Vec2& step) const {
     const Level& finest = levels_.front();
     const double pixels =
@@ -104,7 +104,7 @@ const TextureArea::Level& TextureArea::level_for(const Vec2& step) const {
 
 namespace {
 
-/// Moments and range of colours.
+/// Accumulates mean, deviation and range of colours.
 class ColourSum {
   public:
     void add(const TextureArea::Colour& colour) {
@@ -122,7 +122,7 @@ class ColourSum {
         const auto n = static_cast<double>(count_);
         for (std::size_t c = 0; c < 3; ++c) {
             out.mean[c] = sum_[c] / n;
-            const bool is_even = lowest_[c] == highest_[c];  // a difference of squares would leave rounding
+            const bool is_even = lowest_[c] == highest_[c];  // the difference of squares would be a rounding error
             out.deviation[c] = is_even ? 0 : std::sqrt(std::max(0.0, squares_[c] / n - out.mean[c] * out.mean[c]));
         }
         return out;
@@ -140,19 +140,19 @@ TextureArea::Part even_part(const TextureArea::Colour& colour) {
 }  // namespace
 
 TextureArea::Part TextureArea::part(std::span<const Vec2> outline, Wrap wrap_s, Wrap wrap_t) const {
-    constexpr double farthest = 1e6;  // beyond, a place is known to less than a pixel
-    Vec2 low{farthest, farthest}, high{-farthest, -farthest}, middle;
+    constexpr double max_coordinate = 1e6;  // farther coordinates have rounding errors of up to a pixel
+    Vec2 low{max_coordinate, max_coordinate}, high{-max_coordinate, -max_coordinate}, middle;
     for (const Vec2& p : outline) {
-        if (!(std::abs(p.x) < farthest && std::abs(p.y) < farthest)) return even_part(mean_);
+        if (!(std::abs(p.x) < max_coordinate && std::abs(p.y) < max_coordinate)) return even_part(mean_);
         low = {std::min(low.x, p.x), std::min(low.y, p.y)}, high = {std::max(high.x, p.x), std::max(high.y, p.y)};
         middle = middle + (1.0 / static_cast<double>(outline.size())) * p;
     }
     if (outline.empty()) return even_part(mean_);
-    const Vec2 step = (1.0 / places_a_side) * (high - low);
+    const Vec2 step = (1.0 / samples_per_side) * (high - low);
     const Level& level = level_for(step);
     ColourSum sum;
     std::vector<double> crossings;
-    for (int j = 0; j < places_a_side; ++j) {
+    for (int j = 0; j < samples_per_side; ++j) {
         const double y = low.y + (j + 0.5) * step.y;
         crossings.clear();
         for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -160,9 +160,9 @@ TextureArea::Part TextureArea::part(std::span<const Vec2> outline, Wrap wrap_s, 
             if ((a.y <= y) != (b.y <= y)) crossings.push_back(a.x + (y - a.y) / (b.y - a.y) * (b.x - a.x));
         }
         std::sort(crossings.begin(), crossings.end());
-        // Rows are shifted by the golden ratio, so that no pattern of the picture is in step with all of them.
+        // Each row is shifted by the golden ratio, so that the samples do not align with a pattern in the picture.
         const double shift = (j + 0.5) * golden - std::floor((j + 0.5) * golden);
-        for (int i = 0; i < places_a_side; ++i) {
+        for (int i = 0; i < samples_per_side; ++i) {
             const double x = low.x + (i + shift) * step.x;
             const auto left = std::lower_bound(crossings.begin(), crossings.end(), x) - crossings.begin();
             if (left % 2 == 0) continue;

@@ -11,50 +11,50 @@
 
 namespace exitance {
 
-/// A picture that faces take their colour from, as linear light, held at up to 2048 x 2048 pixels and at half, a
-/// quarter ... of that: some 32 MB. A larger picture is held reduced, each pixel by the mean of those it stands for.
+/// A texture as linear light, in a pyramid of resolutions of which the finest has at most 2^22 pixels (2048 x 2048):
+/// about 32 MB. A larger picture is reduced by averaging blocks of pixels.
 class TextureArea {
   public:
     using Colour = std::array<double, 3>;
-    /// How places go beyond the picture's borders.
+    /// Treatment of texture coordinates beyond the picture's borders.
     enum class Wrap : std::uint8_t { repeat, mirror, clamp };
-    /// By glTF's number; what is none repeats.
+    /// Converts glTF's wrap mode; unknown ones repeat.
     static Wrap wrap_of(int number);
 
-    /// file  PNG or JPEG, see `decode_texture`
+    /// Decodes a picture. `file` is PNG or JPEG, see `decode_texture`.
     static Result<TextureArea> of(std::span<const std::uint8_t> file, const ByteCurve& decode);
     static TextureArea of(const TexturePixels& pixels, const ByteCurve& decode);
 
-    /// Of the whole picture.
+    /// Mean of the whole picture.
     Colour mean() const { return mean_; }
 
-    /// The part of a picture that a face shows, by channel.
+    /// Statistics of the part of a picture that a face shows, per channel.
     struct Part {
         Colour mean{};
-        Colour deviation{};  ///< Root mean square deviation from the mean.
+        Colour deviation{};  ///< RMS deviation from the mean.
         Colour lowest{}, highest{};
     };
 
-    /// Samples the pixels at 32 x 32 places of the part's bounding box, of which those inside the outline count. The
-    /// pixels are of a size between neighbouring places, so that none is skipped: variation finer than that is averaged
-    /// out. The border is known to half a place, and the mean of two halves of a triangle, one black and one white, to
-    /// a hundredth.
-    /// outline  the face's corners in the picture; (0, 0) is its upper left, (1, 1) its lower right
+    /// Samples the picture at 32 x 32 positions in the outline's bounding box and averages those inside the outline.
+    /// Pixels come from the pyramid level whose pixel size is at most the distance of samples, so finer variation is
+    /// averaged. The outline is resolved to half that distance; the mean of a triangle with a black and a white half is
+    /// accurate to 0.01.
+    /// outline  corners of the face in the picture; (0, 0) is the upper left, (1, 1) the lower right
     Part part(std::span<const Vec2> outline, Wrap wrap_s, Wrap wrap_t) const;
     Colour mean(std::span<const Vec2> outline, Wrap wrap_s, Wrap wrap_t) const {
         return part(outline, wrap_s, wrap_t).mean;
     }
 
-    /// The colour at a place, smoothed over `size` pixels of what is held.
+    /// Colour at a position, averaged over `size` pixels of the finest level.
     Colour smoothed(const Vec2& place, double size, Wrap wrap_s, Wrap wrap_t) const;
-    /// Pixels that are held.
+    /// Size of the finest level, pixels.
     double width() const { return static_cast<double>(levels_.front().width); }
     double height() const { return static_cast<double>(levels_.front().height); }
 
   private:
     struct Level {
         std::size_t width = 0, height = 0;
-        std::vector<std::uint16_t> rgb;  ///< Linear, 65535 is 1.
+        std::vector<std::uint16_t> rgb;  ///< Linear; 65535 is 1.
         Colour at(std::size_t x, std::size_t y) const {
             const std::uint16_t* c = rgb.data() + 3 * (y * width + x);
             return {c[0] / 65535.0, c[1] / 65535.0, c[2] / 65535.0};
@@ -63,7 +63,7 @@ class TextureArea {
     const Level& level_for(const Vec2& step) const;
 
     Colour mean_{};
-    std::vector<Level> levels_;  ///< The finest first.
+    std::vector<Level> levels_;  ///< From the finest to the coarsest.
 };
 
 }  // namespace exitance

@@ -9,24 +9,24 @@
 
 namespace exitance {
 
-/// Mean red, green and blue of a picture in a file's bytes (PNG or JPEG; grey counts as three equal channels, opacity
-/// does not count), each in [0, 1] after `decode` has been applied to its 256 values. Row by row, so that a picture of
-/// any size needs little memory, but for JPEGs in several passes, which are held whole, up to 512 MiB; pictures of more
-/// than 2^26 pixels (8192 x 8192) are refused.
+/// Computes the mean red, green and blue of a picture (PNG or JPEG), each in [0, 1], after applying `decode` to its 256
+/// values. Grey counts as three equal channels; opacity is ignored. Pictures are decoded row by row in little memory,
+/// except JPEGs with several scans, which are held whole (up to 512 MiB). Error: pictures of more than 2^26 pixels
+/// (8192 x 8192), and files that cannot be decoded.
 struct ByteCurve {
     std::array<double, 256> value;
 };
 Result<std::array<double, 3>> mean_colour(std::span<const std::uint8_t> file, const ByteCurve& decode);
 
-/// The same for either format by itself.
+/// Versions of mean_colour() for one format.
 Result<std::array<double, 3>> mean_of_png(std::span<const std::uint8_t> file, const ByteCurve& decode);
 Result<std::array<double, 3>> mean_of_jpeg(std::span<const std::uint8_t> file, const ByteCurve& decode);
 
-/// sRGB's curve, and the straight one.
+/// The sRGB decoding curve and the linear one.
 const ByteCurve& srgb_curve();
 const ByteCurve& linear_curve();
 
-/// The mean of rows of pixels, three bytes each.
+/// Accumulates the mean of rows of pixels, three bytes per pixel.
 class MeanOfRows {
   public:
     explicit MeanOfRows(const ByteCurve& decode) : decode_(&decode) {}
@@ -48,8 +48,8 @@ class MeanOfRows {
     std::size_t count_ = 0;
 };
 
-/// A picture in a file's bytes, three bytes a pixel as the file codes them, rows from top to bottom. The limits are
-/// those of mean_colour.
+/// A decoded picture, three bytes per pixel with the file's coding, rows from top to bottom. Limits as for
+/// mean_colour().
 struct TexturePixels {
     std::size_t width = 0, height = 0;
     std::vector<std::uint8_t> rgb;
@@ -58,7 +58,7 @@ Result<TexturePixels> decode_texture(std::span<const std::uint8_t> file);
 Result<TexturePixels> decode_png(std::span<const std::uint8_t> file);
 Result<TexturePixels> decode_jpeg(std::span<const std::uint8_t> file);
 
-/// More pixels than this are not read: a small file can claim any number.
+/// Larger pictures are rejected: a small file can claim any size.
 inline constexpr std::uint64_t most_texture_pixels = std::uint64_t(1) << 26;
 
 }  // namespace exitance

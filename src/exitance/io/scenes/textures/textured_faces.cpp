@@ -10,9 +10,9 @@
 namespace exitance {
 namespace {
 
-constexpr int step = 2;  ///< Of the 256 of a code.
+constexpr int code_tolerance = 2;  ///< Tolerance of colours, in codes of 256.
 
-/// Twice the area of a polygon as a vector.
+/// Area of a polygon.
 double area_of(const SceneDescription& d, const SceneDescription::Face& face) {
     Vec3 sum;
     for (std::size_t i = 2; i < face.corners.size(); ++i)
@@ -29,7 +29,7 @@ ShownPart relative(const TextureArea& picture, std::span<const Vec2> outline, Te
     const TextureArea::Colour whole = picture.mean();
     ShownPart out;
     for (std::size_t b = 0; b < bands; ++b) {
-        // With one band a colour is its mean.
+        // With one band, a colour is replaced by the mean of its channels.
         const auto value = [&](const TextureArea::Colour& c) {
             return bands == 1 ? (c[0] + c[1] + c[2]) / 3 : c[b * 3 / bands];
         };
@@ -46,7 +46,8 @@ void TexturedFaces::note(Steepest& steepest, const Spectrum& whole, const ShownP
     for (std::size_t b = 0; b < bands; ++b) {
         const double brightest = std::max(max(whole), 1e-300), mean = whole[b] * part.mean[b];
         const double lowest = whole[b] * part.lowest[b], highest = whole[b] * part.highest[b];
-        if (srgb_code(highest / std::max(1.0, brightest)) - srgb_code(lowest / std::max(1.0, brightest)) <= step)
+        if (srgb_code(highest / std::max(1.0, brightest)) - srgb_code(lowest / std::max(1.0, brightest)) <=
+            code_tolerance)
             continue;
         varies = true;
         const double ratio = mean > 0 ? std::max(highest - mean, mean - lowest) / mean : 0;
@@ -73,8 +74,8 @@ void TexturedFaces::show(std::size_t face, const ShownColour& colour) {
     Key key = {static_cast<int>(out_->faces[face].material)};
     bool differs = false;
     const auto add = [&](double shown, double whole) {
-        differs |= std::abs(srgb_code(shown) - srgb_code(whole)) > step;
-        key.push_back(srgb_code(shown) / step);
+        differs |= std::abs(srgb_code(shown) - srgb_code(whole)) > code_tolerance;
+        key.push_back(srgb_code(shown) / code_tolerance);
     };
     for (std::size_t b = 0; b < bands; ++b) add(reflectance[b], material.reflectance[b]);
     for (std::size_t b = 0; b < bands; ++b) add(exitance[b] / brightest, material.exitance[b] / brightest);
@@ -89,7 +90,7 @@ void TexturedFaces::show(std::size_t face, const ShownColour& colour) {
     sum.faces.push_back(face);
 }
 
-/// From the second moment about the mean that the material has: E (r - m)^2 = E r^2 - 2 m E r + m^2.
+/// Computes the RMS deviation from the material's mean m by E (r - m)^2 = E r^2 - 2 m E r + m^2.
 void TexturedFaces::set_deviation(std::size_t material, const Sum& sum, const Spectrum& mean) {
     if (deviation_.size() <= material) deviation_.resize(material + 1);
     constexpr double rounding = 1e-12;  // of the second moment
@@ -103,7 +104,7 @@ void TexturedFaces::set_deviation(std::size_t material, const Sum& sum, const Sp
 std::size_t TexturedFaces::finish() {
     std::size_t count = 0;
     for (const auto& [key, sum] : sums_) {
-        if (!(sum.area > 0)) continue;  // no light either
+        if (!(sum.area > 0)) continue;  // without area there is no light
         Material material = out_->materials[static_cast<std::size_t>(key[0])];
         material.reflectance = sum.reflectance / sum.area, material.exitance = sum.exitance / sum.area;
         material.name = name_with_colour(
