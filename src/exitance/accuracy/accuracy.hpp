@@ -14,10 +14,10 @@ struct Knobs {
     double residual = 0;          ///< Residual of the discrete system.
     std::size_t max_iterations = 1000;
     double link_error = 0;  ///< Error of all links together, relative to the mean reflected radiosity.
-    bool links_deliver =
-        true;               ///< Deliver the polynomials of the links, if accurate enough, without a gather afterwards.
-    MeshSize gather_mesh;   ///< Initial mesh of the elements on which indirect light is gathered.
-    RayBudget gather_rays;  ///< Rays per gather point.
+    /// Deliver the polynomials of the links, if accurate enough, without a gather afterwards.
+    bool links_deliver = true;
+    MeshSize gather_mesh;                  ///< Initial mesh of the elements on which indirect light is gathered.
+    RayBudget gather_rays;                 ///< Rays per gather point.
     double gather_tolerance = 0;           ///< Error of interpolation, relative to the mean reflected radiosity.
     double gather_noise = 0;               ///< Error by the noise of rays, relative to the mean reflected radiosity.
     bool gather_curved = false;            ///< Fit polynomials of second degree.

@@ -12,9 +12,9 @@ namespace exitance {
 enum class Degree : std::uint8_t { straight, curved };
 
 /// Estimates how much of the misfit of a parallelogram's polynomial one split across u, or one across v, would mostly
-/// remove. `rest` is the misfit at the points of a rule. Returns the mean squares over points and bands of its
-/// components P(s) (c + d t) and P(t) (c + d s), with s and t from -1 to 1, where P is the Legendre polynomial of the
-/// first degree that the element does not represent.
+/// remove. `rest` is the misfit at the points of a rule. With s and t from -1 to 1, and P the Legendre polynomial of
+/// the first degree that the element does not represent, returns the mean squares (over points and bands) of two
+/// components of the misfit: P(s) (c + d t) and P(t) (c + d s).
 /// Rules: `fine` for straight elements, `finer` for curved ones. They are exact for products of these components with
 /// the element's own polynomials, which therefore contribute nothing. Returns 0 on triangles and cells.
 std::array<double, 2> misfit_along(const ElementTree& tree, ElementId e, const std::vector<WeightedPlace>& places,

@@ -187,8 +187,8 @@ TEST(NodalBasis, PullAfterPushChangesNothing) {
             // are.
             std::vector<double> any = random_numbers(n, 7), parent(n), back(n, 0.0);
             if (shape == Patch::Shape::triangle && basis.is_flat()) {
-                std::vector<double> factors(
-                    n);  // the mean of a linear function over a triangle is its value at the centroid
+                // The mean of a linear function over a triangle is its value at the centroid.
+                std::vector<double> factors(n);
                 for (std::size_t k = 0; k < n; ++k) {
                     const Vec2 at = basis.nodes(shape)[k].at;
                     parent[k] = basis.order() == 1 ? 2 : 1 + 2 * at.x - 3 * at.y;
@@ -215,8 +215,8 @@ TEST(NodalBasis, PullAfterPushChangesNothing) {
 TEST(NodalBasis, PolynomialsOfItsDegreeAreInterpolatedExactly) {
     for (const HierarchyBasis kind : all_kinds) {
         const NodalBasis basis(kind);
-        if (basis.is_flat() && basis.order() == 3)
-            continue;  // the mean of a quadratic over a box is not its value at the centre
+        // The mean of a quadratic over a box is not its value at the centre.
+        if (basis.is_flat() && basis.order() == 3) continue;
         for (const Patch::Shape shape : {Patch::Shape::parallelogram, Patch::Shape::triangle}) {
             const auto f = [&](Vec2 p) {
                 const double s = basis.order() > 1 ? 3 * p.x - 2 * p.y : 0;

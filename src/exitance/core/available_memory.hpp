@@ -9,8 +9,8 @@ namespace exitance {
 std::size_t resident_memory_bytes(double share_of_common = 1);
 
 /// Returns how much more memory the process can allocate, bytes: the machine's memory that is available without
-/// swapping or the rest of the limit of its control group, whichever is less. If the system reports neither, the
-/// machine's physical memory.
+/// swapping, limited by the rest of its control group's limit. If the system reports neither, the machine's physical
+/// memory.
 std::size_t available_memory_bytes();
 
 }  // namespace exitance

@@ -15,7 +15,7 @@ class CopyOnWrite {
     const T& operator*() const { return *value_; }
     const T* operator->() const { return value_.get(); }
 
-    /// Returns the value for modification; it is no longer shared afterwards. O(size of T) if it was shared.
+    /// Returns the value for modification. Copies it first if it is shared: O(size of T).
     T& change() {
         if (value_.use_count() > 1) value_ = std::make_shared<T>(*value_);
         return *value_;

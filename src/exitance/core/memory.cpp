@@ -46,8 +46,8 @@ std::size_t machine_memory_bytes() {
 
 void keep_large_arrays_apart() {
 #ifdef __GLIBC__
-    // By default, glibc raises this threshold as arrays are freed and then allocates large arrays on its heap, where
-    // gaps keep much of the memory.
+    // glibc raises this threshold as arrays are freed, unless it is set. It would then allocate large arrays on its
+    // heap, where gaps keep much of the memory.
     mallopt(M_MMAP_THRESHOLD, 1 << 20);
 #endif
 }

@@ -22,8 +22,8 @@ struct ResultSharing {
     void (*exchange)(std::span<std::string* const> blocks, const char* what) = nullptr;
     /// Keeps one copy per node of the whole pages of a finished array that is equal in all processes. Collective.
     void (*share)(char* begin, std::size_t size) = nullptr;
-    double dealt_seconds =
-        0;  ///< Processor time that this process has spent on its share of distributed work so far, seconds.
+    /// Processor time that this process has spent on its share of distributed work so far, seconds.
+    double dealt_seconds = 0;
 };
 inline ResultSharing& result_sharing() {
     static ResultSharing sharing;

@@ -19,8 +19,8 @@ struct TaskGraph {
 
     /// One patch with its list of interactions, in one iteration.
     struct Task {
-        std::uint32_t maker =
-            none;  ///< Task that created it, a smaller index into `tasks`; none: it starts the iteration.
+        /// Task that created it, a smaller index into `tasks`; none: it starts the iteration.
+        std::uint32_t maker = none;
         std::uint32_t iteration = 0, worker = 0;
         std::uint32_t polygon = 0, level = 0;  ///< Input polygon of the patch, and its depth in the subdivision.
         std::uint32_t interactions = 0;        ///< Number of interactions over which it gathered.

@@ -14,8 +14,8 @@ constexpr double strong_share = 1.0 / 8;  ///< Share of the light above which a 
 
 // Costs in rays: of a visible part, and of a cut.
 constexpr double cost_of_visible_part = 8, cost_of_cut = 60;
-constexpr double min_effective_sources =
-    24;  ///< Effective number of sources up to which exact light is not more expensive than rays.
+/// Effective number of sources up to which exact light is not more expensive than rays.
+constexpr double min_effective_sources = 24;
 
 /// Minimum number of sources in a scene. With fewer, the noise of rays causes splits of elements that exact light does
 /// not: a sky of 512 triangles over a room took ten times as long by clusters.

@@ -89,8 +89,8 @@ class ClusteredLight::Workspace {
   private:
     friend ClusteredLight;
     EmitterTree::Cut cut_;
-    std::vector<double>
-        light_before_;  ///< Prefix sums of the light of the terms left to rays; one entry more than there are terms.
+    /// Prefix sums of the light of the terms left to rays; one entry more than there are terms.
+    std::vector<double> light_before_;
     std::vector<SurfacePoint> from_, to_;
     std::vector<std::uint32_t> term_;  ///< Index of the term of each ray.
     std::unique_ptr<bool[]> blocked_ = std::make_unique<bool[]>(LightAccuracy().most_rays);

@@ -31,16 +31,16 @@ class CrowdedLight {
             double factor = 0;  ///< F at the receiver's centre; constant over the receiver for the open sky.
         };
         std::vector<Source> sources;
-        unsigned rays =
-            0;  ///< Maximum number of rays per point and source: a power of two, sufficient for a half-hidden source.
+        /// Maximum number of rays per point and source: a power of two, sufficient for a half-hidden source.
+        unsigned rays = 0;
         double allowed = 0;  ///< Allowed variance of a value, (W/m^2)^2.
         bool empty() const { return sources.empty(); }
     };
     struct Estimate {
         Spectrum irradiance;  ///< W/m^2
         Spectrum parallel;    ///< The part of it that comes from the sky.
-        double variance =
-            0;  ///< Variance of the mean over bands, (W/m^2)^2, from the spread of four quarters of the rays.
+        /// Variance of the mean over bands, (W/m^2)^2, from the spread of four quarters of the rays.
+        double variance = 0;
     };
     static constexpr unsigned least_rays = 4, most_rays = 4096;
 

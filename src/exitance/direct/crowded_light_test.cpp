@@ -123,9 +123,8 @@ TEST(CrowdedLight, HasIndependentErrorsAtNeighbouringPoints) {
         }
         together += error * error;
     }
-    EXPECT_LT(
-        together,
-        1.5 * apart);  // 76 squares estimate a variance to a sixth; three times that. If errors were equal: 9 times
+    // 76 squares estimate a variance to a sixth; three times that. If errors were equal: 9 times.
+    EXPECT_LT(together, 1.5 * apart);
 }
 
 TEST(CrowdedLight, ReportsItsVariance) {

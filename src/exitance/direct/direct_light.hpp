@@ -20,10 +20,10 @@ struct ReceiverLight {
     struct Source {
         std::uint32_t emitter = 0;
         PieceId piece;
-        std::uint32_t first = 0,
-                      count = 0;  ///< Range of its blockers in `candidates`; empty: the whole piece is visible.
-        bool is_crowded =
-            false;               ///< The range is only a part of too many candidates: exact light must not be computed.
+        /// Range of its blockers in `candidates`; empty: the whole piece is visible.
+        std::uint32_t first = 0, count = 0;
+        /// The range is only a part of too many candidates: exact light must not be computed.
+        bool is_crowded = false;
         bool in_batch = false;   ///< Is one of `open`.
         double far_factor = -1;  ///< Unoccluded part of the sky: its form factor F, the same at every point.
     };

@@ -42,9 +42,8 @@ class EmitterTree {
 
         bool is_leaf() const { return left == 0; }
     };
-    const std::vector<Node>& nodes() const {
-        return nodes_;
-    }  ///< The first is the root; empty if there are no emitters.
+    /// The first is the root; empty if there are no emitters.
+    const std::vector<Node>& nodes() const { return nodes_; }
 
     /// Unoccluded light of a cluster at a point.
     struct Term {

@@ -59,8 +59,8 @@ TEST(SharedRays, DifferFromExactLightByAtMostTheAllowedError) {
         EXPECT_LT(miss, 1.5 * told);  // compared with the reported error
         // An eighth of the thousand available rays per point would be sufficient, except for nearly dark points.
         EXPECT_LT(static_cast<double>(rays) / static_cast<double>(places_seen), 500.0);
-        EXPECT_LT(miss,
-                  (asked == 0.05 ? 1 : 2) * allowed);  // some points that use all available rays have larger errors
+        // Some points that use all available rays have larger errors.
+        EXPECT_LT(miss, (asked == 0.05 ? 1 : 2) * allowed);
     }
 }
 
@@ -83,8 +83,8 @@ TEST(SharedRays, SkipHiddenAndFullyVisibleSourcesOfAPart) {
     const Point x{4.35, 0.95, h};
     const ClusteredLight::Estimate found = shared.at(part, x, 3, {0.02, 0}, panel.workspace);
     const double exact = mean(direct.irradiance(light, x, panel.workspace));
-    EXPECT_NEAR(mean(found.irradiance), exact,
-                4 * std::sqrt(found.variance));  // probability of a larger deviation: 1e-4
+    // Probability of a larger deviation: 1e-4.
+    EXPECT_NEAR(mean(found.irradiance), exact, 4 * std::sqrt(found.variance));
     // The same point and set give the same light, whatever was computed in between.
     shared.at(part, narrow[2], 7, {0.02, 0}, panel.workspace);
     EXPECT_EQ(shared.at(part, x, 3, {0.02, 0}, panel.workspace).irradiance, found.irradiance);

@@ -8,8 +8,8 @@
 namespace exitance {
 namespace {
 
-constexpr double max_distance_ratio =
-    1.5;  ///< Ratio of the farthest to the nearest distance; the kernel changes by up to its fourth power.
+/// Ratio of the farthest to the nearest distance; the kernel changes by up to its fourth power.
+constexpr double max_distance_ratio = 1.5;
 
 /// Squared distance of x to a convex polygon.
 double nearest_squared(std::span<const Point> corners, const Normal& n, const Point& x) {
@@ -58,8 +58,8 @@ SeenPolygon::SeenPolygon(std::span<const Point> corners, const Normal& n, double
     double farthest = 0;
     for (const Point& p : corners) farthest = std::max(farthest, squared_norm(p - x));
     const double nearest = nearest_squared(corners, n, x);
-    constexpr double min_squared_ratio =
-        1e-12;  // relative to the farthest: x is in the polygon, so that directions to it are undefined
+    // Relative to the farthest: x is in the polygon, so that directions to it are undefined.
+    constexpr double min_squared_ratio = 1e-12;
     if (farthest <= max_distance_ratio * max_distance_ratio * nearest || nearest <= min_squared_ratio * farthest)
         return;
     const Vec3 a = normalized(corners[0] - x);

@@ -10,12 +10,12 @@
 namespace exitance {
 namespace {
 
-constexpr double accepted_difference =
-    1e-3;  ///< Allowed difference between the means of three and of six points, relative; the error of six is smaller.
-constexpr double three_point_agreement =
-    0.3;  ///< Share of this: if the means of one and of three points differ by less, three are enough.
-constexpr double min_mean =
-    0.02;  ///< Values of p below this share are given an absolute tolerance, relative to this value.
+/// Allowed difference between the means of three and of six points, relative; the error of six is smaller.
+constexpr double accepted_difference = 1e-3;
+/// Share of this: if the means of one and of three points differ by less, three are enough.
+constexpr double three_point_agreement = 0.3;
+/// Values of p below this share are given an absolute tolerance, relative to this value.
+constexpr double min_mean = 0.02;
 constexpr double smooth_angle = 2 * pi / 180;  ///< Triangles that subtend less are treated as smooth, radians.
 constexpr double estimate_angle = 0.3;         ///< Size of the triangles for the first estimate of the mean, radians.
 constexpr int max_bisections = 20;             ///< Maximum number of bisections of a triangle.
@@ -38,9 +38,8 @@ class DirectedIntegral {
         const int depth = p_.breaks_at_horizon() ? max_bisections : 0;  // otherwise p is smooth: one point is enough
         for (std::size_t i = 2; i < corners.size(); ++i)
             add_coarse({corners[0], corners[i - 1], corners[i]}, depth, guess);
-        allowed_ =
-            accepted_difference *
-            std::max(min_mean, 0.5 * guess.mean());  // factor 0.5, since the estimate may be up to twice the mean
+        // Factor 0.5, since the estimate may be up to twice the mean.
+        allowed_ = accepted_difference * std::max(min_mean, 0.5 * guess.mean());
         double sum = 0;
         for (std::size_t i = 2; i < corners.size(); ++i) sum += part({corners[0], corners[i - 1], corners[i]}, 0);
         return sum;

@@ -26,12 +26,11 @@ double angle_over_sine(double squared_sine, double cosine) {
 
 /// Adds the edges of the part above the horizon to `sum`, including the edges along the horizon.
 void add_edges(const Normal& n, std::span<const Vec3> corners, EdgeSum& sum) {
-    const auto crossing =
-        [](const Vec3& a, double ha, const Vec3& b,
-           double hb) {  // always from the lower end, so that the point is the same for both directions
-            const bool forward = ha < hb;
-            return forward ? a + (ha / (ha - hb)) * (b - a) : b + (hb / (hb - ha)) * (a - b);
-        };
+    // Always from the lower end, so that the point is the same for both directions.
+    const auto crossing = [](const Vec3& a, double ha, const Vec3& b, double hb) {
+        const bool forward = ha < hb;
+        return forward ? a + (ha / (ha - hb)) * (b - a) : b + (hb / (hb - ha)) * (a - b);
+    };
     Vec3 first_entry, last_exit, a = corners.back();
     bool entered_first = false, outside = false;
     double ha = dot(n, a);

@@ -18,8 +18,8 @@ constexpr int all_lanes = (1 << lanes<Real>)-1;
 EXITANCE_INLINE int where_less(const four::Real& a, const four::Real& b) {
     return four::bits(a < b);
 }
-EXITANCE_INLINE int where_less(const EightReals& a,
-                               const EightReals& b) {  // for halves, the comparison mask is one instruction
+// For halves, the comparison mask is one instruction.
+EXITANCE_INLINE int where_less(const EightReals& a, const EightReals& b) {
     four::Real left[2], right[2];
     __builtin_memcpy(left, &a, sizeof a), __builtin_memcpy(right, &b, sizeof b);
     return where_less(left[0], right[0]) | where_less(left[1], right[1]) << 4;
@@ -33,8 +33,8 @@ EXITANCE_INLINE Real contour(const Direction& n, const VecOf<Real> (&r)[4]) {
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) {
         const VecOf<Real>&a = r[i], &b = r[(i + 1) & 3], c = cross(a, b - a);
-        const Real sine =
-            max(sqrt(dot(c, c)), Real{} + 1e-200);  // c = 0 for an edge of length 0 or one that points at x
+        // Edges of length 0, and edges that point at x, have c = 0.
+        const Real sine = max(sqrt(dot(c, c)), Real{} + 1e-200);
         sum -= angle_over_sine(sine, dot(a, b)) * dot(n, c);
     }
     return sum * (1 / (2 * pi));

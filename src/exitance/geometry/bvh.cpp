@@ -52,8 +52,8 @@ class BvhBuilder {
         if (last - first <= Bvh::largest_leaf) return first;
         const Vec3 size = centres.size();
         const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-        if (size[axis] <= 0 || depth > Bvh::deepest / 2)
-            return halfway;  // coinciding centres or a deep tree: split in the middle to limit the depth
+        // Coinciding centres or a deep tree: split in the middle to limit the depth.
+        if (size[axis] <= 0 || depth > Bvh::deepest / 2) return halfway;
         const std::uint32_t middle = partition(first, last, axis, centres);
         return middle == first || middle == last ? halfway : middle;
     }

@@ -93,8 +93,8 @@ class Bvh {
   private:
     struct Node {
         Box box;
-        std::uint32_t second =
-            0;  ///< Inner node: its second child; the first child is the next node. Leaf: its first item.
+        /// Inner node: its second child; the first child is the next node. Leaf: its first item.
+        std::uint32_t second = 0;
         std::uint32_t count = 0;  ///< Number of items of a leaf, 0 for inner nodes.
     };
     struct Item {
@@ -141,8 +141,8 @@ class Bvh {
 template <class Visit>
 void Bvh::visit_segment(const Point& origin, const Vec3& direction, double length, const Visit& visit) const {
     if (nodes_.empty()) return;
-    const Vec3 inverse{1 / direction.x, 1 / direction.y,
-                       1 / direction.z};      // infinite if the segment is parallel to a plane of the box
+    // Infinite if the segment is parallel to a plane of the box.
+    const Vec3 inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
     const auto entry = [&](const Box& box) {  // distance to the box, infinite if it is missed
         double near = 0, far = length;
         for (std::size_t k = 0; k < 3; ++k) {

@@ -16,8 +16,8 @@ void join_by_edges(const Scene& scene, DisjointSets& sets) {
     std::vector<Point> corners;
     for (SurfaceId s : scene.surfaces().ids())
         corners.insert(corners.end(), scene.outline(s).begin(), scene.outline(s).end());
-    const std::vector<std::uint32_t> place =
-        weld(corners, 1e-8 * scene.size());  // the same tolerance as findings about edges
+    // The same tolerance as findings about edges.
+    const std::vector<std::uint32_t> place = weld(corners, 1e-8 * scene.size());
     struct Edge {
         std::uint32_t low, high, face;
         auto operator<=>(const Edge&) const = default;

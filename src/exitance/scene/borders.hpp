@@ -30,12 +30,12 @@ inline Box grown(Box box, double by) {
 
 /// A region, a part of a region, or a pane.
 struct BorderedFace {
-    std::vector<std::vector<Point>>
-        loops;  ///< Its border, one loop per part; an edge common to two parts has no effect.
+    /// Its border, one loop per part; an edge common to two parts has no effect.
+    std::vector<std::vector<Point>> loops;
     std::vector<Triangle> triangles;
     Normal n;  ///< Towards the front.
-    std::vector<std::pair<std::uint32_t, int>> edges =
-        {};  ///< Indices of its edges, and its direction along each (1 or -1).
+    /// Indices of its edges, and its direction along each (1 or -1).
+    std::vector<std::pair<std::uint32_t, int>> edges = {};
 };
 
 /// The front or the back of a face.
@@ -183,8 +183,8 @@ class Borders {
     std::vector<BorderedFace> faces_;
     double tolerance_;
     std::vector<Point> at_;
-    std::vector<std::uint32_t> place_of_,
-        places_;  ///< For each corner, the corner that represents its position; and the representatives.
+    /// For each corner, the corner that represents its position; and the representatives.
+    std::vector<std::uint32_t> place_of_, places_;
     Bvh tree_;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edges_;
     std::vector<Vec3> along_;  ///< Unit vector along an edge, from its end with the lower index.

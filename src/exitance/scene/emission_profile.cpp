@@ -124,9 +124,8 @@ double EmissionProfile::radiance(const Vec3& d, double cosine) const {
 }
 
 void EmissionProfile::find_smooth_width() {
-    constexpr double
-        widest = 30,
-        jump = 1e-3;  // a jump within a shorter step is an edge of the light, which no quadrature rule resolves
+    // A jump within a shorter step is an edge of the light, which no quadrature rule resolves.
+    constexpr double widest = 30, jump = 1e-3;
     double width = widest;
     double sum = 0;
     for (const double v : values) sum += v;

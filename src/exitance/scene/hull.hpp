@@ -63,7 +63,7 @@ class Hull {
         for (std::size_t i = 0; i < 3; ++i) h[i] = dot(n, t[i] - of[0]);
         if (*std::min_element(h.begin(), h.end()) >= -slack || *std::max_element(h.begin(), h.end()) <= slack)
             return false;
-        std::vector<Point> ends;  // of the intersection of t with the plane
+        std::vector<Point> ends;  // end points of the intersection of t with the plane
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t k = (i + 1) % 3;
             if (h[i] == 0) ends.push_back(t[i]);

@@ -15,7 +15,7 @@ constexpr double position_tolerance = 1e-6;  ///< Relative to the scene's size: 
 
 /// A connected part of space, with the face sides that bound it.
 struct Space {
-    std::vector<FaceSide> walls;        ///< Of faces that have this space on one side only.
+    std::vector<FaceSide> walls;        ///< Sides of faces that have this space on one side only.
     std::vector<std::uint32_t> sheets;  ///< Faces that have this space on both sides.
     double volume = 0;                  ///< m^3; negative if the space is outside of the walls.
     Box box;

@@ -10,7 +10,7 @@ namespace exitance {
 /// A guess of the length unit and the vertical axis of a scene that was read as metres with z up.
 struct ModelUnits {
     const char* unit = nullptr;  ///< "mm", "cm" or "in" if a room of this size in metres is implausible; else null.
-    bool is_too_small = false;   ///< As metres, the scene is smaller than anything that is lit.
+    bool is_too_small = false;   ///< True if the scene, read as metres, is smaller than anything that is lit.
     bool y_is_up = false;
 };
 

@@ -20,7 +20,7 @@ struct PlaneEntry {
 
 /// An overlap and the regions of its faces.
 struct Found {
-    std::array<RegionId, 2> regions;  ///< Of the first and the second face.
+    std::array<RegionId, 2> regions;  ///< Regions of the first and the second face.
     Overlap overlap;
 };
 

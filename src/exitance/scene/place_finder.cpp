@@ -31,18 +31,18 @@ struct PlaceFinder::Sector {
     int backs = 0;            ///< Number of its two sides that are backs of walls.
     bool holds_point = true;  ///< True if the point is in the sector, by more than rounding.
     bool is_reflex = false;   ///< True if the sector's angle is more than pi.
-    SurfaceId
-        front;  ///< Among the faces whose fronts bound it, the one with the lowest id; none if there are only panes.
+    /// Among the faces whose fronts bound it, the one with the lowest id; none if there are only panes.
+    SurfaceId front;
     bool is_before_pane = false;  ///< True if it is on the side to which a pane's normal points.
 };
 
 namespace {
 
-constexpr double parallel_cosine =
-    0.999;  ///< Cosine between normals of planes that count as parallel, as for a Locator.
+/// Cosine between normals of planes that count as parallel, as for a Locator.
+constexpr double parallel_cosine = 0.999;
 constexpr double min_blade_angle = 1e-3;  ///< Radians; blades at a smaller angle count as one.
-constexpr double step_share =
-    0x1p-20;  ///< Relative to the scene's diameter; rays start at the same distance from their surfaces.
+/// Relative to the scene's diameter; rays start at the same distance from their surfaces.
+constexpr double step_share = 0x1p-20;
 constexpr double slack = 1 + 0x1p-10;  ///< Prevents that a point already moved is moved again because of rounding.
 /// Distance from a wall, in steps, beyond which a point is clearly on one side of it. Coordinates rounded to twelve
 /// digits, a hundred scene sizes from the origin, have an error of a ten-thousandth of a step.
@@ -104,8 +104,8 @@ void PlaceFinder::visit_walls(const Point& p, const Visit& visit) const {
 
 /// Returns the blades of all walls that touch p, counter-clockwise. Faces of region `own` are skipped.
 std::vector<PlaceFinder::Blade> PlaceFinder::blades_at(const Point& p, const Normal& n, RegionId own) const {
-    constexpr double look_ahead =
-        4;  // in steps, so that a wall that ends within a step of p does not count as continuing beyond it
+    // In steps, so that a wall that ends within a step of p does not count as continuing beyond it.
+    constexpr double look_ahead = 4;
     const Frame frame(n);
     std::vector<Blade> out;
     visit_walls(p, [&](const Wall& wall) {

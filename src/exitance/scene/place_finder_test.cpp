@@ -57,8 +57,8 @@ TEST(PlaceFinder, APointBelowAWallIsMovedIntoItsOwnFace) {
     const PlaceFinder finder(scene);
     const double step = finder.step();
     EXPECT_NEAR(step / scene.size(), 1e-6, 0.5e-6);
-    for (const double off :
-         {-4e-6, -1e-9, 0.0, 1e-9, 1e-6}) {  // metres; less than a step and than the tolerance of a Locator
+    // Metres; less than a step and than the tolerance of a Locator.
+    for (const double off : {-4e-6, -1e-9, 0.0, 1e-9, 1e-6}) {
         const MeasuredPlace left = finder.find({off, 1.5, 0}, up), right = finder.find({4 - off, 1.5, 0}, up);
         EXPECT_NEAR(left.x.x, step, 0.01 * step) << off;
         EXPECT_NEAR(right.x.x, 4 - step, 0.01 * step) << off;

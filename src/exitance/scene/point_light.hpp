@@ -21,8 +21,8 @@ struct PunctualLight {
     Kind kind = Kind::point;
     Point position;              ///< Metres; unused for parallel light.
     Normal direction{0, 0, -1};  ///< Axis of a spotlight, or direction of parallel light; unit vector.
-    Spectrum
-        intensity;  ///< W/sr (cd) on the axis; for parallel light the irradiance E_0 perpendicular to it, W/m^2 (lx).
+    /// W/sr (cd) on the axis; for parallel light the irradiance E_0 perpendicular to it, W/m^2 (lx).
+    Spectrum intensity;
     double inner_cone = 0;       ///< Half angle of a spotlight's full intensity, radians,
     double outer_cone = pi / 4;  ///< and of all its light; inner < outer <= pi / 2.
 

@@ -106,8 +106,7 @@ class SceneBuilder {
         std::size_t finding, more = 0;
         std::string rest;
     };
-    std::map<std::string, Alike>
-        alike_;  ///< By kind, or by message: the index of the first such finding, and the number of others.
+    std::map<std::string, Alike> alike_;  ///< Key: kind or message. Index of the first finding, number of others.
 };
 
 }  // namespace exitance

@@ -105,8 +105,8 @@ PolygonKit make_complex(const FamilyValues& values) {
     constexpr int whole_room = 36;  // number of chairs for which an unscaled room is designed
     const double k = std::sqrt(values.at("scaled") > 0 ? m : std::max(m, whole_room)), outer = 2.4 * k, inner = 0.7 * k,
                  height = 2.4 * k;
-    const double chairs =
-        2 * (outer / 2 - 0.75);  // circumradius of the triangle of chairs, which keeps a distance from the walls
+    // Circumradius of the triangle of chairs, which keeps a distance from the walls.
+    const double chairs = 2 * (outer / 2 - 0.75);
     std::vector<Point> floor, ceiling;
     std::array<Vec2, 3> corner;
     for (std::size_t i = 0; i < 3; ++i) {

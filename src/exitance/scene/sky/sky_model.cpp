@@ -37,8 +37,8 @@ class CosineMean {
 
   private:
     static constexpr double high = 0.5 * pi / 6, wide = 1.0 / 8;
-    static constexpr double accepted =
-        1e-6;  ///< Difference between a cell and its quarters; the error of the quarters is far less.
+    /// Difference between a cell and its quarters; the error of the quarters is far less.
+    static constexpr double accepted = 1e-6;
     struct Cell {
         double z, v, dz, dv;
     };

@@ -24,8 +24,8 @@ struct SkyModel {
     double ground = 0;
     bool blends_ground = false;
     bool below = false;  ///< The model fills the half below the horizon.
-    double scale =
-        1;  ///< Factor for which the cosine-weighted mean of relative() over its half of the directions is 1.
+    /// Factor for which the cosine-weighted mean of relative() over its half of the directions is 1.
+    double scale = 1;
 
     bool is_uniform() const { return a == 0 && g == 0 && c == 0 && e == 0 && !intermediate && !blends_ground; }
     /// Returns L in direction w, a unit vector.

@@ -58,8 +58,8 @@ TEST(PerezSky, ComputesClearnessAndBrightness) {
     const double zenith = 30 * pi / 180, cubed = 1.041 * std::pow(zenith, 3);
     const PerezState clear = perez_state({100, 800, 3}, sun);
     EXPECT_NEAR(clear.clearness, (9 + cubed) / (1 + cubed), 1e-12);
-    EXPECT_NEAR(clear.brightness, 100 / (1367 * 1.0351) * 1 / std::sin(pi / 3),
-                2e-4);  // the air mass is 1.1547 to 1e-3
+    // The air mass is 1.1547 to 1e-3.
+    EXPECT_NEAR(clear.brightness, 100 / (1367 * 1.0351) * 1 / std::sin(pi / 3), 2e-4);
     EXPECT_EQ(perez_state({100, 0, 3}, sun).clearness, 1);
     EXPECT_EQ(perez_state({0, 0, 3}, sun).clearness, 1);
     EXPECT_EQ(perez_state({10, 900, 3}, sun).clearness, 12.01);

@@ -30,9 +30,7 @@ class SkyPatches {
 
   private:
     void make_facets();
-    double altitude(std::size_t row) const {
-        return static_cast<double>(row) * height_;
-    }  ///< Of the row's lower border.
+    double altitude(std::size_t row) const { return static_cast<double>(row) * height_; }  ///< Lower border, radians.
 
     double height_;                    ///< Height of a row, radians.
     std::vector<std::size_t> first_;   ///< First patch of every row; the last entry is the zenith's.

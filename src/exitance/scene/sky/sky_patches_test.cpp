@@ -37,8 +37,8 @@ TEST(SkyPatches, EveryDirectionMeetsOneFacetOfItsPatch) {
                 inside = dot(cross(facet.corners[(k + 1) % facet.corners.size()], facet.corners[k]), w) > 0;
             if (!inside) continue;
             ++met;
-            beside += patches.patch_of_facet()[f] !=
-                      patches.of(w);  // edges of facets are great circles, borders of rows are not
+            // Edges of facets are great circles, borders of rows are not.
+            beside += patches.patch_of_facet()[f] != patches.of(w);
         }
         EXPECT_EQ(met, 1) << i;
     }
@@ -51,8 +51,8 @@ TEST(SkyPatches, MeansOfASkyGiveItsIrradiance) {
     const std::vector<double> means = patches.mean_values(sky);
     double horizontal = 0;
     for (std::size_t p = 1; p < patches.size(); ++p) horizontal += means[p] * patches.horizontal(p);
-    EXPECT_NEAR(horizontal * sky.scale / pi, 1,
-                2e-3);  // the mean ignores that cosine and sky vary together within a patch
+    // The mean ignores that cosine and sky vary together within a patch.
+    EXPECT_NEAR(horizontal * sky.scale / pi, 1, 2e-3);
 }
 
 }  // namespace exitance

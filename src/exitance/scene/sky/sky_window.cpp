@@ -8,8 +8,8 @@
 namespace exitance {
 namespace {
 
-constexpr double glass_smooth_width =
-    0.8;  ///< Radians: a rule of degree 4 has an error of 1e-4 of a pane's transmission at this width.
+/// Radians: a rule of degree 4 has an error of 1e-4 of a pane's transmission at this width.
+constexpr double glass_smooth_width = 0.8;
 constexpr int directions_per_row = 9;  ///< Number of sampled directions out of the window, per row of a half plane.
 
 }  // namespace

@@ -94,8 +94,8 @@ SunPosition sun_position(const LocalTime& time, const Place& place) {
     double altitude = std::asin(std::fmin(1.0, std::fmax(-1.0, sine)));
     altitude -= 8.794 / 3600 * degree / distance * std::cos(altitude);  // parallax
     double shown = altitude / degree;
-    constexpr double lowest =
-        -0.5667 - 0.26667;  // degrees; below it the disc is not visible and there is no refraction
+    // Degrees; below it the disc is not visible and there is no refraction.
+    constexpr double lowest = -0.5667 - 0.26667;
     if (shown > lowest)
         shown += place.pressure / 1010 * 283 / (273 + place.temperature) * 1.02 /
                  (60 * std::tan((shown + 10.3 / (shown + 5.11)) * degree));
