@@ -47,7 +47,7 @@ TEST(Archive, ReadsBackWhatWasWritten) {
     EXPECT_EQ(out.field.size(), 3u);
 }
 
-TEST(Archive, PartsOfSeveralWritersAreReassembled) {
+TEST(Archive, WhatIsDealtOutComesTogetherAgain) {
     std::vector<int> in(3 * DealtBytes::block / sizeof(int) + 5);
     for (std::size_t i = 0; i < in.size(); ++i) in[i] = static_cast<int>(i);
     std::string name = "room";

@@ -42,8 +42,8 @@ struct TaskGraph {
 
     std::size_t workers = 1;
     std::vector<Iteration> iterations;
-    std::vector<Task> tasks;  ///< Sorted by iteration; within one, creators precede their tasks. The order is the same
-                              ///< on any machine.
+    /// Sorted by iteration; within one, creators precede their tasks. The order is the same on any machine.
+    std::vector<Task> tasks;
     // Phase and id of this record in a TaskTrace:
     std::size_t phase = 0;
     std::uint64_t id = 0;

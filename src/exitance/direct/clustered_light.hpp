@@ -77,8 +77,8 @@ class ClusteredLight {
     const DirectLight* direct_;
     const RayTracer* tracer_;
     EmitterTree tree_;
-    bool possible_ = true;  ///< Clusters are valid in this scene: no emitter has a directional profile, no sky, no
-                            ///< panes, and enough sources.
+    /// Clusters are valid in this scene: no emitter has a directional profile, no sky, no panes, and enough sources.
+    bool possible_ = true;
 };
 
 /// Temporary storage; one per thread.

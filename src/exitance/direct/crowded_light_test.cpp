@@ -170,7 +170,7 @@ SceneDescription lamp_over_grid() {
     return d;
 }
 
-TEST(CrowdedLight, IsAccurateForALargeNearLamp) {
+TEST(CrowdedLight, OfALargeLampNearbyIsWhatTheNearPartBrings) {
     // A plate is illuminated only by the part of the lamp above its own cell: 1% of the area and most of the light.
     const Scene scene = std::move(*make_scene(lamp_over_grid()).scene);
     const Stage stage(scene);

@@ -65,7 +65,7 @@ std::vector<test::Face> lamp_room(double shelf) {
     return faces;
 }
 
-TEST(DirectedLight, AllFluxOfALampArrives) {
+TEST(DirectedLight, AllOfALampsFluxArrives) {
     const Scene scene = make_directed(lamp_room(0), batwing());
     const Occluders occluders(scene);
     const DirectLight direct(scene, occluders);

@@ -40,15 +40,15 @@ class SampledLight {
     struct Source {
         DirectLight::SourceName name;
         RegionId region;
-        double F;           ///< From the element's centre without occlusion, weighted by relative radiance.
-        double area;        ///< m^2
-        Spectrum light;     ///< Unoccluded light at the centre.
-        double share;       ///< Share in the unoccluded light of all sources.
-        double near;        ///< (radii / distance)^2: relative variation of its light over the element and the source.
-        Spectrum in_sight;  ///< Visible light: all of it if some visibility ray arrived, scaled so that the mean over
-                            ///< elements is unbiased.
-        unsigned rays;      ///< Rays cast for the current purpose, 0 or more,
-        double arrived;     ///< and the sum of K V over them, 1/m^2.
+        double F;        ///< From the element's centre without occlusion, weighted by relative radiance.
+        double area;     ///< m^2
+        Spectrum light;  ///< Unoccluded light at the centre.
+        double share;    ///< Share in the unoccluded light of all sources.
+        double near;     ///< (radii / distance)^2: relative variation of its light over the element and the source.
+        /// Visible light: all of it if some visibility ray arrived, scaled so that the mean over elements is unbiased.
+        Spectrum in_sight;
+        unsigned rays;   ///< Rays cast for the current purpose, 0 or more,
+        double arrived;  ///< and the sum of K V over them, 1/m^2.
     };
     struct Ray {
         double kernel;  ///< cos cos / (pi r^2), 1/m^2

@@ -159,7 +159,7 @@ TEST(DirectedFormFactor, OfASmallLampIsItsIntensityOverTheSquareOfTheDistance) {
     }
 }
 
-TEST(DirectedFormFactor, ErrorForANearOpeningIsBelowATenthOfAPercent) {
+TEST(DirectedFormFactor, OfANearOpeningIsRightToATenthOfAPercent) {
     RandomStream random(1, Stream::direct, 7);
     for (const EmissionProfile& profile : {batwing(), power_of_cosine(30, 5), power_of_cosine(200, 2.5)}) {
         const Lamp lamp(profile);

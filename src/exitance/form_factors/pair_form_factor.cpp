@@ -66,8 +66,9 @@ class OuterIntegral {
         double total = 0;
         for (std::size_t k = 0; k < rule.size(); ++k) {
             double y = a + (b - a) * rule.nodes[k], stretch = width_;
-            if (mapped_) {  // t = y^3 (10 - 15 y + 6 y^2), computed from 1 - y above 1/2, so that small distances to
-                            // both ends keep their digits
+            // Substitute t = y^3 (10 - 15 y + 6 y^2), computed from 1 - y above 1/2, so that small distances to both
+            // ends keep their digits.
+            if (mapped_) {
                 const double z = 1 - y;
                 stretch *= 30 * y * y * z * z;
                 y = y <= 0.5 ? y * y * y * (10 - 15 * y + 6 * y * y) : 1 - z * z * z * (10 - 15 * z + 6 * z * z);

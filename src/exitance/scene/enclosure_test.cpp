@@ -120,7 +120,7 @@ void add_backs(Room& room) {
     }
 }
 
-TEST(Enclosure, FacesMayBeTwoSided) {
+TEST(Enclosure, FacesMayHaveLightOnBothSides) {
     Room room;
     const std::size_t indoors = room.scene().regions().size();
     add_backs(room);
@@ -136,7 +136,7 @@ TEST(Enclosure, FacesMayBeTwoSided) {
     EXPECT_EQ(held(open.scene()), 0u) << "without a wall";
 }
 
-TEST(Enclosure, RoomsMayShareATwoSidedWall) {
+TEST(Enclosure, RoomsMayShareAWallOfOneFaceWithTwoSides) {
     Room rooms;
     const std::vector<SceneDescription::Face> faces = rooms.d.faces;
     for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -312,7 +312,7 @@ Spectrum sum_over_pane(const Scene& scene, const Point& x, const Normal& n, int 
 
 /// About a thousand of 400 x 200 cells are on the edge of a shadow and either lit or not: this causes an error of 2e-4
 /// of a window's light.
-TEST(Enclosure, OutdoorObjectsOccludeTheSky) {
+TEST(Enclosure, WhatStandsOutdoorsIsCutFromTheSky) {
     struct Case {
         double depth, beyond;
         bool cut, outdoors;

@@ -29,8 +29,8 @@ struct BodyFaces {
 /// A closed body whose faces have the wrong orientation.
 struct InsideOut {
     std::vector<std::uint32_t> faces;  ///< Ascending.
-    bool is_room = false;  ///< True: a room whose fronts face outwards, away from its light. False: an object whose
-                           ///< fronts face inwards.
+    /// True: a room whose fronts face outwards, away from its light. False: an object whose fronts face inwards.
+    bool is_room = false;
 };
 
 /// Finds the closed bodies that are inside out. A body consists of faces connected by edges, split at corners of other

@@ -4,7 +4,7 @@
 
 namespace exitance {
 
-TEST(SunPosition, AgreesWithThePublishedCase) {
+TEST(SunPosition, IsThatOfThePublishedCase) {
     // [Reda04], table A5.1.
     const LocalTime time{2003, 10, 17, 12 + 30.0 / 60 + 30.0 / 3600, -7};
     const SunPosition sun = sun_position(time, {39.742476, -105.1786, 1830.14, 820, 11});
