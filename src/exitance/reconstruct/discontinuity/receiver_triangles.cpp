@@ -14,7 +14,7 @@ bool is_convex_outline(const ReceiverCurves& receiver) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
         const Vec2 a = loop[(i + 1) % loop.size()] - loop[i],
                    b = loop[(i + 2) % loop.size()] - loop[(i + 1) % loop.size()];
-        constexpr double straight = 1e-9;  // sine, given by rounding of coordinates
+        constexpr double straight = 1e-9;  // sine of the angle; rounding of coordinates
         if (cross(a, b) < -straight * std::sqrt(dot(a, a) * dot(b, b))) return false;
     }
     return true;
@@ -33,7 +33,7 @@ double area_of(const LabelledTriangles& t) {
 }
 
 ReceiverTriangles by_tree(const ReceiverCurves& receiver, const TriangleOptions& options) {
-    constexpr std::size_t cells = 4;  // along each side
+    constexpr std::size_t cells = 4;  // number along each side
     DmTree tree(receiver.loops.front(), options.tolerance);
     if (options.grid) tree.insert_grid(cells);
     std::vector<const FlatCurve*> curves;
@@ -56,8 +56,8 @@ ReceiverTriangles by_tree(const ReceiverCurves& receiver, const TriangleOptions&
 ReceiverTriangles receiver_triangles(const ReceiverCurves& receiver, const TriangleOptions& options) {
     if (options.scheme != TriangulationScheme::delaunay && is_convex_outline(receiver)) {
         ReceiverTriangles out = by_tree(receiver, options);
-        // Trees merge what is near; where that costs area, the exact triangulation stands in.
-        constexpr double lost = 1e-10;  // given by the 1e-9 that no mesh may lose
+        // Line trees merge nearby points. If that loses area, use the exact triangulation instead.
+        constexpr double lost = 1e-10;  // share of the area; below the 1e-9 that no mesh may lose
         const double area = area_of(receiver.loops.front());
         if (std::abs(area_of(out.triangles) - area) <= lost * area) return out;
     }

@@ -8,20 +8,21 @@ namespace exitance {
 
 struct TriangleOptions {
     TriangulationScheme scheme = TriangulationScheme::delaunay;
-    bool grid = false;            ///< Trees begin with a coarse grid,
-    bool penumbra_first = false;  ///< and take the curves that bound half-shadows first: kinks and long ones.
-    bool refined = false;         ///< Points are added for the triangles' shape.
-    double tolerance = 0;         ///< What is nearer is the same for trees, metres.
+    bool grid = false;  ///< Insert a coarse grid into the line tree first.
+    /// Insert curves in the order D0, D1, D2, long ones first: the edges of penumbras before the rest.
+    bool penumbra_first = false;
+    bool refined = false;  ///< Add points for better triangle shapes.
+    double tolerance = 0;  ///< Line trees merge points closer than this, metres.
 };
 
-/// The triangles between a receiver's curves, with the memory of the tree that they come from.
+/// The triangles between a receiver's curves, and the memory of the line tree that they were made from.
 struct ReceiverTriangles {
     LabelledTriangles triangles;
     std::size_t tree_bytes = 0;
 };
 
-/// By a tree of lines where a scheme of the thesis is asked for and the receiver is convex, else by Delaunay's
-/// triangulation; without the curves where they cannot be had.
+/// Triangulates a receiver along its curves. It uses a line tree if the thesis's scheme is requested and the receiver
+/// is convex, otherwise a Delaunay triangulation. Omits the curves if they cannot be triangulated.
 ReceiverTriangles receiver_triangles(const ReceiverCurves& receiver, const TriangleOptions& options);
 
 }  // namespace exitance
