@@ -372,9 +372,9 @@ class Builder {
     const StopRequest& stop_;
     BisectionMesh mesh_;
     std::optional<BisectionMesh> lit_;   ///< Copy of the mesh at a time when all of its nodes had light.
-    std::vector<std::uint8_t> touched_;  ///< By region: true if anything covers parts of it.
-    std::vector<RegionId> region_;       ///< By face.
-    std::vector<ReceiverLight> lights_;  ///< By face.
+    std::vector<std::uint8_t> touched_;  ///< Per region: true if anything covers parts of it.
+    std::vector<RegionId> region_;       ///< Per face.
+    std::vector<ReceiverLight> lights_;  ///< Per face.
     NodeValues values_;
     bool is_lit_ = false;  ///< True once every triangle has light.
     MeshProgress found_;   ///< Results of an earlier run, and the curves of this one.

@@ -56,8 +56,8 @@ struct DiscontinuityReport {
 /// Computes irradiance on six-node triangles that are cut along the curves where direct light changes its form:
 /// contacts, VE and EV events. Values at nodes are exact. Triangles are bisected where the polynomial differs from
 /// exact light between the nodes, until the error at sample points that took no part in refinement is at most
-/// `options.error`. Returns an empty mesh if `stop` is requested before all nodes have light, otherwise what is
-/// finished. O(curves log n + nodes x visible emitters).
+/// `options.error`. Returns an empty mesh if `stop` is requested before all nodes have light, otherwise the mesh
+/// so far. O(curves log n + nodes x visible emitters).
 SixNodeMesh make_discontinuity_mesh(const Stage& stage, const DiscontinuityOptions& options,
                                     DiscontinuityReport& report, const StopRequest& stop);
 

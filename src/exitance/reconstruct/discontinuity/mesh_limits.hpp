@@ -30,7 +30,7 @@ constexpr double unseen_light = 0.02;  // omitting it adds at most 2% to an erro
 /// raises it by an eighth at most.
 constexpr double ray_noise = 0.5;
 
-/// Share of the total area. Larger triangles (at most 1,000) are tested at extra nodes even if they look flat, since
+/// Share of the total area. Larger triangles (at most 1,000) are tested at extra nodes even if they seem flat, since
 /// their six nodes may miss a shadow between them.
 constexpr double tried_area = 1e-3;  // one triangle per sample point that measures the error (1,000)
 

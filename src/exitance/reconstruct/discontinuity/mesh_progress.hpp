@@ -25,8 +25,8 @@ void archive(Archive& a, FoundCurves& found) {
 /// Expensive intermediate results of a discontinuity mesh, for checkpoints. Everything else is recomputed: node values
 /// determine the order of bisections, so a resumed run requests them in the order of their numbers again.
 struct MeshProgress {
-    std::vector<FoundCurves> receivers;  ///< By region.
-    std::vector<Spectrum> values;        ///< By node in the order of evaluation, W/m^2.
+    std::vector<FoundCurves> receivers;  ///< Per region.
+    std::vector<Spectrum> values;        ///< Per node, in the order of evaluation, W/m^2.
 };
 
 template <class Archive>

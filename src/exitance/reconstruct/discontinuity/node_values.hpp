@@ -25,7 +25,7 @@ class NodeValues {
     bool look_at(std::vector<std::uint32_t> nodes, const Look& look, const StopRequest& stop,
                  const std::function<void()>& keep);
 
-    /// By node. Entries of nodes that have not been evaluated are meaningless.
+    /// Per node. Entries of nodes that have not been evaluated are meaningless.
     std::span<const Spectrum> values() const { return values_; }
     bool has(std::uint32_t node) const { return node < has_.size() && has_[node] != 0; }
     /// Returns the values in the order of evaluation, as `resume` takes them; the values given to `resume` if those are

@@ -57,7 +57,7 @@ class OrderedLight {
 
     const DirectLight* direct_;
     bool merges_;
-    std::vector<std::vector<Point>> corners_;  ///< By emitter.
+    std::vector<std::vector<Point>> corners_;  ///< Per emitter.
     std::optional<MinimumLists> lists_;
 };
 
