@@ -8,35 +8,36 @@
 
 namespace exitance {
 
-/// What every method is given.
+/// Input of every method.
 struct MethodInput {
     const Stage& stage;
     const SolveOptions& options;
     const Knobs& knobs;
-    /// Direct light on elements that follow its shadows: the mesh that methods solve on, unless they make their own.
+    /// Direct light on elements that follow its shadows. Methods solve on this mesh unless they make their own.
     const DirectProjection& direct;
     Progress& progress;
     const StopRequest& stop;
-    /// Where a method of several rounds may keep its state between them.
+    /// Checkpoints at which a method of several rounds may save its state.
     SafePoints safe_points = {};
-    /// Is there light of another attempt? Then a stop may leave this one unfinished: nothing of it is read.
+    /// True if an earlier attempt has a result: after a stop, this one may return unfinished, since its result is not
+    /// used.
     bool may_give_up = false;
 };
 
-/// Finds the reflected light of every element of a mesh that it makes. One file a method.
+/// Finds the reflected light of every element of a mesh. Each method is in a file of its own.
 using SolveMethod = GlobalLight (*)(const MethodInput&);
 
-/// A row of the table of methods.
+/// Row of the table of methods.
 struct MethodEntry {
     Method id;
     SolveMethod solve;
-    const char* basis;  ///< What its elements hold, when nothing else is asked for.
+    const char* basis;  ///< Default basis of its elements.
 };
 
 /// Mean direct light of every leaf of the projection's mesh, by leaf number, W/m^2.
 std::vector<Spectrum> leaf_means(const DirectProjection& direct, const LeafNumbering& numbering);
 
-/// The table: one line a method.
+/// The table of methods.
 std::span<const MethodEntry> method_table();
 const MethodEntry& entry_of(Method id);
 

@@ -327,7 +327,8 @@ Misfit CloughTocherFit::misfit(std::uint32_t triangle, const Spectrum& weight) c
     Misfit out;
     double square = 0;
     for (std::size_t p = 3; p < value_count; ++p) {
-        // Given by the mean square of what the element leaves of quartics, half by middles, half by quarters.
+        // Weights that give the mean square of the element's error for a quartic, half of it from middles, half from
+        // quarters.
         constexpr double of_middle = 0.0613, of_quarter = 0.0968, of_inner = 0.1909;
         const double part = p < 6 ? of_middle : p < 12 ? of_quarter : of_inner;
         square += part * squared(weight * errors[p]) / static_cast<double>(bands);
