@@ -60,9 +60,10 @@ HierarchyBasis galerkin_basis(BasisKind basis) {
 /// - cast by rays (single entries are noisy, gathered light is not; O(n) rays),
 /// - computed, from elements to patches one level above them [Cohen86] (`--form-factors analytic`: O(n^2 / 4) entries
 ///   of 16 rays each),
-/// - rendered by hemicubes [Cohen85]. With `--basis linear`, rows are cast from nodes and a ray evaluates the
-///   polynomial of the element that it hits [Atkinson00]. With `--basis galerkin1` to `3`, blocks of the Galerkin
-///   matrix are integrated pair by pair [Zatz93].
+/// - rendered by hemicubes [Cohen85].
+///
+/// With `--basis linear`, rows are cast from nodes and a ray evaluates the polynomial of the element that it hits
+/// [Atkinson00]. With `--basis galerkin1` to `3`, blocks of the Galerkin matrix are integrated pair by pair [Zatz93].
 GlobalLight solve_matrix(const MethodInput& input) {
     const auto& [stage, options, knobs, direct, progress, stop, safe_points, may_give_up] = input;
     if (options.bounces < 0 && options.basis && is_galerkin(*options.basis))
