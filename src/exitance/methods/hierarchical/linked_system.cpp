@@ -11,7 +11,7 @@ void LinkedSystem::set_links(Links near, std::optional<ClusterLinks> far) {
     far_ = std::move(far);
 }
 
-/// What such elements hold of the light of panes.
+/// Transmission of light through panes, between the given elements.
 PassedLight LinkedSystem::passed_between(std::span<const ElementId> ends) const {
     const NodalBasis& basis = sites_.basis();
     return {input_.stage.scene,
