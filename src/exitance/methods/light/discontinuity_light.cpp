@@ -17,7 +17,7 @@ ConicCurves conics_of(ThreeEdgeEvents asked) {
                                            : ConicCurves::at_umbras;
 }
 
-/// False, and the report says so, where a request to stop leaves them unfinished.
+/// Computes the layers. Returns false, and sets `report.interrupted`, if a request to stop leaves them unfinished.
 bool add_layers(const Stage& stage, const DiscontinuityOptions& ask, Solution& solution, LayersReport& layers,
                 DiscontinuityReport& report, const StopRequest& stop) {
     const Stopwatch watch;
@@ -27,7 +27,7 @@ bool add_layers(const Stage& stage, const DiscontinuityOptions& ask, Solution& s
     return !layers.interrupted;
 }
 
-/// What is kept of direct light, and what the same meshes take with winged edges.
+/// Records the memory of the layers, and of the same meshes with winged edges.
 void record_layers(Solution& solution, const LayersReport& layers) {
     std::map<std::string, double>& figures = solution.statistics.figures;
     const bool has_layers = !solution.layers.empty();
