@@ -18,9 +18,9 @@ struct KernelChoice {
 
 /// Computes the block of a link, from nodes of the source to nodes of the receiver: E_k += sum_l K_kl B_l.
 ///
-///         point:  K_kl = A_q w_l cos cos / (pi r^2)           singular point-to-point transfer,
-///         disc:   K_kl = A_q w_l cos cos / (pi r^2 + A_q w_l)  bounded [Wallace89],
-///         exact:  disc, with the row scaled to the form factor from the node to the polygon [Baum89].
+///     point:  K_kl = A_q w_l cos cos / (pi r^2)           singular point-to-point transfer,
+///     disc:   K_kl = A_q w_l cos cos / (pi r^2 + A_q w_l)  bounded [Wallace89],
+///     exact:  disc, with the row scaled to the form factor from the node to the polygon [Baum89].
 ///
 /// The kernel is multiplied by visibility:
 /// - fractional: one share for all nodes, from rays between points of a jittered 4 x 4 grid.

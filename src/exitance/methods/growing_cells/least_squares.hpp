@@ -12,7 +12,7 @@ using FitRow = std::vector<std::pair<std::uint32_t, double>>;
 
 /// Least-squares problem with a ridge: minimizes
 ///
-///         sum_s w_s |sum_c A_sc v_c - b_s|^2 + ridge mean(diag) |v - v_0|^2
+///     sum_s w_s |sum_c A_sc v_c - b_s|^2 + ridge mean(diag) |v - v_0|^2
 ///
 /// for `outputs` right-hand sides, by conjugate gradients on the normal equations. The ridge keeps unknowns that no
 /// sample affects at their initial value v_0. `row(s, out)` fills the row of sample s; `target(s, k)` and `weight(s)`

@@ -33,7 +33,7 @@ bool keeps_reflected_light(const Stage& stage, const GlobalLight& light, std::ui
 
 /// Scales gathered indirect light E in each band so that it equals the part of E and of direct light that arrives:
 ///
-///         int E dA = int k (rho ((1 - c) E_dir + E) + c M) dA,
+///     int E dA = int k (rho ((1 - c) E_dir + E) + c M) dA,
 ///
 /// where k is taken from the leaves of the method, or is 1 if the method has none. In a closed scene this is the
 /// balance of emitted and absorbed light. The mean error of a local pass, a share of about 1e-3, is light that it
@@ -87,7 +87,7 @@ std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light);
 
 /// Permitted errors of rooms, in proportion to their light l but capped at c:
 ///
-///         sum of (area share) min(l, c)^2 <= `of_all`.
+///     sum of (area share) min(l, c)^2 <= `of_all`.
 ///
 /// The cap keeps the squared error of all rooms together within `of_all` times the requested one if few rooms have most
 /// of the light. Empty if `light_in` is.

@@ -8,7 +8,7 @@ namespace exitance {
 /// Light for the gather of another attempt: one step of iterative refinement, for light gathered by rays
 /// (`refined_light` does the same for sums). From b gathered before and E = H b delivered,
 ///
-///         b' = b1 + ((I - rho F)^-1 - I) P (b1 - b),    b1 = rho (E_dir + E)
+///     b' = b1 + ((I - rho F)^-1 - I) P (b1 - b),    b1 = rho (E_dir + E)
 ///
 /// (with the share c of `find_direct_share`, see DeliveredLight). P takes means over the method's leaves, F are rays
 /// between those. Details of b are replaced by those of the gather without refining the method's elements. Smooth

@@ -9,7 +9,7 @@ namespace exitance {
 
 /// Light for another gather by sums over elements: one step of iterative refinement. Returns functions whose sum is
 ///
-///         b1 + (I - rho F)^-1 (rho (E_dir + H b1) - b1),    b1 = rho (E_dir + E_ind)
+///     b1 + (I - rho F)^-1 (rho (E_dir + H b1) - b1),    b1 = rho (E_dir + E_ind)
 ///
 /// (with the share c of `find_direct_share`, see DeliveredLight). The residual is summed at the nodes of every leaf of
 /// the method, and F are rays between leaves. The remaining error of E_ind is a product of two small numbers. Without

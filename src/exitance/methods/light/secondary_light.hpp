@@ -22,7 +22,7 @@ std::vector<SecondarySource> secondary_sources(const Stage& stage, const Solutio
 
 /// Reflected light that is known on elements only, with sharp shadows of the light of some surfaces:
 ///
-///         E(x) = E_e(x) - (H(x) - H_e(x)),    H(x) = sum over sources and their parts of  B_part F(x, hidden part),
+///     E(x) = E_e(x) - (H(x) - H_e(x)),    H(x) = sum over sources and their parts of  B_part F(x, hidden part),
 ///
 /// where E_e is the light of the elements, and H_e approximates H by polynomials on such elements, made continuous as
 /// E_e was. Unblocked sources change nothing. H is exact for parts of uniform radiosity. E is E_e if the scene has

@@ -11,7 +11,7 @@ namespace exitance {
 /// Divides the sources of direct light on each region of a building into strong and weak ones. The light of weak
 /// sources is estimated by rays:
 ///
-///         E of weak sources ~ sum over sources s of  M_s F_s(x) sum over points of  K_i V_i / sum of  K_i,
+///     E of weak sources ~ sum over sources s of  M_s F_s(x) sum over points of  K_i V_i / sum of  K_i,
 ///
 /// where F_s is the form factor without blockers, K = cos cos / (pi r^2), and V_i is 1 if point y_i of s is visible
 /// from x. The points y_i of a source are the same for all x. E is then smooth except for steps too small for the mesh
