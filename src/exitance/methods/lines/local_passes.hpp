@@ -15,11 +15,11 @@ struct LocalPassWork {
 /// leaf there and of its ancestors. The triangles are a constrained Delaunay mesh of the hierarchy's leaves and of the
 /// discontinuity lines.
 ///
-///     a  the leaf's value; the mean where leaves meet
-///     b  form factors recomputed for the node, visibility of the link
-///     c  form factors and visibility recomputed
-///     d  c for primary sources, b for the rest
-///     e  primary sources exactly (DirectLight), b for reflected light
+///   a  the leaf's value; the mean where leaves meet
+///   b  form factors recomputed for the node, visibility of the link
+///   c  form factors and visibility recomputed
+///   d  c for primary sources, b for the rest
+///   e  primary sources exactly (DirectLight), b for reflected light
 ///
 /// All rules work on the same hierarchy; `e` omits the emitted light of links. O(nodes x links of a path).
 SixNodeMesh run_local_pass(const LineHierarchy& hierarchy, LocalPassRule rule, LocalPassWork& work,

@@ -27,7 +27,7 @@ void prepare_face_lights(const DirectLight& direct, const FaceOutlines& outlines
 /// `centre`: centre of the face or of a part of it.
 ShadowClass shadow_class(const DirectLight& direct, const ReceiverLight& light, const Point& centre);
 
-/// As above, for the sources `among` only.
+/// Likewise, for the sources `among` only.
 ShadowClass shadow_class(const DirectLight& direct, const ReceiverLight& light, const Point& centre,
                          std::span<const DirectLight::SourceName> among);
 
