@@ -45,7 +45,8 @@ SolveReport LinkedSystem::solve(const NodalField& rhs, NodalField& x, bool close
         }
     });
     const Relaxation asked = input_.options.relaxation.value_or(Relaxation::gmres);
-    // Links are gathered all at once, and higher orders are not symmetric.
+    // Gauss-Seidel does not apply, since all links are gathered at once; nor does cg, since higher orders are not
+    // symmetric.
     const bool all_at_once = asked == Relaxation::jacobi || asked == Relaxation::chebyshev;
     const Relaxation method = all_at_once ? asked : Relaxation::gmres;
     ConservingTransport conserving(F, area);

@@ -49,7 +49,7 @@ class RowMaker {
     }
 
   private:
-    /// Leaves what the rays of all places met in the workspace.
+    /// Casts the rays of all sample points; their hits are left in the workspace.
     void cast(ElementId e, const std::vector<WeightedPlace>& places, unsigned rays) {
         static const PointwiseLight unread([](RegionId, const Point&) { return Spectrum(); });
         const RegionId region = tree_.region(e);
