@@ -47,7 +47,7 @@ class DealtUnknowns {
     std::size_t own_count() const { return count_of(process_); }
     std::size_t count_of(std::size_t process) const {
         const std::size_t whole = count_ / block_,
-                          rest = count_ % block_;  // numbers of full blocks and of unknowns in the last, partial one
+                          rest = count_ % block_;  // full blocks; unknowns in the partial one
         const std::size_t blocks = whole / processes_ + (process < whole % processes_ ? 1 : 0);
         return blocks * block_ + (rest > 0 && process == whole % processes_ ? rest : 0);
     }

@@ -46,7 +46,7 @@ class FetchedValues {
     std::vector<std::uint32_t> fetched_;  ///< Fetched unknowns, ascending.
     std::size_t messages_ = 0;            ///< Messages that deliver them.
     std::size_t messages_of_twice_ = 0,
-                fetched_of_twice_ = 0;  ///< Predicted for twice as many processes, both halves of this one together.
+                fetched_of_twice_ = 0;  ///< The same for twice as many processes, both halves together.
     std::shared_ptr<const ValueScatter> scatter_;
 };
 

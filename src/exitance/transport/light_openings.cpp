@@ -13,9 +13,10 @@ namespace {
 constexpr double max_opening = 0.1;              ///< Opening as a share of the smaller side's walls, at most.
 constexpr double max_ratio_to_neighbours = 0.5;  ///< Opening by that of the neighbouring cuts, at most.
 constexpr double neighbour_distance =
-    0.2;                   ///< Distance of the neighbouring cuts, as a share of the smaller side's walls.
-constexpr int steps = 60;  ///< Reflections of which each keeps half of the previous values: across an opening of a
-                           ///< twentieth a third of the difference is left.
+    0.2;  ///< Distance of the neighbouring cuts, as a share of the smaller side's walls.
+/// Number of reflections; each keeps half of the previous values. A third of the difference across an opening of a
+/// twentieth is left.
+constexpr int steps = 60;
 
 /// Flux that a leaf of exitance 1 W/m^2 sends to the sky, W.
 double sent_to_sky(const Flow& flow, std::uint32_t leaf) {

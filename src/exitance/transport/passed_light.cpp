@@ -82,8 +82,7 @@ class PassedLight::Maker {
         if (row.first == row.last) return;
         for (std::size_t k = 0; k < n; ++k)
             if (gram_[k * n + k] > 0)
-                gram_[k * n + k] *= n > 1 ? 1 + 1e-12 : 1;  // slivers contribute next to nothing to some functions;
-                                                            // avoids singular matrices due to rounding
+                gram_[k * n + k] *= n > 1 ? 1 + 1e-12 : 1;  // regularizes functions that slivers hardly determine
             else
                 gram_[k * n + k] = 1;  // values that an element does not use
         std::vector<double> weights(out_.weights_.begin() + static_cast<std::ptrdiff_t>(first_weight),

@@ -14,8 +14,9 @@ struct RayBudget {
     double average = 64;  ///< Rays of an element of mean area.
     unsigned least = 16;
     unsigned most = 4096;
-    bool front_alone = false;  ///< For diffusing panes: true if rays leave only by the front, as emitted light does,
-                               ///< false if they represent gathered light.
+    /// For diffusing panes: true if rays leave only by the front, as emitted light does; false if they represent
+    /// gathered light.
+    bool front_alone = false;
 
     /// Number of rays for `area` if the mean area is `mean_area` (both m^2): a power of two, about proportional to
     /// sqrt(area), which minimizes the total variance for a given number of rays.
