@@ -88,7 +88,7 @@ class OccludedExchange {
         Cell cell;
         double distance, allowed;  ///< Distance to the source, metres; allowed error, m^2.
         double sum;                ///< m^2, by the best rule so far.
-        Glance glance;             ///< Of that rule.
+        Glance glance;             ///< Visibility found by that rule.
         int depth;
         /// m^2: for a cell too near to the source for quadrature, the exact integral without occlusion, from which a
         /// rule subtracts the hidden part. Negative for other cells.

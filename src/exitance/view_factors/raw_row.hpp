@@ -12,8 +12,8 @@ struct RowEntry {
     double F = 0;
     std::uint32_t column = 0;
     float variance = 0;  ///< Variance of F; 0 if it was integrated.
-    /// Samples per m^2 behind F, known before they were drawn: rays cast from the row's face over its area, or the
-    /// number of such rays that a pair's own samples are worth. Infinite where F is integrated.
+    /// Samples per m^2 used for F, fixed before sampling: rays cast from the row's face over its area, or the number of
+    /// such rays to which a pair's own samples are equivalent. Infinite if F was integrated.
     float density = 0;
     std::uint32_t unused = 0;  ///< Padding, so that all bytes of the record are defined.
 };

@@ -34,8 +34,8 @@ struct RayEntry {
     std::size_t rays = 0;
 };
 
-/// F_ij by pairs of points on both faces, or, where these nearly touch, by directions from i: Owen-scrambled Sobol
-/// points in 64 independent batches, whose spread is the standard error. About 0.1 us a ray.
+/// Estimates F_ij by pairs of points on both faces or, if these nearly touch, by directions from one of them. Uses
+/// Owen-scrambled Sobol points in 64 independent batches, whose spread gives the standard error. About 0.1 us per ray.
 RayEntry view_factor_by_rays(const Scene& scene, const class RayTracer& tracer, SurfaceId i, SurfaceId j,
                              std::size_t rays, std::uint64_t seed);
 

@@ -12,9 +12,9 @@
 
 namespace exitance {
 
-/// Computes one row of view factors so that sqrt(sum_j v_ij) + sum_j |c_ij| <= R after it is combined with the other
-/// rows, where v is the variance of sampled entries and c the error bound of integrated ones. A row uses three
-/// estimators:
+/// Computes one row of view factors with the error R that it has after it is combined with the other rows: sqrt(sum_j
+/// v_ij) + sum_j |c_ij| <= R, where v is the variance of sampled entries and c the error bound of integrated ones. A
+/// row uses three estimators:
 ///
 ///   - for unoccluded pairs, the closed form (PairFormFactor);
 ///   - for partly hidden pairs that are not near, the unoccluded factor times a visible share by shadow rays
@@ -45,7 +45,7 @@ class RowEstimator {
         double deviation() const;
     };
     struct Plan {
-        std::size_t batches = 0, rays_a_batch = 0;  ///< Of the cast rays.
+        std::size_t batches = 0, rays_a_batch = 0;  ///< Numbers for the cast rays.
     };
 
     void find_candidates(std::size_t face);

@@ -29,7 +29,7 @@ class RowWorker {
         without_lines,  ///< Find no critical lines; halve cells where the error is large.
         patient,        ///< Like without_lines, with up to 25 times as many evaluations.
     };
-    /// F_ij by itself, to another tolerance.
+    /// Computes F_ij alone, with its own tolerance.
     double entry(std::size_t i, std::size_t j, double tolerance, Means means);
 
   private:

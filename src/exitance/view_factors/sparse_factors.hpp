@@ -19,22 +19,22 @@ struct SparseFactors {
     std::vector<double> values;
 
     std::vector<double> row_sums;  ///< One per face.
-    /// Sqrt(sum of variances) + sum of bounds of each row; infinite if not finished; empty for a table with a tolerance
-    /// of entries.
+    /// Error of each row, sqrt(sum of variances) + sum of bounds; infinite if not finished. Empty for a table with a
+    /// tolerance of entries.
     std::vector<double> row_errors;
     std::vector<double> dropped;         ///< Sum of the entries of each row that were dropped as too small.
     std::vector<std::uint8_t> finished;  ///< 1 for each computed row.
     bool combined = false;  ///< True if F_ij and F_ji combine both rows, so that A_i F_ij = A_j F_ji up to rounding.
 
     double reciprocity_defect = 0;  ///< max |A_i F_ij - A_j F_ji| / (A_i max_j F_ij) of independently computed rows.
-    double entry_defect = 0;        ///< As in ViewFactors; 0 for tables with an error per row.
+    double entry_defect = 0;        ///< See ViewFactors; 0 for tables with an error per row.
     /// max |1 - sum_j F_ij - share of the sky and of backs| over independently computed rows whose share is known to
     /// the requested error.
     double closure_defect = 0;
     std::size_t unclosed = 0;  ///< Number of rows whose closure defect exceeds the one that their variance explains.
 
     bool is_settled = true;                 ///< False if the run was stopped after its rows.
-    std::size_t mended = 0, unsettled = 0;  ///< As in ViewFactors; 0 for tables with an error per row.
+    std::size_t mended = 0, unsettled = 0;  ///< See ViewFactors; 0 for tables with an error per row.
 
     std::size_t size() const { return areas.size(); }
     std::size_t entries() const { return values.size(); }

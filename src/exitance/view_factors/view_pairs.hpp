@@ -40,8 +40,8 @@ class ViewPairs {
     }
     /// Finds blockers that are at least partly in front of a face.
     void find_blockers(std::size_t face, std::vector<std::uint32_t>& found) const;
-    /// Those of them that may hide some of j from some of i: not kept apart from both by one of their own faces, and
-    /// not outside the shaft between the boxes.
+    /// Finds those blockers in `before_i` that may hide part of j from part of i: not separated from both by one of
+    /// their own faces, and not outside the shaft between the bounding boxes.
     void find_blockers(std::size_t i, std::size_t j, std::span<const std::uint32_t> before_i,
                        std::vector<std::uint32_t>& found) const;
     /// True if a blocker crosses the plane of a face.
