@@ -4,8 +4,8 @@
 
 namespace exitance {
 
-/// Piecewise polynomials that break where direct light does, as a function of place: those of a solution's
-/// discontinuity mesh (all light), or, where it has layers, their sum (direct light times
+/// Piecewise polynomials aligned with discontinuities of direct light, as a function of place: those of a solution's
+/// discontinuity mesh (all light), or the sum of its layers if it has any (direct light times
 /// RadiosityFunction::exact_share).
 class MeshLight {
   public:
@@ -25,7 +25,7 @@ class MeshLight {
 
     const SixNodeMesh& mesh() const { return solution_.discontinuity; }
     const LightLayers& layers() const { return solution_.layers; }
-    const Spectrum& layer_share() const { return share_; }  ///< What values of layers are to be multiplied by.
+    const Spectrum& layer_share() const { return share_; }  ///< Factor for the values of layers.
 
   private:
     const Solution& solution_;
