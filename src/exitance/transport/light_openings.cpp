@@ -104,8 +104,8 @@ Cuts sweep(const Flow& flow, const LeafNumbers& order, std::uint16_t part) {
     return out;
 }
 
-/// True if the opening at a cut is narrower than those at neighbouring cuts. Along a corridor all have
-/// the same size.
+/// True if the opening at a cut is narrower than those at neighbouring cuts. Along a corridor all have the
+/// same size.
 bool is_narrow(const Cuts& cuts, std::size_t k, double smaller) {
     for (const double off : {-neighbour_distance, neighbour_distance}) {
         const auto at = std::lower_bound(cuts.area.begin(), cuts.area.end(), cuts.area[k] + off * smaller);
