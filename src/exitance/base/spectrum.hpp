@@ -15,6 +15,14 @@ namespace exitance {
 /// and form factors are computed once for all bands.
 inline constexpr std::size_t bands = EXITANCE_BANDS;
 
+/// Defined by the library for its own number of bands only: a program that is compiled for another number does not
+/// link, instead of misreading every structure that holds a Spectrum.
+template <std::size_t n>
+struct LibraryOfBands {
+    static const char linked;
+};
+[[gnu::used]] inline const char* const library_of_bands = &LibraryOfBands<bands>::linked;
+
 /// One value per band: W/m^2 for exitance, irradiance and radiosity, dimensionless for reflectance.
 struct Spectrum {
     std::array<double, bands> value{};
