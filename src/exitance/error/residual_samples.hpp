@@ -8,7 +8,7 @@ namespace exitance {
 
 /// A point at which the certificate measures the residual, with two independent estimates of it.
 struct ResidualSample {
-    ElementTree::Place place;  ///< In the delivered function.
+    ElementTree::Place place;  ///< Place in the delivered function.
     RegionId region;
     SurfaceId surface;
     std::uint32_t room = 0;
