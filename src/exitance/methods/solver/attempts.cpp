@@ -143,7 +143,7 @@ void Solver::project_direct() {
         progress_.note(fmt::format("direct light scaled by {:.5f} to what is emitted", mean(scale)));
         direct_ = std::move(fresh);
         unscaled_.direct = inverse(scale);
-        share_on_node(direct_.fit.span());  // it is no longer modified
+        share_on_node(direct_.fit.span());  // not modified from here on
     }
     statistics().seconds["mesh"] += watch.seconds();
 }

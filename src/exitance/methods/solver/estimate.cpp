@@ -123,7 +123,7 @@ ErrorParts Solver::error_parts() const {
 }
 
 /// Returns the parts of the error, averaged over the rooms. If their sum exceeds the whole error, they cancel in part,
-/// as after several refinement steps; they are then scaled down to the whole. Misfit that is min_hidden_ratio by the
+/// as after several refinement steps; they are then scaled down to the whole. Misfit that is hidden by the
 /// rays' noise counts as noise, since a smaller tolerance would not split any elements.
 ErrorParts Solver::mean_error_parts() const {
     const double parts = std::hypot(certificate_.local, certificate_.method);
@@ -131,9 +131,8 @@ ErrorParts Solver::mean_error_parts() const {
     const double local = cancels * certificate_.local, noise = gathered_.noise / certificate_.mean_reflected;
     const double misfit = std::sqrt(std::max(0.0, local * local - noise * noise));
     const double seen = gathered_.interpolation / certificate_.mean_reflected;
-    constexpr double min_hidden_ratio =
-        // If the misfit exceeds the detected interpolation error by this factor, the rays' noise hides it.
-        3;
+    // If the misfit exceeds the detected interpolation error by this factor, the rays' noise hides it.
+    constexpr double min_hidden_ratio = 3;
     return {.method = cancels * certificate_.method,
             .noise = misfit > min_hidden_ratio * seen ? std::max(noise, misfit) : noise,
             .interpolation = std::max(misfit, seen)};
