@@ -16,7 +16,7 @@ AttemptForecast forecast_attempt(const AttemptFacts& facts) {
         return std::max(1.0, std::ceil(std::log(facts.wanted / facts.method) / std::log(left)));
     };
     out.steps = attempts(facts.left);
-    constexpr double share_of_change = 0x1p-3;  // with which LocalPass starts
+    constexpr double share_of_change = 0x1p-3;  // initial share of the rays with which LocalPass gathers a change
     out.step_rays = out.steps * (share_of_change * facts.gather_rays + facts.certificate_rays);
     double rows = facts.row_rays;
     const double finer = attempts(facts.finer);

@@ -31,9 +31,8 @@ constexpr double shooting_share = 0.48;  ///< Share of the pairs of elements who
 constexpr double gathered_by_patches = 3;  ///< Gather elements per patch of substructuring.
 constexpr double random_sweeps = 1.9;      ///< Light sent in random directions over the light of the first reflection.
 constexpr unsigned shooting_samples = 16;
-constexpr double lights_an_element =
-    /// Evaluations of direct light per element: nodes of the projection and of the exported mesh, and splits.
-    20;
+/// Evaluations of direct light per element: nodes of the projection and of the exported mesh, and splits.
+constexpr double lights_an_element = 20;
 constexpr unsigned pilot_rays = 64;
 constexpr std::size_t pilot_points = 512;
 

@@ -41,7 +41,7 @@ TEST(RefinedAttempt, HasTheEstimatedErrorAndKeepsTheMethodsElements) {
 
 /// Between slats, the error of the light is smaller than the allowed noise of an element. Without the correction for
 /// hidden misfit, eight further attempts at 5%, each with a smaller tolerance, would split no element and cast no ray.
-TEST(RefinedAttempt, FindsErrorsHiddenByNoiseBetweenSlats) {
+TEST(RefinedAttempt, FindsWhatNoiseHidesBetweenSlats) {
     const Scene scene = built_scene("blinds");
     const Solution solution = solved(scene, {.error = 0.05});
     EXPECT_TRUE(solution.statistics.converged);
