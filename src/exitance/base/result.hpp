@@ -21,7 +21,7 @@ struct Error {
     ErrorCode code = ErrorCode::failure;
     std::string message;  ///< One sentence that contains the offending values.
     std::string where;    ///< "room.obj:41", "--error", or empty.
-    std::string hint;     ///< What to do next, or empty.
+    std::string hint;     ///< Suggested action, or empty.
 };
 
 /// A value, or the reason why there is none.

@@ -14,7 +14,7 @@ struct WeightedPlace {
 
 /// Number of points of a rule.
 enum class RuleOrder {
-    nodes,  ///< As many as the polynomial has coefficients: 2 x 2 Gauss, 3 on triangles, one per corner on cells.
+    nodes,  ///< One point per coefficient of the polynomial: 2 x 2 Gauss, 3 on triangles, one per corner on cells.
     fine,   ///< Enough to measure the error of a linear fit: 3 x 3 Gauss, 7 on triangles [Radon48], 3 per corner on
             ///< cells.
     finer,  ///< Enough for a fit of second degree: 16 points, `scattered_square_rule`, [Dunavant85], or these mapped to

@@ -35,7 +35,7 @@ bool Beams::blocks(PieceId p, const Receiver& at, const Point& from) const {
     const Vec3 d = from - at.x;
     bool left = false, right = false;
     for (std::size_t i = 0, m = corners.size(); i < m; ++i) {
-        // The same product for each pair of corners, so that pieces on both sides of an edge agree on which side d
+        // Each pair of corners uses an identical product, so that pieces on both sides of an edge agree on which side d
         // passes.
         const double side = dot(d, cross(corners[i] - at.x, corners[i + 1 == m ? 0 : i + 1] - at.x));
         left |= side > 0, right |= side < 0;

@@ -128,7 +128,7 @@ TEST(CrowdedLight, HasIndependentErrorsAtNeighbouringPoints) {
 }
 
 TEST(CrowdedLight, ReportsItsVariance) {
-    // The same point 200 times, moved by tiny amounts: different random points on the lamp, the same light.
+    // Uses one point 200 times, moved by tiny amounts: the random points on the lamp differ, the exact light does not.
     Floor floor("500");
     ReceiverLight rest;
     const CrowdedLight::Crowd crowd = floor.crowd(0.1, rest);

@@ -37,7 +37,7 @@ double light_at(const Stage& stage, const Point& x, const Normal& n, RegionId ow
     DirectLight::Workspace workspace;
     const double exact = stage.direct.irradiance(x, n, own, workspace)[0];
     if (own.is_none()) return exact;
-    // The same light by a prepared part of the surface.
+    // Compares with the light from a prepared part of the surface.
     ReceiverLight light;
     const Frame frame(n);
     const double r = 0.01;

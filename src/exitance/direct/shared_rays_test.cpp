@@ -85,7 +85,7 @@ TEST(SharedRays, SkipHiddenAndFullyVisibleSourcesOfAPart) {
     const double exact = mean(direct.irradiance(light, x, panel.workspace));
     // Probability of a larger deviation: 1e-4.
     EXPECT_NEAR(mean(found.irradiance), exact, 4 * std::sqrt(found.variance));
-    // The same point and set give the same light, whatever was computed in between.
+    // The result for a point and set does not depend on the calls in between.
     shared.at(part, narrow[2], 7, {0.02, 0}, panel.workspace);
     EXPECT_EQ(shared.at(part, x, 3, {0.02, 0}, panel.workspace).irradiance, found.irradiance);
 }

@@ -45,8 +45,8 @@ class FetchedValues {
     DealtUnknowns dealt_{0};
     std::vector<std::uint32_t> fetched_;  ///< Fetched unknowns, ascending.
     std::size_t messages_ = 0;            ///< Messages that deliver them.
-    std::size_t messages_of_twice_ = 0,
-                fetched_of_twice_ = 0;  ///< The same for twice as many processes, both halves together.
+    /// Messages and fetched unknowns if there were twice as many processes, for both halves together.
+    std::size_t messages_of_twice_ = 0, fetched_of_twice_ = 0;
     std::shared_ptr<const ValueScatter> scatter_;
 };
 

@@ -16,7 +16,7 @@ void join_by_edges(const Scene& scene, DisjointSets& sets) {
     std::vector<Point> corners;
     for (SurfaceId s : scene.surfaces().ids())
         corners.insert(corners.end(), scene.outline(s).begin(), scene.outline(s).end());
-    // The same tolerance as findings about edges.
+    // Uses the tolerance of the findings about edges.
     const std::vector<std::uint32_t> place = weld(corners, 1e-8 * scene.size());
     struct Edge {
         std::uint32_t low, high, face;

@@ -191,7 +191,7 @@ TEST(Enclosure, WindowsThatFaceEachOtherHaveNone) {
     Pane other = room.d.panes[0];
     other.corners = {{3, 8, 1}, {1, 8, 1}, {1, 8, 2}, {3, 8, 2}};
     EXPECT_EQ(held(room.scene()), room.scene().regions().size());
-    // The same room again, rotated, across a courtyard.
+    // Adds a rotated copy of the room across a courtyard.
     const std::vector<SceneDescription::Face> faces = room.d.faces;
     for (const SceneDescription::Face& f : faces) {
         std::vector<Point> corners;

@@ -94,7 +94,7 @@ struct Finding {
     std::string file;
     int line = 0;
     std::string message;  ///< One sentence with the offending values; for a repair, also what was done.
-    std::string hint;     ///< What to do next, or empty.
+    std::string hint;     ///< Suggested action, or empty.
 };
 
 /// Location of a finding, for pictures.

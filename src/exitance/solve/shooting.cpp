@@ -121,7 +121,7 @@ class Patches {
     std::span<Spectrum> unshot_, irradiance_;
     Groups receivers_;  ///< Receivers of each patch.
     double total_area_;
-    std::vector<Spectrum> returned_;     ///< By receiver: its reflectance times its share of the patch's area.
+    std::vector<Spectrum> returned_;     ///< Reflectance of each receiver times its share of the patch's area.
     std::vector<Spectrum> reflectance_;  ///< Mean reflectance of each patch.
     Spectrum mean_reflectance_;
     /// With overshooting: mean of the unshot light with all its reflections, sum A u / sum A / (1 - mean rho), W/m^2.

@@ -11,9 +11,9 @@ namespace exitance {
 /// Shooting patches and receiving elements. Receivers are numbered like leaves. Spans have one entry per receiver or
 /// one per patch.
 struct ShootingProblem {
-    std::span<const std::uint32_t> patch_of;            ///< By receiver: the patch that contains it.
+    std::span<const std::uint32_t> patch_of;            ///< Patch of each receiver.
     std::span<const double> receiver_area, patch_area;  ///< m^2
-    std::span<const Spectrum> reflectance;              ///< By receiver.
+    std::span<const Spectrum> reflectance;              ///< Reflectance of each receiver.
     /// Form factors F_ij from every receiver i to patch j; the span stays valid until the next call.
     std::function<std::span<const float>(std::size_t patch)> column;
 };

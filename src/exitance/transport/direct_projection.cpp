@@ -214,7 +214,7 @@ class Projector {
     double mean_area_ = 0;
     bool many_ = false, is_crowd_ = false;
     double share_ = 0;              ///< Squared error that an element may have if the scene is one room, (W/m^2)^2 m^2.
-    std::vector<double> share_in_;  ///< The same for each room if there are several.
+    std::vector<double> share_in_;  ///< Like `share_`, for each room; used if there are several.
     std::vector<NoisyFit> found_;
     Field<ElementId, double> noise_;
 };

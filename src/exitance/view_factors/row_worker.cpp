@@ -122,7 +122,7 @@ double RowWorker::occluded_pieces(const ViewFace& receiver, const ViewFace& sour
         demand.most_cells = most_cells(tolerance_);
         if (const std::optional<double> found = exchange_(straight, demand, unoccluded)) return *found;
     }
-    // Of faces of similar size, the one with fewer nearby blockers is the receiver.
+    // If both faces have a similar size, the one with fewer nearby blockers is the receiver.
     const bool alike = source.area < alike_areas * receiver.area && receiver.area < alike_areas * source.area;
     const bool turned = alike ? min_crowding_ratio * crowding(source.plane, source.diameter, standing_between_) <
                                     crowding(receiver.plane, receiver.diameter, standing_between_)

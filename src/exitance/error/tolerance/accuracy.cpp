@@ -21,8 +21,8 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     namespace c = calibrated;
     const auto count = [&](double n) { return static_cast<std::size_t>(n / error); };
     const auto round_up = [](double n) { return static_cast<int>(std::ceil(n)); };
-    // A strip of width w along a concave edge, where the light varies like w^0.7, contributes w^1.2 to the error (from
-    // [Atkinson00]).
+    // A strip of width w along a concave edge, where the light varies like w^0.7, contributes w^1.2 to the error
+    // (derived from [Atkinson00]).
     const double strips = std::log2(std::max(1.0, c::strip_share / error)) / 1.2;
     const double further = std::clamp(std::log2(c::finer_strips_below / error), 0.0, 1.0);
     Knobs knobs;

@@ -18,7 +18,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "binary PLY is converted to little-endian numbers");
 
-constexpr std::size_t max_corners = 10'000;  ///< Of a face: more are a sign of damage.
+constexpr std::size_t max_corners = 10'000;  ///< Limit on the corners of a face; more indicate a damaged file.
 
 enum class Number : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 

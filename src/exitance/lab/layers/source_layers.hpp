@@ -19,7 +19,7 @@ struct LayersReport {
 LightLayers make_light_layers(const Stage& stage, const DiscontinuityOptions& options, LayersReport& report,
                               const StopRequest& stop);
 
-/// The same in the form that the engine uses.
+/// Like `make_light_layers`, in the form that the engine uses.
 LayeredLight make_layered_light(const Stage& stage, const DiscontinuityOptions& options, const StopRequest& stop);
 
 /// Memory of a mesh as a winged-edge structure with one value per node, bytes.

@@ -101,7 +101,7 @@ class LineHierarchy {
     LineHierarchyOptions options_;
     LineTree tree_;
     std::vector<ReceiverCurves> receivers_;
-    std::vector<std::vector<std::uint32_t>> roots_;  ///< By region.
+    std::vector<std::vector<std::uint32_t>> roots_;  ///< Roots of each region.
     std::vector<Point> corners_;
     std::vector<std::size_t> first_corner_;
     std::vector<std::uint8_t> whole_;  ///< Per node: 1 if no cut can split it.

@@ -86,7 +86,7 @@ class Replay {
             for (std::size_t i = made.size(); i-- > 0;) add_first(queue, made[i]);
         else
             for (std::size_t t : made) add_last(queue, t);
-        // As many waiting processors try again as there are new tasks.
+        // One waiting processor per new task tries again.
         if (schedule_ != Schedule::fixed)
             for (std::size_t i = 0; i < made.size() && !waiting_.empty(); ++i) {
                 const auto [since, waiter] = waiting_.front();

@@ -214,7 +214,8 @@ void EdgePairs::pair_on_line(std::span<const std::uint32_t> group) {
         }
     std::sort(intervals.begin(), intervals.end(),
               [](const Interval& a, const Interval& b) { return a.lo != b.lo ? a.lo < b.lo : a.edge < b.edge; });
-    // By side of the face and direction of the edge: only edges of one side and opposite direction are paired.
+    // Open intervals by side of the face and direction of the edge: edges are only paired on one side and with opposite
+    // directions.
     std::array<std::array<std::vector<Interval>, 2>, 2> open;
     for (const Interval& i : intervals) {
         const auto drop_ended = [&](std::vector<Interval>& some) {
