@@ -331,7 +331,8 @@ Certificate Certifier::Content::judge() {
     }
     // The estimate is at least as large as its own uncertainty.
     out.estimate = std::sqrt(std::max(error.mean, error.standard_error)) / mean_reflected;
-    out.uncertainty = 0.5 * error.standard_error / (out.estimate * mean_reflected * mean_reflected);
+    if (out.estimate > 0)
+        out.uncertainty = 0.5 * error.standard_error / (out.estimate * mean_reflected * mean_reflected);
     out.bound = std::max(out.estimate, constant * std::sqrt(upper) / mean_reflected);
     judge_rooms(out);
     return out;
@@ -362,6 +363,7 @@ void Certifier::Content::check_late(Certificate& out) {
     if (misfit.mean_square <= 2 * misfit.standard_error) return;
     const double more = std::sqrt(misfit.mean_square) / mean_reflected;
     out.estimate = std::hypot(out.estimate, more), out.bound = std::hypot(out.bound, more);
+    if (stage.rooms.count() == 0) out.worst_room = out.of_rooms = rooms[0].error = out.estimate;
 }
 
 void Certifier::Content::tell_p99(Certificate& out) {
@@ -443,8 +445,8 @@ Certificate Certifier::look() {
 
 void Certifier::look_at_bodies(Certificate& certificate) {
     if (content_->samples.empty()) return;
+    content_->check_late(certificate);  // before the bodies: a single one has the error of the scene
     content_->look_at_bodies(certificate);
-    content_->check_late(certificate);
 }
 
 const std::vector<BodyError>& Certifier::bodies() const {

@@ -210,11 +210,11 @@ Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& options)
     if (indirect)
         out.rays = method_rays(plan, pilot, projected, solved) + gathered * rays_an_element +
                    certificate_rays(plan, solved, gathered, rays_an_element);
+    if (const auto own = entry_of(plan.options.method).forecast)
+        out.rays += own(stage, plan.options, plan.knobs, pilot.facing, pilot.blocked).rays;
     out.seconds = out.rays * pilot.gather_seconds + solved * lights_an_element * pilot.light_seconds;
     out.memory_bytes = static_cast<double>(peak_memory_bytes()) +
                        method_bytes(stage, plan.options, plan.knobs, solved) + bytes_a_leaf * (solved + leaves);
-    if (const auto own = entry_of(plan.options.method).forecast)
-        out.rays += own(stage, plan.options, plan.knobs, pilot.facing, pilot.blocked).rays;
     return out;
 }
 
