@@ -14,7 +14,7 @@
 namespace exitance {
 
 /// Interface by which processes that solve one scene together exchange their results. Set by the layer that implements
-/// it (`transport/distributed`), so that lower layers do not depend on it.
+/// it (`processes/distributed`), so that lower layers do not depend on it.
 struct ResultSharing {
     std::size_t processes = 1, own = 0;
     /// Distributes blocks: the bytes of blocks[b] are given by process b % processes and are in all processes

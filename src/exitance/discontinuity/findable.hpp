@@ -10,6 +10,7 @@ namespace exitance {
 /// table of sample points would find them. Zeros are ignored. O(n log n).
 double least_findable(std::vector<double> areas, double unfindable);
 
+/// Number of different ids in `pieces`.
 std::size_t count_different(std::vector<PieceId> pieces);
 
 }  // namespace exitance

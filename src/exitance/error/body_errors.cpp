@@ -154,7 +154,7 @@ std::vector<PointError> BodySurvey::add(std::span<const BodyPoint> points) {
 void BodySurvey::look_at_all() {
     constexpr std::size_t points = BodyMeasure::min_points;
     constexpr std::size_t pilots_of_all = 64;
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;  // bodies in random order
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;  // random, so that the first ones are a sample of all
     for (std::uint32_t b = 0; b < leaves_.size(); ++b)
         if (!leaves_[b].empty()) order.emplace_back(hash(c_.seed, b), b);
     std::sort(order.begin(), order.end());

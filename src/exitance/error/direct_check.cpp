@@ -71,7 +71,7 @@ struct PilotHit {
 
 /// Results of the pilot at one place: squares of the terms of one ray.
 struct PilotFound {
-    double gather = 0;  ///< Variance of the gather, times the weight.
+    double gather = 0;  ///< Variance of the gather without a check, times the place's weight in the estimate.
     std::array<PilotHit, pilot_rays> hits;
 };
 

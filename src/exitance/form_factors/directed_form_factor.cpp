@@ -109,7 +109,7 @@ class DirectedIntegral {
     const Normal& n_;
     const RelativeRadiance& p_;
     double widest_;       ///< Largest allowed angle of a triangle's longest edge, radians.
-    double allowed_ = 0;  ///< Allowed absolute error of p.
+    double allowed_ = 0;  ///< Allowed absolute error of the relative radiance p_.
 };
 
 }  // namespace

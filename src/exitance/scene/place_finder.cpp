@@ -75,7 +75,7 @@ PlaceFinder::PlaceFinder(const Scene& scene) : scene_(&scene), locator_(scene), 
     tree_ = Bvh(boxes);
 }
 
-/// True if the wall is within a step of p.
+/// True if the wall is nearer to p than `step_`, the tolerance of positions.
 bool PlaceFinder::touches(const Wall& wall, const Point& p) const {
     const double height = dot(wall.n, p - wall.outline[0]);
     if (!(std::abs(height) <= step_)) return false;
@@ -136,7 +136,9 @@ PlaceFinder::Sector PlaceFinder::make_sector(const Point& p, const Normal& n, st
     for (const bool at_start : {true, false}) {
         const std::span<const Blade> side = at_start ? start : end;
         const Vec3 off = at_start ? cross(n, side[0].way) : cross(side[0].way, n);  // from the side into the sector
-        const auto depth = [&](const Blade& b) { return b.before * dot(b.across, off); };  // of p within the sector
+        const auto depth = [&](const Blade& b) {
+            return b.before * dot(b.across, off);
+        };  // distance of p from the blade, positive inside the sector
         double least = HUGE_VAL;
         for (const Blade& b : side) least = std::min(least, depth(b));
         bool is_front = false;

@@ -162,7 +162,7 @@ struct SolveOptions {
 
     VisibilityKind visibility = VisibilityKind::automatic;
     std::optional<double> threshold = {};  ///< Threshold of the oracles ff (no unit) and bf (W in the brightest band).
-    bool task_engine = false;              ///< Use the task engine (solve/tasks) for classical hierarchical radiosity.
+    bool task_engine = false;              ///< Use the task engine (lab/tasks) for classical hierarchical radiosity.
     std::optional<std::size_t> visibility_samples = {};  ///< Rays per pair of elements.
     bool triage = true;  ///< Links test for certain visibility or occlusion before they cast rays.
     LinkOracle oracle = LinkOracle::transport;  ///< Criterion by which links are accepted or refined.

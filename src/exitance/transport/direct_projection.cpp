@@ -11,7 +11,7 @@ namespace {
 
 constexpr double time_for_rays = 0.2;  ///< Seconds after a stop request during which rays are still cast.
 
-/// Sum of w E_dir over the leaves' area, W.
+/// Sum of light_weight() times E_dir over the leaves' area, W.
 double weighted_flux(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,
                      const Field<ElementId, DirectFit>& fit) {
     double flux = 0;

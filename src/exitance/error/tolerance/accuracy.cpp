@@ -72,9 +72,10 @@ Knobs knobs_for_fine_sums(const Knobs& knobs, double error, const std::vector<Pi
     // The gather smooths the method's solution, and its own elements are split as needed.
     out.solve_mesh.edge *= 2, out.solve_rays.average *= 0.5;
     out.gather_mesh.edge = 2 * edge_for_sums(pieces, error);
-    // Light must be accurate at edges, too: two strips more than the mean square needs, split into squares at open
-    // ends. Every strip gets enough rays that its noise is not visible from the strip across the edge.
+    // Light must be accurate at edges, too: that takes two strips more than the mean square needs.
     out.gather_mesh.grading_levels += 2;
+    // The strips are split into squares at open ends, and get enough rays that their noise is not visible from the
+    // strip across the edge.
     out.solve_mesh.longest_end = out.gather_mesh.longest_end = c::fine_longest_end;
     out.solve_rays.least = static_cast<unsigned>(c::fine_least_rays);
     out.gather_tolerance = c::fine_sum_tolerance * error;
@@ -135,8 +136,8 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
         const Knobs fine = knobs_for_fine_sums(straight, error, pieces);
         out = t < 1 ? between(out, fine, t) : fine;
     }
-    // Refinement solves an equation that does not hold for a limited number of bounces. For large errors, the method is
-    // accurate enough without it.
+    // Refining the delivered light (`refined_light`) iterates the equation for all reflections, so it cannot be used
+    // for a limited number of them. For large errors, and where all settings are fine (t = 1), it is not needed.
     out.refined = options.bounces < 0 && t < 1 && error < c::refined_below;
     apply_user_knobs(out, options);
     return out;

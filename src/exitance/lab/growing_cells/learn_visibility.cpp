@@ -227,7 +227,7 @@ class PassedToCells {
         std::uint32_t cell;
         double share;
     };
-    std::vector<double> own_;  ///< Per cell: weight of the light on its own side.
+    std::vector<double> own_;  ///< Per cell on a pane: weight of the light that arrives on the cell's side.
     std::vector<std::vector<Share>> behind_;
 };
 
