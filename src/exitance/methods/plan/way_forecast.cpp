@@ -17,7 +17,7 @@
 namespace exitance {
 namespace {
 
-// Measured by `solve --threads 1 --verbose` on tubes, boxes and prisms at 2 to 0.1% (docs/figures.md, section G).
+// Measured by `solve --threads 1 --verbose` on tubes, boxes and prisms at 2 to 0.1% (bench/results/empty_rooms.csv).
 constexpr double terms_a_ray = 10;           ///< Elements summed over, 25 ns each, in the time of a ray that is read.
 constexpr double terms_beside_pieces = 300;  ///< Of a place: elements that pieces near it are opened to.
 constexpr double light_rays = 64;            ///< Direct light on an element, in rays.
