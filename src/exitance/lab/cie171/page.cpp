@@ -72,9 +72,8 @@ std::string away_from_edges(const std::vector<Cie171Row>& rows) {
         if (row.study == "5.8" && std::min(row.x.x, row.x.y) >= near) most = std::max(most, row.relative_error);
     if (most < 0) return "";
     return fmt::format(
-        "\n5.8 is solved to an RMS error of 1e-4. Its largest errors stand 4 mm from an edge, where reflected light "
-        "has "
-        "a bend that\nelements follow last; 0.1 m and farther from edges the largest is {}.\n",
+        "\n5.8 is solved to an RMS error of 1e-4. Its largest errors are 4 mm from an edge, where reflected light "
+        "bends most;\n0.1 m and farther from edges the largest error is {}.\n",
         percent(most));
 }
 
@@ -99,13 +98,13 @@ percent close to openings.
 
 std::string cie171_page(const std::vector<Cie171Row>& rows) {
     std::string page = opening;
-    page += "| case | what | values | mean error | largest error | best published |\n|---|---|---|---|---|---|\n";
+    page += "| case | subject | values | mean error | largest error | best published |\n|---|---|---|---|---|---|\n";
     for (const Cie171Summary& s : summarize(rows))
         page += fmt::format("| {} | {} | {} | {} | {} | {} |\n", s.study, what_is(s.study), s.points, percent(s.mean),
                             percent(s.largest), published(s.study));
     page += away_from_edges(rows);
     page +=
-        "\n## The worst value of every scene\nlx; of fluxes lm.\n\n| case | scene | at | exact | exitance | error "
+        "\n## The worst value of every scene\nValues are in lx; fluxes are in lm.\n\n| case | scene | at | exact | exitance | error "
         "|\n|---|---|---|---|---|---|\n";
     for (const Cie171Row* row : worst_of_scenes(rows))
         page += fmt::format("| {} | {} | {}{}{} | {} | {} | {} |\n", row->study, row->scene, row->parameter,
