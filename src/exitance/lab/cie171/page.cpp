@@ -104,7 +104,8 @@ std::string cie171_page(const std::vector<Cie171Row>& rows) {
                             percent(s.largest), published(s.study));
     page += away_from_edges(rows);
     page +=
-        "\n## The worst value of every scene\nValues are in lx; fluxes are in lm.\n\n| case | scene | at | exact | exitance | error "
+        "\n## The worst value of every scene\nValues are in lx; fluxes are in lm.\n\n| case | scene | at | exact | "
+        "exitance | error "
         "|\n|---|---|---|---|---|---|\n";
     for (const Cie171Row* row : worst_of_scenes(rows))
         page += fmt::format("| {} | {} | {}{}{} | {} | {} | {} |\n", row->study, row->scene, row->parameter,
