@@ -1,6 +1,6 @@
-// What depends on each calibrated number: exitance-calibrate [NAME...] [--error E]. Solves generated scenes, which are
-// not those of README or of the tests, with the number at half, at its value and at double, and prints work (rays and
-// 50 times the leaf elements) and true error, each by those at its value.
+// Sensitivity to each calibrated number: exitance-calibrate [NAME...] [--error E]. Solves generated scenes, which are
+// not those of README or of the tests, with the number at half, at its value and at double. Prints work (rays plus 50
+// times the leaf elements) and true error, each relative to those at its value.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -21,7 +21,7 @@ struct Case {
     std::map<std::string, std::string> values;
     SolveOptions options;
 };
-/// Where light is summed, where rays find it, among small things; links with clusters, and links alone of third order.
+/// Cases: sums over elements, rays, small objects; links with clusters, and links of third order without gather.
 const std::vector<Case> cases{{"tube", {{"rho", "0.6"}, {"length", "4"}}, {}},
                               {"clutter", {{"n", "20"}}, {}},
                               {"complex", {{"m", "1"}}, {}},

@@ -1,11 +1,11 @@
-// Rows of a file of view factors against independent rays:
+// Checks rows of a file of view factors with independent rays:
 //
 //     exitance-check-view-factors SCENE F.h5 ERROR [ROWS=20 [RAYS=10000000 [SEED=1 [THREADS=1]]]]
 //
 // Draws rows at random and casts RAYS rays from each face in two halves, G1 and G2. Prints for every row the squared
-// error sum_j (F - G1)_j (F - G2)_j with its standard error, and the largest excess of |sum_j (F - G)_j x_j| over
-// ERROR in standard errors, for x = 1 and 16 random groups of neighbouring faces. Exit status 1 if an excess is above
-// 3.5 standard errors.
+// error sum_j (F - G1)_j (F - G2)_j with its standard error, and the largest excess of |sum_j (F - G)_j x_j| over ERROR
+// in standard errors, for x = 1 and 16 random groups of neighbouring faces. Exit status 1 if an excess is above 3.5
+// standard errors.
 #include <cstdio>
 #include <cstdlib>
 

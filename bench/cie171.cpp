@@ -1,4 +1,4 @@
-// Runs the cases of CIE 171: exitance-cie171 FOLDER [--quick] [--only 5.8]. Prints a line a case.
+// Runs the cases of CIE 171: exitance-cie171 FOLDER [--quick] [--only 5.8]. Prints one line per case.
 #include <cstdio>
 #include <string>
 

@@ -10,8 +10,8 @@
 #include "exitance/samples/generate.hpp"
 #include "exitance/visibility/rays.hpp"
 
-// Exact direct light and packets of rays in rooms full of chairs: time a point (or ray) at three sizes, and for direct
-// light the largest difference between its two ways, subtraction and edge sums.
+// Exact direct light and packets of rays in rooms full of chairs: time per point (or ray) at three sizes. For direct
+// light also the largest difference between its two algorithms, subtraction and edge sums.
 namespace {
 
 using namespace exitance;

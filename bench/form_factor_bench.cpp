@@ -9,7 +9,7 @@
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/form_factors/point_to_polygon_batch.hpp"
 
-// Form factors, nothing in between: time an entry, and the largest relative error against the scalar contour sum.
+// Form factors without blockers: time per entry, and the largest relative error against the scalar contour sum.
 namespace {
 
 using namespace exitance;
@@ -61,7 +61,7 @@ void point_to_quad_scalar(benchmark::State& state) {
 }
 BENCHMARK(point_to_quad_scalar)->Arg(2)->Arg(20)->Arg(100)->ArgName("distance");
 
-/// Perpendicular unit squares that share an edge, the hardest of the plain pairs.
+/// Perpendicular unit squares that share an edge, the most difficult simple pair.
 void pair_with_a_shared_edge(benchmark::State& state) {
     const std::vector<Point> floor = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     const std::vector<Point> wall = {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}};

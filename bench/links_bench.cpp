@@ -24,7 +24,7 @@ Scene make_box() {
     return std::move(*make_scene(std::move(d)).scene);
 }
 
-/// Elements of a box, and as many links between the leaves of its faces as are asked for.
+/// Elements of a box, and `count` links between the leaves of its faces.
 struct Linked {
     Scene scene = make_box();
     Stage stage{scene};
@@ -34,8 +34,8 @@ struct Linked {
     NodalField b, E;
     Links links;
 
-    /// Every receiver is linked to elements next to each other, as those that see about the same are, and a share
-    /// `hidden` of the nodes' pairs is not visible.
+    /// Links every receiver to adjacent elements, as is typical of elements with similar visibility. A share `hidden`
+    /// of the pairs of nodes is not visible.
     Linked(HierarchyBasis kind, double edge, std::size_t count, double hidden)
         : tree(stage.make_elements({edge, 0})),
           basis(kind),
@@ -79,7 +79,7 @@ struct Linked {
 
 }  // namespace
 
-/// Memory's own speed: a = b + s c on arrays far larger than the caches, on all threads; bytes as STREAM counts them.
+/// Memory bandwidth: a = b + s c on arrays far larger than the caches, on all threads; bytes counted as in STREAM.
 static void stream_triad(benchmark::State& state) {
     set_threads(static_cast<int>(state.range(0)));
     const std::size_t n = 16'000'000;
@@ -96,7 +96,7 @@ static void stream_triad(benchmark::State& state) {
 }
 BENCHMARK(stream_triad)->Arg(1)->Arg(2)->UseRealTime();
 
-/// Stored constant links: bytes of the links themselves against those of stream_triad, 8 each.
+/// Stored constant links: bandwidth of reading the links, 8 bytes each, to be compared with stream_triad.
 static void gather_constant_links(benchmark::State& state) {
     Linked linked(HierarchyBasis::haar, 1.0 / static_cast<double>(state.range(2)),
                   static_cast<std::size_t>(state.range(1)), 0);
@@ -114,7 +114,7 @@ BENCHMARK(gather_constant_links)
     ->ArgNames({"threads", "links", "edge"})
     ->UseRealTime();
 
-/// Kernels made anew, with masks: nanoseconds a link on one core.
+/// Links whose kernels are recomputed, with visibility masks: nanoseconds per link on one core.
 static void gather_kernel_links(benchmark::State& state) {
     const auto kind = state.range(0) == 2 ? HierarchyBasis::multiwavelet2 : HierarchyBasis::multiwavelet3;
     Linked linked(kind, 1.0 / 31, static_cast<std::size_t>(state.range(1)), 0.2);

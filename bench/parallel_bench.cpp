@@ -6,7 +6,7 @@
 
 namespace exitance {
 
-/// What a sum in fixed blocks costs a term, and how far it is from the exact value.
+/// Cost per term of a sum in fixed blocks, and its relative error.
 static void sum_in_blocks(benchmark::State& state) {
     const auto count = static_cast<std::size_t>(state.range(0));
     double sum = 0;

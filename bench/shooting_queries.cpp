@@ -1,11 +1,12 @@
-// How much of a progressive solve with `--visibility fractional` goes to rays, and how fast those are beside Embree's
-// own packets:
+// Share of rays in the time of a progressive solve with `--visibility fractional`, and their speed compared with
+// Embree's own packets:
 //
 //     exitance-shooting-queries SCENE.obj [MESH_SIZE=1]
 //
-// One thread, CPU seconds. First the whole solve, from scene to solution. Then the visible shares of pairs of elements
-// as its columns ask for them, timed in blocks, and after each block rtcOccluded16 on the same packets, made in
-// advance. A query is everything from two elements to the share that is visible. The answers of both are compared.
+// One thread, CPU seconds. First runs the whole solve, from scene to solution. Then computes the visible shares of the
+// pairs of elements that its columns need, timed in blocks, and after each block runs rtcOccluded16 on the same
+// packets, made in advance. A query includes everything from two elements to their visible share. The results of both
+// are compared.
 #if EXITANCE_EMBREE_MAJOR == 3
 #include <embree3/rtcore.h>
 #else
@@ -67,7 +68,7 @@ void trace_occluded(const int* valid, RTCScene scene, QueryArguments& arguments,
 
 #endif
 
-/// The same triangles in Embree's hands alone, in the coordinates of RayEnds.
+/// The same triangles in an Embree scene of its own, in the coordinates of RayEnds.
 class RawScene {
   public:
     explicit RawScene(const Scene& scene) {
@@ -129,7 +130,7 @@ struct Times {
     std::size_t rays = 0, different = 0;
 };
 
-/// Pairs with light between them, of every `step`-th source, in the order of its column.
+/// Measures pairs with a form factor above 0 for every `step`-th source, in the order of its column.
 Times measure(const PatchTransfer& transfer, std::span<const ElementId> elements, RawScene& raw, std::size_t step) {
     constexpr std::size_t block = 256;
     Times times;

@@ -1,11 +1,11 @@
-// Entries of a matrix of view factors against long references of their own:
+// Checks entries of a matrix of view factors against independent references:
 //
 //     exitance-view-factor-pairs SCENE.obj [PAIRS=200 [SEED=1 [TOLERANCE=1e-4]]]
 //
-// Draws pairs of faces with F > 1e-5. A reference is the mean, over 16 times 1024 scrambled Sobol points of the
-// receiver (32768 where that leaves more than 2e-4), of the exact form factor to the visible part of the source, every
-// face of the scene a possible occluder: no critical lines, no cells, no rules that judge themselves. The spread of the
-// sixteen is its standard error.
+// Draws pairs of faces with F > 1e-5. A reference is the mean exact form factor to the visible part of the source, with
+// every face of the scene a possible blocker, over 16 times 1024 scrambled Sobol points of the receiver (32768 if the
+// error is still above 2e-4). It uses no critical lines, no cells, and no adaptive rules. The spread of the sixteen
+// means is its standard error.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -21,7 +21,7 @@ namespace {
 
 using namespace exitance;
 
-/// The same faces, each of a material of its own, so that none are merged.
+/// The same faces with separate materials, so that none are merged.
 Scene with_faces_apart(const Scene& scene) {
     SceneDescription out;
     out.groups = {"all"};
@@ -45,7 +45,7 @@ struct Reference {
     double F = 0, standard_error = 0;
 };
 
-/// Of a convex face that sees another one.
+/// Reference for a convex face and another face that it sees.
 Reference long_reference(const Scene& scene, const Occluders& occluders, SurfaceId i, SurfaceId j,
                          std::uint32_t points) {
     constexpr std::uint32_t repetitions = 16;

@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Folders in the order in which they may include: each includes itself, its own subfolders and those before it. The
-/// engine, which ends before `io`, knows neither the laboratory nor the program.
+/// Folders in the order of dependency: each may include itself, its subfolders and the folders before it. Nothing but
+/// the program includes the laboratory.
 const std::vector<std::string> order{"base",       "calibration",  "scene",   "samples", "processes", "form_factors",
                                      "visibility", "shadow_lines", "mesh",    "basis",   "direct",    "transport",
                                      "links",      "solution",     "solve",   "gather",  "evaluate",  "discontinuity",

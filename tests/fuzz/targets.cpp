@@ -58,6 +58,10 @@ void read_rad_bytes(const std::string& bytes) {
     (void)load_scene(file_with(bytes, "s.rad"));
 }
 
+void read_ply_bytes(const std::string& bytes) {
+    (void)load_scene(file_with(bytes, "s.ply"));
+}
+
 void read_csv_bytes(const std::string& bytes) {
     (void)load_probe_points(file_with(bytes, "p.csv"));
 }
@@ -90,6 +94,7 @@ std::span<const Target> targets() {
         Target{"glb", read_glb_bytes, mend_glb},
         Target{"gltf", read_gltf_bytes},
         Target{"rad", read_rad_bytes},
+        Target{"ply", read_ply_bytes},
         Target{"csv", read_csv_bytes},
         Target{"pts", read_pts_bytes},
         Target{"reference", read_reference_bytes},

@@ -16,14 +16,16 @@
 
 namespace exitance {
 
-/// Bytes that are dealt out among `of` writers in blocks, like cards: block b is that of writer b % of.
+/// The part of one writer in a byte stream that `of` writers share block by block, round robin: block b belongs to
+/// writer b % of.
 struct DealtBytes {
     static constexpr std::size_t block = std::size_t(1) << 14;
 
-    std::size_t own = 0, of = 1;  ///< Which writer this is, and how many there are.
+    std::size_t own = 0, of = 1;  ///< Index of this writer, and the number of writers.
 };
 
-/// All bytes, from what each writer has of them; empty where these are not as they were dealt.
+/// Reassembles the byte stream from the parts of all writers, in order. Returns an empty string if the sizes of the
+/// parts do not match a round-robin distribution.
 inline std::string put_together(std::span<const std::string> dealt) {
     std::string all;
     std::size_t size = 0;
@@ -39,15 +41,15 @@ inline std::string put_together(std::span<const std::string> dealt) {
     return all;
 }
 
-/// Values as bytes, for the same program on the same machine to read again. What is written and what is read is said
-/// once, for both directions:
+/// Serializes values to bytes, to be read back by the same program on the same machine. One template defines both
+/// directions of a type:
 ///
 ///     template <class Archive> void archive(Archive& a, Thing& thing) { a(thing.name, thing.values); }
 class ArchiveWriter {
   public:
     static constexpr bool reads = false;
 
-    /// Keeps what of all that is written is dealt to this writer; the others write the same.
+    /// Stores only the blocks of the stream that belong to this writer. All writers must be given the same values.
     explicit ArchiveWriter(DealtBytes dealt = {}) : dealt_(dealt) {}
 
     template <class... T>
@@ -61,7 +63,7 @@ class ArchiveWriter {
             if (written_ / DealtBytes::block % dealt_.of == dealt_.own) bytes_.append(from, count);
         }
     }
-    /// How many bytes all writers have together.
+    /// Size of the whole stream, over all writers, bytes.
     std::size_t size() const { return written_; }
     std::string take() { return std::move(bytes_); }
 
@@ -71,7 +73,7 @@ class ArchiveWriter {
     std::string bytes_;
 };
 
-/// Reads them. Where bytes are missing, values come out as zero and good() says so.
+/// Reads values back from bytes. If bytes are missing, the values are zero and good() is false.
 class ArchiveReader {
   public:
     static constexpr bool reads = true;
@@ -96,7 +98,8 @@ class ArchiveReader {
     bool good_ = true;
 };
 
-/// How many things follow; a reader takes no number that what is left cannot hold.
+/// Writes or reads the number of elements that follow. When reading, a count that needs more than the remaining bytes
+/// (at `bytes_each` per element) fails and returns 0, so that damaged input allocates no memory.
 template <class Archive>
 std::size_t archive_size(Archive& a, std::size_t size, std::size_t bytes_each) {
     std::uint64_t count = size;
@@ -109,14 +112,15 @@ std::size_t archive_size(Archive& a, std::size_t size, std::size_t bytes_each) {
     return count;
 }
 
-/// Plain values, byte for byte.
+/// Trivially copyable values: stored byte for byte.
 template <class Archive, class T>
 requires std::is_trivially_copyable_v<T>
 void archive(Archive& a, T& value) {
     a.raw(const_cast<void*>(static_cast<const void*>(&value)), sizeof value);
 }
 
-/// Any byte but 0 is true; as a bool itself it might be neither.
+/// A bool is read through a byte, since a bool whose byte is neither 0 nor 1 is undefined behaviour; any byte but 0 is
+/// true.
 template <class Archive>
 void archive(Archive& a, bool& value) {
     std::uint8_t byte = value;

@@ -29,7 +29,7 @@ Thing sample() {
 
 }  // namespace
 
-TEST(Archive, GivesBackWhatWasPutIn) {
+TEST(Archive, ReadsBackWhatWasWritten) {
     Thing in = sample(), out;
     out.absent = {1.0};
     ArchiveWriter writer;
@@ -70,7 +70,7 @@ TEST(Archive, WhatIsDealtOutComesTogetherAgain) {
     }
 }
 
-TEST(Archive, WhatIsCutShortIsNoticedAndTakesNoMemory) {
+TEST(Archive, TruncatedInputIsDetectedAndAllocatesNothing) {
     Thing in = sample();
     ArchiveWriter writer;
     writer(in);
@@ -82,11 +82,11 @@ TEST(Archive, WhatIsCutShortIsNoticedAndTakesNoMemory) {
         EXPECT_LE(out.lists.size(), 3u);
         EXPECT_LE(out.field.size(), 3u);
     }
-    std::uint64_t much = ~std::uint64_t(0);
-    ArchiveWriter lie;
-    lie(much);
-    const std::string lies = lie.take();
-    ArchiveReader reader(lies);
+    std::uint64_t huge_count = ~std::uint64_t(0);
+    ArchiveWriter writer_of_count;
+    writer_of_count(huge_count);
+    const std::string damaged = writer_of_count.take();
+    ArchiveReader reader(damaged);
     std::vector<double> values;
     reader(values);
     EXPECT_TRUE(values.empty());

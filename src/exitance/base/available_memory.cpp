@@ -11,7 +11,7 @@
 namespace exitance {
 namespace {
 
-/// Of the lines "Name: KIBIBYTES kB" that the kernel writes; 0 where there is none of the name.
+/// Reads a line "Name: KIBIBYTES kB" of a file in /proc; returns bytes, or 0 if there is no line of that name.
 std::size_t kernel_number(const char* file, const std::string& name) {
     std::ifstream in(file);
     for (std::string word; in >> word;)
@@ -19,7 +19,7 @@ std::size_t kernel_number(const char* file, const std::string& name) {
     return 0;
 }
 
-/// The folder of the process's control group (version 2).
+/// Returns the directory of the process's control group (version 2).
 std::string control_group() {
     std::ifstream in("/proc/self/cgroup");
     for (std::string line; std::getline(in, line);)

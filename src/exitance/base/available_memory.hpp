@@ -4,12 +4,13 @@
 
 namespace exitance {
 
-/// The resident memory of the process now, bytes. Pages that it may have in common with others (of files and of shared
-/// memory) count by `share_of_common`. 0 where the system does not report it. About 10 us.
+/// Returns the current resident memory of the process, bytes. Pages that may be shared with other processes (of files
+/// and of shared memory) are multiplied by `share_of_common`. 0 if the system does not report it. About 10 us.
 std::size_t resident_memory_bytes(double share_of_common = 1);
 
-/// Memory that the process can take on top of what it holds, bytes: what the machine has available without swapping,
-/// or what its control group still allows, whichever is less. The machine's memory where the system reports neither.
+/// Returns how much more memory the process can allocate, bytes: the machine's memory that is available without
+/// swapping, limited by the rest of its control group's limit. If the system reports neither, the machine's physical
+/// memory.
 std::size_t available_memory_bytes();
 
 }  // namespace exitance

@@ -2,14 +2,14 @@
 
 namespace exitance {
 
-/// Builds the tree in the order in which it is stored: a node, its first child's subtree, its second child's subtree.
+/// Builds the tree in storage order: a node, the subtree of its first child, the subtree of its second child.
 class BvhBuilder {
   public:
     explicit BvhBuilder(Bvh& bvh) : bvh_(bvh) {}
 
     void build() {
         struct Task {
-            std::uint32_t first, last, depth, parent;  // parent: whose second child this becomes
+            std::uint32_t first, last, depth, parent;  // parent: the node whose second child this becomes
         };
         constexpr std::uint32_t nobody = 0xffffffffu;
         std::vector<Task> tasks;
@@ -40,8 +40,8 @@ class BvhBuilder {
         std::uint32_t count = 0;
     };
 
-    /// Orders the items [first, last) so that each side of a split stands together; returns where the second side
-    /// begins, or `first` for a leaf. Writes their box.
+    /// Partitions the items [first, last) into two contiguous halves. Returns the start of the second half, or `first`
+    /// for a leaf. Computes their box.
     std::uint32_t split(std::uint32_t first, std::uint32_t last, std::uint32_t depth, Box& box) {
         Box centres;
         for (std::uint32_t i = first; i < last; ++i) {
@@ -52,7 +52,8 @@ class BvhBuilder {
         if (last - first <= Bvh::largest_leaf) return first;
         const Vec3 size = centres.size();
         const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-        if (size[axis] <= 0 || depth > Bvh::deepest / 2) return halfway;  // hopeless boxes: keep the tree shallow
+        // Coinciding centres or a deep tree: split in the middle to limit the depth.
+        if (size[axis] <= 0 || depth > Bvh::deepest / 2) return halfway;
         const std::uint32_t middle = partition(first, last, axis, centres);
         return middle == first || middle == last ? halfway : middle;
     }
@@ -69,7 +70,7 @@ class BvhBuilder {
             bin.box.add(bvh_.items_[i].box);
             ++bin.count;
         }
-        std::array<double, bins> above{};  // cost of everything from a bin on
+        std::array<double, bins> above{};  // cost of all bins from this one on
         Box box;
         std::uint32_t count = 0;
         for (std::size_t b = bins - 1; b > 0; --b) {

@@ -13,8 +13,8 @@
 
 namespace exitance {
 
-/// A convex region as the intersection of half-spaces signed_distance >= 0, laid out for testing boxes against four
-/// planes at a time. Planes past its capacity are left out, which makes the region larger, never smaller.
+/// A convex region, given as the intersection of half-spaces signed_distance >= 0, stored for testing a box against
+/// four planes at a time. Planes beyond `capacity` are ignored, which can only enlarge the region.
 class ConvexRegion {
   public:
     static constexpr std::size_t capacity = 16;
@@ -22,14 +22,14 @@ class ConvexRegion {
     void clear() { count_ = 0; }
     void add(const Plane& plane) {
         if (count_ == capacity) return;
-        if (count_ % 4 == 0)  // the block's other lanes hold all of space
+        if (count_ % 4 == 0)  // the unused lanes of the block accept all of space
             for (std::size_t i = count_; i < count_ + 4; ++i) nx_[i] = ny_[i] = nz_[i] = 0, offset_[i] = 0;
         nx_[count_] = plane.n.x, ny_[count_] = plane.n.y, nz_[count_] = plane.n.z, offset_[count_] = plane.offset;
         ++count_;
     }
     std::size_t size() const { return count_; }
 
-    /// Does the box lie wholly outside one of the planes? If not, it may still miss the region.
+    /// True if the box lies wholly outside one of the planes. If false, the box may still miss the region.
     bool excludes(const Box& box) const {
         for (std::size_t block = 0; block < count_; block += 4) {
             bool out = false;
@@ -49,8 +49,9 @@ class ConvexRegion {
     std::size_t count_ = 0;
 };
 
-/// A binary tree of boxes over items that have boxes, in double precision: the surface area heuristic over 16 bins
-/// [Wald07]. The same boxes give the same tree, and items are visited in the same order, always. O(n log n) to build.
+/// Bounding volume hierarchy over items that have boxes, in double precision, built by the surface area heuristic with
+/// 16 bins [Wald07]. Deterministic: the same boxes give the same tree and the same order of visits. O(n log n) to
+/// build.
 class Bvh {
   public:
     Bvh() = default;
@@ -58,21 +59,21 @@ class Bvh {
 
     std::size_t size() const { return items_.size(); }
     std::size_t memory_bytes() const;
-    /// Calls visit(span) for the plain arrays that most of it stands in.
+    /// Calls visit(span) for each array of the tree (see `share_on_node`).
     template <class Visit>
     void visit_arrays(const Visit& visit) const {
         visit(std::span(nodes_)), visit(std::span(items_));
     }
 
-    /// Calls visit(item) for every item whose box is not wholly outside one plane of the region. Where visit returns a
-    /// bool, true ends the walk; returns whether it was ended. Of two subtrees, what lies farther back along
-    /// `direction` is walked first (the zero vector: in the order of the tree).
+    /// Calls visit(item) for every item whose box is not wholly outside one plane of the region. If visit returns a
+    /// bool, true ends the traversal. Returns true if the traversal was ended. Subtrees farther back along `direction`
+    /// are visited first (zero vector: in the order of the tree).
     template <class Visit>
     bool visit_region(const ConvexRegion& region, const Visit& visit, const Vec3& direction = {}) const {
         return walk([&](const Box& box) { return !region.excludes(box); }, visit, direction);
     }
 
-    /// Calls visit(item) for every item whose box meets the given one; true ends the walk here, too.
+    /// Calls visit(item) for every item whose box intersects the given one; true ends the traversal here, too.
     template <class Visit>
     bool visit_box(const Box& query, const Visit& visit) const {
         return walk(
@@ -83,17 +84,18 @@ class Bvh {
             visit);
     }
 
-    /// Calls visit(item) for items whose box meets the segment from `origin` to origin + length * direction, nearer
-    /// boxes first; `visit` returns the length that is still of interest (0 ends the walk). Boxes count as larger by
-    /// rounding, so that nothing that touches is missed.
+    /// Calls visit(item) for items whose box intersects the segment from `origin` to origin + length * direction,
+    /// nearer boxes first. `visit` returns the length up to which items are still wanted (0 ends the traversal). Boxes
+    /// are enlarged by the rounding error, so that no touching box is missed.
     template <class Visit>
     void visit_segment(const Point& origin, const Vec3& direction, double length, const Visit& visit) const;
 
   private:
     struct Node {
         Box box;
-        std::uint32_t second = 0;  ///< Inner node: its second child; the first one follows it. Leaf: its first item.
-        std::uint32_t count = 0;   ///< Items of a leaf, 0 for inner nodes.
+        /// Inner node: its second child; the first child is the next node. Leaf: its first item.
+        std::uint32_t second = 0;
+        std::uint32_t count = 0;  ///< Number of items of a leaf, 0 for inner nodes.
     };
     struct Item {
         Box box;
@@ -130,8 +132,8 @@ class Bvh {
         return false;
     }
 
-    std::vector<Node> nodes_;  ///< A node's first child follows it.
-    std::vector<Item> items_;  ///< In the order of the leaves.
+    std::vector<Node> nodes_;  ///< Depth-first: the first child of a node is the next node.
+    std::vector<Item> items_;  ///< Sorted by leaf.
 
     friend class BvhBuilder;
 };
@@ -139,8 +141,9 @@ class Bvh {
 template <class Visit>
 void Bvh::visit_segment(const Point& origin, const Vec3& direction, double length, const Visit& visit) const {
     if (nodes_.empty()) return;
-    const Vec3 inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};  // infinite where the segment is level
-    const auto entry = [&](const Box& box) {  // distance to the box, infinite when it is missed
+    // Infinite if the segment is parallel to a plane of the box.
+    const Vec3 inverse{1 / direction.x, 1 / direction.y, 1 / direction.z};
+    const auto entry = [&](const Box& box) {  // distance to the box, infinite if it is missed
         double near = 0, far = length;
         for (std::size_t k = 0; k < 3; ++k) {
             const double lo = box.lo[k] - origin[k], hi = box.hi[k] - origin[k];

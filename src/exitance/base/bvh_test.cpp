@@ -11,12 +11,12 @@ namespace {
 
 std::vector<Box> random_boxes(std::size_t count, double size, std::uint64_t seed = 1) {
     RandomStream random(seed, Stream::mesh);
-    const auto any = [&] { return Vec3{random.uniform(), random.uniform(), random.uniform()}; };
+    const auto random_point = [&] { return Vec3{random.uniform(), random.uniform(), random.uniform()}; };
     std::vector<Box> boxes(count);
     for (Box& box : boxes) {
-        const Point p = any();
+        const Point p = random_point();
         box.add(p);
-        box.add(p + size * any());
+        box.add(p + size * random_point());
     }
     return boxes;
 }

@@ -10,11 +10,11 @@ namespace exitance::detail {
 }
 }  // namespace exitance::detail
 
-/// A cheap invariant, always checked: code is wrong if it fails, never the input.
+/// Aborts if a cheap invariant fails, in every build. A failure means a bug in the code, never bad input.
 #define EXI_CHECK(condition) \
     ((condition) ? void(0) : ::exitance::detail::invariant_broken(#condition, __FILE__, __LINE__))
 
-/// An invariant checked in tested (debug and sanitizer) builds.
+/// Like EXI_CHECK, but only in debug and sanitizer builds.
 #ifdef NDEBUG
 #define EXI_ASSERT(condition) void(0)
 #else

@@ -8,32 +8,33 @@
 
 namespace exitance {
 
-/// Where a long run keeps its state from time to time, so that another run can go on from there. Where several
-/// processes make the run, all of them call it at the same places.
+/// Stores the state of a long run from time to time, so that a later run can continue from it. If several processes
+/// solve together, all of them must make the same calls in the same order.
 class CheckpointStore {
   public:
     virtual ~CheckpointStore() = default;
 
-    /// Is it time to keep the state again?
+    /// True if it is time to save the state again.
     virtual bool is_due() const = 0;
-    /// Keeps a state in place of the one before; of several processes, each gives what of it is dealt to it.
+    /// Saves a state and replaces the previous one. Each of several processes passes its own part (`DealtBytes`).
     virtual void keep(std::string dealt) = 0;
-    /// Hands over the whole state to go on from; empty: begin at the beginning.
+    /// Returns the whole state to continue from; empty if the run starts from scratch.
     virtual std::string resumed() = 0;
 };
 
-/// What a long phase is given, so that its own state can be kept between its rounds. The state of everything around the
-/// phase is added by whoever runs it. Without a store, nothing is ever due.
+/// Lets a long phase save its own state between its rounds. The caller of the phase adds the state of everything around
+/// it. Without a store, nothing is ever saved.
 class SafePoints {
   public:
     SafePoints() = default;
-    /// `keep` is given the phase's state; `resumed`: the one to go on from, or empty.
+    /// keep     receives the state of the phase
+    /// resumed  state of the phase to continue from; empty to start from scratch
     SafePoints(const CheckpointStore* store, const StopRequest& stop, std::function<void(std::string)> keep,
                std::string resumed)
         : store_(store), stop_(&stop), keep_(std::move(keep)), resumed_(std::move(resumed)) {}
 
-    /// Called between rounds: keeps what `write(archive)` writes, if that is due. Not once a stop is asked for, since
-    /// what has been computed then may be half done.
+    /// To be called between rounds. If saving is due, saves the bytes that `write(archive)` writes. Saves nothing after
+    /// a stop was requested, since the results of an interrupted round may be incomplete.
     template <class Write>
     void pass(const Write& write) const {
         if (!store_ || stop_->requested() || !store_->is_due()) return;
@@ -42,7 +43,7 @@ class SafePoints {
         keep_(writer.take());
     }
 
-    /// Goes on from the state of an earlier run, if there is one: read(archive) reads it. Returns whether it did.
+    /// Restores the state of an earlier run by read(archive), if there is one. Returns true if it did.
     template <class Read>
     bool resume(const Read& read) {
         if (resumed_.empty()) return false;

@@ -5,8 +5,8 @@
 
 namespace exitance {
 
-/// A value whose copies share one place in memory until one of them is changed. Reading is safe from any number of
-/// threads; a value that is being changed must be no other thread's to copy.
+/// A value whose copies share memory until one of them is changed. Any number of threads may read; while one thread
+/// changes a value, no other thread may copy it.
 template <class T>
 class CopyOnWrite {
   public:
@@ -15,7 +15,7 @@ class CopyOnWrite {
     const T& operator*() const { return *value_; }
     const T* operator->() const { return value_.get(); }
 
-    /// The value, to be changed: this object's own from here on. O(size of T) where it was shared.
+    /// Returns the value for modification. Copies it first if it is shared: O(size of T).
     T& change() {
         if (value_.use_count() > 1) value_ = std::make_shared<T>(*value_);
         return *value_;

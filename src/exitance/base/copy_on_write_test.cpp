@@ -17,7 +17,7 @@ TEST(CopyOnWrite, CopiesShareUntilOneIsChanged) {
     EXPECT_EQ(b->size(), 4u);
 }
 
-TEST(CopyOnWrite, WhatIsNotSharedIsChangedWhereItStands) {
+TEST(CopyOnWrite, AnUnsharedValueIsChangedInPlace) {
     CopyOnWrite<std::vector<int>> a;
     a.change() = {1, 2, 3};
     const int* const before = a->data();

@@ -8,8 +8,8 @@
 
 namespace exitance {
 
-/// Sets of the numbers [0, n) that grow together; each is known by its least member. Amortised O(log n) a call.
-/// Source: [Tarjan75], paths halved.
+/// Union-find over the numbers [0, n); the root of a set is its smallest member. Amortised O(log n) per call. Source:
+/// [Tarjan75], with path halving.
 class DisjointSets {
   public:
     explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }

@@ -7,27 +7,28 @@
 namespace exitance {
 namespace {
 
-TEST(ErrorShare, IsEvenWhereAllErrAlike) {
+TEST(ErrorShare, IsEvenIfAllErrorsAreEqual) {
     const std::vector<double> errors(5000, 1.0);
     EXPECT_DOUBLE_EQ(share_of_crowd(errors, 1), 1.0 / 5000);
 }
 
-TEST(ErrorShare, GivesWhatSmallOnesLeaveOverToTheOthers) {
-    // 4,900 errors of 1e-5 take 0.049 of a half; the other 100 have 0.451 / 100 each, were that not more than 1 / 1000.
+TEST(ErrorShare, GivesUnusedSharesOfSmallErrorsToLargeOnes) {
+    // 4,900 errors of 1e-5 use 0.049 of the half (0.5). The other 100 would get 0.451 / 100 each, but the limit is 1 /
+    // 1000.
     std::vector<double> errors(4900, 1e-5);
     errors.resize(5000, 1.0);
     EXPECT_DOUBLE_EQ(share_of_crowd(errors, 1), 1e-3);
-    // 1,000 that err much have 0.46 / 1000 each.
+    // The 1,000 large errors get 0.46 / 1000 each.
     errors.assign(4000, 1e-5);
     errors.resize(5000, 1.0);
     EXPECT_NEAR(share_of_crowd(errors, 1), 0.46e-3, 1e-15);
 }
 
-TEST(ErrorShare, OfErrorsThatAreSmallTogetherIsTheLargest) {
+TEST(ErrorShare, IsTheLargestIfAllErrorsAreSmall) {
     EXPECT_DOUBLE_EQ(share_of_crowd(std::vector<double>(8000, 1e-9), 1), 1e-3);
 }
 
-TEST(ErrorShare, NoiseIsWhatIsAllowedInTheMean) {
+TEST(ErrorShare, MeanNoiseIsTheAllowedOne) {
     const std::vector<double> areas = {1, 1, 0.01, 0.04, 9};
     const double m = even_noise_area(areas);
     double sum = 0, all = 0;
@@ -36,7 +37,7 @@ TEST(ErrorShare, NoiseIsWhatIsAllowedInTheMean) {
     EXPECT_DOUBLE_EQ(even_noise_area(std::vector<double>(7, 0.3)), 0.3);
 }
 
-TEST(ErrorShare, CrowdsAreManyPolygonsThatNobodyCut) {
+TEST(ErrorShare, ACrowdIsManyUnsplitPolygons) {
     EXPECT_TRUE(ErrorShare::is_crowd(6000, 5000));
     EXPECT_FALSE(ErrorShare::is_crowd(6000, 1000));
     EXPECT_FALSE(ErrorShare::is_crowd(600, 500));

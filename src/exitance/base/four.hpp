@@ -6,8 +6,8 @@
 #include "exitance/base/processor.hpp"
 #include "exitance/base/vec.hpp"
 
-// Several numbers at a time, for the kernels of this folder, in the compiler's own vector types, which become whatever
-// the processor has.
+// SIMD arithmetic on several doubles at a time for the kernels of this folder. Uses the compiler's vector types, which
+// compile to the vector instructions of the target processor.
 
 namespace exitance::lanes_of {
 
@@ -61,8 +61,8 @@ EXITANCE_INLINE Real sqrt(const Real& v) {
     for (std::size_t i = 0; i < lanes<Real>; ++i) out[i] = std::sqrt(v[i]);
     return out;
 }
-/// a b + c, rounded once, for kernels whose bits do not depend on the width of registers: what the compiler contracts
-/// of its own is another thing each time.
+/// Returns a b + c with one rounding. For kernels whose results must not depend on the vector width: which products the
+/// compiler contracts by itself varies with the width.
 template <class Real>
 EXITANCE_INLINE Real fused(const Real& a, const Real& b, const Real& c) {
     Real out;
@@ -79,7 +79,7 @@ EXITANCE_INLINE Real min(const Real& a, const Real& b) {
     return a < b ? a : b;
 }
 
-/// atan(t) / t for |t| <= tan(pi/8) from z = t^2: a polynomial that interpolates it at Chebyshev points to 4e-17.
+/// Returns atan(t) / t for |t| <= tan(pi/8) from z = t^2: a polynomial through Chebyshev points, error 4e-17.
 template <class Real>
 EXITANCE_INLINE Real angle_over_tangent(const Real& z) {
     constexpr double c[11] = {1.0,
@@ -103,15 +103,15 @@ EXITANCE_INLINE Real angle_over_tangent(const Real& z) {
     return fused(v, fused(v, high, middle), low);
 }
 
-/// atan2(y, x) / y for y > 0. The smaller over the larger is brought below tan(pi/8) by one turn of pi/4, and both
-/// quotients share one division.
+/// Returns atan2(y, x) / y for y > 0. The quotient of the smaller and the larger coordinate is reduced below tan(pi/8)
+/// by a rotation of pi/4. Both quotients share one division.
 template <class Real>
 EXITANCE_INLINE Real angle_over_sine(const Real& y, const Real& x) {
     const Real away = max(x, -x), low = min(y, away), high = max(y, away);
     const auto turned = low > 0.41421356237309503 * high;
     const Real under = turned ? low + high : high, inverse = 1 / (under * y);
     const Real t = (turned ? low - high : low) * y * inverse, p = angle_over_tangent(t * t);
-    // The angle is base + sign t p, by octant.
+    // The angle is base + sign t p; base and sign depend on the octant.
     const auto steep = y > away, back = x < 0;
     const Real eighth = turned ? Real{} + pi / 4 : Real{};
     Real a = t * p + eighth;
@@ -133,7 +133,7 @@ using Vec = lanes_of::VecOf<Real>;
 inline Real load(const double* p) {
     return lanes_of::load<Real>(p);
 }
-/// A bit for each lane whose sign bit is set, as it is where a comparison holds.
+/// Returns a bit for each lane whose sign bit is set; comparisons set it where they hold.
 EXITANCE_INLINE int bits(const Mask& m) {
 #ifdef __AVX__
     return __builtin_ia32_movmskpd256(reinterpret_cast<const Real&>(m));

@@ -8,11 +8,11 @@
 
 namespace exitance {
 
-/// The numbers [0, n) sorted by a group that each belongs to; within a group they ascend. O(n).
+/// The numbers [0, n) sorted by group; within a group they ascend. O(n).
 class Groups {
   public:
     Groups() = default;
-    /// Number i belongs to group `group_of[i]`, less than `count`.
+    /// Number i belongs to group `group_of[i]`, which is less than `count`.
     Groups(std::span<const std::uint32_t> group_of, std::size_t count)
         : first_(count + 1, 0), members_(group_of.size()) {
         for (std::uint32_t g : group_of) ++first_[g + 1];

@@ -12,8 +12,8 @@
 namespace exitance {
 namespace {
 
-/// What the system tells of this process by a name, bytes; 0 where it does not.
-std::size_t told(const char* file, std::string_view name) {
+/// Reads the value of `name` (KiB) from a file in /proc; returns bytes, or 0 if the system does not report it.
+std::size_t proc_bytes(const char* file, std::string_view name) {
     std::ifstream in(file);
     for (std::string word; in >> word;)
         if (std::size_t kibibytes = 0; word == name && in >> kibibytes) return kibibytes * 1024;
@@ -23,15 +23,15 @@ std::size_t told(const char* file, std::string_view name) {
 }  // namespace
 
 std::size_t peak_memory_bytes() {
-    // What `getrusage` tells begins with the memory of the process that has started this one.
-    if (const std::size_t own = told("/proc/self/status", "VmHWM:"); own > 0) return own;
+    // `getrusage` is only the fallback: its value includes the memory of the parent process before exec.
+    if (const std::size_t own = proc_bytes("/proc/self/status", "VmHWM:"); own > 0) return own;
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts it in KiB
 }
 
 std::size_t proportional_memory_bytes() {
-    return told("/proc/self/smaps_rollup", "Pss:");
+    return proc_bytes("/proc/self/smaps_rollup", "Pss:");
 }
 
 double processor_seconds() {
@@ -46,7 +46,8 @@ std::size_t machine_memory_bytes() {
 
 void keep_large_arrays_apart() {
 #ifdef __GLIBC__
-    // Else the library takes larger and larger arrays from its heap, in whose gaps much of the memory stays.
+    // glibc raises this threshold as arrays are freed, unless it is set. It would then allocate large arrays on its
+    // heap, where gaps keep much of the memory.
     mallopt(M_MMAP_THRESHOLD, 1 << 20);
 #endif
 }

@@ -4,24 +4,24 @@
 
 namespace exitance {
 
-/// The most memory the process has held at once so far, bytes (its peak resident set).
+/// Returns the peak resident set size of the process so far, bytes.
 std::size_t peak_memory_bytes();
 
-/// The memory that the process holds now, bytes: of pages that several processes have in common its even share
-/// (proportional set size). 0 where the system does not tell.
+/// Returns the memory that the process holds now (proportional set size), bytes: a page shared by k processes counts
+/// 1/k. 0 if the system does not report it.
 std::size_t proportional_memory_bytes();
 
-/// Processor time that the process has taken so far, on all of its threads, seconds.
+/// Returns the processor time used by all threads of the process so far, seconds.
 double processor_seconds();
 
-/// The machine's memory, bytes.
+/// Returns the physical memory of the machine, bytes.
 std::size_t machine_memory_bytes();
 
-/// From here on large arrays have pages of their own, which go back to the system as soon as they are freed. To be
-/// called once, first of all.
+/// From this call on, large arrays are allocated in pages of their own, which return to the system as soon as the
+/// arrays are freed. To be called once, before anything else is allocated.
 void keep_large_arrays_apart();
 
-/// Gives pages that nothing stands on any more back to the system. To be called between phases.
+/// Returns unused heap pages to the system. To be called between phases.
 void release_freed_memory();
 
 }  // namespace exitance

@@ -6,7 +6,7 @@
 
 namespace exitance {
 
-TEST(PeakMemory, HoldsWhatWasTouchedAndNeverFalls) {
+TEST(PeakMemory, IncludesTouchedMemoryAndNeverFalls) {
     const std::size_t before = peak_memory_bytes();
     const std::vector<char> block(64u << 20, 1);
     EXPECT_EQ(block.back(), 1);
@@ -14,14 +14,14 @@ TEST(PeakMemory, HoldsWhatWasTouchedAndNeverFalls) {
     EXPECT_GE(peak_memory_bytes(), before);
 }
 
-TEST(ProportionalMemory, OfAProcessAloneIsWhatItHolds) {
+TEST(ProportionalMemory, OfASingleProcessIsItsResidentMemory) {
     const std::vector<char> block(64u << 20, 1);
     EXPECT_EQ(block.back(), 1);
     EXPECT_GE(proportional_memory_bytes(), 64u << 20);
     EXPECT_LE(proportional_memory_bytes(), peak_memory_bytes());
 }
 
-TEST(ProcessorTime, GoesOnWhileThereIsWork) {
+TEST(ProcessorTime, IncreasesDuringWork) {
     const double before = processor_seconds();
     EXPECT_GT(before, 0);
     std::vector<std::size_t> values(1);

@@ -8,33 +8,34 @@
 
 namespace exitance {
 
-/// How many threads the parallel loops use from now on; 0 means all cores. Results never depend on it.
+/// Sets the number of threads of all later parallel loops; 0 means all cores. Results do not depend on it.
 void set_threads(int count);
 int threads();
 
-/// How their tasks come to threads from now on; `stealing` to begin with. Results never depend on it.
+/// Sets how the tasks of later loops are assigned to threads; the default is `stealing`. Results do not depend on it.
 void set_schedule(Schedule schedule);
 Schedule schedule();
 
-/// What a loop works on, for traces and for schedules that deal out.
+/// Describes a loop: its name for traces, and which input polygon each index belongs to.
 struct Work {
-    const char* name = "";  ///< Of its tasks, in traces; empty: that of the phase.
-    /// The input polygon that an index belongs to. A task belongs where its first index does.
+    const char* name = "";  ///< Name of the tasks in traces; empty: the name of the phase.
+    /// Returns the input polygon that an index belongs to. A task belongs to the polygon of its first index.
     std::function<std::size_t(std::size_t)> polygon_of = {};
-    /// Deal out polygons, so that all work on one is one worker's, loop after loop; else every loop's own tasks.
+    /// If true, polygons (not tasks) are assigned to workers, so that all work on a polygon is done by the same worker
+    /// in every loop.
     bool by_polygon = false;
 };
 
-/// Calls body(first, last) on consecutive ranges that cover [0, count), at most `grain` long, on all threads.
-/// A body must write only what belongs to its own indices.
+/// Calls body(first, last) on all threads for consecutive ranges that cover [0, count), each at most `grain` long. A
+/// body may write only data of its own indices.
 void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body,
                      const Work& work = {});
 
-/// Calls body() so that parallel work within it runs on this thread alone: for libraries whose results follow from how
-/// many threads they use.
+/// Calls body() so that parallel work inside it runs on the calling thread alone. For libraries whose results depend on
+/// the number of threads.
 void run_alone(const std::function<void()>& body);
 
-/// Calls body(i) for every i in [0, count), `grain` indices a task.
+/// Calls body(i) for every i in [0, count), `grain` indices per task.
 template <class Body>
 void parallel_for(std::size_t count, std::size_t grain, const Body& body, const Work& work = {}) {
     parallel_ranges(
@@ -45,8 +46,8 @@ void parallel_for(std::size_t count, std::size_t grain, const Body& body, const 
         work);
 }
 
-/// Sum of term(i) over [0, count): blocks of fixed length are summed in order, then the blocks in order, so that the
-/// result has the same bits on any number of threads.
+/// Sum of term(i) over [0, count). Blocks of fixed length are summed in order, then their sums in order, so that the
+/// result is bit-identical on any number of threads.
 template <class T, class Term>
 T parallel_sum(std::size_t count, const Term& term, T zero = T()) {
     constexpr std::size_t block = 1024;

@@ -9,11 +9,11 @@
 namespace exitance {
 namespace {
 
-Schedule schedule_in_force = Schedule::stealing;
+Schedule current_schedule = Schedule::stealing;
 
-/// What happens before what in a loop: all before the loop before its workers, and all of its workers before what
-/// follows. oneTBB sees to that; it is said in atomics as well, since the thread sanitizer does not see into a library
-/// that was built without it.
+/// Memory order of a loop: everything before the loop happens before its workers, and all of its workers before
+/// everything after it. oneTBB guarantees this; the atomics repeat it for the thread sanitizer, which cannot see into a
+/// library built without it.
 class ForkAndJoin {
   public:
     ForkAndJoin() { begun_.store(true, std::memory_order_release); }
@@ -26,7 +26,7 @@ class ForkAndJoin {
     std::atomic<std::size_t> ended_{0};
 };
 
-/// The ranges of one loop.
+/// Runs the ranges of one loop.
 class Loop {
   public:
     Loop(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body,
@@ -34,7 +34,7 @@ class Loop {
         : count_(count), grain_(grain), body_(body), work_(work) {}
 
     void run() {
-        // What loops within tasks do is a part of those tasks.
+        // Nested loops are not recorded: their time belongs to the enclosing task.
         TaskTrace* const trace = detail::traced_task ? nullptr : task_trace();
         if (!trace) return run_tasks();
         TaskTrace::Loop record = trace->begin_loop(work_.name, count_, grain_, tasks());
@@ -56,12 +56,12 @@ class Loop {
             return;
         }
         std::vector<std::uint32_t> homes;
-        if (work_.by_polygon && schedule_in_force != Schedule::dynamic) {
+        if (work_.by_polygon && current_schedule != Schedule::dynamic) {
             homes.resize(tasks());
             for (std::size_t t = 0; t < homes.size(); ++t)
                 homes[t] = static_cast<std::uint32_t>(work_.polygon_of(t * grain_));
         }
-        Team team{*this, TaskQueues(schedule_in_force, tasks(), workers(), homes)};
+        Team team{*this, TaskQueues(current_schedule, tasks(), workers(), homes)};
         run_workers(workers(), work, &team);
         team.order.join();
     }
@@ -94,17 +94,17 @@ class Loop {
     const std::function<void(std::size_t, std::size_t)>& body_;
     const Work& work_;
     TaskTrace* trace_ = nullptr;
-    std::vector<std::vector<TaskTrace::Task>> records_;  ///< By worker.
+    std::vector<std::vector<TaskTrace::Task>> records_;  ///< Recorded tasks of each worker.
 };
 
 }  // namespace
 
 void set_schedule(Schedule schedule) {
-    schedule_in_force = schedule;
+    current_schedule = schedule;
 }
 
 Schedule schedule() {
-    return schedule_in_force;
+    return current_schedule;
 }
 
 void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body,

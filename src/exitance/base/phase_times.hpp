@@ -8,7 +8,7 @@
 
 namespace exitance {
 
-/// Hands everything on, and keeps how long every phase took. It must not outlive the progress that it stands for.
+/// Forwards everything to another Progress and measures the time of every phase. Must not outlive that Progress.
 class PhaseTimes : public Progress {
   public:
     explicit PhaseTimes(Progress& progress) : progress_(progress) {}
@@ -23,7 +23,8 @@ class PhaseTimes : public Progress {
     void warn(std::string_view message) override { progress_.warn(message); }
     Progress& inner() { return progress_; }
 
-    /// Seconds in phases of these names so far; the present one counts when the next one begins, or after close().
+    /// Returns the total time in phases of these names so far, seconds. The current phase is included only after the
+    /// next one begins or after close().
     double seconds(std::initializer_list<const char*> names) const {
         double sum = 0;
         for (const char* name : names)

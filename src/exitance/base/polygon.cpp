@@ -10,7 +10,7 @@ Vec3 area_vector(std::span<const Point> outline) {
 
 bool is_convex(std::span<const Point> outline, const Normal& n, double tolerance) {
     const std::size_t m = outline.size();
-    double turned = 0;  // a convex outline turns once; a star turns more often
+    double turned = 0;  // a convex outline turns by 2 pi; a star turns more often
     for (std::size_t i = 0; i < m; ++i) {
         const Vec3 a = outline[(i + 1) % m] - outline[i], b = outline[(i + 2) % m] - outline[(i + 1) % m];
         const double turn = dot(n, cross(a, b));
@@ -51,7 +51,7 @@ void clip(std::span<const Point> outline, const Plane& plane, std::vector<Point>
         const Point &p = outline[i], &q = outline[(i + 1) % m];
         const double hp = plane.signed_distance(p), hq = plane.signed_distance(q);
         if (hp >= 0) out.push_back(p);
-        // From the lower to the higher corner in a fixed order, so that two faces that share an edge cut it alike.
+        // Interpolate from the lower to the higher corner, so that two faces that share an edge get the same point.
         if ((hp > 0 && hq < 0) || (hp < 0 && hq > 0)) {
             const bool forward = hp < hq;
             const Point &a = forward ? p : q, &b = forward ? q : p;

@@ -7,7 +7,7 @@
 
 namespace exitance {
 
-/// The plane n . x = offset; its front is where n points.
+/// The plane n . x = offset; n points to its front side.
 struct Plane {
     Normal n;
     double offset = 0;
@@ -15,24 +15,25 @@ struct Plane {
     double signed_distance(const Point& p) const { return dot(n, p) - offset; }
 };
 
-/// The vector whose length is the area of a planar outline (m^2) and whose direction is its normal,
-/// counter-clockwise seen from the front. Relative to the first corner, so that far-away outlines keep their digits.
+/// Vector whose length is the area of a planar outline (m^2) and whose direction is its normal; the outline is
+/// counter-clockwise seen from the front. Computed relative to the first corner, so that outlines far from the origin
+/// lose no digits.
 Vec3 area_vector(std::span<const Point> outline);
 
-/// Is a planar outline with the given normal convex, collinear corners allowed, within `tolerance` (m^2, the area of a
-/// corner's triangle)?
+/// True if a planar outline with the given normal is convex. Collinear corners are allowed; a corner may be concave by
+/// a triangle of area `tolerance`, m^2.
 bool is_convex(std::span<const Point> outline, const Normal& n, double tolerance = 0);
 
-/// Does the outline hold a point of its plane? By counting crossings along the axis on which the normal is largest;
-/// points on the border may go either way.
+/// True if the outline contains a point of its plane. Counts crossings after projection along the axis on which the
+/// normal is largest; for points on the border either result is possible.
 bool contains(std::span<const Point> outline, const Normal& n, const Point& p);
 
 /// Centroid of the area of a planar outline.
 Point centroid(std::span<const Point> outline);
 
-/// The part of a polygon in the closed half-space signed_distance >= 0 (Sutherland and Hodgman). A concave polygon
-/// may come out with edges that run to and fro along the plane: contour sums over it stay right.
-/// Writes to `out`, which is cleared first; fewer than three corners mean: nothing is left.
+/// Clips a polygon to the closed half-space signed_distance >= 0 (Sutherland and Hodgman). A concave polygon may get
+/// edges that overlap in opposite directions along the plane; contour integrals over it stay correct.
+/// Writes to `out`, which is cleared first; it is empty if fewer than three corners remain.
 void clip(std::span<const Point> outline, const Plane& plane, std::vector<Point>& out);
 
 }  // namespace exitance

@@ -2,9 +2,10 @@
 
 #include <cstdint>
 
-// Kernels are made for all processors, and again with EXITANCE_AVX512; they take along what is EXITANCE_INLINE.
+// Kernels are compiled twice: for every processor, and again with EXITANCE_AVX512. Functions that they call must be
+// EXITANCE_INLINE, so that they are compiled for the same target.
 #define EXITANCE_INLINE [[gnu::always_inline]] inline
-#if defined(__x86_64__) && !defined(__clang__)  // which inlines nothing of 512 bits into a function of another target
+#if defined(__x86_64__) && !defined(__clang__)  // clang does not inline 512-bit code into functions of another target
 #define EXITANCE_HAS_WIDE_KERNELS
 #define EXITANCE_AVX512 [[gnu::target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")]]
 #else
@@ -13,8 +14,8 @@
 
 namespace exitance {
 
-/// What a batch is evaluated with: the widest registers there are, or those that every processor has. The bits are the
-/// same; the second is there for tests.
+/// Instruction set for a batch: the widest vectors of this processor, or those of every processor. Results are
+/// bit-identical; `any` exists for tests.
 enum class Processor : std::uint8_t { fastest, any };
 
 inline bool has_avx512() {

@@ -11,7 +11,7 @@ struct GaussTable {
     std::vector<double> nodes, weights;
 };
 
-/// Newton's iteration on P_n(z), with the three-term recurrence; w = 2 / ((1 - z^2) P_n'(z)^2) on [-1, 1].
+/// Newton's iteration on P_n(z), by the three-term recurrence; w = 2 / ((1 - z^2) P_n'(z)^2) on [-1, 1].
 GaussTable make_gauss(int n) {
     GaussTable table;
     table.nodes.resize(static_cast<std::size_t>(n));
@@ -60,7 +60,8 @@ void add_orbit(std::vector<PlanarNode>& rule, double a, double b, double weight)
     for (const Vec2& at : {Vec2{a, b}, {b, a}, {a, c}, {c, a}, {b, c}, {c, b}}) rule.push_back({at, weight});
 }
 
-/// The unit square collapsed onto the triangle, (s, t) -> (s, (1 - s) t): the factor 2 (1 - s) costs one degree in s.
+/// Adds Gauss points of the unit square mapped to the triangle by (s, t) -> (s, (1 - s) t). The Jacobian 2 (1 - s)
+/// costs one degree in s.
 void add_collapsed(std::vector<PlanarNode>& rule, int degree) {
     const LineRule across = gauss_legendre(degree / 2 + 1), along = gauss_legendre((degree + 1) / 2 + 1);
     for (std::size_t i = 0; i < along.size(); ++i)
@@ -87,7 +88,7 @@ std::vector<PlanarNode> make_triangle(int degree) {
         add_orbit(rule, (6 - root) / 21, (155 - root) / 1200);
         add_orbit(rule, (6 + root) / 21, (155 + root) / 1200);
     } else if (degree <= 8) {
-        // [Dunavant85] degree 8, its moments solved again to the last digits.
+        // [Dunavant85] degree 8, with points and weights solved again to the last digits.
         rule.push_back({{1.0 / 3, 1.0 / 3}, 0.14431560767778717});
         add_orbit(rule, 0.45929258829272318, 0.09509163426728462);
         add_orbit(rule, 0.17056930775176021, 0.10321737053471826);
@@ -99,7 +100,7 @@ std::vector<PlanarNode> make_triangle(int degree) {
     return rule;
 }
 
-/// make(first), ..., make(last), each at its own index.
+/// Returns tables with make(i) at index i, for i from `first` to `last`.
 template <class Table, class Make>
 std::vector<Table> make_tables(int first, int last, const Make& make) {
     std::vector<Table> tables(static_cast<std::size_t>(last) + 1);
@@ -122,8 +123,9 @@ std::span<const PlanarNode> square_rule(int n) {
     return tables[static_cast<std::size_t>(n)];
 }
 
-/// A solution of the 45 equations for the moments to degree 8 in 48 unknowns, by Levenberg and Marquardt's method; of
-/// some dozen with all points inside and weights above 0 the one nearest to the square's steps, kinks and slits.
+/// One solution of the 45 moment equations to degree 8 in 48 unknowns, by the Levenberg-Marquardt method. Among some
+/// dozen solutions with all points inside and positive weights, this one integrates steps, kinks and slits on the
+/// square most accurately.
 std::span<const PlanarNode> scattered_square_rule() {
     static constexpr PlanarNode rule[] = {
         {{0.94185584245143994, 0.02289524841317730}, 0.01542361653603885},

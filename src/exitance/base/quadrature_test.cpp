@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-// Weights and nodes carry a few roundings of 1e-16 each.
+// Weights and nodes have rounding errors of a few 1e-16 each.
 constexpr double rounding = 1e-14;
 
 TEST(GaussLegendre, IntegratesMonomialsUpToTwiceItsSizeMinusOne) {
@@ -22,7 +22,7 @@ TEST(GaussLegendre, IntegratesMonomialsUpToTwiceItsSizeMinusOne) {
     }
 }
 
-TEST(GaussLegendre, MissesTheFirstMonomialBeyondItsDegreeByTheKnownAmount) {
+TEST(GaussLegendre, ErrorOfTheFirstMonomialBeyondItsDegreeIsTheKnownOne) {
     const LineRule rule = gauss_legendre(3);
     double sum = 0;
     for (std::size_t k = 0; k < 3; ++k) sum += rule.weights[k] * std::pow(rule.nodes[k], 6);
@@ -52,8 +52,8 @@ TEST(ScatteredSquareRule, IntegratesEveryMonomialUpToDegreeEight) {
         }
 }
 
-// What the 4 x 4 Gauss points hold for zero.
-TEST(ScatteredSquareRule, SeesLegendresPolynomialOfDegreeFour) {
+// The 4 x 4 Gauss points integrate its square to zero.
+TEST(ScatteredSquareRule, IntegratesTheSquareOfLegendresPolynomialOfDegreeFour) {
     const auto square_of_legendre = [](double u) {
         const double x = 2 * u - 1, p = (35 * x * x * x * x - 30 * x * x + 3) / 8;
         return 9 * p * p;  // its mean is 1

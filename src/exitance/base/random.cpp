@@ -7,7 +7,8 @@ namespace {
 
 using Directions = std::array<std::uint32_t, 32>;
 
-/// Direction numbers of one dimension from its primitive polynomial x^s + a_1 x^(s-1) + ... + 1 and first m_i.
+/// Computes the direction numbers of one dimension from its primitive polynomial x^s + a_1 x^(s-1) + ... + 1 and its
+/// first m_i.
 constexpr Directions make_directions(int s, std::uint32_t a, std::array<std::uint32_t, 4> m) {
     Directions v{};
     if (s == 0) {  // the first dimension: van der Corput
@@ -25,7 +26,7 @@ constexpr Directions make_directions(int s, std::uint32_t a, std::array<std::uin
 constexpr std::array<Directions, 4> directions = {make_directions(0, 0, {}), make_directions(1, 0, {1}),
                                                   make_directions(2, 1, {1, 3}), make_directions(3, 1, {1, 3, 1})};
 
-/// Sums of direction numbers for every value of each byte of the index, so that a point costs four look-ups.
+/// XOR of the direction numbers for every value of each byte of the index, so that a point costs four table lookups.
 using ByteTable = std::array<std::array<std::uint32_t, 256>, 4>;
 
 constexpr ByteTable make_byte_table(const Directions& v) {
@@ -47,10 +48,10 @@ std::uint32_t ScrambledSobol::sobol(std::uint32_t index, int dimension) {
     return t[0][index & 255u] ^ t[1][index >> 8 & 255u] ^ t[2][index >> 16 & 255u] ^ t[3][index >> 24];
 }
 
-/// Owen's scrambling takes reversed bits and leaves them reversed, and the first two dimensions are simple there: the
-/// first is the index itself; the second, whose direction numbers are the rows of Pascal's triangle modulo 2, has as
-/// its bit i the parity of the index bits j with i a subset of j, bit by bit. So there is no table to look into, and
-/// the compiler works on many points at once.
+/// Owen scrambling works on bit-reversed numbers, and for these the first two dimensions need no table. Dimension 0 is
+/// the index itself. The direction numbers of dimension 1 are the rows of Pascal's triangle modulo 2: bit i of the
+/// result is the parity of the index bits j for which i is a bitwise subset of j. Without lookups the compiler
+/// vectorizes the loop over the points.
 template <int dimension>
 EXITANCE_INLINE void ScrambledSobol::fill_reversed(std::uint32_t first, std::span<double> coordinates) const {
     const auto count = static_cast<std::uint32_t>(coordinates.size());

@@ -7,7 +7,7 @@
 
 namespace exitance {
 
-/// Mixes 64 bits so that every input bit moves every output bit (the finaliser of splitmix64).
+/// Hashes 64 bits so that every input bit affects every output bit (the finaliser of splitmix64).
 constexpr std::uint64_t hash(std::uint64_t x) {
     x += 0x9e3779b97f4a7c15u;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -20,10 +20,12 @@ constexpr std::uint64_t hash(std::uint64_t first, std::uint64_t second, More... 
     return hash(hash(first) ^ second, more...);
 }
 
-/// What random numbers serve. A stream is named by its purpose and the things it serves, never by who asks.
+/// Purpose of a random stream. A stream is identified by its purpose and the things that it is for, never by its
+/// caller.
 enum class Stream : std::uint64_t { visibility, rows, gather, direct, certificate, reference, shooting, mesh };
 
-/// Random numbers of one purpose: the same name gives the same numbers, on any thread, in any order of calls.
+/// Random numbers of one purpose: the same seed, purpose and numbers a and b give the same sequence on any thread and
+/// in any order of calls.
 class RandomStream {
   public:
     RandomStream(std::uint64_t seed, Stream purpose, std::uint64_t a = 0, std::uint64_t b = 0)
@@ -38,9 +40,9 @@ class RandomStream {
     std::uint64_t counter_ = 0;
 };
 
-/// Points of the Sobol sequence (first four dimensions, Joe and Kuo's direction numbers), Owen-scrambled by a hash of
-/// the seed: every power of two of them is stratified in every pair of dimensions, and each is uniform by itself.
-/// Source: [Burley20], [JoeKuo08]. O(1) a coordinate.
+/// Points of the Sobol sequence (first four dimensions, direction numbers of Joe and Kuo), Owen-scrambled by a hash of
+/// the seed. Every block of 2^k points is stratified in every pair of dimensions, and each point alone is uniformly
+/// distributed. O(1) per coordinate. Source: [Burley20], [JoeKuo08].
 class ScrambledSobol {
   public:
     explicit ScrambledSobol(std::uint64_t seed) : shuffle_(static_cast<std::uint32_t>(hash(seed))) {
@@ -52,7 +54,8 @@ class ScrambledSobol {
         const std::uint32_t raw = sobol(owen(index, shuffle_), dimension);
         return owen_reversed(raw, scramble_[static_cast<std::size_t>(dimension)]) * 0x1p-32;
     }
-    /// That coordinate of the points from `first` on, many at once: a few times as fast.
+    /// Writes coordinate `dimension` of the points from `first` on, one per entry of `coordinates`. A few times as fast
+    /// as single calls.
     void fill(std::uint32_t first, int dimension, std::span<double> coordinates) const;
 
   private:
@@ -74,7 +77,7 @@ class ScrambledSobol {
     static constexpr std::uint32_t owen_reversed(std::uint32_t x, std::uint32_t seed) {
         return reverse(laine_karras(reverse(x), seed));
     }
-    /// A nested uniform shuffle of indices: blocks of powers of two stay together.
+    /// Nested uniform shuffle of indices: aligned blocks of 2^k indices stay together.
     static constexpr std::uint32_t owen(std::uint32_t index, std::uint32_t seed) {
         return reverse(laine_karras(reverse(index), seed));
     }

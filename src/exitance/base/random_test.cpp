@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-TEST(ScrambledSobol, IsTheSameManyAtOnce) {
+TEST(ScrambledSobol, FillAgreesWithSinglePoints) {
     for (std::uint64_t seed : {1u, 77u}) {
         const ScrambledSobol points(seed);
         for (std::uint32_t first : {0u, 5u, 4096u, 0xfffffff0u})

@@ -6,7 +6,7 @@
 
 namespace exitance {
 
-/// What kind of thing went wrong: for programs, tests and the exit status.
+/// The kind of an error: for programs, tests and the exit status.
 enum class ErrorCode {
     usage,         ///< An option or an argument is wrong.
     bad_input,     ///< A file's content is wrong.
@@ -19,9 +19,9 @@ enum class ErrorCode {
 /// Why something failed, for programs and for people.
 struct Error {
     ErrorCode code = ErrorCode::failure;
-    std::string message;  ///< One sentence holding the offending values.
+    std::string message;  ///< One sentence that contains the offending values.
     std::string where;    ///< "room.obj:41", "--error", or empty.
-    std::string hint;     ///< What to do next, or empty.
+    std::string hint;     ///< Suggested action, or empty.
 };
 
 /// A value, or the reason why there is none.

@@ -2,7 +2,8 @@
 
 namespace exitance {
 
-/// Is the program built with the address sanitizer, whose shadow fills the address space and which is slow?
+/// True if the program is built with the address sanitizer, whose shadow memory fills the address space and which is
+/// slow.
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool has_address_sanitizer = true;
 #elif defined(__has_feature)

@@ -12,12 +12,12 @@
 
 namespace exitance {
 
-/// How the tasks of a parallel loop come to workers: the three schemes of the studies of parallel radiosity, see
+/// How the tasks of a parallel loop are assigned to workers: the three schemes studied for parallel radiosity, see
 /// [Singh95].
 enum class Schedule {
-    fixed,     ///< "static": dealt out once; everybody keeps to his own.
-    dynamic,   ///< One queue, which all workers share.
-    stealing,  ///< Dealt out once; who has none left takes them from the tail of others' queues.
+    fixed,     ///< "static": assigned once; every worker runs only its own tasks.
+    dynamic,   ///< One queue shared by all workers.
+    stealing,  ///< Assigned once; a worker without tasks takes some from the tail of other queues.
 };
 
 inline constexpr std::array<std::pair<Schedule, std::string_view>, 3> schedule_names{{
@@ -26,21 +26,21 @@ inline constexpr std::array<std::pair<Schedule, std::string_view>, 3> schedule_n
     {Schedule::stealing, "stealing"},
 }};
 
-/// The tasks of one loop, 0 to `tasks` - 1, as a schedule hands them out. Each is handed out once, to whoever asks; a
-/// worker's own come in rising order. Without locks: a queue is two numbers in one atomic word.
+/// The tasks of one loop, 0 to `tasks` - 1, in the order of a schedule. Every task is returned once, and the own tasks
+/// of a worker in ascending order. Lock-free: a queue is two numbers in one atomic word.
 class TaskQueues {
   public:
     static constexpr std::size_t none = ~std::size_t(0);
 
-    /// `homes`: the thing, such as an input polygon, that each task belongs to; things are dealt out like cards, and
-    /// tasks follow theirs. Empty: tasks themselves are dealt out like cards.
+    /// homes  the thing, such as an input polygon, that each task belongs to. Things are assigned to workers round
+    ///        robin, and tasks follow their thing. Empty: the tasks themselves are assigned round robin.
     TaskQueues(Schedule schedule, std::size_t tasks, std::size_t workers, std::span<const std::uint32_t> homes = {});
 
-    /// The next task of a worker; `none` when there is none left for it.
+    /// Returns the next task of a worker; `none` if there is none left for it.
     std::size_t next(std::size_t worker);
 
   private:
-    /// What is left of a worker's own places: [head, tail), the head in the upper half.
+    /// Remaining places [head, tail) of a worker's queue; the head is in the upper 32 bits.
     struct alignas(64) Queue {
         std::atomic<std::uint64_t> range{0};
     };
@@ -52,7 +52,7 @@ class TaskQueues {
 
     Schedule schedule_;
     std::size_t queue_count_;
-    std::vector<std::uint32_t> order_;  ///< Tasks by worker; empty: place k of worker w is task w + k workers.
+    std::vector<std::uint32_t> order_;  ///< Tasks sorted by worker; empty: place k of worker w is task w + k workers.
     std::unique_ptr<Queue[]> queues_;
 };
 

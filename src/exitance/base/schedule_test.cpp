@@ -13,21 +13,21 @@ namespace {
 
 constexpr Schedule all_schedules[] = {Schedule::fixed, Schedule::dynamic, Schedule::stealing};
 
-/// All that a worker gets when it alone asks.
+/// Takes all tasks that one worker gets if no other worker takes any.
 std::vector<std::size_t> drain(TaskQueues& queues, std::size_t worker) {
     std::vector<std::size_t> out;
     for (std::size_t task; (task = queues.next(worker)) != TaskQueues::none;) out.push_back(task);
     return out;
 }
 
-/// Puts the schedule and the number of threads back.
+/// Restores the default schedule and number of threads.
 struct Restore {
     ~Restore() { set_schedule(Schedule::stealing), set_threads(0); }
 };
 
 }  // namespace
 
-TEST(TaskQueues, StaticTasksStayWithThoseTheyWereDealtTo) {
+TEST(TaskQueues, StaticTasksStayWithTheirWorker) {
     TaskQueues queues(Schedule::fixed, 7, 3);
     EXPECT_EQ(drain(queues, 1), (std::vector<std::size_t>{1, 4}));
     EXPECT_EQ(drain(queues, 0), (std::vector<std::size_t>{0, 3, 6}));
@@ -50,14 +50,14 @@ TEST(TaskQueues, StolenTasksComeFromTheTailOfTheNext) {
     EXPECT_EQ(queues.next(1), TaskQueues::none);
 }
 
-TEST(TaskQueues, WorkOnAPolygonIsOneWorkers) {
+TEST(TaskQueues, TasksOfAPolygonGoToOneWorker) {
     const std::vector<std::uint32_t> polygon{0, 0, 1, 1, 2, 2, 2, 3};
     TaskQueues queues(Schedule::fixed, polygon.size(), 2, polygon);
     EXPECT_EQ(drain(queues, 0), (std::vector<std::size_t>{0, 1, 4, 5, 6}));
     EXPECT_EQ(drain(queues, 1), (std::vector<std::size_t>{2, 3, 7}));
 }
 
-TEST(TaskQueues, EveryTaskIsHandedOutOnceToThreadsThatCompete) {
+TEST(TaskQueues, ConcurrentThreadsGetEveryTaskOnce) {
     for (Schedule schedule : all_schedules)
         for (std::size_t tasks : {1u, 5u, 20000u}) {
             constexpr std::size_t workers = 4;
@@ -86,7 +86,7 @@ TEST(Parallel, EveryIndexIsVisitedOnceUnderEverySchedule) {
         }
 }
 
-TEST(Parallel, SumsHaveTheSameBitsUnderEveryScheduleAndWithinOneAnother) {
+TEST(Parallel, SumsAreBitIdenticalUnderEveryScheduleAndWhenNested) {
     const Restore restore;
     const auto sum = [] {
         return parallel_sum<double>(5000, [](std::size_t i) {

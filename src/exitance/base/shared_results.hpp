@@ -13,23 +13,24 @@
 
 namespace exitance {
 
-/// How processes that solve one scene together tell one another what they have found. The layer that knows them sets
-/// it; those below it need not.
+/// Interface by which processes that solve one scene together exchange their results. Set by the layer that implements
+/// it (`processes/distributed`), so that lower layers do not depend on it.
 struct ResultSharing {
     std::size_t processes = 1, own = 0;
-    /// The bytes of blocks[b] are known to process b % processes, and to all afterwards; null: there is no such block.
-    /// All processes call it.
+    /// Distributes blocks: the bytes of blocks[b] are given by process b % processes and are in all processes
+    /// afterwards. Null: there is no such block. Collective.
     void (*exchange)(std::span<std::string* const> blocks, const char* what) = nullptr;
-    /// Whole pages of a finished array, which all processes hold alike, stand once a node from here on. All call it.
+    /// Keeps one copy per node of the whole pages of a finished array that is equal in all processes. Collective.
     void (*share)(char* begin, std::size_t size) = nullptr;
-    double dealt_seconds = 0;  ///< Processor time of this process so far on what was dealt to it.
+    /// Processor time that this process has spent on its share of distributed work so far, seconds.
+    double dealt_seconds = 0;
 };
 inline ResultSharing& result_sharing() {
     static ResultSharing sharing;
     return sharing;
 }
 
-/// Does what is this process's own share of a step, so that its processor time counts as dealt out.
+/// Runs this process's share of a step and adds its processor time to `dealt_seconds`.
 template <class Share>
 void do_own_share(const Share& share) {
     const double before = processor_seconds();
@@ -37,17 +38,17 @@ void do_own_share(const Share& share) {
     result_sharing().dealt_seconds += processor_seconds() - before;
 }
 
-/// Finished values that all processes hold alike stand once in the memory of a node from here on, instead of once a
-/// process: whole pages of them. Whoever writes to them all the same gets pages of its own again. Where the system does
-/// not let processes have pages in common, and where values are few, nothing is done. All processes call it alike.
+/// Keeps one copy per node of finished values that are equal in all processes, instead of one per process. Applies to
+/// whole pages; a process that writes to them later gets private pages again. Does nothing for small arrays, or if the
+/// system cannot share pages between processes. Collective.
 template <class T>
 void share_on_node(std::span<T> values) {
     static_assert(std::is_trivially_copyable_v<T>);
     if (const auto share = result_sharing().share)
-        // Only the place matters, which is not written to here.
+        // The pointer only locates the pages; nothing is written through it.
         share(reinterpret_cast<char*>(const_cast<std::remove_const_t<T>*>(values.data())), values.size_bytes());
 }
-/// The same of what stands in several arrays.
+/// Like the function above, for a value that consists of several arrays.
 template <class T>
 requires requires(const T& value) {
     value.visit_arrays([](const auto&) {});
@@ -56,9 +57,9 @@ void share_on_node(const T& value) {
     value.visit_arrays([](const auto& array) { share_on_node(array); });
 }
 
-/// Whose each of some blocks is. Without forecasts of what they take they are dealt out like cards; else each,
-/// beginning with the one that takes most, goes to whoever has least so far. Source: [Graham69]. O(blocks (log blocks +
-/// processes)).
+/// Assigns blocks to processes; returns the process of each block. Without forecasts (`work` empty) round robin; else
+/// the most expensive block first, each to the process with the least work so far. O(blocks (log blocks + processes)).
+/// Source: [Graham69].
 inline std::vector<std::size_t> deal_blocks(std::size_t blocks, std::span<const double> work, std::size_t processes) {
     std::vector<std::size_t> owner(blocks);
     if (work.empty()) {
@@ -77,10 +78,12 @@ inline std::vector<std::size_t> deal_blocks(std::size_t blocks, std::span<const 
     return owner;
 }
 
-/// out[i] = find(i) for all i of `out`, on all threads and, where several processes work together, dealt out to them by
-/// blocks of `grain`: then all of them call this alike. `archive_one(archive, value)` takes a value to bytes and back.
-/// The same values on any number of processes.
-/// work   what each block is expected to take, in any unit; empty: about as much as its neighbours
+/// Computes out[i] = find(i) for all i, on all threads. If several processes work together, blocks of `grain` indices
+/// are distributed to them, and all processes must make the same call. The results are the same on any number of
+/// processes.
+/// archive_one  archive_one(archive, value) converts a value to bytes and back
+/// what         name of the step, in traces and statistics of messages
+/// work         expected cost of each block, in any unit; empty: about the same for all
 template <class T, class Find, class ArchiveOne>
 void find_together(std::vector<T>& out, std::size_t grain, const Find& find, const ArchiveOne& archive_one,
                    const char* what, std::span<const double> work = {}) {
@@ -98,7 +101,7 @@ void find_together(std::vector<T>& out, std::size_t grain, const Find& find, con
                      {what});
     });
     if (sharing.processes == 1) return;
-    // Told in rounds, so that little stands twice.
+    // Exchanged in rounds, so that only a small part of the results is held twice.
     constexpr std::size_t rounds = 16;
     const std::size_t together = blocks / rounds + 1;
     for (std::size_t first = 0; first < blocks; first += together) {
@@ -109,7 +112,7 @@ void find_together(std::vector<T>& out, std::size_t grain, const Find& find, con
             for_block(first + k, [&](std::size_t i) { archive_one(writer, out[i]); });
             bytes[k] = writer.take();
         });
-        std::vector<std::string*> told;  // by turns of all processes
+        std::vector<std::string*> told;  // ordered so that entry i comes from process i % processes
         std::vector<std::size_t> turns(sharing.processes, 0);
         for (std::size_t k = 0; k < bytes.size(); ++k) {
             const std::size_t p = owner[first + k], at = turns[p]++ * sharing.processes + p;

@@ -11,11 +11,19 @@
 
 namespace exitance {
 
-/// How many bands of light a build carries (CMake: -DEXITANCE_BANDS=N). Transport does not depend on the band:
-/// visibility and form factors are computed once for all of them.
+/// Number of spectral bands of the build (CMake: -DEXITANCE_BANDS=N). Transport does not depend on the band: visibility
+/// and form factors are computed once for all bands.
 inline constexpr std::size_t bands = EXITANCE_BANDS;
 
-/// One value a band: W/m^2 for exitance, irradiance and radiosity, a pure number for reflectance.
+/// Defined by the library for its own number of bands only: a program that is compiled for another number does not
+/// link, instead of misreading every structure that holds a Spectrum.
+template <std::size_t n>
+struct LibraryOfBands {
+    static const char linked;
+};
+[[gnu::used]] inline const char* const library_of_bands = &LibraryOfBands<bands>::linked;
+
+/// One value per band: W/m^2 for exitance, irradiance and radiosity, dimensionless for reflectance.
 struct Spectrum {
     std::array<double, bands> value{};
 
@@ -63,7 +71,7 @@ constexpr Spectrum operator/(Spectrum a, double s) {
     return a *= 1 / s;
 }
 
-/// Mean over the bands: the one number by which a refinement or an ordering judges a spectrum.
+/// Mean over the bands: the scalar by which refinement and ordering compare spectra.
 constexpr double mean(const Spectrum& s) {
     double sum = 0;
     for (double v : s.value) sum += v;

@@ -2,15 +2,15 @@
 
 namespace exitance {
 namespace {
-TaskTrace* in_force = nullptr;  // as with the number of threads, set before there are any
+TaskTrace* current_trace = nullptr;  // set before any threads exist
 }
 
 void set_task_trace(TaskTrace* trace) {
-    in_force = trace;
+    current_trace = trace;
 }
 
 TaskTrace* task_trace() {
-    return in_force;
+    return current_trace;
 }
 
 TaskTrace::TaskTrace() {

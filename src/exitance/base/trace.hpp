@@ -12,32 +12,32 @@
 
 namespace exitance {
 
-/// What the parallel loops of a run did, for studies of schedules: phases, their loops, and the loops' tasks. Phases
-/// and loops follow one another; the tasks of one worker do, too. Times in seconds since the trace was made.
+/// Record of the parallel loops of a run, for studies of schedules: phases, their loops, and the tasks of the loops.
+/// Phases do not overlap, nor do loops, nor the tasks of one worker. Times in seconds since construction.
 class TaskTrace {
   public:
     static constexpr std::uint64_t none = ~std::uint64_t(0);
 
-    /// Something a task has touched, and how many or how much of it.
+    /// A kind of data that a task accessed, and how much of it.
     struct Touched {
         const char* what = nullptr;
         std::uint64_t count = 0;
     };
     struct Task {
-        std::uint64_t index = 0;  ///< In its loop.
+        std::uint64_t index = 0;  ///< Index in its loop.
         std::size_t worker = 0;
         double begin = 0, end = 0;
-        std::uint64_t polygon = none;                        ///< That it belongs to, where known: the receiver.
-        std::uint64_t first_source = none, last_source = 0;  ///< Polygons that it reads from, where known.
+        std::uint64_t polygon = none;                        ///< Receiving polygon that the task belongs to, if known.
+        std::uint64_t first_source = none, last_source = 0;  ///< Range of the polygons that it reads from, if known.
         std::array<Touched, 6> touched{};
     };
     struct Loop {
         std::string name;
-        std::uint64_t id = 0;              ///< Its tasks have the ids that follow.
-        std::size_t phase = 0;             ///< In phases().
-        std::size_t count = 0, grain = 0;  ///< Indices, and of one task.
+        std::uint64_t id = 0;              ///< The ids of its tasks follow this one.
+        std::size_t phase = 0;             ///< Index into phases().
+        std::size_t count = 0, grain = 0;  ///< Number of indices in the loop, and per task.
         double begin = 0, end = 0;
-        std::vector<Task> tasks;  ///< By worker, then by time.
+        std::vector<Task> tasks;  ///< Sorted by worker, then by time.
     };
     struct Phase {
         std::string name;
@@ -47,17 +47,17 @@ class TaskTrace {
 
     TaskTrace();
 
-    /// The thread that drives the run says which phase begins; the one before it ends.
+    /// Ends the current phase and begins another. Called by the thread that drives the run.
     void begin_phase(std::string_view name);
     void finish();
 
     const std::vector<Phase>& phases() const { return phases_; }
     const std::vector<Loop>& loops() const { return loops_; }
 
-    /// For parallel loops: `tasks` of them are to begin, or have ended.
+    /// Called by parallel loops before and after their `tasks` tasks.
     Loop begin_loop(const char* name, std::size_t count, std::size_t grain, std::size_t tasks);
     void end_loop(Loop loop);
-    /// Of an engine whose tasks make tasks; its times count from this trace's beginning.
+    /// Adds the record of an engine whose tasks create tasks. Its times must count from the start of this trace.
     void add_graph(TaskGraph graph);
     const std::vector<TaskGraph>& graphs() const { return graphs_; }
     double now() const { return watch_.seconds(); }
@@ -70,11 +70,12 @@ class TaskTrace {
     std::uint64_t next_id_ = 0;
 };
 
-/// Where parallel loops record their tasks from now on; null (as at first): nowhere. The trace must outlive that.
+/// Sets where parallel loops record their tasks from now on; null (the default): they record nothing. The trace must
+/// outlive its use.
 void set_task_trace(TaskTrace* trace);
 TaskTrace* task_trace();
 
-/// Tells a trace of the phases that pass by.
+/// Forwards progress and records the phases in a trace.
 class TracedProgress final : public Progress {
   public:
     TracedProgress(Progress& inner, TaskTrace& trace) : inner_(inner), trace_(trace) {}
@@ -89,12 +90,12 @@ class TracedProgress final : public Progress {
 };
 
 namespace detail {
-/// The task that this thread is in, as it is recorded; null outside, and without a trace.
+/// Record of the task that this thread is running; null outside of tasks and without a trace.
 inline thread_local TaskTrace::Task* traced_task = nullptr;
 }  // namespace detail
 
-/// The present task touches so many of `what`, a string that lives on: summed up over the task, six kinds at most.
-/// Outside of tasks, and without a trace, nothing happens.
+/// Adds `count` to the amount of `what` that the current task accessed; a task records at most six kinds. `what` must
+/// be a string of static lifetime. Does nothing outside of tasks and without a trace.
 inline void note_touched(const char* what, std::uint64_t count) {
     if (!detail::traced_task) return;
     for (TaskTrace::Touched& touched : detail::traced_task->touched) {
@@ -105,7 +106,7 @@ inline void note_touched(const char* what, std::uint64_t count) {
     }
 }
 
-/// The present task reads from this polygon, likewise.
+/// Records that the current task reads from this polygon. Does nothing outside of tasks and without a trace.
 inline void note_source(std::uint64_t polygon) {
     if (!detail::traced_task) return;
     detail::traced_task->first_source = std::min(detail::traced_task->first_source, polygon);

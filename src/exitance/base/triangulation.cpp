@@ -8,9 +8,9 @@ namespace exitance {
 namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
-constexpr std::size_t careful = 128;  ///< With more corners left than this, the first ear found is taken.
+constexpr std::size_t max_corners_for_best_ear = 128;  ///< With more corners left, the first ear found is clipped.
 
-/// The outline in its plane, with what rounding may do to the area of a corner's triangle.
+/// The outline in plane coordinates, and a bound on the rounding error of a corner's triangle area.
 struct Flat {
     std::vector<Vec2> at;
     double noise = 0;
@@ -27,7 +27,8 @@ struct Flat {
     double turn(std::uint32_t a, std::uint32_t b, std::uint32_t c) const { return cross(at[b] - at[a], at[c] - at[b]); }
 };
 
-/// Does the ear at b hold another corner of what is left? Corners at the ear's own places do not count (bridges).
+/// True if the ear at b contains no other remaining corner. Corners that coincide with the ear's own (bridges) are
+/// ignored.
 bool is_free(const Flat& flat, std::span<const std::uint32_t> rest, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     for (std::uint32_t i : rest) {
         const Vec2 p = flat.at[i];
@@ -38,7 +39,7 @@ bool is_free(const Flat& flat, std::span<const std::uint32_t> rest, std::uint32_
     return true;
 }
 
-/// How round a triangle is: area over the longest side's square.
+/// Shape quality of a triangle: area over the square of its longest side.
 double shape(const Flat& flat, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     const Vec2 u = flat.at[b] - flat.at[a], v = flat.at[c] - flat.at[b], w = flat.at[a] - flat.at[c];
     return cross(u, v) / std::max({dot(u, u), dot(v, v), dot(w, w), 1e-300});
@@ -51,7 +52,7 @@ bool stays_convex(const Flat& flat, const std::vector<std::uint32_t>& piece) {
     return true;
 }
 
-/// Joins b to a across a side they share, if they share one and the union is convex.
+/// Merges b into a across a shared side, if there is one and the union is convex. Returns true if it did.
 bool join(const Flat& flat, std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
     for (std::size_t i = 0; i < a.size(); ++i)
         for (std::size_t j = 0; j < b.size(); ++j) {
@@ -81,15 +82,15 @@ std::vector<Triangle> triangulate(std::span<const Point> outline, const Normal& 
             const std::uint32_t a = rest[(i + m - 1) % m], b = rest[i], c = rest[(i + 1) % m];
             const double turn = flat.turn(a, b, c), s = shape(flat, a, b, c);
             if (s > widest) widest = s, fallback = i;
-            if (std::abs(turn) <= flat.noise) {  // no area: goes at once
+            if (std::abs(turn) <= flat.noise) {  // no area: remove it at once
                 best = i;
                 break;
             }
             if (turn < 0 || s <= best_shape || !is_free(flat, rest, a, b, c)) continue;
             best = i, best_shape = s;
-            if (m > careful) break;
+            if (m > max_corners_for_best_ear) break;
         }
-        if (best == m) best = fallback;  // rounding left no ear: take the roundest corner
+        if (best == m) best = fallback;  // rounding errors left no ear: take the best shaped corner
         const std::uint32_t a = rest[(best + m - 1) % m], b = rest[best], c = rest[(best + 1) % m];
         if (flat.turn(a, b, c) > flat.noise) triangles.push_back({a, b, c});
         rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(best));

@@ -9,14 +9,15 @@
 
 namespace exitance {
 
-/// Cuts a simple planar outline into triangles by clipping ears, the best shaped first. Outlines that touch themselves
-/// (holes joined to the border by a bridge) are welcome. Ears without area are left out. O(corners^2) as a rule.
+/// Triangulates a simple planar outline by clipping ears, the best shaped first. Outlines that touch themselves are
+/// supported (holes joined to the border by a bridge). Ears without area are omitted. Usually O(corners^2).
 /// Returns indices into `outline`, counter-clockwise seen from the front.
 /// Source: [Eberly08].
 std::vector<std::array<std::uint32_t, 3>> triangulate(std::span<const Point> outline, const Normal& n);
 
-/// Cuts a simple planar outline into convex pieces: triangles joined across diagonals while they stay convex. At most
-/// four times as many as necessary. A convex outline comes back whole. Source: [HertelMehlhorn83].
+/// Splits a simple planar outline into convex pieces: adjacent triangles are merged while the union stays convex. At
+/// most four times as many pieces as necessary; a convex outline is returned whole. Returns indices into `outline`.
+/// Source: [HertelMehlhorn83].
 std::vector<std::vector<std::uint32_t>> convex_pieces(std::span<const Point> outline, const Normal& n);
 
 }  // namespace exitance

@@ -28,7 +28,7 @@ void expect_covered(std::span<const Point> outline) {
     EXPECT_NEAR(total_area(outline, n, convex_pieces(outline, n)), norm(whole), 1e-12 * norm(whole));
 }
 
-TEST(Triangulation, CoversStarsOfAnyShapeOnce) {
+TEST(Triangulation, CoversRandomStarsOnce) {
     RandomStream random(3, Stream::mesh);
     for (int trial = 0; trial < 60; ++trial) {
         const Frame frame(normalized({random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5}));
@@ -42,15 +42,15 @@ TEST(Triangulation, CoversStarsOfAnyShapeOnce) {
     }
 }
 
-TEST(Triangulation, CoversWallsWithDoorsAndBridgedHoles) {
+TEST(Triangulation, CoversWallsWithDoorsAndBridgedHolesOnce) {
     expect_covered(
         std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {1, 0, 2}, {2, 0, 2}, {2, 0, 0}, {5, 0, 0}, {5, 0, 3}, {0, 0, 3}});
-    // a window joined to the border by a bridge walked to and fro
+    // a window joined to the border by a bridge traversed in both directions
     expect_covered(std::vector<Point>{
         {0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}});
 }
 
-TEST(Triangulation, LeavesConvexOutlinesWholeAndAnEllInTwo) {
+TEST(Triangulation, KeepsConvexOutlinesWholeAndSplitsAnEllInTwo) {
     const std::vector<Point> square = {{0, 0, 0}, {0.5, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     EXPECT_EQ(convex_pieces(square, {0, 0, 1}).size(), 1u);
     const std::vector<Point> ell = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}};

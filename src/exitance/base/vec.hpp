@@ -9,7 +9,7 @@ namespace exitance {
 
 inline constexpr double pi = std::numbers::pi;
 
-/// A vector or point of space, metres unless it is a direction.
+/// A vector or point in space; metres unless it is a direction.
 struct Vec3 {
     double x = 0, y = 0, z = 0;
 
@@ -21,7 +21,7 @@ struct Vec3 {
     constexpr Vec3& operator*=(double s) { return x *= s, y *= s, z *= s, *this; }
 };
 
-using Point = Vec3;   ///< A place, metres.
+using Point = Vec3;   ///< A position, metres.
 using Normal = Vec3;  ///< A direction of length 1.
 
 constexpr Vec3 operator+(Vec3 a, const Vec3& b) {
@@ -67,7 +67,7 @@ constexpr Vec3 max(const Vec3& a, const Vec3& b) {
     return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
 
-/// A point or vector in a plane's own coordinates.
+/// A point or vector in the coordinates of a plane.
 struct Vec2 {
     double x = 0, y = 0;
     constexpr bool operator==(const Vec2&) const = default;
@@ -88,7 +88,7 @@ constexpr double cross(Vec2 a, Vec2 b) {
     return a.x * b.y - a.y * b.x;
 }
 
-/// Three directions at right angles, the third of them given: u x v = n. Source: [Duff17].
+/// Orthonormal right-handed frame with a given third axis: u x v = n. Source: [Duff17].
 struct Frame {
     Normal u, v, n;
 

@@ -7,9 +7,9 @@
 
 namespace exitance {
 
-/// The polynomial of an element that is nearest, in the weighted mean square, to values at places of its domain: linear
-/// on triangles and cells, bilinear on parallelograms. Given by its values at the corners of the element's patch (for
-/// a cell these may lie outside its domain). Exact where the values come from such a polynomial.
+/// Weighted least-squares fit of an element's polynomial to values at points of its domain: linear on triangles and
+/// cells, bilinear on parallelograms. Represented by the values at the corners of the element's patch (of a cell, these
+/// may lie outside its domain). Exact if the values come from such a polynomial.
 class ElementFit {
   public:
     ElementFit(const ElementTree& tree, ElementId e, const std::vector<WeightedPlace>& places,
@@ -22,7 +22,7 @@ class ElementFit {
   private:
     ElementPolynomials polynomials_;
     std::array<Vec2, 4> corner_uv_{};
-    std::array<Spectrum, 4> coefficient_{};  ///< One a polynomial.
+    std::array<Spectrum, 4> coefficient_{};  ///< One per polynomial.
 };
 
 }  // namespace exitance

@@ -11,7 +11,7 @@ Spectrum spectrum(double value) {
     return Spectrum(value);
 }
 
-TEST(ElementFit, ReturnsThePolynomialsItIsMadeFor) {
+TEST(ElementFit, ReproducesPolynomialsOfItsDegree) {
     const ElementTree tree = test::elements_of_every_kind();
     for (ElementId e : tree.leaves()) {
         const bool bilinear = !tree.is_cell(e) && !tree.patch(e).is_triangle();
@@ -26,7 +26,7 @@ TEST(ElementFit, ReturnsThePolynomialsItIsMadeFor) {
     }
 }
 
-TEST(ElementFit, WeightsOfARuleSumToOneAndItsPlacesLieInside) {
+TEST(ElementFit, WeightsOfARuleSumToOneAndItsPointsAreInside) {
     const ElementTree tree = test::elements_of_every_kind();
     for (ElementId e : tree.leaves())
         for (RuleOrder order : {RuleOrder::nodes, RuleOrder::fine}) {
@@ -43,7 +43,7 @@ TEST(ElementFit, WeightsOfARuleSumToOneAndItsPlacesLieInside) {
 
 TEST(ElementFit, FineRulesIntegrateTheirDegree) {
     const ElementTree tree = test::elements_of_every_kind();
-    // Squares: u^4 v^4 has the mean 1/25; triangles: u^3 v^2 has 2 x 3! 2! / 7! = 1/210.
+    // Squares: u^4 v^4 has the mean 1/25; triangles: u^3 v^2 has the mean 2 x 3! 2! / 7! = 1/210.
     double square = 0, triangle = 0;
     for (const WeightedPlace& p : element_rule(tree, ElementId(0), RuleOrder::fine))
         square += p.weight * std::pow(p.uv.x, 4) * std::pow(p.uv.y, 4);

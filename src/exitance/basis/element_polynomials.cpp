@@ -13,7 +13,7 @@ ElementPolynomials::ElementPolynomials(const ElementTree& tree, ElementId e, con
         reach = {std::max(reach.x, std::abs(corner.x - middle_.x)), std::max(reach.y, std::abs(corner.y - middle_.y))};
     scale_ = {1 / reach.x, 1 / reach.y};
 
-    // Values of the monomials at the places turn into those of the polynomials, and so do the rows.
+    // Modified Gram-Schmidt: `value` holds the polynomials at the points, `row_` their coefficients.
     std::vector<Values> value;
     for (const WeightedPlace& p : places) value.push_back(monomials(p.uv));
     const auto product = [&](std::size_t j, std::size_t k) {
@@ -24,13 +24,13 @@ ElementPolynomials::ElementPolynomials(const ElementTree& tree, ElementId e, con
     for (std::size_t k = 0; k < size_; ++k) {
         row_[k][k] = 1;
         const double before = product(k, k);
-        for (int again = 0; again < 2; ++again)  // once more for what rounding left
+        for (int again = 0; again < 2; ++again)  // the second pass removes the rounding error of the first
             for (std::size_t j = 0; j < k; ++j) {
                 const double c = product(j, k);
                 for (std::size_t i = 0; i < places.size(); ++i) value[i][k] -= c * value[i][j];
                 for (std::size_t m = 0; m < k; ++m) row_[k][m] -= c * row_[j][m];
             }
-        // One that the places do not tell from those before it is left out.
+        // Omit a polynomial that is linearly dependent on the previous ones at these points.
         const double rest = product(k, k), factor = rest > 1e-12 * before ? 1 / std::sqrt(rest) : 0;
         for (std::size_t i = 0; i < places.size(); ++i) value[i][k] *= factor;
         for (std::size_t m = 0; m <= k; ++m) row_[k][m] *= factor;

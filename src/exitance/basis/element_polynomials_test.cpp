@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// And a sliver of a cell.
+/// Elements of every kind, and a thin sliver of a cell.
 ElementTree four_kinds() {
     ElementTree tree = test::elements_of_every_kind();
     tree.split_by_line(ElementId(3), {{1, 0}, 1e-4});
@@ -28,7 +28,7 @@ TEST(ElementPolynomials, AreOrthonormalOverTheirPlaces) {
     }
 }
 
-TEST(ElementPolynomials, HoldPolynomialsOfSecondDegree) {
+TEST(ElementPolynomials, ReproducePolynomialsOfSecondDegree) {
     const ElementTree tree = four_kinds();
     for (ElementId e : tree.leaves()) {
         const std::vector<WeightedPlace> places = element_rule(tree, e, RuleOrder::finer);
@@ -48,7 +48,7 @@ TEST(ElementPolynomials, HoldPolynomialsOfSecondDegree) {
     }
 }
 
-TEST(ElementPolynomials, LeaveOutWhatOnePlaceCannotTell) {
+TEST(ElementPolynomials, OmitPolynomialsThatOnePointCannotDetermine) {
     const ElementTree tree = four_kinds();
     const std::vector<WeightedPlace> middle = {{{0.5, 0.5}, 1}};
     const ElementPolynomials phi(tree, ElementId(0), middle, false);

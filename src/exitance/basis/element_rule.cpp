@@ -14,8 +14,8 @@ std::vector<WeightedPlace> places_of(std::span<const PlanarNode> rule) {
     return out;
 }
 
-/// The rule of the unit square on a convex quadrangle, or that of the triangle: their points at the same shares of the
-/// corners, weighted by how much of the area stands for them.
+/// Maps the rule of the unit square to a convex quadrangle by the bilinear map of its corners, or the rule of the
+/// triangle to a triangle. Weights include the area element of the map.
 std::vector<WeightedPlace> mapped_rule(const std::vector<Vec2>& domain) {
     const Vec2 o = domain[0], a = domain[1] - o, b = domain.back() - o;
     std::vector<WeightedPlace> rule;
@@ -34,8 +34,8 @@ std::vector<WeightedPlace> mapped_rule(const std::vector<Vec2>& domain) {
     return rule;
 }
 
-/// On the way from the centre to each corner, where Gauss's nodes of a parallelogram would stand; or the fan of
-/// triangles around the centre, each with the rule of three places.
+/// `nodes`: one point on the line from the centre to each corner, at the relative distance of the Gauss nodes of a
+/// parallelogram. Other orders: triangles between the centre and each side, each with the rule of three points.
 std::vector<WeightedPlace> cell_rule(const std::vector<Vec2>& domain, Vec2 centre, RuleOrder order) {
     const std::size_t n = domain.size();
     std::vector<WeightedPlace> rule;

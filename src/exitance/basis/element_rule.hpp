@@ -6,23 +6,24 @@
 
 namespace exitance {
 
-/// A place of an element and its share in a mean over the element; the shares of a rule sum to 1.
+/// A point of an element and its quadrature weight; the weights of a rule sum to 1.
 struct WeightedPlace {
     Vec2 uv;
     double weight;
 };
 
-/// How many places a rule takes.
+/// Number of points of a rule.
 enum class RuleOrder {
-    nodes,  ///< As many as the polynomial has freedoms: 2 x 2 Gauss, 3 on triangles, one a corner on cells.
-    fine,   ///< Enough to judge the polynomial by: 3 x 3 Gauss, 7 on triangles [Radon48], 3 a corner on cells.
-    finer,  ///< Enough to judge one of second degree by: 16, `scattered_square_rule`, [Dunavant85], or those on cells
-            ///< of 3 or 4 corners.
+    nodes,  ///< One point per coefficient of the polynomial: 2 x 2 Gauss, 3 on triangles, one per corner on cells.
+    fine,   ///< Enough to measure the error of a linear fit: 3 x 3 Gauss, 7 on triangles [Radon48], 3 per corner on
+            ///< cells.
+    finer,  ///< Enough for a fit of second degree: 16 points, `scattered_square_rule`, [Dunavant85], or these mapped to
+            ///< cells of 3 or 4 corners.
 };
 
-/// A quadrature rule over the domain of an element, in the element's own coordinates. On parallelograms and
-/// triangles `nodes` is exact for polynomials of degree 2 or more, `fine` of degree 5 and `finer` of 8; on
-/// cells of degree 0, 2 and, with 3, 4 or more corners, 8, 3 and 2.
+/// Returns a quadrature rule over the domain of an element, in the element's own coordinates. On parallelograms and
+/// triangles `nodes` is exact for polynomials of degree 2 or more, `fine` of degree 5 and `finer` of 8. On cells,
+/// `nodes` is exact to degree 0, `fine` to 2, and `finer` to degree 8, 3 and 2 for 3, 4 or more corners.
 std::vector<WeightedPlace> element_rule(const ElementTree& tree, ElementId e, RuleOrder order);
 
 }  // namespace exitance

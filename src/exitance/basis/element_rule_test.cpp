@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// Int over a triangle of x^p y^q by a rule of degree 8, which these polynomials stay below.
+/// Integrates a polynomial over a triangle by a rule of degree 8, which is exact for the polynomials of this test.
 double over_triangle(Vec2 a, Vec2 b, Vec2 c, const std::function<double(Vec2)>& f) {
     double sum = 0;
     const Vec2 ab = b - a, ac = c - a;
@@ -18,8 +18,8 @@ double over_triangle(Vec2 a, Vec2 b, Vec2 c, const std::function<double(Vec2)>& 
     return 0.5 * cross(ab, ac) * sum;
 }
 
-// Of the bilinear map onto a quadrangle, times its area element, a polynomial of degree 3 has degree 7.
-TEST(ElementRule, IsExactForPolynomialsOfDegreeThreeWhereItIsFiner) {
+// A polynomial of degree 3, composed with the bilinear map onto a quadrangle and times its area element, has degree 7.
+TEST(ElementRule, FinerRuleIsExactForPolynomialsOfDegreeThree) {
     ElementTree tree = test::elements_of_every_kind();
     tree.split_by_line(ElementId(1), {{1, 0.3}, 0.4});
     for (ElementId e : tree.leaves()) {

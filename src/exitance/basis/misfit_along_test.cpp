@@ -7,7 +7,8 @@
 namespace exitance {
 namespace {
 
-/// What the straight polynomial of one element leaves over of f, and its mean square.
+/// Fits a linear or bilinear polynomial to f on one element; returns the two directional parts of its misfit and the
+/// whole mean square misfit.
 template <class Function>
 std::array<double, 3> along_and_all(Patch::Shape shape, const Function& f) {
     ElementTree tree;
@@ -25,7 +26,7 @@ std::array<double, 3> along_and_all(Patch::Shape shape, const Function& f) {
     return {u, v, square};
 }
 
-TEST(MisfitAlong, IsAllOfTheMisfitWhereLightVariesAlongOneDirection) {
+TEST(MisfitAlong, IsTheWholeMisfitIfLightVariesAlongOneDirection) {
     const auto step = [](double x) { return x < 0.4 ? 1.0 : 0.0; };
     for (const auto shadow : {0, 1}) {
         const auto [u, v, all] =
@@ -36,14 +37,14 @@ TEST(MisfitAlong, IsAllOfTheMisfitWhereLightVariesAlongOneDirection) {
     }
 }
 
-TEST(MisfitAlong, IsInNeitherWhereBothDirectionsAreNeeded) {
+TEST(MisfitAlong, IsSmallInEachDirectionForADiagonalShadow) {
     const auto [u, v, all] =
         along_and_all(Patch::Shape::parallelogram, [](Vec2 p) { return p.x + p.y < 0.9 ? 1.0 : 0.0; });
     EXPECT_LT(u, 0.7 * all);
     EXPECT_LT(v, 0.7 * all);
 }
 
-TEST(MisfitAlong, IsNothingOnTriangles) {
+TEST(MisfitAlong, IsZeroOnTriangles) {
     const auto [u, v, all] = along_and_all(Patch::Shape::triangle, [](Vec2 p) { return p.x * p.x; });
     EXPECT_GT(all, 1e-6);
     EXPECT_EQ(u + v, 0);

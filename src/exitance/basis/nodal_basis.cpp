@@ -29,7 +29,7 @@ std::size_t NodalBasis::monomial_count(Shape shape) const {
 }
 
 void NodalBasis::monomials(Shape shape, Vec2 uv, std::span<double> out) const {
-    // About the middle of the shape, for the sake of the digits.
+    // About the centre of the shape, for better conditioning.
     const double middle = shape == Shape::triangle ? 1.0 / 3 : 0.5;
     const double s = uv.x - middle, t = uv.y - middle;
     std::size_t k = 0;
@@ -40,7 +40,7 @@ void NodalBasis::monomials(Shape shape, Vec2 uv, std::span<double> out) const {
     }
 }
 
-/// M x M equal parts of a patch; a triangle's rows hold upright triangles and, between them, turned ones.
+/// Splits a patch into M x M equal parts; a row of a triangle alternates upright and inverted triangles.
 std::vector<Patch> NodalBasis::boxes(const Patch& p) const {
     const Vec3 a = p.a / order_, b = p.b / order_;
     std::vector<Patch> out;
@@ -88,7 +88,7 @@ NodalBasis::OfShape NodalBasis::make(Shape shape) const {
         out.nodes.assign(rule.begin(), rule.end());
         out.nodes.resize(n, {{1.0 / 3, 1.0 / 3}, 0});
     }
-    // The polynomial whose weighted distance to the numbers is least: (V^T W V) c = V^T W numbers.
+    // Weighted least squares for the monomial coefficients c: (V^T W V) c = V^T W coefficients.
     const std::vector<double> V = functionals(shape, out.nodes, reference(shape));
     std::vector<double> normal(m * m, 0.0);
     out.fit.assign(m * n, 0.0);
@@ -126,7 +126,7 @@ NodalBasis::OfShape NodalBasis::make(Shape shape) const {
 void NodalBasis::from_monomials(Shape shape, std::span<const double> values, std::span<double> out) const {
     const std::size_t n = count(), m = monomial_count(shape);
     const double* fit = of(shape).fit.data();
-    std::array<double, 9> sum{};  // in registers, which `out` is not
+    std::array<double, 9> sum{};  // in registers, unlike `out`, which may alias
     for (std::size_t i = 0; i < m; ++i, fit += n)
         for (std::size_t k = 0; k < n; ++k) sum[k] += values[i] * fit[k];
     std::copy_n(sum.begin(), n, out.begin());
@@ -156,7 +156,7 @@ std::size_t NodalBasis::box_at(Shape shape, Vec2 uv) const {
     const auto index = [&](double t) { return std::min(order_ - 1, static_cast<int>(t * order_)); };
     const int i = index(uv.x), j = index(uv.y);
     if (shape == Shape::parallelogram) return static_cast<std::size_t>(j * order_ + i);
-    // Row j begins after rows of 2 M - 1, 2 M - 3, ... triangles; upright and turned ones alternate in it.
+    // Row j begins after rows of 2 M - 1, 2 M - 3, ... triangles; upright and inverted ones alternate in it.
     const double s = uv.x * order_ - i, t = uv.y * order_ - j;
     const int turned = s + t > 1 && i + j + 1 < order_ ? 1 : 0;
     return static_cast<std::size_t>(j * (2 * order_ - j) + 2 * i + turned);

@@ -42,7 +42,7 @@ double legendre(std::size_t i, double t) {
     return i == 0 ? 1 : i == 1 ? std::sqrt(3.0) * x : std::sqrt(5.0) * 0.5 * (3 * x * x - 1);
 }
 
-/// Int_0^1 t^power f(t) for the function that a row describes, exactly (Gauss rules of 8 points a half).
+/// Returns Int_0^1 t^power f(t) for the function f of a row; exact (Gauss rule of 8 points on each half).
 template <std::size_t M>
 double moment(const TwoScaleRow<M>& row, int power) {
     double sum = 0;
@@ -89,9 +89,9 @@ TEST(TwoScale, DetailsOfFlatletsVanishOnPolynomials) {
         for (const auto& row : two_scale::flatlet3.detail) EXPECT_NEAR(cells(row, 3, p), 0, 1e-11);
 }
 
-TEST(TwoScale, FlatletSynthesisGivesBackALinearAndAQuadraticFunction) {
+TEST(TwoScale, FlatletSynthesisReproducesALinearAndAQuadraticFunction) {
     const auto& two = two_scale::flatlet2_synthesis;
-    for (std::size_t cell = 0; cell < 4; ++cell)  // cells 1, 2, 3, 4 have boxes 1.5 and 3.5
+    for (std::size_t cell = 0; cell < 4; ++cell)  // the cells have means 1, 2, 3, 4 and the boxes 1.5 and 3.5
         EXPECT_NEAR(two[cell][0] * 1.5 + two[cell][1] * 3.5, static_cast<double>(cell + 1), rounding);
     const auto& three = two_scale::flatlet3_synthesis;
     const auto cell_mean = [](double i) { return (std::pow(i + 1, 3) - std::pow(i, 3)) / 3; };
@@ -104,8 +104,8 @@ TEST(TwoScale, FlatletSynthesisGivesBackALinearAndAQuadraticFunction) {
     }
 }
 
-/// One child of a square cut into four, by the filters of the line.
-TEST(NodalBasis, PushOfFlatletsIsTheSynthesisOfBothDirections) {
+/// A square split into four: the push matrix is the tensor product of the one-dimensional synthesis.
+TEST(NodalBasis, PushOfFlatletsIsTheTensorProductOfTheSynthesis) {
     const NodalBasis two(HierarchyBasis::flatlet2), three(HierarchyBasis::flatlet3);
     for (std::size_t child = 0; child < 4; ++child) {
         const auto p2 = two.push(Patch::Shape::parallelogram, Cut::both, child);
@@ -126,7 +126,7 @@ TEST(NodalBasis, PushOfFlatletsIsTheSynthesisOfBothDirections) {
     }
 }
 
-/// Coefficients of the orthonormal polynomials from numbers at Gauss's nodes, on the line.
+/// Converts values at the Gauss nodes of an interval to coefficients of the orthonormal polynomials.
 template <std::size_t M>
 std::array<double, M> to_modes(const std::array<double, M>& nodal) {
     const LineRule rule = gauss_legendre(static_cast<int>(M));
@@ -139,7 +139,7 @@ std::array<double, M> to_modes(const std::array<double, M>& nodal) {
 template <std::size_t M>
 void expect_push_agrees(HierarchyBasis kind, const TwoScale<M>& filters) {
     const NodalBasis basis(kind);
-    // Functions of u alone: node k of the square has the u of node k % M of the line.
+    // Functions of u alone: node k of the square has the u of node k % M on the line.
     for (std::size_t unit = 0; unit < M; ++unit) {
         std::array<double, M> parent{};
         parent[unit] = 1;
@@ -183,10 +183,12 @@ TEST(NodalBasis, PullAfterPushChangesNothing) {
                                          {Patch::Shape::parallelogram, Cut::both},
                                          {Patch::Shape::triangle, Cut::both}}) {
             const std::size_t n = basis.count(), children = way == Cut::both ? 4 : 2;
-            // A polynomial of the basis: on triangles not any numbers are.
+            // The parent's function must be a polynomial of the basis; on triangles, not all coefficients of flatlets
+            // are.
             std::vector<double> any = random_numbers(n, 7), parent(n), back(n, 0.0);
             if (shape == Patch::Shape::triangle && basis.is_flat()) {
-                std::vector<double> factors(n);  // means of a linear function are its values at the middles
+                // The mean of a linear function over a triangle is its value at the centroid.
+                std::vector<double> factors(n);
                 for (std::size_t k = 0; k < n; ++k) {
                     const Vec2 at = basis.nodes(shape)[k].at;
                     parent[k] = basis.order() == 1 ? 2 : 1 + 2 * at.x - 3 * at.y;
@@ -213,7 +215,8 @@ TEST(NodalBasis, PullAfterPushChangesNothing) {
 TEST(NodalBasis, PolynomialsOfItsDegreeAreInterpolatedExactly) {
     for (const HierarchyBasis kind : all_kinds) {
         const NodalBasis basis(kind);
-        if (basis.is_flat() && basis.order() == 3) continue;  // means of a quadratic are not its values
+        // The mean of a quadratic over a box is not its value at the centre.
+        if (basis.is_flat() && basis.order() == 3) continue;
         for (const Patch::Shape shape : {Patch::Shape::parallelogram, Patch::Shape::triangle}) {
             const auto f = [&](Vec2 p) {
                 const double s = basis.order() > 1 ? 3 * p.x - 2 * p.y : 0;
@@ -230,7 +233,7 @@ TEST(NodalBasis, PolynomialsOfItsDegreeAreInterpolatedExactly) {
     }
 }
 
-TEST(NodalBasis, EveryBoxHoldsItsOwnMiddle) {
+TEST(NodalBasis, EveryBoxContainsItsOwnCentre) {
     for (const HierarchyBasis kind : {HierarchyBasis::haar, HierarchyBasis::flatlet2, HierarchyBasis::flatlet3}) {
         const NodalBasis basis(kind);
         for (const Patch::Shape shape : {Patch::Shape::parallelogram, Patch::Shape::triangle})

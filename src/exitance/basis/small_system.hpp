@@ -6,7 +6,8 @@
 
 namespace exitance {
 
-/// Solves A X = B, A n x n symmetric and positive, B n x m, both row by row; X replaces B (Cholesky).
+/// Solves A X = B by Cholesky decomposition. A is n x n, symmetric and positive definite, B is n x m, both row-major; X
+/// replaces B, and A is overwritten.
 inline void solve_in_place(std::vector<double>& A, std::vector<double>& B, std::size_t n, std::size_t m) {
     for (std::size_t k = 0; k < n; ++k) {
         for (std::size_t j = 0; j < k; ++j)

@@ -2,9 +2,9 @@
 
 namespace exitance {
 
-/// All numbers on the path of a solve that neither mathematics nor a standard gives. Their meanings, units and what
-/// they trade stand in `numbers.inc`, the one table. Nothing but `TriedNumber` changes what they refer to; a value
-/// costs what a literal in memory costs.
+/// All numbers that affect a solve and come from measurements, not from mathematics or a standard. `numbers.inc` is the
+/// table of their meanings, units and trade-offs. Only `TriedNumber` changes their values. Reading one costs as much as
+/// loading a constant from memory.
 namespace calibrated {
 #define EXITANCE_NUMBER(name, value, unit, trades, range, command) \
     namespace stored {                                             \

@@ -12,17 +12,18 @@ struct CalibratedNumber {
     std::string_view name;
     double* stored;  ///< The value that solves read.
     std::string_view unit;
-    std::string_view trades;  ///< What grows and what falls with the number.
-    std::string_view range;   ///< Of factors on the number over which results do not care; or that it was not measured.
-    std::string_view command;  ///< That measured the range; empty where it was not measured.
+    std::string_view trades;   ///< The trade-off: what is gained for what as the number changes.
+    std::string_view range;    ///< Range of factors on the number over which results hardly change; or "not measured".
+    std::string_view command;  ///< Command that measured the range; empty if it was not measured.
 };
 
 std::span<const CalibratedNumber> calibration_table();
 
-/// The row of that name; null if there is none.
+/// Returns the row of that name; null if there is none.
 const CalibratedNumber* find_calibrated(std::string_view name);
 
-/// Another value for a number as long as this lives, to measure what depends on it. Not while a solve runs.
+/// Replaces the value of a number for the lifetime of this object, to measure its effect. Must not be created or
+/// destroyed during a solve.
 class TriedNumber {
   public:
     TriedNumber(const CalibratedNumber& number, double value) : stored_(*number.stored), own_(stored_) {

@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-TEST(CalibrationTable, HoldsAtMostAHundredAndTenNumbersThatSayWhatTheyAre) {
+TEST(CalibrationTable, HasAtMostAHundredAndTenCompleteRows) {
     std::set<std::string_view> names;
     for (const CalibratedNumber& n : calibration_table()) {
         EXPECT_TRUE(names.insert(n.name).second) << n.name;
@@ -18,7 +18,7 @@ TEST(CalibrationTable, HoldsAtMostAHundredAndTenNumbersThatSayWhatTheyAre) {
     EXPECT_LE(names.size(), 110u);
 }
 
-TEST(CalibrationTable, ANumberIsTriedForAsLongAsThatLives) {
+TEST(CalibrationTable, ATriedNumberIsRestoredAfterwards) {
     const CalibratedNumber* row = find_calibrated("weak_link_share");
     ASSERT_TRUE(row);
     const double own = calibrated::weak_link_share;

@@ -110,9 +110,9 @@ void declare_scene(CLI::App& app, SceneArguments& scene) {
                    "dimming,lumens,maintenance_factor,group")
         ->type_name("FILE");
     add_choice(app, "--length-unit", length_unit_names, scene.load.metres_per_unit,
-               "Length unit of .obj, .stl, .rad and .vs3 files; default m. Points, cameras and tables are in metres");
+               "Length unit of .obj, .stl, .ply, .rad and .vs3 files; default m. Points, cameras and tables are in metres");
     add_choice(app, "--up", up_names, scene.load.y_is_up,
-               "Upright axis of .obj, .stl and .vs3 files; default z. Points, cameras and tables have Z up");
+               "Upright axis of .obj, .stl, .ply and .vs3 files; default z. Points, cameras and tables have Z up");
     app.add_flag("--turn-bodies", scene.load.turn_bodies,
                  "Turn the faces of closed bodies that are inside out; check reports such bodies");
     app.add_flag("--run-commands", scene.load.run_commands,

@@ -7,7 +7,7 @@
 
 namespace exitance {
 
-/// A place towards parallel light that is beyond the whole scene.
+/// Returns a point in the direction of parallel light that is outside of the whole scene.
 Vec3 Beams::far_away(const PunctualLight& light, const Point& x) const {
     const Scene& scene = occluders_->scene();
     return x - (2 * (scene.size() + norm(x - scene.box().centre()))) * light.direction;
@@ -35,7 +35,8 @@ bool Beams::blocks(PieceId p, const Receiver& at, const Point& from) const {
     const Vec3 d = from - at.x;
     bool left = false, right = false;
     for (std::size_t i = 0, m = corners.size(); i < m; ++i) {
-        // Corner by corner the same product, so that the pieces on either side of an edge agree on which side d passes.
+        // Each pair of corners uses an identical product, so that pieces on both sides of an edge agree on which side d
+        // passes.
         const double side = dot(d, cross(corners[i] - at.x, corners[i + 1 == m ? 0 : i + 1] - at.x));
         left |= side > 0, right |= side < 0;
         if (left && right) return false;
@@ -91,7 +92,7 @@ void Beams::prepare_light(std::uint32_t number, std::span<const Point> receiver,
     const auto towards = [&](const Point& x) { return light.is_directional() ? -light.direction : light.position - x; };
     if (!(dot(n, towards(receiver[0])) > 0)) return;
 
-    // The pyramid (or prism) between the polygon and the light, its sides facing inwards.
+    // The pyramid (or prism) between the polygon and the light, its side planes facing inwards.
     ConvexRegion region;
     std::vector<Plane> sides;
     region.add({n, dot(n, receiver[0]) + slack});
@@ -117,7 +118,7 @@ void Beams::prepare_light(std::uint32_t number, std::span<const Point> receiver,
             if (part.size() < 3) return false;
         }
         candidates.push_back(p);
-        // The shadow of a convex piece is convex: what covers all corners covers all.
+        // The shadow of a convex piece is convex: if it contains all corners, it contains the polygon.
         return std::all_of(receiver.begin(), receiver.end(), [&](const Point& x) {
             return blocks(p, {x, n, own}, light.is_directional() ? far_away(light, x) : light.position);
         });

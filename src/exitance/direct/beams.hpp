@@ -7,46 +7,48 @@
 
 namespace exitance {
 
-/// Light of sources without extent on one convex part of a surface: which of them can shine there, past what.
+/// A punctual light that may illuminate one convex part of a surface, and its possible blockers.
 struct Beam {
     std::uint32_t light = 0;
-    std::uint32_t first = 0, count = 0;  ///< Of the candidates; none: nothing stands between.
+    std::uint32_t first = 0, count = 0;  ///< Range of its blockers in the candidates; empty: unoccluded.
 };
 
-/// Direct light of points, spots and parallel light, exact at every point:
+/// Direct light of point lights, spotlights and parallel light, exact at every point:
 ///
 ///     E = I(w) cos / r^2 V,  of parallel light  E_0 cos V,
 ///
-/// V decided in double precision against the convex pieces: a piece blocks the segment to the light if its ends lie on
-/// either side of its plane, by more than rounding, and it passes inside (an edge that two pieces share lets nothing
-/// through). The receiver's own region, and what lies in its plane or in the light's place, never blocks.
+/// V is decided in double precision by the convex pieces. A piece blocks the segment to the light if the segment's ends
+/// are on different sides of its plane, by more than rounding, and the segment passes inside its outline (a shared edge
+/// of two pieces lets no light through). The receiver's own region, and pieces in its plane or at the light's position,
+/// never block.
 class Beams {
   public:
-    /// Both must outlive it.
+    /// `lights` and `occluders` must outlive it.
     Beams(const std::vector<PunctualLight>& lights, const Occluders& occluders)
         : lights_(&lights), occluders_(&occluders) {}
 
     bool empty() const { return lights_->empty(); }
 
-    /// Irradiance at a point, W/m^2; O(log pieces) a light. Adds what comes from parallel light to `parallel`, if
-    /// given.
+    /// Returns the irradiance at a point, W/m^2. Adds the part of parallel light to `parallel`, if given. O(log pieces)
+    /// per light.
     Spectrum irradiance(const Receiver& at, Spectrum* parallel = nullptr) const;
 
-    /// Lights that may shine on a convex polygon (metres, counter-clockwise about n) of region `own`, and the pieces
-    /// that reach between, appended to `out` and `candidates`. A light that one piece hides from all of it is left out.
+    /// Appends the lights that may illuminate a convex polygon (metres, counter-clockwise about n) of region `own` to
+    /// `out`, and the pieces that reach between to `candidates`. Omits lights that one piece hides from the whole
+    /// polygon.
     void prepare(std::span<const Point> receiver, const Normal& n, RegionId own, std::vector<Beam>& out,
                  std::vector<PieceId>& candidates) const;
-    /// The same for a part of a polygon that was looked at.
+    /// Like prepare() above, for a part of a prepared polygon.
     void prepare(std::span<const Point> receiver, const Normal& n, RegionId own, std::span<const Beam> whole,
                  std::span<const PieceId> whole_candidates, std::vector<Beam>& out,
                  std::vector<PieceId>& candidates) const;
 
-    /// Irradiance at a point of a polygon that was looked at: as above.
+    /// Returns the irradiance at a point of a prepared polygon, as irradiance() above.
     Spectrum irradiance(const Receiver& at, std::span<const Beam> beams, std::span<const PieceId> candidates,
                         Spectrum* parallel = nullptr) const;
 
   private:
-    /// Light at a receiver if nothing stands between, and where it comes from.
+    /// Unoccluded light at a receiver, and the point that it comes from.
     struct Arrival {
         Spectrum E;
         Point from;

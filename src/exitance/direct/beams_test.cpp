@@ -32,21 +32,21 @@ double floor_light(const Scene& scene, const PunctualLight& light, const Point& 
 TEST(Beams, ABulbOverAPlaneFollowsTheCubeOfTheCosine) {
     const Scene scene = test::make({square(10, 0)});
     for (const double a : {0.0, 0.5, 1.0, 3.0}) {
-        const double r2 = 4 + a * a;  // 2 m above
+        const double r2 = 4 + a * a;  // the bulb is 2 m above
         EXPECT_NEAR(floor_light(scene, bulb({0, 0, 2}), {a, 0, 0}), 100 * 2 / (r2 * std::sqrt(r2)), 1e-12);
     }
     EXPECT_EQ(floor_light(scene, bulb({0, 0, -2}), {0, 0, 0}), 0) << "from below";
 }
 
-TEST(Beams, AShadowIsHardAndEndsWhereTheBlockerDoes) {
-    const Scene scene = test::make({square(10, 0), square(1, 1)});  // halfway up to the bulb: its shadow is 2 m wide
+TEST(Beams, AShadowIsHardAndHasTheShapeOfTheBlocker) {
+    const Scene scene = test::make({square(10, 0), square(1, 1)});  // at half the bulb's height: its shadow is 2 m wide
     EXPECT_EQ(floor_light(scene, bulb({0, 0, 2}), {1 - 1e-9, 0.3, 0}), 0);
     EXPECT_GT(floor_light(scene, bulb({0, 0, 2}), {1 + 1e-9, 0.3, 0}), 0);
     EXPECT_GT(floor_light(scene, bulb({0, 0, 1}), {0.2, 0.3, 0}), 0) << "a light in the blocker's plane";
 }
 
-TEST(Beams, NoLightComesThroughTheSeamsOfABlocker) {
-    // Four squares side by side; segments through their common corner and edges.
+TEST(Beams, NoLightLeaksThroughTheSeamsOfABlocker) {
+    // Four adjacent squares; segments pass through their common corner and edges.
     std::vector<test::Face> faces = {square(10, 0)};
     for (const double x : {-1.0, 0.0})
         for (const double y : {-1.0, 0.0})
@@ -75,7 +75,7 @@ TEST(Beams, ParallelLightDoesNotFallOff) {
     EXPECT_EQ(floor_light(scene, sun, {3.75, 0, 0}), 0) << "the blocker's shadow lies where the sun casts it";
 }
 
-TEST(Beams, APreparedReceiverSeesTheSameLight) {
+TEST(Beams, APreparedReceiverHasTheSameLight) {
     std::vector<test::Face> faces = {square(2, -1)};
     for (const test::Face& face : test::triangle_soup(60, 0.4, 7, {0, 0, -0.3})) faces.push_back(face);
     const Scene scene = test::make(faces);
@@ -103,7 +103,7 @@ TEST(Beams, APreparedReceiverSeesTheSameLight) {
             const Spectrum exact = beams.irradiance(at);
             EXPECT_EQ(beams.irradiance(at, whole, candidates), exact);
             EXPECT_EQ(beams.irradiance(at, some, fewer), exact);
-            lit += exact[0] > 3;  // more than the sun
+            lit += exact[0] > 3;  // more than the sun alone
         }
     }
     EXPECT_GT(lit, 300u) << "the test is to see both light and shadow";

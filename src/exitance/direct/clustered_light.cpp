@@ -10,22 +10,23 @@
 namespace exitance {
 namespace {
 
-constexpr double strong = 1.0 / 8;  ///< Part of the light that makes a source worth an exact answer.
+constexpr double strong_share = 1.0 / 8;  ///< Share of the light above which a source is computed exactly.
 
 // Costs in rays: of a visible part, and of a cut.
 constexpr double cost_of_visible_part = 8, cost_of_cut = 60;
-constexpr double few_that_matter = 24;  ///< Sources; exact answers about fewer cost no more than rays do.
+/// Effective number of sources up to which exact light is not more expensive than rays.
+constexpr double min_effective_sources = 24;
 
-/// Sources of a scene, at least. With fewer, what rays leave of noise has elements cut that exact light leaves whole: a
-/// sky of 512 triangles over a room took ten times as long by clusters.
-constexpr std::size_t too_many_for_exactness = 1000;
+/// Minimum number of sources in a scene. With fewer, the noise of rays causes splits of elements that exact light does
+/// not: a sky of 512 triangles over a room took ten times as long by clusters.
+constexpr std::size_t min_sources = 1000;
 
 constexpr unsigned least_rays = 8;
 
-/// Rays tell nothing of what is smaller than the part of the light that each stands for: half of it may be missed.
-constexpr double unseen = 0.5;
+/// Uncertainty of features smaller than the share of light of one ray: half of that share may be missed.
+constexpr double missed_share = 0.5;
 
-/// A place has random numbers of its own.
+/// Random key of a point, computed from its coordinates.
 std::uint64_t key_of(const Receiver& at) {
     return hash(static_cast<std::uint64_t>(Stream::direct), std::bit_cast<std::uint64_t>(at.x.x),
                 std::bit_cast<std::uint64_t>(at.x.y), std::bit_cast<std::uint64_t>(at.x.z), at.own.value);
@@ -40,8 +41,8 @@ unsigned power_of_two(double rays, unsigned least, unsigned most) {
 
 ClusteredLight::ClusteredLight(const DirectLight& direct, const RayTracer& tracer)
     : direct_(&direct), tracer_(&tracer), tree_(direct) {
-    // Of the sky, few large faces are looked at exactly.
-    possible_ = tree_.sources().size() > too_many_for_exactness && direct.occluders().scene().distant().empty() &&
+    // The few large faces of a sky are computed exactly.
+    possible_ = tree_.sources().size() > min_sources && direct.occluders().scene().distant().empty() &&
                 direct.occluders().scene().panes().empty();
     for (const DirectLight::Emitter& emitter : direct.emitters())
         possible_ = possible_ && !emitter.radiance.is_directed();
@@ -56,20 +57,21 @@ Receiver ClusteredLight::receiver(const Point& x, const Normal& n, RegionId own)
 bool ClusteredLight::pays(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
                           Workspace& room) const {
     if (!is_possible() || !direct_->occluders().scene().behind(own).is_none()) return false;
-    constexpr double roughly = 0.2;
-    tree_.cut(receiver(x, n, own), roughly, 0, room.cut_);
+    constexpr double coarse_error = 0.2;
+    tree_.cut(receiver(x, n, own), coarse_error, 0, room.cut_);
     const double light = room.cut_.light, sources = tree_.effective_sources(room.cut_);
-    if (sources <= few_that_matter) return false;
+    if (sources <= min_effective_sources) return false;
     const double rays = std::min<double>(accuracy.most_rays, light / accuracy.allowed(light));
     return cost_of_visible_part * sources > cost_of_cut + rays;
 }
 
-/// Strong sources of the cut, exact, and how the others' light runs on; returns the sum of theirs.
+/// Computes the strong sources of the cut exactly, and the prefix sums of the others' light. Returns the sum of the
+/// latter.
 double ClusteredLight::look_closely(const Receiver& at, Workspace& room, Spectrum& exact) const {
     room.light_before_.assign(1, 0);
     for (EmitterTree::Term& term : room.cut_.terms) {
         const EmitterTree::Node& node = tree_.nodes()[term.node];
-        if (node.is_leaf() && term.light > strong * room.cut_.light) {
+        if (node.is_leaf() && term.light > strong_share * room.cut_.light) {
             const EmitterTree::Source& source = tree_.sources()[node.first];
             const double F = visible_form_factor(direct_->occluders(), at, source.name.piece, room.exact);
             exact += F * direct_->emitters()[source.name.emitter].exitance;
@@ -80,7 +82,7 @@ double ClusteredLight::look_closely(const Receiver& at, Workspace& room, Spectru
     return room.light_before_.back();
 }
 
-/// Adds to `sum` what so many rays bring, one in each stratum of the terms' light; returns the variance of that.
+/// Adds the light of `rays` rays, one per stratum of the terms' light, to `sum`. Returns its variance.
 double ClusteredLight::cast(const Receiver& at, double light, unsigned rays, std::uint64_t key, Workspace& room,
                             Spectrum& sum) const {
     room.from_.clear(), room.to_.clear(), room.term_.clear();
@@ -109,10 +111,10 @@ double ClusteredLight::cast(const Receiver& at, double light, unsigned rays, std
     double differences = 0;
     for (std::uint32_t i = 0; i < rays; ++i) {
         if (!blocked[i]) sum += each * tree_.nodes()[room.cut_.terms[room.term_[i]].node].colour;
-        // Two strata side by side: half of the squared difference is the variance of either.
+        // Neighbouring strata: half of their squared difference is the variance of each.
         if (i % 2 == 1 && blocked[i] != blocked[i - 1]) differences += each * each;
     }
-    return differences + unseen * unseen * each * each;
+    return differences + missed_share * missed_share * each * each;
 }
 
 ClusteredLight::Estimate ClusteredLight::by_clusters(const Point& x, const Normal& n, RegionId own,
@@ -121,22 +123,23 @@ ClusteredLight::Estimate ClusteredLight::by_clusters(const Point& x, const Norma
     tree_.cut(at, accuracy.relative / 2, accuracy.absolute / 2, room.cut_);
     Estimate out;
     const double light = look_closely(at, room, out.irradiance);
-    // Little light left of much is not asked for more closely than a part of all.
-    constexpr double little = 0.05;
+    // Remaining light that is only a small part of the total needs no better accuracy than this part of the total.
+    constexpr double min_share_of_total = 0.05;
     const auto allowed = [&](const Spectrum& E) {
-        return std::max(accuracy.allowed(std::max(mean(E), little * room.cut_.light)), 1e-12 * room.cut_.light);
+        return std::max(accuracy.allowed(std::max(mean(E), min_share_of_total * room.cut_.light)),
+                        1e-12 * room.cut_.light);
     };
     if (light > 0) {
         const std::uint64_t key = key_of(at);
-        constexpr unsigned at_first = 128;
+        constexpr unsigned max_first_rays = 128;
         const unsigned first =
-            power_of_two(unseen * light / allowed(out.irradiance + Spectrum(light)), least_rays, at_first);
+            power_of_two(missed_share * light / allowed(out.irradiance + Spectrum(light)), least_rays, max_first_rays);
         Spectrum by_rays;
         double variance = cast(at, light, first, key, room, by_rays);
         out.rays = first;
         const double limit = std::pow(allowed(out.irradiance + by_rays), 2);
         if (variance > limit) {
-            // Stratified rays miss in the mean square as their number to the power of -3/2 says, about.
+            // The mean square error of stratified rays falls about as the power -3/2 of their number.
             const unsigned more = power_of_two(first * std::pow(variance / limit, 2.0 / 3), first, accuracy.most_rays);
             Spectrum again;
             const double variance_again = cast(at, light, more, hash(key, 1u), room, again);

@@ -11,7 +11,7 @@
 namespace exitance {
 namespace {
 
-/// Two furnished rooms, one under 200 triangles that emit.
+/// Two furnished rooms, one below a panel of 200 emitting triangles.
 struct Panel {
     Panel() : scene(built_scene("carpet", {{"u", "20"}, {"v", "10"}, {"cuts", "1"}, {"books", "0"}})), stage(scene) {}
     Scene scene;
@@ -19,7 +19,7 @@ struct Panel {
     ClusteredLight::Workspace workspace;
 };
 
-TEST(ClusteredLight, IsExactLightButForAsMuchAsItIsAllowedToMiss) {
+TEST(ClusteredLight, DiffersFromExactLightByAtMostTheAllowedError) {
     Panel panel;
     const Locator locator(panel.scene);
     for (const double asked : {0.1, 0.01}) {
@@ -30,7 +30,7 @@ TEST(ClusteredLight, IsExactLightButForAsMuchAsItIsAllowedToMiss) {
             if (surface.is_none()) continue;
             const RegionId region = panel.scene.surfaces()[surface].region;
             const double exact = mean(panel.stage.direct.irradiance(p.x, p.n, region, panel.workspace.exact));
-            const double absolute = 0.1 * asked;  // W/m^2: between 0 and 8 arrive
+            const double absolute = 0.1 * asked;  // W/m^2; the irradiance is between 0 and 8
             const ClusteredLight::Estimate found =
                 panel.stage.clustered.by_clusters(p.x, p.n, region, {asked, absolute}, panel.workspace);
             miss += std::pow(mean(found.irradiance) - exact, 2), told += found.variance;
@@ -39,13 +39,13 @@ TEST(ClusteredLight, IsExactLightButForAsMuchAsItIsAllowedToMiss) {
         }
         EXPECT_GT(all / count, 0.2);
         EXPECT_LT(miss, allowed);
-        EXPECT_LT(miss, 1.5 * told);  // what is told of the error
+        EXPECT_LT(miss, 1.5 * told);  // compared with the reported error
         EXPECT_LT(told, 2 * allowed);
-        EXPECT_LT(rays / count, 25 / asked);  // more accuracy costs rays, not more than in proportion
+        EXPECT_LT(rays / count, 25 / asked);  // the number of rays grows at most in proportion to the accuracy
     }
 }
 
-TEST(ClusteredLight, OfOnePlaceIsTheSameWheneverItIsAskedFor) {
+TEST(ClusteredLight, IsReproducibleAtOnePoint) {
     Panel panel;
     const Point x{2, 2, 0.4};
     const Normal up{0, 0, 1};
@@ -60,7 +60,7 @@ TEST(ClusteredLight, OfOnePlaceIsTheSameWheneverItIsAskedFor) {
     EXPECT_GT(max(first), 0);
 }
 
-TEST(ClusteredLight, IsExactToTheLastBitWhereEmittersAreFew) {
+TEST(ClusteredLight, IsBitIdenticalToExactLightWithFewEmitters) {
     const Scene scene = built_scene("office", {{"nx", "2"}, {"ny", "1"}, {"nfurn", "1"}});
     const Stage stage(scene);
     ClusteredLight::Workspace workspace;
@@ -71,10 +71,10 @@ TEST(ClusteredLight, IsExactToTheLastBitWhereEmittersAreFew) {
     EXPECT_EQ(found.variance, 0);
 }
 
-TEST(EmitterTree, TellsHowFarItsClustersAreOff) {
+TEST(EmitterTree, ReportsTheErrorOfItsClusters) {
     Panel panel;
     const EmitterTree& tree = panel.stage.clustered.tree();
-    ASSERT_GT(tree.sources().size(), 100u);  // some neighbours are coplanar, and one
+    ASSERT_GT(tree.sources().size(), 100u);  // some neighbours are coplanar and merged
     double miss = 0, told = 0;
     for (const ProbePoint& p : points_uniform_in_area(panel.scene, 200, 4)) {
         EmitterTree::Cut all, some;
@@ -88,7 +88,7 @@ TEST(EmitterTree, TellsHowFarItsClustersAreOff) {
     EXPECT_LT(miss, told);
 }
 
-TEST(EmitterTree, HoldsEverySourceOnce) {
+TEST(EmitterTree, ContainsEverySourceOnce) {
     Panel panel;
     const EmitterTree& tree = panel.stage.clustered.tree();
     std::vector<int> seen(tree.sources().size());
@@ -102,7 +102,7 @@ TEST(EmitterTree, HoldsEverySourceOnce) {
     EXPECT_NEAR(power, tree.nodes().front().power, 1e-9 * power);
 }
 
-TEST(ClusteredLight, ProjectsToTheSameBitsOnAnyNumberOfThreads) {
+TEST(ClusteredLight, ProjectionIsBitIdenticalOnAnyNumberOfThreads) {
     Panel panel;
     const StopRequest stop;
     std::vector<Spectrum> first;
@@ -118,13 +118,13 @@ TEST(ClusteredLight, ProjectsToTheSameBitsOnAnyNumberOfThreads) {
     set_threads(0);
 }
 
-TEST(ClusteredLight, IsNotAskedForOnceAStopIs) {
+TEST(ClusteredLight, IsNotEvaluatedAfterAStop) {
     Panel panel;
     StopRequest stop;
     stop.interrupt();
     const DirectProjectionOptions options{.mesh = {1, 0}, .tolerance = 1e-3};
     const DirectProjection light = project_direct_light(panel.stage, options, stop);
-    EXPECT_EQ(light.tree.size(), panel.stage.make_elements(options.mesh, &stop).size());  // nothing is cut
+    EXPECT_EQ(light.tree.size(), panel.stage.make_elements(options.mesh, &stop).size());  // nothing is split
 }
 
 }  // namespace

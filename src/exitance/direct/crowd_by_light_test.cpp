@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-TEST(CrowdByLight, ErrsByNoMoreThanTheLightAllows) {
+TEST(CrowdByLight, ErrorIsBoundedByTheLight) {
     const Scene scene = built_scene("clutter", {{"n", "500"}});
     const Stage stage(scene);
     const RegionId floor = scene.surfaces()[SurfaceId(0)].region;
@@ -35,8 +35,8 @@ TEST(CrowdByLight, ErrsByNoMoreThanTheLightAllows) {
                 }
                 may += 9 * 0.5 * allowed * (1 + E / mean_light) / kept;
             }
-        EXPECT_LT(squares, 1.2 * may);   // rays end when quarters of them tell so little, a bit too early
-        EXPECT_LT(squares, 0.5 * last);  // where there is more light elsewhere, a twentieth is allowed
+        EXPECT_LT(squares, 1.2 * may);   // sampling stops when the quarters happen to agree, slightly too early
+        EXPECT_LT(squares, 0.5 * last);  // with brighter light elsewhere, a twentieth is allowed
         last = squares;
     }
 }

@@ -12,23 +12,23 @@
 namespace exitance {
 namespace {
 
-/// What a blocker costs that is cut out of a source, in rays: a microsecond and some, where fragments are many.
+/// Cost of a blocker that is clipped from a source, in rays: about a microsecond if there are many fragments.
 constexpr unsigned rays_a_blocker = 6;
-constexpr std::size_t least_crowd = 3;  ///< Up to so many candidates, visible parts are exact.
+constexpr std::size_t max_exact_candidates = 3;  ///< With at most this many candidates, visible parts are exact.
 
 }  // namespace
 
-/// Over four quarters of the rays of a place to a source: what would arrive, and what does.
+/// Sums over four quarters of the rays from a point to a source: unoccluded and arrived light.
 struct CrowdedLight::Sums {
     std::array<double, 4> all{}, arrived{};
 
-    /// Makes room for as many rays again: those that there are become the first two quarters.
+    /// Makes room for as many further rays: the existing ones become the first two quarters.
     void halve() {
         for (auto* sums : {&all, &arrived}) *sums = {(*sums)[0] + (*sums)[1], (*sums)[2] + (*sums)[3], 0, 0};
     }
     double total() const { return all[0] + all[1] + all[2] + all[3]; }
     double share() const { return (arrived[0] + arrived[1] + arrived[2] + arrived[3]) / total(); }
-    /// Of the share, as if quarters were independent; a quotient of sums by its linear part.
+    /// Variance of the share, as if quarters were independent; linearized for the quotient of two sums.
     double variance() const {
         const double whole = total(), part = share();
         double squares = 0;
@@ -38,7 +38,7 @@ struct CrowdedLight::Sums {
 };
 
 unsigned CrowdedLight::rays_for(double E, double allowed) {
-    // A ray comes or does not: the variance of n is E^2 / (4 n) at most.
+    // A ray arrives or not: the variance of n rays is at most E^2 / (4 n).
     const double wanted = std::clamp(0.25 * E * E / allowed, static_cast<double>(least_rays), 1e9);
     return std::bit_ceil(static_cast<unsigned>(wanted));
 }
@@ -52,8 +52,8 @@ double CrowdedLight::unblocked(const Receiver& at, const SourceName& source, Dir
     return visible_form_factor(direct_->occluders(), at, source.piece, {}, scratch, emitter.radiance);
 }
 
-/// What sources that may be crowded bring where nothing stands before them, as a root of their sum of squares, W/m^2:
-/// their noise adds up so.
+/// Unoccluded light of the sources that may be crowded, W/m^2. Added as a root of the sum of squares, since their noise
+/// adds up so.
 double CrowdedLight::power_at(const Receiver& at, RegionId own, const std::vector<SourceName>* named,
                               DirectLight::Workspace& scratch) const {
     double power = 0;
@@ -79,15 +79,15 @@ CrowdedLight::Crowd CrowdedLight::prepare(std::span<const Point> receiver, const
     DirectLight::WorthCounting worth;
     const Point middle = centroid(receiver);
     const bool is_possible = allowed > 0 && direct_->occluders().scene().panes().empty();
-    std::optional<unsigned> rays;  // to each source, if all of them were left to rays
+    std::optional<unsigned> rays;  // number of rays to each source, if all of them were estimated by rays
     if (is_possible)
         worth = [&](const SourceName& source) -> std::size_t {
             const Receiver at = direct_->receiver(middle, n, own);
             if (!rays) rays = rays_for(power_at(at, own, named, scratch), allowed);
-            // A source that is beneath the horizon of the middle tells nothing of the rays that other places need.
+            // A source below the horizon of the centre gives no estimate of the rays that other points need.
             if (*rays > most_rays || !may_be_crowded(source) || unblocked(at, source, scratch) <= 0)
                 return Shaft::all_candidates;
-            return std::max<std::size_t>(least_crowd, *rays / rays_a_blocker);
+            return std::max<std::size_t>(max_exact_candidates, *rays / rays_a_blocker);
         };
     if (named)
         direct_->prepare(receiver, n, own, *named, light, scratch, worth);
@@ -99,7 +99,7 @@ CrowdedLight::Crowd CrowdedLight::prepare(std::span<const Point> receiver, const
 CrowdedLight::Crowd CrowdedLight::take_crowded(ReceiverLight& light, const Point& middle, double allowed,
                                                DirectLight::Workspace& scratch) const {
     const auto may_be = [&](const ReceiverLight::Source& s) {
-        return s.is_crowded || (s.count > least_crowd && may_be_crowded({s.emitter, s.piece}));
+        return s.is_crowded || (s.count > max_exact_candidates && may_be_crowded({s.emitter, s.piece}));
     };
     Crowd out{.sources = {}, .allowed = allowed};
     if (std::none_of(light.sources.begin(), light.sources.end(), may_be)) return out;
@@ -120,13 +120,13 @@ CrowdedLight::Crowd CrowdedLight::take_crowded(ReceiverLight& light, const Point
     return out;
 }
 
-/// Rays `first` to `last` of every place, whose points are those of a net of its own.
+/// Casts rays `first` to `last` of every point; each point has its own Sobol points.
 void CrowdedLight::cast(const ReceiverLight& light, const ReceiverLight::Source& source, std::span<const Point> places,
                         unsigned first, unsigned last, std::span<Sums> sums) const {
     constexpr std::size_t together = 64;
     std::array<SurfacePoint, together> from, to;
     std::array<double, together> kernel, s, t;
-    std::array<std::uint32_t, together> quarter;  // 4 times the place, and the quarter of its rays
+    std::array<std::uint32_t, together> quarter;  // 4 times the point's index, plus the quarter of the ray
     std::array<bool, together> blocked;
     const DirectLight::Emitter& emitter = direct_->emitters()[source.emitter];
     const std::span<const Point> corners = direct_->occluders().corners(source.piece);
@@ -160,7 +160,7 @@ void CrowdedLight::cast(const ReceiverLight& light, const ReceiverLight::Source&
                 const double weight = seen.weight(d, light.n);
                 if (weight <= 0) continue;
                 kernel[count] = weight * emitter.radiance.towards(x, y);
-                // Of the sky a ray needs the direction alone, and to leave the scene.
+                // For the sky only the direction matters; the ray must leave the scene.
                 const double part = is_far ? std::min(1.0, reach / norm(d)) : 1;
                 from[count] = {places[p], light.own}, to[count] = {x + part * d, emitter.region};
                 quarter[count++] = 4 * p + 4 * (begin + static_cast<std::uint32_t>(i)) / last;
@@ -177,7 +177,7 @@ std::vector<CrowdedLight::Estimate> CrowdedLight::at(const ReceiverLight& light,
                                                      DirectLight::Workspace& scratch) const {
     EXI_CHECK(crowd.rays <= most_rays && std::has_single_bit(crowd.rays));
     const std::size_t count = places.size();
-    std::vector<double> level(crowd.sources.size() * count);  // F at every place
+    std::vector<double> level(crowd.sources.size() * count);  // F at every point
     std::vector<Sums> sums(level.size());
     for (std::size_t k = 0, i = 0; k < crowd.sources.size(); ++k)
         for (const Point& x : places) {

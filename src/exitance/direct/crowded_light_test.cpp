@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// The floor below thin triangles and a lamp, seen as a whole.
+/// The floor below thin triangles and a lamp, as one receiver.
 struct Floor {
     explicit Floor(const char* triangles = "60") : scene(built_scene("clutter", {{"n", triangles}})) {
         region = stage.scene.surfaces()[SurfaceId(0)].region;
@@ -20,7 +20,7 @@ struct Floor {
         stage.direct.prepare(outline(), n, region, light, room);
     }
     std::span<const Point> outline() const { return stage.scene.regions()[region].loops[0]; }
-    /// What rays may find with noise of mean square `allowed`; all else goes to `rest`.
+    /// Sources left to rays with an allowed mean square noise; all others are in `rest`.
     CrowdedLight::Crowd crowd(double allowed, ReceiverLight& rest) {
         return stage.crowded.prepare(outline(), n, region, allowed, rest, room);
     }
@@ -40,7 +40,7 @@ std::vector<Point> grid_of_places() {
     return out;
 }
 
-TEST(CrowdedLight, IsExactLightUpToItsNoise) {
+TEST(CrowdedLight, DiffersFromExactLightByItsNoise) {
     Floor floor;
     constexpr double allowed = 0.01;
     ReceiverLight rest;
@@ -56,13 +56,13 @@ TEST(CrowdedLight, IsExactLightUpToItsNoise) {
         sum += error, squares += error * error, variance += by_rays[i].variance;
     }
     const double count = static_cast<double>(places.size());
-    // Rays that are spread evenly are better than quarters of them tell; 400 places tell a variance to a tenth or so.
+    // Evenly spread rays are better than their quarters suggest; 400 points estimate a variance to about a tenth.
     EXPECT_LT(squares, 1.3 * variance);
     EXPECT_LT(variance / count, allowed);
     EXPECT_LT(std::abs(sum), 3 * std::sqrt(variance));
 }
 
-TEST(CrowdedLight, LeavesAllSourcesToExactLightWhereNoNoiseIsAllowed) {
+TEST(CrowdedLight, KeepsAllSourcesExactIfNoNoiseIsAllowed) {
     Floor floor;
     for (const double allowed : {0.0, 1e-9}) {
         ReceiverLight rest;
@@ -72,7 +72,7 @@ TEST(CrowdedLight, LeavesAllSourcesToExactLightWhereNoNoiseIsAllowed) {
     }
 }
 
-TEST(CrowdedLight, CountsCandidatesUpToWhatRaysCost) {
+TEST(CrowdedLight, StopsCountingCandidatesAtTheCostOfRays) {
     for (const char* triangles : {"500", "2000"}) {
         Floor floor(triangles);
         ReceiverLight rest;
@@ -84,8 +84,8 @@ TEST(CrowdedLight, CountsCandidatesUpToWhatRaysCost) {
     }
 }
 
-TEST(CrowdedLight, OfManySourcesCastsNoMoreRaysThanCandidatesAreWorth) {
-    // Windows and lamps share the noise that is allowed, so that each needs more rays than one alone would.
+TEST(CrowdedLight, CastsNoMoreRaysToManySourcesThanTheirCandidatesCost) {
+    // Windows and lamps share the allowed noise, so that each needs more rays than it would alone.
     const Scene scene = built_scene("office", {{"nx", "1"}, {"ny", "2"}});
     const Stage stage(scene);
     DirectLight::Workspace room;
@@ -105,13 +105,14 @@ TEST(CrowdedLight, OfManySourcesCastsNoMoreRaysThanCandidatesAreWorth) {
     EXPECT_GE(several, 3u);
 }
 
-TEST(CrowdedLight, ErrsIndependentlyAtPlacesSideBySide) {
-    // Else the mean over an element would be worse than the variances tell, and its error would be taken for shape.
+TEST(CrowdedLight, HasIndependentErrorsAtNeighbouringPoints) {
+    // Otherwise the mean over an element would be worse than the variances indicate, and its error would be mistaken
+    // for a feature.
     Floor floor("500");
     ReceiverLight rest;
     const CrowdedLight::Crowd crowd = floor.crowd(0.1, rest);
     double together = 0, apart = 0;
-    for (int column = 4; column < 80; ++column) {  // not in a wall, where exact light has no ray beside it
+    for (int column = 4; column < 80; ++column) {  // excluding walls, where exact light has no corresponding ray
         std::vector<Point> places;
         for (int k = 0; k < 9; ++k) places.push_back({0.05 * column, 2 + 0.001 * k, 0});
         double error = 0;
@@ -122,11 +123,12 @@ TEST(CrowdedLight, ErrsIndependentlyAtPlacesSideBySide) {
         }
         together += error * error;
     }
-    EXPECT_LT(together, 1.5 * apart);  // 76 squares tell a variance to a sixth; thrice that. Alike: 9 times
+    // 76 squares estimate a variance to a sixth; three times that. If errors were equal: 9 times.
+    EXPECT_LT(together, 1.5 * apart);
 }
 
-TEST(CrowdedLight, TellsTheVarianceOfWhatItFinds) {
-    // The same place 200 times, moved by next to nothing: other nets on the lamp, the same light.
+TEST(CrowdedLight, ReportsItsVariance) {
+    // Uses one point 200 times, moved by tiny amounts: the random points on the lamp differ, the exact light does not.
     Floor floor("500");
     ReceiverLight rest;
     const CrowdedLight::Crowd crowd = floor.crowd(0.1, rest);
@@ -138,11 +140,11 @@ TEST(CrowdedLight, TellsTheVarianceOfWhatItFinds) {
         for (const CrowdedLight::Estimate& at : floor.stage.crowded.at(rest, crowd, places, floor.room))
             squares += std::pow(mean(at.irradiance) - exact, 2), told += at.variance;
     }
-    // Of 2,000 squares the mean is known to a thirtieth, or to a tenth, where a few of them hold most of it.
+    // With 2,000 squares the mean is known to a thirtieth, or to a tenth if a few of them dominate.
     EXPECT_NEAR(squares / told, 1, 0.25);
 }
 
-/// A lamp of 3 x 2 m, 7 cm above a grid of upright plates with two sides each that run through one another.
+/// A lamp of 3 x 2 m, 7 cm above a grid of intersecting upright plates with two sides each.
 SceneDescription lamp_over_grid() {
     SceneDescription d;
     d.materials = {{"grey", Spectrum(0.4), Spectrum(0.0)}, {"lamp", Spectrum(0.0), Spectrum(60.0)}};
@@ -169,7 +171,7 @@ SceneDescription lamp_over_grid() {
 }
 
 TEST(CrowdedLight, OfALargeLampNearbyIsWhatTheNearPartBrings) {
-    // A plate sees but the part of the lamp above its own cell, 1% of the area and most of the light.
+    // A plate is illuminated only by the part of the lamp above its own cell: 1% of the area and most of the light.
     const Scene scene = std::move(*make_scene(lamp_over_grid()).scene);
     const Stage stage(scene);
     DirectLight::Workspace room;

@@ -9,12 +9,13 @@
 namespace exitance {
 namespace {
 
-/// Can the emitter's front and the receiver's upper side meet at all? Cheap; errs to yes.
+/// True unless the emitter's front and the receiver's upper side certainly do not face each other. Cheap and
+/// conservative.
 bool may_see(const Receiver& at, const DirectLight::Emitter& emitter, double rounding) {
     return emitter.plane.signed_distance(at.x) > 0 && dot(at.n, emitter.centre - at.x) > -emitter.radius - rounding;
 }
 
-/// True if nothing in the scene rises over a receiver's plane: then nothing hides the sky from it.
+/// True if nothing in the scene is above a receiver's plane, so that nothing occludes the sky.
 bool is_on_top(const Occluders& occluders, const Point& x, const Normal& n) {
     const Box& box = occluders.scene().box();
     const double highest = std::max(n.x * box.lo.x, n.x * box.hi.x) + std::max(n.y * box.lo.y, n.y * box.hi.y) +
@@ -59,7 +60,7 @@ DirectLight::Emitter DirectLight::emitter_of(PieceId p, const Spectrum& exitance
 
 void DirectLight::add_distant_emitters(const Scene& scene) {
     first_distant_ = emitters_.size();
-    if (scene.distant().empty()) return;  // though what the occluders are of may have some: light groups
+    if (scene.distant().empty()) return;  // although the occluders may be of a scene that has some (light groups)
     const std::vector<DistantFacet> facets = distant_facets(scene.distant());
     std::size_t next = 0;
     for (const PieceId p : occluders_->distant_pieces()) {
@@ -72,7 +73,7 @@ void DirectLight::add_distant_emitters(const Scene& scene) {
     add_windows(scene);
 }
 
-/// A window for all bands where they are alike, else one for each.
+/// Adds one emitter per window if all bands are equal, else one per band.
 void DirectLight::add_windows(const Scene& scene) {
     const auto is_grey = [](const Spectrum& s) {
         return std::all_of(s.value.begin(), s.value.end(), [&](double v) { return v == s[0]; });
@@ -118,15 +119,15 @@ double DirectLight::form_factor(const Receiver& at, const Emitter& emitter, Work
     return sum;
 }
 
-/// Points come from files and from rays, off their plane by more than rounding: there the other side of a sheet would
-/// stand between them and all light.
+/// Projects the point to the plane of its region. Points from files and ray hits are off it by more than rounding, so
+/// that the other side of a two-sided sheet could block all light.
 Receiver DirectLight::receiver(const Point& x, const Normal& n, RegionId own) const {
     if (own.is_none()) return {x, n, own};
     const Plane& plane = occluders_->scene().regions()[own].plane;
     return {x - (plane.signed_distance(x) - occluders_->lift(own)) * plane.n, n, own};
 }
 
-/// Of one emitter, through panes too.
+/// Light of one emitter, through panes if there are any.
 Spectrum DirectLight::light_of(const Emitter& emitter, const Receiver& at, Workspace& scratch) const {
     if (!is_glazed(emitter)) {
         const double f = form_factor(at, emitter, scratch);

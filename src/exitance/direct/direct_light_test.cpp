@@ -8,7 +8,7 @@
 namespace exitance {
 
 TEST(DirectLight, ASheetDoesNotShadeItself) {
-    // A slanted sheet with two sides under a lamp, its corners rounded to twelve digits: off every plane.
+    // A slanted two-sided sheet under a lamp; its corners are rounded to twelve digits and thus not exactly in a plane.
     const std::vector<Point> sheet = {{0.331234567891, -1.2, 0.123456789012},
                                       {5.123456789013, -0.7, 1.234567890123},
                                       {4.9, 3.1, 1.987654321098},

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// Beams to both sides of straight down.
+/// Beams to both sides of the vertical.
 EmissionProfile batwing() {
     EmissionProfile p;
     p.body = EmissionProfile::Body::flat;
@@ -23,7 +23,7 @@ EmissionProfile batwing() {
     return p;
 }
 
-/// Faces as they are, those that emit doing so by the profile, upright.
+/// A scene of these faces; the emitting ones have the profile, upright.
 Scene make_directed(const std::vector<test::Face>& faces, const EmissionProfile& profile) {
     SceneDescription d;
     d.groups = {"all"};
@@ -52,7 +52,7 @@ std::vector<Point> facing_down(double x0, double y0, double x1, double y1, doubl
     return {{x0, y0, z}, {x0, y1, z}, {x1, y1, z}, {x1, y0, z}};
 }
 
-/// A room of 4 x 3 x 2.5 m with a lamp under its ceiling, and a shelf between the lamp and a part of the floor.
+/// A room of 4 x 3 x 2.5 m with a lamp under its ceiling, and a shelf between the lamp and part of the floor.
 std::vector<test::Face> lamp_room(double shelf) {
     std::vector<test::Face> faces = test::closed_box({0, 0, 0}, {4, 3, 2.5});
     faces.push_back({facing_down(1.7, 1.2, 2.3, 1.8, 2.3), 100});
@@ -86,7 +86,7 @@ TEST(DirectedLight, AllOfALampsFluxArrives) {
     EXPECT_NEAR(flux, 36, 0.001 * 36);  // 100 W/m^2 of 0.36 m^2
 }
 
-TEST(DirectedLight, IsOfThePartThatABlockerLeaves) {
+TEST(DirectedLight, IsThatOfTheUnblockedPart) {
     const Scene scene = make_directed(lamp_room(1), batwing());
     const Occluders occluders(scene);
     const DirectLight direct(scene, occluders);
@@ -95,7 +95,8 @@ TEST(DirectedLight, IsOfThePartThatABlockerLeaves) {
     ASSERT_TRUE(p.is_directed());
     std::size_t penumbra = 0;
     for (double x = 0.1; x < 4; x += 0.1) {
-        // The shelf's shadow from x begins where the line through its left edge meets the lamp, and covers y.
+        // The shelf's shadow as seen from x starts where the line through the shelf's left edge meets the lamp; it
+        // covers the whole range of y.
         const Point at{x, 1.5, 0};
         const double left = x + (2 - x) * 2.3 / 1.2, right = x + (3 - x) * 2.3 / 1.2;
         std::vector<std::pair<double, double>> lit = {{1.7, std::clamp(left, 1.7, 2.3)},
@@ -119,7 +120,7 @@ TEST(DirectedLight, IsOfThePartThatABlockerLeaves) {
     EXPECT_GT(penumbra, 3u);
 }
 
-TEST(DirectedLight, SampledByRaysItIsRightInTheMean) {
+TEST(DirectedLight, SamplingByRaysIsUnbiased) {
     const Scene scene = make_directed(lamp_room(1), batwing());
     const Stage stage(scene);
     SampledLight sampled(stage.direct, stage.tracer, 1);

@@ -1,4 +1,4 @@
-// Light of skies and suns at points: against integrals and closed forms.
+// Light of skies and suns at points, compared with integrals and closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +37,7 @@ double light_at(const Stage& stage, const Point& x, const Normal& n, RegionId ow
     DirectLight::Workspace workspace;
     const double exact = stage.direct.irradiance(x, n, own, workspace)[0];
     if (own.is_none()) return exact;
-    // The same by what was found out for a part of the surface.
+    // Compares with the light from a prepared part of the surface.
     ReceiverLight light;
     const Frame frame(n);
     const double r = 0.01;
@@ -67,17 +67,17 @@ TEST(DistantLight, OpenGroundHasTheIrradianceOfEverySky) {
     }
 }
 
-TEST(DistantLight, AWallSeesHalfOfAUniformSkyAndTheGroundHidesItsGlow) {
+TEST(DistantLight, AWallGetsHalfOfAUniformSkyAndTheGroundHidesItsGlow) {
     SkyModel below = uniform_sky();
     below.below = true;
     const Scene scene = under({{{uniform_sky(), Spectrum(100.0)}, {below, Spectrum(30.0)}}, {}}, {ground});
     const Stage stage(scene);
     EXPECT_NEAR(light_at(stage, {0, 0, 1}, {0, 0, -1}, RegionId()),
                 30 * (1 - 4 / pi * (5 / std::sqrt(26.0) * std::atan(5 / std::sqrt(26.0)))), 1e-9);
-    EXPECT_NEAR(light_at(stage, {100, 0, 50}, {1, 0, 0}, RegionId()), 50 + 15, 1e-9);  // the ground lies behind
+    EXPECT_NEAR(light_at(stage, {100, 0, 50}, {1, 0, 0}, RegionId()), 50 + 15, 1e-9);  // the ground is behind it
 }
 
-TEST(DistantLight, ThroughAnOpeningItIsThatOfTheReference) {
+TEST(DistantLight, ThroughAnOpeningItAgreesWithTheReference) {
     // CIE 171, 5.9: a black room of 4 x 4 x 3 m with an opening of 1 x 1 m in its roof, the sun at 60 degrees in +y.
     const std::vector<Corners> room{{{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}}},
                                     {{{0, 0, 0}, {0, 0, 3}, {4, 0, 3}, {4, 0, 0}}},
@@ -111,14 +111,14 @@ TEST(DistantLight, ThroughAnOpeningItIsThatOfTheReference) {
 }
 
 TEST(DistantLight, TheSunThrowsUmbraAndPenumbra) {
-    // A half plane, nearly, 4 m above the ground, its edge along y at x = 0; the sun at the zenith.
+    // Approximately a half plane, 4 m above the ground, with its edge along y at x = 0; the sun is at the zenith.
     const double E = 800, h = 4, radius = std::tan(sun_half_angle);
     const Scene scene = under({{}, {{{0, 0, 1}, sun_half_angle, Spectrum(E)}}},
                               {ground, {{{-4, -5, h}, {0, -5, h}, {0, 5, h}, {-4, 5, h}}}});
     const Stage stage(scene);
     EXPECT_EQ(light_at(stage, {-1.01 * radius * h, 0, 0}, {0, 0, 1}, first), 0);
     EXPECT_NEAR(light_at(stage, {1.01 * radius * h, 0, 0}, {0, 0, 1}, first), E, 1e-6 * E);
-    for (double t = -0.95; t < 1; t += 0.1) {  // t: of the disc's radius that is uncovered
+    for (double t = -0.95; t < 1; t += 0.1) {  // t: position across the penumbra, in radii of the disc
         const double lit = (std::acos(-t) + t * std::sqrt(1 - t * t)) / pi;
         EXPECT_NEAR(light_at(stage, {t * radius * h, 0.3, 0}, {0, 0, 1}, first), lit * E, 1e-3 * E) << t;
     }
@@ -128,14 +128,15 @@ TEST(DistantLight, ALowSunIsCutByTheHorizon) {
     const double E = 500;
     const Scene scene = under({{}, {{{1, 0, 0}, sun_half_angle, Spectrum(E)}}}, {ground});
     const Stage stage(scene);
-    // Half of the disc is above: E times the mean of the height, 4 r / (3 pi), times half.
+    // Half of the disc is above the horizon: half of E times the mean height, 4 r / (3 pi).
     EXPECT_NEAR(light_at(stage, {0, 0, 0}, {0, 0, 1}, first), 0.5 * E * 4 * std::sin(sun_half_angle) / (3 * pi),
                 1e-5 * E);
     EXPECT_NEAR(light_at(stage, {10, 0, 3}, {1, 0, 0}, RegionId()), E, 1e-9 * E);
 }
 
-/// Before the whole sky, with more in between than anybody cuts out: rays bring the same, and all of it from outside.
-TEST(DistantLight, BehindACrowdRaysFindWhatExactLightDoes) {
+/// Many blockers in front of the whole sky: rays give the same light as exact visibility, and all of it counts as from
+/// outside.
+TEST(DistantLight, BehindManyBlockersRaysAgreeWithExactLight) {
     std::vector<Corners> faces = {ground};
     for (int i = 0; i < 40; ++i) {
         const double x = -4 + 0.2 * i, z = 1 + 0.02 * (i % 7);

@@ -49,8 +49,8 @@ EmitterTree::Node EmitterTree::make_node(std::uint32_t first, std::uint32_t last
     out.colour = (1 / out.power) * light;
     const double length = norm(out.normal);
     out.normal_spread = std::sqrt(std::max(0.0, 1 - length * length));
-    constexpr double any_way = 1e-6;
-    out.axis = length > any_way ? out.normal / length : plane_of(sources.front()).n;
+    constexpr double min_mean_normal = 1e-6;
+    out.axis = length > min_mean_normal ? out.normal / length : plane_of(sources.front()).n;
     for (const Source& s : sources) {
         const std::span<const Point> corners = occluders.corners(s.name.piece);
         const Point middle = centroid(corners);
@@ -66,7 +66,7 @@ EmitterTree::Node EmitterTree::make_node(std::uint32_t first, std::uint32_t last
     return out;
 }
 
-/// Sorts a node's sources along its widest extent; returns where about half of its power is reached.
+/// Sorts a node's sources along its widest extent. Returns the index at which about half of its power is reached.
 std::uint32_t EmitterTree::middle_of(const Node& node) {
     const auto begin = sources_.begin() + node.first, end = sources_.begin() + node.last;
     const auto key = [&](const Source& s, std::size_t axis) {
@@ -99,7 +99,7 @@ std::uint32_t EmitterTree::middle_of(const Node& node) {
     return node.first + std::clamp<std::uint32_t>(middle, 1, node.last - node.first - 1);
 }
 
-/// Of a single source, nothing in between.
+/// Unoccluded light of a single source, exact.
 double EmitterTree::exact(const Node& leaf, const Receiver& at) const {
     const Source& source = sources_[leaf.first];
     const DirectLight::Emitter& emitter = direct_->emitters()[source.name.emitter];
@@ -107,13 +107,13 @@ double EmitterTree::exact(const Node& leaf, const Receiver& at) const {
     return point_to_polygon(at.x, at.n, direct_->occluders().corners(source.name.piece)) * mean(emitter.exitance);
 }
 
-/// Far away all of a cluster counts as at its centre, with its mean normal m:
+/// From far away a cluster is treated as one source at its centre, with its mean normal m:
 ///
 ///     L = P (n . d) (-m . d) / (pi d^4),
 ///
-/// which is off by about (spread / d)^2 of it, and, where normals differ, by their spread times (spread / d). Where the
-/// horizon or a plane of its sources passes, it may bring anything from nothing to all that its power can; it counts as
-/// nothing, off by that.
+/// The relative error is about (spread / d)^2, plus the spread of the normals times (spread / d). If the horizon or the
+/// plane of one of its sources crosses the cluster, its light is anything from 0 to the maximum for its power; it then
+/// counts as 0 with that maximum as its error.
 EmitterTree::Term EmitterTree::look_at(std::uint32_t number, const Receiver& at) const {
     const Node& node = nodes_[number];
     const Vec3 d = node.centre - at.x;
@@ -125,7 +125,8 @@ EmitterTree::Term EmitterTree::look_at(std::uint32_t number, const Receiver& at)
         return Term{number, 0, node.power / (pi * nearest * nearest) * highest * cosine};
     };
     if (distance <= 2 * node.radius) return anything(1);
-    // Angles by their cosines: of the axis with the direction to x, and of that less or plus the cone's half angle.
+    // Cosines and sines of the angle between the axis and the direction to x, and of that angle minus and plus the
+    // cone's half angle.
     const double c = std::clamp(-dot(node.axis, d) / distance, -1.0, 1.0), s = std::sqrt(1 - c * c);
     const double ball = node.radius / distance;
     const bool in_cone = c >= node.cosine;
@@ -140,7 +141,7 @@ EmitterTree::Term EmitterTree::look_at(std::uint32_t number, const Receiver& at)
             sent * (either * askew * askew + std::min(1.0, cosine_x + askew) * node.normal_spread * askew)};
 }
 
-/// All below a node whose error is larger than `most` is opened; single sources are exact then.
+/// Splits all nodes with an error larger than `most`; single sources become exact.
 void EmitterTree::open(const Term& term, const Receiver& at, double most, std::vector<Term>& out) const {
     if (term.light <= 0 && term.error <= 0) return;
     const Node& node = nodes_[term.node];

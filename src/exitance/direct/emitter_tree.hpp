@@ -6,9 +6,10 @@
 
 namespace exitance {
 
-/// All convex pieces of all emitters as a binary tree of clusters, by place, orientation and power: a cluster is cut
-/// across the widest of its six extents (three of place, three of normals, these times half its size) so that either
-/// half has about half of its power. The same emitters give the same tree. Source: [Walter05]. O(n log^2 n) to make.
+/// Binary tree of clusters over all convex pieces of all emitters, by position, orientation and power. A cluster is
+/// split across the widest of its six extents (three of position, three of normals, the latter times its radius) so
+/// that each half has about half of its power. The same emitters give the same tree. O(n log^2 n) to build. Source:
+/// [Walter05].
 class EmitterTree {
   public:
     explicit EmitterTree(const DirectLight& direct);
@@ -20,50 +21,52 @@ class EmitterTree {
         double area = 0;   ///< m^2
         double power = 0;  ///< Mean over bands, W.
     };
-    /// Sources in the order of the tree: every cluster is a range of them.
+    /// Sources in the order of the tree: every cluster is a contiguous range.
     const std::vector<Source>& sources() const { return sources_; }
-    /// Sum of the power of all sources before each, and of all: one more than there are sources.
+    /// Prefix sums of the power of the sources; one entry more than there are sources.
     const std::vector<double>& power_before() const { return power_before_; }
 
     struct Node {
-        Point centre;                       ///< Of power.
-        double spread_squared = 0;          ///< Mean of the squared distance from it, by power, m^2.
-        double radius = 0;                  ///< Of a ball about it, m.
-        Vec3 normal;                        ///< The mean by power: shorter than 1 where normals differ.
-        double normal_spread = 0;           ///< RMS departure of normals from it.
-        Normal axis;                        ///< All normals are
-        double cosine = 1, sine = 0;        ///< within an angle of this that has these.
-        double power = 0;                   ///< Mean over bands, W;
-        double power_squares = 0;           ///< of the single sources: sum of squares.
-        Spectrum colour;                    ///< Power by band, relative to their mean.
-        std::uint32_t first = 0, last = 0;  ///< Its sources.
-        std::uint32_t left = 0, right = 0;  ///< 0 of a single source.
+        Point centre;                       ///< Centre of power.
+        double spread_squared = 0;          ///< Mean squared distance from it, weighted by power, m^2.
+        double radius = 0;                  ///< Radius of a bounding ball about it, m.
+        Vec3 normal;                        ///< Mean normal, weighted by power; shorter than 1 if normals differ.
+        double normal_spread = 0;           ///< RMS deviation of the normals from it.
+        Normal axis;                        ///< Axis of a cone that contains all normals,
+        double cosine = 1, sine = 0;        ///< and cosine and sine of its half angle.
+        double power = 0;                   ///< Mean over bands, W.
+        double power_squares = 0;           ///< Sum of the squared powers of the sources, W^2.
+        Spectrum colour;                    ///< Power per band, relative to the mean over bands.
+        std::uint32_t first = 0, last = 0;  ///< Range of its sources.
+        std::uint32_t left = 0, right = 0;  ///< Children; 0 for a single source.
 
         bool is_leaf() const { return left == 0; }
     };
-    const std::vector<Node>& nodes() const { return nodes_; }  ///< The whole is the first; none: no emitter.
+    /// The first is the root; empty if there are no emitters.
+    const std::vector<Node>& nodes() const { return nodes_; }
 
-    /// A cluster as seen from a place.
+    /// Unoccluded light of a cluster at a point.
     struct Term {
         std::uint32_t node = 0;
-        double light = 0;  ///< What it brings if nothing stands in between, mean over bands, W/m^2;
-        double error = 0;  ///< about how far that may be off.
+        double light = 0;  ///< Irradiance without occlusion, mean over bands, W/m^2,
+        double error = 0;  ///< and an estimate of its error.
     };
-    /// Clusters, none within another, that together make up all emitters. Room to use again.
+    /// Disjoint clusters that together contain all emitters. Memory is reused.
     struct Cut {
-        std::vector<Term> terms;  ///< Those that may bring light, in the order of the tree.
+        std::vector<Term> terms;  ///< Clusters that may contribute, in the order of the tree.
         double light = 0;         ///< Sum over terms, W/m^2.
-        double error = 0;         ///< Root of the sum of squares where errors fall either way; what counts as
-                                  ///< nothing adds up.
+        double error = 0;  ///< Root of the sum of squared errors of either sign, combined with the sum of the errors of
+                           ///< clusters that count as 0.
 
-        std::vector<Term> next;  ///< Room.
+        std::vector<Term> next;  ///< Temporary storage.
     };
-    /// Opens the clusters that are worst known until the error of all is below max(relative light, absolute), or there
-    /// are about `most_terms` of them. About 100 ns a term.
+    /// Splits the clusters with the largest errors until the total error is below max(relative * light, absolute), or
+    /// until there are about `most_terms` clusters. About 100 ns per term.
     void cut(const Receiver& at, double relative, double absolute, Cut& out) const;
     static constexpr std::size_t most_terms = 4096;
 
-    /// As many sources of equal light as would leave as much to chance as those of a cut do: (sum L)^2 / sum L^2.
+    /// Returns the number of sources of equal light that would cause the same sampling noise as the sources of a cut:
+    /// (sum L)^2 / sum L^2.
     double effective_sources(const Cut& cut) const;
 
   private:

@@ -34,7 +34,7 @@ std::vector<Point> square(double half, double z, double x0 = 0) {
     return {{x0 - half, -half, z}, {x0 + half, -half, z}, {x0 + half, half, z}, {x0 - half, half, z}};
 }
 
-/// Share of diffuse light: 2 int share(cos) sin cos dtheta.
+/// Mean of `share` for diffuse light: 2 int share(cos) sin cos dtheta.
 template <class Share>
 double of_diffuse_light(const Share& share) {
     constexpr int steps = 4000;
@@ -50,7 +50,7 @@ double diffuse(const Pane& p, std::size_t band) {
     return of_diffuse_light([&](double cosine) { return p.transmission(cosine)[band]; });
 }
 
-/// Of diffuse light from below.
+/// Cosine-distributed directions upwards.
 std::vector<Vec3> directions_up(std::uint32_t rays) {
     const ScrambledSobol points(5);
     const Frame frame(Normal{0, 0, 1});
@@ -78,7 +78,7 @@ TEST(GlazedLight, AWidePaneLetsTheDiffuseShareOfASkyThrough) {
     EXPECT_NEAR(stage.direct.irradiance(light, {0.1, 0.2, 0}, workspace)[0], E[0], 1e-9);
 }
 
-TEST(GlazedLight, RaysPassInTheSameShare) {
+TEST(GlazedLight, TheSameShareOfRaysPasses) {
     const Pane wide = pane(square(1000, 0.5), Spectrum(0.7));
     const Scene scene = ground_under({}, {wide});
     const Stage stage(scene);
@@ -98,8 +98,8 @@ TEST(GlazedLight, RaysPassInTheSameShare) {
     EXPECT_NEAR(passed / rays, diffuse(wide, 0), 4 * 0.5 / std::sqrt(rays));
 }
 
-TEST(GlazedLight, RaysAreMirroredInTheirShareAndArriveWhereMirrorsSay) {
-    // Ground below a low pane that is wider: what is mirrored comes back to the ground, whose frame is at x = y = +-1.
+TEST(GlazedLight, TheReflectedShareOfRaysArrivesAtTheMirroredPoints) {
+    // Ground below a low pane that is wider: mirrored rays return to the ground, whose border is at x = y = +-1.
     const Pane wide = pane(square(1000, 0.25), Spectrum(0.7));
     const Scene scene = ground_under({}, {wide});
     const Stage stage(scene);
@@ -140,7 +140,7 @@ TEST(GlazedLight, TheSunThroughOnePaneOfTwo) {
     EXPECT_NEAR(at(-0.9), E, 1e-4 * E);
     EXPECT_NEAR(at(0.2), E * low.transmission(cosine)[0], 1e-3 * E);
     EXPECT_NEAR(at(-0.3), E * low.transmission(cosine)[0] * high.transmission(cosine)[0], 1e-3 * E);
-    // On the edge of the lower pane's shadow, half of the disc stands behind it.
+    // On the edge of the lower pane's shadow, half of the disc is behind the pane.
     EXPECT_NEAR(at(0.5 - 0.2 * sun.x / sun.z), 0.5 * E * (1 + low.transmission(cosine)[0]), 2e-3 * E);
 }
 

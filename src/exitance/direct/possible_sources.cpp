@@ -12,9 +12,9 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t few = 8;          ///< Regions: smaller groups are not looked at together.
-constexpr double large_region = 1e-5;   ///< Of all area: these are looked at one by one.
-constexpr std::size_t many_jobs = 256;  ///< Groups to deal out to threads.
+constexpr std::size_t min_group_size = 8;    ///< Smaller groups of regions are not tested together.
+constexpr double large_region_share = 1e-5;  ///< Share of the total area; larger regions are tested individually.
+constexpr std::size_t min_job_count = 256;   ///< Number of groups to distribute to threads.
 
 double least_distance(const Box& a, const Box& b) {
     double squared = 0;
@@ -40,7 +40,7 @@ std::array<Point, 8> corners_of(const Box& box) {
 
 }  // namespace
 
-/// Divides the regions into groups and follows the sources down.
+/// Divides the regions recursively into groups and excludes hidden sources for each group.
 class PossibleSources::Divider {
   public:
     Divider(const DirectLight& direct, double negligible, const StopRequest& stop,
@@ -69,11 +69,11 @@ class PossibleSources::Divider {
         all.sources.resize(sources_.size());
         std::iota(all.sources.begin(), all.sources.end(), 0u);
         std::vector<Group> jobs{all};
-        // The same groups as further down, one level after the other, until there are enough for all threads.
-        while (jobs.size() < many_jobs) {
+        // Split level by level, into the same groups as divide() would make, until there are enough for all threads.
+        while (jobs.size() < min_job_count) {
             std::vector<Group> next;
             for (Group& job : jobs) {
-                if (job.regions.size() <= few) {
+                if (job.regions.size() <= min_group_size) {
                     next.push_back(std::move(job));
                     continue;
                 }
@@ -120,7 +120,7 @@ class PossibleSources::Divider {
     }
 
     void divide(Group& group) {
-        if (group.regions.size() <= few || stop_.requested()) {
+        if (group.regions.size() <= min_group_size || stop_.requested()) {
             for (const std::uint32_t r : group.regions) finish(RegionId(r), group.sources);
             return;
         }
@@ -129,7 +129,7 @@ class PossibleSources::Divider {
     }
 
     void keep_seen(Group& group) const {
-        if (group.regions.size() < few || stop_.requested()) return;
+        if (group.regions.size() < min_group_size || stop_.requested()) return;
         const std::array<Point, 8> corners = corners_of(box_of(group.regions));
         RegionCover cover;
         std::erase_if(group.sources, [&](std::uint32_t s) {
@@ -138,15 +138,15 @@ class PossibleSources::Divider {
         });
     }
 
-    /// Does one region stand between all of these points' hull and all of a source? Those are asked that stand between
-    /// their middles.
+    /// True if one region separates the convex hull of these points from all of a source and covers all lines between
+    /// them. Tests only regions on the segment between their centres.
     bool is_hidden(std::span<const Point> from, const Emitting& source, RegionCover& cover) const {
         Point middle = from[0];
         for (const Point& p : from) middle = middle + (p - from[0]) / static_cast<double>(from.size());
-        constexpr std::size_t most_asked = 12;
-        constexpr double apart = 4e-6;  // of the scene's size: nearer points may count as in the plane
+        constexpr std::size_t max_tested = 12;
+        constexpr double apart = 4e-6;  // relative to the scene's size; nearer points may count as in the plane
         const double slack = apart * occluders_.scene().size();
-        std::size_t asked = 0;
+        std::size_t tested = 0;
         bool hidden = false;
         RegionId last;
         occluders_.visit_segment(Occluders::Size::large, middle, source.centre - middle, [&](PieceId p) {
@@ -155,29 +155,29 @@ class PossibleSources::Divider {
             last = r;
             const Region& region = occluders_.scene().regions()[r];
             const double side = region.plane.signed_distance(middle) > 0 ? 1 : -1;
-            const auto stands_off = [&](std::span<const Point> points, double sign) {
+            const auto is_off_plane = [&](std::span<const Point> points, double sign) {
                 return std::all_of(points.begin(), points.end(),
                                    [&](const Point& x) { return sign * region.plane.signed_distance(x) > slack; });
             };
-            if (!stands_off(from, side) || !stands_off(source.corners, -side)) return false;
+            if (!is_off_plane(from, side) || !is_off_plane(source.corners, -side)) return false;
             cover.begin(region, occluders_.rounding());
             bool crosses = true;
             for (const Point& x : from)
                 for (const Point& y : source.corners) crosses = crosses && cover.add(x, y);
             hidden = crosses && cover.covers();
-            return hidden || ++asked == most_asked;
+            return hidden || ++tested == max_tested;
         });
         return hidden;
     }
 
-    /// The sources of one region with their bounds.
+    /// Computes the bounds of the sources of one region.
     void finish(RegionId r, const std::vector<std::uint32_t>& sources) {
         const Region& region = occluders_.scene().regions()[r];
         const Box& box = boxes_[r.value];
         std::vector<Point> corners;
         for (const auto& loop : region.loops) corners.insert(corners.end(), loop.begin(), loop.end());
         RegionCover cover;
-        const bool is_large = region.area >= large_region * area_;
+        const bool is_large = region.area >= large_region_share * area_;
         std::vector<Source>& out = out_[r];
         for (const std::uint32_t s : sources) {
             const Emitting& source = sources_[s];

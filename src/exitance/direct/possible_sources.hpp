@@ -8,32 +8,33 @@
 
 namespace exitance {
 
-/// Which emitters may send light to which regions, and how much at most, before anything is looked at exactly. In
-/// buildings nearly all emitters are behind walls: they are found for whole groups of regions at once, halves of halves
-/// by place, where one region of the scene, openings left out, hides all of the group's box from all of a source. Of
-/// what remains of a source on a region,
+/// For each region, the emitters that may illuminate it, with upper bounds of their irradiance; computed before any
+/// exact visibility. In buildings nearly all emitters are behind walls. They are excluded for whole groups of regions
+/// at once (recursive halves by position) if one region without openings hides all of the group's box from all of a
+/// source. For the remaining sources the bound on a region is
 ///
 ///     E <= M A / (pi d^2) min(1, a/d) min(1, b/d),
 ///
-/// d the least distance of the two, a how far the source rises over the region's plane, b the region over the source's.
-/// Sources that are left out send nothing, but for those that together bring less than `negligible` by these bounds.
+/// where d is the least distance of the two, a the height of the source over the region's plane, and b that of the
+/// region over the source's plane. Excluded sources contribute nothing, except for those that together contribute less
+/// than `negligible` by these bounds.
 ///
-/// O((groups + large regions) x sources that may be seen), some microseconds each.
+/// O((groups + large regions) x sources that may be visible), some microseconds each.
 class PossibleSources {
   public:
     struct Source {
         DirectLight::SourceName name;
-        double bound = 0;  ///< Of E, mean of the bands, W/m^2.
+        double bound = 0;  ///< Upper bound of E, mean of the bands, W/m^2.
     };
 
-    /// `negligible`: W/m^2 on any region. What is not looked at once `stop` is requested keeps all sources of its
-    /// group.
+    /// negligible  total irradiance that may be dropped per region, W/m^2
+    /// stop        once a stop is requested, the remaining groups keep all of their sources
     PossibleSources(const DirectLight& direct, double negligible, const StopRequest& stop);
 
-    /// The weakest first.
+    /// Returns the possible sources of a region, the weakest first.
     std::span<const Source> of(RegionId r) const { return of_region_[r]; }
 
-    /// Are there diffuse emitters alone, and no panes? Others have no such bounds.
+    /// True if the bounds are valid for the scene: all emitters are diffuse regions, and there are no panes.
     static bool suits(const DirectLight& direct);
 
   private:

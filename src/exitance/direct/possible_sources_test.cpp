@@ -16,7 +16,7 @@ double bound_of(std::span<const PossibleSources::Source> sources, std::uint32_t 
     return sum;
 }
 
-TEST(PossibleSources, WhatShinesIsAmongThemAndBringsNoMoreThanItsBound) {
+TEST(PossibleSources, ContainEveryVisibleSourceWithAValidBound) {
     const Scene scene = built_scene("office", {{"nx", "3"}, {"ny", "2"}});
     const Occluders occluders(scene);
     const DirectLight direct(scene, occluders);
@@ -35,26 +35,26 @@ TEST(PossibleSources, WhatShinesIsAmongThemAndBringsNoMoreThanItsBound) {
             const DirectLight::Emitter& emitter = direct.emitters()[e];
             const double F = direct.form_factor(direct.receiver(x, scene.regions()[r].plane.n, r), emitter, workspace);
             shining += F > 0;
-            // Of rounding, and slivers as thin as it that a wall leaves.
+            // Allows for rounding, and for gaps as thin as the rounding at walls.
             EXPECT_LE(F * mean(emitter.exitance), bound_of(possible.of(r), e) * (1 + 1e-9) + 1e-9);
         }
     }
     EXPECT_GT(shining, 500u);
 }
 
-TEST(PossibleSources, WallsLeaveFewOfABuildingsEmitters) {
+TEST(PossibleSources, AreFewBehindTheWallsOfABuilding) {
     const Scene scene = built_scene("office", {{"nx", "4"}, {"ny", "4"}});
     const Occluders occluders(scene);
     const DirectLight direct(scene, occluders);
     const StopRequest stop;
     const PossibleSources all(direct, 0, stop);
-    // Each room has four lamps and up to two windows of its own, and four neighbours.
+    // Each room has four lamps, at most two windows of its own, and four neighbouring rooms.
     std::size_t sum = 0;
     for (const RegionId r : scene.regions().ids()) sum += all.of(r).size();
     const double share =
         static_cast<double>(sum) / static_cast<double>(scene.regions().size() * direct.emitters().size());
     EXPECT_LT(share, 0.25) << "of all pairs; a quarter of the rooms at most";
-    // What is left out on top of that is less than was allowed.
+    // The light additionally dropped is less than the allowed one.
     const double allowed = 0.5;
     const PossibleSources few(direct, allowed, stop);
     for (const RegionId r : scene.regions().ids()) {

@@ -13,15 +13,15 @@
 namespace exitance {
 namespace {
 
-constexpr unsigned rays_for_sight = 16;  // an element
+constexpr unsigned rays_for_sight = 16;  // per element
 
-/// Deals a whole number of rays out to one source after the other, to each within one of what it should have, and as
-/// many in all as chance leaves open: where rays of like worth are counted, hardly any chance is left.
-class Dealer {
+/// Distributes an integer number of rays to a sequence of sources, each within one of its expected number. The total
+/// has the least possible randomness: where rays of equal weight are counted, almost none.
+class RayDistributor {
   public:
-    /// `begin`: uniform in [0, 1).
-    explicit Dealer(double begin) : sum_(begin) {}
-    unsigned deal(double expected) {
+    /// begin  uniform in [0, 1)
+    explicit RayDistributor(double begin) : sum_(begin) {}
+    unsigned next(double expected) {
         const double before = std::floor(sum_);
         sum_ += expected;
         return static_cast<unsigned>(std::floor(sum_) - before);
@@ -31,13 +31,13 @@ class Dealer {
     double sum_;
 };
 
-/// Relative radiance towards a point, not below what a beam's edge may hide from an element about it.
+/// Relative radiance towards a point, at least a minimum that allows for a beam's edge within the element.
 double likely_radiance(const DirectLight::Emitter& emitter, const Point& x) {
     constexpr double least = 0.05;
     return std::max(least, emitter.radiance.towards(x, emitter.centre));
 }
 
-constexpr std::size_t quad = 4;  ///< Corners; a triangle repeats its last one.
+constexpr std::size_t max_quad_corners = 4;  ///< Maximum number of corners; a triangle repeats its last one.
 
 }  // namespace
 
@@ -46,7 +46,7 @@ SampledLight::SampledLight(const DirectLight& direct, const RayTracer& tracer, s
     for (const DirectLight::Emitter& emitter : direct_.emitters())
         for (PieceId piece : emitter.pieces) {
             const std::span<const Point> corners = direct_.occluders().corners(piece);
-            quads_.add({corners[0], corners[1], corners[2], corners[std::min(corners.size(), quad) - 1]});
+            quads_.add({corners[0], corners[1], corners[2], corners[std::min(corners.size(), max_quad_corners) - 1]});
             area_.push_back(norm(area_vector(corners)));
         }
     F_.resize(quads_.size());
@@ -66,7 +66,7 @@ void SampledLight::find_sources(const Point& x, const Normal& n, RegionId own, d
         for (std::size_t k = 0; k < emitter.pieces.size(); ++k) {
             const PieceId piece = emitter.pieces[k];
             const std::span<const Point> corners = direct_.occluders().corners(piece);
-            const double F = corners.size() <= quad ? F_[first + k] : point_to_polygon(x, n, corners);
+            const double F = corners.size() <= max_quad_corners ? F_[first + k] : point_to_polygon(x, n, corners);
             if (F <= 0) continue;
             const double weighted = F * likely_radiance(emitter, x);
             const double both = radius + emitter.radius;
@@ -113,14 +113,14 @@ void SampledLight::trace_rays() {
     std::array<bool, most_rays + 1> blocked;
     EXI_CHECK(rays_.size() <= blocked.size());
     tracer_.occluded(from_, to_, std::span(blocked).first(rays_.size()));
-    // Through a window on to the sky: from just behind the pane, which the radiance knows of.
+    // Rays through a window to the sky are continued from just behind the pane, which is part of the radiance.
     const Occluders& occluders = direct_.occluders();
     const double size = occluders.scene().size();
     std::vector<std::size_t> on;
     std::vector<SurfacePoint> behind, far;
     for (std::size_t i = 0; i < rays_.size(); ++i) {
         if (blocked[i] || !looks_out_on_faces(occluders, sources_[rays_[i].source].name.piece)) continue;
-        constexpr double step = 1e-5, beyond_all = 2;  // of the scene's size
+        constexpr double step = 1e-5, beyond_all = 2;  // times the scene's size
         const Vec3 d = normalized(to_[i].at - from_[i].at);
         on.push_back(i);
         behind.push_back({to_[i].at + (step * size) * d, RegionId()});
@@ -142,11 +142,12 @@ const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, 
     double radius = 0;
     for (const Point& corner : tree.outline(e)) radius = std::max(radius, norm(corner - x));
     find_sources(x, direct_.occluders().scene().regions()[own].plane.n, own, radius);
-    // What is in sight is found by rays of its own: a source must not be thought weak because its light was missed.
+    // Visibility is estimated by independent rays: otherwise a source would be considered weak just because its light
+    // was missed.
     RandomStream random(seed_, Stream::direct, e.value);
-    Dealer for_sight(random.uniform()), for_value(random.uniform());
+    RayDistributor for_sight(random.uniform()), for_value(random.uniform());
     for (std::uint32_t s = 0; s < sources_.size(); ++s)
-        add_rays(tree, e, s, for_sight.deal(rays_for_sight * sources_[s].share), Purpose::sight);
+        add_rays(tree, e, s, for_sight.next(rays_for_sight * sources_[s].share), Purpose::sight);
     trace_rays();
     for (Source& source : sources_)
         if (source.arrived > 0) source.in_sight = (1 / std::min(1.0, rays_for_sight * source.share)) * source.light;
@@ -154,31 +155,31 @@ const SampledLight::Estimate& SampledLight::operator()(const ElementTree& tree, 
     for (std::uint32_t s = 0; s < sources_.size(); ++s)
         ranks_.push_back({mean(sources_[s].in_sight), sources_[s].near * mean(sources_[s].light), s});
     std::sort(ranks_.begin(), ranks_.end());
-    // Light that comes and goes between nothing and U misses in the mean square U^2 / 4 at most; as a rule half of
-    // that. Sources that no ray has found may still send theirs: then chance has it that rays of the second kind find
-    // it.
-    constexpr double misses = 0.125;
+    // Light that varies between 0 and U has a variance of at most U^2 / 4, typically half of that. Sources found by no
+    // visibility ray may still contribute: the independent value rays find their light with the right probability.
+    constexpr double typical_variance = 0.125;
     const auto power = [&](const Spectrum& light) { return squared(weight * light) / static_cast<double>(bands); };
     estimate_.weak = Spectrum();
     estimate_.misfit_squared = 0;
     estimate_.strong.clear();
-    // Weak light counts as even over the element, and all of a source as in sight or not, where either may vary by
-    // (radii / distance)^2 of it: by half of what is allowed at most, whether a ray was drawn or not.
-    constexpr double askew = 4;
+    // Weak light is treated as constant over the element, and a source as fully visible or hidden. Its light may vary
+    // by the share (radii / distance)^2; this variation may use half of the allowed misfit, whether or not a ray was
+    // cast.
+    constexpr double variation_weight = 4;
     Spectrum in_sight, astray;
     for (Source& source : sources_) source.arrived = 0;
     for (const Rank& rank : ranks_) {
         const std::uint32_t s = rank.source;
         const Spectrum in_sight_with = in_sight + sources_[s].in_sight;
         const Spectrum astray_with = astray + sources_[s].near * sources_[s].light;
-        const double misfit = std::max(misses * power(in_sight_with), askew * power(astray_with));
+        const double misfit = std::max(typical_variance * power(in_sight_with), variation_weight * power(astray_with));
         if (misfit > allowed) {
             estimate_.strong.push_back(sources_[s].name);
             continue;
         }
         in_sight = in_sight_with, astray = astray_with;
         estimate_.misfit_squared = misfit;
-        add_rays(tree, e, s, for_value.deal(value_rays * sources_[s].share), Purpose::value);
+        add_rays(tree, e, s, for_value.next(value_rays * sources_[s].share), Purpose::value);
     }
     trace_rays();
     for (const Rank& rank : ranks_) {

@@ -11,27 +11,27 @@
 
 namespace exitance {
 
-/// Which sources of direct light count on an element, and what all the others bring: rays find it. In buildings, where
-/// hundreds of emitters shine through doors on thousands of small things, exact answers about most of them would cost
-/// more than they are worth.
+/// Separates the strong sources of direct light of an element from the weak ones, whose light it estimates by rays. For
+/// buildings, in which hundreds of emitters shine through doors on thousands of small objects and exact visibility of
+/// most of them would be too expensive.
 ///
 ///     E of weak sources ~ sum of  M_s A_s / n_s sum over n_s rays of  K(x_i, y_i) V(x_i, y_i),    E[n_s] = n w_s,
 ///
-/// between places x_i of the element and y_i of the source, K = cos cos / (pi r^2), and w_s the part of s in the light
-/// of the element's middle as if nothing stood in it. Where n w_s < 1, chance decides on a ray, which then counts 1 /
-/// (n w_s) times: the mean is right. One object serves one thread.
+/// between points x_i of the element and y_i of the source, K = cos cos / (pi r^2). w_s is the share of s in the
+/// unoccluded light at the element's centre. If n w_s < 1, a random decision casts one ray or none, and the ray is
+/// weighted by 1 / (n w_s): the estimate is unbiased. One object per thread.
 class SampledLight {
   public:
-    /// Both must outlive it.
+    /// `direct` and `tracer` must outlive it.
     SampledLight(const DirectLight& direct, const RayTracer& tracer, std::uint64_t seed);
 
     struct Estimate {
-        Spectrum weak;                                ///< Of weak sources together, W/m^2.
-        double misfit_squared = 0;                    ///< Mean of (w (E - weak))^2 that these may leave.
-        std::vector<DirectLight::SourceName> strong;  ///< To be looked at well.
+        Spectrum weak;              ///< Light of all weak sources together, W/m^2.
+        double misfit_squared = 0;  ///< Mean of (w (E - weak))^2 caused by the weak sources, w the weight.
+        std::vector<DirectLight::SourceName> strong;  ///< Sources that need exact visibility.
     };
-    /// As many sources are weak as together leave no more than `allowed` for the misfit, by weight w; they share n =
-    /// `rays` rays, at most `most_rays`. About 30 ns a source, and the rays.
+    /// Treats as many sources as weak as together cause a misfit of at most `allowed`, weighted by `weight`. They share
+    /// n = `rays` rays, at most `most_rays`. About 30 ns per source, plus the rays.
     const Estimate& operator()(const ElementTree& tree, ElementId e, const Spectrum& weight, double allowed,
                                unsigned rays);
     static constexpr unsigned most_rays = 1024;
@@ -40,20 +40,21 @@ class SampledLight {
     struct Source {
         DirectLight::SourceName name;
         RegionId region;
-        double F;           ///< From the element's middle, as if nothing stood in between, by relative radiance.
-        double area;        ///< m^2
-        Spectrum light;     ///< At the middle.
-        double share;       ///< In the light of all sources, as if nothing stood in between.
-        double near;        ///< (radii / distance)^2: how much its light varies over the two, as part of it.
-        Spectrum in_sight;  ///< All of it where some ray of its own got through, in the mean over elements.
-        unsigned rays;      ///< Of the purpose at hand, 0 or more,
-        double arrived;     ///< and the sum of K V over them, 1/m^2.
+        double F;        ///< From the element's centre without occlusion, weighted by relative radiance.
+        double area;     ///< m^2
+        Spectrum light;  ///< Unoccluded light at the centre.
+        double share;    ///< Share in the unoccluded light of all sources.
+        double near;     ///< (radii / distance)^2: relative variation of its light over the element and the source.
+        /// Visible light: all of it if some visibility ray arrived, scaled so that the mean over elements is unbiased.
+        Spectrum in_sight;
+        unsigned rays;   ///< Rays cast for the current purpose, 0 or more,
+        double arrived;  ///< and the sum of K V over them, 1/m^2.
     };
     struct Ray {
         double kernel;  ///< cos cos / (pi r^2), 1/m^2
         std::uint32_t source;
     };
-    /// What sources are ordered by, the weakest first: what is in sight of them, then how far they may be astray.
+    /// Sort key of sources, the weakest first: the visible light, then its possible variation.
     struct Rank {
         double in_sight, astray;
         std::uint32_t source;
@@ -61,18 +62,18 @@ class SampledLight {
         auto operator<=>(const Rank&) const = default;
     };
     void find_sources(const Point& x, const Normal& n, RegionId own, double radius);
-    /// What rays are for: each has a set of its own.
+    /// Purpose of rays; each has independent random points.
     enum class Purpose : std::uint64_t { sight, value };
-    /// So many rays from the element to a source, to be traced with those of the others: packets of rays are filled.
+    /// Adds `rays` rays from the element to a source to a batch that is traced together, which fills the ray packets.
     void add_rays(const ElementTree& tree, ElementId e, std::uint32_t source, unsigned rays, Purpose purpose);
     void trace_rays();
 
     const DirectLight& direct_;
     const RayTracer& tracer_;
     std::uint64_t seed_;
-    QuadBatch quads_;           ///< All pieces of all emitters, one after the other,
+    QuadBatch quads_;           ///< All pieces of all emitters, in order,
     std::vector<double> area_;  ///< their areas, m^2,
-    std::vector<double> F_;     ///< and what a place gets of each, could it see it.
+    std::vector<double> F_;     ///< and the unoccluded form factor of each from the current point.
     std::vector<Source> sources_;
     std::vector<Rank> ranks_;
     Estimate estimate_;

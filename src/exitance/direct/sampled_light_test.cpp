@@ -23,8 +23,8 @@ struct Office {
     }
 };
 
-TEST(SampledLight, IsRightInTheMeanOverManyElements) {
-    // On elements of a room's width, too, whose middles see other light than they do on average.
+TEST(SampledLight, IsUnbiasedOverManyElements) {
+    // Includes elements as large as a room, whose centres have different light than their average.
     Office office;
     for (const MeshSize& size : {MeshSize{0.3, 1}, MeshSize{3, 0}}) {
         const ElementTree tree = office.stage.make_elements(size);
@@ -38,12 +38,12 @@ TEST(SampledLight, IsRightInTheMeanOverManyElements) {
             EXPECT_TRUE(all.strong.empty());
             found += tree.area(e) * mean(all.weak);
         }
-        // Rays leave a tenth of the light of an element, of some hundreds that are large: half a per cent.
+        // Rays estimate a tenth of the light of an element, of some hundred large elements: an error of half a percent.
         EXPECT_NEAR(found / exact, 1, 0.015) << size.edge;
     }
 }
 
-TEST(SampledLight, LeavesNothingToRaysWhereNothingIsAllowed) {
+TEST(SampledLight, UsesNoRaysIfNoErrorIsAllowed) {
     Office office;
     const ElementTree tree = office.stage.make_elements({1, 0});
     std::size_t strong = 0;
@@ -55,13 +55,13 @@ TEST(SampledLight, LeavesNothingToRaysWhereNothingIsAllowed) {
     EXPECT_GT(strong, tree.leaves().size());
 }
 
-TEST(SampledLight, KeepsTheLightOfAProjectionOntoManyElements) {
+TEST(SampledLight, PreservesTheLightOfAProjectionOntoManyElements) {
     Office office;
     const StopRequest stop;
     const DirectProjection many =
         project_direct_light(office.stage, {.mesh = {0.2, 1}, .tolerance = 0.2, .max_depth = 1}, stop);
     const std::vector<ElementId> leaves = many.tree.leaves();
-    ASSERT_GT(leaves.size(), 8000u);  // else every element is looked at well
+    ASSERT_GT(leaves.size(), 8000u);  // enough elements for sampling to be used
     double exact = 0, found = 0, square = 0;
     for (std::size_t i = 0; i < leaves.size(); i += 23) {
         const ElementId e = leaves[i];
@@ -75,9 +75,9 @@ TEST(SampledLight, KeepsTheLightOfAProjectionOntoManyElements) {
     EXPECT_LT(std::sqrt(square / area), 0.2 * exact / area);  // the tolerance
 }
 
-TEST(SampledLight, LooksWellAtSourcesThatAreNear) {
-    // An L of which every wall glows. Of what its corner hides a ray from the middle of an element would tell too much
-    // or too little, and always so.
+TEST(SampledLight, ComputesNearSourcesExactly) {
+    // An L-shaped room with emitting walls. For sources partly hidden by its corner, a ray from the element's centre
+    // would always give too much or too little light.
     const Scene scene = test::make(test::l_room(2, 1));
     const Stage stage(scene);
     SampledLight sampled(stage.direct, stage.tracer, 1);
@@ -85,7 +85,7 @@ TEST(SampledLight, LooksWellAtSourcesThatAreNear) {
     double weak = 0;
     for (ElementId e : tree.leaves())
         weak += tree.area(e) / stage.area * mean(sampled(tree, e, Spectrum(0.5), 4e-4, 16).weak);
-    EXPECT_LT(weak, 0.02);  // of 1; 0.07 if only their light counted
+    EXPECT_LT(weak, 0.02);  // of 1; 0.07 if only the light of the sources were considered
 }
 
 }  // namespace

@@ -11,26 +11,26 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t quad = 4;     ///< Corners; larger pieces are looked at exactly.
-constexpr double strong = 1.0 / 8;  ///< Part of the shadowed light that makes a source worth an exact answer.
+constexpr std::size_t max_quad_corners = 4;  ///< Maximum number of corners; larger pieces are computed exactly.
+constexpr double strong_share = 1.0 / 8;     ///< Share of the shadowed light above which a source is computed exactly.
 
-/// Costs in rays: of a visible part, and of each piece that is cut out of it.
+/// Costs in rays: of a visible part, and of each piece clipped from it.
 constexpr double cost_of_visible_part = 8, cost_of_blocker = 6;
 
-/// Rays tell nothing of what is smaller than the part of the light that each stands for: half of it may be missed.
-constexpr double unseen = 0.5;
+/// Uncertainty of features smaller than the share of light of one ray: half of that share may be missed.
+constexpr double missed_share = 0.5;
 
-/// Light that is nearly hidden is not asked for more closely than this part of what would come unhindered.
-constexpr double least_part = 0.05;
+/// Nearly hidden light needs no better accuracy than this share of the unoccluded light.
+constexpr double min_light_share = 0.05;
 
-/// Of all ends, those that go to sources as if all of them brought the same: what is dim at the places that were asked
-/// may be bright at others.
+/// Share of the ends distributed as if all sources had the same light: a source that is dim at the sample points may be
+/// bright at others.
 constexpr double even_share = 0.1;
 
-constexpr std::size_t most_sets = 8;  ///< That one place takes.
+constexpr std::size_t max_sets_per_point = 8;  ///< Maximum per point.
 
-std::array<Point, quad> as_quad(std::span<const Point> corners) {
-    return {corners[0], corners[1], corners[2], corners[std::min(corners.size(), quad) - 1]};
+std::array<Point, max_quad_corners> as_quad(std::span<const Point> corners) {
+    return {corners[0], corners[1], corners[2], corners[std::min(corners.size(), max_quad_corners) - 1]};
 }
 
 }  // namespace
@@ -51,7 +51,7 @@ void SharedRays::choose(const ReceiverLight& whole, std::span<const Point> place
     QuadBatch quads;
     for (const ReceiverLight::Source& s : whole.sources) {
         const std::span<const Point> corners = occluders.corners(s.piece);
-        if (s.count == 0 || corners.size() > quad) continue;
+        if (s.count == 0 || corners.size() > max_quad_corners) continue;
         quads.add(as_quad(corners));
         sources_.push_back({{s.emitter, s.piece}, direct_->emitters()[s.emitter].region, norm(area_vector(corners))});
         number_[s.piece.value] = static_cast<std::uint32_t>(sources_.size());
@@ -73,8 +73,8 @@ void SharedRays::choose(const ReceiverLight& whole, std::span<const Point> place
     }
 }
 
-/// Fills in the part's sources, but for those that bring more than `most` (W/m^2); returns what these bring at the
-/// receiver if nothing stands in between.
+/// Collects the part's sources, except those whose unoccluded light exceeds `most` (W/m^2). Returns the unoccluded
+/// light of the collected ones at the receiver.
 double SharedRays::gather(const ReceiverLight& light, const Receiver& at, double most, Part& part) {
     part.shadowed.clear(), part.exitance.clear(), part.is_here.assign(sources_.size(), 0);
     double L = 0;
@@ -95,7 +95,7 @@ bool SharedRays::share(const ReceiverLight& light, const Point& middle, const Li
                        DirectLight::Workspace& scratch) {
     if (!possible_ || !light.behind.empty()) return false;
     const Receiver at = direct_->receiver(middle, light.n, light.own);
-    const double all = gather(light, at, HUGE_VAL, part), L = gather(light, at, strong * all, part);
+    const double all = gather(light, at, HUGE_VAL, part), L = gather(light, at, strong_share * all, part);
     if (part.exitance.empty()) return false;
     part.exact = light;
     double cost = 0;
@@ -106,11 +106,12 @@ bool SharedRays::share(const ReceiverLight& light, const Point& middle, const Li
         return true;
     });
     const double lit = mean(direct_->irradiance(part.exact, middle, scratch)) + L / 2;
-    const double rays = unseen * L / std::max(accuracy.allowed(lit), 1e-12 * L);
-    return cost > std::clamp(rays, static_cast<double>(rays_a_set), static_cast<double>(most_sets * rays_a_set));
+    const double rays = missed_share * L / std::max(accuracy.allowed(lit), 1e-12 * L);
+    return cost >
+           std::clamp(rays, static_cast<double>(rays_a_set), static_cast<double>(max_sets_per_point * rays_a_set));
 }
 
-/// The ends of a set, one in each stratum of the sources in their order.
+/// Returns the ends of a set, one in each stratum of the sources.
 std::span<const SharedRays::End> SharedRays::set(std::uint32_t number) {
     std::vector<End>& out = ends_[number];
     if (!out.empty()) return out;
@@ -130,7 +131,7 @@ std::span<const SharedRays::End> SharedRays::set(std::uint32_t number) {
     return out;
 }
 
-/// Adds what the rays to one set of ends bring.
+/// Adds the light of the rays to one set of ends.
 void SharedRays::cast(const Part& part, const Receiver& at, std::uint32_t number, Sums& sums) {
     from_.clear(), to_.clear(), weight_.clear();
     for (const End& end : set(number)) {
@@ -152,7 +153,7 @@ void SharedRays::cast(const Part& part, const Receiver& at, std::uint32_t number
         if (!blocked[i]) arrived += weight_[i];
     }
     sums.sent += sent, sums.arrived += arrived, sums.rays += to_.size();
-    // Two strata side by side: half of the squared difference of what they see is the variance of either.
+    // Neighbouring strata: half of the squared difference of their visible light is the variance of each.
     for (std::size_t i = 1; i < to_.size(); i += 2)
         if (blocked[i] != blocked[i - 1]) sums.squares += std::pow(mean(weight_[i] + weight_[i - 1]) / 2, 2);
 }
@@ -168,21 +169,21 @@ ClusteredLight::Estimate SharedRays::at(const Part& part, const Point& x, std::u
     if (!(mean(L) > 0)) return out;
     Sums sums;
     const auto arrived = [&] {
-        Spectrum E;  // where no ray tells: half of it
+        Spectrum E;  // half of it if no ray gives an estimate
         for (std::size_t b = 0; b < bands; ++b)
-            E[b] = L[b] * (sums.sent[b] > 0 ? sums.arrived[b] / sums.sent[b] : unseen);
+            E[b] = L[b] * (sums.sent[b] > 0 ? sums.arrived[b] / sums.sent[b] : missed_share);
         return E;
     };
     const auto variance = [&] {
-        if (sums.rays == 0) return std::pow(unseen * mean(L), 2);
-        const double scale = mean(L) / mean(sums.sent), each = unseen * mean(L) / static_cast<double>(sums.rays);
+        if (sums.rays == 0) return std::pow(missed_share * mean(L), 2);
+        const double scale = mean(L) / mean(sums.sent), each = missed_share * mean(L) / static_cast<double>(sums.rays);
         return scale * scale * sums.squares + each * each;
     };
     cast(part, at, set % sets, sums);
-    const double allowed = accuracy.allowed(std::max(mean(out.irradiance + arrived()), least_part * mean(L)));
+    const double allowed = accuracy.allowed(std::max(mean(out.irradiance + arrived()), min_light_share * mean(L)));
     if (const double before = variance(), limit = allowed * allowed; before > limit) {
-        // Stratified rays miss in the mean square as their number to the power of -3/2 says, about.
-        const double wanted = std::clamp(std::ceil(std::pow(before / limit, 2.0 / 3)), 2.0, 1.0 * most_sets);
+        // The mean square error of stratified rays falls about as the power -3/2 of their number.
+        const double wanted = std::clamp(std::ceil(std::pow(before / limit, 2.0 / 3)), 2.0, 1.0 * max_sets_per_point);
         for (std::uint32_t k = 1; k < static_cast<std::uint32_t>(wanted); ++k) cast(part, at, (set + k) % sets, sums);
     }
     out.irradiance += arrived();

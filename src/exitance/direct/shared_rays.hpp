@@ -9,40 +9,42 @@
 
 namespace exitance {
 
-/// Light of the many sources that something stands before, at neighbouring places of one plane, such as those that a
-/// tile of a picture shows:
+/// Light of many partly hidden sources at neighbouring points of one plane, such as the points shown by a tile of an
+/// image. The points share the ends of their rays:
 ///
 ///     E = L sum over rays of  w_i V_i / sum over rays of  w_i,    w = M K / p,    K = cos cos / (pi r^2),
 ///
-/// L what these sources bring if nothing stands in between, exact, p the density of the rays' ends. Ends are chosen
-/// once for all places: sixteen sets of them, of which every place takes one, and more as far as the spread of
-/// neighbouring rays asks for. A source is given ends by the light it would bring to places about, so that rays go
-/// where light may come from; what is known of a part of the places (sources that are hidden from there, or in full
-/// view) leaves ends out. Neighbours that take different sets have noise of their own. One object serves one thread.
+/// L is the exact unoccluded light of these sources, and p the density of the rays' ends. The ends are chosen once for
+/// all points: 16 sets, of which every point uses one, and more if the spread of its rays requires it. A source gets
+/// ends in proportion to its unoccluded light at the points, so that rays go where light may come from. Sources known
+/// to be hidden from, or fully visible to, a part of the points are skipped there. Neighbouring points that use
+/// different sets have independent noise. One object per thread.
 class SharedRays {
   public:
-    /// Both must outlive it.
+    /// `direct` and `tracer` must outlive it.
     SharedRays(const DirectLight& direct, const RayTracer& tracer);
 
-    /// Can any of it be done by rays in this scene? Not through panes, nor of the sky or of emitters with a profile.
+    /// True if rays can be used in this scene: not with panes, sky, or emitters with a directional profile.
     bool is_possible() const { return possible_; }
 
-    /// Begins with the receiver that `whole` was made for; `places` are some of it, `seed` names the ends.
+    /// Starts with the receiver for which `whole` was prepared.
+    /// places  points of the receiver, used to distribute the ends
+    /// seed    determines the ends
     void choose(const ReceiverLight& whole, std::span<const Point> places, std::uint64_t seed);
 
-    /// What is known of a part of that receiver.
+    /// The sources of a part of that receiver.
     struct Part {
-        ReceiverLight exact;                ///< What is looked at exactly: sources in full view or strong, lights.
-        QuadBatch shadowed;                 ///< The others,
+        ReceiverLight exact;  ///< Sources computed exactly: fully visible or strong ones, and punctual lights.
+        QuadBatch shadowed;   ///< The partly hidden others,
         std::vector<Spectrum> exitance;     ///< their exitances,
-        std::vector<std::uint8_t> is_here;  ///< and are they this part's, by their numbers in `choose`?
+        std::vector<std::uint8_t> is_here;  ///< and, for each source of `choose`, whether it belongs to this part.
     };
-    /// Takes the sources that something stands before from `light`, a part of `whole`, if rays find them for less
-    /// (about `middle`); else returns false, and `part` is of no use.
+    /// Moves the partly hidden sources of `light` (prepared for a part of `whole`) to rays if that is cheaper, measured
+    /// at `middle`. Otherwise returns false, and `part` is invalid.
     bool share(const ReceiverLight& light, const Point& middle, const LightAccuracy& accuracy, Part& part,
                DirectLight::Workspace& scratch);
 
-    /// Light at a place of the part. `set`: the first set of ends that it takes, below `sets`.
+    /// Returns the light at a point of the part. `set` is the first set of ends to use, less than `sets`.
     ClusteredLight::Estimate at(const Part& part, const Point& x, std::uint32_t set, const LightAccuracy& accuracy,
                                 DirectLight::Workspace& scratch);
 
@@ -53,16 +55,16 @@ class SharedRays {
         DirectLight::SourceName name;
         RegionId region;
         double area = 0;         ///< m^2
-        double probability = 0;  ///< That an end is its.
+        double probability = 0;  ///< Probability that a ray ends on it.
     };
     struct End {
         Point at;
         std::uint32_t source = 0;
     };
-    /// What rays have told so far, by weight.
+    /// Sums over the rays so far, by weight.
     struct Sums {
         Spectrum sent, arrived;
-        double squares = 0;  ///< Variance of the mean band of `arrived`.
+        double squares = 0;  ///< Variance of the band mean of `arrived`.
         std::size_t rays = 0;
     };
     std::span<const End> set(std::uint32_t number);
@@ -74,9 +76,9 @@ class SharedRays {
     bool possible_ = true;
     std::uint64_t seed_ = 0;
     std::vector<Source> sources_;
-    std::vector<double> before_;               ///< Sums of their probabilities.
-    std::vector<std::uint32_t> number_;        ///< One past a source's number, by piece.
-    std::array<std::vector<End>, sets> ends_;  ///< Each in the order of sources; empty: not yet made.
+    std::vector<double> before_;               ///< Prefix sums of their probabilities.
+    std::vector<std::uint32_t> number_;        ///< For each piece, the index of its source plus one; 0: none.
+    std::array<std::vector<End>, sets> ends_;  ///< Each sorted by source; empty: not yet generated.
     std::vector<SurfacePoint> from_, to_;
     std::vector<Spectrum> weight_;
     std::vector<double> factors_;

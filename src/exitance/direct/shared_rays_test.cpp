@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// Two furnished rooms, one under 96 triangles that emit: from most places some of them are hidden.
+/// Two furnished rooms, one below a panel of 96 emitting triangles: from most points some of them are hidden.
 struct Panel {
     Panel() : scene(built_scene("carpet", {{"u", "12"}, {"v", "8"}, {"cuts", "1"}, {"books", "0"}})), stage(scene) {}
     Scene scene;
@@ -16,7 +16,7 @@ struct Panel {
     DirectLight::Workspace workspace;
 };
 
-/// 49 places within a triangle.
+/// 49 points in a triangle.
 std::vector<Point> places_on(std::span<const Point> corners) {
     std::vector<Point> out;
     for (int i = 0; i < 7; ++i)
@@ -28,13 +28,13 @@ std::vector<Point> places_on(std::span<const Point> corners) {
     return out;
 }
 
-TEST(SharedRays, BringExactLightButForAsMuchAsIsAllowed) {
+TEST(SharedRays, DifferFromExactLightByAtMostTheAllowedError) {
     Panel panel;
     const DirectLight& direct = panel.stage.direct;
     SharedRays shared(direct, panel.stage.tracer);
     ASSERT_TRUE(shared.is_possible());
     for (const double asked : {0.05, 0.01}) {
-        const LightAccuracy accuracy{asked, 0.1 * asked};  // W/m^2: between 0 and 8 arrive
+        const LightAccuracy accuracy{asked, 0.1 * asked};  // W/m^2; the irradiance is between 0 and 8
         ReceiverLight whole;
         SharedRays::Part part;
         double miss = 0, allowed = 0, told = 0;
@@ -56,18 +56,19 @@ TEST(SharedRays, BringExactLightButForAsMuchAsIsAllowed) {
             }
         }
         EXPECT_GT(faces, 10u);
-        EXPECT_LT(miss, 1.5 * told);  // what is told of the error
-        // An eighth of the thousand rays that a place may take would do, but for those that are nearly dark.
+        EXPECT_LT(miss, 1.5 * told);  // compared with the reported error
+        // An eighth of the thousand available rays per point would be sufficient, except for nearly dark points.
         EXPECT_LT(static_cast<double>(rays) / static_cast<double>(places_seen), 500.0);
-        EXPECT_LT(miss, (asked == 0.05 ? 1 : 2) * allowed);  // of places that take all rays there are, some miss more
+        // Some points that use all available rays have larger errors.
+        EXPECT_LT(miss, (asked == 0.05 ? 1 : 2) * allowed);
     }
 }
 
-TEST(SharedRays, KnowOfAPartWhatIsHiddenAndWhatIsInFullView) {
+TEST(SharedRays, SkipHiddenAndFullyVisibleSourcesOfAPart) {
     Panel panel;
     const DirectLight& direct = panel.stage.direct;
     SharedRays shared(direct, panel.stage.tracer);
-    // Over the floor near the door of the dark room: many of the lamps are hidden from there for certain.
+    // Above the floor near the door of the dark room: many of the lamps are certainly hidden.
     constexpr double h = 0.01;  // metres
     ReceiverLight whole, light;
     const std::vector<Point> wide = {{4.2, 0.3, h}, {5.4, 0.3, h}, {5.4, 1.5, h}, {4.2, 1.5, h}};
@@ -82,8 +83,9 @@ TEST(SharedRays, KnowOfAPartWhatIsHiddenAndWhatIsInFullView) {
     const Point x{4.35, 0.95, h};
     const ClusteredLight::Estimate found = shared.at(part, x, 3, {0.02, 0}, panel.workspace);
     const double exact = mean(direct.irradiance(light, x, panel.workspace));
-    EXPECT_NEAR(mean(found.irradiance), exact, 4 * std::sqrt(found.variance));  // one of 10^4 is farther off by chance
-    // The same place and set have the same light, whatever was asked for in between.
+    // Probability of a larger deviation: 1e-4.
+    EXPECT_NEAR(mean(found.irradiance), exact, 4 * std::sqrt(found.variance));
+    // The result for a point and set does not depend on the calls in between.
     shared.at(part, narrow[2], 7, {0.02, 0}, panel.workspace);
     EXPECT_EQ(shared.at(part, x, 3, {0.02, 0}, panel.workspace).irradiance, found.irradiance);
 }

@@ -8,9 +8,10 @@
 namespace exitance {
 namespace {
 
-constexpr double much_nearer = 1.5;  ///< Farthest over nearest: the kernel changes by up to its fourth power.
+/// Ratio of the farthest to the nearest distance; the kernel changes by up to its fourth power.
+constexpr double max_distance_ratio = 1.5;
 
-/// The square of the distance of x to a convex polygon.
+/// Squared distance of x to a convex polygon.
 double nearest_squared(std::span<const Point> corners, const Normal& n, const Point& x) {
     const std::size_t m = corners.size();
     double nearest = HUGE_VAL;
@@ -26,13 +27,13 @@ double nearest_squared(std::span<const Point> corners, const Normal& n, const Po
     return is_inside ? height * height : nearest;
 }
 
-/// The angle at a between the arcs to b and to c, all of length 1.
+/// Angle at a between the arcs to b and c; all are unit vectors.
 double angle_at(const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 ab = cross(a, b), ac = cross(a, c);
     return std::atan2(norm(cross(ab, ac)), dot(ab, ac));
 }
 
-/// Of length 1, at a right angle to b in the plane of both.
+/// Unit vector perpendicular to b in the plane of a and b.
 Vec3 turned_to(const Vec3& a, const Vec3& b) {
     return normalized(a - dot(a, b) * b);
 }
@@ -57,14 +58,16 @@ SeenPolygon::SeenPolygon(std::span<const Point> corners, const Normal& n, double
     double farthest = 0;
     for (const Point& p : corners) farthest = std::max(farthest, squared_norm(p - x));
     const double nearest = nearest_squared(corners, n, x);
-    constexpr double nothing = 1e-12;  // of the farthest: x lies in the polygon, which then has no directions
-    if (farthest <= much_nearer * much_nearer * nearest || nearest <= nothing * farthest) return;
+    // Relative to the farthest: x is in the polygon, so that directions to it are undefined.
+    constexpr double min_squared_ratio = 1e-12;
+    if (farthest <= max_distance_ratio * max_distance_ratio * nearest || nearest <= min_squared_ratio * farthest)
+        return;
     const Vec3 a = normalized(corners[0] - x);
     for (std::size_t i = 2; i < corners.size(); ++i) {
         const Vec3 b = normalized(corners[i - 1] - x), c = normalized(corners[i] - x);
         const double seen = 2 * std::atan2(std::abs(dot(a, cross(b, c))), 1 + dot(a, b) + dot(b, c) + dot(c, a));
-        constexpr double least = 1e-9;  // sr: below it angles lose their digits
-        if (!(seen > least)) continue;
+        constexpr double min_solid_angle = 1e-9;  // sr; smaller triangles have inaccurate angles
+        if (!(seen > min_solid_angle)) continue;
         const double angle = angle_at(a, b, c);
         triangles_.push_back({a, b, c, angle, std::sin(angle), std::cos(angle), seen});
         solid_angle_ += seen;
@@ -76,7 +79,7 @@ Vec3 SeenPolygon::direction(double s, double t) const {
     std::size_t k = 0;
     while (k + 1 < triangles_.size() && rest >= triangles_[k].solid_angle) rest -= triangles_[k++].solid_angle;
     const auto& [a, b, c, alpha, sin_alpha, cos_alpha, solid_angle] = triangles_[k];
-    // The part of that area beside the arc ab ends at the arc from b to a point of the arc ac.
+    // Sub-triangle with this solid angle: bounded by the arc ab and the arc from b to a point on the arc ac.
     const double phi = std::clamp(rest, 0.0, solid_angle) - alpha;
     const double sine = std::sin(phi), cosine = std::cos(phi), u = cosine - cos_alpha;
     const double v = sine + sin_alpha * dot(a, b);

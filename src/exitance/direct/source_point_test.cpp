@@ -11,10 +11,10 @@ namespace exitance {
 namespace {
 
 constexpr std::uint32_t count = 1 << 14;
-const std::vector<Point> lamp{{1, 1, 3}, {1, 3, 3}, {4, 3, 3}, {4, 1, 3}};  // looks down, 3 x 2 m
+const std::vector<Point> lamp{{1, 1, 3}, {1, 3, 3}, {4, 3, 3}, {4, 1, 3}};  // faces down, 3 x 2 m
 const Normal down{0, 0, -1};
 
-/// Share of the light of the lamp's part below x = `to` at a point, by its places.
+/// Share of the lamp's light at a point that comes from the part of the lamp with x below `to`, by sampling.
 double share_below(const Point& x, const Normal& n, double to) {
     const SeenPolygon seen(lamp, down, 6, x);
     const ScrambledSobol numbers(7);
@@ -29,7 +29,7 @@ double share_below(const Point& x, const Normal& n, double to) {
     return part / all;
 }
 
-TEST(SeenPolygon, PlacesBringTheLightOfTheirParts) {
+TEST(SeenPolygon, PointsHaveTheLightOfTheirParts) {
     const struct {
         Point x;
         Normal n;
@@ -41,12 +41,13 @@ TEST(SeenPolygon, PlacesBringTheLightOfTheirParts) {
         std::vector<Point> part = lamp;
         for (Point& p : part) p.x = std::min(p.x, 2.0);
         const double exact = point_to_polygon(x, n, part) / point_to_polygon(x, n, lamp);
-        // 16,384 places spread evenly are within a third of a per cent; by chance they would be within one.
+        // With 16,384 evenly spread points the error is within a third of a percent; with independent ones it would be
+        // one percent.
         EXPECT_NEAR(share_below(x, n, 2), exact, 0.0033) << x.x << " " << x.z;
     }
 }
 
-TEST(SeenPolygon, PlacesAreWhereANearLampIsSeen) {
+TEST(SeenPolygon, PointsFollowTheSolidAngleOfANearLamp) {
     const Point x{2.5, 2, 2.85};
     const SeenPolygon seen(lamp, down, 6, x);
     const ScrambledSobol numbers(7);
@@ -55,7 +56,7 @@ TEST(SeenPolygon, PlacesAreWhereANearLampIsSeen) {
         const Vec3 d = seen.at(numbers(i, 0), numbers(i, 1)) - x;
         near += std::hypot(d.x, d.y) < 0.15;
     }
-    // Of the half space a cone of 45 degrees has 1 - cos 45 = 0.293; the lamp leaves out some of the horizon.
+    // A cone of 45 degrees has 1 - cos 45 = 0.293 of the half space; the lamp does not reach the whole horizon.
     EXPECT_GT(near, 0.293 * count);
     EXPECT_LT(near, 0.36 * count);
 }

@@ -26,7 +26,8 @@ class BlockerSearch {
     /// Sources that illuminate any part of an outline on a region, with their candidates.
     virtual ReceiverLight look(std::span<const Point> outline, RegionId region, DirectLight::Workspace& workspace,
                                Counts& counts) const = 0;
-    /// The same for each face of a region. `whole` is the light of the whole region; `lights` has one entry per face.
+    /// Like `look` above, for each face of a region. `whole` is the light of the whole region; `lights` has one entry
+    /// per face.
     virtual void look(const FaceOutlines& outlines, const ReceiverLight& whole, std::span<ReceiverLight> lights,
                       const StopRequest& stop, DirectLight::Workspace& workspace, Counts& counts) const = 0;
     /// Polygons that can clip the wedges of an emitter on a region.

@@ -10,28 +10,29 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t value_count = 13;  ///< Of a triangle: corners, middles, quarters edge by edge, the one within.
-constexpr std::size_t slope_count = 9;   ///< To both other corners from each, then across from each edge.
+/// Values of a triangle: 3 corners, 3 middles, 6 quarters (edge by edge), 1 inner node.
+constexpr std::size_t value_count = 13;
+constexpr std::size_t slope_count = 9;  ///< Slopes: from each corner to the two others, then one across each edge.
 
 using Triangle = BisectionMesh::Triangle;
 using SlopeRules = std::array<std::array<double, value_count>, slope_count>;
 
-/// Where a triangle's values are, by the coordinates of its corners 1 and 2.
+/// Positions of a triangle's values, as barycentric coordinates of its corners 1 and 2. `longest`: its longest edge.
 std::array<Vec2, value_count> places_of_values(std::size_t longest) {
     constexpr std::array<Vec2, 3> corner{{{0, 0}, {1, 0}, {0, 1}}};
     std::array<Vec2, value_count> out;
     for (std::size_t i = 0; i < 3; ++i) {
         const Vec2 a = corner[i], b = corner[(i + 1) % 3];
         out[i] = a, out[3 + i] = 0.5 * (a + b);
-        // Given by halving edges twice.
+        // Quarter points: edges are halved twice.
         out[6 + 2 * i] = 0.75 * a + 0.25 * b, out[7 + 2 * i] = 0.25 * a + 0.75 * b;
     }
-    // Given by the halving of the line that bisects the longest edge.
+    // Inner node: middle of the line that bisects the longest edge.
     out[12] = 0.25 * (corner[longest] + corner[(longest + 1) % 3]) + 0.5 * corner[(longest + 2) % 3];
     return out;
 }
 
-/// Powers x^i y^j of degree three or less, and their derivative along d.
+/// Adds the monomials x^i y^j up to degree three at p, and their derivatives along d.
 constexpr std::size_t power_count = 10;
 void add_powers(Vec2 p, Vec2 d, std::array<double, power_count>& value, std::array<double, power_count>& slope) {
     std::size_t k = 0;
@@ -44,7 +45,7 @@ void add_powers(Vec2 p, Vec2 d, std::array<double, power_count>& value, std::arr
         }
 }
 
-/// Slopes of the cubic polynomial with the least sum of squares of differences, as weights of the values.
+/// Slopes of the least-squares cubic polynomial, as weights of the values.
 SlopeRules slope_rules(std::size_t longest) {
     const std::array<Vec2, value_count> places = places_of_values(longest);
     std::array<double, power_count> value{}, slope{};
@@ -68,14 +69,14 @@ SlopeRules slope_rules(std::size_t longest) {
     return out;
 }
 
-/// Of the edge of `other` that is the one of `triangle`.
+/// Returns the index in `other` of the edge that it shares with `triangle`.
 std::size_t same_edge(const Triangle& other, std::uint32_t triangle) {
     return static_cast<std::size_t>(std::find(other.neighbor.begin(), other.neighbor.end(), triangle) -
                                     other.neighbor.begin());
 }
 
-/// What the triangles of one sector around a corner say of its gradient g: sum (d . g - slope)^2 over the ways d to
-/// their other corners, by its normal equations M g = r, M = L L^T.
+/// Least-squares problem for the gradient g at a corner of one sector: minimize sum (d . g - slope)^2 over the ways d
+/// to the other corners of its triangles. Stored as normal equations M g = r with M = L L^T.
 struct SectorSlopes {
     std::uint32_t sector = 0;
     double xx = 0, xy = 0, yy = 0;
@@ -87,7 +88,7 @@ struct SectorSlopes {
         for (std::size_t b = 0; b < bands; ++b) right[b] = right[b] + slope[b] * d;
     }
     void factor() {
-        // Both given by the rounding of doubles: slivers say nothing across themselves.
+        // Regularization on the order of rounding errors: slivers do not determine the slope across themselves.
         constexpr double rounding = 1e-14, smallest = 1e-300;
         const double least = rounding * (xx + yy) + smallest;
         l_xx = std::sqrt(xx + least), l_xy = xy / l_xx;
@@ -99,10 +100,11 @@ struct SectorSlopes {
     Vec2 gradient(Vec2 y) const { return {(y.x - l_xy * y.y / l_yy) / l_xx, y.y / l_yy}; }
 };
 
-/// Rows of unit length at right angles to one another, of whitened gradients of all sectors.
+/// Orthonormal constraints on the whitened gradients of all sectors.
 using Rows = std::vector<std::vector<double>>;
 
-/// That two sectors' gradients agree along a direction. Left out where the rows before say as much.
+/// Adds the constraint that the gradients of two sectors have the same component along a direction. Constraints that
+/// depend on those in `rows` are omitted.
 void add_agreement(Rows& rows, std::span<const SectorSlopes> sectors, std::size_t a, std::size_t b, Vec2 direction) {
     std::vector<double> row(2 * sectors.size());
     const Vec2 in_a = sectors[a].whitened(direction), in_b = sectors[b].whitened(direction);
@@ -119,7 +121,7 @@ void add_agreement(Rows& rows, std::span<const SectorSlopes> sectors, std::size_
             for (std::size_t i = 0; i < row.size(); ++i) product += row[i] * other[i];
             for (std::size_t i = 0; i < row.size(); ++i) row[i] -= product * other[i];
         }
-    constexpr double dependent = 1e-7;  // given by rounding: the root of that of slopes
+    constexpr double dependent = 1e-7;  // square root of the rounding error of slopes
     const double after = norm_of();
     if (!(after > dependent * before)) return;
     for (double& x : row) x /= after;
@@ -200,7 +202,8 @@ void CloughTocherFit::find_sectors() {
     gradient_.resize(count);
 }
 
-/// The gradients of all sectors around one node: nearest to what their triangles say, and alike along kinks.
+/// Computes the gradients of all sectors around one node. They fit the slopes of their triangles best, subject to the
+/// constraint that both sides of a kink agree along it.
 void CloughTocherFit::fit_corners(std::span<const Corner> around, const Normal& n) {
     const Frame plane(n);
     std::vector<SectorSlopes> sectors;
@@ -214,8 +217,8 @@ void CloughTocherFit::fit_corners(std::span<const Corner> around, const Normal& 
         const Vec3 d = mesh_.nodes()[t.corner[to % 3]].at - mesh_.nodes()[t.corner[from]].at;
         return Vec2{dot(d, plane.u), dot(d, plane.v)};
     };
-    // Ways count as they are long: what tiny triangles beside a jump or a singularity say does not matter to large
-    // ones.
+    // The squared length of a way is its weight, so that tiny triangles beside a jump or singularity do not affect
+    // large ones.
     for (const auto& [triangle, k] : around) {
         SectorSlopes& sector = sectors[of_sector(sector_[triangle][k])];
         for (std::size_t e = 0; e < 2; ++e)
@@ -270,8 +273,8 @@ CloughTocher::Data CloughTocherFit::corner_data(std::uint32_t triangle, std::siz
     return data;
 }
 
-/// The slope inwards at an edge's middle, nearest to what both sides say of the way to the corner across: what is left
-/// of it without the part along the edge, over its height.
+/// Computes the slope inwards at each edge's middle. It fits both triangles' slopes towards the opposite corner best,
+/// after their component along the edge is removed and the rest is divided by the height.
 void CloughTocherFit::fit_edges() {
     inwards_.resize(mesh_.triangles().size());
     parallel_for(mesh_.triangles().size(), 256, [&](std::size_t number) {
@@ -324,7 +327,8 @@ Misfit CloughTocherFit::misfit(std::uint32_t triangle, const Spectrum& weight) c
     Misfit out;
     double square = 0;
     for (std::size_t p = 3; p < value_count; ++p) {
-        // Given by the mean square of what the element leaves of quartics, half by middles, half by quarters.
+        // Weights that give the mean square of the element's error for a quartic, half of it from middles, half from
+        // quarters.
         constexpr double of_middle = 0.0613, of_quarter = 0.0968, of_inner = 0.1909;
         const double part = p < 6 ? of_middle : p < 12 ? of_quarter : of_inner;
         square += part * squared(weight * errors[p]) / static_cast<double>(bands);

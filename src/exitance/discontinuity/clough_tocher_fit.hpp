@@ -11,27 +11,30 @@
 
 namespace exitance {
 
-/// Clough and Tocher's elements through the values at a mesh's nodes. Slopes are estimated: of each triangle by the
-/// cubic polynomial nearest to its thirteen values, for all triangles around a corner by the gradient nearest to
-/// theirs. Corners are one where triangles meet across edges without a jump or kink. Beside a kink the gradients of
-/// both sides differ, but not along it, so that light is continuous there; across an edge's middle each side has its
-/// own slope. Cubic polynomials are reproduced; the error of smooth light falls with the fourth power of the triangles'
-/// size. O(triangles).
+/// Clough-Tocher elements that interpolate the values at a mesh's nodes. The gradients are estimated from the values:
+/// each triangle takes the slopes of the least-squares cubic polynomial through its thirteen values, and the triangles
+/// around a corner share the gradient that fits their slopes best. A shared corner (a sector) is the set of triangle
+/// corners at one node that are connected across edges without a jump or kink. The gradients on both sides of a kink
+/// differ, but agree along it, so that light is continuous there; at the middle of such an edge each side has its own
+/// slope across. Cubic polynomials are reproduced exactly; the error of smooth light falls with the fourth power of the
+/// triangles' size. O(triangles).
 class CloughTocherFit {
   public:
-    /// `values`: at all nodes of the mesh, W/m^2; `normal`: of a triangle's region. Both are read while it is made, the
-    /// mesh and the values later, too.
+    /// `values`: irradiance at all nodes of the mesh, W/m^2. `normal`: normal of the region that a triangle belongs to,
+    /// used only by the constructor. The mesh and the values must outlive the fit.
     CloughTocherFit(const BisectionMesh& mesh, std::span<const Spectrum> values,
                     const std::function<Normal(std::uint32_t)>& normal);
 
     CloughTocher element(std::uint32_t triangle, std::size_t band) const;
-    /// By the values at the middles and quarters of edges and within.
+    /// Error of a triangle's element, measured at the middles and quarters of its edges and at its inner node.
     Misfit misfit(std::uint32_t triangle, const Spectrum& weight) const;
-    /// Gives a mesh of the same triangles and corners its slopes, and the values at the middles of edges.
+    /// Stores gradients and slopes in a mesh of the same triangles and corners, and sets the values at the middles of
+    /// edges to those of the elements.
     void write(SixNodeMesh& out) const;
 
   private:
-    /// Slopes of the cubic polynomial nearest to a triangle's values, times the ways that they are along.
+    /// Slopes of the cubic polynomial that fits a triangle's values best. Each is a derivative times the length of the
+    /// way along which it is taken.
     struct Slopes {
         std::array<std::array<Spectrum, 2>, 3> to_next;
         std::array<Spectrum, 3> across;
@@ -51,10 +54,11 @@ class CloughTocherFit {
 
     const BisectionMesh& mesh_;
     std::span<const Spectrum> values_;
-    std::vector<Slopes> slopes_;                        ///< Of triangles.
-    std::vector<std::array<std::uint32_t, 3>> sector_;  ///< Of triangles' corners.
-    std::vector<Gradient> gradient_;                    ///< Of sectors, W/m^3.
-    std::vector<std::array<Spectrum, 3>> inwards_;      ///< Of triangles, at the middles of edges, W/m^3.
+    std::vector<Slopes> slopes_;                        ///< Per triangle.
+    std::vector<std::array<std::uint32_t, 3>> sector_;  ///< Per triangle and corner: the number of the sector.
+    std::vector<Gradient> gradient_;                    ///< Per sector, W/m^3.
+    /// Per triangle and edge: slope inwards at the edge's middle, W/m^3.
+    std::vector<std::array<Spectrum, 3>> inwards_;
 };
 
 }  // namespace exitance

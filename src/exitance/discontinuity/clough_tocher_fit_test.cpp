@@ -15,7 +15,7 @@ namespace {
 using Function = std::function<double(const Point&)>;
 constexpr double rounding_of_floats = 1e-6;
 
-/// A square of 1 m with a line through it, cut to triangles that are nowhere alike.
+/// A square of 1 m, cut by a line of a given order and by a D2 line, and bisected randomly into triangles.
 struct Sheet {
     BisectionMesh mesh{1e-9};
     std::vector<Spectrum> values;
@@ -35,7 +35,7 @@ struct Sheet {
         fit(f);
     }
 
-    /// Every triangle cut in four.
+    /// Splits every triangle into four.
     void halve(const Function& f) {
         for (int twice = 0; twice < 2; ++twice) {
             const auto count = static_cast<std::uint32_t>(mesh.triangles().size());
@@ -77,7 +77,7 @@ struct Sheet {
         return out;
     }
 
-    /// The same of the elements before they are rounded to floats.
+    /// Largest error of the elements before they are rounded to floats.
     double largest_error_before_rounding(const Function& f) const {
         const CloughTocherFit fit(mesh, values, [](std::uint32_t) { return Normal{0, 0, 1}; });
         RandomStream random(6, Stream::mesh);
@@ -95,7 +95,7 @@ struct Sheet {
         return out;
     }
 
-    /// By how much value and slope differ at most between both sides of edges of one kind.
+    /// Largest differences of value and slope between the two sides of edges of the selected orders.
     struct Jumps {
         double value = 0, slope = 0;
         int edges = 0;
@@ -129,7 +129,8 @@ struct Sheet {
         const double area = cross(a, b).z;
         return elements.at(t, {cross(w, b).z / area, cross(a, w).z / area})[0];
     }
-    /// Into the triangle: exact for cubics, up to rounding over the step.
+    /// Derivative along d, into the triangle: exact for cubics except for rounding errors, which are divided by the
+    /// step.
     double slope(std::uint32_t t, const Point& p, const Vec3& d) const {
         constexpr double step = 1e-3;
         return (-11 * at(t, p) + 18 * at(t, p + step * d) - 9 * at(t, p + 2 * step * d) + 2 * at(t, p + 3 * step * d)) /
@@ -141,7 +142,7 @@ double cubic(const Point& p) {
     return 3 + p.x - 2 * p.y + p.x * p.y - 2 * p.x * p.x * p.y + p.y * p.y * p.y + 0.5 * p.x * p.x * p.x;
 }
 
-/// A wave, and beside a line another one with the same values there.
+/// A wave with a kink: right of a line, a second wave is added that is 0 on the line.
 double kinked(const Point& p) {
     const double beside = p.x - 0.4 - 0.15 * p.y;
     return std::sin(3 * p.x + 2 * p.y) + (beside > 0 ? 2 * beside * std::cos(p.y) : 0);
@@ -155,21 +156,21 @@ TEST(CloughTocherFit, ReproducesCubicPolynomials) {
     }
 }
 
-TEST(CloughTocherFit, TangentPlanesAgreeAcrossAllEdgesButThoseOfKinks) {
-    // A sum of random waves that no cubic follows: what joins does so by itself, not because light is smooth.
+TEST(CloughTocherFit, TangentPlanesAgreeAcrossAllEdgesExceptKinks) {
+    // No cubic fits this function, so that continuity results from the construction, not from smooth data.
     const Sheet sheet(CurveOrder::d1, 6, [](const Point& p) { return std::sin(40 * p.x) * std::cos(70 * p.y); });
     const Sheet::Jumps smooth = sheet.jumps([](CurveOrder o) { return o > CurveOrder::d1; });
     EXPECT_GT(smooth.edges, 50);
-    constexpr double rounding = 1e-8;  // of slopes of some hundred a metre by steps of a thousandth of an edge
+    constexpr double rounding = 1e-8;  // of slopes up to some hundred per metre, with steps of a thousandth of an edge
     EXPECT_LT(smooth.value, rounding);
     EXPECT_LT(smooth.slope, 1e3 * rounding);
     const Sheet::Jumps kink = sheet.jumps([](CurveOrder o) { return o == CurveOrder::d1; });
     EXPECT_GT(kink.edges, 3);
-    EXPECT_LT(kink.value, 1e3 * rounding_of_floats);  // gradients along it agree up to their rounding to floats
+    EXPECT_LT(kink.value, 1e3 * rounding_of_floats);  // gradients along the kink agree up to their rounding to floats
     EXPECT_GT(kink.slope, 0.1);
 }
 
-TEST(CloughTocherFit, AKinkStaysWhereItIs) {
+TEST(CloughTocherFit, KinksAreNotSmoothed) {
     const Sheet sheet(CurveOrder::d1, 9, kinked);
     const Sheet::Jumps kink = sheet.jumps([](CurveOrder o) { return o == CurveOrder::d1; });
     EXPECT_NEAR(kink.slope, 2 * std::hypot(1.0, 0.15), 0.1);  // where the cosine is 1
@@ -196,7 +197,7 @@ TEST(CloughTocherFit, ErrorsFallWithTheFourthPowerOfTheSize) {
         sheet.halve(wave);
         error.push_back(sheet.largest_error_before_rounding(wave));
     }
-    EXPECT_GT(std::log2(error[1] / error[3]) / 2, 3.6);  // bisection makes no triangle quite like those before it
+    EXPECT_GT(std::log2(error[1] / error[3]) / 2, 3.6);  // bisected triangles are not exactly similar to their parents
 }
 
 TEST(CloughTocherFit, TheMisfitIsTheErrorOfSmoothLight) {
@@ -204,12 +205,12 @@ TEST(CloughTocherFit, TheMisfitIsTheErrorOfSmoothLight) {
     Sheet sheet(CurveOrder::d2, 5, quartic);
     sheet.halve(quartic);
     const CloughTocherFit fit(sheet.mesh, sheet.values, [](std::uint32_t) { return Normal{0, 0, 1}; });
-    double told = 0, largest = 0, square = 0;
+    double estimated = 0, largest = 0, square = 0;
     RandomStream random(5, Stream::mesh);
     constexpr int places = 20;
     for (std::uint32_t t = 0; t < sheet.elements.size(); ++t) {
         const Misfit misfit = fit.misfit(t, Spectrum(1.0));
-        told += misfit.squared, largest = std::max(largest, misfit.largest);
+        estimated += misfit.squared, largest = std::max(largest, misfit.largest);
         for (int i = 0; i < places; ++i) {
             double s = random.uniform(), u = random.uniform();
             if (s + u > 1) s = 1 - s, u = 1 - u;
@@ -220,7 +221,8 @@ TEST(CloughTocherFit, TheMisfitIsTheErrorOfSmoothLight) {
             square += sheet.elements.area(t) / places * off * off;
         }
     }
-    EXPECT_NEAR(std::sqrt(told / square), 1, 0.4);  // the weights are of one shape of error, the triangles of many
+    EXPECT_NEAR(std::sqrt(estimated / square), 1,
+                0.4);  // the weights assume one shape of error; the triangles have many
     EXPECT_NEAR(largest / sheet.largest_error(quartic), 1, 0.4);
 }
 

@@ -5,7 +5,8 @@
 namespace exitance {
 namespace {
 
-/// The stretch of a convex outline where it is `level` above a plane, if it crosses that level.
+/// Appends the segment where a convex outline crosses a height of `level` above a plane, if it does. `heights`: heights
+/// of its corners, metres.
 void add_crossing(std::span<const Point> outline, std::span<const double> heights, double level,
                   std::vector<std::pair<Point, Point>>& out) {
     Point ends[2];
@@ -19,7 +20,7 @@ void add_crossing(std::span<const Point> outline, std::span<const double> height
     if (count == 2) out.emplace_back(ends[0], ends[1]);
 }
 
-/// All points at most `reach` off a region's box.
+/// All points at most `reach` away from a region's bounding box, metres.
 ConvexRegion around(const Region& region, double reach) {
     Box box;
     for (const auto& loop : region.loops)
@@ -40,20 +41,20 @@ std::vector<std::pair<Point, Point>> cover_ends(const Occluders& occluders, Regi
     const auto look = [&](PieceId p) {
         const ConvexPiece& piece = occluders.pieces()[p];
         if (occluders.is_own(piece.region, number)) return false;
-        // Steeper faces cross the plane within a ten-thousandth of the scene's size: contacts are lines enough.
-        constexpr double steepest = 0.01;  // given by what counts as one plane, 1e-6 of that size
+        // Steeper faces cross the plane within 1e-4 of the scene's size; their contact lines are enough.
+        constexpr double steepest = 0.01;  // sine of the angle; coplanarity tolerance (1e-6 of the size) / 1e-4
         if (norm(cross(piece.plane.n, region.plane.n)) > steepest) return false;
         heights.clear();
         for (const Point& c : occluders.corners(p)) heights.push_back(region.plane.signed_distance(c) - lift);
         const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
-        // Of those that only rounding parts from the plane it says nothing where they cross it.
+        // A face parallel to the plane up to rounding has no meaningful crossing.
         if (*high - *low <= 4 * occluders.rounding()) return false;
         for (const double level : {-piece.thickness, 0.0, piece.thickness})
             if (level != 0 || dot(piece.plane.n, region.plane.n) > 0)
                 add_crossing(occluders.corners(p), heights, level, out);
         return false;
     };
-    constexpr double thickest = 1e-6;  // given by what counts as one plane at most, of the scene's size
+    constexpr double thickest = 1e-6;  // share of the scene's size: largest tolerance of coplanar surfaces
     const ConvexRegion near = around(region, 2 * thickest * occluders.scene().size());
     for (const Occluders::Size size : {Occluders::Size::large, Occluders::Size::small})
         occluders.visit_region(size, near, look, region.plane.n);

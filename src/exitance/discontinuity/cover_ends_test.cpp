@@ -14,7 +14,7 @@ using test::Face;
 
 constexpr double tilt = 1e-5;
 
-/// A box turned about the x axis by a tiny angle, as modellers leave them.
+/// A box rotated about the x axis by a tiny angle, as in imprecise models.
 std::vector<Face> tilted_box(const Point& lo, const Vec3& size) {
     std::vector<Face> faces = test::closed_box(lo, size);
     for (Face& face : faces) {
@@ -24,7 +24,7 @@ std::vector<Face> tilted_box(const Point& lo, const Vec3& size) {
     return faces;
 }
 
-TEST(CoverEnds, AreWhereATiltedPlateStandsOffAFloorByItsThickness) {
+TEST(CoverEnds, AreWhereATiltedPlateIsItsThicknessAboveAFloor) {
     const Scene scene = test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}},
                                     {{{-1, 0, 0}, {-1, 1, tilt}, {1, 1, tilt}, {1, 0, 0}}},
                                     {{{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}}, 3}});
@@ -42,16 +42,16 @@ TEST(CoverEnds, AreWhereATiltedPlateStandsOffAFloorByItsThickness) {
     EXPECT_FALSE(occluders.is_covered({0, y + 1e-6, 0}, n, floor));
 }
 
-TEST(CoverEnds, NoneAreWhereNothingIsTilted) {
+TEST(CoverEnds, AreNoneIfNothingIsTilted) {
     const Scene scene = test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}},
                                     {{{-1, 0, 0}, {-1, 1, 0}, {1, 1, 0}, {1, 0, 0}}},
                                     {{{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}}, 3}});
     EXPECT_TRUE(cover_ends(Occluders(scene), scene.surfaces()[SurfaceId(0)].region).empty());
 }
 
-/// Boxes on a floor, faces of one over those of another, all off their planes by less than what is one plane to light,
-/// or by more at their far ends.
-TEST(CoverEnds, LeaveNoJumpToBisection) {
+/// Boxes on a floor, with faces that overlap those of other boxes. They are out of plane by less than the coplanarity
+/// tolerance, or by more at their far ends.
+TEST(CoverEnds, KeepTheNumberOfTrianglesLow) {
     std::vector<Face> faces = {{{{-3, -3, 0}, {3, -3, 0}, {3, 3, 0}, {-3, 3, 0}}}};
     for (const auto& box : {tilted_box({0.25, 0.75, 0}, {1, 1.5, 0.75}),
                             tilted_box({-0.25, 0.75, 0}, {0.75, 0.25, 0.5}), tilted_box({-1.25, 0, 0}, {0.75, 1.5, 1})})
@@ -60,7 +60,7 @@ TEST(CoverEnds, LeaveNoJumpToBisection) {
     const Solution s =
         solved(test::make(faces), {.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.02});
     EXPECT_LE(*s.statistics.relative_error_estimate_interpolant, 0.02);
-    // Of 863 triangles at fully aligned boxes; a jump that no line follows takes ten thousands.
+    // 863 triangles if the boxes are exactly aligned; tens of thousands if a jump has no curve along it.
     EXPECT_LT(s.statistics.discontinuity->triangles, 2'000u);
 }
 

@@ -41,7 +41,7 @@ class Builder {
         report_.mesh_seconds += watch.restart();
         report_.interrupted = stop_.requested();
         if (report_.interrupted) return {};
-        constexpr int most_attempts = 5;
+        constexpr int max_attempts = 5;
         double tolerance = calibrated::part_aim * options_.error * report_.scale;
         SixNodeMesh out;
         for (int attempt = 1;; ++attempt) {
@@ -53,7 +53,7 @@ class Builder {
             report_.error = report_.scale > 0 ? error_at_places(out) / report_.scale : 0;
             report_.mesh_seconds += watch.restart();
             report_.interrupted = stop_.requested();
-            if (report_.error <= options_.error || attempt == most_attempts || report_.interrupted || is_full()) break;
+            if (report_.error <= options_.error || attempt == max_attempts || report_.interrupted || is_full()) break;
             tolerance *= calibrated::attempt_aim * options_.error / report_.error;
         }
         return out;
@@ -69,22 +69,23 @@ class Builder {
         area_ = places_->area();
     }
 
-    /// Where emitters are many, most matter little wherever one looks.
+    /// If there are many emitters, most contribute little to any region: weak ones are estimated by rays.
     void find_weak_light() {
         if (options_.search) search_ = options_.search(stage_.direct);
         if (stop_.requested() || search_ || !WeakLight::pays(stage_.direct)) return;
-        // Triangles smaller than a region's share of the area may have more noise, as their bisection allows it.
+        // Regions below the average area may have more noise, since the refinement criterion permits triangles there
+        // more error.
         constexpr double part = mesh_limits::ray_noise;
         const double rms = calibrated::part_aim * options_.error * report_.scale,
-                     most = options_.largest_error * largest_;
+                     largest_error = options_.largest_error * largest_;
         const auto regions = static_cast<double>(stage_.scene.regions().size());
-        weak_.emplace(
-            stage_.direct, stage_.tracer,
-            WeakLight::Asked{mesh_limits::unseen_light * std::min(rms, most), part * rms, part * most, area_ / regions},
-            stop_);
+        weak_.emplace(stage_.direct, stage_.tracer,
+                      WeakLight::Asked{mesh_limits::unseen_light * std::min(rms, largest_error), part * rms,
+                                       part * largest_error, area_ / regions},
+                      stop_);
     }
 
-    /// What an earlier run has found, as far as it came.
+    /// Loads the curves and node values of an earlier run, if there are any.
     void resume() {
         if (!options_.safe_points) return;
         const std::size_t regions = stage_.scene.regions().size();
@@ -146,7 +147,7 @@ class Builder {
         const std::size_t regions = stage_.scene.regions().size();
         std::vector<std::optional<ReceiverCurves>> receivers(regions);
         std::vector<ReceiverTriangles> triangles(regions);
-        // Where the state is kept from time to time, some receivers have to be ready together.
+        // With checkpoints, receivers are processed in batches so that progress is saved between them.
         const std::size_t batch = options_.safe_points ? 256 : regions;
         for (std::size_t first = 0; first < regions && !stop_.requested(); first += batch) {
             parallel_for(std::min(batch, regions - first), 1, [&](std::size_t k) {
@@ -169,7 +170,7 @@ class Builder {
         count_faces(receivers);
     }
 
-    /// What shines on every face of a receiver, and what may stand before it.
+    /// Finds the sources and candidate blockers of every face of each receiver.
     void look_at_faces(std::vector<std::optional<ReceiverCurves>>& receivers, std::span<const std::size_t> first_face) {
         lights_.resize(region_.size());
         parallel_for(receivers.size(), 1, [&](std::size_t r) {
@@ -179,7 +180,7 @@ class Builder {
                 outlines.faces.push_back(outline(static_cast<std::uint32_t>(f)));
             DirectLight::Workspace workspace;
             const RegionId region(r);
-            if (weak_)  // what stands before a face is found sooner from the start than among all that the region has
+            if (weak_)  // searching from scratch is cheaper than filtering all blockers of the region
                 for (std::size_t f = 0; f < count && !stop_.requested(); ++f)
                     stage_.direct.prepare(outlines.faces[f], receivers[r]->frame.n, region, weak_->strong(region),
                                           lights_[first + f], workspace);
@@ -209,7 +210,8 @@ class Builder {
         if (report_.counts.penumbra > 0)
             report_.candidate_share = static_cast<double>(candidates) / static_cast<double>(report_.counts.penumbra) /
                                       static_cast<double>(stage_.pieces.size());
-        if (listed_faces > 0)  // before shadow volumes have told what of the lists reaches the faces
+        // replaces the value above: minimum lists before shadow volumes remove pieces that do not reach the faces
+        if (listed_faces > 0)
             report_.candidate_share = static_cast<double>(listed) / static_cast<double>(listed_faces) /
                                       static_cast<double>(stage_.pieces.size());
     }
@@ -239,7 +241,7 @@ class Builder {
         return out;
     }
 
-    /// `centre`: of the face, or of a triangle of it.
+    /// `centre`: centre of the face or of one of its triangles.
     ShadowClass class_of(std::uint32_t face, const Point& centre) const {
         if (!weak_) return shadow_class(stage_.direct, lights_[face], centre);
         const RegionId r = region_[face];
@@ -247,7 +249,7 @@ class Builder {
         return shadow_class(stage_.direct, lights_[face], centre, weak_->strong(r));
     }
 
-    /// False where a request to stop cuts it short.
+    /// Returns false if a request to stop ends it early.
     bool light_nodes(std::vector<std::uint32_t> nodes) {
         return values_.look_at(
             std::move(nodes),
@@ -269,8 +271,9 @@ class Builder {
         return out;
     }
 
-    /// Of triangles that have changed, and of others that are not flat enough any more; an element of Clough and Tocher
-    /// changes with its neighbours. False where a request to stop cuts it short.
+    /// Recomputes the misfits of triangles that have changed or are too bent to count as flat. With Clough-Tocher
+    /// elements, all misfits are recomputed, since an element depends on its neighbours. Returns false if a request to
+    /// stop ends it early.
     bool renew_misfits(const MisfitLimits& limits) {
         const auto weight_of = [&](std::uint32_t t) { return weight(region_[mesh_.triangles()[t].face]); };
         const std::vector<std::uint32_t> fresh = tried_.untried(mesh_, values_.values(), weight_of, limits);
@@ -291,14 +294,14 @@ class Builder {
     bool is_full() const { return mesh_.triangles().size() >= options_.max_triangles; }
 
     void refine(double tolerance) {
-        // Of the largest error, too, places that are tried miss some of what lies between them.
+        // Aim below the largest error: nodes between which it is tested miss some of it.
         const MisfitLimits limits{
             tolerance * tolerance * area_, calibrated::part_aim * options_.largest_error * largest_,
             (weak_ ? mesh_limits::unfindable_area_among_many : mesh_limits::unfindable_area) * area_,
             mesh_limits::shortest_edge * stage_.scene.size(),
             options_.clough_tocher ? 0 : mesh_limits::tried_area * area_};
-        constexpr int most_rounds = 60;
-        for (int round = 0; round < most_rounds; ++round) {
+        constexpr int max_rounds = 60;
+        for (int round = 0; round < max_rounds; ++round) {
             if (!light_nodes(tried_.forget_changed(mesh_))) {
                 if (lit_) mesh_ = std::move(*lit_);
                 return;
@@ -307,10 +310,10 @@ class Builder {
             if (!renew_misfits(limits)) return;
             const std::vector<std::uint32_t> coarse = coarse_triangles(mesh_, tried_.misfits(), limits);
             if (coarse.empty() || is_full() || stop_.requested()) return;
-            // A stop falls back to it: a copy for every tenth of growth takes little time.
+            // State to return to after a stop. Copying it per tenth of growth takes little time.
             if (!lit_ || mesh_.triangles().size() - lit_->triangles().size() > lit_->triangles().size() / 10)
                 lit_ = mesh_;
-            // Some were bisected for a neighbour's sake: then their misfit is out of date.
+            // Skip triangles that were bisected together with a neighbour: their misfits are out of date.
             const std::size_t before = mesh_.triangles().size();
             std::vector<std::uint8_t> depth(before);
             for (std::size_t t = 0; t < before; ++t) depth[t] = mesh_.triangles()[t].depth;
@@ -320,15 +323,15 @@ class Builder {
         }
     }
 
-    /// Triangles far smaller than their faces look for themselves what can stand before the sources.
+    /// Gives triangles far smaller than their face, with many candidates, a face of their own, with fewer blockers.
     void renew_faces() {
         if (search_) return;
-        constexpr std::uint8_t deep = 5;
-        constexpr std::size_t many = 12;
+        constexpr std::uint8_t min_depth = 5;
+        constexpr std::size_t min_candidates = 12;
         std::vector<std::uint32_t> renewed, before;
         for (std::uint32_t t = 0; t < mesh_.triangles().size(); ++t) {
             const BisectionMesh::Triangle& now = mesh_.triangles()[t];
-            if (now.depth < deep || lights_[now.face].candidates.size() < many) continue;
+            if (now.depth < min_depth || lights_[now.face].candidates.size() < min_candidates) continue;
             renewed.push_back(t), before.push_back(now.face);
         }
         const std::size_t base = lights_.size();
@@ -370,16 +373,16 @@ class Builder {
     DiscontinuityReport& report_;
     const StopRequest& stop_;
     BisectionMesh mesh_;
-    std::optional<BisectionMesh> lit_;   ///< As it was when all of its nodes had light.
-    std::vector<std::uint8_t> touched_;  ///< By region: does anything cover parts of it?
-    std::vector<RegionId> region_;       ///< Of faces.
-    std::vector<ReceiverLight> lights_;  ///< Of faces.
+    std::optional<BisectionMesh> lit_;   ///< Copy of the mesh at a time when all of its nodes had light.
+    std::vector<std::uint8_t> touched_;  ///< Per region: true if anything covers parts of it.
+    std::vector<RegionId> region_;       ///< Per face.
+    std::vector<ReceiverLight> lights_;  ///< Per face.
     NodeValues values_;
-    bool is_lit_ = false;  ///< Has every triangle light?
-    MeshProgress found_;   ///< By an earlier run, and what is kept of this one's curves.
+    bool is_lit_ = false;  ///< True once every triangle has light.
+    MeshProgress found_;   ///< Results of an earlier run, and the curves of this one.
     TriedTriangles tried_;
-    std::unique_ptr<BlockerSearch> search_;  ///< Null: by shafts and a tree of boxes.
-    std::optional<WeakLight> weak_;          ///< Where not all sources are looked at well.
+    std::unique_ptr<BlockerSearch> search_;  ///< Null: shafts and a tree of boxes.
+    std::optional<WeakLight> weak_;          ///< Set if weak sources are estimated by rays.
     std::optional<ExactPlaces> places_;
     std::vector<DiscontinuityCurve> curves_;
     double largest_ = 0, area_ = 0;

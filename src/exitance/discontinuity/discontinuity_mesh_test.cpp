@@ -15,7 +15,8 @@
 namespace exitance {
 namespace {
 
-/// A source of 1.5 m at 2 m, a blocker of 1 m at 0.7 m, a floor of 4 m; `turn`: of the blocker, radians.
+/// A source 1.5 m wide at a height of 2 m, a blocker of 1 m at 0.7 m, a floor of 4 m. `turn`: rotation of the blocker,
+/// radians.
 Scene blocker(double turn) {
     const auto at = [&](double x, double y) {
         return Point{x * std::cos(turn) - y * std::sin(turn), x * std::sin(turn) + y * std::cos(turn), 0.7};
@@ -29,8 +30,8 @@ Solution meshed(const Scene& scene, double error) {
     return solved(scene, {.method = Method::discontinuity, .bounces = 0, .error_interpolant = error});
 }
 
-TEST(DiscontinuityMesh, TheBlockersCurvesStandWhereTheClosedFormSays) {
-    // Seen over an edge at +-0.5 m from a source's edge at +-0.75 m: x = 2 (+-0.5) - 0.7 (+-0.75) over 1.3.
+TEST(DiscontinuityMesh, TheBlockersCurvesAgreeWithTheClosedForm) {
+    // Source edge at +-0.75 m, blocker edge at +-0.5 m: x = (2 (+-0.5) - 0.7 (+-0.75)) / 1.3.
     const Solution s = meshed(blocker(0), 0.01);
     std::set<long> found;  // micrometres
     for (const DiscontinuityCurve& c : s.discontinuity.curves) {
@@ -42,7 +43,7 @@ TEST(DiscontinuityMesh, TheBlockersCurvesStandWhereTheClosedFormSays) {
     EXPECT_EQ(found, (std::set<long>{-1173077, -365385, 365385, 1173077}));
 }
 
-TEST(DiscontinuityMesh, FacesAreLitHalfShadowedOrDarkWhereTheClosedFormSays) {
+TEST(DiscontinuityMesh, ShadowClassesAgreeWithTheClosedForm) {
     const auto class_at = [](const Scene& scene, const Point& p) {
         const Solution s = meshed(scene, 0.02);
         const auto place = SixNodeLocator(s.discontinuity, s.scene).find(RegionId(0), p);
@@ -52,7 +53,7 @@ TEST(DiscontinuityMesh, FacesAreLitHalfShadowedOrDarkWhereTheClosedFormSays) {
     EXPECT_EQ(class_at(blocker(0), {0, 0.05, 0}), ShadowClass::umbra);
     EXPECT_EQ(class_at(blocker(0), {0.7, 0.05, 0}), ShadowClass::penumbra);
     EXPECT_EQ(class_at(blocker(0), {1.5, 0.05, 0}), ShadowClass::lit);
-    // A second source is seen whole from below the blocker, where the first one is hidden: that is half-shadow.
+    // The point below the blocker sees all of a second source and nothing of the first: that is penumbra.
     const Scene two = test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}, 0},
                                   {{{-0.5, -0.5, 0.7}, {0.5, -0.5, 0.7}, {0.5, 0.5, 0.7}, {-0.5, 0.5, 0.7}}, 0},
                                   {{{-0.75, 0.75, 2}, {0.75, 0.75, 2}, {0.75, -0.75, 2}, {-0.75, -0.75, 2}}, 100},
@@ -69,8 +70,9 @@ TEST(DiscontinuityMesh, ATurnedBlockersCurvesAreThoseOfAllPairsOfCornersAndEdges
         if (std::abs(c.a.z) > 1e-9) continue;
         ++on_floor;
         EXPECT_EQ(c.order, CurveOrder::d2);
-        // The shadow of a point p from a point q of the source is q + k (p - q): both ends lie on the shadow, from one
-        // corner, of a line through an edge, or from a line through an edge of the source, of one corner.
+        // The shadow of a point p from a point q of the source is q + k (p - q). Both ends of a curve must be on one of
+        // two lines: the shadow of a blocker's edge from one corner of the source, or the shadow of a blocker's corner
+        // from one edge of the source.
         double least = 1;
         const auto shadow = [&](double x, double y, double sx, double sy) {
             const Vec2 p = {x * std::cos(turn) - y * std::sin(turn), x * std::sin(turn) + y * std::cos(turn)};
@@ -96,7 +98,7 @@ TEST(DiscontinuityMesh, ATurnedBlockersCurvesAreThoseOfAllPairsOfCornersAndEdges
     EXPECT_EQ(s.statistics.discontinuity->d1, 0u);
 }
 
-TEST(DiscontinuityMesh, HoldsTheErrorAskedForAndLosesNoArea) {
+TEST(DiscontinuityMesh, MeetsTheRequestedErrorAndKeepsTheArea) {
     const Scene scene = built_scene("table");
     const Solution s = meshed(scene, 0.003);
     double area = 0, all = 0;
@@ -118,7 +120,7 @@ TEST(DiscontinuityMesh, HoldsTheErrorAskedForAndLosesNoArea) {
     EXPECT_LE(largest / brightest, 0.005);
 }
 
-TEST(DiscontinuityMesh, ItsBitsDoNotDependOnThreads) {
+TEST(DiscontinuityMesh, IsBitwiseIndependentOfThreads) {
     const Scene scene = built_scene("chair");
     set_threads(1);
     const Solution one = meshed(scene, 0.02);
@@ -130,14 +132,14 @@ TEST(DiscontinuityMesh, ItsBitsDoNotDependOnThreads) {
     EXPECT_EQ(one.interpolant.values, three.interpolant.values);
 }
 
-TEST(DiscontinuityMesh, HoldsReflectedLightToo) {
+TEST(DiscontinuityMesh, IncludesReflectedLight) {
     const Scene scene = box_scene(1, 1, 1, 0.5, 1, 1);  // a furnace: E = 2 everywhere
     const Solution s = solved(scene, {.method = Method::discontinuity, .error = 0.02});
     ASSERT_FALSE(s.discontinuity.empty());
     for (const auto& value : s.discontinuity.values) EXPECT_NEAR(value[0], 2, 0.1);
 }
 
-TEST(DiscontinuityMesh, TheThesissTriangulationsHoldTheErrorAndLoseNoArea) {
+TEST(DiscontinuityMesh, TheThesissTriangulationsMeetTheErrorAndKeepTheArea) {
     const Scene scene = built_scene("table");
     double all = 0;
     for (const Region& region : scene.regions()) all += region.area;
@@ -156,7 +158,7 @@ TEST(DiscontinuityMesh, TheThesissTriangulationsHoldTheErrorAndLoseNoArea) {
     }
 }
 
-TEST(DiscontinuityMesh, RefinedTrianglesHaveABetterShapeAndHoldTheErrorToo) {
+TEST(DiscontinuityMesh, RefinedTrianglesHaveABetterShapeAndMeetTheError) {
     const Scene scene = built_scene("table");
     double all = 0;
     for (const Region& region : scene.regions()) all += region.area;
@@ -172,7 +174,7 @@ TEST(DiscontinuityMesh, RefinedTrianglesHaveABetterShapeAndHoldTheErrorToo) {
     EXPECT_GT(refined.discontinuity.mean_radius_ratio(), rounder * plain.discontinuity.mean_radius_ratio());
 }
 
-/// Of E at places uniform in area, relative to the mean and to the largest value.
+/// Errors of E at uniformly distributed points: RMS relative to the mean, largest relative to the largest value.
 struct MeshError {
     double rms = 0, largest = 0;
 };
@@ -190,7 +192,7 @@ MeshError error_of(const Solution& s) {
     return {std::sqrt(square / n) / (sum / n), largest / brightest};
 }
 
-TEST(DiscontinuityMesh, CloughAndTochersElementsHoldTheErrorAskedFor) {
+TEST(DiscontinuityMesh, CloughTocherElementsMeetTheRequestedError) {
     for (const char* name : {"boxes", "table"}) {
         SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.003};
         options.discontinuity.element = MeshElement::clough_tocher;
@@ -201,14 +203,15 @@ TEST(DiscontinuityMesh, CloughAndTochersElementsHoldTheErrorAskedFor) {
         const MeshError error = error_of(s);
         EXPECT_LE(error.rms, 0.003);
         EXPECT_LE(error.largest, 0.006);
-        // The scene is open, and what escapes is told by few rays: flux is compared with that of quadratic elements.
+        // The scene is open, and few rays estimate the escaping flux, so absorbed flux is compared with that of
+        // quadratic elements.
         options.discontinuity.element = MeshElement::quadratic;
         const double quadratic = solved(built_scene(name), options).statistics.energy.absorbed;
         EXPECT_NEAR(s.statistics.energy.absorbed, quadratic, 0.003 * quadratic);
     }
 }
 
-TEST(DiscontinuityMesh, LayersOfSourcesHoldTheErrorAskedForWithReflectionsToo) {
+TEST(DiscontinuityMesh, SourceLayersMeetTheRequestedErrorAlsoWithReflections) {
     for (const int bounces : {0, -1}) {
         SolveOptions options{.method = Method::discontinuity, .bounces = bounces, .error_interpolant = 0.02};
         options.discontinuity.layers = true;
@@ -219,15 +222,15 @@ TEST(DiscontinuityMesh, LayersOfSourcesHoldTheErrorAskedForWithReflectionsToo) {
         EXPECT_LE(error_of(s).rms, 0.02);
         EXPECT_GT(s.statistics.figures.at("layer_bytes"), 0);
         EXPECT_LT(2 * s.statistics.figures.at("layer_bytes"), s.statistics.figures.at("winged_edge_bytes"));
-        // The one mesh that files hold is that of --layers off.
+        // Files store the single mesh that --layers off would yield.
         Solution merged = s;
         merged.layers = {};
         EXPECT_LE(error_of(merged).rms, 0.02);
     }
 }
 
-TEST(DiscontinuityMesh, BendsOfWeakSourcesHaveLinesWhereTheirHalfShadowsAreNarrow) {
-    // A second lamp brings 1 to 5 times the largest error: its shadow's edges are turned against its own.
+TEST(DiscontinuityMesh, WeakSourcesHaveD2CurvesOnlyAlongNarrowPenumbras) {
+    // The second lamp's light is 1 to 5 times the largest error. Its edges are not parallel to those of the blocker.
     const auto curves_of_second = [](double side) {
         const double c = std::cos(0.5), d = std::sin(0.5), h = 0.5 * side, exitance = 16 / (side * side);
         const auto at = [&](double x, double y) { return Point{x * c - y * d, x * d + y * c, 0.7}; };
@@ -241,12 +244,12 @@ TEST(DiscontinuityMesh, BendsOfWeakSourcesHaveLinesWhereTheirHalfShadowsAreNarro
             return curve.source == RegionId(3) && curve.region == RegionId(0) && curve.order == CurveOrder::d2;
         });
     };
-    EXPECT_GE(curves_of_second(0.02), 8);  // from each of the lamp's corners, along two edges at least
-    EXPECT_EQ(curves_of_second(0.4), 0);   // elements as small as it is wide hold a wide one
+    EXPECT_GE(curves_of_second(0.02), 8);  // from each of the lamp's corners, along at least two edges
+    EXPECT_EQ(curves_of_second(0.4), 0);   // wide penumbras are resolved by elements of their size
 }
 
-TEST(DiscontinuityMesh, CutsAlongShadowsOfReflectedLightWhereItIsAskedTo) {
-    // A mirror-bright wall beside the blocker throws its light onto the floor, past the blocker.
+TEST(DiscontinuityMesh, CutsAlongShadowsOfReflectedLightIfRequested) {
+    // A wall next to the blocker reflects light onto the floor, past the blocker.
     const Scene scene = test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}, 0},
                                     {{{-0.5, -0.5, 0.7}, {0.5, -0.5, 0.7}, {0.5, 0.5, 0.7}, {-0.5, 0.5, 0.7}}, 0},
                                     {{{-2, 2, 0.5}, {2, 2, 0.5}, {2, 2, 3}, {-2, 2, 3}}, 0},

@@ -8,20 +8,22 @@
 
 namespace exitance {
 
-/// Light as a function of place, W/m^2.
+/// Irradiance at a point of a region, W/m^2.
 using LightAt = std::function<Spectrum(RegionId, const Point&)>;
 
-/// Exact light at places that are uniform over all surfaces: how bright it is, and a measure of what is to be like it.
+/// Exact irradiance at sample points distributed uniformly over all surfaces. It gives the brightness of the scene and
+/// measures the error of an approximation.
 class ExactPlaces {
   public:
-    /// Direct light times `direct_weight`, and `indirect`, if there is any, on top of it.
+    /// The reference is direct light times `direct_weight`, plus `indirect` unless that is empty. Points not evaluated
+    /// before `stop` is requested stay dark.
     ExactPlaces(const Stage& stage, const Spectrum& direct_weight, const LightAt& indirect, std::uint64_t seed,
                 const StopRequest& stop);
 
-    double mean_light() const { return mean_; }  ///< Of rho E (of E where nothing reflects), W/m^2.
+    double mean_light() const { return mean_; }  ///< Mean of rho E (of E if nothing reflects), W/m^2.
     double largest_light() const { return largest_; }
-    double area() const { return area_; }  ///< Of all surfaces, m^2.
-    /// What light counts: by what reflects it; where nothing does, as it is.
+    double area() const { return area_; }  ///< Area of all surfaces, m^2.
+    /// Weight w of irradiance on a region: how much it reflects (light_weight), or 1 if no surface reflects.
     Spectrum weight(RegionId r) const;
     /// RMS over all surfaces of w (E - light), W/m^2.
     double error(const LightAt& light) const;

@@ -19,14 +19,14 @@ class Halves {
     void run(const ReceiverLight& whole) { divide(order_, whole); }
 
   private:
-    /// Coordinates in the plane, relative to the first face.
+    /// Coordinate along an axis of the plane, relative to the first face's first corner.
     double along(const Vec3& axis, const Point& p) const { return dot(axis, p - outlines_.faces[0][0]); }
 
     void divide(std::span<std::uint32_t> faces, const ReceiverLight& above) {
-        // Below so many, one more look together costs as much as it saves.
-        constexpr std::size_t few_faces = 4, few_candidates = 64;
+        // Up to these numbers, another common search costs as much as it saves.
+        constexpr std::size_t max_single_faces = 4, max_single_candidates = 64;
         if (stop_.requested()) return;
-        if (faces.size() <= few_faces || above.candidates.size() <= few_candidates) {
+        if (faces.size() <= max_single_faces || above.candidates.size() <= max_single_candidates) {
             for (const std::uint32_t f : faces) direct_.prepare(outlines_.faces[f], above, lights_[f], workspace_);
             return;
         }
@@ -78,7 +78,7 @@ void prepare_face_lights(const DirectLight& direct, const FaceOutlines& outlines
 
 namespace {
 
-/// Is any of a piece over the plane of a face, and the face's middle before the piece?
+/// True if part of a source's piece is in front of the face's plane, and the face's centre is in front of the source.
 bool faces(const DirectLight& direct, const ReceiverLight& light, const Point& centre,
            const DirectLight::SourceName& source) {
     const DirectLight::Emitter& e = direct.emitters()[source.emitter];

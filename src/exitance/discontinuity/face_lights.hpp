@@ -9,23 +9,25 @@
 
 namespace exitance {
 
-/// Convex faces of one region in space, and what shines on them.
+/// Convex faces of one region, in world coordinates.
 struct FaceOutlines {
-    std::vector<std::vector<Point>> faces;  ///< Counter-clockwise about the region's normal.
-    Vec3 u, v;                              ///< Directions in the region's plane.
+    std::vector<std::vector<Point>> faces;  ///< Counter-clockwise about the region's normal, metres.
+    Vec3 u, v;                              ///< Unit vectors that span the region's plane.
 };
 
-/// What shines on each face, of what shines on the whole region: halves of the faces look first together at what may
-/// hide the sources from the rectangle around them, so that a face looks at what is near its own lines of sight only.
-/// O(log faces) looks at each blocker that matters, where all faces would look at all blockers of the region. `lights`
-/// is as long as there are faces. What has not been looked at when `stop` is requested stays dark.
+/// Finds the visible sources and candidate blockers of every face from those of the whole region. The faces are divided
+/// into halves recursively. The blockers for the rectangle around each half are found once, so that a face tests only
+/// blockers near its own lines of sight. `whole`: the light of the region; `lights`: receives the light of each face,
+/// as many as there are faces. Faces not processed before `stop` is requested stay dark. O(log faces) tests per blocker
+/// that matters; testing face by face would take O(faces).
 void prepare_face_lights(const DirectLight& direct, const FaceOutlines& outlines, const ReceiverLight& whole,
                          std::span<ReceiverLight> lights, const StopRequest& stop, DirectLight::Workspace& workspace);
 
-/// Are the sources that a face's front can see all lit, all hidden, or neither? `centre`: of the face or of a part.
+/// Classifies a face: all sources that its front can see are visible (lit), none is (umbra), or neither (penumbra).
+/// `centre`: centre of the face or of a part of it.
 ShadowClass shadow_class(const DirectLight& direct, const ReceiverLight& light, const Point& centre);
 
-/// The same of these sources alone.
+/// Likewise, for the sources `among` only.
 ShadowClass shadow_class(const DirectLight& direct, const ReceiverLight& light, const Point& centre,
                          std::span<const DirectLight::SourceName> among);
 

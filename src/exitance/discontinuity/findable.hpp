@@ -6,10 +6,11 @@
 
 namespace exitance {
 
-/// The largest area at or below which all areas together come to no more than `unfindable`: what is that small may be
-/// wrong, since no table of points would find it. Zeros do not count. O(n log n).
+/// Largest area such that all areas up to it sum to at most `unfindable`. Faces up to that area may be wrong, since no
+/// table of sample points would find them. Zeros are ignored. O(n log n).
 double least_findable(std::vector<double> areas, double unfindable);
 
+/// Number of different ids in `pieces`.
 std::size_t count_different(std::vector<PieceId> pieces);
 
 }  // namespace exitance

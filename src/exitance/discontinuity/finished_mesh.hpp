@@ -7,9 +7,11 @@
 
 namespace exitance {
 
-/// The triangles of a mesh with their six nodes, those that only tried the polynomials left out. O(triangles).
-/// values           of nodes, W/m^2      region_of_face   of faces
-/// class_of         how a face is lit, at a place of it; once a face
+/// Returns the triangles of a mesh with their six nodes, without the nodes that only test the polynomials.
+/// O(triangles).
+/// values           irradiance at the nodes, W/m^2
+/// region_of_face   region of each face
+/// class_of         shadow class of a face, given the centre of one of its triangles; called once per face
 SixNodeMesh finished_mesh(const BisectionMesh& mesh, std::span<const Spectrum> values,
                           std::span<const RegionId> region_of_face,
                           const std::function<ShadowClass(std::uint32_t face, const Point& at)>& class_of);

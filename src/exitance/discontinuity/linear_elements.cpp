@@ -12,11 +12,11 @@ ElementFunction linear_elements(const SixNodeMesh& mesh, const Scene& scene) {
         const Point& o = mesh.points[n[0]];
         const Patch patch{o, mesh.points[n[1]] - o, mesh.points[n[2]] - o, Patch::Shape::triangle};
         const double square = squared_norm(cross(patch.a, patch.b));
-        constexpr double flat = 1e-24;  // (area / size^2)^2, given by rounding: within it all places are one
+        constexpr double flat = 1e-24;  // (area / size^2)^2; thinner triangles are degenerate up to rounding
         if (!(square > flat * std::pow(scene.size(), 4))) continue;
         const ElementId root = out.tree.add_root(mesh.region[t], patch);
         const ElementId first = out.tree.split(root, Cut::both);
-        // Cubics span larger triangles at the same error: they take one more cut to be followed as well.
+        // Cubic elements span larger triangles at the same error, so they are split once more.
         constexpr std::uint32_t parts = 4;
         for (std::uint32_t i = 0; i < parts && mesh.is_clough_tocher(); ++i)
             out.tree.split(ElementId(first.value + i), Cut::both);

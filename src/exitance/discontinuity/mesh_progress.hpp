@@ -8,7 +8,7 @@
 
 namespace exitance {
 
-/// The curves of one receiver, once they are found.
+/// The curves of one receiver, and whether they have been found.
 struct FoundCurves {
     bool is_done = false;
     std::vector<std::vector<Vec2>> loops;
@@ -22,11 +22,11 @@ void archive(Archive& a, FoundCurves& found) {
     a(is_done, loops, curves, wedges, left_out);
 }
 
-/// What has cost much of a discontinuity mesh so far, for checkpoints. Everything else follows from it: which triangle
-/// is bisected when follows from the values at nodes, so that these come back in the order of their numbers.
+/// Expensive intermediate results of a discontinuity mesh, for checkpoints. Everything else is recomputed: node values
+/// determine the order of bisections, so a resumed run requests them in the order of their numbers again.
 struct MeshProgress {
-    std::vector<FoundCurves> receivers;  ///< By region.
-    std::vector<Spectrum> values;        ///< Of nodes.
+    std::vector<FoundCurves> receivers;  ///< Per region.
+    std::vector<Spectrum> values;        ///< Per node, in the order of evaluation, W/m^2.
 };
 
 template <class Archive>

@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// A unit square in many triangles, and a function at all of its nodes.
+/// A unit square of many triangles, and a function's values at all nodes.
 struct Sheet {
     template <class Light>
     Sheet(const Light& light, int bisections) : mesh(1e-9) {
@@ -29,7 +29,7 @@ struct Sheet {
     TriedTriangles tried;
 };
 
-TEST(TriedTriangles, FlatOnesAreNotTriedButForLargeOnes) {
+TEST(TriedTriangles, FlatTrianglesAreTestedOnlyIfLarge) {
     Sheet plane([](const Point& p) { return 3 + p.x - 2 * p.y; }, 4);
     const MisfitLimits limits{.squared = 1e-6, .largest = 1e-3, .tried_area = 1};
     EXPECT_TRUE(plane.untried(limits).empty());
@@ -38,7 +38,7 @@ TEST(TriedTriangles, FlatOnesAreNotTriedButForLargeOnes) {
     EXPECT_EQ(plane.untried(small).size(), plane.mesh.triangles().size());
 }
 
-TEST(TriedTriangles, AShadowsEdgeIsTriedByEitherLimitAndTheTwoAreKeptApart) {
+TEST(TriedTriangles, EachLimitSelectsTheTrianglesAtAShadowEdge) {
     const auto edge = [](const Point& p) { return std::clamp(20 * (p.x - 0.45), 0.0, 1.0); };
     Sheet sheet(edge, 5);
     const auto reaches_edge = [&](std::uint32_t t) {
@@ -56,7 +56,7 @@ TEST(TriedTriangles, AShadowsEdgeIsTriedByEitherLimitAndTheTwoAreKeptApart) {
     }
 }
 
-TEST(TriedTriangles, OnesThatAreNotFlatEnoughAnyMoreAreTriedLaterAndNoneTwice) {
+TEST(TriedTriangles, TrianglesAreTestedOnceATighterLimitRequiresItAndOnlyOnce) {
     Sheet bowl([](const Point& p) { return p.x * p.x; }, 4);
     MisfitLimits limits{.squared = 1e9, .largest = 1, .tried_area = 1};
     EXPECT_TRUE(bowl.untried(limits).empty());
@@ -65,7 +65,7 @@ TEST(TriedTriangles, OnesThatAreNotFlatEnoughAnyMoreAreTriedLaterAndNoneTwice) {
     ASSERT_FALSE(tried.empty());
     for (const std::uint32_t t : tried) bowl.tried.set(t, misfit(bowl.mesh, t, bowl.values, Spectrum(1.0)));
     EXPECT_TRUE(bowl.untried(limits).empty());
-    // Nothing is asked of triangles that are bisected but at their own nodes, and they begin again.
+    // A triangle that is bisected needs light at its nodes only, and counts as untested again.
     bowl.mesh.bisect(tried.front());
     EXPECT_FALSE(bowl.tried.forget_changed(bowl.mesh).empty());
 }

@@ -9,7 +9,7 @@ namespace exitance {
 
 bool NodeValues::look_at(std::vector<std::uint32_t> nodes, const Look& look, const StopRequest& stop,
                          const std::function<void()>& keep) {
-    constexpr std::size_t at_once = 4'096;  // nodes between two safe points
+    constexpr std::size_t batch_size = 4'096;  // nodes per batch, between two checkpoints
     std::erase_if(nodes, [&](std::uint32_t n) { return has(n); });
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
@@ -17,7 +17,7 @@ bool NodeValues::look_at(std::vector<std::uint32_t> nodes, const Look& look, con
     if (nodes.back() >= values_.size()) values_.resize(nodes.back() + 1), has_.resize(nodes.back() + 1, 0);
     for (std::size_t start = 0; start < nodes.size();) {
         const std::size_t known = order_.size() < found_.size() ? found_.size() - order_.size() : 0;
-        const std::size_t count = std::min(known > 0 ? known : at_once, nodes.size() - start);
+        const std::size_t count = std::min(known > 0 ? known : batch_size, nodes.size() - start);
         const std::span<const std::uint32_t> batch = std::span(nodes).subspan(start, count);
         if (known > 0) {
             for (std::size_t i = 0; i < count; ++i) values_[batch[i]] = found_[order_.size() + i];

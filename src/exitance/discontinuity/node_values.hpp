@@ -10,30 +10,32 @@
 
 namespace exitance {
 
-/// Light at the nodes of a mesh that grows, W/m^2: only at those that were asked for, and once at each.
+/// Irradiance at the nodes of a growing mesh, W/m^2. Nodes are evaluated on request, each once.
 class NodeValues {
   public:
     using Look = std::function<Spectrum(std::uint32_t node, WeakLight::Workspace&)>;
 
-    /// Goes on from what an earlier run has found: its values, in the order in which they were asked for. They are the
-    /// first ones that will be asked for again.
+    /// Supplies the values that an earlier run has found, in the order of their evaluation. The first nodes that are
+    /// requested take these values, which relies on the same order of requests.
     void resume(std::vector<Spectrum> found) { found_ = std::move(found); }
 
-    /// Lights the nodes that have no light yet, some thousand at once, and calls `keep` after these. False, and those
-    /// at hand stay without light, where a request to stop cuts it short. Duplicates do no harm.
+    /// Evaluates `look` at the nodes that have no value yet, some thousand at a time, and calls `keep` after each
+    /// batch. Duplicates are allowed. Returns false if `stop` is requested before the end; the nodes of the present
+    /// batch then stay without a value.
     bool look_at(std::vector<std::uint32_t> nodes, const Look& look, const StopRequest& stop,
                  const std::function<void()>& keep);
 
-    /// By node; of those without light no meaning.
+    /// Per node. Entries of nodes that have not been evaluated are meaningless.
     std::span<const Spectrum> values() const { return values_; }
     bool has(std::uint32_t node) const { return node < has_.size() && has_[node] != 0; }
-    /// What `resume` takes: what there is, or what it was given where that is more.
+    /// Returns the values in the order of evaluation, as `resume` takes them; the values given to `resume` if those are
+    /// more.
     std::vector<Spectrum> in_order() const;
 
   private:
     std::vector<Spectrum> values_, found_;
     std::vector<std::uint8_t> has_;
-    std::vector<std::uint32_t> order_;  ///< In which nodes were asked for.
+    std::vector<std::uint32_t> order_;  ///< Nodes in the order of evaluation.
 };
 
 }  // namespace exitance

@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::uint32_t count = 10'000;  // more than are looked at between two safe points
+constexpr std::uint32_t count = 10'000;  // more than one batch between checkpoints
 
 std::vector<std::uint32_t> numbers(std::uint32_t first, std::uint32_t last) {
     std::vector<std::uint32_t> out(last - first);
@@ -16,7 +16,7 @@ std::vector<std::uint32_t> numbers(std::uint32_t first, std::uint32_t last) {
     return out;
 }
 
-/// Light that counts how often it is asked for.
+/// Light that counts its evaluations.
 struct Lamp {
     std::atomic<std::size_t> looks = 0;
     NodeValues::Look look = [this](std::uint32_t n, WeakLight::Workspace&) {
@@ -25,7 +25,7 @@ struct Lamp {
     };
 };
 
-TEST(NodeValues, NodesAreLookedAtOnce) {
+TEST(NodeValues, NodesAreEvaluatedOnce) {
     Lamp lamp;
     NodeValues values;
     StopRequest stop;
@@ -37,7 +37,7 @@ TEST(NodeValues, NodesAreLookedAtOnce) {
     EXPECT_EQ(values.values()[7], Spectrum(8.0));
 }
 
-TEST(NodeValues, WhatAnEarlierRunKnewIsNotLookedAtAgainWhereverItEnded) {
+TEST(NodeValues, ResumedValuesAreNotEvaluatedAgain) {
     StopRequest stop;
     std::vector<std::vector<Spectrum>> states;
     NodeValues whole;
@@ -52,14 +52,14 @@ TEST(NodeValues, WhatAnEarlierRunKnewIsNotLookedAtAgainWhereverItEnded) {
         NodeValues again;
         Lamp rest;
         again.resume(state);
-        EXPECT_EQ(again.in_order(), state);  // kept once more before anything was asked for, nothing is lost
+        EXPECT_EQ(again.in_order(), state);  // the state is complete even if saved before any node is requested
         ASSERT_TRUE(fill(again, rest, [] {}));
         EXPECT_EQ(rest.looks, count - state.size());
         EXPECT_TRUE(std::equal(again.values().begin(), again.values().end(), whole.values().begin()));
     }
 }
 
-TEST(NodeValues, AfterAStopTheNodesAtHandHaveNoLight) {
+TEST(NodeValues, AfterAStopTheNodesOfTheBatchHaveNoLight) {
     StopRequest stop;
     NodeValues values;
     Lamp lamp;

@@ -11,8 +11,8 @@
 namespace exitance {
 namespace {
 
-// Of the scene's size: lines nearer than this are one.
-constexpr double nearness = 2e-8;  // given by rounding of where long wedges meet a plane
+// Curves closer together than this share of the scene's size are merged.
+constexpr double nearness = 2e-8;  // rounding error where long wedges meet a plane
 
 PlaneFrame frame_of(const Region& region) {
     PlaneFrame frame(region.loops.front().front(), region.plane.n);
@@ -27,7 +27,7 @@ PlaneFrame frame_of(const Region& region) {
     return frame;
 }
 
-/// A box around a region in its own coordinates.
+/// Bounding box of a region in its own coordinates.
 struct FlatBox {
     Vec2 lo{HUGE_VAL, HUGE_VAL}, hi{-HUGE_VAL, -HUGE_VAL};
 
@@ -40,7 +40,7 @@ struct FlatBox {
     }
 };
 
-/// The region, or a rectangle around it: a convex polygon to look at lights from.
+/// The region's outline if convex, otherwise a rectangle around it: a polygon from which lights are prepared.
 std::vector<Point> convex_around(const Region& region, const ReceiverCurves& receiver) {
     if (region.loops.size() == 1 && is_convex(region.loops.front(), region.plane.n)) return region.loops.front();
     const FlatBox box(receiver.loops);
@@ -70,7 +70,7 @@ ReceiverCurves CurveFinder::look(RegionId number) const {
     return out;
 }
 
-/// Of the sources that may have curves there alone.
+/// Prepares the light of those sources that are strong enough to have curves on the region.
 void CurveFinder::look_at_strong(RegionId number, ReceiverCurves& out, DirectLight::Workspace& workspace) const {
     const Region& region = stage_->scene.regions()[number];
     std::vector<DirectLight::SourceName> sources;
@@ -114,7 +114,7 @@ ReceiverCurves CurveFinder::find(RegionId number) const {
     return out;
 }
 
-/// Curves of a diffusing pane's other side, whose light comes through.
+/// Adds the curves of a diffusing pane's other side, whose light is transmitted.
 void CurveFinder::add_curves_behind(RegionId region, ReceiverCurves& out) const {
     const RegionId behind = stage_->scene.behind(region);
     if (behind.is_none()) return;
@@ -143,7 +143,7 @@ void CurveFinder::add_contacts_in_the_dark(RegionId region, ReceiverCurves& out)
     out.curves = std::move(arranged.curves), out.loops = std::move(arranged.loops);
 }
 
-/// An upper bound of what a source may bring anywhere on a region, W/m^2 of rho E: M A / (pi d^2), at most M.
+/// Upper bound on a source's light anywhere on a region, W/m^2 of rho E: M A / (pi d^2), at most M.
 double CurveFinder::greatest_effect(RegionId region, const Effect& effect) const {
     Box box;
     for (const auto& loop : stage_->scene.regions()[region].loops)
@@ -158,7 +158,7 @@ double CurveFinder::greatest_effect(RegionId region, const Effect& effect) const
     return effect.weight * (area < pi * distance * distance ? area / (pi * distance * distance) : 1);
 }
 
-/// The same of an emitter, of which more may be known.
+/// The bound for an emitter, which uses the bound of WeakLight as well, if there is one.
 double CurveFinder::greatest_effect(RegionId region, const DirectLight::Emitter& emitter, std::uint32_t number,
                                     const Effect& effect) const {
     const double by_distance = greatest_effect(region, effect);
@@ -167,11 +167,11 @@ double CurveFinder::greatest_effect(RegionId region, const DirectLight::Emitter&
     return std::min(by_distance, M > 0 ? effect.weight * options_.weak->bound(region, number) / M : 0);
 }
 
-/// The same where lines of sight by an edge may meet the region. From x there to any point s of the source it is at
-/// least as far as d, the edge's distance from the source's centre less three radii: a line of sight that passes the
-/// edge has one of them before it, and two are as far apart as points of the source may be. So E is at most
-/// M A / (pi d^2) times cosines, h/d at x where the source rises to h over the region's plane, and at s what the edge
-/// rises over the source's plane over d.
+/// Upper bound on the light of a source at points of the region that see it past an edge, W/m^2 of rho E. Let d be the
+/// edge's distance from the source's centre minus three radii. A point x there is at least d from any point s of the
+/// source: the line of sight past the edge passes it before it reaches the source, and two lines of sight differ by no
+/// more than two points of the source do. So E is at most M A / (pi d^2) times two cosines: at x, h/d, where h is the
+/// source's height over the region's plane; at s, the edge's height over the source's plane divided by d.
 double CurveFinder::effect_beyond(const BlockerEdges::Edge& edge, const EventSource& source, const Effect& effect,
                                   const ReceiverCurves& receiver) const {
     if (!(effect.weight > 0)) return effect.gain;
@@ -198,7 +198,7 @@ void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
     for (const auto& [number, pieces] : blockers) {
         if (options_.stop && options_.stop->requested()) return;
         const DirectLight::Emitter& emitter = stage_->direct.emitters()[number];
-        if (stage_->direct.is_distant(number)) continue;  // bisection follows the shadows of skies and suns
+        if (stage_->direct.is_distant(number)) continue;  // bisection resolves the shadows of skies and suns
         Effect effect{.centre = emitter.centre,
                       .radius = emitter.radius,
                       .weight = mean(light_weight(stage_->scene.material(region)) * emitter.exitance),
@@ -217,10 +217,11 @@ void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
     for (const Beam& beam : out.light.beams) {
         if (beam.count == 0) continue;
         const PunctualLight& light = stage_->scene.lights()[beam.light];
-        // Parallel light comes from a point so far away that its shadows lie right to 1e-8 of the scene.
-        constexpr double far = 1e8;  // given by that
+        // A directional light is treated as a point so far away that its shadows are accurate to 1e-8 of the scene's
+        // size.
+        constexpr double far_distance = 1e8;  // distance in units of the scene's size
         const Point place = light.is_directional()
-                                ? stage_->scene.box().centre() - (far * stage_->scene.size()) * light.direction
+                                ? stage_->scene.box().centre() - (far_distance * stage_->scene.size()) * light.direction
                                 : light.position;
         const EventSource source{{{place}}, Plane{}, RegionId(), true, 0};
         add_events(region, source, {}, candidates(beam), nullptr, out);
@@ -239,7 +240,7 @@ void CurveFinder::add_events(RegionId region, const EventSource& source, const E
     }
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-    // Beyond edges far from the source its light, and so its shadow, is too weak to matter.
+    // Past edges far from the source, the light and its shadow are too weak to matter.
     std::vector<std::uint32_t> strong;
     std::vector<double> gains;
     for (const std::uint32_t e : edges) {
@@ -260,7 +261,7 @@ void CurveFinder::add_events(RegionId region, const EventSource& source, const E
                                               : CurveOrder::d2,
                               e.by_edge_of_source ? CurveCause::edge_vertex : CurveCause::vertex_edge, source.region,
                               e.gain});
-    // Where two edges each leave half of the source, they leave a quarter of it together.
+    // Two edges that each hide half of the source leave a quarter of it together.
     const double least = (options_.conics == ConicCurves::all ? 1 : 4) * options_.least_bend;
     if (source.is_point || effect.gain < least) return;
     std::erase_if(edges,
@@ -268,12 +269,13 @@ void CurveFinder::add_events(RegionId region, const EventSource& source, const E
     add_non_emitter_events(region, source, effect.gain, lists, edges, out);
 }
 
-/// NEV and EEE: pairs of blockers' edges, so that where there are very many they are left to bisection.
+/// Adds NEV and EEE events. They come from pairs of blockers' edges: above a limit, bisection has to resolve them
+/// instead.
 void CurveFinder::add_non_emitter_events(RegionId region, const EventSource& source, double gain,
                                          const WedgeLists* lists, std::span<const std::uint32_t> edges,
                                          ReceiverCurves& out) const {
-    constexpr std::size_t many = 400;
-    if (edges.size() > many) {
+    constexpr std::size_t max_edges = 400;
+    if (edges.size() > max_edges) {
         ++out.left_out;
         return;
     }
@@ -285,10 +287,10 @@ void CurveFinder::add_non_emitter_events(RegionId region, const EventSource& sou
     for (const ShadowEvent& e : events)
         out.curves.push_back({e.a, e.b, CurveOrder::d2, CurveCause::blocker_edge, source.region, gain});
     if (options_.conics == ConicCurves::none) return;
-    // A polyline beside its conic leaves a strip where the polynomial is the neighbour's, of less than a thousandth of
-    // the region.
-    constexpr double beside = 1e-3;  // given by that: what it costs is D2, a third power of it
-    const double sagitta = beside * std::min(box.hi.x - box.lo.x, box.hi.y - box.lo.y);
+    // Between a conic and its polyline, the polynomial is that of the wrong side. The sagitta limits the width of this
+    // strip to a thousandth of the region.
+    constexpr double max_sagitta = 1e-3;  // share of the region's width; the D2 error grows with its third power
+    const double sagitta = max_sagitta * std::min(box.hi.x - box.lo.x, box.hi.y - box.lo.y);
     std::vector<ThreeEdgeEvent> conics;
     ThreeEdgeEventFinder(stage_->occluders, *edges_, options_.stop)
         .find(out.frame, region, box.lo, box.hi, source, edges, options_.conics == ConicCurves::at_umbras, sagitta,
@@ -299,7 +301,7 @@ void CurveFinder::add_non_emitter_events(RegionId region, const EventSource& sou
                 {c.places[i - 1], c.places[i], CurveOrder::eee, CurveCause::three_edges, source.region, gain});
 }
 
-/// What stands between the region and each part of a secondary source is found by the shaft between them.
+/// Adds the events of secondary sources. A shaft between the region and each part of a source finds the blockers.
 void CurveFinder::add_secondary(RegionId region, ReceiverCurves& out) const {
     const Region& receiver = stage_->scene.regions()[region];
     const std::vector<Point> outline = convex_around(receiver, out);

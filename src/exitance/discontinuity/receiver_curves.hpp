@@ -12,19 +12,20 @@
 
 namespace exitance {
 
-/// A receiving region in coordinates of its own, with the curves on it across which direct light changes its form.
+/// A receiving region in its own plane coordinates, with the curves on it across which direct light changes its form.
 struct ReceiverCurves {
     explicit ReceiverCurves(const Region& region);
 
     PlaneFrame frame;
-    std::vector<std::vector<Vec2>> loops;  ///< Metres; as the region's.
-    ReceiverLight light;                   ///< What shines on any of it.
-    std::vector<FlatCurve> curves;         ///< Ready to be cut along.
-    std::size_t wedges = 0, left_out = 0;  ///< Looked at; sources or curves that change too little.
-    BlockerSearch::Counts searched;        ///< Work of the blocker search, where one is given.
+    std::vector<std::vector<Vec2>> loops;  ///< The region's outlines, metres.
+    ReceiverLight light;            ///< The sources that can be seen from the region, and their candidate blockers.
+    std::vector<FlatCurve> curves;  ///< Arranged so that the mesh can be cut along them.
+    /// Wedges examined; sources and curves omitted because they change light too little.
+    std::size_t wedges = 0, left_out = 0;
+    BlockerSearch::Counts searched;  ///< Work of the blocker search, if one is given.
 };
 
-/// A surface whose reflected light has shadows, too, in parts over which it is even.
+/// A surface whose reflected light casts shadows as well, divided into parts of uniform radiosity.
 struct SecondarySource {
     struct Part {
         std::vector<Point> outline;  ///< Convex, counter-clockwise seen from the front, metres.
@@ -35,49 +36,50 @@ struct SecondarySource {
     std::vector<Part> parts;
 };
 
-/// Which lines of three edges are looked for.
+/// Which events of three edges (conic curves) are found.
 enum class ConicCurves { none, at_umbras, all };
 
 struct CurveOptions {
-    double least_effect = 0;              ///< W/m^2 of rho E: sources that bring less than this have no curves.
-    double least_area = 0;                ///< m^2: smaller regions have contacts alone.
-    std::size_t most_curves = 1'000;      ///< On a region.
-    double least_bend = 0;                ///< W/m^2 of rho E: sources that bring less than this have no D2 curves, but
-    double least_narrow_bend = HUGE_VAL;  ///< along half-shadows that are long and narrow those of this have some.
+    double least_effect = 0;              ///< W/m^2 of rho E. Weaker sources get no curves.
+    double least_area = 0;                ///< m^2. Smaller regions get contact curves only.
+    std::size_t most_curves = 1'000;      ///< Limit on the curves of a region.
+    double least_bend = 0;                ///< W/m^2 of rho E. Weaker sources get no D2 curves, except
+    double least_narrow_bend = HUGE_VAL;  ///< along long and narrow penumbras, where this lower limit applies.
     ConicCurves conics = ConicCurves::at_umbras;
     std::vector<SecondarySource> secondary = {};
-    const StopRequest* stop = nullptr;      ///< Once it is requested, what is found is not complete.
-    const WeakLight* weak = nullptr;        ///< If given, its strong sources alone are looked at.
-    const BlockerSearch* search = nullptr;  ///< Finds what blocks sources; null: by shafts and a tree of boxes.
+    const StopRequest* stop = nullptr;      ///< After a request to stop, the results are incomplete.
+    const WeakLight* weak = nullptr;        ///< If given, only its strong sources get curves.
+    const BlockerSearch* search = nullptr;  ///< Finds the blockers of sources; null: shafts and a tree of boxes.
 };
 
-/// Finds D0, D1 and D2 curves of primary sources, and of secondary ones that are asked for: where other polygons touch
-/// a region, and its VE, EV, NEV and EEE events.
+/// Finds the D0, D1 and D2 curves of primary sources, and of the secondary sources given in the options: contacts with
+/// other polygons, and VE, EV, NEV and EEE events.
 class CurveFinder {
   public:
-    /// Both must outlive it.
+    /// `stage` and `edges` must outlive this.
     CurveFinder(const Stage& stage, const BlockerEdges& edges, const CurveOptions& options)
         : stage_(&stage), edges_(&edges), options_(options) {}
 
     ReceiverCurves find(RegionId region) const;
-    /// The light alone, no curves.
+    /// Finds the light only, without curves.
     ReceiverCurves look(RegionId region) const;
 
-    /// Where no direct light comes there are no curves of it, but what is reflected jumps at contacts all the same:
-    /// adds these to what was found of such a region.
+    /// Adds contacts to the curves of a region without direct light, which `find` gives none: reflected light jumps
+    /// there, too.
     void add_contacts_in_the_dark(RegionId region, ReceiverCurves& out) const;
 
   private:
     void look_at_strong(RegionId region, ReceiverCurves& out, DirectLight::Workspace& workspace) const;
     void add_contacts(RegionId region, ReceiverCurves& out) const;
     void add_curves_behind(RegionId region, ReceiverCurves& out) const;
-    /// What a source brings to a region, W/m^2 of rho E.
+    /// Bounds on the light that a source brings to a region, W/m^2 of rho E.
     struct Effect {
-        double gain = HUGE_VAL;  ///< At most, anywhere.
-        Point centre;            ///< Of a ball around the source.
-        double radius = 0;       ///< Metres.
-        double weight = 0;       ///< Its exitance times the region's reflectance; 0: `gain` is all there is to know.
-        double area = 0;         ///< Of the source, m^2.
+        double gain = HUGE_VAL;  ///< Upper bound anywhere on the region.
+        Point centre;            ///< Centre of a ball around the source.
+        double radius = 0;       ///< Radius of the ball, metres.
+        /// The source's exitance times the region's reflectance, W/m^2; 0: only `gain` is available.
+        double weight = 0;
+        double area = 0;  ///< Area of the source, m^2.
     };
     void add_events(RegionId region, ReceiverCurves& out) const;
     void add_events(RegionId region, const EventSource& source, const Effect& effect, std::span<const PieceId> blockers,

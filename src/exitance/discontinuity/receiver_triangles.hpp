@@ -8,7 +8,7 @@
 
 namespace exitance {
 
-/// The triangles between a receiver's curves, with the memory of the tree that they come from.
+/// The triangles between a receiver's curves, and the memory of the line tree that they were made from.
 struct ReceiverTriangles {
     LabelledTriangles triangles;
     std::size_t tree_bytes = 0;

@@ -15,8 +15,8 @@ namespace {
 constexpr std::array<SightLine, 3> skew{{{{0, 0, 3}, {1, 0, 0}}, {{0, 0, 2}, {0, 1, 0}}, {{0, 1, 1}, {1, 1, 0}}}};
 
 TEST(ThreeLineDeterminant, IsZeroOnTheConicOfThreeSkewLines) {
-    // From x = (x, y, 0): the line through (s, 0, 3) and (0, t, 2) meets the floor in (-2 s, 3 t), and height 1 in
-    // (-s, 2 t), which lies on y = 1 + x for t = (1 - s) / 2: the floor's curve is (-2 s, 3 (1 - s) / 2), a line.
+    // From x = (x, y, 0): the line through (s, 0, 3) and (0, t, 2) meets the floor at (-2 s, 3 t), and height 1 at (-s,
+    // 2 t). That point is on y = 1 + x if t = (1 - s) / 2. The floor's curve is thus (-2 s, 3 (1 - s) / 2), a line.
     for (const double s : {-1.0, 0.3, 2.0})
         EXPECT_NEAR(three_line_determinant({-2 * s, 1.5 * (1 - s), 0}, skew), 0, 1e-12);
     EXPECT_GT(std::abs(three_line_determinant({0.5, 0.2, 0}, skew)), 0.1);
@@ -26,7 +26,8 @@ TEST(ThreeLineDeterminant, IsZeroOnTheConicOfThreeSkewLines) {
     EXPECT_NEAR(d[3] - 3 * d[2] + 3 * d[1] - d[0], 0, 1e-9);
 }
 
-/// A source of 2 m at 3 m, below it two half-planes, whose edges cross askew as seen from the floor.
+/// A source 2 m wide at a height of 3 m, and below it two half-planes whose edges cross at an angle as seen from the
+/// floor.
 Scene two_blades() {
     return test::make({{{{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}}, 0},
                        {{{-1, 1, 3}, {1, 1, 3}, {1, -1, 3}, {-1, -1, 3}}, 100},
@@ -62,13 +63,14 @@ TEST(ThreeEdgeEvents, LieOnTheirConicAndBoundTheUmbra) {
             EXPECT_LT(least, 1e-6);
         }
     }
-    // Both blades hide their halves: of the quarter that is left a corner goes last, over no edge of the source alone.
+    // Each blade hides half of the source. The corner of the remaining quarter vanishes last, without passing any edge
+    // of the source.
     EXPECT_GT(events.size(), at_umbra);
     std::vector<ThreeEdgeEvent> umbra;
     finder.find(frame, RegionId(0), {-4, -4}, {4, 4}, source, all, true, 1e-4, umbra);
     EXPECT_EQ(umbra.size(), at_umbra);
-    // Direct light's second derivative jumps there: the difference of both sides stays when the step is halved, where
-    // it would halve were the light smooth; and beside an umbra it is dark on one side.
+    // The second derivative of direct light jumps there: the difference between both sides stays when the step is
+    // halved, whereas that of smooth light would halve. Next to an umbra, one side is dark.
     DirectLight::Workspace workspace;
     for (const ThreeEdgeEvent& e : events) {
         const Vec2 a = e.places[e.places.size() / 2 - 1], b = e.places[e.places.size() / 2], m = 0.5 * (a + b);
@@ -92,8 +94,8 @@ TEST(ThreeEdgeEvents, LieOnTheirConicAndBoundTheUmbra) {
     }
 }
 
-TEST(NonEmitterEvents, LieInThePlaneOfACornerAndAnEdgeAndComeFromTheSource) {
-    // A triangle's corner beneath the lamp, above it a blade.
+TEST(NonEmitterEvents, LieInThePlaneOfACornerAndAnEdge) {
+    // A triangle's corner beneath the lamp, and a blade above it.
     const Scene scene = test::make({{{{-4, -4, 0}, {4, -4, 0}, {4, 4, 0}, {-4, 4, 0}}, 0},
                                     {{{-1, 1, 3}, {1, 1, 3}, {1, -1, 3}, {-1, -1, 3}}, 100},
                                     {{{0, -3, 2}, {0, 3, 2.3}, {-3, 3, 2.3}, {-3, -3, 2}}, 0},
@@ -108,7 +110,7 @@ TEST(NonEmitterEvents, LieInThePlaneOfACornerAndAnEdgeAndComeFromTheSource) {
     std::vector<ShadowEvent> events;
     ShadowEventFinder(stage.occluders, edges)
         .find_non_emitter(frame, RegionId(0), {-4, -4}, {4, 4}, source, all, events);
-    // The corner under the blade's edge: of all lines of sight through both the event is where they meet the floor.
+    // The event of the corner and the blade's edge is where the lines of sight through both meet the floor.
     const Point corner{0.1, 0.05, 1};
     const auto of_corner = [&](const ShadowEvent& e) {
         for (const Vec2 end : {e.a, e.b}) {

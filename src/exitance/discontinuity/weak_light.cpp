@@ -14,14 +14,15 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t few_emitters = 8, few_regions = 1000;  // exact answers about all of these cost little
-constexpr std::size_t quad = 4;                              // corners; a triangle repeats its last one
+constexpr std::size_t max_exact_emitters = 8,
+                      max_exact_regions = 1000;  // exact light is cheap up to these
+constexpr std::size_t quad = 4;                  // corners; triangles repeat the last one
 
 }  // namespace
 
 bool WeakLight::pays(const DirectLight& direct) {
-    return direct.emitters().size() > few_emitters && direct.occluders().scene().regions().size() > few_regions &&
-           PossibleSources::suits(direct);
+    return direct.emitters().size() > max_exact_emitters &&
+           direct.occluders().scene().regions().size() > max_exact_regions && PossibleSources::suits(direct);
 }
 
 WeakLight::WeakLight(const DirectLight& direct, const RayTracer& tracer, const Asked& asked, const StopRequest& stop)
@@ -49,8 +50,8 @@ void WeakLight::choose(RegionId r, std::span<const PossibleSources::Source> from
     const double noise = std::min(asked.noise * larger, std::max(asked.noise, asked.most_noise)) / w;
     double sum = 0;
     std::size_t weak = 0;
-    const double most = 2 * noise * std::sqrt(static_cast<double>(most_rays));
-    while (weak < from.size() && sum + from[weak].bound <= most) sum += from[weak++].bound;
+    const double max_bound_sum = 2 * noise * std::sqrt(static_cast<double>(most_rays));
+    while (weak < from.size() && sum + from[weak].bound <= max_bound_sum) sum += from[weak++].bound;
     const double rays = noise > 0 ? sum * sum / (4 * noise * noise) : 0;
     OfRegion& out = regions_[r];
     for (std::size_t i = 0; i < from.size(); ++i) {
@@ -64,11 +65,11 @@ void WeakLight::choose(RegionId r, std::span<const PossibleSources::Source> from
         const std::uint32_t number = first_of_emitter_[name.emitter] + (name.piece.value - first.value);
         RandomStream lot(static_cast<std::uint64_t>(name.piece.value), Stream::direct, r.value);
         if (share < 1 && lot.uniform() >= share) continue;
-        // Of a power of two the places lie evenly.
+        // Powers of two keep the Sobol points evenly distributed.
         const auto count = static_cast<std::uint32_t>(std::bit_ceil(static_cast<unsigned>(std::ceil(share))));
         out.weak.push_back({number, std::min(count, most_rays), static_cast<float>(1 / std::min(1.0, share))});
     }
-    // In the order of the emitters, as all looks at them are.
+    // Sort by emitter, the order that all other lists of sources have.
     std::vector<std::size_t> order(out.strong.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::sort(order.begin(), order.end(),
@@ -139,7 +140,7 @@ Spectrum WeakLight::irradiance(const Point& x, const Normal& n, RegionId r, Work
 }
 
 Spectrum WeakLight::irradiance(const ReceiverLight& strong, const Point& x, Workspace& room) const {
-    constexpr std::uint32_t many = 24;  // candidates; as many tests of a piece as a search of the tree costs
+    constexpr std::uint32_t max_listed_candidates = 24;  // testing this many costs as much as a search of the tree
     const Receiver at = direct_->receiver(x, strong.n, strong.own);
     Spectrum out = irradiance(x, strong.n, strong.own, room);
     room.exact.factors.resize(strong.open.size());
@@ -148,7 +149,7 @@ Spectrum WeakLight::irradiance(const ReceiverLight& strong, const Point& x, Work
     for (const ReceiverLight::Source& source : strong.sources) {
         if (source.in_batch) continue;
         const auto candidates = std::span(strong.candidates).subspan(source.first, source.count);
-        const double F = source.count > many
+        const double F = source.count > max_listed_candidates
                              ? visible_form_factor(direct_->occluders(), at, source.piece, room.exact)
                              : visible_form_factor(direct_->occluders(), at, source.piece, candidates, room.exact);
         out += F * direct_->emitters()[source.emitter].exitance;

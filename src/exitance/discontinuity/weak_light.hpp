@@ -8,56 +8,59 @@
 
 namespace exitance {
 
-/// Which sources of direct light matter on each region of a building, and by rays what all others bring there:
+/// Divides the sources of direct light on each region of a building into strong and weak ones. The light of weak
+/// sources is estimated by rays:
 ///
-///     E of weak sources ~ sum over sources s of  M_s F_s(x) sum over places of  K_i V_i / sum of  K_i,
+///     E of weak sources ~ sum over sources s of  M_s F_s(x) sum over points of  K_i V_i / sum of  K_i,
 ///
-/// F_s as if nothing stood in between, K = cos cos / (pi r^2), V_i whether place y_i of s is seen. The places of a
-/// source are the same from everywhere, so that E is smooth but for steps as small as its rays are many, which no mesh
-/// needs to follow: curves, wedges and exact visible parts are for the sources that are strong.
+/// where F_s is the form factor without blockers, K = cos cos / (pi r^2), and V_i is 1 if point y_i of s is visible
+/// from x. The points y_i of a source are the same for all x. E is then smooth except for steps too small for the mesh
+/// to follow. Curves, wedges and exact visible parts are computed for strong sources only.
 ///
-/// Of n rays a region's sources have shares in proportion to their bounds U_s (PossibleSources), so that a place is off
-/// by (sum of U) / (2 sqrt(n)) in the mean square at most; a source of less than a ray is drawn by lot. As many sources
-/// are weak, from the weakest on, as most_rays do for.
+/// A region's n rays are shared among its sources in proportion to their bounds U_s (PossibleSources), so that the RMS
+/// error at a point is at most (sum of U) / (2 sqrt(n)). A source with a share of less than one ray is selected at
+/// random. Sources count as weak, starting with the weakest, for as long as `most_rays` rays suffice.
 class WeakLight {
   public:
     static constexpr unsigned most_rays = 128;
 
     struct Asked {
-        double negligible = 0;  ///< W/m^2 of E: what sources that are left out may bring together.
-        double noise = 0;       ///< What rays may miss in the root mean square, W/m^2 of w E,
-        double most_noise = 0;  ///< or more where a region is smaller than
-        double area = 0;        ///< this, m^2: in proportion to (area / region)^(1/2), at most so much.
+        double negligible = 0;  ///< Permitted irradiance of all omitted sources together, W/m^2.
+        double noise = 0;       ///< Permitted RMS error of rays, W/m^2 of w E.
+        double most_noise = 0;  ///< Largest permitted RMS error on regions smaller than `area`, W/m^2 of w E.
+        /// Below this area (m^2) the permitted error grows with (area / region)^(1/2), up to `most_noise`.
+        double area = 0;
     };
     WeakLight(const DirectLight& direct, const RayTracer& tracer, const Asked& asked, const StopRequest& stop);
 
-    /// Are emitters and regions so many that not all of them can be looked at exactly, and such that this can tell?
+    /// True if there are too many emitters and regions for exact light of all sources, and rays can estimate them.
     static bool pays(const DirectLight& direct);
 
-    /// Sources to be looked at exactly from this region.
+    /// Sources to be evaluated exactly on this region.
     std::span<const DirectLight::SourceName> strong(RegionId r) const { return regions_[r].strong; }
     bool shines_on(RegionId r) const { return !regions_[r].weak.empty(); }
-    /// By either kind?
+    /// True if any strong or weak source may light the region.
     bool is_reached(RegionId r) const { return shines_on(r) || !regions_[r].strong.empty(); }
-    /// What a source may bring to the region at most, W/m^2 of E, mean of the bands; 0 of one that is not strong.
+    /// Upper bound on the irradiance from a strong source on the region, W/m^2, mean of the bands; 0 for other sources.
     double bound(RegionId r, std::uint32_t emitter) const;
 
     class Workspace;
-    /// At x on a region, W/m^2, of its weak sources.
+    /// Irradiance from the region's weak sources at a point x, W/m^2.
     Spectrum irradiance(const Point& x, const Normal& n, RegionId r, Workspace& room) const;
-    /// And of its strong ones, exact, which `strong` was prepared for. Many candidates are searched for in the tree
-    /// once more: what the pyramid of one point meets is few of what stands before all of a face.
+    /// Irradiance from all sources at x, W/m^2: strong ones exactly, weak ones by rays. `strong` was prepared from the
+    /// strong sources. If a source has many candidates, the tree is searched again, since the pyramid between one point
+    /// and the source meets far fewer blockers than the shaft of a whole face.
     Spectrum irradiance(const ReceiverLight& strong, const Point& x, Workspace& room) const;
 
   private:
     struct Weak {
-        std::uint32_t source = 0;  ///< Of `sources_`.
+        std::uint32_t source = 0;  ///< Index in `sources_`.
         std::uint32_t rays = 1;
-        float weight = 1;  ///< Above 1 where it was drawn by lot.
+        float weight = 1;  ///< Above 1 if the source was selected at random.
     };
     struct OfRegion {
         std::vector<DirectLight::SourceName> strong;
-        std::vector<double> bounds;  ///< Of the strong ones.
+        std::vector<double> bounds;  ///< Per strong source, W/m^2.
         std::vector<Weak> weak;
     };
     struct Emitting {
@@ -69,18 +72,18 @@ class WeakLight {
     const DirectLight* direct_;
     const RayTracer* tracer_;
     std::vector<Emitting> sources_;
-    std::vector<std::uint32_t> first_of_emitter_;  ///< In sources_.
+    std::vector<std::uint32_t> first_of_emitter_;  ///< Index in `sources_` of each emitter's first piece.
     Field<RegionId, OfRegion> regions_;
 };
 
-/// Room to work in; one a thread.
+/// Working memory. Each thread has its own.
 class WeakLight::Workspace {
   public:
     VisibilityWorkspace exact;
 
   private:
     friend WeakLight;
-    RegionId region_;  ///< Whose sources stand in `quads_`.
+    RegionId region_;  ///< The region whose sources are in `quads_`.
     const WeakLight* owner_ = nullptr;
     QuadBatch quads_;
     std::vector<double> factors_, kernels_;

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-TEST(WeakLight, IsOffByNoMoreThanTheNoiseAskedFor) {
+TEST(WeakLight, RmsErrorIsWithinTheRequestedNoise) {
     const Scene scene = built_scene("office", {{"nx", "4"}, {"ny", "3"}, {"nfurn", "2"}});
     const Stage stage(scene);
     ASSERT_TRUE(WeakLight::pays(stage.direct));
@@ -41,7 +41,7 @@ TEST(WeakLight, IsOffByNoMoreThanTheNoiseAskedFor) {
     EXPECT_LT(std::abs(sum) / static_cast<double>(places), 0.3 * asked.noise) << "off to both sides";
 }
 
-TEST(WeakLight, LeavesScenesOfFewEmittersAlone) {
+TEST(WeakLight, DoesNotPayForFewEmitters) {
     const Scene scene = built_scene("office", {{"nx", "1"}, {"ny", "1"}});
     const Stage stage(scene);
     EXPECT_FALSE(WeakLight::pays(stage.direct));

@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// A uniform point of the unit square, folded onto the shape.
+/// Maps a uniform point of the unit square to the patch; for triangles, folds the square at its diagonal.
 Point uniform_point(const Patch& patch, double u, double v) {
     return patch.is_triangle() && u + v > 1 ? patch.at(1 - u, 1 - v) : patch.at(u, v);
 }

@@ -8,8 +8,9 @@
 
 namespace exitance {
 
-/// `count` points that are uniform in area over a scene's surfaces, stratified: one in each of `count` equal shares of
-/// the area. Deterministic by `seed`. O(pieces + count). Metres; normals are the faces'.
+/// Returns `count` points (metres, with the normals of their faces) that are uniform in area over a scene's surfaces.
+/// Stratified: each of `count` equal shares of the area has one point. Deterministic for a given `seed`. O(pieces +
+/// count).
 std::vector<ProbePoint> points_uniform_in_area(const Scene& scene, std::size_t count, std::uint64_t seed);
 
 }  // namespace exitance

@@ -7,7 +7,7 @@
 
 namespace exitance {
 
-TEST(PointsUniformInArea, LieOnFacesAndFallOnThemByArea) {
+TEST(PointsUniformInArea, AreOnFacesAndProportionalToTheirArea) {
     const Scene scene = sample_scene();
     const Locator locator(scene);
     const std::size_t count = 5000;
@@ -19,7 +19,7 @@ TEST(PointsUniformInArea, LieOnFacesAndFallOnThemByArea) {
     }
     double area = 0;
     for (const Region& region : scene.regions()) area += region.area;
-    // Strata follow each other along the pieces: a region's count is off by at most one at each end of its pieces.
+    // The strata follow the order of the pieces: a region's count deviates by at most one at each end of its pieces.
     for (RegionId r : scene.regions().ids())
         EXPECT_NEAR(hits[r.value], static_cast<double>(count) * scene.regions()[r].area / area, 8) << r.value;
 }

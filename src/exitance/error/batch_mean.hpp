@@ -6,11 +6,11 @@
 
 namespace exitance {
 
-constexpr std::size_t batches = 32;  ///< Of samples, for the spread of their mean.
-/// One-sided quantile of 95% for the mean of batches: given by Student's distribution of 31 degrees of freedom.
+constexpr std::size_t batches = 32;  ///< Number of batches of samples; their spread gives the standard error.
+/// One-sided 95% quantile for the mean of batches, given by Student's distribution with 31 degrees of freedom.
 constexpr double student_95 = 1.696;
 
-/// Mean of batches of samples, and its standard error from their spread. Sample k belongs to batch k % batches.
+/// Mean of batches of samples, and its standard error from their spread. Sample k belongs to batch k % `batches`.
 struct BatchMean {
     double mean = 0, standard_error = 0;
 

@@ -7,7 +7,7 @@
 
 namespace exitance {
 
-/// The smallest error that is told from noise, in errors requested.
+/// Smallest error that is distinguished from noise, as a multiple of the requested error.
 constexpr double resolved_errors = 1.5;  // given by the warning at 3: half of it
 
 void BodyMeasure::add(double weight, double squared, double reflected, double light_of_room) {
@@ -19,21 +19,22 @@ void BodyMeasure::add(double weight, double squared, double reflected, double li
 double BodyMeasure::standard_error() const {
     if (points_ < 2 || weight_ <= 0) return 0;
     const double m = mean_square(), n = static_cast<double>(points_);
-    const double spread = std::max(0.0, wwss_ - 2 * m * wws_ + m * m * ww_);  // of w (s - m)
+    const double spread = std::max(0.0, wwss_ - 2 * m * wws_ + m * m * ww_);  // sum of w^2 (s - m)^2
     return std::sqrt(spread * n / (n - 1)) / weight_;
 }
 
 double BodyMeasure::reference() const {
-    constexpr double least_share =
-        0.1;  // given by the norm of errors by part, of the room's light: a dark body counts as bright as this
-    return weight_ > 0 ? std::max(mean_reflected(), least_share * light_ / weight_) : 0;
+    // Smallest reference as a share of the room's light, given by the norm of errors by part: dark bodies are judged as
+    // if they had this light.
+    constexpr double min_share = 0.1;
+    return weight_ > 0 ? std::max(mean_reflected(), min_share * light_ / weight_) : 0;
 }
 
 std::optional<double> BodyMeasure::error(double requested) const {
     const double relative_to = reference();
     if (points_ < min_points || relative_to <= 0) return {};
-    const double hidden = std::pow(resolved_errors * requested * relative_to, 2);
-    if (standard_error() > std::max(0.5 * mean_square(), hidden)) return {};
+    const double resolved = std::pow(resolved_errors * requested * relative_to, 2);
+    if (standard_error() > std::max(0.5 * mean_square(), resolved)) return {};
     return std::sqrt(std::max({mean_square(), standard_error(), 0.0})) / relative_to;
 }
 
@@ -44,7 +45,7 @@ double BodyMeasure::suspected() const {
 
 namespace {
 
-/// The leaves of every body on sides that are not left out; none of bodies that reflect nothing.
+/// Returns the leaves of every body on sides that are not excluded; none for bodies that do not reflect.
 std::vector<std::vector<ElementId>> leaves_of_bodies(const BodyCheck& c) {
     std::vector<std::vector<ElementId>> out(c.bodies.all.size());
     for (ElementId e : c.indirect.tree.leaves()) {
@@ -55,7 +56,7 @@ std::vector<std::vector<ElementId>> leaves_of_bodies(const BodyCheck& c) {
     return out;
 }
 
-/// A point on a body, and what it is measured by.
+/// A point on a body and the parameters of its measurement.
 struct BodyPoint {
     WeightedSample place;
     std::uint32_t body;
@@ -84,7 +85,7 @@ class BodySurvey {
     std::size_t rays_left() const { return left_; }
 
   private:
-    /// `requested`: the error, W/m^2.
+    /// Chooses the parameters of the checks. `requested`: requested error, W/m^2.
     CheckPlan plan(std::span<const PilotPlace> at, std::uint64_t name, double requested) const {
         return plan_check(c_.check, c_.stage, c_.b, at, name, {certificate_rays(0) * requested * requested});
     }
@@ -97,12 +98,12 @@ class BodySurvey {
     const BodyCheck& c_;
     const std::function<double(std::size_t)>& light_of_room_;
     double error_;
-    std::size_t left_;  ///< Rays.
+    std::size_t left_;  ///< Rays that remain.
     std::vector<std::vector<ElementId>> leaves_;
     std::vector<BodyMeasure> measured_;
     std::vector<PointError> close_points_;
-    std::vector<bool> is_known_;    ///< The bodies that were looked at closely,
-    std::vector<bool> is_unknown_;  ///< and those that would have needed it.
+    std::vector<bool> is_known_;    ///< Bodies measured by `look_closely_at`.
+    std::vector<bool> is_unknown_;  ///< Bodies that would need it, but for which the rays do not suffice.
 };
 
 std::vector<PilotPlace> BodySurvey::pilots(std::uint32_t body, std::size_t count, std::uint64_t name) const {
@@ -114,7 +115,7 @@ std::vector<PilotPlace> BodySurvey::pilots(std::uint32_t body, std::size_t count
     return out;
 }
 
-/// Rays of two halves at so many points, with those of checks.
+/// Returns the number of rays for two gathers at each of this many points, including those of the checks.
 std::size_t BodySurvey::work(const CheckPlan& plan, unsigned rays, std::size_t points) const {
     return static_cast<std::size_t>(2.0 * rays * static_cast<double>(points) * (1 + plan.work));
 }
@@ -136,7 +137,7 @@ std::vector<ResidualSample> BodySurvey::measure(std::span<const BodyPoint> point
     return out;
 }
 
-/// Measures points, and returns their errors by the light of their rooms.
+/// Measures points, and returns their errors relative to the light of their rooms.
 std::vector<PointError> BodySurvey::add(std::span<const BodyPoint> points) {
     const std::vector<ResidualSample> found = measure(points);
     std::vector<PointError> out;
@@ -153,7 +154,7 @@ std::vector<PointError> BodySurvey::add(std::span<const BodyPoint> points) {
 void BodySurvey::look_at_all() {
     constexpr std::size_t points = BodyMeasure::min_points;
     constexpr std::size_t pilots_of_all = 64;
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;  // of bodies, by chance
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order;  // random, so that the first ones are a sample of all
     for (std::uint32_t b = 0; b < leaves_.size(); ++b)
         if (!leaves_[b].empty()) order.emplace_back(hash(c_.seed, b), b);
     std::sort(order.begin(), order.end());
@@ -163,12 +164,12 @@ void BodySurvey::look_at_all() {
         for (const PilotPlace& p :
              pilots(order[k].second, std::max<std::size_t>(1, pilots_of_all / order.size()), name))
             at.push_back({p.at, p.weight / static_cast<double>(std::min(order.size(), pilots_of_all))});
-    const CheckPlan usual = plan(at, name, error_ * light_of_room_(0));
+    const CheckPlan common_plan = plan(at, name, error_ * light_of_room_(0));
     std::vector<BodyPoint> todo;
     for (const auto& [chance, body] : order) {
         const std::vector<WeightedSample> places =
             places_on_body(c_.indirect.tree, leaves_[body], points, hash(name, body));
-        // What errors are relative to follows from what is delivered.
+        // The reference of the errors follows from the delivered light, without any rays.
         BodyMeasure dark;
         ResidualSampler::Workspace w;
         for (const WeightedSample& place : places) {
@@ -179,28 +180,32 @@ void BodySurvey::look_at_all() {
         const double allowed = resolved_errors * error_ * dark.reference();
         if (allowed <= 0) continue;
         const double noise = allowed * allowed * std::sqrt(static_cast<double>(points));
-        const unsigned rays = certificate_rays((usual.gather_variance + usual.variance) / noise);
-        if (work(usual, rays, points) > left_ / 2) continue;  // the rest is for those that seem worst
-        left_ -= work(usual, rays, points);
-        for (std::size_t i = 0; i < points; ++i) todo.push_back({places[i], body, usual, rays, hash(name, body, i)});
+        const unsigned rays = certificate_rays((common_plan.gather_variance + common_plan.variance) / noise);
+        if (work(common_plan, rays, points) > left_ / 2)
+            continue;  // the remaining rays are for the bodies that seem worst
+        left_ -= work(common_plan, rays, points);
+        for (std::size_t i = 0; i < points; ++i)
+            todo.push_back({places[i], body, common_plan, rays, hash(name, body, i)});
     }
     add(todo);
 }
 
-/// Returns false where the rays do not suffice.
+/// Measures a body at further points. Returns false if the rays do not suffice.
 bool BodySurvey::look_closely_at(std::uint32_t body) {
-    constexpr std::size_t batch = 16, most_batches = 16;
-    constexpr double well_known = 0.25;  // given by an estimate within an eighth: standard error of the mean square, as
-                                         // its share: an eighth of the error
+    constexpr std::size_t batch = 16, max_batches = 16;
+    // Sufficient standard error of the mean square, as a share of it, given by the accuracy of the estimate: an eighth
+    // of the error.
+    constexpr double sufficient_error = 0.25;
+    // its share: an eighth of the error
     const std::uint64_t name = hash(c_.seed, static_cast<std::uint64_t>(Stream::certificate), 2, body);
-    // As many rays as make the noise of each half as large as the error seems, or as the one requested.
+    // The noise of each gather may be as large as the requested error or, if larger, the apparent one.
     const BodyMeasure before = measured_[body];
     const double requested = std::pow(error_ * before.reference(), 2);
     const CheckPlan of_body = plan(pilots(body, 16, name), name, std::sqrt(requested));
     const double seems = std::max(requested, before.mean_square());
     const unsigned rays = certificate_rays((of_body.gather_variance + of_body.variance) / seems);
     measured_[body] = {};
-    for (std::size_t k = 0; k < most_batches; ++k) {
+    for (std::size_t k = 0; k < max_batches; ++k) {
         if (work(of_body, rays, batch) > left_) break;
         left_ -= work(of_body, rays, batch);
         std::vector<BodyPoint> todo;
@@ -209,7 +214,7 @@ bool BodySurvey::look_closely_at(std::uint32_t body) {
         const std::vector<PointError> found = add(todo);
         close_points_.insert(close_points_.end(), found.begin(), found.end());
         const BodyMeasure& now = measured_[body];
-        if (now.standard_error() <= well_known * std::max(now.mean_square(), requested)) break;
+        if (now.standard_error() <= sufficient_error * std::max(now.mean_square(), requested)) break;
     }
     is_known_[body] = measured_[body].points() >= BodyMeasure::min_points;
     if (!is_known_[body]) measured_[body] = before;

@@ -13,26 +13,26 @@
 
 namespace exitance {
 
-/// The error of one body, from points on it.
+/// Error of one body, accumulated from points on it.
 class BodyMeasure {
   public:
-    /// One more point: its weight, an unbiased estimate of the squared error of radiosity there, (W/m^2)^2, the
-    /// reflected radiosity there and that of the point's room, both W/m^2.
+    /// Adds a point: its weight, an unbiased estimate of the squared error of radiosity, (W/m^2)^2, the reflected
+    /// radiosity at the point and that of its room, both W/m^2.
     void add(double weight, double squared, double reflected, double light_of_room);
 
     std::size_t points() const { return points_; }
     double mean_square() const { return weight_ > 0 ? squared_ / weight_ : 0; }  ///< (W/m^2)^2
-    /// Of `mean_square`, from the spread of the points; 0 below two points.
+    /// Returns the standard error of `mean_square`, from the spread of the points; 0 for fewer than two points.
     double standard_error() const;
     double mean_reflected() const { return weight_ > 0 ? reflected_ / weight_ : 0; }  ///< W/m^2
-    /// What errors of the body are relative to: its mean reflected radiosity or a tenth of its room's, whichever is
-    /// larger, W/m^2.
+    /// Returns the radiosity to which the body's error is relative, W/m^2: the body's mean reflected radiosity, but at
+    /// least a tenth of its room's.
     double reference() const;
-    /// RMS error relative to that, at least what the standard error hides. None below `min_points`, and none where
-    /// noise hides the error: where the standard error of the mean square is above half of it and above that of 1.5
-    /// times the error `requested`.
+    /// Returns the RMS error relative to `reference`, but at least the size that the standard error may hide. Empty
+    /// below `min_points` points, and if noise hides the error: if the standard error of the mean square exceeds both
+    /// half of it and the square of 1.5 times the error `requested`.
     std::optional<double> error(double requested) const;
-    /// What the error may be as far as is known, relative to `reference`: one standard error above the mean square.
+    /// Returns a pessimistic estimate of the error, relative to `reference`: one standard error above the mean square.
     double suspected() const;
 
     static constexpr std::size_t min_points = 8;
@@ -43,7 +43,7 @@ class BodyMeasure {
     double ww_ = 0, wws_ = 0, wwss_ = 0;  ///< Sums of w^2, w^2 s and w^2 s^2.
 };
 
-/// What the measurement of bodies reads.
+/// Inputs of the measurement of bodies.
 struct BodyCheck {
     const Stage& stage;
     const ElementFunction& indirect;
@@ -55,18 +55,20 @@ struct BodyCheck {
     std::uint64_t seed;
 };
 
-/// Measures the error of every body that reflects. All bodies have eight points each first, with as many rays as make
-/// the standard error of a mean square that of 1.5 times the error requested: three times the error requested, which
-/// users are warned of, is then told from none by four standard errors. Then the body that may be worst is measured by
-/// points of its own until its mean square is known to a quarter, and so on until the worst one is known. Where the
-/// rays do not suffice, bodies have no error.
+/// Measures the error of every body that reflects. First, each body gets eight points, with enough rays for the
+/// standard error of a mean square to be that of 1.5 times the requested error. Three times the requested error, at
+/// which users are warned, is then four standard errors above zero. Afterwards, the body with the largest possible
+/// error is measured at further points until its mean square is known to a quarter. This is repeated until the worst
+/// body has been measured. Bodies for which the rays do not suffice get no error.
 ///
-/// light_of_room  reflected radiosity of a room, W/m^2     error  requested, relative     max_rays  of all work
-/// Returns what was found.
+/// light_of_room  function that returns the reflected radiosity of a room, W/m^2
+/// error          requested relative error
+/// max_rays       limit on all rays
+/// Returns the errors, the additional points and the number of rays.
 struct MeasuredBodies {
-    std::vector<BodyError> errors;   ///< One a body, the largest body first.
-    std::vector<PointError> points;  ///< Of the bodies that were measured by points of their own, relative likewise.
-    std::size_t rays = 0;            ///< That it took.
+    std::vector<BodyError> errors;   ///< One per body, in descending order of area.
+    std::vector<PointError> points;  ///< Points of the second stage, relative to the room's light.
+    std::size_t rays = 0;            ///< Number of rays cast.
 };
 MeasuredBodies measure_bodies(const BodyCheck& check, const std::function<double(std::size_t)>& light_of_room,
                               double error, std::size_t max_rays);

@@ -21,7 +21,7 @@
 namespace exitance {
 namespace {
 
-/// b + rho H b + (rho H)^2 b + ..., on the coarse mesh.
+/// Returns b + rho H b + (rho H)^2 b + ... on the coarse mesh; b is the right-hand side of the system.
 std::vector<Spectrum> respond(const RadiositySystem& system, double residual) {
     std::vector<Spectrum> b(system.rhs.begin(), system.rhs.end());
     solve_radiosity(system, Relaxation::gmres, b, {.residual = residual, .max_iterations = 200});
@@ -34,12 +34,14 @@ double largest(const std::vector<Spectrum>& values) {
     return out;
 }
 
-/// What is missing makes bounds too small.
+/// Returns the residual for the solves of unit light, which is tighter: the light missing in them makes bounds too
+/// small.
 double constant_residual() {
     return 0.5 * calibrated::refined_residual;
 }
 
-/// Irradiance w = first + H rho w of light that arrives first, by way of rho w = rho first + rho H (rho w).
+/// Returns the irradiance w = first + H rho w, given the light `first` that arrives without reflection. Solves rho w =
+/// rho first + rho H (rho w).
 std::vector<Spectrum> irradiance_of(std::span<const Spectrum> first, const RayRows& H, std::span<const Spectrum> rho,
                                     std::span<const double> area) {
     std::vector<Spectrum> reflected, w(rho.size());
@@ -49,8 +51,8 @@ std::vector<Spectrum> irradiance_of(std::span<const Spectrum> first, const RayRo
     return w;
 }
 
-/// A bound on the norm of (I - rho H)^-1 in the mean square: sqrt(C_1 C_inf), each from a coarse solve of unit light;
-/// that of the adjoint is `w`.
+/// Returns a bound on the norm of (I - rho H)^-1 in the mean square: sqrt(C_1 C_inf), each from a coarse solve of unit
+/// light. `w` is the solution of the adjoint one.
 double error_constant(const RayRows& H, std::span<const Spectrum> rho, std::span<const double> area,
                       const std::vector<Spectrum>& w) {
     const std::vector<Spectrum> ones(rho.size(), Spectrum(1.0));
@@ -70,17 +72,18 @@ struct Certifier::Content {
     const ElementLocator& coarse;
     std::vector<Spectrum> rho;
     std::vector<double> area;
-    RayRows H;                       ///< Between the leaves of `light`;
-    std::optional<RayRows> other_H;  ///< by other rays, where there are several rooms.
-    std::vector<Spectrum> even;      ///< Irradiance of light that arrives everywhere, in every room as much as its own.
+    RayRows H;                       ///< Form factors between the leaves of `light`.
+    std::optional<RayRows> other_H;  ///< Estimated with other rays; only for several rooms.
+    /// Irradiance from light that arrives uniformly on all surfaces; in each room in proportion to the room's light.
+    std::vector<Spectrum> even;
     std::size_t looks = 0;
-    std::vector<ResidualSample> samples;  ///< Of all looks.
-    std::vector<Spectrum>
-        late;  ///< The smooth part of the error, by leaf number of the coarse mesh, as of the last one.
-    Field<ElementId, std::uint8_t> narrow;  ///< Leaves of the delivered function.
+    std::vector<ResidualSample> samples;  ///< Samples of all calls of `look`.
+    /// Smooth part of the error after the last `look`, by leaf number of the coarse mesh.
+    std::vector<Spectrum> late;
+    Field<ElementId, std::uint8_t> narrow;  ///< Marks the narrow leaves of the delivered function.
     PathTracer paths;
     DirectCheck check;
-    CheckPlan plan;  ///< Chosen before the first look.
+    CheckPlan plan;  ///< Chosen before the first measurement.
 
     Content(const Stage& stage_, const GlobalLight& light_, const ElementFunction& indirect_, const ReflectedLight& b_,
             const CertificateOptions& options_)
@@ -112,7 +115,7 @@ struct Certifier::Content {
     }
     std::vector<Spectrum> light_of_rooms() const;
     ResidualSampler sampler() const { return {stage, indirect, b, check, options, constant, coarse, light.numbering}; }
-    /// Of a room, W/m^2: what errors in it are relative to.
+    /// Returns the mean reflected light of a room, W/m^2, to which its errors are relative.
     double light_of_room(std::size_t room) const {
         return options.light_in.empty() ? mean_reflected : options.light_in[room] * mean_reflected;
     }
@@ -129,18 +132,18 @@ struct Certifier::Content {
     void judge_rooms(Certificate& out);
     std::vector<double> mean_by_room() const;
     std::vector<RoomError> rooms;
-    std::vector<BodyError> bodies;        ///< The largest first.
-    std::vector<PointError> body_points;  ///< Where bodies were measured by points of their own.
+    std::vector<BodyError> bodies;        ///< In descending order of area.
+    std::vector<PointError> body_points;  ///< Points of the bodies that were measured at further points.
 };
 
-/// Of every leaf of the coarse mesh, the light of its room by the mean light.
+/// Returns, for every leaf of the coarse mesh, the light of its room divided by the mean light.
 std::vector<Spectrum> Certifier::Content::light_of_rooms() const {
     std::vector<Spectrum> out;
     for (ElementId e : light.numbering.leaves) out.emplace_back(options.light_in[stage.rooms.of(light.tree, e)]);
     return out;
 }
 
-/// Chooses how hits are checked, by a pilot at some of the places of the first look.
+/// Chooses the parameters for checking hits, from a pilot at some of the places of the first `look`.
 void Certifier::Content::plan_checks(std::span<const WeightedSample> places) {
     constexpr std::size_t pilots = 64;
     std::vector<PilotPlace> at;
@@ -150,13 +153,15 @@ void Certifier::Content::plan_checks(std::span<const WeightedSample> places) {
         at.push_back(
             {{indirect.tree.patch(place.element).at(place.uv), indirect.tree.region(place.element)}, places[k].weight});
     }
-    // Noise as large as the error requested does no harm: that of hundreds of points is averaged. Sums have no other.
+    // Noise as large as the requested error is acceptable, since that of hundreds of points is averaged. Sums have no
+    // other noise.
     const double resolved = (options.summed ? 0.5 : 1) * options.error * mean_reflected;
     const unsigned rays = options.summed ? ResidualSampler::rays_beside_sums : certificate_rays(0);
     plan = plan_check(check, stage, b, at, hash(options.seed, 3), {rays * resolved * resolved, !options.summed});
 }
 
-/// Mean reflected radiosity of every room as the method found it, W/m^2; one entry where all is one room.
+/// Returns the mean reflected radiosity of every room as found by the method, W/m^2; one entry if the scene is one
+/// room.
 std::vector<double> Certifier::Content::mean_by_room() const {
     if (stage.rooms.count() == 0) return {mean_reflected};
     std::vector<double> out(stage.rooms.count());
@@ -167,7 +172,7 @@ std::vector<double> Certifier::Content::mean_by_room() const {
     return out;
 }
 
-/// One more look: the residual at stratified points, twice each.
+/// Measures the residual at further stratified points, twice at each.
 void Certifier::Content::measure_residuals() {
     const std::uint64_t seed = looks == 0 ? options.seed : hash(options.seed, looks);
     const std::vector<WeightedSample> places = options.places.empty()
@@ -181,10 +186,10 @@ void Certifier::Content::measure_residuals() {
     ++looks;
 }
 
-/// The mean residual of each leaf of the coarse mesh; `first`: the share of the first of the two gathers of every
+/// Returns the mean residual of each leaf of the coarse mesh. `first`: weight of the first of the two gathers of every
 /// sample.
 std::vector<Spectrum> Certifier::Content::mean_residuals(double first) const {
-    // A region in several rooms is one in each.
+    // A region that extends over several rooms forms one group in each.
     const std::size_t regions = stage.scene.regions().size(), rooms = std::max<std::size_t>(1, stage.rooms.count());
     std::vector<LeafResidual> known;
     for (const ResidualSample& s : samples)
@@ -197,10 +202,11 @@ std::vector<Spectrum> Certifier::Content::mean_residuals(double first) const {
     return exitance::mean_residuals(light.tree, light.numbering, group_of_leaf, regions * rooms, known);
 }
 
-/// Corrects errors of B by what is certain of them: where all that is emitted is absorbed, and of the delivered light
-/// as much, the error dE of irradiance has int (1 - rho) dE dA = 0. Samples tell a mean residual with noise that a
-/// bright room's many reflections make larger than the error; so as much residual is added everywhere alike as makes it
-/// right; in rooms of different light by this, as the noise is.
+/// Corrects the errors of B such that flux is conserved. If all emitted light is absorbed, and of the delivered light
+/// the same amount, the error dE of irradiance satisfies int (1 - rho) dE dA = 0. The samples give a mean residual with
+/// noise that the many reflections of a bright room may amplify beyond the error itself. The same residual is therefore
+/// added everywhere such that the integral vanishes. With several rooms, it is proportional to the light of the room,
+/// like the noise.
 void Certifier::Content::balance(std::span<const Spectrum> residuals, std::span<Spectrum> errors) const {
     std::vector<Spectrum> arriving(rho.size());
     H.gather(errors, arriving);
@@ -218,21 +224,22 @@ void Certifier::Content::balance(std::span<const Spectrum> residuals, std::span<
     }
 }
 
-/// The coarse response to the mean residuals, less those themselves; `first`: the share of the first of the two gathers
-/// of every sample, 0.5 of both alike.
+/// Returns the coarse response to the mean residuals, minus these residuals. `first`: weight of the first of the two
+/// gathers of every sample; 0.5: equal weights.
 std::vector<Spectrum> Certifier::Content::response_to(double first, const RayRows& rows) const {
     const std::vector<Spectrum> rhs = mean_residuals(first);
     std::vector<Spectrum> response = respond({rows, rho, rhs, area}, calibrated::refined_residual);
-    if (options.keeps_flux && !options.summed) balance(rhs, response);  // sums have no noise to correct
+    if (options.keeps_flux && !options.summed) balance(rhs, response);  // sums have no noise
     for (std::size_t i = 0; i < rhs.size(); ++i) response[i] -= rhs[i];
     return response;
 }
 
-/// The smooth part of the error, by leaf number of the coarse mesh. The responses to both gathers have it in common,
-/// and noise of their rays apart: in every room the mean of both is made as large as what they agree on, in the mean
-/// square.
+/// Returns the smooth part of the error, by leaf number of the coarse mesh. The responses to the two gathers share it,
+/// while the noise of their rays is independent. In every room, the mean of both is scaled such that its mean square is
+/// the mean product of the two responses.
 std::vector<Spectrum> Certifier::Content::late_response() const {
-    // Light of a lighter room has to be told from noise in a darker one; where all is one room, means say enough.
+    // In a dark room, light from a brighter room must be distinguished from noise. If the scene is one room, the mean
+    // is accurate enough.
     if (options.summed || stage.rooms.count() == 0) return response_to(0.5, H);
     std::vector<Spectrum> one = response_to(1, H);
     const std::vector<Spectrum> other = response_to(0, *other_H);
@@ -250,7 +257,8 @@ std::vector<Spectrum> Certifier::Content::late_response() const {
     return one;
 }
 
-/// Every room by itself; parts of the residual are then those of the rooms, each by what it may have.
+/// Estimates the error of each room. The parts of the residual are then averaged over the rooms, each relative to its
+/// allowed error.
 void Certifier::Content::judge_rooms(Certificate& out) {
     const std::size_t count = stage.rooms.count();
     const std::vector<double> found = mean_by_room();
@@ -321,15 +329,16 @@ Certificate Certifier::Content::judge() {
         out.local = std::sqrt(std::max(0.0, local_squared / told)) / mean_reflected;
         out.method = std::sqrt(std::max(0.0, method_squared / told)) / mean_reflected;
     }
-    // Less than its own uncertainty cannot be claimed.
+    // The estimate is at least as large as its own uncertainty.
     out.estimate = std::sqrt(std::max(error.mean, error.standard_error)) / mean_reflected;
-    out.uncertainty = 0.5 * error.standard_error / (out.estimate * mean_reflected * mean_reflected);
+    if (out.estimate > 0)
+        out.uncertainty = 0.5 * error.standard_error / (out.estimate * mean_reflected * mean_reflected);
     out.bound = std::max(out.estimate, constant * std::sqrt(upper) / mean_reflected);
     judge_rooms(out);
     return out;
 }
 
-/// Every body by points of its own; where there is only one, it is the whole.
+/// Measures the error of every body at points on it. A single body has the error of the scene.
 void Certifier::Content::look_at_bodies(Certificate& out) {
     if (!options.bodies || !options.places.empty()) return;
     if (options.bodies->all.size() == 1) {
@@ -345,7 +354,7 @@ void Certifier::Content::look_at_bodies(Certificate& out) {
         if (body.error) out.worst_body = std::max(out.worst_body.value_or(0), *body.error);
 }
 
-/// Adds what the coarse response misses, as far as paths tell it for certain.
+/// Adds the error that the coarse response lacks if paths find it to be significant.
 void Certifier::Content::check_late(Certificate& out) {
     if (options.bounces >= 0 || options.summed || !options.places.empty()) return;
     const LatePaths by_paths(stage, indirect, b, check, options.direct_in_elements);
@@ -354,11 +363,12 @@ void Certifier::Content::check_late(Certificate& out) {
     if (misfit.mean_square <= 2 * misfit.standard_error) return;
     const double more = std::sqrt(misfit.mean_square) / mean_reflected;
     out.estimate = std::hypot(out.estimate, more), out.bound = std::hypot(out.bound, more);
+    if (stage.rooms.count() == 0) out.worst_room = out.of_rooms = rooms[0].error = out.estimate;
 }
 
 void Certifier::Content::tell_p99(Certificate& out) {
     constexpr double share = 0.01;  // given by the name
-    constexpr unsigned most_rays = 1 << 14;
+    constexpr unsigned max_rays = 1 << 14;
     std::vector<WeightedError> points;
     std::vector<unsigned> rays;
     double mean_square = 0;
@@ -374,7 +384,7 @@ void Certifier::Content::tell_p99(Certificate& out) {
     }
     const ResidualSampler sampler = this->sampler();
     const auto by_more_rays = [&](std::span<const std::size_t> which, unsigned factor, std::span<TwoErrors> error) {
-        const auto rays_at = [&](std::size_t i) { return std::min(most_rays, factor * samples[i].rays / 2); };
+        const auto rays_at = [&](std::size_t i) { return std::min(max_rays, factor * samples[i].rays / 2); };
         for (std::size_t i : which) out.rays += 2 * rays_at(i);
         shared_ranges(
             which.size(), 1,
@@ -407,8 +417,8 @@ std::vector<FaceError> Certifier::surface_errors() const {
     const Content& c = *content_;
     if (c.rooms.empty()) return {};
     const Scene& scene = c.stage.scene;
-    // Points of a body that was looked at closely check direct light at more hits: where they suffice, they replace the
-    // others of a face.
+    // The points of bodies that were measured at further points check direct light at more hits. If a face has enough
+    // of them, they replace its other points.
     std::vector<PointError> points = c.body_points;
     Field<SurfaceId, std::size_t> close(scene.surfaces().size(), 0);
     for (const PointError& p : points) ++close[p.surface];
@@ -435,8 +445,8 @@ Certificate Certifier::look() {
 
 void Certifier::look_at_bodies(Certificate& certificate) {
     if (content_->samples.empty()) return;
+    content_->check_late(certificate);  // before the bodies: a single one has the error of the scene
     content_->look_at_bodies(certificate);
-    content_->check_late(certificate);
 }
 
 const std::vector<BodyError>& Certifier::bodies() const {

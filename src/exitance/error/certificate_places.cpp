@@ -5,8 +5,8 @@
 namespace exitance {
 namespace {
 
-/// A number in [0, 1) moved towards both ends, where it is 1 / share as dense: elements are most wrong at their edges,
-/// beside corners and contacts, where light varies faster than any polynomial.
+/// Maps a number in [0, 1) such that the density is higher by 1 / share near both ends. Elements have their largest
+/// errors at edges and beside corners and contacts, where light varies faster than any polynomial.
 struct TowardsEnds {
     double at, share;
 
@@ -20,7 +20,8 @@ std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementT
                                               const CertificateOptions& options, std::uint64_t seed) {
     const Field<ElementId, LocalPassReport::Leaf>* const known = options.leaves;
     const std::vector<ElementId> leaves = tree.leaves();
-    // Where rooms are judged apart, all are looked at alike, and errors count by what is allowed there.
+    // If rooms are judged separately, all get equally dense points, and errors are weighted by the allowed error of the
+    // room.
     const auto error_at = [&](ElementId e) {
         const double allowed = options.allowed_in.empty() ? 1 : options.allowed_in[stage.rooms.of(tree, e)];
         return std::pow(LocalPassReport::known(*known, tree, e).expected_error / allowed, 2);
@@ -31,19 +32,19 @@ std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementT
         error += known ? stage.counted_area(tree, e) * error_at(e) : 0;
         in_gaps += narrow[e] ? stage.counted_area(tree, e) : 0;
     }
-    constexpr int of_left_out = 10;  // one of so many
+    constexpr int excluded_divisor = 10;  // density of points on excluded sides, as a divisor
     const double mean_error = error / area;
     const double share = calibrated::narrow_points;
     const double of_narrow = in_gaps > 0 ? share / (1 - share) * area / in_gaps : 0;
     const std::size_t count = options.points;
     const auto density = [&](ElementId e) {
-        const double seldom = stage.is_left_out(tree.region(e)) ? 1.0 / of_left_out : 1;
+        const double reduction = stage.is_left_out(tree.region(e)) ? 1.0 / excluded_divisor : 1;
         const double expected = mean_error > 0 ? 0.5 + 0.5 * error_at(e) / mean_error : 1.0;
-        return seldom * stage.rooms.weight(tree, e) * (expected + (narrow[e] ? of_narrow : 0));
+        return reduction * stage.rooms.weight(tree, e) * (expected + (narrow[e] ? of_narrow : 0));
     };
     double total = 0;
     for (ElementId e : leaves) total += tree.area(e) * density(e);
-    const double share_of_all = total / stage.area;  // 1 where nothing is left out or narrow
+    const double share_of_all = total / stage.area;  // 1 if no leaf is excluded or narrow
     const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::certificate)));
     std::vector<WeightedSample> out;
     double before = 0;

@@ -8,8 +8,8 @@
 namespace exitance {
 namespace {
 
-/// A furnace, or several apart, whose exact indirect light is known everywhere, with an error of a known size planted
-/// in it, by that light.
+/// One or more separate furnaces with known exact indirect light, and a delivered function with a planted error, given
+/// relative to the emitted light.
 struct PlantedError {
     double rho = 0.5, exact = rho / (1 - rho);  // E_ind of M = 1
     Scene scene;
@@ -39,13 +39,13 @@ struct PlantedError {
         }
     }
 
-    /// What a region emits, and hence the direct light on it.
+    /// Returns the exitance of a region, which is also the direct light on it.
     double emitted(RegionId region) const { return mean(scene.material(region).exitance); }
     double reflected(const ElementLocator& locator, RegionId region, const Point& y) const {
         return rho * (emitted(region) + mean(delivered.at(locator.find(region, y))));
     }
 
-    /// What the last of so many looks says.
+    /// Returns the certificate after this many calls of `look`.
     Certificate certificate(std::uint64_t seed, int looks = 1, std::size_t points = 1280,
                             bool keeps_flux = false) const {
         const ElementLocator locator(delivered.tree, scene.regions().size());
@@ -57,7 +57,7 @@ struct PlantedError {
         return certifier.look();
     }
 
-    /// That with the 99th percentile.
+    /// Returns a certificate that includes the 99th percentile.
     Certificate with_p99(std::uint64_t seed) const {
         const ElementLocator locator(delivered.tree, scene.regions().size());
         const PointwiseLight b(
@@ -68,7 +68,7 @@ struct PlantedError {
         return out;
     }
 
-    /// Errors of rooms, the largest room first.
+    /// Returns the errors of the rooms, in descending order of area.
     std::vector<RoomError> rooms(std::uint64_t seed) const {
         const ElementLocator locator(delivered.tree, scene.regions().size());
         const PointwiseLight b(
@@ -87,7 +87,7 @@ struct PlantedError {
         return certifier.rooms();
     }
 
-    /// The same by sums over the elements.
+    /// Returns the certificate from sums over the elements, without rays.
     Certificate summed_certificate(std::uint64_t seed) const {
         ElementFunction reflected = delivered;
         for (std::array<float, bands>& value : reflected.values)
@@ -97,7 +97,7 @@ struct PlantedError {
         return Certifier(stage, light, delivered, unread, {.error = 0.02, .seed = seed, .summed = &summed}).look();
     }
 
-    /// Relative RMS of the planted error of B.
+    /// Returns the relative RMS of the planted error of B.
     double error(const std::function<double(const Point&)>& planted) const {
         double square = 0;
         for (ElementId e : light.numbering.leaves)
@@ -113,7 +113,7 @@ double smooth(const Point&) {
     return 0.06;
 }
 
-TEST(Certificate, KnowsMoreByEveryLook) {
+TEST(Certificate, IsMoreAccurateAfterMorePoints) {
     const PlantedError planted(rough);
     const auto spread = [&](int looks) {
         constexpr std::uint64_t seeds = 16;
@@ -127,16 +127,16 @@ TEST(Certificate, KnowsMoreByEveryLook) {
     };
     const double once = spread(1), four_times = spread(4);
     EXPECT_LT(once, 0.05);
-    EXPECT_LT(four_times, 0.75 * once);  // half as much; sixteen seeds tell each to a sixth
+    EXPECT_LT(four_times, 0.75 * once);  // expected: 0.5; sixteen seeds determine each spread to a sixth
 }
 
-/// On one leaf of five hundred, by chance.
+/// An error on one leaf in five hundred, chosen at random.
 double rare(const Point& p) {
     const double chance = 43758.5453 * std::abs(std::sin(127.1 * p.x + 311.7 * p.y + 74.7 * p.z));
     return chance - std::floor(chance) < 0.002 ? 1 : 0;
 }
 
-TEST(Certificate, NoticesWhatFewOfManyElementsMiss) {
+TEST(Certificate, FindsErrorsOfFewElements) {
     const PlantedError planted(rare, 0.012);
     const std::size_t points = CertificateOptions::points_for(planted.light.numbering.leaves.size());
     ASSERT_GT(points, 5000u);
@@ -145,11 +145,12 @@ TEST(Certificate, NoticesWhatFewOfManyElementsMiss) {
     constexpr std::uint64_t seeds = 2;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed)
         square += std::pow(planted.certificate(seed, 1, points).residual / truth - 1, 2) / seeds;
-    // Some twelve points meet an error, and its mean square is known to a root of twelve; by 1280 points two or three.
+    // About twelve points hit an error, so that the relative error of its mean square is 1 / sqrt(12). Of 1280 points,
+    // only two or three would hit one.
     EXPECT_LT(std::sqrt(square), 0.25);
 }
 
-/// A furnace whose projection of direct light is wrong by a factor, and whose delivered light agrees with that.
+/// A furnace whose projected direct light is wrong by a factor, and whose delivered light is consistent with it.
 struct WrongProjection {
     static constexpr double factor = 1.2;
     PlantedError furnace{[](const Point&) { return factor - 1; }};  // E_ind = factor rho / (1 - rho), rho = 1/2
@@ -158,7 +159,7 @@ struct WrongProjection {
     PointwiseLight b{[this](RegionId region, const Point& y) {
         return Spectrum(furnace.rho * (factor + mean(furnace.delivered.at(locator.find(region, y)))));
     }};
-    /// Relative to the mean reflected radiosity rho (1 + E_ind): the error of E_ind is 0.2 of 1.
+    /// Relative to the mean reflected radiosity rho (1 + E_ind): E_ind = 1 has an error of 0.2.
     static constexpr double truth = (factor - 1) / 2;
 
     double estimate(std::uint64_t seed, const ProjectedDirect& told, const SummedLight* summed = nullptr) const {
@@ -168,14 +169,14 @@ struct WrongProjection {
     }
 };
 
-TEST(Certificate, FindsAFaultOfTheProjectionThatTheDeliveredLightShares) {
+TEST(Certificate, FindsAnErrorOfTheProjectionThatTheDeliveredLightShares) {
     const WrongProjection planted;
     const ProjectedDirect told{&planted.projected, Spectrum(1.0)};
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-        EXPECT_LT(planted.estimate(seed, {}), 0.01);  // unchecked, it is blind to it
+        EXPECT_LT(planted.estimate(seed, {}), 0.01);  // without the check, the error is not found
         EXPECT_NEAR(planted.estimate(seed, told), planted.truth, 0.1 * planted.truth);
     }
-    // The same where light is summed over elements: these hold what the projection sends.
+    // With light summed over elements, which include the projected light.
     ElementFunction reflected = planted.furnace.delivered;
     for (std::array<float, bands>& value : reflected.values)
         for (float& v : value) v = static_cast<float>(planted.furnace.rho * (planted.factor + static_cast<double>(v)));
@@ -190,23 +191,24 @@ TEST(Certificate, FindsNoErrorInAnExactFurnace) {
     EXPECT_LT(furnace.summed_certificate(1).bound, 1e-5);
 }
 
-/// In the elements beside two facing edges of the floor, and nowhere else.
+/// An error only in the elements beside two opposite edges of the floor.
 double beside_edges(const Point& p) {
     const double from_wall = std::min(p.x, 2 - p.x);
     return (from_wall < 0.25 && p.z < 0.5) || (p.z < 0.25 && from_wall < 0.5) ? 0.1 : 0;
 }
 
-TEST(Certificate, SeesWhatTwoFacesReflectToEachOtherBesideAnEdge) {
+TEST(Certificate, IncludesInterreflectionBesideAnEdge) {
     const PlantedError planted(beside_edges, 0.2);
     const double truth = planted.error(beside_edges);
     double sum = 0;
     constexpr std::uint64_t seeds = 8;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) sum += planted.summed_certificate(seed).estimate / seeds;
-    // Means of larger elements are a little of what is beside the edge, too.
+    // The means of larger elements also include some of the error beside the edge.
     EXPECT_NEAR(sum, truth, 0.05 * truth);
 }
 
-/// On one side of a box as much too light as it is too dark on the other: as much is absorbed as without.
+/// An error that is positive in one half of a box and equally negative in the other, so that the absorbed light is
+/// unchanged.
 double balanced(const Point& p) {
     return (p.x < 1 ? 100 : -100) * rough({std::abs(p.x - 1), p.y, p.z});
 }
@@ -224,7 +226,7 @@ TEST(Certificate, IsNotMisledByNoiseThatABrightRoomReflectsAHundredTimes) {
         EXPECT_LT(told, 1.25 * truth);
         without += std::abs(planted.certificate(seed, 1, points, false).estimate / truth - 1) / seeds;
     }
-    EXPECT_GT(without, 0.25);  // else the test would tell nothing
+    EXPECT_GT(without, 0.25);  // otherwise the test would prove nothing
 }
 
 struct Planted {
@@ -244,15 +246,15 @@ TEST_P(EveryError, IsEstimatedAndBounded) {
         const Certificate c = planted.certificate(seed);
         EXPECT_GE(c.bound, truth * (1 - 1e-6));  // values are stored in single precision
         within += truth <= 1.25 * c.estimate + 1e-3 && c.estimate <= 2 * truth + 1e-3;
-        // Without noise. The residual holds the rough one's first reflection as well, a twentieth more.
+        // Sums have no noise. The residual of the rough error includes its first reflection, which adds a twentieth.
         const Certificate summed = planted.summed_certificate(seed);
         EXPECT_GE(summed.bound, truth * (1 - 1e-6));
         EXPECT_NEAR(summed.estimate, truth, 0.07 * truth);
     }
-    EXPECT_GE(within, 9);  // the estimate is right nearly always; its resolution is a fifth of the error asked for
+    EXPECT_GE(within, 9);  // its resolution is a fifth of the requested error
 }
 
-/// A furnace with a plate above its floor, which changes nothing: light is as even within the gap.
+/// A furnace with a plate above its floor. The plate does not change the light, which is uniform in the gap as well.
 Scene furnace_with_plate(double gap) {
     constexpr double rho = 0.5, side = 0.2;
     SceneDescription d;
@@ -266,19 +268,19 @@ Scene furnace_with_plate(double gap) {
                                                          {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
     for (std::vector<std::uint32_t> face : box) {
         d.faces.push_back({face, 0, 0, 1});
-        std::reverse(face.begin(), face.end());  // the plate is seen from outside
+        std::reverse(face.begin(), face.end());  // the plate's faces point outwards
         for (std::uint32_t& corner : face) corner += 8;
         d.faces.push_back({face, 0, 0, 2});
     }
     return std::move(*make_scene(std::move(d)).scene);
 }
 
-/// In the gap alone, on both of its sides: 0.6% of the area.
+/// An error only in the gap, on both of its sides: 0.6% of the area.
 double in_gap(const Point& p) {
     return p.z < 0.015 && p.x > 0.4 && p.x < 0.6 && p.y > 0.4 && p.y < 0.6 ? 0.5 : 0;
 }
 
-TEST(Certificate, FindsWhatIsWrongInAGapTooSmallToCountByArea) {
+TEST(Certificate, FindsErrorsInAGapOfLittleArea) {
     const PlantedError planted(in_gap, 0.1, furnace_with_plate(0.01));
     const double truth = planted.error(in_gap);
     ASSERT_GT(truth, 0.015);
@@ -286,8 +288,9 @@ TEST(Certificate, FindsWhatIsWrongInAGapTooSmallToCountByArea) {
     constexpr std::uint64_t seeds = 8;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed)
         square += std::pow(planted.certificate(seed).residual / truth - 1, 2) / seeds;
-    // Spread by area, eight points meet it, and its square is known to a third. A fifth of all points does, and what is
-    // left is that two sides of a gap reflect to each other what both are off by: the residual lacks half of it.
+    // Distributed by area, eight points would hit the error, and its square would be known to a third. Here, a fifth of
+    // all points hits it. The remaining deviation is systematic: the two sides of the gap reflect their errors to each
+    // other, so that the residual contains only half of the error.
     EXPECT_LT(std::sqrt(square), 0.56);
     double told = 0;
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) told += planted.certificate(seed).estimate / seeds;
@@ -295,7 +298,7 @@ TEST(Certificate, FindsWhatIsWrongInAGapTooSmallToCountByArea) {
     EXPECT_LT(told, 2 * truth);
 }
 
-TEST(Certificate, DoesNotCountWhatIsDeliveredBelowThingsThatStandOnIt) {
+TEST(Certificate, IgnoresDeliveredLightOnCoveredParts) {
     const PlantedError planted(in_gap, 0.1, furnace_with_plate(0));
     double square = 0;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) square += std::pow(planted.certificate(seed).estimate, 2) / 4;
@@ -303,7 +306,7 @@ TEST(Certificate, DoesNotCountWhatIsDeliveredBelowThingsThatStandOnIt) {
     EXPECT_LT(std::sqrt(square), 1e-5);  // values are stored in single precision
 }
 
-/// Two furnaces apart from each other, one a hundredth as bright.
+/// Two separate furnaces, one a hundredth as bright as the other.
 Scene bright_and_dark_furnace() {
     SceneDescription d;
     d.materials = {{"bright", Spectrum(0.5), Spectrum(1.0)}, {"dark", Spectrum(0.5), Spectrum(0.01)}};
@@ -322,24 +325,24 @@ Scene bright_and_dark_furnace() {
     return std::move(*make_scene(std::move(d)).scene);
 }
 
-/// Not in the dark room.
+/// An error only in the bright room.
 double rough_where_bright(const Point& p) {
     return p.x < 4 ? 3 * rough(p) : 0;
 }
 
-TEST(Certificate, OfADarkRoomKnowsNothingOfNoiseInABrightOne) {
+TEST(Certificate, DoesNotAddNoiseOfABrightRoomToADarkOne) {
     const PlantedError planted(rough_where_bright, 0.25, bright_and_dark_furnace());
     ASSERT_EQ(planted.stage.rooms.count(), 2u);
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         const std::vector<RoomError> rooms = planted.rooms(seed);
         EXPECT_GT(rooms[0].error, 0.05);
-        // The bright room's noise is some percent of its light, and several times that of the dark room's.
+        // The noise of the bright room is a few percent of its light, and several times the light of the dark room.
         EXPECT_LT(rooms[1].error, 0.05);
     }
 }
 
-/// Two furnaces apart, the second a sixtieth as large, with one error everywhere in the second alone.
-TEST(Certificate, MeasuresSmallBodiesByPointsOfTheirOwn) {
+/// Two separate furnaces, the second with 1/64 of the first one's area, and a constant error only in the second.
+TEST(Certificate, MeasuresSmallBodiesAtAdditionalPoints) {
     SceneDescription d;
     d.materials = {{"wall", Spectrum(0.5), Spectrum(1.0)}};
     d.groups = {"large", "small"};
@@ -371,20 +374,21 @@ TEST(Certificate, MeasuresSmallBodiesByPointsOfTheirOwn) {
         ASSERT_EQ(certifier.bodies().size(), 2u);
         EXPECT_GE(certifier.bodies()[1].points, 8u);
         ASSERT_TRUE(found.worst_body);
-        // E_ind is 1.2 in place of 1, and its body's mean reflected radiosity is told with that: 0.1 / 1.1.
+        // E_ind is 1.2 instead of 1. The error is relative to the body's mean reflected radiosity, which includes it:
+        // 0.1 / 1.1.
         EXPECT_NEAR(*found.worst_body, 0.1 / 1.1, 0.15 * 0.1);
         EXPECT_LT(certifier.bodies()[0].error.value_or(1), 0.01);
-        EXPECT_LT(found.estimate, 0.03);  // by area it hardly counts
+        EXPECT_LT(found.estimate, 0.03);  // weighted by area, the error is negligible
     }
 }
 
-TEST(Certificate, TellsThe99thPercentileWithoutNoise) {
-    // A tenth of the radiosity on half of the elements up, on the others down: everything is off by as much.
+TEST(Certificate, FindsThe99thPercentileWithoutNoise) {
+    // The error is +0.1 on half of the elements and -0.1 on the others, so that its size is the same everywhere.
     const PlantedError planted(rough);
     const double everywhere = planted.error(rough);
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         const Certificate told = planted.with_p99(seed);
-        // What rays read beside the point differs from place to place by half of that at most.
+        // The light that the rays read around a point varies by at most half of that.
         EXPECT_GT(told.p99, 0.95 * everywhere);
         EXPECT_LT(told.p99, 1.5 * everywhere);
     }

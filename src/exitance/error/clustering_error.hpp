@@ -4,8 +4,9 @@
 
 namespace exitance {
 
-/// RMS error of rho E_dir over all surfaces, W/m^2, that clusters of emitters leave where light is asked for at points
-/// with this accuracy; 0 where all of it is exact. Asked at a few hundred leaves of `direct`, spread over their area.
+/// Returns the RMS error of rho E_dir over all surfaces, W/m^2, that is due to clusters of emitters if light is
+/// evaluated at points with this accuracy; 0 if all direct light is exact. Estimated at a few hundred leaves of
+/// `direct`, distributed over their area.
 double clustering_error(const Stage& stage, const DirectProjection& direct, const LightAccuracy& accuracy);
 
 }  // namespace exitance

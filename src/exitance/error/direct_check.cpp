@@ -58,20 +58,20 @@ double DirectCheck::probability(const CheckPlan& plan, const HitPoint& hit) cons
 
 namespace {
 
-constexpr unsigned pilot_rays = 8;  // per place: enough for the spread between rays of one place
+constexpr unsigned pilot_rays = 8;  // per place; enough to estimate the variance between rays of one place
 
 /// One hit of a pilot's ray, with its terms in rho E, mean over bands.
 struct PilotHit {
-    double weight = 0;   ///< Of one ray in the mean over all rays.
-    double step = 0;     ///< Square of the difference by one step, (W/m^2)^2;
-    double exact = -1;   ///< exactly; below 0: not evaluated.
-    double misfit = 0;   ///< As the projection claims it, in rho E at the receiver, W/m^2.
-    double claimed = 0;  ///< The same at the hit.
+    double weight = 0;   ///< Weight of the ray in the mean over all rays.
+    double step = 0;     ///< Square of the difference found by one step of a path, (W/m^2)^2.
+    double exact = -1;   ///< Square of the exact difference, (W/m^2)^2; negative: not evaluated.
+    double misfit = 0;   ///< Misfit of the projection, in rho E at the receiver, W/m^2.
+    double claimed = 0;  ///< Misfit of the projection at the hit, W/m^2.
 };
 
-/// What a pilot finds at one place: squares of terms by one ray.
+/// Results of the pilot at one place: squares of the terms of one ray.
 struct PilotFound {
-    double gather = 0;  ///< Variance of the gather, by the weight.
+    double gather = 0;  ///< Variance of the gather without a check, times the place's weight in the estimate.
     std::array<PilotHit, pilot_rays> hits;
 };
 
@@ -101,7 +101,7 @@ PilotFound pilot_at(const DirectCheck& check, const Stage& stage, const Reflecte
             return rho2 * mean(term * term);
         };
         told.step = by(false);
-        if (k == 0) told.exact = by(true);  // exact light may be expensive: one hit of a place
+        if (k == 0) told.exact = by(true);  // exact light may be expensive: only one hit per place
     }
     out.gather =
         place.weight * rho2 * std::max(0.0, (square / n - mean(found.irradiance * found.irradiance)) * n / (n - 1));
@@ -146,13 +146,14 @@ CheckPlan plan_check(const DirectCheck& check, const Stage& stage, const Reflect
     const PilotSums V = sums_of(found);
     const double beside =
         std::max({other.gather_is_noisy ? V.gather : 0, other.tolerated, std::numeric_limits<double>::min()});
-    // Single steps, at all hits alike.
-    constexpr double least_share = 1.0 / 256;  // finds what the projection does not know to be wrong
+    // First option: single steps, with equal probability at all hits.
+    constexpr double min_share = 1.0 / 256;  // finds errors of which the projection has no measure
     const double step_work = check.paths().rays_per_step(), exact_work = std::max(1.0, check.exact_work());
-    CheckPlan step{false, std::clamp(std::sqrt(V.step / (beside * step_work)), least_share, 1.0)};
+    CheckPlan step{false, std::clamp(std::sqrt(V.step / (beside * step_work)), min_share, 1.0)};
     step.variance = V.step / step.share, step.work = step.share * step_work;
-    // Exact, in proportion to the misfit: the variance is least where what is known of it is true.
-    CheckPlan exact{true, least_share * std::min(1.0, step_work / exact_work), 1 / std::sqrt(beside * exact_work)};
+    // Second option: exact light, with a probability proportional to the misfit. The variance is smallest if the misfit
+    // is correct.
+    CheckPlan exact{true, min_share * std::min(1.0, step_work / exact_work), 1 / std::sqrt(beside * exact_work)};
     double weight = 0;
     for (const PilotFound& p : found)
         for (const PilotHit& hit : p.hits) {
@@ -162,7 +163,7 @@ CheckPlan plan_check(const DirectCheck& check, const Stage& stage, const Reflect
             weight += hit.weight;
         }
     if (weight > 0) exact.variance *= V.weight / weight, exact.work *= V.weight / weight;
-    // A difference at fewer hits than were evaluated may be as large as one by a step.
+    // Differences that are rarer than one per evaluated hit may be as large as those found by single steps.
     exact.variance += V.step / static_cast<double>(places.size());
     for (CheckPlan* plan : {&step, &exact}) plan->gather_variance = V.gather;
     const auto cost = [&](const CheckPlan& plan) { return (beside + plan.variance) * (1 + plan.work); };

@@ -25,7 +25,7 @@ Place look(const RadiosityFunction& light, const Locator& locator, const ProbePo
     if (!is_in_open(light.stage(), point.x, point.n, region)) return {};
     const Spectrum direct = light.stage().direct.irradiance(point.x, point.n, region, visibility);
     const Spectrum E = light.elements(region, point.x) + light.exact_share() * direct;
-    // Two gathers of half the rays: their mean is the reference, their difference its noise.
+    // The mean of two gathers with half of the rays each is the reference; their difference is its noise.
     Spectrum half[2];
     for (std::uint64_t k = 0; k < 2; ++k)
         half[k] = light.gathered(point, region, rays / 2,
@@ -62,7 +62,7 @@ ErrorPercentile find_error_percentile(const RadiosityFunction& light, std::size_
     level /= n;
     std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.error < b.error; });
     out.median = places[places.size() / 2].error / level;
-    // Given by its name.
+    // Given by the definition of p99.
     out.p99 = places[std::min(places.size() - 1, static_cast<std::size_t>(0.99 * n))].error / level;
     out.noise = std::sqrt(noise / n) / level;
     return out;

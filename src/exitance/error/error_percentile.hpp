@@ -5,16 +5,17 @@
 
 namespace exitance {
 
-/// How far a solution's irradiance is off at most places.
+/// Error of a solution's irradiance at typical places.
 struct ErrorPercentile {
-    double median = 0, p99 = 0;  ///< Of |E - E'|, mean over the bands, relative to the mean of E over all places.
-    double noise = 0;            ///< RMS standard error of E' in the same measure: it is part of the above.
+    /// Percentiles of |E - E'|, mean over bands, relative to the mean of E over all places.
+    double median = 0, p99 = 0;
+    double noise = 0;  ///< RMS standard error of E', in the same measure; included in the percentiles.
     std::size_t points = 0;
 };
 
-/// Compares E with E' = E_dir + H b, exact direct light and a gather of its own, at `count` places uniform in area that
-/// lie in the open: the residual of the radiosity equation there, which is the error but for what the light gathered is
-/// off as a whole. `rays` a place, a power of two. O(count x rays).
+/// Compares E with E' = E_dir + H b (exact direct light and a new gather) at `count` places that are uniform in area;
+/// covered places are skipped. The difference is the residual of the radiosity equation. It equals the error except for
+/// a common error of the gathered light. `rays`: per place, a power of two. O(count x rays).
 ErrorPercentile find_error_percentile(const RadiosityFunction& light, std::size_t count, unsigned rays,
                                       Progress& progress, const StopRequest& stop);
 

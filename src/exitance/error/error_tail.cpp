@@ -23,10 +23,10 @@ double error_below(std::span<const WeightedError> known, WeightedError rest, dou
         if (!(rest.error > 0) || t >= most) return 0.0;
         return rest.weight * std::erfc(t / (std::numbers::sqrt2 * rest.error));
     };
-    // The share above an error grows as that falls: by steps at those that are known, evenly between them.
+    // The share of the area above an error t grows as t decreases: in steps at known errors, continuously between them.
     double counted = 0, lower = 0;
     double upper = falling.empty() ? 0 : falling.front().error;
-    upper = std::max(upper, 12 * rest.error);  // erfc leaves less than anything there
+    upper = std::max(upper, 12 * rest.error);  // where erfc is negligible
     for (const WeightedError& e : falling) {
         if (counted + above(e.error) > share) {
             lower = e.error;
@@ -56,8 +56,9 @@ double error_below(std::span<const WeightedError> noisy, std::span<const unsigne
         again += noisy[falling[count]].weight, rays_again += rays[falling[count]];
     if (again <= 0) return 0;
     const std::span<const std::size_t> which = std::span(falling).first(count);
-    constexpr int part = 4, most_times = 64;  // of all rays; as many as each had
-    const double times = std::clamp(all_rays / (part * rays_again), 2.0, static_cast<double>(most_times));
+    // Casts a quarter of the rays of all places again, but at most 64 times those of the repeated places.
+    constexpr int part = 4, max_factor = 64;
+    const double times = std::clamp(all_rays / (part * rays_again), 2.0, static_cast<double>(max_factor));
     const auto factor = std::bit_floor(static_cast<unsigned>(times));
     std::vector<TwoErrors> error(count);
     measure(which, factor, error);

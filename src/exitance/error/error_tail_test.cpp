@@ -10,35 +10,36 @@
 namespace exitance {
 namespace {
 
-TEST(ErrorTail, IsAQuantileWhereAllErrorsAreKnown) {
+TEST(ErrorTail, IsAQuantileIfAllErrorsAreKnown) {
     std::vector<WeightedError> known;
     for (int k = 1; k <= 100; ++k) known.push_back({0.01 * k, 0.01});
-    EXPECT_NEAR(error_below(known, {0, 0}, 0.05), 0.95, 0.01 + 1e-12);  // to a step
+    EXPECT_NEAR(error_below(known, {0, 0}, 0.05), 0.95, 0.01 + 1e-12);  // exact to one step
     EXPECT_NEAR(error_below(known, {0, 0}, 0.5), 0.5, 0.01 + 1e-12);
 }
 
-TEST(ErrorTail, IsThatOfGaussWhereNoneIsKnown) {
+TEST(ErrorTail, IsNormalIfNoErrorIsKnown) {
     EXPECT_NEAR(error_below({}, {2, 1}, 0.01), 2 * 2.5758293, 1e-6);  // tables of the normal distribution
 }
 
-TEST(ErrorTail, CountsTheOthersAboveTheKnown) {
-    // A hundredth is known to be at 1; as much of the others must lie above the limit, too, as would make a hundredth.
+TEST(ErrorTail, IncludesTheOthersAboveTheLimit) {
+    // Half a percent of the area is known to have an error of 1. The limit is where as much of the others exceeds it as
+    // makes one percent in all.
     const std::vector<WeightedError> known = {{1, 0.005}};
     EXPECT_NEAR(error_below(known, {0.1, 0.995}, 0.01), 0.1 * 2.8055, 1e-3);  // erfc(2.8055 / sqrt 2) = 0.005025
     EXPECT_DOUBLE_EQ(error_below(std::vector<WeightedError>{{1, 0.02}}, {0.1, 0.98}, 0.01), 1);
 }
 
-TEST(ErrorTail, IsNoLargerThanWhatNoneIsAbove) {
+TEST(ErrorTail, IsNotAboveTheLargestPossibleError) {
     EXPECT_NEAR(error_below({}, {2, 1}, 0.01, 2.5), 2.5, 1e-9);
 }
 
-TEST(ErrorTail, IsNothingWhereNothingIsWrong) {
+TEST(ErrorTail, IsZeroIfAllErrorsAreZero) {
     EXPECT_EQ(error_below({}, {0, 1}, 0.01), 0);
     EXPECT_EQ(error_below(std::vector<WeightedError>{{0, 1}}, {0, 0}, 0.01), 0);
 }
 
-/// Errors that are known by noisy measurements: a thousandth of the area has `large`, a fiftieth `some`, all others are
-/// spread as Gauss has it.
+/// Errors that are known only by noisy measurements: a fiftieth of the area has the error `some`; the others are
+/// normally distributed.
 struct NoisyErrors {
     static constexpr int count = 4000;
     std::mt19937_64 random{7};
@@ -58,7 +59,7 @@ struct NoisyErrors {
     double told() {
         return error_below(measured, std::vector<unsigned>(count, 64), mean_square, 0.01,
                            [&](std::span<const std::size_t> which, unsigned factor, std::span<TwoErrors> error) {
-                               const double left = noise * std::pow(factor, -0.75);  // as Sobol points have it
+                               const double left = noise * std::pow(factor, -0.75);  // like the error of Sobol points
                                for (std::size_t i = 0; i < which.size(); ++i)
                                    for (Spectrum& e : error[i]) e = Spectrum(truth[which[i]] + left * gauss(random));
                            });
@@ -71,23 +72,24 @@ struct NoisyErrors {
     }
 };
 
-TEST(ErrorTail, IsFoundUnderNoiseAsLargeAsIt) {
+TEST(ErrorTail, IsFoundInNoiseOfEqualSize) {
     NoisyErrors planted(0.01, 0.2, 0.1);
     ASSERT_NEAR(planted.true_p99(), 0.2, 1e-12);
     std::vector<double> size;
     for (const WeightedError& e : planted.measured) size.push_back(e.error);
     std::sort(size.begin(), size.end());
-    ASSERT_GT(size[NoisyErrors::count - NoisyErrors::count / 100], 0.21);  // what is measured at first is too large
-    // A third of those at 0.2 seem smaller than many others, and are not measured again: of 1.4% of the area that are,
-    // the limit leaves a hundredth above it, half of the noise of four times the rays, 0.025, below 0.2.
+    ASSERT_GT(size[NoisyErrors::count - NoisyErrors::count / 100], 0.21);  // the first measurement is too large
+    // A third of the places with 0.2 seem to have smaller errors than many others, and are not measured again. The
+    // places that are represent 1.4% of the area. The limit exceeds 0.4% of it and lies below 0.2 by half of the noise
+    // that remains with four times the rays, 0.025.
     EXPECT_NEAR(planted.told(), 0.2, 0.03);
 }
 
-TEST(ErrorTail, IsNoNoiseWhereErrorsAreSmall) {
+TEST(ErrorTail, ContainsNoNoiseIfErrorsAreSmall) {
     NoisyErrors planted(0.01, 0.01, 0.03);
     const double truth = planted.true_p99();
     EXPECT_NEAR(truth, 0.0257, 0.003);
-    // Four times the rays leave noise of 0.0075, which is taken out, but for its spread.
+    // Four times the rays leave a noise of 0.0075, which is subtracted, except for its variation.
     EXPECT_NEAR(planted.told(), truth, 0.35 * truth);
 }
 

@@ -59,15 +59,16 @@ Spectrum LatePaths::sample(const PathTracer::Vertex& x, double a, double b, Rand
 
 LateMisfit LatePaths::misfit(std::span<const ResidualSample> samples, std::span<const Spectrum> late,
                              std::uint64_t seed, std::size_t max_rays) const {
-    constexpr std::size_t most_places = 128;
-    constexpr std::uint32_t least_paths = 4, most_paths = 64;
-    const std::size_t step = (samples.size() + most_places - 1) / most_places,
+    constexpr std::size_t max_places = 128;
+    constexpr std::uint32_t min_paths = 4, max_paths = 64;
+    const std::size_t step = (samples.size() + max_places - 1) / max_places,
                       count = samples.size() / std::max<std::size_t>(1, step);
     if (count < 2) return {};
-    const double rays_per_path = 1 + 2 * check_.paths().rays_per_step();  // of two vertices: most paths are short
+    const double rays_per_path =
+        1 + 2 * check_.paths().rays_per_step();  // for two vertices, since most paths are short
     const auto paths = static_cast<std::uint32_t>(
-        std::clamp(static_cast<double>(max_rays) / (2 * rays_per_path * static_cast<double>(count)), 1.0 * least_paths,
-                   1.0 * most_paths));
+        std::clamp(static_cast<double>(max_rays) / (2 * rays_per_path * static_cast<double>(count)), 1.0 * min_paths,
+                   1.0 * max_paths));
     struct Found {
         double weight = 0, product = 0;
         std::size_t rays = 0;

@@ -9,32 +9,34 @@
 
 namespace exitance {
 
-/// How far a response to residuals is from the one that paths find.
+/// Difference between the coarse response to residuals and the response found by paths.
 struct LateMisfit {
-    double mean_square = 0;     ///< An unbiased estimate over all surfaces, mean over bands, (W/m^2)^2,
-    double standard_error = 0;  ///< and its standard error.
-    std::size_t rays = 0;       ///< That it took.
+    double mean_square = 0;     ///< Unbiased estimate over all surfaces, mean over bands, (W/m^2)^2.
+    double standard_error = 0;  ///< Standard error of `mean_square`.
+    std::size_t rays = 0;       ///< Number of rays cast.
 };
 
-/// The part of the error e = r + rho H e that comes by way of other surfaces, rho H e, by paths. A path starts with one
-/// ray of a gather and ends with probability 1 - rho. At each vertex y it finds the residual there,
+/// Estimates by paths the part rho H e of the error e = r + rho H e, which arrives by way of other surfaces. A path
+/// starts with one ray of a gather and ends with probability 1 - rho at each vertex. At each vertex y it samples the
+/// residual
 ///
-///     E_ind(z) read where the next ray arrives, with the direct light at z checked, less E_ind(y):
+///     E_ind(z), read at the hit z of the next ray, with the direct light at z checked, minus E_ind(y).
 ///
-/// the delivered light is the control variate of the light that the path would find. Nothing that was fitted or
-/// averaged is read.
+/// The delivered light is the control variate of the light that the path would find. No fitted or averaged residuals
+/// are used.
 class LatePaths {
   public:
-    /// `b` reads the delivered function, and so does `indirect`. All must outlive it. `holds_direct`: `indirect` holds
-    /// the light of emitters, too.
+    /// `b` and `indirect` are the delivered function. `holds_direct`: `indirect` includes the emitters' light. All
+    /// arguments must outlive the object.
     LatePaths(const Stage& stage, const ElementFunction& indirect, const ReflectedLight& b, const DirectCheck& check,
               bool holds_direct);
 
-    /// One sample of (H e)(x), W/m^2, and the rays that it took.
+    /// Returns one sample of (H e)(x), W/m^2, and adds the rays cast to `rays`. `a`, `b`: random numbers in [0, 1) for
+    /// the direction of the first ray.
     Spectrum sample(const PathTracer::Vertex& x, double a, double b, RandomStream& random, std::size_t& rays) const;
 
-    /// Compares `late` (by leaf of the coarse mesh) with two independent sets of paths at some of the samples, by about
-    /// `max_rays` rays.
+    /// Compares `late` (one entry per leaf of the coarse mesh) with two independent sets of paths at some of the
+    /// samples. Casts about `max_rays` rays.
     LateMisfit misfit(std::span<const ResidualSample> samples, std::span<const Spectrum> late, std::uint64_t seed,
                       std::size_t max_rays) const;
 

@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// A furnace of reflectance 1/2 whose delivered light E_ind = 1 is everywhere too large by `delta`.
+/// A furnace of reflectance 1/2. Its delivered light is too large by `delta` everywhere; exact is E_ind = 1.
 struct WrongFurnace {
     static constexpr double rho = 0.5, delta = 0.3;
     Scene scene = box_scene(2, 1, 1.5, rho, 1, 1);
@@ -38,10 +38,11 @@ struct WrongFurnace {
     }
 };
 
-// The error of irradiance is e = 1 - (1 + delta) = -delta everywhere; by way of other surfaces comes rho e of it.
-constexpr double late_part = -WrongFurnace::rho * WrongFurnace::rho * WrongFurnace::delta;  // of radiosity
+// The error of irradiance is e = 1 - (1 + delta) = -delta everywhere; the part rho e of it arrives by way of other
+// surfaces.
+constexpr double late_part = -WrongFurnace::rho * WrongFurnace::rho * WrongFurnace::delta;  // of the radiosity
 
-TEST(LatePaths, FindWhatComesByWayOfOtherSurfaces) {
+TEST(LatePaths, FindErrorsThatArriveFromOtherSurfaces) {
     const WrongFurnace furnace;
     RandomStream random(7, Stream::certificate);
     const LatePaths paths(furnace.stage, furnace.delivered, furnace.b, furnace.check, false);
@@ -51,24 +52,24 @@ TEST(LatePaths, FindWhatComesByWayOfOtherSurfaces) {
     constexpr int count = 4000;
     for (int k = 0; k < count; ++k)
         sum += mean(paths.sample(x, random.uniform(), random.uniform(), random, rays)) / count;
-    // A path's value is -delta (1 - rho) times its vertices, of which there are rho / (1 - rho) = 1 in the mean, with a
-    // variance of 2: the mean of 4000 is known to 0.022 of -rho delta.
+    // A path's value is -delta (1 - rho) times its number of vertices, which has a mean of rho / (1 - rho) = 1 and a
+    // variance of 2. The mean of 4000 paths therefore has a standard error of 0.022 times rho delta.
     EXPECT_NEAR(sum, -furnace.rho * furnace.delta, 4 * 0.023 * furnace.rho * furnace.delta);
     EXPECT_GT(rays, 2u * count);
 }
 
-TEST(LatePaths, FindFaultsOfTheCoarseRows) {
+TEST(LatePaths, FindErrorsOfTheCoarseResponse) {
     const WrongFurnace furnace;
     int right = 0, wrong = 0;
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         const LateMisfit none = furnace.misfit(late_part, seed);
         right += none.mean_square <= 2 * none.standard_error;
-        // Rows that find half of the light are off by half of it.
+        // A coarse response that lacks half of the light differs by that half.
         const LateMisfit half = furnace.misfit(0.5 * late_part, seed);
         wrong += half.mean_square > 2 * half.standard_error;
         EXPECT_NEAR(std::sqrt(std::max(0.0, half.mean_square)), -0.5 * late_part, -0.25 * late_part);
     }
-    EXPECT_GE(right, 9);  // two standard errors are passed by chance once in forty
+    EXPECT_GE(right, 9);  // two standard errors are exceeded by chance in 1 of 40 cases
     EXPECT_EQ(wrong, 10);
 }
 

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// A unit square cut into four, those into four, and so on.
+/// A unit square, divided into quarters recursively.
 struct CutSquare {
     ElementTree tree;
     LeafNumbering numbering;
@@ -27,7 +27,8 @@ struct CutSquare {
         const Point p = tree.patch(numbering.leaves[leaf]).centre();
         return p.x < 0.25 && p.y < 0.25;
     }
-    /// Samples in one leaf of `every`: `in_corner` in a sixteenth of the square and 0 elsewhere, and noise.
+    /// Returns samples in one of `every` leaves, chosen at random: noise, plus `in_corner` in a corner of 1/16 of the
+    /// square.
     std::vector<LeafResidual> samples(std::size_t every, double in_corner, double noise, std::uint64_t seed) const {
         std::vector<LeafResidual> out;
         for (std::size_t i = 0; i < numbering.leaves.size(); ++i) {
@@ -44,18 +45,20 @@ struct CutSquare {
     }
 };
 
-TEST(MeanResiduals, AreToldToLeavesWithoutSamplesByTheirNeighbours) {
+TEST(MeanResiduals, OfLeavesWithoutSamplesFollowTheirNeighbours) {
     const CutSquare square(5);
     const std::vector<Spectrum> told = square.means(square.samples(4, 1, 0, 1));
     double in_corner = 0, elsewhere = 0;
     for (std::size_t i = 0; i < told.size(); ++i)
         (square.is_in_corner(i) ? in_corner : elsewhere) += std::abs(mean(told[i]) - (square.is_in_corner(i) ? 1 : 0));
     const double leaves = static_cast<double>(told.size());
-    EXPECT_LT(in_corner / leaves * 16, 0.1);  // a sixteenth of the leaves; the whole square's mean would be off by 0.94
+    EXPECT_LT(in_corner / leaves * 16,
+              // The corner has a sixteenth of the leaves. With the mean of the whole square, this would be 0.94.
+              0.1);
     EXPECT_LT(elsewhere / leaves, 0.03);
 }
 
-TEST(MeanResiduals, OfNoiseAreLittle) {
+TEST(MeanResiduals, OfNoiseAreSmall) {
     const CutSquare square(5);
     double square_of_means = 0, square_of_samples = 0;
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
@@ -67,7 +70,7 @@ TEST(MeanResiduals, OfNoiseAreLittle) {
     EXPECT_LT(square_of_means, 0.1 * square_of_samples);
 }
 
-TEST(MeanResiduals, OfGroupsStandApart) {
+TEST(MeanResiduals, OfGroupsAreIndependent) {
     CutSquare square(2);
     std::vector<LeafResidual> samples;
     for (std::uint32_t i = 0; i < 16; ++i) {
@@ -78,7 +81,7 @@ TEST(MeanResiduals, OfGroupsStandApart) {
     for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(mean(told[i]), i % 2 == 0 ? 1 : -1, 0.01);
 }
 
-TEST(MeanResiduals, OfNoSamplesAreNone) {
+TEST(MeanResiduals, OfNoSamplesAreZero) {
     const CutSquare square(1);
     for (const Spectrum& m : square.means({})) EXPECT_EQ(mean(m), 0);
 }

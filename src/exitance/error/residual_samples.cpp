@@ -11,7 +11,7 @@
 namespace exitance {
 namespace {
 
-/// The face of a region that holds a point of it.
+/// Returns the face of a region that contains the point x of the region.
 SurfaceId surface_at(const Scene& scene, RegionId region, const Point& x) {
     const auto& surfaces = scene.regions()[region].surfaces;
     if (surfaces.size() > 1)
@@ -20,12 +20,13 @@ SurfaceId surface_at(const Scene& scene, RegionId region, const Point& x) {
     return surfaces[0];
 }
 
-/// Where light is summed, one sample in so many tells the parts of the residual: that is another sum, for less to know.
-constexpr std::size_t local_every = 4;
+/// If light is summed, one of this many samples measures the parts of the residual, since that takes another sum.
+constexpr std::size_t samples_per_local_sum = 4;
 
-/// Where light is reflected often, a small mean of the residual makes a large error, and has to be told from noise:
-/// rays in proportion to the power of 4/3, as noise of a mean square asks for.
-double more_where_reflected_often(double constant) {
+/// Returns the factor on the number of rays. If light is reflected often, a small mean of the residual causes a large
+/// error and must be distinguished from noise. The number of rays grows with the power 4/3, as the noise of a mean
+/// square requires.
+double factor_for_many_reflections(double constant) {
     return std::clamp(std::pow(constant / 4, 4.0 / 3), 1.0, calibrated::most_rays_often);  // given by that power
 }
 
@@ -48,7 +49,7 @@ ResidualSampler::ResidualSampler(const Stage& stage, const ElementFunction& indi
       b_(b),
       check_(check),
       options_(options),
-      often_(more_where_reflected_often(constant)),
+      often_(factor_for_many_reflections(constant)),
       coarse_(coarse),
       numbering_(numbering) {}
 
@@ -63,7 +64,6 @@ Point ResidualSampler::point(const ResidualSample& sample) const {
     return indirect_.tree.patch(sample.place.element).at(sample.place.uv);
 }
 
-/// Where a sample lies, and what is delivered there.
 void ResidualSampler::locate(const WeightedSample& at, ResidualSample& sample, Workspace& w) const {
     sample.place = at.place, sample.weight = at.weight;
     const RegionId region = sample.region = indirect_.tree.region(at.place.element);
@@ -89,7 +89,8 @@ void ResidualSampler::locate(const WeightedSample& at, ResidualSample& sample, W
     sample.leaf = numbering_.number[coarse_.find(region, x).element];
 }
 
-/// The residual by sums over elements; what their projected direct light misses, by two gathers of independent rays.
+/// Measures the residual by sums over elements. Two gathers of independent rays correct the projected direct light in
+/// them.
 void ResidualSampler::sum_elements(std::uint64_t seed, std::size_t k, const CheckPlan& plan, ResidualSample& sample,
                                    Workspace& w) const {
     const Point x = point(sample);
@@ -102,7 +103,7 @@ void ResidualSampler::sum_elements(std::uint64_t seed, std::size_t k, const Chec
         return reflectance * (arriving - sample.delivered);
     };
     sample.r1 = sample.r2 = residual(options_.summed->delivered);
-    if (!options_.summed->gathered.empty() && k % local_every == 0) {
+    if (!options_.summed->gathered.empty() && k % samples_per_local_sum == 0) {
         sample.local1 = sample.local2 = residual(options_.summed->gathered);
         sample.tells_local = true;
     }
@@ -115,7 +116,7 @@ void ResidualSampler::sum_elements(std::uint64_t seed, std::size_t k, const Chec
     sample.rays = 2 * rays_beside_sums;
 }
 
-/// The residual by two gathers of independent rays.
+/// Measures the residual by two gathers of independent rays.
 void ResidualSampler::cast_rays(std::uint64_t seed, std::size_t k, const CheckPlan& plan, ResidualSample& sample,
                                 Workspace& w) const {
     const Spectrum& reflectance = stage_.scene.material(sample.region).reflectance;

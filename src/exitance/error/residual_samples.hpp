@@ -6,35 +6,36 @@
 
 namespace exitance {
 
-/// One point of the certificate: two independent estimates of the residual there.
+/// A point at which the certificate measures the residual, with two independent estimates of it.
 struct ResidualSample {
-    ElementTree::Place place;  ///< In the delivered function.
+    ElementTree::Place place;  ///< Place in the delivered function.
     RegionId region;
     SurfaceId surface;
     std::uint32_t room = 0;
-    bool is_covered = false;  ///< By another surface: it is dark there, and told to be, whatever is delivered.
+    /// True if another surface covers the point. It is dark there, and the residual is 0 for any delivered light.
+    bool is_covered = false;
     double weight = 0;
-    Spectrum r1, r2;          ///< The residual.
-    double squared = 0;       ///< Of the error there, mean over the bands, (W/m^2)^2.
-    Spectrum local1, local2;  ///< Its part by the local pass, where known.
+    Spectrum r1, r2;          ///< Two estimates of the residual, W/m^2.
+    double squared = 0;       ///< Estimated square of the error, mean over bands, (W/m^2)^2.
+    Spectrum local1, local2;  ///< The local pass's part of r1 and r2, if `tells_local`.
     bool tells_local = false;
-    Spectrum delivered;      ///< E there, less direct light, W/m^2.
-    double reflected = 0;    ///< Radiosity there less exitance, with direct light as projected, mean over bands, W/m^2.
+    Spectrum delivered;      ///< Delivered irradiance without direct light, W/m^2.
+    double reflected = 0;    ///< Reflected radiosity with the projected direct light, mean over bands, W/m^2.
     std::uint32_t leaf = 0;  ///< Leaf number in the coarse mesh.
     std::uint32_t rays = 0;
 };
 
-/// Rays of each of the two gathers at so many points by which a relative error of their mean can be told. A gather of n
-/// rays has a variance in proportion to 1 / n, and so has the product of two; hence for noise in the mean product that
-/// is a share of the error's square
+/// Returns the number of rays of each of a point's two gathers that resolves a relative error as the mean over this
+/// many points. A gather of n rays has a variance proportional to 1 / n, and so has the product of two. The noise of
+/// the mean product is therefore a given share of the squared error for
 ///
 ///     n = `certificate_noise` / (error^2 sqrt(points)).
 double rays_to_tell(double error, std::size_t points);
 
-/// So many rays as a power of two, within the limits of a certificate.
+/// Rounds a number of rays up to a power of two, within the limits for a certificate.
 unsigned certificate_rays(double wanted);
 
-/// Measures residuals of a delivered function at points: see `Certifier`.
+/// Measures residuals of a delivered function at points; see `Certifier`.
 class ResidualSampler {
   public:
     struct Workspace {
@@ -44,25 +45,25 @@ class ResidualSampler {
         DirectCheck::Workspace check;
     };
 
-    /// `constant` is the factor from the residual to the bound on the error. `coarse` finds leaves that `numbering`
-    /// numbers. All but numbers must outlive it.
+    /// `constant`: ratio of the error bound to the residual. `coarse` finds the leaves that `numbering` numbers. All
+    /// arguments except `constant` must outlive the object.
     ResidualSampler(const Stage& stage, const ElementFunction& indirect, const ReflectedLight& b,
                     const DirectCheck& check, const CertificateOptions& options, double constant,
                     const ElementLocator& coarse, const LeafNumbering& numbering);
 
-    /// Measures the residual at places, twice each, into as many samples; `plan` tells how the direct light at hits is
-    /// checked. O(places x rays), parallel.
+    /// Measures the residual twice at each place; `samples` has one entry per place. `plan` determines how the direct
+    /// light at hits is checked. O(places x rays), parallel.
     void measure(std::span<const WeightedSample> places, const CheckPlan& plan, std::uint64_t seed,
                  std::span<ResidualSample> samples) const;
 
-    /// Fills in where a sample lies and what is delivered there.
+    /// Sets the position of a sample and the light delivered there.
     void locate(const WeightedSample& place, ResidualSample& sample, Workspace& w) const;
 
-    /// The residual at a point once more, by so many rays.
+    /// Returns another estimate of the residual at a sample's point, from this many rays.
     Spectrum by_rays(const ResidualSample& sample, const CheckPlan& plan, unsigned rays, std::uint64_t key,
                      Workspace& workspace) const;
 
-    /// Rays of each half of a sample by which projected direct light is checked where reflected light is summed.
+    /// Rays of each of a sample's two estimates that check projected direct light if reflected light is summed.
     static constexpr unsigned rays_beside_sums = 32;
 
   private:
@@ -78,7 +79,7 @@ class ResidualSampler {
     const ReflectedLight& b_;
     const DirectCheck& check_;
     const CertificateOptions& options_;
-    double often_;  ///< More rays, where light is reflected often.
+    double often_;  ///< Factor on the number of rays; above 1 if light is reflected often.
     const ElementLocator& coarse_;
     const LeafNumbering& numbering_;
 };

@@ -6,7 +6,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t least_points = 8;  ///< With these, Student's 95% of a mean is within 2.4 standard errors.
+constexpr std::size_t min_points = 8;  ///< Student's 95% limit is then within 2.4 standard errors.
 
 }  // namespace
 
@@ -25,11 +25,11 @@ std::vector<FaceError> surface_errors(std::span<const PointError> points, std::s
     }
     std::vector<FaceError> out;
     for (std::size_t s = 0; s < count; ++s) {
-        if (looked[s] < least_points || weight[s] <= 0) {
+        if (looked[s] < min_points || weight[s] <= 0) {
             out.push_back({of_rooms[s], 0});
             continue;
         }
-        // Less than its own uncertainty cannot be claimed.
+        // The error is at least as large as its own uncertainty.
         const double n = static_cast<double>(looked[s]);
         const double mean = sum[s] / weight[s], standard_error = std::sqrt(spread[s] * n / (n - 1)) / weight[s];
         out.push_back({std::sqrt(std::max(mean, standard_error)), looked[s]});

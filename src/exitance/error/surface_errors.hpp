@@ -9,16 +9,16 @@
 
 namespace exitance {
 
-/// The error of radiosity at one point of a surface.
+/// Error of radiosity at one point of a surface.
 struct PointError {
     SurfaceId surface;
-    double weight = 0;   ///< The point's share in the mean over all surfaces.
-    double squared = 0;  ///< An unbiased estimate of its square, by the square of its room's light: noise may make it
-                         ///< negative.
+    double weight = 0;  ///< Weight of the point in the mean over all surfaces.
+    /// Unbiased estimate of the squared error relative to the light of the point's room; may be negative due to noise.
+    double squared = 0;
 };
 
-/// RMS errors of surfaces. One of fewer than eight points, too few for a figure of its own, has that of its room.
-/// of_rooms  the relative error of each surface's room, one a surface
+/// Returns the RMS error of every surface. A surface with fewer than eight points gets the error of its room.
+/// of_rooms  relative error of each surface's room; one entry per surface
 std::vector<FaceError> surface_errors(std::span<const PointError> points, std::span<const double> of_rooms);
 
 }  // namespace exitance

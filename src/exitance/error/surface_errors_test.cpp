@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-TEST(SurfaceErrors, OfManyPointsIsTheirRootMeanSquareAndOfFewTheRooms) {
+TEST(SurfaceErrors, AreThoseOfTheRoomForFewPoints) {
     std::vector<PointError> points;
     for (int k = 0; k < 100; ++k) points.push_back({SurfaceId(1), 0.5, k % 2 == 0 ? 0.02 : 0.06});
     for (int k = 0; k < 7; ++k) points.push_back({SurfaceId(2), 1, 25});
@@ -22,7 +22,7 @@ TEST(SurfaceErrors, OfManyPointsIsTheirRootMeanSquareAndOfFewTheRooms) {
     EXPECT_EQ(errors[2].error, 0.01);
 }
 
-TEST(SurfaceErrors, OfNoiseIsNoLessThanItsUncertainty) {
+TEST(SurfaceErrors, AreAtLeastTheUncertainty) {
     std::vector<PointError> points;
     for (int k = 0; k < 64; ++k) points.push_back({SurfaceId(0), 1, k % 2 == 0 ? 1.0 : -1.0});
     const double of_rooms[] = {1e-9};

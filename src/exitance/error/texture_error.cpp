@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// Squared error of a face's radiosity, mean over the bands.
+/// Returns the squared error of a face's radiosity, mean over bands.
 double squared_error(const Material& material, std::size_t number, const SurfaceLight& light,
                      std::span<const Spectrum> deviation) {
     if (number >= deviation.size() || max(material.reflectance) <= 0) return 0;
@@ -53,7 +53,7 @@ void add_texture_error(Solution& solution, std::span<const Spectrum> deviation, 
     const double before = *s.relative_error_estimate;
     add(s.relative_error_estimate, error), add(s.relative_error_bound, error);
     add(s.relative_error_estimate_interpolant, error), add(s.relative_error_estimate_worst_room, error);
-    s.error_p99.reset();  // not known of light that varies within faces
+    s.error_p99.reset();  // unknown if reflectance varies within faces
     if (s.rooms.size() == 1) s.rooms[0].error = std::hypot(s.rooms[0].error, error);
     const double reflected = mean_reflected(solution.scene, light);
     for (std::size_t f = 0; f < s.surface_errors.size(); ++f) {
@@ -64,8 +64,9 @@ void add_texture_error(Solution& solution, std::span<const Spectrum> deviation, 
     }
     s.figures["relative_error_textures"] = error;
     const bool missed = demand && *s.relative_error_estimate > *demand;
-    constexpr double worth_saying = 0.1;  // given by the digits that people read, of the estimate without it
-    if (missed || error > worth_saying * before)
+    // Share of the estimate above which a warning is shown, given by the digits that people read.
+    constexpr double reported_share = 0.1;
+    if (missed || error > reported_share * before)
         s.warnings.push_back(fmt::format(
             "reflectance varies within faces by their pictures, and a face reflects its mean: {:.3g}% of the error "
             "estimate; the light of faces as they are is known to {:.3g}%",

@@ -6,20 +6,20 @@
 
 namespace exitance {
 
-/// The part of the error that stems from pictures: a face reflects the mean of what it shows. Relative RMS error of
-/// radiosity, like SolveStatistics::relative_error_estimate:
+/// Returns the part of the error due to textures, as each face reflects with the mean of its texture. Relative RMS
+/// error of radiosity, like SolveStatistics::relative_error_estimate:
 ///
 ///     sqrt(sum_f A_f mean_b (s_f E_f)^2 / sum_f A_f) / (sum_f A_f mean_b rho_f E_f / sum_f A_f)
 ///
-/// over faces f and bands b; s_f is the deviation of reflectance over the face, and E_f its mean irradiance. Light that
-/// reaches other faces from there is not counted: the deviations have no mean, so that little of them is left where
-/// their light arrives.
-/// deviation  by material, RMS; missing ones are 0
+/// over faces f and bands b; s_f is the standard deviation of reflectance over the face, and E_f its mean irradiance.
+/// The effect on the light of other faces is neglected: the deviations have zero mean, so that they nearly cancel
+/// there.
+/// deviation  RMS deviation of reflectance per material; missing entries are 0
 double texture_error(const Scene& scene, const Field<SurfaceId, SurfaceLight>& light,
                      std::span<const Spectrum> deviation);
 
-/// Adds that part to the estimates of a solution (in quadrature), and says so in a warning if it is more than a tenth
-/// of the estimate. A solution whose estimate is above `demand` then has not converged.
+/// Adds the error due to textures to the estimates of a solution (in quadrature), and adds a warning if it is more than
+/// a tenth of the estimate. Marks the solution as not converged if its estimate then exceeds `demand`.
 void add_texture_error(Solution& solution, std::span<const Spectrum> deviation, std::optional<double> demand);
 
 }  // namespace exitance

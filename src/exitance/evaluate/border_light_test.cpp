@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// A rotation, a scale and a shift.
+/// A rotation, a scale and a translation.
 struct Motion {
     std::array<Vec3, 3> rows{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
     double scale = 1;
@@ -20,8 +20,8 @@ struct Motion {
     Point operator()(const Point& p) const { return scale * turned(p) + shift; }
 };
 
-/// A room of 4 x 3 x 2.5 m without a ceiling, a lamp above it and one beside it, a point light beside it, and a sheet
-/// that stands on its floor in x = 2, y < 1.
+/// A room of 4 x 3 x 2.5 m without a ceiling, with lamps above and beside it, a point light beside it, and a sheet that
+/// is upright on its floor in the plane x = 2, y < 1.
 Scene open_room(const Motion& motion = {}) {
     SceneDescription d;
     d.materials = {{"wall", Spectrum(0.5), {}}, {"lamp", {}, Spectrum(50)}};
@@ -42,8 +42,8 @@ Scene open_room(const Motion& motion = {}) {
     face({{0, 3, 0}, {4, 3, 0}, {4, 3, 2.5}, {0, 3, 2.5}}, 0);
     face({{2, 0, 0}, {2, 1, 0}, {2, 1, 2}, {2, 0, 2}}, 0);
     face({{2, 0, 0}, {2, 0, 2}, {2, 1, 2}, {2, 1, 0}}, 0);
-    face({{-3, -3, 4}, {-3, 6, 4}, {5, 6, 4}, {5, -3, 4}}, 1);  // down
-    face({{-1, 0, 1}, {-1, 3, 1}, {-1, 3, 3}, {-1, 0, 3}}, 1);  // towards the room
+    face({{-3, -3, 4}, {-3, 6, 4}, {5, 6, 4}, {5, -3, 4}}, 1);  // emits downwards
+    face({{-1, 0, 1}, {-1, 3, 1}, {-1, 3, 3}, {-1, 0, 3}}, 1);  // emits towards the room
     d.lights = {{"bulb",
                  PunctualLight::Kind::point,
                  motion({-1, 1, 2}),
@@ -54,7 +54,7 @@ Scene open_room(const Motion& motion = {}) {
     return std::move(*made.scene);
 }
 
-/// Direct light alone.
+/// Solution with direct light only.
 Solution direct_light(Scene scene) {
     Solution s;
     s.scene = std::move(scene);
@@ -65,9 +65,9 @@ Solution direct_light(Scene scene) {
     return s;
 }
 
-constexpr double inside = 1e-4;  ///< Metres; light changes by less than its 1e-3 from there to the border.
+constexpr double inside = 1e-4;  ///< Metres; over this distance light changes by less than 1e-3.
 
-/// Points on borders, and others `inside` of them.
+/// Points on borders, each with a point at the distance `inside`.
 struct Pair {
     ProbePoint on, beside;
 };
@@ -100,7 +100,7 @@ TEST(BorderLight, IsTheLimitFromTheSideOfThePoint) {
     }
 }
 
-TEST(BorderLight, IsTheSameInASceneThatIsTurnedMovedAndScaled) {
+TEST(BorderLight, IsInvariantUnderRotationTranslationAndScaling) {
     const Frame odd(normalized(Vec3{0.3, -0.5, 0.71}));
     const std::vector<Motion> motions{{{Vec3{0, -1, 0}, Vec3{1, 0, 0}, Vec3{0, 0, 1}}},
                                       {{odd.u, odd.v, odd.n}},
@@ -123,16 +123,16 @@ TEST(BorderLight, IsTheSameInASceneThatIsTurnedMovedAndScaled) {
     }
 }
 
-TEST(BorderLight, OfPathsIsTheLimitToo) {
+TEST(BorderLight, IsTheLimitForPathsToo) {
     const Scene scene = open_room();
     Progress progress;
     for (const auto& [on, beside] : border_points()) {
-        // The same random numbers at either place, by the place in the list.
+        // Both places use the same random numbers, which depend on the index in the list.
         const auto path = [&](const ProbePoint& p) {
             return reference_light(scene, std::array{p}, 1024, 1, progress, StopRequest())[0];
         };
         const ReferenceLight found = path(on), expected = path(beside);
-        // Most paths are the same; those that differ are few of 1,024.
+        // Most of the 1,024 paths are the same at both places.
         EXPECT_NEAR(found.irradiance[0], expected.irradiance[0],
                     1e-3 * expected.irradiance[0] + expected.standard_error[0])
             << on.x.x << ' ' << on.x.y << ' ' << on.x.z;
@@ -140,11 +140,11 @@ TEST(BorderLight, OfPathsIsTheLimitToo) {
     }
 }
 
-TEST(BorderLight, OfAMeasuringPlaneIsThatOfTheSideOfItsMiddleInAllDirections) {
+TEST(BorderLight, IsMeasuredOnTheSideOfThePlanesMiddleInAllDirections) {
     const Solution s = direct_light(open_room());
     const RadiosityFunction light(s);
     Progress progress;
-    // One row of points, the first of them on the wall in x = 0, the fifth on the sheet.
+    // One row of points: the first is on the wall in x = 0, the fifth on the sheet.
     const auto grid_from = [&](double x, bool is_cylindrical) {
         Result<GridLight> grid = make_grid({{x, 0.3, 0.8}, {5, 0, 0}, {0, 0.4, 0}, 0.5});
         EXI_CHECK(static_cast<bool>(grid));
@@ -159,13 +159,13 @@ TEST(BorderLight, OfAMeasuringPlaneIsThatOfTheSideOfItsMiddleInAllDirections) {
         EXPECT_NEAR(on.irradiance[0][0] / beside.irradiance[0][0], 1, 1e-3);
         EXPECT_TRUE(on.is_open[0]);
         EXPECT_EQ(on.points[4].x, 2);
-        EXPECT_NEAR(on.irradiance[4][0] / beside.irradiance[4][0], 1, 1e-3);  // the middle is in x = 2.25
+        EXPECT_NEAR(on.irradiance[4][0] / beside.irradiance[4][0], 1, 1e-3);  // the middle is at x = 2.25
     }
 }
 
-TEST(BorderLight, CountsInTheLevelsOfAFaceAsLightFromInside) {
-    // Half of the points lie on edges of triangles, hence on walls. No light comes over the walls to those of the
-    // floor.
+TEST(BorderLight, IsMeasuredFromInsideForTheLevelsOfAFace) {
+    // Half of the points are on edges of triangles, and therefore on walls. Light from outside does not reach those on
+    // the floor.
     const Solution s = direct_light(open_room());
     const RadiosityFunction light(s);
     Progress progress;

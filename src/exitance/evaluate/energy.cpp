@@ -10,14 +10,14 @@
 namespace exitance {
 namespace {
 
-/// Light of emitters is lost where a pane mirrors it.
+/// True if a ray from x meets no front. With Mirrored::lost, light of emitters is lost at mirroring panes.
 bool is_lost(const Stage& stage, const Point& x, const Vec3& w, RegionId region, Mirrored mirrored) {
     RayHit hit;
     stage.tracer.nearest(std::span(&x, 1), std::span(&w, 1), region, std::span(&hit, 1), mirrored);
     return hit.surface.is_none() || !hit.front;
 }
 
-/// The share of what a piece emits by its profile that meets no front.
+/// Share of the light that a piece emits by its profile and that meets no front.
 double directed_loss(const Stage& stage, const Piece& piece) {
     constexpr std::uint32_t rays = 1024;
     const RelativeRadiance radiance = stage.scene.relative_radiance(piece.region);
@@ -34,7 +34,7 @@ double directed_loss(const Stage& stage, const Piece& piece) {
     return sent > 0 ? lost / sent : 0;
 }
 
-/// Power that leaves a surface diffusely, and where: from an element, or else from a patch.
+/// Diffuse power that leaves an element or, if `tree` is null, a patch.
 struct Leaving {
     RegionId region;
     double power = 0;  ///< W or lm.
@@ -49,11 +49,12 @@ struct Leaving {
     }
 };
 
-/// Where light may be lost at all, its share is known to 1 / (2 sqrt(rays)) of what leaves surfaces: 0.3%.
+/// Number of rays: if light may escape at all, the escaping share is known to 1 / (2 sqrt(rays)) = 0.3% of the light
+/// leaving surfaces.
 constexpr std::uint32_t escape_rays = 1 << 15;
 
-/// The power that meets no front, by rays from where power leaves, as many as there is of it. `each(visit)` calls
-/// visit(Leaving) for all, alike every time.
+/// Power that meets no front, estimated by rays distributed in proportion to the power that leaves. `each(visit)` must
+/// call visit(Leaving) for all surfaces, in the same way every time.
 template <class Each>
 double escaping(const Stage& stage, const Each& each) {
     double total = 0;
@@ -91,7 +92,7 @@ double escaping(const Stage& stage, const Each& each) {
     return rays.empty() ? 0 : total * static_cast<double>(count) / static_cast<double>(rays.size());
 }
 
-/// Calls visit(area, E, place) for all light that arrives; the power that leaves the place is not set.
+/// Calls visit(area, E, place) for all arriving light; the power in `place` is not set.
 template <class Visit>
 void for_arriving(const Solution& solution, const DirectProjection& direct, const Visit& visit) {
     if (const SixNodeMesh& mesh = solution.discontinuity; !mesh.empty()) {
@@ -112,7 +113,7 @@ void for_arriving(const Solution& solution, const DirectProjection& direct, cons
         for (ElementId e : direct.tree.leaves())
             visit(direct.tree.area(e), (Spectrum(1.0) - solution.direct_share) * direct.fit[e].mean,
                   of(direct.tree, e));
-    // A linear or bilinear function has its mean at the centre of its element.
+    // The mean of a linear or bilinear function over an element is its value at the centre.
     const ElementTree& tree = solution.indirect.tree;
     for (ElementId e : tree.leaves()) visit(tree.area(e), solution.indirect.at({e, tree.centre(e)}), of(tree, e));
 }
@@ -126,7 +127,7 @@ EnergyBalance energy_balance(const Solution& solution, const DirectProjection& d
     for (const Region& region : scene.regions())
         out.emitted += region.area * total(scene.materials()[region.material].exitance);
     for (const PunctualLight& light : scene.lights()) out.emitted += total(light.power());
-    // Parallel light and that of the sky come from outside: what meets a surface counts as emitted.
+    // Parallel light and light of the sky come from outside: the light that reaches surfaces counts as emitted.
     for (ElementId e : direct.tree.leaves()) out.emitted += direct.tree.area(e) * total(direct.fit[e].parallel);
     for_arriving(solution, direct, [&](double area, const Spectrum& E, const Leaving& at) {
         out.absorbed += area * total((Spectrum(1.0) - scene.material(at.region).reflectance) * E);

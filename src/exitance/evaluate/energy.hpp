@@ -5,23 +5,24 @@
 
 namespace exitance {
 
-/// Emitted flux against absorbed flux int (1 - rho) E dA: direct light by the projection's exact means, indirect light
-/// by the solution's elements, both by a discontinuity mesh where there is one; and what escapes, by rays from
-/// surfaces: of emitters that are not diffuse by their profiles. Nothing is forced to agree. O(elements).
+/// Compares emitted flux with absorbed flux, int (1 - rho) E dA, and escaping flux. Direct light is taken from the
+/// projection's exact means, indirect light from the solution's elements, or both from a discontinuity mesh if there is
+/// one. Escaping light is estimated by rays from surfaces; for emitters that are not diffuse, by their profiles.
+/// Nothing is adjusted to agree. O(elements).
 EnergyBalance energy_balance(const Solution& solution, const DirectProjection& direct, const Stage& stage);
 
-/// The same where nothing was projected: the emitted flux is read at the pieces.
+/// Like the above, for solutions without a projection: the emitted flux is taken from the pieces.
 EnergyBalance energy_balance(const Solution& solution, const Stage& stage);
 
-/// The same of what is exported, which holds all light; of scenes that no light comes to from outside.
+/// Energy balance of the exported interpolant, which contains all light. For scenes without light from outside.
 EnergyBalance energy_of_interpolant(const Solution& solution, const Stage& stage);
 
 /// Means over all surfaces and bands, W/m^2.
 struct DirectMeans {
-    double arriving = 0;   ///< Of E_dir,
-    double reflected = 0;  ///< and of rho E_dir.
+    double arriving = 0;   ///< Mean of E_dir.
+    double reflected = 0;  ///< Mean of rho E_dir.
 
-    /// The mean that errors of direct light alone are relative to: of B - M, or of E if nothing reflects.
+    /// Mean to which errors of direct light alone are relative: that of B - M, or of E if nothing reflects.
     double of_errors() const { return reflected > 0 ? reflected : arriving; }
 };
 DirectMeans mean_direct_light(const Stage& stage, const DirectProjection& direct);

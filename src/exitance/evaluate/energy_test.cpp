@@ -9,8 +9,8 @@
 namespace exitance {
 namespace {
 
-/// A closed box of 2 x 1 x 1.5 m, 13 m^2, whose faces reflect nothing and emit other light in every band, turned by
-/// `angle` about the vertical, enlarged by `size` and moved.
+/// A closed box of 2 x 1 x 1.5 m, 13 m^2, whose faces reflect nothing and emit different light in every band, rotated
+/// by `angle` about the vertical, scaled by `size` and translated.
 Solution black_box(bool photometric, double angle = 0, double size = 1) {
     SceneDescription d;
     d.photometric = photometric;
@@ -51,7 +51,7 @@ TEST(Energy, IsTheMeanOfTheBandsInWattsAndTheirWeightedSumInLumens) {
         }
 }
 
-TEST(Energy, OfLightsWithoutExtentIsInTheUnitOfTheScene) {
+TEST(Energy, IsInTheUnitOfTheSceneForLightsWithoutExtent) {
     for (const bool photometric : {false, true}) {
         SceneDescription d;
         d.photometric = photometric;

@@ -26,7 +26,7 @@ class Interpolation {
         out_.tree = direct.tree;
     }
 
-    /// A leaf that a request to stop leaves no time for holds what its parent held there.
+    /// After a stop request, remaining leaves are restricted from their parents.
     ElementFunction run(InterpolantReport& report, const StopRequest& stop) {
         std::vector<ElementId> active = out_.tree.leaves();
         for (int round = 0;; ++round) {
@@ -45,7 +45,7 @@ class Interpolation {
                 },
                 [&](std::size_t i) -> Fit& { return fitted_[active[i]]; },
                 {"interpolate", [&](std::size_t i) { return out_.tree.region(active[i]).value; }});
-            locator_.reset();  // it makes room for what comes next
+            locator_.reset();  // frees memory for the next step
             double misfit = error();
             report.interrupted = stop.requested();
             const bool last =
@@ -64,7 +64,7 @@ class Interpolation {
     }
 
   private:
-    /// What of a fit is delivered, as precisely as it is.
+    /// The parts of a fit that are stored, in single precision.
     struct Fit {
         std::array<std::array<float, bands>, 4> corners;
         double misfit_squared = 0;
@@ -86,7 +86,7 @@ class Interpolation {
         }
     };
 
-    /// Direct light as projected, or anew on a leaf that is new; indirect light on top.
+    /// Fits direct light, as projected or, on new leaves, computed again, plus indirect light.
     DirectFit fit(ElementId e, DirectFitRoom& room) const {
         const Patch& patch = out_.tree.patch(e);
         const RegionId region = out_.tree.region(e);
@@ -117,7 +117,7 @@ class Interpolation {
         return out;
     }
 
-    /// The continuous function nearest to all fits. What it is further from the light than they are counts with them.
+    /// Returns the continuous function nearest to all fits, and adds its distance from them to their misfits.
     ElementFunction join(const StopRequest& stop) {
         ElementFunction apart;
         apart.tree = out_.tree;
@@ -127,10 +127,10 @@ class Interpolation {
             for (int i = 0; i < out_.tree.patch(e).corner_count(); ++i)
                 apart.values.push_back(fitted_[e].corners[static_cast<std::size_t>(i)]);
         }
-        // Nodes of a large mesh take their time: what is cut short is delivered with its steps.
+        // Computing nodes of a large mesh takes time; after a stop request the result is discontinuous.
         ElementFunction out =
             stop.requested() ? apart : nearest_continuous(apart, stage_.scene, stage_.contacts, &stop);
-        // All light together is nowhere below zero. Only what changes is written: pages stand once a node until then.
+        // Total light is not negative. Only changed values are written, so that shared pages stay shared.
         for (auto& value : out.values)
             for (float& of_band : value)
                 if (of_band < 0) of_band = 0;
@@ -147,7 +147,7 @@ class Interpolation {
         return out;
     }
 
-    /// The mean square of w (a - b) on a leaf of a, which is a leaf or a fan of b.
+    /// Mean square of w (a - b) on a leaf of a, which is a leaf or a fan of b.
     double squared_step(const ElementFunction& a, const ElementFunction& b, ElementId e) const {
         const Patch& whole = a.tree.patch(e);
         const Spectrum w = light_weight(stage_.scene.material(a.tree.region(e)));
@@ -164,7 +164,7 @@ class Interpolation {
         return options_.light_in.empty() ? sum : relative_weight(e) * sum;
     }
 
-    /// By which an error counts where rooms are judged apart.
+    /// Factor on squared errors if rooms are judged separately.
     double relative_weight(ElementId e) const {
         const double light = options_.light_in[stage_.rooms.of(out_.tree, e)];
         return stage_.rooms.weight(out_.tree, e) / (light * light);
@@ -176,14 +176,14 @@ class Interpolation {
         return interpolant_error(stage_, continuous, leaves, {indirect_, direct_weight_}, options_.seed);
     }
 
-    /// By the fits' own misfits.
+    /// RMS error by the fits' own misfits.
     double error() const {
         double sum = 0;
         for (ElementId e : out_.tree.leaves()) sum += out_.tree.area(e) * fitted_[e].misfit_squared;
         return std::sqrt(sum / stage_.area);
     }
 
-    /// Cuts the leaves whose squared error is more than an even share of what is allowed; returns the new ones.
+    /// Splits the leaves whose squared error exceeds an even share of the allowed one; returns the new leaves.
     std::vector<ElementId> split_largest(double error) {
         const std::vector<ElementId> leaves = out_.tree.leaves();
         const double allowed = options_.tolerance * options_.tolerance * stage_.area;
@@ -204,7 +204,8 @@ class Interpolation {
     const ElementFunction& indirect_;
     const Spectrum direct_weight_;
     const InterpolantOptions& options_;
-    std::optional<ElementLocator> locator_;  ///< Of the indirect light, while leaves are fitted.
+    /// Locates elements of the indirect light; set only while leaves are fitted.
+    std::optional<ElementLocator> locator_;
     ElementFunction out_;
     Field<ElementId, Fit> fitted_;
 };

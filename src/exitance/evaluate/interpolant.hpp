@@ -7,23 +7,23 @@
 namespace exitance {
 
 struct InterpolantOptions {
-    double tolerance = 0;  ///< RMS error of rho E over all surfaces that is to be held, W/m^2.
-    int max_depth = 12;    ///< Rounds of cutting.
+    double tolerance = 0;  ///< Required RMS error of rho E over all surfaces, W/m^2.
+    int max_depth = 12;    ///< Limit on the rounds of refinement.
     std::size_t max_elements = 2'000'000;
-    std::span<const double> light_in = {};  ///< As in LocalPassDemand: errors are allowed in proportion.
-    std::uint64_t seed = 1;                 ///< Of the places at which the error is measured.
+    std::span<const double> light_in = {};  ///< See LocalPassDemand: allowed errors are proportional to it.
+    std::uint64_t seed = 1;                 ///< Selects the places at which the error is measured.
 };
 
 struct InterpolantReport {
-    double error = 0;  ///< Of the interpolant, measured as `interpolant_error` does; 0 if interrupted. W/m^2
+    double error = 0;  ///< Error of the interpolant, measured by `interpolant_error`, W/m^2; 0 if interrupted.
     bool interrupted = false;
 };
 
-/// Direct and indirect irradiance together as plain elements, for files and for readers that hold no exact direct
-/// light: the direct projection (less the share of it that `indirect` holds), plus on each of its leaves the polynomial
-/// nearest to the indirect light. Leaves are cut while their misfits together exceed the tolerance, those with the
-/// largest shares first. Continuous but where light jumps (`nearest_continuous`). O(elements x places), and exact
-/// direct light for the leaves that are new.
+/// Direct and indirect irradiance together on plain elements, for files and other uses without exact direct light.
+/// Adds, on each leaf of the direct projection, the projected direct light (less the share of it that `indirect`
+/// contains) and the least-squares polynomial of the indirect light. Leaves are split while their total misfit exceeds
+/// the tolerance, those with the largest shares first. The result is continuous except at discontinuities of the light
+/// (`nearest_continuous`). O(elements x nodes), plus exact direct light for new leaves.
 ElementFunction make_interpolant(const Stage& stage, const DirectProjection& direct, const ElementFunction& indirect,
                                  const Spectrum& direct_share, const InterpolantOptions& options,
                                  InterpolantReport& report, const StopRequest& stop);

@@ -4,8 +4,8 @@
 
 namespace exitance {
 
-/// Piecewise polynomials that break where direct light does, as a function of place: those of a solution's
-/// discontinuity mesh (all light), or, where it has layers, their sum (direct light times
+/// Piecewise polynomials aligned with discontinuities of direct light, as a function of place: those of a solution's
+/// discontinuity mesh (all light), or the sum of its layers if it has any (direct light times
 /// RadiosityFunction::exact_share).
 class MeshLight {
   public:
@@ -23,7 +23,7 @@ class MeshLight {
     }
 
     const SixNodeMesh& mesh() const { return solution_.discontinuity; }
-    /// Triangles of the layers, and each of them as its share of the light.
+    /// Number of triangles of the layers, and one of them with its values multiplied by the share of direct light.
     std::size_t layer_triangle_count() const { return has_layers() ? solution_.layers->triangle_count() : 0; }
     QuadraticTriangle layer_triangle(std::size_t i) const {
         return solution_.layers->triangle(solution_.scene, i, share_);

@@ -13,7 +13,7 @@
 namespace exitance {
 namespace {
 
-/// True if a point of the plane of a convex pane lies within it.
+/// True if a point in the plane of a convex pane is inside it.
 bool is_inside(const Pane& pane, const Point& p) {
     bool left = false, right = false;
     for (std::size_t i = 0, m = pane.corners.size(); i < m; ++i) {
@@ -31,8 +31,9 @@ Vec3 mirrored(const Vec3& w, const Normal& n) {
 }  // namespace
 
 bool panes_may_mirror_light(const Scene& scene) {
-    constexpr double oblique = 0.1;      // cosine, given by Fresnel's equations: whatever mirrors at all does so here
-    constexpr double negligible = 1e-4;  // given by the tables of RayFates, which are right to this share
+    // Cosine of a grazing angle: every mirroring pane mirrors there, by Fresnel's equations.
+    constexpr double oblique = 0.1;
+    constexpr double negligible = 1e-4;  // accuracy of the tables of RayFates
     const auto mirrors = [](const Pane& pane) { return max(pane.reflection(oblique)) > negligible; };
     return scene.has_light() && std::any_of(scene.panes().begin(), scene.panes().end(), mirrors);
 }
@@ -55,7 +56,7 @@ std::array<double, 2> MirroredLight::at(const Receiver& place, std::uint32_t ray
     return out;
 }
 
-/// Light of skies.
+/// E_m from skies.
 double MirroredLight::by_rays(const Receiver& place, std::uint32_t rays, std::uint64_t key) const {
     if (scene_.distant().domes.empty()) return 0;
     const ScrambledSobol points(key);
@@ -71,10 +72,11 @@ double MirroredLight::by_rays(const Receiver& place, std::uint32_t rays, std::ui
     return sum / rays;
 }
 
-/// Nothing stands between a place and a point of a pane, nor from there on, along `onwards` of length 1, to the end.
+/// True if neither the way from a place to a point of a pane nor the further way along `onwards` (of length 1) to the
+/// end is blocked.
 bool MirroredLight::is_open(const Receiver& from, const Point& mirror, const Vec3& onwards,
                             const SurfacePoint& end) const {
-    // Rays begin and end off the pane, so that it stops none of them: by more than single precision rounds.
+    // Rays start and end away from the pane, by more than rounding to single precision, so that it does not block them.
     const double off = 0x1p-18 * scene_.size();
     const Vec3 there = mirror - from.x;
     const Point before = mirror - (off / norm(there)) * there;
@@ -85,13 +87,13 @@ bool MirroredLight::is_open(const Receiver& from, const Point& mirror, const Vec
     return !blocked[0] && !blocked[1];
 }
 
-/// Irradiance per area of an emitter about a point of it, by the mirror image of that point in one pane, W/m^4.
+/// Irradiance per area of an emitter around one of its points, by the mirror image of that point in one pane, W/m^4.
 double MirroredLight::by_emitter(const Receiver& place, const Piece& piece, const Point& on, const Pane& pane) const {
     const double height = dot(pane.n, place.x - pane.corners[0]), other = dot(pane.n, on - pane.corners[0]);
     if ((height > 0) != (other > 0)) return 0;
-    const Vec3 towards = on - 2 * other * pane.n - place.x;  // the image
+    const Vec3 towards = on - 2 * other * pane.n - place.x;  // vector to the mirror image
     const double length = norm(towards), rise = dot(pane.n, towards), cosine = dot(place.n, towards) / length;
-    const double t = -height / rise;  // where the way to the image meets the pane
+    const double t = -height / rise;  // at the intersection of the pane's plane and the ray to the image
     if (!(cosine > 0) || !(t > 0) || !(t < 1)) return 0;
     const Vec3 onwards = mirrored(towards, pane.n) / length;
     const double leaving = -dot(scene_.regions()[piece.region].plane.n, onwards);
@@ -101,7 +103,7 @@ double MirroredLight::by_emitter(const Receiver& place, const Piece& piece, cons
            scene_.relative_radiance(piece.region)(-onwards) * cosine * leaving / (pi * length * length);
 }
 
-/// Light of emitters, by points that are chosen by power, and panes by how large they look, about.
+/// E_m from emitters, by points chosen in proportion to power, and panes chosen by their approximate solid angle.
 double MirroredLight::by_emitters(const Receiver& place, std::uint64_t key) const {
     if (emitters_.empty()) return 0;
     constexpr int samples = 4;
@@ -130,14 +132,14 @@ double MirroredLight::by_emitters(const Receiver& place, std::uint64_t key) cons
     return sum / samples;
 }
 
-/// The light of a disc (the first numbers) or of a light without extent (those after them) that one pane mirrors.
+/// E_m from a disc of the sky (the first indices) or a light without extent (further indices), by one pane.
 Spectrum MirroredLight::by_image(const Receiver& place, std::size_t light, const Pane& pane) const {
     const auto& discs = scene_.distant().discs;
     const bool is_disc = light < discs.size();
     const PunctualLight* lamp = is_disc ? nullptr : &scene_.lights()[light - discs.size()];
     const bool is_parallel = is_disc || lamp->is_directional();
     const double height = dot(pane.n, place.x - pane.corners[0]);
-    Vec3 towards;  // the image
+    Vec3 towards;  // vector to the mirror image
     if (is_parallel) {
         towards = mirrored(is_disc ? discs[light].towards : -lamp->direction, pane.n);
     } else {
@@ -146,7 +148,7 @@ Spectrum MirroredLight::by_image(const Receiver& place, std::size_t light, const
         towards = lamp->position - 2 * other * pane.n - place.x;
     }
     const double length = norm(towards), rise = dot(pane.n, towards), cosine = dot(place.n, towards) / length;
-    const double t = -height / rise;  // where the way to the image meets the pane
+    const double t = -height / rise;  // at the intersection of the pane's plane and the ray to the image
     if (!(cosine > 0) || !(t > 0) || !std::isfinite(t)) return {};
     const Point mirror = place.x + t * towards;
     if (!is_inside(pane, mirror)) return {};
@@ -159,7 +161,7 @@ Spectrum MirroredLight::by_image(const Receiver& place, std::size_t light, const
     return (cosine * lamp->share_towards(-onwards) / (length * length)) * mirrored_share * lamp->intensity;
 }
 
-/// Light of the sun and of lights without extent.
+/// E_m from the sun and from lights without extent.
 double MirroredLight::by_images(const Receiver& place, std::uint64_t key) const {
     const std::size_t lights = scene_.distant().discs.size() + scene_.lights().size();
     const std::size_t all = lights * scene_.panes().size(), count = std::min(all, max_images);
@@ -175,18 +177,18 @@ double MirroredLight::by_images(const Receiver& place, std::uint64_t key) const 
 
 namespace {
 
-/// A place of a solution's surfaces.
+/// A point on a solution's surfaces.
 struct Place {
     std::size_t room = 0;
     double arriving = 0;                 ///< E, mean over bands, W/m^2.
     std::array<double, 2> by_mirrors{};  ///< E_m, two estimates.
 };
 
-/// Places that are uniform in area within each room, of which every room has as many.
+/// Places that are uniform in area within each room, equally many in every room.
 std::vector<Place> measured_places(const Solution& solution, const Stage& stage, const MirroredLight& light,
                                    std::uint64_t seed) {
-    constexpr std::size_t count = 4096;  // places differ more than rays do: many places, few rays
-    constexpr std::uint32_t rays = 32;   // of each of the two estimates
+    constexpr std::size_t count = 4096;  // places vary more than rays: many places, few rays
+    constexpr std::uint32_t rays = 32;   // per estimate
     const ElementTree& tree = solution.interpolant.tree;
     const std::vector<ElementId> leaves = tree.leaves();
     std::vector<double> up_to;
@@ -194,7 +196,7 @@ std::vector<Place> measured_places(const Solution& solution, const Stage& stage,
     for (const ElementId e : leaves) up_to.push_back(area += stage.counted_area(tree, e));
     std::vector<Place> out(area > 0 ? count : 0);
     parallel_for(out.size(), 16, [&](std::size_t i) {
-        RandomStream random(seed, Stream::certificate, i, 0x6d6972726f72);  // a name of its own: "mirror"
+        RandomStream random(seed, Stream::certificate, i, 0x6d6972726f72);  // key of this purpose: "mirror"
         const double at = area * (static_cast<double>(i) + random.uniform()) / static_cast<double>(count);
         const auto k = static_cast<std::size_t>(std::upper_bound(up_to.begin(), up_to.end(), at) - up_to.begin());
         const ElementId e = leaves[std::min(k, leaves.size() - 1)];
@@ -209,10 +211,10 @@ std::vector<Place> measured_places(const Solution& solution, const Stage& stage,
     return out;
 }
 
-/// The share in one room. The product of two independent estimates is the square without a bias by noise.
+/// Share in one room. The product of two independent estimates has no bias due to noise, unlike the square of one.
 MirroredShare share_of(std::span<const Place> places, std::size_t room) {
-    constexpr double least_light = 0.1;  // of the room's mean, given by the norm that errors of parts are judged in
-    constexpr std::size_t fewest_places = 8;  // to know a standard error by
+    constexpr double least_light = 0.1;       // share of the room's mean, as in the error norm for parts
+    constexpr std::size_t fewest_places = 8;  // for a standard error
     double arriving = 0, n = 0;
     for (const Place& place : places)
         if (place.room == room) arriving += place.arriving, ++n;
@@ -224,7 +226,7 @@ MirroredShare share_of(std::span<const Place> places, std::size_t room) {
         const auto& [a, b] = place.by_mirrors;
         if (a == 0 && b == 0) continue;
         const double light = std::max(place.arriving, least_light * mean_light);
-        const double square = light > 0 ? a * b / (light * light) : 1;  // no other light: all of it is mirrored
+        const double square = light > 0 ? a * b / (light * light) : 1;  // without other light, all light is mirrored
         sum += square, squares += square * square;
     }
     const double mean_square = sum / n;

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// A turn about the vertical and a scale.
+/// A rotation about the vertical and a scale.
 struct Placement {
     double turn = 0, scale = 1;
 
@@ -20,7 +20,7 @@ struct Placement {
     Point point(const Point& p) const { return scale * vector(p); }
 };
 
-/// A pane of some width and height in the plane y = 6, from the ground up.
+/// A pane of given width and height in the plane y = 6, standing on the ground.
 Pane front(double width, double height, double index, const Placement& placed = {}) {
     Pane pane;
     for (const Point& p : {Point{-width, 6, 0}, {width, 6, 0}, {width, 6, height}, {-width, 6, height}})
@@ -30,7 +30,7 @@ Pane front(double width, double height, double index, const Placement& placed = 
     return pane;
 }
 
-/// A black ground before a pane, and a black wall behind it.
+/// A black ground in front of a pane, and a black wall behind it.
 SceneDescription court(const Pane& pane, const Placement& placed = {}, double reflectance = 0) {
     SceneDescription d;
     d.file = "court";
@@ -71,7 +71,7 @@ double mirrored_at(const Scene& scene, const Point& x, const Normal& n, std::uin
     return 0.5 * (a + b);
 }
 
-/// Mean of a pane's reflection over the directions of its half space, by the cosine.
+/// Mean reflection of a pane over its half space, weighted by the cosine.
 double mean_reflection(const Pane& pane) {
     constexpr int steps = 2000;
     double sum = 0;
@@ -81,12 +81,12 @@ double mean_reflection(const Pane& pane) {
 
 }  // namespace
 
-TEST(MirroredLight, BeforeAnEndlessPaneItIsHalfTheSkyTimesTheMeanReflection) {
+TEST(MirroredLight, IsHalfTheSkyTimesTheMeanReflectionBeforeAnInfinitePane) {
     for (const Placement& placed : {Placement{}, Placement{0.7, 1}, Placement{0.3, 50}}) {
         const Pane pane = front(200, 200, 1.52, placed);
         SceneDescription d = court(pane, placed);
         d.distant = sky_of(100);
-        // 2^15 rays, of which some 6% are mirrored towards the sky: a standard error is 2%.
+        // About 6% of 2^15 rays are mirrored towards the sky: a standard error of 2%.
         EXPECT_NEAR(mirrored_at(made(std::move(d)), placed.point({0, 5, 1}), placed.vector({0, 1, 0})),
                     50 * mean_reflection(pane), 0.06 * 50 * mean_reflection(pane));
     }
@@ -99,7 +99,7 @@ TEST(MirroredLight, AMirroredSunHasTheCosinesOfItsImage) {
         SceneDescription d = court(pane);
         d.distant.discs.push_back({towards, 0.2665 * pi / 180, Spectrum(500)});
         if (!shaded) return made(std::move(d));
-        // A screen across the way from the pane to the sun.
+        // A screen between the pane and the sun.
         for (const Point& p : {Point{-9, 2, 1.2}, {9, 2, 1.2}, {9, 2, 9}, {-9, 2, 9}}) d.points.push_back(p);
         d.faces.push_back({{8, 9, 10, 11}, 0, 0, 3}), d.faces.push_back({{11, 10, 9, 8}, 0, 0, 4});
         return made(std::move(d));
@@ -152,10 +152,10 @@ TEST(MirroredLight, AMirroredEmitterIsSeenAtItsImage) {
         const auto [a, b] = light.at({x, {0, 1, 0}, RegionId()}, 1, key);
         sum += 0.5 * (a + b) / repeats;
     }
-    EXPECT_NEAR(sum, right, 0.01 * right);  // over the lamp's 0.2 m the kernel changes by some percent, evenly
+    EXPECT_NEAR(sum, right, 0.01 * right);  // over the 0.2 m of the lamp the kernel changes by a few percent
 }
 
-TEST(MirroredLight, ASolveThatLeavesMuchOfItOutHasNotConverged) {
+TEST(MirroredLight, ASolveWithoutMuchOfItHasNotConverged) {
     for (const Placement& placed : {Placement{}, Placement{0.7, 0.01}}) {
         SceneDescription d = court(front(10, 20, 4, placed), placed);  // an index of 4 mirrors as much as silicon
         d.distant = sky_of(100);
@@ -167,7 +167,7 @@ TEST(MirroredLight, ASolveThatLeavesMuchOfItOutHasNotConverged) {
     }
 }
 
-TEST(MirroredLight, ScenesWhosePanesMirrorNothingConverge) {
+TEST(MirroredLight, ScenesWithoutMirroringPanesConverge) {
     SceneDescription air = court(front(10, 20, 1));
     air.distant = sky_of(100);
     const Scene scene = made(std::move(air));
@@ -196,7 +196,7 @@ TEST(MirroredLight, ItsShareIsRelativeToTheLightThatArrives) {
         return mirrored_share(solution, stage, 1);
     };
     const MirroredShare large = share_of(front(10, 20, 1.52)), small = share_of(front(0.5, 1, 1.52));
-    // A path tracer brings 11.8 W/m^2 by mirrors to the ground 1 m before the pane, nothing behind it.
+    // A path tracer finds 11.8 W/m^2 by mirrors on the ground 1 m in front of the pane, and nothing behind it.
     EXPECT_GT(large.share, 0.015);
     EXPECT_LT(large.share, 0.118);
     EXPECT_LE(large.certainly, large.share);
@@ -213,7 +213,7 @@ TEST(MirroredLight, PointsWithMuchOfItAreCounted) {
     const MirroredAtPoints found = mirrored_at_points(scene, points, light, 0.02, 1);
     EXPECT_EQ(found.points, 3u);
     EXPECT_EQ(found.above, 2u);
-    EXPECT_NEAR(found.largest, 1 - 0.277 / 7.05, 0.01);  // of a path tracer's 7.05
+    EXPECT_NEAR(found.largest, 1 - 0.277 / 7.05, 0.01);  // from a path tracer's 7.05
 }
 
 }  // namespace exitance

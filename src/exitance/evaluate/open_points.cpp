@@ -11,8 +11,8 @@ bool is_inside_body(const Stage& stage, const Point& x, const Normal& n, RegionI
         stage.tracer.nearest(std::span(&direction, 1), x, region, std::span(&hit, 1));
         return !hit.surface.is_none();
     };
-    // In the open the first ray hardly ever meets a back. Four ways across one another, given by a slope that few walls
-    // have.
+    // In the open the first ray rarely hits a back. The four directions are perpendicular to each other as seen from
+    // above, and not parallel to usual walls.
     for (const Vec2& way : {Vec2{1, 0.3}, Vec2{-0.3, 1}, Vec2{-1, -0.3}, Vec2{0.3, -1}})
         if (!trace(way.x, way.y) || hit.front) return false;
     return trace(0, 0);

@@ -4,9 +4,9 @@
 
 namespace exitance {
 
-/// Is a point in the open: does neither another surface lie on it, nor a body around it? x lies on region `region`, or
-/// in free space where that is none. Inside a body rays to all sides end on backs, and the one straight up ends
-/// somewhere: bodies stand open where they touch others, such as the legs of a table. One to five rays.
+/// True if a point is neither covered by another surface nor inside a body. `region`: the region that contains x, or
+/// none for a point in free space. Inside a body rays in all directions hit backs, and the ray along n hits some
+/// surface: bodies may be open where they touch others, such as the legs of a table. Casts one to five rays.
 bool is_in_open(const Stage& stage, const Point& x, const Normal& n, RegionId region);
 
 }  // namespace exitance

@@ -8,8 +8,8 @@ QuickFunction::Polynomial QuickFunction::polynomial(ElementId leaf, ElementId ro
     const Patch patch = function_->tree.patch(leaf), whole = function_->tree.patch(root);
     const Vec2 middle = whole.coordinates(patch.at(0.5, 0.5));
     Polynomial p{static_cast<float>(middle.x), static_cast<float>(middle.y), {}};
-    // The leaf's own coordinates at the middle, and what they gain along the root's. Those of a parallelogram are
-    // parallel to the root's, so that uv is a multiple of uv there.
+    // Coordinates of the centre in the leaf's system, and their derivatives along the root's axes. The axes of a
+    // parallelogram are parallel to the root's, so that its uv is a multiple of the root's uv.
     const Point origin = whole.at(p.u, p.v);
     const Vec2 at = patch.coordinates(origin), along_u = patch.coordinates(origin + whole.a) - at,
                along_v = patch.coordinates(origin + whole.b) - at;

@@ -6,23 +6,23 @@
 
 namespace exitance {
 
-/// A function on elements for rays, which read it in great numbers: the leaves under many hits are found together, and
-/// a leaf's polynomial stands in one line of memory. The same values as the function's, up to single precision.
-/// Leaves that the finder does not hold, of many triangles of fans, have their polynomials made where they are read.
+/// A function on elements for batches of ray hits: the leaves of many hits are found together, and a leaf's polynomial
+/// occupies one cache line. Same values as the function's, up to single precision. Polynomials of leaves that the
+/// finder does not store (triangles of many fans) are computed on demand.
 class QuickFunction final : public ReflectedLight {
   public:
-    /// Stands once a node where several processes make it, as all of them have to. Where the finder does
-    /// not hold all leaves, the function must outlive this.
+    /// With several processes there is one copy per node; the constructor is then collective. If the finder does not
+    /// store all leaves, the function must outlive the object.
     QuickFunction(const ElementFunction& function, std::size_t region_count);
 
     void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const override;
 
-    /// Does it need the function no more?
+    /// True if the object does not use the function any more.
     bool stands_alone() const { return function_ == nullptr; }
     const ElementLocator& locator() const { return locator_; }
 
   private:
-    /// Of 1, u, v, uv, where (u, v) are the coordinates of the leaf's root, from a middle of the leaf.
+    /// Coefficients of 1, u, v, uv in the coordinates (u, v) of the leaf's root, relative to a centre of the leaf.
     struct alignas(64) Polynomial {
         float u, v;
         std::array<std::array<float, bands>, 4> coefficient;
@@ -30,9 +30,9 @@ class QuickFunction final : public ReflectedLight {
 
     Polynomial polynomial(ElementId leaf, ElementId root) const;
 
-    const ElementFunction* function_;  ///< Null where every leaf has its polynomial.
+    const ElementFunction* function_;  ///< Null if every leaf's polynomial is stored.
     ElementLocator locator_;
-    std::vector<Polynomial> leaves_;  ///< By leaf number.
+    std::vector<Polynomial> leaves_;  ///< Polynomials by leaf number.
 };
 
 }  // namespace exitance

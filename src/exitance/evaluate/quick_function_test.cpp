@@ -25,11 +25,12 @@ TEST(QuickFunction, HasTheValuesOfTheFunction) {
         const HitPoint hit{region, p};
         Spectrum found;
         quick.read(std::span(&hit, 1), std::span(&found, 1));
-        for (std::size_t b = 0; b < bands; ++b) EXPECT_NEAR(found[b], expected[b], 3e-5);  // single precision, of 30
+        // Single precision of values up to 30.
+        for (std::size_t b = 0; b < bands; ++b) EXPECT_NEAR(found[b], expected[b], 3e-5);
     }
 }
 
-TEST(QuickFunction, HasTheSameValuesOnTrianglesThatTheFinderDoesNotHold) {
+TEST(QuickFunction, HasTheSameValuesOnTrianglesThatTheFinderDoesNotStore) {
     ElementFunction function;
     function.tree.add_root(RegionId(0), {{0, 0, 0}, {3, 0.2, 0}, {0.5, 1, 0}, Patch::Shape::parallelogram});
     for (std::uint32_t e = 0; function.tree.size() < 50000; ++e) function.tree.split(ElementId(e), Cut::both);
@@ -57,7 +58,7 @@ TEST(QuickFunction, HasTheSameValuesOnTrianglesThatTheFinderDoesNotHold) {
         Spectrum a, b;
         quick.read(std::span(&hit, 1), std::span(&a, 1));
         of_stored.read(std::span(&hit, 1), std::span(&b, 1));
-        for (std::size_t k = 0; k < bands; ++k) EXPECT_EQ(a[k], b[k]);  // to the last bit
+        for (std::size_t k = 0; k < bands; ++k) EXPECT_EQ(a[k], b[k]);  // same bits
     }
 }
 

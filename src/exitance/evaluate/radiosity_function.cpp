@@ -38,7 +38,8 @@ Spectrum RadiosityFunction::gathered(const ProbePoint& point, RegionId own, unsi
 
 Spectrum RadiosityFunction::irradiance_on(RegionId region, const Point& x, Component component,
                                           ClusteredLight::Workspace& workspace) const {
-    // The elements hold E_ind + c E_dir: the exact part weighs 1 - c in all, 1 or -c by itself.
+    // The elements hold E_ind + c E_dir. The factor of exact direct light is 1 - c for the total, 1 for direct and -c
+    // for indirect light.
     Spectrum weight = exact_share();
     if (!solution_.direct_in_elements && component == Component::direct) weight = Spectrum(1);
     if (!solution_.direct_in_elements && component == Component::indirect) weight -= Spectrum(1);

@@ -10,14 +10,14 @@
 namespace exitance {
 namespace {
 
-/// The digits of a number mirrored at the point, [0, 1).
+/// Radical inverse of i in base 2, in [0, 1).
 double mirrored(std::uint32_t i) {
     double out = 0, digit = 0.5;
     for (; i > 0; i >>= 1, digit *= 0.5) out += (i & 1u) * digit;
     return out;
 }
 
-/// Points of a face: every one of `count` equal shares of its area has one.
+/// Points of a face, one in each of `count` shares of equal area.
 std::vector<Point> spread(std::span<const Point> outline, const Normal& n, std::size_t count) {
     struct Triangle {
         Point a, b, c;

@@ -7,14 +7,14 @@
 
 namespace exitance {
 
-/// Light of the full function at points spread over one face of the input, as far as they lie in the open.
+/// Light of the full function at points spread over one input face, without covered points.
 struct SurfacePoints {
     SurfaceId surface;
-    std::vector<Light> light;  ///< Empty where all of the face is covered.
+    std::vector<Light> light;  ///< Empty if the whole face is covered.
 };
 
-/// Measures faces at `total` points altogether, in proportion to their areas, but at least 16 and at most 1024 a face;
-/// a face's points are stratified in area. After a stop the rest is left out.
+/// Measures the light of faces at about `total` points in all, in proportion to their areas, but at least 16 and at
+/// most 1024 per face. A face's points are stratified by area. After a stop request the remaining faces have no values.
 std::vector<SurfacePoints> measure_surfaces(const RadiosityFunction& light, std::span<const SurfaceId> faces,
                                             std::size_t total, Progress& progress, const StopRequest& stop);
 

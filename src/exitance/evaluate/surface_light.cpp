@@ -5,7 +5,8 @@
 namespace exitance {
 namespace {
 
-/// The part of a face inside a convex leaf; may run to and fro along the leaf's edges.
+/// Clips a face to a convex leaf; the result may have edges that coincide in opposite directions along the leaf's
+/// edges.
 void clip_to_leaf(std::span<const Point> face, const std::vector<Point>& leaf, const Normal& n,
                   std::vector<Point>& out) {
     out.assign(face.begin(), face.end());
@@ -40,7 +41,7 @@ Field<SurfaceId, SurfaceLight> mean_light(const Solution& solution) {
     const Scene& scene = solution.scene;
     const ElementTree& tree = solution.interpolant.tree;
     Field<SurfaceId, SurfaceLight> light(scene.surfaces().size());
-    Field<RegionId, Bvh> faces(scene.regions().size());  // of the regions of several faces
+    Field<RegionId, Bvh> faces(scene.regions().size());  // for regions of several faces
     for (RegionId r : scene.regions().ids()) {
         const std::vector<SurfaceId>& members = scene.regions()[r].surfaces;
         if (members.size() < 2) continue;
@@ -61,7 +62,7 @@ Field<SurfaceId, SurfaceLight> mean_light(const Solution& solution) {
         }
         Box box;
         for (const Point& p : outline) box.add(p);
-        const Vec3 rounding = Vec3{1, 1, 1} * (1e-9 * scene.size());  // given by rounding
+        const Vec3 rounding = Vec3{1, 1, 1} * (1e-9 * scene.size());  // tolerance for rounding
         box.lo -= rounding, box.hi += rounding;
         faces[tree.region(e)].visit_box(box, [&](std::uint32_t i) {
             const SurfaceId s = region.surfaces[i];

@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// Sets the interpolant to 1 + x + 2 y + 3 z, which every leaf holds exactly.
+/// Sets the interpolant to 1 + x + 2 y + 3 z, which every leaf represents exactly.
 Solution linear_solution() {
     Solution s = sample_solution(60);
     const ElementTree& tree = s.interpolant.tree;
@@ -20,7 +20,7 @@ Solution linear_solution() {
     return s;
 }
 
-TEST(MeanLight, OfALinearFunctionIsItsValueAtTheCentroidOfEveryFace) {
+TEST(MeanLight, IsTheValueAtTheCentroidForALinearFunction) {
     const Solution s = linear_solution();
     const Field<SurfaceId, SurfaceLight> light = mean_light(s);
     for (SurfaceId f : s.scene.surfaces().ids()) {
@@ -34,7 +34,7 @@ TEST(MeanLight, OfALinearFunctionIsItsValueAtTheCentroidOfEveryFace) {
     }
 }
 
-TEST(MeanLight, OfTheFacesOfARegionAddsUpToThatOfItsLeaves) {
+TEST(MeanLight, OfARegionsFacesAddsUpToThatOfItsLeaves) {
     const Solution s = sample_solution(100);
     const ElementTree& tree = s.interpolant.tree;
     const Field<SurfaceId, SurfaceLight> light = mean_light(s);
@@ -42,7 +42,7 @@ TEST(MeanLight, OfTheFacesOfARegionAddsUpToThatOfItsLeaves) {
     for (SurfaceId f : s.scene.surfaces().ids()) of_faces += s.scene.surfaces()[f].area * mean(light[f].irradiance);
     for (ElementId e : tree.leaves()) {
         const Spectrum sum = integral(s.interpolant, e, tree.outline(e), tree.patch(e).normal());
-        if (!tree.is_cell(e)) {  // a bilinear function's mean is that of its corners
+        if (!tree.is_cell(e)) {  // the mean of a bilinear function is that of its corners
             Spectrum corners;
             const int n = tree.patch(e).corner_count();
             for (int k = 0; k < n; ++k) corners += s.interpolant.at({e, tree.patch(e).corner_uv(k)}) / n;

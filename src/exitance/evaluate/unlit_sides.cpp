@@ -13,15 +13,15 @@
 namespace exitance {
 namespace {
 
-constexpr unsigned places = 16;  ///< Number of places on a side that are tried.
+constexpr unsigned places = 16;  ///< Number of tested places on a side.
 
-/// The pieces of a region, in one row.
+/// All pieces of a region.
 struct Side {
     RegionId region;
     double area = 0;
     std::vector<const Patch*> pieces = {};
 
-    /// Uniform in area, by three numbers in [0, 1).
+    /// A point for three numbers in [0, 1), uniform in area.
     Point at(double which, double u, double v) const {
         double left = which * area;
         std::size_t k = 0;
@@ -35,7 +35,7 @@ std::vector<Side> sides_of_sheets(const Stage& stage) {
     std::vector<Side> out;
     if (other.size() == 0) return out;
     for (const Piece& piece : stage.pieces) {
-        // Light that comes to a diffusing pane from behind is its own, too.
+        // Light from behind a diffusing pane counts as its own.
         if (!stage.scene.behind(piece.region).is_none()) continue;
         if (other[piece.region].is_none() || stage.scene.material(piece.region).emits()) continue;
         if (out.empty() || out.back().region != piece.region) out.push_back({piece.region});
@@ -45,8 +45,8 @@ std::vector<Side> sides_of_sheets(const Stage& stage) {
     return out;
 }
 
-/// Paths first: they find what light there is nearly everywhere, where exact direct light may cost thousands of times
-/// as much.
+/// True if some light reaches a side. Paths come first: they find light nearly everywhere, whereas exact direct light
+/// may cost thousands of times as much.
 bool is_lit(const Stage& stage, const PathTracer& tracer, const Side& side, unsigned paths, std::uint64_t seed) {
     const Normal& n = stage.scene.regions()[side.region].plane.n;
     const ScrambledSobol where(hash(seed, static_cast<std::uint64_t>(Stream::reference), side.region.value));
@@ -62,7 +62,7 @@ bool is_lit(const Stage& stage, const PathTracer& tracer, const Side& side, unsi
             if (max(tracer.path({x, n, side.region}, directions(p, 0), directions(p, 1), random)) > 0) return true;
     }
     ClusteredLight::Workspace workspace;
-    constexpr LightAccuracy any_light{.relative = 0.1};  // given by what is asked: is there any?
+    constexpr LightAccuracy any_light{.relative = 0.1};  // sufficient to decide whether there is any light
     return std::any_of(open.begin(), open.end(), [&](const auto& place) {
         return max(stage.clustered.at(place.first, n, side.region, any_light, workspace).irradiance) > 0;
     });
@@ -73,7 +73,7 @@ bool is_lit(const Stage& stage, const PathTracer& tracer, const Side& side, unsi
 Field<RegionId, std::uint8_t> find_unlit_sides(const Stage& stage, std::uint64_t seed, const StopRequest& stop) {
     const std::vector<Side> sides = sides_of_sheets(stage);
     if (sides.empty() || !stage.scene.has_light()) return {};
-    // All of them together: about as many rays as a quick solve takes.
+    // Paths of all sides together: about as many rays as a quick solve.
     constexpr double all = 1 << 18;
     const PathTracer tracer(stage);
     std::vector<std::uint8_t> unlit(sides.size());
@@ -96,7 +96,7 @@ Field<RegionId, std::uint8_t> find_unlit_sides(const Stage& stage, std::uint64_t
         out[sides[k].region] = unlit[k];
         count += unlit[k];
     }
-    // Where nothing is lit at all there is nothing else to be relative to.
+    // If no side is lit, there is no other light to which errors could be relative.
     return count > 0 && count < out.size() ? out : Field<RegionId, std::uint8_t>();
 }
 

@@ -20,12 +20,12 @@ std::vector<Face> room_with_box(bool open) {
     std::vector<Face> faces;
     for (const Face& f : test::closed_box({0, 0, 0}, {2, 2, 2})) add_both_sides(faces, f);
     const std::vector<Face> box = test::closed_box({0.5, 0.5, 0}, {0.4, 0.4, 0.4});
-    for (std::size_t i = open ? 2 : 1; i < box.size(); ++i) add_both_sides(faces, box[i]);  // it has no bottom
+    for (std::size_t i = open ? 2 : 1; i < box.size(); ++i) add_both_sides(faces, box[i]);  // without a bottom
     faces.push_back({{{0.9, 0.9, 1.9}, {0.9, 1.1, 1.9}, {1.1, 1.1, 1.9}, {1.1, 0.9, 1.9}}, 10});
     return faces;
 }
 
-/// Front sides are the even ones, as closed_box makes them: the room's look inwards, and so do the box's.
+/// Front sides have even indices, as closed_box makes them; those of the room and of the box face inwards.
 TEST(UnlitSides, AreTheOutsideOfARoomAndTheInsideOfABox) {
     const Scene scene = test::make(room_with_box(false));
     const Stage stage(scene);
@@ -45,7 +45,7 @@ TEST(UnlitSides, AreNoneInAnOpenBox) {
         EXPECT_EQ(unlit[scene.surfaces()[s].region] != 0, s.value < 12 && s.value % 2 == 1) << s.value;
 }
 
-TEST(UnlitSides, AreLookedForInSheetsOnly) {
+TEST(UnlitSides, AreFoundOnSheetsOnly) {
     std::vector<Face> faces = test::closed_box({0, 0, 0}, {1, 1, 1});
     for (const Face& f : test::closed_box({3, 0, 0}, {1, 1, 1})) faces.push_back(f);
     faces[0].exitance = 1;
@@ -53,16 +53,16 @@ TEST(UnlitSides, AreLookedForInSheetsOnly) {
     EXPECT_EQ(find_unlit_sides(Stage(scene), 1, StopRequest()).size(), 0u);
 }
 
-TEST(UnlitSides, DoNotCountInTheAreaAndAreNotCut) {
+TEST(UnlitSides, DoNotCountInTheAreaAndAreNotMeshed) {
     const Scene scene = test::make(room_with_box(false));
     Stage stage(scene);
     stage.leave_out(find_unlit_sides(stage, 1, StopRequest()));
-    EXPECT_NEAR(stage.area, 24 + 5 * 0.16 + 0.04, 1e-9);  // room, box, lamp; metres with few digits
+    EXPECT_NEAR(stage.area, 24 + 5 * 0.16 + 0.04, 1e-9);  // room, box and lamp, m^2; coordinates have few digits
     const ElementTree tree = stage.make_elements({0.1, 2});
     std::size_t whole = 0;
     for (ElementId leaf : tree.leaves()) whole += stage.is_left_out(tree.region(leaf)) ? 1 : 0;
     EXPECT_EQ(whole, 11u);
-    EXPECT_GT(tree.leaves().size(), 2400u);  // the room's squares of a tenth of a metre
+    EXPECT_GT(tree.leaves().size(), 2400u);  // squares of 0.1 m of the room
 }
 
 }  // namespace

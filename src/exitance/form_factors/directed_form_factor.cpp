@@ -10,16 +10,19 @@
 namespace exitance {
 namespace {
 
-constexpr double accepted_difference = 1e-3;  ///< Of the means of three places and of six; the latter's error is less.
-constexpr double agreement = 0.3;             ///< Of that: where one place and three differ by less, three will do.
-constexpr double least_mean = 0.02;           ///< Of p: errors are relative to this where it is less.
-constexpr double finest = 2 * pi / 180;       ///< Triangles that look narrower count as smooth.
-constexpr double coarse = 0.3;                ///< Radians, of the triangles that the mean is guessed by.
-constexpr int deepest = 20;                   ///< Bisections of a triangle.
+/// Allowed difference between the means of three and of six points, relative; the error of six is smaller.
+constexpr double accepted_difference = 1e-3;
+/// Share of this: if the means of one and of three points differ by less, three are enough.
+constexpr double three_point_agreement = 0.3;
+/// Values of p below this share are given an absolute tolerance, relative to this value.
+constexpr double min_mean = 0.02;
+constexpr double smooth_angle = 2 * pi / 180;  ///< Triangles that subtend less are treated as smooth, radians.
+constexpr double estimate_angle = 0.3;         ///< Size of the triangles for the first estimate of the mean, radians.
+constexpr int max_bisections = 20;             ///< Maximum number of bisections of a triangle.
 
 using Triangle = std::array<Vec3, 3>;
 
-/// Sums over places of a triangle: of the kernel, and of the kernel times p.
+/// Sums over points of a triangle: of the kernel, and of the kernel times p.
 struct Sums {
     double kernel = 0, weighted = 0;
     double mean() const { return kernel > 0 ? weighted / kernel : 0; }
@@ -28,21 +31,22 @@ struct Sums {
 class DirectedIntegral {
   public:
     DirectedIntegral(const Normal& n, const RelativeRadiance& p)
-        : n_(n), p_(p), widest_(std::max(p.smooth_width(), finest)) {}
+        : n_(n), p_(p), widest_(std::max(p.smooth_width(), smooth_angle)) {}
 
     double operator()(std::span<const Vec3> corners) {
         Sums guess;
-        const int depth = p_.breaks_at_horizon() ? deepest : 0;  // smooth but for that: one place will do
+        const int depth = p_.breaks_at_horizon() ? max_bisections : 0;  // otherwise p is smooth: one point is enough
         for (std::size_t i = 2; i < corners.size(); ++i)
             add_coarse({corners[0], corners[i - 1], corners[i]}, depth, guess);
-        allowed_ = accepted_difference * std::max(least_mean, 0.5 * guess.mean());  // it may well be twice the mean
+        // Factor 0.5, since the estimate may be up to twice the mean.
+        allowed_ = accepted_difference * std::max(min_mean, 0.5 * guess.mean());
         double sum = 0;
         for (std::size_t i = 2; i < corners.size(); ++i) sum += part({corners[0], corners[i - 1], corners[i]}, 0);
         return sum;
     }
 
   private:
-    /// r leads from the point to a place of the polygon.
+    /// Adds a point of the polygon; r is its position relative to the receiver point.
     void add(const Vec3& r, double weight, Sums& sums) const {
         const double r2 = squared_norm(r), above = dot(n_, r), before = -dot(p_.normal(), r);
         if (!(above > 0 && before > 0)) return;
@@ -50,7 +54,7 @@ class DirectedIntegral {
         sums.kernel += kernel;
         sums.weighted += kernel * p_(-r / std::sqrt(r2));
     }
-    /// Three places, each with barycentric coordinates a, b, b.
+    /// Adds three points with barycentric coordinates a, b, b each.
     void add_three(const Triangle& t, double a, double weight, Sums& sums) const {
         const double b = 0.5 * (1 - a);
         for (std::size_t i = 0; i < 3; ++i) add(a * t[i] + b * (t[(i + 1) % 3] + t[(i + 2) % 3]), weight, sums);
@@ -62,7 +66,7 @@ class DirectedIntegral {
             std::max({squared_norm(t[1] - t[0]), squared_norm(t[2] - t[1]), squared_norm(t[0] - t[2])});
         return longest > angle * angle * squared_norm(middle);
     }
-    /// The two halves on either side of the middle of the longest edge.
+    /// Splits a triangle at the middle of its longest edge.
     static std::array<Triangle, 2> bisected(const Triangle& t) {
         std::size_t i = 0;
         double longest = -1;
@@ -72,9 +76,9 @@ class DirectedIntegral {
         return {Triangle{a, m, c}, Triangle{m, b, c}};
     }
 
-    /// The mean of p, roughly: by the middles of triangles that look small.
+    /// Estimates the mean of p from the centroids of triangles that subtend a small angle.
     void add_coarse(const Triangle& t, int depth, Sums& sums) const {
-        if (depth < deepest / 2 && looks_wider(t, coarse)) {
+        if (depth < max_bisections / 2 && looks_wider(t, estimate_angle)) {
             for (const Triangle& half : bisected(t)) add_coarse(half, depth + 1, sums);
             return;
         }
@@ -82,18 +86,18 @@ class DirectedIntegral {
     }
 
     double part(const Triangle& t, int depth) const {
-        if (depth == deepest || !looks_wider(t, widest_)) {
+        if (depth == max_bisections || !looks_wider(t, widest_)) {
             Sums one, three, six;
             add_three(t, 2.0 / 3, 1, three);
             if (!looks_wider(t, 0.5 * widest_)) {
                 add((t[0] + t[1] + t[2]) / 3, 1, one);
                 if (std::abs(three.mean() - one.mean()) <=
-                    agreement * std::max(allowed_, accepted_difference * one.mean()))
+                    three_point_agreement * std::max(allowed_, accepted_difference * one.mean()))
                     return three.mean() * std::max(0.0, contour_sum(n_, t));
             }
             add_three(t, 0.108103018168070, 0.223381589678011, six);  // degree 4 [Dunavant85]
             add_three(t, 0.816847572980459, 0.109951743655322, six);
-            if (depth == deepest ||
+            if (depth == max_bisections ||
                 std::abs(six.mean() - three.mean()) <= std::max(allowed_, accepted_difference * six.mean()))
                 return six.mean() * std::max(0.0, contour_sum(n_, t));
         }
@@ -104,15 +108,15 @@ class DirectedIntegral {
 
     const Normal& n_;
     const RelativeRadiance& p_;
-    double widest_;       ///< Radians, a triangle's longest edge.
-    double allowed_ = 0;  ///< Error of p.
+    double widest_;       ///< Largest allowed angle of a triangle's longest edge, radians.
+    double allowed_ = 0;  ///< Allowed absolute error of the relative radiance p_.
 };
 
 }  // namespace
 
 namespace {
 
-/// The part above or below the horizon.
+/// Clips the corners to the half-space above (sign 1) or below (sign -1) the horizon z = 0.
 std::vector<Vec3> beside_horizon(std::span<const Vec3> corners, double sign) {
     std::vector<Vec3> out;
     for (std::size_t i = 0, m = corners.size(); i < m; ++i) {

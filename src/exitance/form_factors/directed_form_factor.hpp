@@ -7,18 +7,20 @@
 
 namespace exitance {
 
-/// Irradiance at a point over the exitance of a polygon whose radiance depends on direction, nothing in between:
+/// Returns the irradiance at a point over the exitance of a polygon whose radiance depends on direction, without
+/// occlusion:
 ///
 ///     F_p = integral of p(y -> x) dF = integral of  p(y -> x) cos cos / (pi r^2) dA
 ///
-/// The polygon is cut into triangles. A triangle's part is its form factor, which is exact, times the mean of p over
-/// six places of a rule of degree 4, which weigh as the kernel has it. It is bisected where it looks wider than the
-/// profile is smooth, or where three places say otherwise. Far polygons are two triangles. Relative error 1e-3 at most,
-/// as a rule 2e-4; where p is less than a fiftieth of its mean it is relative to that. About 60 ns a place; a far
-/// quadrangle takes 20, an opening of a metre at half a metre 400 to 5000 by its profile.
-/// n        the point's normal
-/// corners  of a convex polygon relative to the point, all above its horizon, counter-clockwise seen from its front
-/// p        of its face
+/// The polygon is split into triangles. The contribution of a triangle is its exact form factor times the mean of p
+/// over the six points of a rule of degree 4, weighted by the form factor kernel. A triangle is bisected if it subtends
+/// more than the angle over which the profile is smooth, or if three and six points disagree.
+/// n        normal of the point
+/// corners  convex polygon relative to the point, above its horizon, counter-clockwise seen from its front
+/// p        relative radiance of the polygon's front
+/// Relative error at most 1e-3, typically 2e-4; relative to the mean of p where p is less than a fiftieth of it. About
+/// 60 ns per point. A far quadrangle needs 20 points, an opening of 1 m at 0.5 m distance 400 to 5000, depending on its
+/// profile.
 double directed_form_factor(const Normal& n, std::span<const Vec3> corners, const RelativeRadiance& p);
 
 }  // namespace exitance

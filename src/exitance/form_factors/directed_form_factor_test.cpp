@@ -13,7 +13,7 @@ namespace {
 
 constexpr double degree = pi / 180;
 
-/// An opening that faces down, of intensity cos^n per area.
+/// An opening that faces down, with intensity cos^n per area.
 EmissionProfile power_of_cosine(double n, double step) {
     EmissionProfile p;
     p.body = EmissionProfile::Body::flat;
@@ -25,7 +25,7 @@ EmissionProfile power_of_cosine(double n, double step) {
     return p;
 }
 
-/// As luminaires are: no symmetry about the vertical, beams to the sides, steps of 10 and 15 degrees.
+/// Typical of luminaires: no rotational symmetry, beams to the sides, steps of 10 and 15 degrees.
 EmissionProfile batwing() {
     EmissionProfile p;
     p.body = EmissionProfile::Body::flat;
@@ -50,7 +50,7 @@ struct Lamp {
     Normal down{0, 0, -1};
 };
 
-/// A rectangle at z, facing down, relative to a point.
+/// A rectangle with the given centre, facing down, relative to the point x.
 std::vector<Vec3> opening(double width, double depth, const Point& middle, const Point& x) {
     const double a = width / 2, b = depth / 2;
     std::vector<Vec3> out;
@@ -59,7 +59,7 @@ std::vector<Vec3> opening(double width, double depth, const Point& middle, const
     return out;
 }
 
-/// The same by the middle of many small cells.
+/// Reference for directed_form_factor: sums the kernel at the centres of many small cells.
 double by_cells(const Normal& n, const std::vector<Vec3>& corners, const RelativeRadiance& p, int cells) {
     const Vec3 u = (corners[3] - corners[0]) / cells, v = (corners[1] - corners[0]) / cells;
     const double area = norm(cross(u, v));
@@ -77,18 +77,19 @@ double by_cells(const Normal& n, const std::vector<Vec3>& corners, const Relativ
 
 TEST(EmissionProfile, FluxOfAPowerOfTheCosineIsKnown) {
     for (const double n : {1.0, 2.0, 20.0}) {
-        // Intensity cos^n over a hemisphere: 2 pi / (n + 1); the table's chords run below it by n / 8 step^2.
+        // Intensity cos^n over a hemisphere: 2 pi / (n + 1); linear interpolation of the table is too low by n / 8
+        // step^2.
         const double exact = 2 * pi / (n + 1);
         const double chords = n / 8 * 0.5 * degree * 0.5 * degree;
         EXPECT_NEAR(exitance_of(power_of_cosine(n, 0.5), {0, 0, -1}), exact, (1.2 * chords + 1e-5) * exact) << n;
     }
 }
 
-TEST(EmissionProfile, FacesOfABoxSendWhatItsIntensitySays) {
+TEST(EmissionProfile, FluxOfABoxsFacesIsTheFluxOfItsIntensity) {
     EmissionProfile p;
     p.axes[0].at = {0, 15, 30, 45, 60, 75, 90};
     p.values = {1000, 950, 800, 550, 250, 60, 0};
-    double flux = 0;  // of the intensity over all directions, in W
+    double flux = 0;  // total flux of the intensity over all directions, W
     constexpr int rings = 20000;
     for (int i = 0; i < rings; ++i) {
         const double theta = 0.5 * pi * (i + 0.5) / rings;
@@ -105,7 +106,8 @@ TEST(EmissionProfile, TurningFaceAndLampTogetherChangesNothing) {
     const EmissionProfile p = batwing();
     const double upright = exitance_of(p, {0, 0, -1});
     const Normal n = normalized(Vec3{0.3, 0.2, -1});
-    // A plane opening's flux is its intensity over the hemisphere in front; a little of that lies behind a tilted one.
+    // The flux of a planar opening is its intensity integrated over the hemisphere in front; for a tilted face a small
+    // part of this is behind it.
     EXPECT_NEAR(exitance_of(p, n), upright, 0.1 * upright);
     DirectedEmission turned;
     turned.x = {0, 0, 1}, turned.y = {0, 1, 0}, turned.z = {-1, 0, 0};  // down becomes +x

@@ -15,12 +15,12 @@ struct SineAndCosine {
     Real sine, cosine;
 };
 
-/// Of an angle in [-pi/4, pi/4], by their series; exact but for rounding (terms left out are below 1e-17), alike on
-/// every machine, and several times as fast as the library's.
+/// Sine and cosine of an angle in [-pi/4, pi/4] by their series, exact except for rounding (omitted terms are below
+/// 1e-17). Bit-identical on every machine, and several times as fast as the standard library.
 template <class Real>
 EXITANCE_INLINE SineAndCosine<Real> sine_and_cosine(const Real& angle) {
     const Real q = angle * angle;
-    constexpr auto term = [](int n) { return 1.0 / (n * (n - 1.0)); };  // each from the one before it
+    constexpr auto term = [](int n) { return 1.0 / (n * (n - 1.0)); };  // ratio of consecutive terms
     Real sine = q * 0 + 1, cosine = sine;
 #pragma GCC unroll 8
     for (int n = 17; n > 1; n -= 2) {
@@ -37,14 +37,14 @@ EXITANCE_INLINE VecOf<Real> around(const Frame& frame, const Real& a, const Real
     const Real radius = wide ? s : t, other = wide ? t : s;
     const auto [sine, cosine] = sine_and_cosine(pi / 4 * (other / (radius != 0 ? radius : radius + 1)));
     const Real x = radius * (wide ? cosine : sine), y = radius * (wide ? sine : cosine);
-    // A direction in the plane itself would never leave it.
+    // Keep the direction above the plane: a ray in the plane itself would never leave it.
     const Real rest = 1 - x * x - y * y, least = rest * 0 + 1e-12, z = sqrt(max(least, rest));
     const auto to_world = [&](double u, double v, double n) { return x * u + y * v + z * n; };
     return {to_world(frame.u.x, frame.v.x, frame.n.x), to_world(frame.u.y, frame.v.y, frame.n.y),
             to_world(frame.u.z, frame.v.z, frame.n.z)};
 }
 
-/// As many as there are lanes, from place k on; lanes without a pair repeat the last one.
+/// Computes the directions of one SIMD vector of pairs, starting at k; unused lanes repeat the last pair.
 template <class Real>
 EXITANCE_INLINE void add_directions(const Frame& frame, std::span<const double> a, std::span<const double> b,
                                     std::size_t k, std::span<Vec3> directions) {

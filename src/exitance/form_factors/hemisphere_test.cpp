@@ -7,9 +7,9 @@
 namespace exitance {
 namespace {
 
-TEST(CosineDirections, AreThoseOfOneByOneOnAnyProcessorAndHaveUnitLength) {
+TEST(CosineDirections, AgreeWithSingleCallsOnAnyProcessorAndHaveUnitLength) {
     const Frame frame(normalized(Vec3{1, 2, -0.5}));
-    std::vector<double> a = {0.5, 0, 0.5, 1 - 0x1p-32}, b = {0.5, 0, 0.2, 0.3};  // middle, corner, diagonal, edge
+    std::vector<double> a = {0.5, 0, 0.5, 1 - 0x1p-32}, b = {0.5, 0, 0.2, 0.3};  // centre, corner, diagonal, edge
     const ScrambledSobol points(1);
     for (std::uint32_t k = 0; k < 31; ++k) a.push_back(points(k, 0)), b.push_back(points(k, 1));
     for (const Processor processor : {Processor::fastest, Processor::any}) {
@@ -24,7 +24,7 @@ TEST(CosineDirections, AreThoseOfOneByOneOnAnyProcessorAndHaveUnitLength) {
 }
 
 TEST(CosineDirections, HaveTheMomentsOfTheirDensity) {
-    // Of density cos / pi: the mean of cos is 2/3, of cos^2 and of each sideways component's square 1/2 and 1/4.
+    // For density cos / pi, the mean of cos is 2/3, of cos^2 1/2, and of the square of each tangential component 1/4.
     const Frame frame({0, 0, 1});
     const ScrambledSobol points(2);
     constexpr std::uint32_t count = 4096;
@@ -33,7 +33,7 @@ TEST(CosineDirections, HaveTheMomentsOfTheirDensity) {
         const Vec3 d = cosine_direction(frame, points(k, 0), points(k, 1));
         cosine += d.z / count, square += d.z * d.z / count, sideways += d.x * d.x / count;
     }
-    EXPECT_NEAR(cosine, 2.0 / 3, 1e-4);  // points leave count^-3/2 or so of smooth functions
+    EXPECT_NEAR(cosine, 2.0 / 3, 1e-4);  // for smooth functions, the error of the points is about count^-3/2
     EXPECT_NEAR(square, 0.5, 1e-4);
     EXPECT_NEAR(sideways, 0.25, 1e-4);
 }

@@ -26,21 +26,21 @@ std::vector<Edge> edges_of(const std::vector<Point>& outline) {
     return edges;
 }
 
-/// Int ln sqrt(t^2 + h^2) dt.
+/// Primitive of ln sqrt(t^2 + h^2) in t.
 double log_primitive(double t, double h) {
     const double squared = t * t + h * h;
     if (squared == 0) return 0;
     return t * (0.5 * std::log(squared) - 1) + (h > 0 ? h * std::atan(t / h) : 0);
 }
 
-/// Int ln |p - y| over an edge.
+/// Integral of ln |p - y| over the points y of an edge.
 double log_integral(const Point& p, const Edge& edge) {
     const Vec3 d = p - edge.from;
     const double s = dot(d, edge.along), h = norm(cross(d, edge.along));
     return log_primitive(edge.length - s, h) - log_primitive(-s, h);
 }
 
-/// Outer integral along a part [first, last] of an edge, by comparison of two Gauss rules and bisection.
+/// Outer integral over a part [first, last] of an edge; adaptive bisection by the difference of two Gauss rules.
 class OuterIntegral {
   public:
     OuterIntegral(const Edge& outer, const Edge& inner, double first, double last, bool mapped, double tolerance)
@@ -66,7 +66,9 @@ class OuterIntegral {
         double total = 0;
         for (std::size_t k = 0; k < rule.size(); ++k) {
             double y = a + (b - a) * rule.nodes[k], stretch = width_;
-            if (mapped_) {  // t = y^3 (10 - 15 y + 6 y^2), symmetric about 1/2: near an end its own small y counts
+            // Substitute t = y^3 (10 - 15 y + 6 y^2), computed from 1 - y above 1/2, so that small distances to both
+            // ends keep their digits.
+            if (mapped_) {
                 const double z = 1 - y;
                 stretch *= 30 * y * y * z * z;
                 y = y <= 0.5 ? y * y * y * (10 - 15 * y + 6 * y * y) : 1 - z * z * z * (10 - 15 * z + 6 * z * z);
@@ -77,8 +79,8 @@ class OuterIntegral {
         return (b - a) * total;
     }
 
-    /// Of the inner integral: a difference of primitives of order one, however short the edge. Below it rules differ
-    /// for ever.
+    /// Rounding error of the inner integral: a difference of primitives of order one, however short the edge is. At
+    /// tolerances below it the two rules always differ.
     double rounding() const { return 1e-15 * inner_.length + 5e-16; }
 
     static constexpr int max_depth = 24;
@@ -89,13 +91,14 @@ class OuterIntegral {
     LineRule coarse_, better_;
 };
 
-/// A part of the outer edge on which the inner integral is smooth but for its ends.
+/// A part of the outer edge on which the inner integral is smooth, except possibly at its ends.
 struct Part {
     double first, last;
-    bool touches;  ///< An end of it lies on an end point of the inner edge.
+    bool touches;  ///< One of its ends coincides with an end point of the inner edge.
 };
 
-/// Cuts the outer edge where it passes the inner edge's end points, beside which the inner integral bends.
+/// Splits the outer edge where it passes end points of the inner edge, near which the inner integral has strong
+/// curvature.
 void cut_at_passing_points(const Edge& outer, const Edge& inner, std::vector<Part>& parts) {
     const double scale = outer.length + inner.length, nil = 1e-11 * scale;
     const Point ends[2] = {inner.from, inner.from + inner.length * inner.along};
@@ -117,7 +120,7 @@ void cut_at_passing_points(const Edge& outer, const Edge& inner, std::vector<Par
             parts.push_back({at[i], at[i + 1], touches(at[i]) || touches(at[i + 1])});
 }
 
-/// The double contour integral. Lengths are in units of the pair's distance or size, so that ln r stays small.
+/// Double contour integral. Lengths are in units of the pair's distance or size, so that ln r is of order one.
 double contour_integral(const std::vector<Point>& receiver, const std::vector<Point>& source, double tolerance) {
     const std::vector<Edge> outer = edges_of(receiver), inner = edges_of(source);
     std::vector<Part> parts;
@@ -134,14 +137,15 @@ double contour_integral(const std::vector<Point>& receiver, const std::vector<Po
         return total / (2 * pi);
     };
     const double estimate = sum_pairs([](const OuterIntegral& part) { return part.estimate(); });
-    // Errors of parts have random signs and the comparison overrates them: each may use the whole allowance's root.
+    // The errors of the parts have random signs, and the difference of the rules overestimates them. Each part
+    // therefore gets the total tolerance divided by the square root of their number.
     const double count = static_cast<double>(outer.size() * inner.size());
     const double allowed = 2 * pi * tolerance * std::max(std::abs(estimate), 1e-12) / std::sqrt(count);
     return sum_pairs([&](const OuterIntegral& part) { return part(allowed); });
 }
 
-/// Adds Gauss points of the triangles fanned from the first corner. Corners that turn back count negative, which is
-/// right for an integrand that is smooth all around.
+/// A Gauss point on one of the triangles fanned from the first corner. Triangles at concave corners have negative
+/// weights, which is correct for an integrand that is smooth on the whole plane.
 struct AreaNode {
     Point at;
     double weight;  ///< m^2
@@ -186,7 +190,7 @@ std::vector<Point> moved(std::span<const Point> outline, const Point& centre, do
     return out;
 }
 
-/// Is any of it in front of the plane by more than rounding? Lengths are of order one.
+/// True if some corner is in front of the plane by more than the rounding error. Lengths are of order one.
 bool rises_above(const std::vector<Point>& outline, const Normal& n, const Point& on_plane) {
     return std::any_of(outline.begin(), outline.end(), [&](const Point& p) { return dot(n, p - on_plane) > 1e-13; });
 }

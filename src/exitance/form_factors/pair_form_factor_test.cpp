@@ -27,7 +27,7 @@ TEST(PairFormFactor, OpposedUnitSquaresAtDistanceOne) {
 }
 
 TEST(PairFormFactor, PerpendicularUnitSquaresSharingAnEdge) {
-    const Outline wall = {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}};  // its front looks along +x
+    const Outline wall = {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}};  // its front faces +x
     EXPECT_NEAR(pair_form_factor(square(0, true), wall), 0.2000437760754032, 1e-13);
 }
 
@@ -37,10 +37,10 @@ TEST(PairFormFactor, PerpendicularSquaresWhoseEdgesOverlapInPartAddUpToTheWhole)
     const Outline high = {{0, 1, 0}, {0, 1.37, 0}, {0, 1.37, 1}, {0, 1, 1}};
     const double whole = exchange_area(square(0, true), wall);
     const double parts = exchange_area(square(0, true), low) + exchange_area(square(0, true), high);
-    EXPECT_NEAR(whole / parts, 1, 1e-12);  // both are asked for 1e-12
+    EXPECT_NEAR(whole / parts, 1, 1e-12);  // both have a tolerance of 1e-12
 }
 
-TEST(PairFormFactor, IsNothingBehindOrInThePlaneOfTheOther) {
+TEST(PairFormFactor, IsZeroBehindOrInThePlaneOfTheOther) {
     EXPECT_EQ(pair_form_factor(square(0, true), square(1, true)), 0);
     EXPECT_EQ(pair_form_factor(square(0, false), square(1, false)), 0);
     const Outline beside = {{2, 0, 0}, {3, 0, 0}, {3, 1, 0}, {2, 1, 0}};
@@ -58,12 +58,13 @@ TEST(PairFormFactor, RowsOfAClosedBoxSumToOne) {
     for (const Outline& receiver : faces) {
         double sum = 0;
         for (const Outline& source : faces) sum += pair_form_factor(receiver, source);
-        EXPECT_NEAR(sum, 1, 5e-12);  // five entries, each asked for 1e-12
+        EXPECT_NEAR(sum, 1, 5e-12);  // five entries, each with a tolerance of 1e-12
     }
 }
 
-TEST(PairFormFactor, FarPairsAgreeWithTheContourSumWhereBothHold) {
-    // Just inside ten sizes the contour sum is taken, just outside area points: both hold about 1e-11 there.
+TEST(PairFormFactor, AreaAndContourRulesAgreeAtTheirBoundary) {
+    // Just inside ten sizes the contour integral is used, just outside quadrature points: both have an error of about
+    // 1e-11 there.
     const Outline floor = square(0, true);
     for (double z : {28.2, 28.4}) {
         const double F = pair_form_factor(floor, square(z, false));
@@ -75,7 +76,7 @@ TEST(PairFormFactor, FarPairsAgreeWithTheContourSumWhereBothHold) {
     }
 }
 
-/// A triangle or quadrilateral with corners in general position, in a random plane.
+/// A random triangle or quadrilateral in a random plane.
 Outline random_outline(const std::array<int, 12>& v, const Point& shift) {
     const auto at = [&](int i) { return 0.01 * (v[static_cast<std::size_t>(i)] % 100); };
     const Point o = Point{at(0), at(1), at(2)} + shift;
@@ -83,7 +84,7 @@ Outline random_outline(const std::array<int, 12>& v, const Point& shift) {
     return {o, o + a, o + a + (0.5 + 0.5 * at(9)) * b, o + b};
 }
 
-TEST(PairFormFactorProperties, ExchangeIsTheSameBothWaysAndAddsUpUnderCuts) {
+TEST(PairFormFactorProperties, ExchangeIsReciprocalAndAdditiveUnderCuts) {
     rc::check([](const std::array<int, 12>& first, const std::array<int, 12>& second, int place) {
         auto low = first, high = second;
         for (int& v : low) v = std::abs(v % 100);
@@ -92,7 +93,7 @@ TEST(PairFormFactorProperties, ExchangeIsTheSameBothWaysAndAddsUpUnderCuts) {
         Outline source = random_outline(high, {0.1, 0.2, 1.5});
         std::reverse(source.begin(), source.end());
         const double whole = exchange_area(receiver, source);
-        // Both orders integrate different edges; each is asked for 1e-12.
+        // The two orders integrate over different edges; each has a tolerance of 1e-12.
         RC_ASSERT(std::abs(whole - exchange_area(source, receiver)) <= 1e-11 * whole + 1e-15);
         const double t = 0.1 + 0.8 * std::abs(place % 100) / 100.0;
         const Point p = source[0] + t * (source[1] - source[0]), q = source[3] + t * (source[2] - source[3]);
@@ -102,9 +103,9 @@ TEST(PairFormFactorProperties, ExchangeIsTheSameBothWaysAndAddsUpUnderCuts) {
     });
 }
 
-TEST(PairFormFactor, OfPolygonsWithTinyEdgesIsFoundAtOnce) {
-    // The contour sums of an edge of a micrometre are differences of numbers of order one: asked for more digits than
-    // these have, bisection would go on for hours.
+TEST(PairFormFactor, PolygonsWithTinyEdgesTakeNoLongTime) {
+    // For an edge of a micrometre the inner integral is a difference of numbers of order one. With a tolerance below
+    // its rounding error, bisection would take hours.
     for (const double tiny : {1e-3, 1e-5, 1e-7}) {
         const Outline receiver = {{0, 0, 0}, {1, 0.1, 0}, {1, 0.1 + tiny, 0}, {0.3, 1.1, 0}, {0, 1, 0}};
         const Outline source = {{0.1, 1, 1.2}, {0.8 + tiny, 0.9, 1.2}, {0.8, 0.9, 1.2}, {0.9, 0, 1.2}, {0.2, 0.1, 1.2}};

@@ -11,7 +11,8 @@
 namespace exitance {
 namespace {
 
-/// (1 - atan(s)/s) with t = s^2 < 0.01, to the last digit: the angle's shortfall against its tangent.
+/// Returns 1 - atan(s)/s for t = s^2 < 0.01, to the last digit: the relative difference between an angle and its
+/// tangent.
 double arc_shortfall(double t) {
     return t * (1.0 / 3 - t * (1.0 / 5 - t * (1.0 / 7 - t * (1.0 / 9 - t * (1.0 / 11 - t * (1.0 / 13 - t / 15))))));
 }
@@ -23,9 +24,10 @@ double angle_over_sine(double squared_sine, double cosine) {
     return std::atan2(sine, cosine) / sine;
 }
 
-/// Hands the edges of the part above the horizon to `sum`, those along the horizon included.
+/// Adds the edges of the part above the horizon to `sum`, including the edges along the horizon.
 void add_edges(const Normal& n, std::span<const Vec3> corners, EdgeSum& sum) {
-    const auto crossing = [](const Vec3& a, double ha, const Vec3& b, double hb) {  // from below, so that it is unique
+    // Always from the lower end, so that the point is the same for both directions.
+    const auto crossing = [](const Vec3& a, double ha, const Vec3& b, double hb) {
         const bool forward = ha < hb;
         return forward ? a + (ha / (ha - hb)) * (b - a) : b + (hb / (hb - ha)) * (a - b);
     };
@@ -65,7 +67,7 @@ EdgeSum::EdgeSum(const Normal& n, std::span<const Vec3> corners) : n_(n) {
 void EdgeSum::add_to_large(const Vec3& a, const Vec3& b) {
     const Vec3 c = cross(a, b - a);
     const double squared = squared_norm(c);
-    if (squared > 0) sum_ += angle_over_sine(squared, dot(a, b)) * dot(c, n_);  // else the edge points at x
+    if (squared > 0) sum_ += angle_over_sine(squared, dot(a, b)) * dot(c, n_);  // skip an edge that points at x
 }
 
 void EdgeSum::add_to_small(const Vec3& a, const Vec3& b) {
@@ -88,9 +90,9 @@ double contour_sum(const Normal& n, std::span<const Vec3> corners) {
 double point_to_polygon(const Point& x, const Normal& n, std::span<const Point> source) {
     if (source.size() < 3) return 0;
     constexpr std::size_t on_stack = 32;
-    Vec3 few[on_stack];
-    std::vector<Vec3> many(source.size() > on_stack ? source.size() : 0);
-    const std::span<Vec3> corners(many.empty() ? few : many.data(), source.size());
+    Vec3 stack_corners[on_stack];
+    std::vector<Vec3> heap_corners(source.size() > on_stack ? source.size() : 0);
+    const std::span<Vec3> corners(heap_corners.empty() ? stack_corners : heap_corners.data(), source.size());
     double scale = std::max({std::abs(x.x), std::abs(x.y), std::abs(x.z)});
     for (std::size_t i = 0; i < source.size(); ++i) {
         corners[i] = source[i] - x;
@@ -100,7 +102,7 @@ double point_to_polygon(const Point& x, const Normal& n, std::span<const Point> 
     const double in_front = -dot(whole, corners[0]);
     if (in_front <= 8 * std::numeric_limits<double>::epsilon() * scale * norm(whole)) return 0;
     const double f = contour_sum(n, corners);
-    EXI_ASSERT(f < 1 + 1e-9);  // a source that turns the wrong way around
+    EXI_ASSERT(f < 1 + 1e-9);  // fails if the source is oriented the wrong way
     return std::clamp(f, 0.0, 1.0);
 }
 

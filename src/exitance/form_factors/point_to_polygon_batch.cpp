@@ -10,12 +10,12 @@
 namespace exitance {
 namespace {
 
-// As many quads at a time as one register holds: eight with AVX-512, else four. No lane looks at another, so that
-// nothing depends on which it is.
+// One SIMD vector of quads at a time: eight with AVX-512, else four. Lanes are independent, so that results do not
+// depend on the vector width.
 using namespace lanes_of;
-constexpr std::size_t most_lanes = lanes<EightReals>;
+constexpr std::size_t max_lanes = lanes<EightReals>;
 
-/// The quads whose coordinates stand from k on in the order of QuadBatch::columns.
+/// Loads the quads whose coordinates start at k, in the order of QuadBatch::columns.
 template <class Real>
 EXITANCE_INLINE Quads<Real> load_quads(const Point& x, const double* const (&column)[16], std::size_t k) {
     const VecOf<Real> origin = {Real{} + x.x, Real{} + x.y, Real{} + x.z};
@@ -26,14 +26,14 @@ EXITANCE_INLINE Quads<Real> load_quads(const Point& x, const double* const (&col
     return {{at(0), at(3), at(6), at(9)}, at(12), load<Real>(column[15] + k)};
 }
 
-/// A quad, and a ball that holds it.
+/// A quad and its bounding ball.
 struct OneQuad {
     std::array<Point, 4> corner;
     Point middle;
     double radius;
 };
 
-/// One quad as eight points see it, whose coordinates and then normals stand from k on.
+/// One quad relative to several points, and the normals of these points; their coordinates start at k.
 template <class Real>
 struct PointsView {
     Quads<Real> quads;
@@ -51,8 +51,8 @@ EXITANCE_INLINE PointsView<Real> load_points(const OneQuad& quad, const double* 
             {load<Real>(column[3] + k), load<Real>(column[4] + k), load<Real>(column[5] + k)}};
 }
 
-/// Applies a rule to the group of quads at `first` and those after it, as long as it takes all of a group: where the
-/// first group stands that is otherwise, and a bit for each taken one of that.
+/// Applies a rule to consecutive groups of quads from `first` on, while the rule handles all quads of a group. Returns
+/// the first group in which it does not, and a bit for each quad of that group that it handled.
 struct Reached {
     std::size_t first;
     int taken;
@@ -79,10 +79,11 @@ EXITANCE_INLINE int apply_to_points(const OneQuad& quad, const double* const (&c
     return taken;
 }
 
-/// These two, made for a processor, by rule. All have the same operations in the same order, hence the same bits.
+/// The two functions above compiled for a processor, one per rule. All use the same operations in the same order, hence
+/// give the same bits.
 struct Kernels {
     std::size_t lanes;
-    int all;  ///< A bit for each lane.
+    int all;  ///< Mask with a bit for each lane.
     Reached (*quads[3])(const Point&, const Normal&, const double* const (&)[16], std::size_t, std::size_t, double*);
     int (*points[3])(const OneQuad&, const double* const (&)[6], std::size_t, double*);
 };
@@ -110,7 +111,7 @@ const Kernels& fastest = has_avx512() ? wide : plain;
 const Kernels& fastest = plain;
 #endif
 
-void copy_taken(int taken, const std::array<double, most_lanes>& F, double* out) {
+void copy_taken(int taken, const std::array<double, max_lanes>& F, double* out) {
     for (std::size_t i = 0; i < F.size(); ++i)
         if (taken >> i & 1) out[i] = F[i];
 }
@@ -124,7 +125,7 @@ void EdgeTerms::grow() {
 
 double EdgeTerms::sum() {
     if (count_ == 0) return 0;
-    while (count_ % four::lanes != 0) {  // edges that add nothing fill the last group
+    while (count_ % four::lanes != 0) {  // pad the last group with edges that contribute nothing
         if (count_ == squared_sine_.size()) grow();
         squared_sine_[count_] = 1, cosine_[count_] = 1, share_[count_++] = 0;
     }
@@ -188,14 +189,14 @@ void point_to_quads(const Point& x, const Normal& n, const QuadBatch& quads, std
             int taken = run.taken;
             k = run.first;
             if (k + kernels.lanes > last) return;
-            if (taken == 0) {  // a run of small ones, perhaps
+            if (taken == 0) {  // possibly the start of a run of small quads
                 const Reached small = kernels.quads[1](x, n, column, k, last, F + k);
                 if (small.first > k) {
                     k = small.first;
                     continue;
                 }
             }
-            std::array<double, most_lanes> by_rule;
+            std::array<double, max_lanes> by_rule;
             for (int rule = 1; rule < 3 && taken != kernels.all; ++rule) {
                 const int more = kernels.quads[rule](x, n, column, k, k + kernels.lanes, by_rule.data()).taken & ~taken;
                 copy_taken(more, by_rule, F + k);
@@ -211,16 +212,16 @@ void point_to_quads(const Point& x, const Normal& n, const QuadBatch& quads, std
     std::copy(columns.begin(), columns.end(), column);
     if (count >= kernels.lanes) {
         evaluate(column, 0, count, out.data());
-        // The last group reaches back over quads already done.
+        // The last group overlaps quads that are already evaluated.
         if (count % kernels.lanes != 0) evaluate(column, count - kernels.lanes, count, out.data());
-    } else if (count > 0) {  // a copy that fills a group, by repeating the last one
-        std::array<double, 16 * most_lanes> copy;
+    } else if (count > 0) {  // copy into a full group, repeating the last quad
+        std::array<double, 16 * max_lanes> copy;
         for (std::size_t i = 0; i < 16; ++i) {
             for (std::size_t k = 0; k < kernels.lanes; ++k)
                 copy[kernels.lanes * i + k] = columns[i][std::min(k, count - 1)];
             column[i] = &copy[kernels.lanes * i];
         }
-        std::array<double, most_lanes> F;
+        std::array<double, max_lanes> F;
         evaluate(column, 0, kernels.lanes, F.data());
         std::copy_n(F.begin(), count, out.begin());
     }
@@ -229,9 +230,8 @@ void point_to_quads(const Point& x, const Normal& n, const QuadBatch& quads, std
 void ReceiverBatch::add(const Point& x, const Normal& n) {
     const double value[6] = {x.x, x.y, x.z, n.x, n.y, n.z};
     for (std::size_t i = 0; i < 6; ++i) {
-        if (count_ % most_lanes == 0) column_[i].resize(count_ + most_lanes);
-        std::fill_n(column_[i].begin() + static_cast<std::ptrdiff_t>(count_), most_lanes - count_ % most_lanes,
-                    value[i]);
+        if (count_ % max_lanes == 0) column_[i].resize(count_ + max_lanes);
+        std::fill_n(column_[i].begin() + static_cast<std::ptrdiff_t>(count_), max_lanes - count_ % max_lanes, value[i]);
     }
     ++count_;
 }
@@ -247,7 +247,7 @@ void points_to_quad(const ReceiverBatch& receivers, const std::array<Point, 4>& 
     const double* column[6];
     for (std::size_t i = 0; i < 6; ++i) column[i] = receivers.column_[i].data();
     for (std::size_t first = 0; first < out.size(); first += kernels.lanes) {
-        std::array<double, most_lanes> F, by_rule;
+        std::array<double, max_lanes> F, by_rule;
         int taken = 0;
         for (int rule = 0; rule < 3 && taken != kernels.all; ++rule) {
             const int more = kernels.points[rule](one, column, first, by_rule.data()) & ~taken;

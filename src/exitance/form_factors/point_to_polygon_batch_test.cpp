@@ -30,7 +30,8 @@ TEST(PointToQuads, AgreesWithTheScalarSumAtEveryDistance) {
         std::vector<double> F(batch.size());
         point_to_quads(x, n, batch, F);
         for (std::size_t k = 0; k < quads.size(); ++k) {
-            // A grazing quad's F keeps fewer digits in either sum: measured against what it is face to face.
+            // At grazing angles F has fewer digits in both sums: the error is compared with the form factor at normal
+            // incidence.
             const double solid = 1 / (distance * distance);
             EXPECT_NEAR(F[k], point_to_polygon(x, n, quads[k]), 2e-12 * std::min(1.0, solid))
                 << distance << " quad " << k;
@@ -38,7 +39,7 @@ TEST(PointToQuads, AgreesWithTheScalarSumAtEveryDistance) {
     }
 }
 
-TEST(PointToQuads, HaveTheSameBitsWhateverTheProcessorOffers) {
+TEST(PointToQuads, AreBitIdenticalOnAnyProcessor) {
     RandomStream random(2, Stream::mesh);
     for (std::size_t size : {3, 8, 1001}) {
         QuadBatch batch;
@@ -51,11 +52,11 @@ TEST(PointToQuads, HaveTheSameBitsWhateverTheProcessorOffers) {
     }
 }
 
-TEST(PointToQuads, DependOnNeitherTheirPlaceNorTheirNeighbours) {
+TEST(PointToQuads, DependNeitherOnPositionNorOnNeighbours) {
     RandomStream random(4, Stream::mesh);
     const Point x = {0.01, 0.02, 0.03};
     const Normal n = normalized({0.2, -0.3, 0.9});
-    std::vector<std::array<Point, 4>> quads;  // small and large, cut by the horizon and behind it, side by side
+    std::vector<std::array<Point, 4>> quads;  // small and large, cut by the horizon and below it, in mixed order
     for (int k = 0; k < 101; ++k) quads.push_back(random_quad(random, 0.3 * std::exp(8 * random.uniform())));
     for (std::size_t first : {0, 1, 5, 50}) {
         QuadBatch batch;
@@ -73,7 +74,7 @@ TEST(PointToQuads, DependOnNeitherTheirPlaceNorTheirNeighbours) {
     }
 }
 
-TEST(PointsToQuad, GiveEachReceiverWhatItSeesAloneOnAnyProcessor) {
+TEST(PointsToQuad, AgreesWithSingleReceiversOnAnyProcessor) {
     RandomStream random(3, Stream::mesh);
     for (double distance : {0.7, 5.0, 30.0, 300.0})
         for (std::size_t size : {1, 7, 8, 43}) {
@@ -96,7 +97,7 @@ TEST(PointsToQuad, GiveEachReceiverWhatItSeesAloneOnAnyProcessor) {
                 points_to_quad(one, quad, std::span(plain).first(1));
                 EXPECT_EQ(F[k], plain[0]);
             }
-            const double solid = 1 / (distance * distance);  // as for one point and many quads
+            const double solid = 1 / (distance * distance);  // tolerance as in AgreesWithTheScalarSumAtEveryDistance
             for (std::size_t k = 0; k < size; ++k)
                 EXPECT_NEAR(F[k], point_to_polygon(x[k], n[k], quad), 2e-12 * std::min(1.0, solid)) << distance;
         }
@@ -114,11 +115,11 @@ TEST(PointToQuads, WallsAndCeilingOfAClosedRoomSumToOne) {
         point_to_quads({s, 0.3, 0}, {0, 0, 1}, room, F);
         double sum = 0;
         for (double f : F) sum += f;
-        EXPECT_NEAR(sum, 1, 1e-14) << s;  // rounding of five terms
+        EXPECT_NEAR(sum, 1, 1e-14) << s;  // rounding errors of five terms
     }
 }
 
-TEST(PointToQuads, SmallBatchesTrianglesAndQuadsBehindAreRight) {
+TEST(PointToQuads, SmallBatchesTrianglesAndQuadsBehindAreExact) {
     for (std::size_t size = 1; size < 6; ++size) {
         QuadBatch batch;
         for (std::size_t k = 0; k < size; ++k) {

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// Share of the hemisphere above the corner of an X x Y rectangle's foot, the rectangle parallel at distance 1.
+/// Form factor of an X x Y rectangle, parallel at distance 1, from the point below one of its corners.
 double corner_rectangle(double X, double Y) {
     const double p = std::sqrt(1 + X * X), q = std::sqrt(1 + Y * Y);
     return (X / p * std::atan(Y / p) + Y / q * std::atan(X / q)) / (2 * pi);
@@ -24,7 +24,7 @@ TEST(PointToPolygon, MeetsTheClosedFormForRectanglesOfEverySize) {
     for (double size : {3.0, 1.0, 0.1, 0.05, 0.03, 0.01, 1e-3, 1e-5, 1e-8}) {
         const double f = point_to_polygon({0, 0, 0}, {0, 0, 1}, ceiling(0, 0, size, 2 * size, 1));
         const double exact = corner_rectangle(size, 2 * size);
-        EXPECT_NEAR(f / exact, 1, 1e-13) << size;  // a few roundings
+        EXPECT_NEAR(f / exact, 1, 1e-13) << size;  // a few rounding errors
     }
 }
 
@@ -34,7 +34,7 @@ TEST(PointToPolygon, KeepsItsDigitsAtGrazingIncidence) {
     EXPECT_NEAR(f / 7.80030446449299e-10, 1, 1e-12);  // Lambert's sum at 30 digits; printed with 15
 }
 
-TEST(PointToPolygon, CountsOnlyWhatStandsAboveTheHorizon) {
+TEST(PointToPolygon, CountsOnlyThePartAboveTheHorizon) {
     const std::vector<Point> wall = {{1, -1, -1}, {1, -1, 1}, {1, 1, 1}, {1, 1, -1}};
     const std::vector<Point> upper = {{1, -1, 0}, {1, -1, 1}, {1, 1, 1}, {1, 1, 0}};
     const double f = point_to_polygon({0, 0, 0}, {0, 0, 1}, wall);
@@ -63,7 +63,7 @@ TEST(PointToPolygon, WallsAndCeilingOfAClosedRoomSumToOne) {
     EXPECT_NEAR(sum, 1, 1e-14);
 }
 
-TEST(PointToPolygon, IsAdditiveUnderCutsWhereverTheHorizonRuns) {
+TEST(PointToPolygon, IsAdditiveUnderCutsForAnyHorizon) {
     RandomStream random(7, Stream::mesh);
     for (int i = 0; i < 500; ++i) {
         const auto any = [&] { return Vec3{random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5}; };
@@ -78,7 +78,7 @@ TEST(PointToPolygon, IsAdditiveUnderCutsWhereverTheHorizonRuns) {
     }
 }
 
-TEST(PointToPolygon, TakesConcaveSourcesInAnyPosition) {
+TEST(PointToPolygon, IsExactForConcaveSourcesInAnyPosition) {
     const std::vector<Point> ell = {{0, 0, 2}, {0, 3, 2}, {0.5, 3, 2}, {0.5, 0.5, 2}, {3, 0.5, 2}, {3, 0, 2}};
     const Normal tilted = normalized(Vec3{0.9, -0.5, 0.05});
     for (const Normal& n : {Normal{0, 0, 1}, tilted}) {

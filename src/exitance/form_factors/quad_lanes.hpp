@@ -6,32 +6,35 @@
 
 #include "exitance/base/four.hpp"
 
-// Form factors from a point to quads, a lane each: the rules of form_factor_batch.hpp, for kernels that have quads in
-// registers.
+// Form factors from a point to quads, one quad per SIMD lane: the rules of point_to_polygon_batch.hpp, for kernels that
+// have quads in registers.
 
 namespace exitance::lanes_of {
 
 template <class Real>
 constexpr int all_lanes = (1 << lanes<Real>)-1;
 
-/// A bit for each lane in which a < b.
+/// Returns a bit for each lane in which a < b.
 EXITANCE_INLINE int where_less(const four::Real& a, const four::Real& b) {
     return four::bits(a < b);
 }
-EXITANCE_INLINE int where_less(const EightReals& a, const EightReals& b) {  // a half is one instruction
+// For halves, the comparison mask is one instruction.
+EXITANCE_INLINE int where_less(const EightReals& a, const EightReals& b) {
     four::Real left[2], right[2];
     __builtin_memcpy(left, &a, sizeof a), __builtin_memcpy(right, &b, sizeof b);
     return where_less(left[0], right[0]) | where_less(left[1], right[1]) << 4;
 }
 
-/// Lambert's sum over the four edges of quads wholly above the horizon. The normal is one, or one a lane.
+/// Lambert's contour sum over the four edges of quads wholly above the horizon. The normal is the same for all lanes,
+/// or one per lane.
 template <class Real, class Direction>
 EXITANCE_INLINE Real contour(const Direction& n, const VecOf<Real> (&r)[4]) {
     Real sum{};
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) {
         const VecOf<Real>&a = r[i], &b = r[(i + 1) & 3], c = cross(a, b - a);
-        const Real sine = max(sqrt(dot(c, c)), Real{} + 1e-200);  // an edge without length, or that points at x: c = 0
+        // Edges of length 0, and edges that point at x, have c = 0.
+        const Real sine = max(sqrt(dot(c, c)), Real{} + 1e-200);
         sum -= angle_over_sine(sine, dot(a, b)) * dot(n, c);
     }
     return sum * (1 / (2 * pi));
@@ -39,9 +42,10 @@ EXITANCE_INLINE Real contour(const Direction& n, const VecOf<Real> (&r)[4]) {
 
 inline constexpr double most_squared_tangent = 0.17157287525380988;  // tan^2(pi/8)
 
-/// The same where no edge looks longer than 45 degrees, as `squared_tangent` tells: it stays below the constant above,
-/// else it is larger or no number. Half the angle has the tangent |a x b| / (|a| |b| + a . b): no octants, no root of
-/// |a x b|, and four quotients share one division.
+/// Contour sum for quads none of whose edges subtends more than 45 degrees. `squared_tangent` is set to the largest
+/// squared tangent of half an edge's angle; the result is valid only if it is less than the constant above (it may be
+/// NaN). The tangent of half the angle is |a x b| / (|a| |b| + a . b). This needs no octants and no root of |a x b|,
+/// and four quotients share one division.
 template <class Real, class Direction>
 EXITANCE_INLINE Real narrow_contour(const Direction& n, const VecOf<Real> (&r)[4], Real& squared_tangent) {
     Real squared[4], u[4], z[4], share[4];
@@ -58,21 +62,20 @@ EXITANCE_INLINE Real narrow_contour(const Direction& n, const VecOf<Real> (&r)[4
         z[i] = dot(c, c) * (over[i] * over[i]);
         share[i] = dot(n, c) * over[i];
     }
-    squared_tangent =
-        max(max(max(z[0], z[1]), z[2]), z[3]);  // where u is 0 somewhere, the last one is no number either
+    squared_tangent = max(max(max(z[0], z[1]), z[2]), z[3]);  // if some u is 0, z[3] is NaN, which max() keeps
     Real sum{};
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) sum -= angle_over_tangent(z[i]) * share[i];
     return sum * (1 / pi);
 }
 
-/// Two points of a rule over the square [-1, 1]^2, (s, t) and (-s, -t), and their shares together.
+/// Two opposite points (s, t) and (-s, -t) of a rule over the square [-1, 1]^2, and the sum of their weights.
 struct NodePair {
     double s, t, weight;
 };
 
-/// Degree 5 in 7 points [Radon48], fewer than 3 x 3 Gauss points, symmetric about the middle. The pair (0, 0) is the
-/// middle itself.
+/// Rule of degree 5 with 7 points [Radon48], fewer than 3 x 3 Gauss points, symmetric about the centre. The pair (0, 0)
+/// is the centre itself.
 struct SmallRule {
     NodePair seven[4];
     SmallRule() {
@@ -84,11 +87,11 @@ struct SmallRule {
 };
 inline const SmallRule small_rule;
 
-/// The kernel at a rule's points of the bilinear map d(s, t) = m + s a + t b + s t c from [-1, 1]^2 onto the quad.
+/// Form factor by a quadrature rule on the bilinear map d(s, t) = m + s a + t b + s t c from [-1, 1]^2 onto the quad.
 /// `unit` is one over a squared distance to the quad, which keeps products of squares near one.
 ///
-/// Numerator (area vector . -d) (n . d) and denominator |d|^4 are polynomials of (s, t). At opposite points their even
-/// parts P, E agree and their odd parts p, o differ in sign, so that a pair of points is
+/// The numerator (area vector . -d) (n . d) and the denominator |d|^4 are polynomials of (s, t). At opposite points
+/// their even parts P, E agree and their odd parts p, o differ in sign, so that a pair of points contributes
 ///
 ///     (P + p) / (E + o)^2 + (P - p) / (E - o)^2 = 2 (P (E^2 + o^2) - 2 p E o) / (E^2 - o^2)^2
 template <class Real, class Direction>
@@ -97,8 +100,8 @@ EXITANCE_INLINE Real cubature(const Direction& n, const VecOf<Real> (&r)[4], con
     const VecOf<Real> p = r[0] + r[2], q = r[1] + r[3];
     const VecOf<Real> m = 0.25 * (p + q), c = 0.25 * (p - q);
     const VecOf<Real> a = 0.25 * ((r[1] - r[0]) + (r[2] - r[3])), b = 0.25 * ((r[3] - r[0]) + (r[2] - r[1]));
-    // The area vector is a x b + s a x c + t c x b. All of a planar quad's are parallel: each times -m is the plane's
-    // height over x times its length, and so is each times -d.
+    // The area vector is a x b + s a x c + t c x b. For a planar quad the three terms are parallel. The product of each
+    // with -m, or with any -d, is its length times the height of the plane over x.
     const Real J = -dot(cross(a, b), m), J_s = -dot(cross(a, c), m), J_t = -dot(cross(c, b), m);
     const Real N = dot(n, m), N_s = dot(n, a), N_t = dot(n, b), N_st = dot(n, c);
     const Real mm = unit * dot(m, m), aa = unit * dot(a, a), bb = unit * dot(b, b), cc = unit * dot(c, c);
@@ -116,27 +119,27 @@ EXITANCE_INLINE Real cubature(const Direction& n, const VecOf<Real> (&r)[4], con
         const Real above = nodes[k].weight * (P * (EE + oo) - 2 * odd_P * (E * o)), below = root * root;
         if (k % 2 == 0)
             above_before = above, below_before = below;
-        else  // two terms over one denominator: a division costs more than the products it saves
+        else  // two terms share one division, which costs more than the extra products
             sum += (above * below_before + above_before * below) / (below * below_before);
     }
     return sum * 4 * unit * unit * (1 / pi);
 }
 
-/// How quads relative to x are met: their corners, their middles, the radii of balls about these that hold them.
+/// Quads relative to x: corners, centres, and the radii of bounding balls about the centres.
 template <class Real>
 struct Quads {
     VecOf<Real> r[4], middle;
     Real radius;
 };
 
-/// Positive where a quad looks so large that its edges are summed; smaller ones take points.
+/// Positive if a quad subtends a large angle, so that its contour sum is needed; smaller quads use quadrature points.
 template <class Real>
 EXITANCE_INLINE Real size_over_least(const Quads<Real>& quads) {
     constexpr double least = 0.006;
     return 4 * quads.radius * quads.radius - least * least * dot(quads.middle, quads.middle);
 }
 
-/// The lowest and highest of a quad's corners over the horizon.
+/// Computes the lowest and highest height of a quad's corners above the horizon.
 template <class Real, class Direction>
 EXITANCE_INLINE void find_heights(const Direction& n, const Quads<Real>& quads, Real& lowest, Real& highest) {
     lowest = highest = dot(n, quads.r[0]);
@@ -147,15 +150,15 @@ EXITANCE_INLINE void find_heights(const Direction& n, const Quads<Real>& quads, 
     }
 }
 
-/// What a quad is given to: the first of these that takes it. All leave those that the horizon cuts.
+/// Rules for the form factor of a quad, in order of preference. None handles quads that the horizon cuts.
 enum class Rule : std::uint8_t {
-    narrow_edges,  ///< Not small, no edge longer than 45 degrees.
-    points,        ///< Small ones.
-    edges,         ///< The others, and those behind the horizon.
+    narrow_edges,  ///< Large quads without edges longer than 45 degrees.
+    points,        ///< Small quads.
+    edges,         ///< All others, and quads below the horizon.
 };
 
-/// Form factors of a register of quads by one rule: a bit for each that it takes. What F holds of the others is of no
-/// use. A quad is above the horizon as long as no corner is more than `sunk` below it, metres.
+/// Form factors of a vector of quads by one rule. Returns a bit for each lane that the rule handles; F is undefined in
+/// the other lanes. A quad counts as above the horizon if no corner is more than `sunk` below it, metres.
 template <Rule rule, class Real, class Direction>
 EXITANCE_INLINE int apply(const Direction& n, const Quads<Real>& quads, double sunk, Real& F) {
     Real lowest, highest;

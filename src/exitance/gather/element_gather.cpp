@@ -21,7 +21,7 @@ Spectrum magnitude(const Spectrum& a) {
     return larger(a, -1.0 * a);
 }
 
-/// The corners of a convex domain; of one with fewer than four the last one again.
+/// The first four corners of a convex domain; with fewer than four the last one is repeated.
 std::array<Vec2, 4> four_corners(const std::vector<Vec2>& domain) {
     std::array<Vec2, 4> out;
     for (std::size_t k = 0; k < 4; ++k) out[k] = domain[std::min(k, domain.size() - 1)];
@@ -34,7 +34,7 @@ bool ElementGather::suits(const Stage& stage) {
     return stage.occluders.has_nothing_inside() && stage.scene.panes().empty() && !stage.scene.has_diffusing_panes();
 }
 
-/// Light of an element, or of a part of a leaf.
+/// Light of an element or of a part of a leaf.
 struct ElementGather::Node {
     std::array<Point, 4> corners;
     bool triangle = false;
@@ -45,7 +45,7 @@ struct ElementGather::Node {
     Spectrum rest;
 
     Node() = default;
-    /// Of a parallelogram or a triangle, by b at its corners.
+    /// A parallelogram or triangle with bilinear or linear b, by its values at the corners.
     Node(const std::array<Point, 4>& at, const std::array<Spectrum, 4>& b, bool is_triangle)
         : corners(at), triangle(is_triangle) {
         const std::size_t count = triangle ? 3 : 4;
@@ -73,7 +73,7 @@ void ElementGather::Group::set(std::size_t lane, const Node& node) {
         centre[axis][lane] = node.centre[axis];
     }
     radius[lane] = node.radius;
-    inward[lane] = node.triangle ? 0.5 : 0.5773502691896257;  // halfway, or 1 / sqrt(3): given by Gauss's rule
+    inward[lane] = node.triangle ? 0.5 : 0.5773502691896257;  // positions of the Gauss points: half-way, or 1 / sqrt(3)
     last[lane] = node.triangle ? 0.5 : 1;
     const Spectrum node_slope = node.slope();
     for (std::size_t k = 0; k < bands; ++k) {
@@ -82,7 +82,7 @@ void ElementGather::Group::set(std::size_t lane, const Node& node) {
     }
 }
 
-/// Quarters of a parallelogram or a triangle, on which b is bilinear or linear.
+/// Splits a parallelogram or a triangle, on which b is bilinear or linear, into quarters.
 ElementGather::Group ElementGather::Group::quarters(std::size_t lane) const {
     struct Corner {
         Point p;
@@ -110,7 +110,7 @@ ElementGather::Group ElementGather::Group::quarters(std::size_t lane) const {
     return out;
 }
 
-/// Nodes of all elements from the leaves up, then groups of them from the roots down.
+/// Computes nodes of all elements from the leaves up, then makes groups of them from the roots down.
 class ElementGather::Builder {
   public:
     Builder(const Stage& stage, const ElementFunction& b) : b_(b), tree_(b.tree) {
@@ -133,7 +133,7 @@ class ElementGather::Builder {
         }
     }
 
-    /// All groups: those of the roots first, whose regions go to `of_region`.
+    /// Makes all groups, those of the roots first; writes the roots' regions to `of_region`.
     std::vector<Group> groups(std::vector<std::array<RegionId, lanes>>& of_region) {
         std::vector<Piece> roots;
         for (ElementId root : tree_.roots()) add_element(root, roots);
@@ -144,7 +144,7 @@ class ElementGather::Builder {
     }
 
   private:
-    /// A convex quad: an element, or a part of a leaf.
+    /// A convex quadrilateral or triangle: an element, or a part of a leaf.
     struct Piece {
         Node node;
         ElementId element;
@@ -163,8 +163,8 @@ class ElementGather::Builder {
     const ElementTree& tree_;
     Field<ElementId, Node> nodes_;
     Field<ElementId, std::array<Vec3, bands>> moments_;  ///< 1/A int (b - mean) (y - centre) dA, W/m.
-    Field<ElementId, std::uint8_t> is_quad_;             ///< No more than four corners.
-    Field<ElementId, std::uint8_t> is_dark_;             ///< Nothing leaves it.
+    Field<ElementId, std::uint8_t> is_quad_;             ///< True with at most four corners.
+    Field<ElementId, std::uint8_t> is_dark_;             ///< True if all light of the element is omitted.
     std::vector<Group> groups_;
 };
 
@@ -178,7 +178,7 @@ ElementGather::Node ElementGather::Builder::part(ElementId leaf, const std::arra
 ElementGather::Node ElementGather::Builder::leaf_node(ElementId e) {
     const std::vector<Vec2> domain = tree_.domain(e);
     Node out = part(e, four_corners(domain));
-    if (tree_.is_cell(e)) {  // any convex polygon: those above it take it for even
+    if (tree_.is_cell(e)) {  // any convex polygon: treated as uniform
         out.mean = b_.at({e, tree_.centre(e)});
         out.lean = {};
         for (const Vec2& uv : domain) out.rest = larger(out.rest, magnitude(b_.at({e, uv}) - out.mean));
@@ -189,8 +189,8 @@ ElementGather::Node ElementGather::Builder::leaf_node(ElementId e) {
     return out;
 }
 
-/// The linear function with an element's moments: in its coordinates the variances of u and v are 1/12 on a
-/// parallelogram, 1/18 with a covariance of -1/36 on a triangle.
+/// Sets the linear function that has an element's moments. In the element's coordinates the variances of u and v are
+/// 1/12 on a parallelogram, and 1/18 with a covariance of -1/36 on a triangle.
 void ElementGather::Builder::set_lean(Node& node, ElementId e) const {
     if (tree_.is_cell(e)) return;
     const Patch& patch = tree_.patch(e);
@@ -226,7 +226,8 @@ ElementGather::Node ElementGather::Builder::inner_node(ElementId e) {
                                          (nodes_[child].mean - out.mean)[k] * (nodes_[child].centre - out.centre));
     set_lean(out, e);
     const auto linear_at = [&](const Point& y) {
-        // Two of the corners and the mean span the function: a parallelogram's opposite ones lean alike.
+        // Differences of corner values determine the linear function; opposite corners of a parallelogram give the same
+        // slope.
         const Vec2 uv = patch.coordinates(y), c = tree_.centre(e);
         const std::size_t last = out.triangle ? 2 : 3;
         const double u = uv.x - c.x, v = uv.y - c.y;
@@ -238,7 +239,7 @@ ElementGather::Node ElementGather::Builder::inner_node(ElementId e) {
     return out;
 }
 
-/// An element to be summed; one with many corners as those below it, a cell as triangles.
+/// Adds an element to be summed. One with more than four corners is replaced by its children, a cell by triangles.
 void ElementGather::Builder::add_element(ElementId e, std::vector<Piece>& out) const {
     if (is_dark_[e]) return;
     if (tree_.is_leaf(e) && tree_.is_cell(e)) {
@@ -252,8 +253,8 @@ void ElementGather::Builder::add_element(ElementId e, std::vector<Piece>& out) c
     }
 }
 
-/// Pieces of an element. As long as there are fewer than four, the largest that is not too many itself gives way to
-/// those below it.
+/// Pieces of an element. While there are fewer than four, the largest piece with few enough children is replaced by
+/// them.
 std::vector<ElementGather::Builder::Piece> ElementGather::Builder::pieces_below(ElementId e) const {
     std::vector<Piece> out;
     for (ElementId child : tree_.children(e)) add_element(child, out);
@@ -275,7 +276,7 @@ std::vector<ElementGather::Builder::Piece> ElementGather::Builder::pieces_below(
     return out;
 }
 
-/// `pieces`, four a group, and all groups below them; returns the first one's number.
+/// Makes groups of four from `pieces`, and all groups below them. Returns the index of the first group.
 std::uint32_t ElementGather::Builder::add_groups(const std::vector<Piece>& pieces) {
     const std::size_t first = groups_.size(), count = (pieces.size() + lanes - 1) / lanes;
     groups_.resize(first + count);

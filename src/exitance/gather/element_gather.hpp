@@ -8,28 +8,28 @@
 
 namespace exitance {
 
-/// Irradiance by what elements reflect where nothing stands between any two places: inside a convex room, before a few
-/// plates in the open (`Occluders::has_nothing_inside`). No ray is needed there:
+/// Irradiance from the light that elements reflect, for scenes without occlusion between any two points: inside a
+/// convex room, or before a few plates in the open (`Occluders::has_nothing_inside`). Needs no rays:
 ///
 ///     E(x) = sum over q of  F(x, q)  (sum over g of  K(x, y_g) b(y_g)) / (sum over g of  K(x, y_g))
 ///
-/// over elements q of a hierarchy [Hanrahan91] with 4 of Gauss's points y_g each (3 on a triangle), K = cos cos / (pi
-/// r^2), and F exact. On an element that is not a leaf b is the linear function nearest to what lies below. Each q is
-/// the largest whose light is so even, or which is so small and far, that it misses less than a share of a first
-/// estimate of E(x), band by band; leaves are cut further where their polynomials vary too much. So dim places are as
-/// right as bright ones, and no light is missed, however small its solid angle. Some hundred elements a place, 25 ns
-/// each: pieces of an element are evaluated four at a time, a lane each.
+/// over elements q of a hierarchy [Hanrahan91]. Each has 4 Gauss points y_g (3 on a triangle), K = cos cos / (pi r^2),
+/// and F is exact. On an element that is not a leaf, b is the least-squares linear function. Each q is the largest
+/// element whose light is uniform enough, or which is small and far enough, that its error is less than a share of a
+/// first estimate of E(x), band by band. Leaves are split further where their polynomials vary too much. Dark places
+/// are therefore as accurate as bright ones, and no light is missed, however small its solid angle. Some hundred
+/// elements per place, 25 ns each: the pieces of an element are evaluated four at a time, one per SIMD lane.
 class ElementGather {
   public:
-    /// `b`: W/m^2. Light of elements that other surfaces lie on is left out: nobody sees it.
+    /// `b`: W/m^2. The light of elements that other surfaces cover is omitted, as it reaches no other surface.
     ElementGather(const Stage& stage, const ElementFunction& b);
 
-    /// True if nothing stands between any two places. A gather begins at all pieces: whether they are few enough for
-    /// it to take less than rays do, `forecast_ways` tells.
+    /// True if no surface is between any two places. A gather visits all pieces; `forecast_ways` decides whether they
+    /// are few enough for it to be faster than rays.
     static bool suits(const Stage& stage);
 
     class Workspace;
-    /// Irradiance at x of region `own`, W/m^2; no element misses more than about `share` of it.
+    /// Irradiance at x of region `own`, W/m^2; no element's error is more than about `share` of it.
     Spectrum operator()(const Point& x, const Normal& n, RegionId own, double share, Workspace& workspace) const;
 
   private:
@@ -39,37 +39,38 @@ class ElementGather {
 
     struct Node;
     class Builder;
-    /// Light of up to four elements or parts of a leaf, a lane each. A lane to spare is dark and where the one before
-    /// it is.
+    /// Light of up to four elements or parts of a leaf, one per lane. An unused lane is dark and has the geometry of
+    /// another one.
     struct Group {
-        std::array<std::array<Lanes, 3>, 4> corners;  ///< Metres; a triangle's last one twice.
+        std::array<std::array<Lanes, 3>, 4> corners;  ///< Corners, metres; a triangle has its last corner twice.
         std::array<Lanes, 3> centre;
-        Lanes radius;                      ///< Of a ball about the centre, metres.
-        Lanes inward;                      ///< How far from the centre towards the corners Gauss's points are;
-        Lanes last;                        ///< the third and the fourth are one on a triangle: a half each.
-        std::array<Lanes, bands> mean{};   ///< Of b, W/m^2.
-        std::array<Lanes, bands> lean[4];  ///< What the nearest linear function has above the mean at each corner.
-        std::array<Lanes, bands> slope{};  ///< The largest of those.
-        std::array<Lanes, bands> rest{};   ///< How far b is from that function, about.
-        std::array<std::uint32_t, lanes> below = {none, none, none, none};  ///< Groups of their pieces; none: quarters.
-        bool more = false;  ///< Does the next group hold pieces of the same element?
+        Lanes radius;  ///< Radius of a ball about the centre that contains the element, metres.
+        Lanes inward;  ///< Position of the Gauss points between the centre (0) and the corners (1).
+        Lanes last;    ///< Weight of the third and fourth Gauss points: a half each on a triangle, where they coincide.
+        std::array<Lanes, bands> mean{};   ///< Mean of b, W/m^2.
+        std::array<Lanes, bands> lean[4];  ///< Least-squares linear function minus the mean, at each corner.
+        std::array<Lanes, bands> slope{};  ///< Largest absolute value of `lean`.
+        std::array<Lanes, bands> rest{};   ///< Approximate distance of b from the linear function.
+        /// Groups of the pieces of each element; none: a leaf, to be split into quarters.
+        std::array<std::uint32_t, lanes> below = {none, none, none, none};
+        bool more = false;  ///< True if the next group has further pieces of the same element.
 
         void set(std::size_t lane, const Node& node);
         Group quarters(std::size_t lane) const;
     };
     static void open_pieces(const Group& group, int uneven, int cuts, Workspace& w);
 
-    std::vector<Group> groups_;                           ///< Those of the roots first.
-    std::vector<std::array<RegionId, lanes>> of_region_;  ///< Of these.
+    std::vector<Group> groups_;                           ///< The groups of the roots come first.
+    std::vector<std::array<RegionId, lanes>> of_region_;  ///< Regions of the elements of the roots' groups.
 };
 
-/// Room for one gather; one a thread.
+/// Workspace of one gather at a time; one per thread.
 class ElementGather::Workspace {
     friend ElementGather;
-    /// A group to be summed; none: the last of `parts_`.
+    /// A group to be summed; none: the last group of `parts_`.
     struct Open {
         std::uint32_t group;
-        int cuts;  ///< Of a leaf, as far as it.
+        int cuts;  ///< Number of times that the leaf was split to get this group.
     };
     std::vector<Open> open_;
     std::vector<Group> parts_;

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// A function of place on the elements of a scene, by its values at their corners.
+/// A function on the elements of a scene, given by its values at their corners.
 template <class Value>
 ElementFunction on_elements(const Stage& stage, MeshSize mesh, const Value& value) {
     ElementFunction b;
@@ -27,7 +27,7 @@ double wavy(const Point& p) {
     return 1 + 0.8 * std::sin(3 * p.x + 1) * std::cos(2 * p.y) + 0.5 * p.z;
 }
 
-/// Irradiance at a random place of every fifth leaf or so.
+/// Irradiance at a random point of about every fifth leaf.
 std::vector<double> gathered(const Scene& scene, const ElementGather& gather, const ElementTree& tree, double share) {
     std::vector<double> out;
     ElementGather::Workspace workspace;
@@ -47,13 +47,13 @@ TEST(ElementGather, GathersEvenLightExactly) {
     const Stage stage(scene);
     const ElementFunction b = on_elements(stage, {0.3, 3}, [](const Point&) { return 2.0; });
     const ElementGather gather(stage, b);
-    // Form factors of a closed room sum to 1; b is held in single precision, where 2 is exact.
+    // Form factors of a closed room sum to 1; b is exact in single precision.
     for (double E : gathered(scene, gather, b.tree, 1e-3)) EXPECT_NEAR(E, 2, 1e-11);
 }
 
-TEST(ElementGather, GathersEvenLightExactlyOverCellsThatStandAskew) {
-    // A tent with both gables closed: strips along the edges of the triangles are cells of three to five corners.
-    // Turned, so that places are in the planes of corners only up to rounding.
+TEST(ElementGather, GathersEvenLightExactlyFromRotatedCells) {
+    // A tent with both gables closed: strips along the edges of the triangles are cells of three to five corners. It is
+    // rotated, so that points are in the planes of corners only up to rounding.
     const auto turned = [](const Point& p) {
         const double c = std::cos(0.7), s = std::sin(0.7);
         const Point q = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
@@ -70,7 +70,7 @@ TEST(ElementGather, GathersEvenLightExactlyOverCellsThatStandAskew) {
     for (double E : gathered(scene, gather, even.tree, 1e-3)) EXPECT_NEAR(E, 2, 1e-10);
 }
 
-TEST(ElementGather, MissesAboutAsMuchAsItMay) {
+TEST(ElementGather, HasAboutTheAllowedError) {
     const Scene scene = box_scene(2, 1, 1.5, 0.5, 1);
     const Stage stage(scene);
     const ElementFunction b = on_elements(stage, {0.2, 3}, wavy);
@@ -84,14 +84,14 @@ TEST(ElementGather, MissesAboutAsMuchAsItMay) {
             square += error * error / static_cast<double>(exact.size());
             mean += error / static_cast<double>(exact.size());
         }
-        // Some dozens of elements, each with an error of its own of up to a share, on no side.
+        // Some dozens of elements, each with an independent error of up to `share`.
         EXPECT_LT(std::sqrt(square), 10 * share) << share;
         EXPECT_LT(std::abs(mean), share) << share;
     }
 }
 
 TEST(ElementGather, AgreesWithFinePartsOnTrianglesAndParallelograms) {
-    // A tent of two triangles and two rectangles over the place: E by brute force over parts.
+    // A tent of two triangles and two rectangles over the place; E by brute force from small parts.
     const Scene scene = test::make({{{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}}},
                                     {{{0, 0, 0}, {0, 1, 0}, {0, 0.5, 1}}},
                                     {{{0, 0, 0}, {0, 0.5, 1}, {2, 0.5, 1}, {2, 0, 0}}}});
@@ -112,14 +112,14 @@ TEST(ElementGather, AgreesWithFinePartsOnTrianglesAndParallelograms) {
                 for (int j = 0; j < steps; ++j) {
                     const Vec2 uv = {(i + 0.5) / steps, (j + 0.5) / steps};
                     const double over =
-                        patch.is_triangle() ? i + j + 1 - steps : -1;  // parts on a triangle's long side
+                        patch.is_triangle() ? i + j + 1 - steps : -1;  // parts along a triangle's long side
                     if (over > 0) continue;
                     const Vec3 d = patch.at(uv) - x;
                     const double K = d.z * -dot(patch.normal(), d) / (pi * squared_norm(d) * squared_norm(d));
                     exact += (over == 0 ? 0.5 : 1) * area * std::max(0.0, K) * b.at({e, uv})[0];
                 }
         }
-        // What 400 x 400 parts of an element miss.
+        // The error of the brute-force sum with 400 x 400 parts per element.
         EXPECT_NEAR(gather(x, up, scene.surfaces()[SurfaceId(0)].region, 1e-6, workspace)[0], exact, 1e-3 * exact);
     }
 }

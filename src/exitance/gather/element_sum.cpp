@@ -20,9 +20,9 @@ EXITANCE_INLINE four::Vec lanes_at(const std::array<std::array<double, four::lan
     return {lanes_at(place[0]), lanes_at(place[1]), lanes_at(place[2])};
 }
 
-/// Form factors of four quads, by the first rule that takes each.
+/// Form factors of four quadrilaterals; the first suitable rule is used for each.
 Real form_factors(const Point& x, const Normal& n, const Quads<Real>& quads) {
-    // A corner in the plane of x may be below it: given by rounding.
+    // A corner in the plane of x may be slightly below it due to rounding.
     constexpr double rounding = 1e-12;
     const double sunk = rounding * (std::abs(x.x) + std::abs(x.y) + std::abs(x.z) + quads.radius[0]);
     Real F{};
@@ -33,7 +33,7 @@ Real form_factors(const Point& x, const Normal& n, const Quads<Real>& quads) {
         taken |= more;
     };
     Real by_rule{};
-    // Closer than this there are edges that subtend more than 45 degrees.
+    // Only at a smaller distance can edges subtend more than 45 degrees.
     const Real nearest = 2 * quads.radius;
     const bool is_near = where_less(dot(quads.middle, quads.middle), nearest * nearest) != 0;
     if (is_near)
@@ -51,8 +51,8 @@ Real form_factors(const Point& x, const Normal& n, const Quads<Real>& quads) {
     return F;
 }
 
-/// Of each of Gauss's points its share in what x sees of an element, times how far out it lies: what the lean at the
-/// corner there counts.
+/// Weights of the values in `lean` for the light at x: each Gauss point's share of the form factor, times its position
+/// between centre and corner.
 EXITANCE_INLINE void weigh_corners(const Normal& n, const Quads<Real>& quads, const Real& inward, const Real& last,
                                    Real (&weight)[4]) {
     Real sum{};
@@ -62,23 +62,24 @@ EXITANCE_INLINE void weigh_corners(const Normal& n, const Quads<Real>& quads, co
         const four::Vec d = {quads.middle.x + inward * out.x, quads.middle.y + inward * out.y,
                              quads.middle.z + inward * out.z};
         const Real above = max(Real{}, dot(n, d));
-        const Real squared = max(dot(d, d), Real{} + 1e-100);  // given by rounding: not 0
+        const Real squared = max(dot(d, d), Real{} + 1e-100);  // avoids division by zero
         // The height of x over the element's plane is the same for all points.
         weight[i] = above / (squared * squared) * (i < 2 ? Real{} + 1 : last);
         sum += weight[i];
     }
-    const Real scale = inward / max(sum, Real{} + 1e-300);  // given by rounding: not 0
+    const Real scale = inward / max(sum, Real{} + 1e-300);  // avoids division by zero
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) weight[i] *= scale;
 }
 
-/// Lanes whose light is too uneven to be summed as one, and those whose slope counts.
+/// Lanes whose light is not uniform enough to be summed as one element, and those whose slope must be included.
 struct MissedLight {
     four::Mask uneven{}, leans{};
 };
 
-/// The kernel varies over an element by about its size over its distance; Gauss's points leave a share of what b's
-/// slope makes of that over, and all of what the nearest linear function does not follow.
+/// Estimates the error of summing an element as a whole. The kernel varies over an element by about its size over its
+/// distance. Gauss points leave a share of the resulting error due to b's slope, and all of that due to the deviation
+/// of b from the linear function.
 template <class Group>
 EXITANCE_INLINE MissedLight missed_light(const Group& group, const Quads<Real>& quads, const Real& F,
                                          const Real (&allowed)[bands]) {
@@ -96,7 +97,7 @@ EXITANCE_INLINE MissedLight missed_light(const Group& group, const Quads<Real>& 
 
 }  // namespace
 
-/// Of the lanes whose bits are set, what lies below them is summed instead: their pieces, or quarters of a leaf.
+/// Opens the elements in the lanes whose bits are set: their pieces, or quarters of a leaf, are summed instead.
 void ElementGather::open_pieces(const Group& group, int uneven, int cuts, Workspace& w) {
     for (std::size_t i = 0; i < lanes; ++i) {
         if (!(uneven >> i & 1)) continue;

@@ -9,7 +9,7 @@ namespace exitance {
 
 namespace {
 
-/// What the rays cast last read, for each of their `places`.
+/// Reads b at the hits of the last cast and returns the sums for each of the `places`.
 std::span<const QuarterSums> quarter_sums(const ReflectedLight& b, std::size_t places, GatherWorkspace& w) {
     w.values.resize(w.fronts.size());
     b.read(w.fronts, w.values);
@@ -31,13 +31,14 @@ Gathered estimate(QuarterSums quarter, unsigned rays) {
     return out;
 }
 
-/// Rays with density cos / pi from each of the places of a plane, those of their points from `first` on, at the
-/// beginning of `w`; the points of each are named by its key and `name`.
+/// Chooses rays with density cos / pi from places of a plane: points `first`, first + 1, ... of each place's sequence,
+/// which is selected by its key and `name`. Writes origins and sorted points to the beginning of `w`.
 void choose_evenly(std::span<const GatherPlace> places, unsigned rays, unsigned first, std::uint64_t name,
                    GatherWorkspace& w) {
     for (std::size_t d = 0; d < 2; ++d) w.coordinates[d].resize(rays), w.sorted[d].resize(places.size() * rays);
-    // The tracer is fastest with packets of like directions. A power of two of these points fills every cell of a
-    // grid over the unit square alike: so a packet is a cell, with sixteen points of one place or with some of each.
+    // The tracer is fastest with packets of similar directions. A power of two of these points fills every cell of a
+    // grid over the unit square equally, so that each cell gives a packet: sixteen points of one place, or fewer of
+    // each of several places.
     constexpr std::size_t packet = 16;
     const auto wanted = static_cast<unsigned>(packet / std::bit_floor(std::min(places.size(), packet)));
     const unsigned per_cell = std::min(rays, wanted);
@@ -60,10 +61,10 @@ void choose_evenly(std::span<const GatherPlace> places, unsigned rays, unsigned 
     }
 }
 
-/// Names of points of places whose rays are partly aimed: those that are not, and those that are.
+/// Names of the sequences of places that aim: for unaimed and for aimed rays.
 constexpr std::uint64_t not_aimed = 1, at_openings = 2;
 
-/// Of places that aim, as many rays as `even` after those that are cast evenly, and as how many rays all of them count.
+/// Adds as many aimed rays per place as there are unaimed ones (`even`), and sets the weights of all rays.
 void aim_others(std::span<const GatherPlace> places, std::span<const PortalCell> cells, const Normal& n, unsigned even,
                 unsigned first, std::vector<double>& counts, GatherWorkspace& w) {
     std::vector<PortalAim> aims(places.size());
@@ -84,8 +85,8 @@ void aim_others(std::span<const GatherPlace> places, std::span<const PortalCell>
     }
 }
 
-/// `rays` rays from each of the places of a plane, those of their points from `first` on, and the fronts that they hit.
-/// Half of them are aimed at openings where that is worth it; not of so few that quarters of them have none.
+/// Casts `rays` rays from each of the places of a plane, starting at point `first` of their sequences, and finds the
+/// fronts that they hit. Half of them are aimed at openings if that pays and if each quarter has an aimed ray.
 void cast_together(const Stage& stage, std::span<const GatherPlace> places, const Normal& n, RegionId own,
                    unsigned rays, unsigned first, GatherWorkspace& w) {
     constexpr unsigned fewest_aimed = 4;
@@ -122,7 +123,7 @@ Gathered read_gather(const ReflectedLight& b, GatherWorkspace& w) {
 }
 
 void GrowingGather::add(const QuarterSums& fresh, unsigned more) {
-    // What there was becomes the first two quarters, what is new the others.
+    // The previous rays become the first two quarters, the new ones the others.
     if (rays_ == 0)
         quarter_ = fresh;
     else

@@ -11,16 +11,16 @@
 
 namespace exitance {
 
-/// Reflected radiosity b at a point of a region, W/m^2: what a ray reads where it hits.
+/// Reflected radiosity b at a point of a region, W/m^2, which a ray evaluates at its hit.
 using RadiosityAt = std::function<Spectrum(RegionId, const Point&)>;
 
-/// Where a ray hit the front of a surface.
+/// A ray's hit on the front of a surface.
 struct HitPoint {
     RegionId region;
     Point y;
 };
 
-/// The same for many rays at once: what lies under their hits is found together.
+/// Reflected radiosity at many ray hits in one call, so that leaf lookups are batched.
 class ReflectedLight {
   public:
     virtual ~ReflectedLight() = default;
@@ -28,7 +28,7 @@ class ReflectedLight {
     virtual void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const = 0;
 };
 
-/// A function of one point as light for many rays.
+/// Adapts a function of one point to ReflectedLight.
 class PointwiseLight final : public ReflectedLight {
   public:
     explicit PointwiseLight(RadiosityAt b) : b_(std::move(b)) {}
@@ -40,7 +40,7 @@ class PointwiseLight final : public ReflectedLight {
     RadiosityAt b_;
 };
 
-/// A place of a region to gather at, and the name of its directions.
+/// A place of a region at which light is gathered. `key` selects the directions of its rays.
 struct GatherPlace {
     Point x;
     std::uint64_t key;
@@ -49,49 +49,52 @@ struct GatherPlace {
 /// Sums of b over the four quarters of a place's rays.
 using QuarterSums = std::array<Spectrum, 4>;
 
-/// Room for the rays of places that are gathered at together; one a thread.
+/// Workspace for places that are gathered together; one per thread.
 struct GatherWorkspace {
-    std::array<std::vector<double>, 2> coordinates;  ///< Of one place's points of the unit square in their own order;
-    std::array<std::vector<double>, 2> sorted;       ///< of all, packet by packet, and what rays they stand for.
+    /// One place's points in the unit square, in the order of its sequence.
+    std::array<std::vector<double>, 2> coordinates;
+    std::array<std::vector<double>, 2> sorted;  ///< Points of all places, sorted into packets of similar directions.
     std::vector<Point> origins;
     std::vector<Vec3> directions;
     std::vector<RayHit> hits;
-    std::vector<std::uint32_t> quarter;  ///< 4 times the place that a ray comes from, and the quarter of its points.
-    std::vector<HitPoint> fronts;        ///< What there is to read,
-    std::vector<std::uint32_t> share;    ///< the quarter that it counts in,
-    std::vector<double> counts;          ///< as how many rays, where some are aimed at openings (`PortalAim`),
-    std::vector<Spectrum> values;        ///< what was read,
-    std::vector<QuarterSums> sums;       ///< and what it makes for each place.
-    std::vector<std::uint32_t> filled;   ///< Rays in each cell so far.
+    std::vector<std::uint32_t> quarter;  ///< For each ray 4 times its place, plus the quarter of its point.
+    std::vector<HitPoint> fronts;        ///< Hits at which b is evaluated.
+    std::vector<std::uint32_t> share;    ///< `quarter` of each hit.
+    std::vector<double> counts;         ///< Weight of each hit if rays are aimed at openings (`PortalAim`); else empty.
+    std::vector<Spectrum> values;       ///< b at each hit.
+    std::vector<QuarterSums> sums;      ///< Resulting sums for each place.
+    std::vector<std::uint32_t> filled;  ///< Number of rays in each cell so far.
 };
 
-/// An estimate and how far it may be off.
+/// An estimate and its variance.
 struct Gathered {
     Spectrum irradiance;  ///< W/m^2
-    /// Of `irradiance`, from the spread of four quarters of the rays, and of two halves, as if those were independent.
-    /// The whole is stratified more finely. Where variance ~ rays^-p, p = 1 by chance and 3/2 where light is even,
-    /// quarters tell 4^(p - 1) times the variance and halves 2^(p - 1) times: it is halves^2 / quarters.
+    /// Variance of `irradiance` as estimated from four quarters of the rays and from two halves, as if these were
+    /// independent. All rays together are stratified more finely. If the variance is proportional to rays^-p, with p =
+    /// 1 for random points and 3/2 for uniform light, quarters overestimate it by 4^(p - 1) and halves by 2^(p - 1).
+    /// The actual variance is then halves^2 / quarters.
     Spectrum quarters, halves;
 };
 
-/// Irradiance at x by what surfaces reflect, E(x) = int G V b dA, by `rays` rays (a power of two, at least 4) with
-/// density cos / pi around n: E = mean of b at their first hits. `own` is the region that x lies on, or none. The
-/// directions are scrambled Sobol points named by `key`. Unbiased; error ~ rays^-3/4.
+/// Irradiance at x from the light that surfaces reflect, E(x) = int G V b dA, as the mean of b at the first hits of
+/// `rays` rays (a power of two, at least 4) with density cos / pi around n. `own`: the region that contains x, or none.
+/// `key`: selects the directions, which are scrambled Sobol points. Unbiased; error ~ rays^-3/4.
 Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,
                           std::uint64_t key, const ReflectedLight& b, GatherWorkspace& workspace);
 Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,
                           std::uint64_t key, const RadiosityAt& b, GatherWorkspace& workspace);
 
-/// Its two steps, for those who read several functions with the same rays: cast them, then read b where they hit.
+/// The two steps of gather_reflected, for reading several functions with the same rays: cast them, then read b at the
+/// hits.
 void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays, std::uint64_t key,
                  GatherWorkspace& workspace);
 Gathered read_gather(const ReflectedLight& b, GatherWorkspace& workspace);
 
-/// A gather that can go on where its variance turns out too large: n rays, then the next n, then the next 2 n, are the
-/// same gather as 4 n at once.
+/// A gather that can be continued if its variance is too large: n rays, then the next n, then the next 2 n give the
+/// same result as 4 n rays at once.
 class GrowingGather {
   public:
-    /// Adds the next `more` rays: as many as there are, or the first.
+    /// Adds the next `more` rays: the first ones, or as many as there are already.
     void add(const QuarterSums& fresh, unsigned more);
     unsigned rays() const { return rays_; }
     Gathered gathered() const;
@@ -101,9 +104,9 @@ class GrowingGather {
     QuarterSums quarter_{};
 };
 
-/// Casts the rays that each place of a plane is missing to `rays` in all: a power of two, at least 4. `growing[i]`
-/// belongs to places[i]; all of them have as many rays so far. Rays of like directions are traced together, whichever
-/// place they come from.
+/// Casts the rays that places of one plane lack to have `rays` rays each: a power of two, at least 4. `growing[i]`
+/// belongs to places[i]; all of them must have the same number of rays. Rays with similar directions are traced
+/// together, regardless of their place.
 void grow_together(const Stage& stage, std::span<const GatherPlace> places, const Normal& n, RegionId own,
                    unsigned rays, const ReflectedLight& b, std::span<GrowingGather* const> growing,
                    GatherWorkspace& workspace);

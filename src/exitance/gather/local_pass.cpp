@@ -26,32 +26,35 @@ LocalPass::LocalPass(const Stage& stage, MeshSize mesh, std::uint64_t seed)
     share_on_node(tree_);
 }
 
-/// The light of the room that an element is in, by the mean light.
+/// Light of the room of an element over the mean light.
 double LocalPass::light_near(ElementId e, const LocalPassDemand& demand) const {
     return demand.light_in.empty() ? 1 : demand.light_in[stage_.rooms.of(tree_, e)];
 }
 
-/// How much noisier than allowed. All elements of the first mesh may be alike if the error falls with the root of the
-/// rays; small ones count less. Where many rays are needed, the next one takes away less: there more noise may stay,
-/// and less where few do. (The least rays for an error in the mean square leave noise in proportion to the root of the
-/// rays; half of that exponent, since both are estimates.) What is far lighter than its room is noisier by as much, and
-/// for the same reason more of it may stay, by the root of that: beside the opening of a dark room some square
-/// centimetres would take most rays. It is so on a quarter of a room's light at most, and adds a quarter to the square
-/// of its noise.
+/// Noise of an element over the allowed noise. Three factors adjust the allowance:
+/// - Small elements may be noisier. If the error falls with the root of the rays, all elements of the first mesh then
+/// get the same number.
+/// - Elements that need many rays may be noisier, and others less, since an additional ray reduces their noise less.
+/// The fewest rays for a mean squared error would allow noise in proportion to the root of the rays; half of that
+/// exponent is used, since noise and rays are estimates.
+/// - Places much brighter than their room may be noisier, by the root of the ratio; otherwise a few square centimetres
+/// at the opening of a dark room would take most rays. This concerns at most a quarter of a room's light and adds at
+/// most a quarter to its squared noise.
 double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
-    constexpr double far_lighter = 4;  // given by the quarter
-    const double usual = 4 * demand.rays.average;
-    // Exponents are given by the least rays for a mean square, halved.
-    const double dear = std::clamp(std::pow(sampled.place_rays / usual, 0.25), 0.5, 2.0);
+    constexpr double far_lighter = 4;  // for the quarter
+    const double usual_rays = 4 * demand.rays.average;
+    // The exponents are half of those that minimize the rays for a mean squared error.
+    const double effort_factor = std::clamp(std::pow(sampled.place_rays / usual_rays, 0.25), 0.5, 2.0);
     const double near = light_near(e, demand), usual_light = far_lighter * near * demand.light;
-    const double bright = usual_light > 0 ? std::sqrt(std::max(1.0, sampled.light / usual_light)) : 1;
-    const double allowed = demand.noise * near * dear * bright *
+    const double brightness_factor = usual_light > 0 ? std::sqrt(std::max(1.0, sampled.light / usual_light)) : 1;
+    const double allowed = demand.noise * near * effort_factor * brightness_factor *
                            std::pow(noise_area_ / stage_.counted_area(tree_, e), 0.25);  // given by the same
     return allowed > 0 ? std::sqrt(sampled.noise_squared) / allowed : 0;
 }
 
-/// An even share for every element of the first mesh: area x error^2 <= mean area x tolerance^2. Without noise it can
-/// be told how far dim places are off, too; not the darkest, where that would follow the method's elements.
+/// Allowed RMS misfit of an element: an even share for every element of the first mesh, area x error^2 <= mean area x
+/// tolerance^2. If elements are summed, without noise, it is also limited relative to the light of dark places. The
+/// darkest places are excluded, since refinement there would follow the method's elements.
 double LocalPass::allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const {
     const double counted = stage_.counted_area(tree_, e), near = light_near(e, demand);
     const double even = demand.tolerance * near * std::sqrt(mean_area_ / counted);
@@ -60,11 +63,11 @@ double LocalPass::allowed_misfit(ElementId e, double light, const LocalPassDeman
     return std::min(share, std::max(demand.relative_tolerance * light, calibrated::minor_misfit * demand.tolerance));
 }
 
-/// The mean square that its polynomial may leave over, noise and all.
+/// Allowed mean squared misfit of an element, including noise.
 double LocalPass::tolerated_misfit_squared(ElementId e, const SampledElement& sampled,
                                            const LocalPassDemand& demand) const {
     const double share = allowed_misfit(e, sampled.light, demand);
-    // Given by five freedoms: noise alone leaves over 2.3 times what they do on average once in twenty times.
+    // With five degrees of freedom, noise alone exceeds 2.3 times its expected misfit once in twenty times.
     return share * share + 2.3 * sampled.noise_in_misfit;
 }
 
@@ -72,8 +75,8 @@ bool LocalPass::is_too_rough(ElementId e, const SampledElement& sampled, const L
     return sampled.misfit_squared > tolerated_misfit_squared(e, sampled, demand);
 }
 
-/// All places' light: summed over elements, exact but for what they may miss, or by rays, twice as many at every second
-/// place if there are to be `more`. Returns how many that makes.
+/// Computes the light at all places: by summing elements, exactly up to their allowed error, or by rays. If `more`,
+/// every second place gets twice as many rays. Returns the number of rays.
 unsigned LocalPass::gather_at(ElementId e, const std::vector<WeightedPlace>& places, const ReflectedLight& b,
                               unsigned rays, bool more, const LocalPassDemand& demand, Workspace& w) const {
     const RegionId region = tree_.region(e);
@@ -100,9 +103,9 @@ unsigned LocalPass::gather_at(ElementId e, const std::vector<WeightedPlace>& pla
     return rays * (count + (more ? count / 2 : 0));
 }
 
-/// Gathers with the fewer rays that the element's area suggests or that it or its parent took before, and with half as
-/// many more, twice as many and so on until the noise is what is allowed. An element that is seen to be cut is left
-/// noisy: its pieces are gathered.
+/// Samples an element: starts with the number of rays that its area suggests or that it or its parent took before, and
+/// repeats with one and a half times as many, twice as many and so on until the noise is small enough. An element that
+/// must be split is left noisy, since its pieces will be gathered.
 SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const LocalPassDemand& demand, bool may_cut,
                                  Workspace& w) const {
     const std::vector<WeightedPlace> places = element_rule(tree_, e, rule_order(demand.curved));
@@ -111,12 +114,12 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
     const unsigned before = sampled_[e].place_rays > 0 ? sampled_[e].place_rays
                             : parent.is_none()         ? 0
                                                        : sampled_[parent].place_rays / 2;
-    const bool hopeless = stage_.is_left_out(tree_.region(e));  // to begin with: its area counts for no rays
-    // Of a crowd each has so small a share in the light that its noise alone tells how many rays it needs.
+    const bool unlit = stage_.is_left_out(tree_.region(e));  // its area does not count, so the minimum of rays
+    // With very many elements each has so small a share of the light that its noise alone determines its rays.
     constexpr unsigned least_rays = 4;
-    const unsigned first = is_crowd_  ? least_rays
-                           : hopeless ? std::bit_ceil(demand.rays.least)
-                                      : demand.rays.rays(stage_.counted_area(tree_, e), mean_area_);
+    const unsigned first = is_crowd_ ? least_rays
+                           : unlit   ? std::bit_ceil(demand.rays.least)
+                                     : demand.rays.rays(stage_.counted_area(tree_, e), mean_area_);
     unsigned rays = std::max({least_rays, first, before});
     w.growing.assign(places.size(), {});
     for (bool more = false;; rays *= more ? 2 : 1, more = !more) {
@@ -132,12 +135,12 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
     }
 }
 
-/// What is known of an element and what a change of the light adds to it: rays that say more of it than of all light
-/// are few. One that is too noisy in any case is left to be gathered anew.
+/// Adds a change of the light to an element's polynomial. The change needs fewer rays than the whole light. An element
+/// that is too noisy in any case is returned unchanged, to be gathered again.
 SampledElement LocalPass::changed(ElementId e, const LocalPassDemand& demand, Workspace& w) const {
     const SampledElement& before = sampled_[e];
     if (noise_excess(e, before, demand) > calibrated::kept_noise) return before;
-    constexpr unsigned least_rays = 4, share = 8;  // of the rays of a place, 1 / share to begin with
+    constexpr unsigned least_rays = 4, share = 8;  // initial share of the rays of a place: 1 / share
     const std::vector<WeightedPlace> places = element_rule(tree_, e, rule_order(before.curved));
     const Spectrum& rho = stage_.scene.material(tree_.region(e)).reflectance;
     w.growing.assign(places.size(), {});
@@ -154,15 +157,15 @@ SampledElement LocalPass::changed(ElementId e, const LocalPassDemand& demand, Wo
     }
 }
 
-/// Light in a slit between two boards changes within less than the distance of the rule's places. So that it does not
-/// go unseen, the polynomial is compared with what a few rays find at random places; where that is further off than
-/// their noise, it counts as misfit.
+/// Checks the polynomial between the nodes. Light in a slit between two boards varies over less than the distance of
+/// the nodes. The polynomial is compared with a few rays at random places; if the difference exceeds their noise, it
+/// counts as misfit.
 void LocalPass::look_between(ElementId e, SampledElement& sampled, const ReflectedLight& b,
                              const LocalPassDemand& demand, Workspace& w) const {
-    constexpr unsigned rays = 16, share = 8;  // of the rays that it took, 1 / share
+    constexpr unsigned rays = 16, share = 8;  // 1 / share of the rays that the element took
     constexpr unsigned least_places = 4, most_places = 32;
     const unsigned count = std::min(most_places, sampled.rays / (share * rays));
-    if (count < least_places) return;  // their noise would not be known
+    if (count < least_places) return;  // too few to estimate their noise
     const RegionId region = tree_.region(e);
     const Normal& n = stage_.scene.regions()[region].plane.n;
     const Spectrum& rho = stage_.scene.material(region).reflectance;
@@ -179,11 +182,11 @@ void LocalPass::look_between(ElementId e, SampledElement& sampled, const Reflect
     sampled.rays += rays * count;
     const double allowed = allowed_misfit(e, sampled.light, demand);
     if (!(misfit > allowed * allowed + 3 * noise)) return;
-    // Given by five freedoms, as in is_too_rough.
+    // With five degrees of freedom, as in tolerated_misfit_squared().
     sampled.misfit_squared = std::max(sampled.misfit_squared, misfit + 2.3 * sampled.noise_in_misfit);
 }
 
-/// What misfit is left to each of many small elements by what all have now.
+/// Squared misfit allowed on each of many small elements, from the present misfits of all.
 double LocalPass::share_in_crowd(const LocalPassDemand& demand) const {
     std::vector<double> errors;
     for (ElementId e : tree_.leaves()) {
@@ -195,7 +198,7 @@ double LocalPass::share_in_crowd(const LocalPassDemand& demand) const {
     return share_of_crowd(std::move(errors), demand.tolerance * demand.tolerance * stage_.area);
 }
 
-/// Cuts the elements whose error has too large a share in the whole; returns the new leaves.
+/// Splits the elements whose misfit exceeds their share; returns the new leaves.
 std::vector<ElementId> LocalPass::split_where_needed(const std::vector<ElementId>& candidates,
                                                      const LocalPassDemand& demand) {
     std::vector<ElementId> fresh;
@@ -234,8 +237,8 @@ ElementFunction LocalPass::finished(const LocalPassDemand& demand, LocalPassRepo
     return out;
 }
 
-/// Of leaves that are known, those that are too noisy, and the pieces of others that are cut: of what is quiet enough,
-/// the pieces are all that has to be gathered.
+/// Returns the leaves that are unknown or too noisy, and the parts of other leaves that had to be split: with little
+/// noise, only the parts must be gathered.
 std::vector<ElementId> LocalPass::to_gather_again(std::vector<ElementId> leaves, const LocalPassDemand& demand) {
     const auto good = [&](ElementId e) {
         return sampled_[e].place_rays > 0 && noise_excess(e, sampled_[e], demand) <= calibrated::kept_noise;
@@ -248,7 +251,7 @@ std::vector<ElementId> LocalPass::to_gather_again(std::vector<ElementId> leaves,
     return leaves;
 }
 
-/// Of an element that was cut, what its polynomial is on a part.
+/// Restricts the polynomial of a split element to one of its parts.
 SampledElement LocalPass::part_of(ElementId whole, ElementId part) const {
     const SampledElement& known = sampled_[whole];
     const SampledFunction polynomial(tree_, whole, known);
@@ -263,7 +266,8 @@ SampledElement LocalPass::part_of(ElementId whole, ElementId part) const {
     return out;
 }
 
-/// Gives elements that there was no time for what is known of those that they were cut from. False where nothing is.
+/// Restricts known polynomials to elements that were not gathered for lack of time. Returns false if some have no known
+/// ancestor.
 bool LocalPass::inherit() {
     bool is_whole = true;
     for (ElementId e : tree_.leaves()) {
@@ -286,21 +290,22 @@ std::size_t LocalPass::rays_of(std::span<const ElementId> elements) const {
 ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const LocalPassDemand& demand,
                                   LocalPassReport& report, Progress& progress, const StopRequest& stop,
                                   SafePoints safe_points) {
-    constexpr int change = -1;  // the round of a change comes before those that cut
+    constexpr int change = -1;  // round in which a change is gathered; comes before rounds of refinement
     std::vector<ElementId> active = tree_.leaves();
     const bool known = !fresh && sampled_.size() == tree_.size();
     int depth = known && demand.change ? change : 0;
-    std::size_t begun = 0;        // how many of `active` an earlier run has gathered
-    std::size_t rays_before = 0;  // of `active`, where they are changed
+    std::size_t begun = 0;        // elements of `active` that a resumed run has gathered
+    std::size_t rays_before = 0;  // of `active`, if only the change is gathered
     const bool resumed = safe_points.resume([&](auto& a) { a(active, depth, begun, report.rays, rays_before); });
     if (!resumed && depth == change) rays_before = rays_of(active);
     if (!resumed && known && depth == 0) active = to_gather_again(std::move(active), demand);
-    // What those of a crowd may leave follows from what all of them have.
+    // With very many elements, the allowed misfit of each follows from the misfits of all in the first round.
     const auto may_cut = [&](int at) { return at < demand.max_depth && !(is_crowd_ && at == 0); };
     for (; !active.empty(); ++depth) {
         sampled_.resize(tree_.size());
-        // In slices, so that progress can be told; few, since threads wait for one another at the end of each. A
-        // request to stop is heard at every element: what it leaves out is not used.
+        // Elements are processed in slices, so that progress can be reported; slices are few, since threads wait for
+        // each other at the end of each. A stop request is checked at every element, and elements that it skips are not
+        // used.
         const std::size_t slice = std::max<std::size_t>(256, active.size() / 16 + 1);
         for (std::size_t first = std::exchange(begun, 0); first < active.size() && !stop.requested(); first += slice) {
             safe_points.pass([&](auto& a) { a(active, depth, first, report.rays, rays_before); });
@@ -324,7 +329,7 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
                 spread_.quarters += tree_.area(active[i]) * s.quarters;
                 spread_.halves += tree_.area(active[i]) * s.halves;
             }
-            // The first round is about half of the work, every further one half of what is left.
+            // The first round is about half of the work, every further round half of the remaining work.
             const double done = static_cast<double>(first) / static_cast<double>(active.size());
             if (depth != change) progress.advance(1 - std::ldexp(1 - 0.5 * done, -depth));
         }

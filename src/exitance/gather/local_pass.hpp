@@ -10,92 +10,91 @@
 
 namespace exitance {
 
-/// How finely indirect light is gathered.
+/// Accuracy at which indirect light is gathered.
 struct LocalPassDemand {
-    RayBudget rays;    ///< Of one place, to begin with; more where they turn out too noisy.
-    double light = 0;  ///< Mean reflected light of the scene, W/m^2: places far lighter may be noisier. 0: none may.
-    double noise = 0;  ///< RMS error of rho E_ind that the rays may leave, W/m^2.
-    double tolerance = 0;  ///< RMS error of rho E_ind that interpolation may leave, W/m^2.
-    bool curved = false;   ///< Fit polynomials of second degree, where they are larger than their noise.
-    /// As much of the light there as interpolation may leave on an element that elements are summed for; 0: any.
+    RayBudget rays;    ///< Initial rays per place; more are cast if the result is too noisy.
+    double light = 0;  ///< Mean reflected light of the scene, W/m^2: much brighter places may be noisier. 0: none may.
+    double noise = 0;  ///< Allowed RMS error of rho E_ind due to rays, W/m^2.
+    double tolerance = 0;  ///< Allowed RMS error of rho E_ind due to interpolation, W/m^2.
+    bool curved = false;   ///< Fit polynomials of second degree where they exceed their noise.
+    /// Allowed error of interpolation relative to the light on an element, if elements are summed; 0: not limited.
     double relative_tolerance = 0;
-    /// The same b, in parts to be summed over in place of rays, where that suits the scene; and what one element may
-    /// miss. Empty: rays.
+    /// b in parts that are summed instead of casting rays, if that suits the scene (empty: rays), and the allowed error
+    /// of one element as a share of the irradiance.
     std::span<const ElementGather> elements = {};
     double element_share = 0;
-    int max_depth = 8;  ///< Rounds of cutting.
-    /// The light of every room by the mean light: errors are allowed in proportion. Empty where all is one room.
+    int max_depth = 8;  ///< Limit on the rounds of refinement.
+    /// Light of every room over the mean light: allowed errors are proportional to it. Empty if the scene is one room.
     std::span<const double> light_in = {};
-    /// b less what was gathered last, where that is small: it alone is gathered, by as few rays as its noise needs, and
-    /// added to what there is. Null: b is what was gathered last, or nothing like it.
+    /// b minus the light gathered last, if that is small. Only the change is then gathered, with as few rays as its
+    /// noise requires, and added to the present result. Null: b was gathered last, or is unrelated to it.
     const ReflectedLight* change = nullptr;
 };
 
 struct LocalPassReport {
     std::size_t rays = 0;
-    /// RMS over the surfaces of the rays' error in rho E_ind, W/m^2; where there are several rooms, of the error by the
-    /// room's light, all rooms alike, times the mean light.
+    /// RMS over the surfaces of the error in rho E_ind due to rays, W/m^2. With several rooms: of the error relative to
+    /// the room's light, all rooms with equal weight, times the mean light.
     double noise = 0;
-    double interpolation = 0;  ///< The same of the interpolation's error, as estimated.
-    /// What is known of every leaf before it was joined to others; of inner elements: unused.
+    double interpolation = 0;  ///< Like noise, for the estimated error of interpolation.
+    /// Data of every leaf before it was made continuous; unused for inner elements.
     struct Leaf {
-        double expected_error = 0;  ///< Of rho E_ind, W/m^2.
-        unsigned rays = 0;          ///< That the element took to bring its noise down to what is allowed.
+        double expected_error = 0;  ///< Expected error of rho E_ind, W/m^2.
+        unsigned rays = 0;          ///< Rays that reduced the element's noise to the allowed value.
     };
     Field<ElementId, Leaf> leaves;
-    /// What is known of a leaf of the delivered tree: a triangle of a fan is a part of what was gathered.
+    /// Data of a leaf of the returned tree; a triangle of a fan has those of the element that was gathered.
     static const Leaf& known(const Field<ElementId, Leaf>& leaves, const ElementTree& tree, ElementId e) {
         return leaves[e.value < leaves.size() ? e : tree.parent(e)];
     }
-    bool interrupted = false;  ///< By a request to stop, before anything at all was known of some elements.
+    bool interrupted = false;  ///< True if a stop was requested before every element had a result.
 };
 
-/// Indirect irradiance everywhere, by one gather over the light that a method found: E_ind = H b at the places of a
-/// quadrature rule on the elements of an adaptive mesh (`RuleOrder`: 3 x 3 on parallelograms, 16 that are no grid for
-/// polynomials of second degree), and the polynomial nearest to them in the mean square. The gather smooths what is
-/// rough in b and doubles its order (the iterated or Sloan solution) [Lischinski93], [Atkinson97]. The places outnumber
-/// the polynomial's freedoms: what they leave over, less the rays' noise, is the error of interpolation, and elements
-/// are cut where that has more than its share of the tolerance, across the one direction that it varies along where
-/// that is enough. Rays are doubled until their noise is what is allowed: a polynomial of many places needs few from
-/// each, which is why elements as large as light allows are what makes this cheap. What is delivered are straight
-/// elements for all that. O(elements x rays).
+/// Indirect irradiance by one gather of the light that a method found (the iterated or Sloan solution) [Lischinski93],
+/// [Atkinson97]. E_ind = H b is evaluated at the nodes of a quadrature rule on the elements of an adaptive mesh
+/// (`RuleOrder`: 3 x 3 on parallelograms, 16 that form no grid for polynomials of second degree) and fitted by a
+/// polynomial in the least-squares sense. The gather smooths errors of b and doubles its order. There are more nodes
+/// than degrees of freedom: the misfit, less the rays' noise, is the error of interpolation. Elements are split where
+/// it exceeds their share of the tolerance, across a single direction if that suffices. Rays are doubled until the
+/// noise is small enough. A polynomial of many nodes needs few rays per node, so that large elements make the gather
+/// cheap. The result has linear elements in any case. O(elements x rays).
 ///
-/// Mesh and gathers stay: called again with a stricter demand, only what falls short of it is done again; with light
-/// that has changed by little, the change is gathered; with other light, everything anew, on the mesh found so far.
+/// Mesh and gathers are kept. A call with a stricter demand improves only insufficient elements; if the light has
+/// changed by little, only the change is gathered; other light is gathered from scratch on the present mesh.
 class LocalPass {
   public:
-    /// `mesh`: of the elements to begin with. The stage must outlive it.
+    /// `mesh`: element size of the initial mesh. The stage must outlive the object.
     LocalPass(const Stage& stage, MeshSize mesh, std::uint64_t seed);
 
-    /// Gathers b. `fresh`: b is not what was gathered last. `report.rays` counts those of this call. `safe_points`: its
-    /// state beyond archive_state() can be kept between slices of the work.
+    /// Gathers b. `fresh`: b is not the light gathered last. `report.rays` counts the rays of this call. `safe_points`:
+    /// saves the state beyond archive_state() between slices of the work.
     ElementFunction gather(const ReflectedLight& b, bool fresh, const LocalPassDemand& demand, LocalPassReport& report,
                            Progress& progress, const StopRequest& stop, SafePoints safe_points = {});
 
-    /// Mesh and gathers, for checkpoints.
+    /// Archives mesh and gathers for checkpoints.
     template <class Archive>
     void archive_state(Archive& a) {
         a(tree_, sampled_, mean_area_, noise_area_, is_crowd_, least_share_, spread_);
     }
 
   private:
-    /// Room for the gathers of one thread.
+    /// Workspace of one thread.
     struct Workspace {
         GatherWorkspace rays;
         ElementGather::Workspace elements;
-        std::vector<GrowingGather> growing;  ///< One a place.
+        std::vector<GrowingGather> growing;  ///< One per place.
         std::vector<Gathered> gathered;
-        std::vector<GatherPlace> short_places;  ///< Places that are short of rays,
-        std::vector<GrowingGather*> short_of;   ///< and the gathers of these places.
+        std::vector<GatherPlace> short_places;  ///< Places that need more rays.
+        std::vector<GrowingGather*> short_of;   ///< Gathers of these places.
     };
 
-    /// Sums over all elements sampled so far of their area times what quarters and halves of their rays tell of the
-    /// variance, (W/m^2)^2 m^2; to begin with of rays between chance and even light (`Gathered`), of no weight.
+    /// Sums over all sampled elements of area times the variance estimated from quarters and from halves of their rays,
+    /// (W/m^2)^2 m^2. Initially as for rays between random and uniform light (`Gathered`), with negligible weight.
     struct Spread {
-        double quarters = 1e-100, halves = 0.85e-100;  // given by the middle of gain()'s range, at next to no weight
+        double quarters = 1e-100, halves = 0.85e-100;  // middle of the range of gain()
 
-        /// The variance of what is gathered in what quarters tell of it. A mean over elements, since one alone has too
-        /// few places to tell.
+        /// Ratio of the actual variance to its estimate from quarters. A mean over elements, since one element has too
+        /// few places.
         double gain() const {
             const double ratio = std::clamp(halves / quarters, std::sqrt(0.5), 1.0);
             return ratio * ratio;
@@ -127,9 +126,9 @@ class LocalPass {
     ElementTree tree_;
     Field<ElementId, SampledElement> sampled_;
     double mean_area_ = 0;
-    double noise_area_ = 0;  ///< In place of it where noise is dealt out.
-    bool is_crowd_ = false;  ///< Are most elements whole polygons (`ErrorShare`)?
-    /// Squared misfit that any element may have, by the squared light of its room, m^2; 0 but in crowds.
+    double noise_area_ = 0;  ///< Like mean_area_, for allotting noise.
+    bool is_crowd_ = false;  ///< True if most elements are whole polygons (`ErrorShare`).
+    /// Squared misfit allowed on any element over the squared light of its room, m^2; 0 unless is_crowd_.
     double least_share_ = 0;
     Spread spread_;
 };

@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// A box of which one face reflects light, 1 W/m^2, and nothing else does: what arrives is a form factor.
+/// A box in which only one face sends light, with b = 1 W/m^2. The irradiance is then a form factor.
 class OneBrightFace : public testing::Test {
   protected:
     Scene scene = test::make(test::closed_box({}, {2, 1.5, 1}));
@@ -30,7 +30,7 @@ class OneBrightFace : public testing::Test {
         return pass.gather(b, fresh, demand, report, progress, stop);
     }
 
-    /// RMS over all surfaces of rho (E - exact), rho = 0.5.
+    /// RMS over all surfaces of rho (E - exact), with rho = 0.5.
     double error(const ElementFunction& E) const {
         double sum = 0;
         for (ElementId e : E.tree.leaves()) {
@@ -50,24 +50,24 @@ class OneBrightFace : public testing::Test {
     }
 };
 
-TEST_F(OneBrightFace, IsGatheredWithTheErrorThatTheReportTells) {
+TEST_F(OneBrightFace, IsGatheredWithTheReportedError) {
     for (const LocalPassDemand& demand : {coarse, fine}) {
         LocalPassReport report;
         const double truth = error(gather(demand, report));
         const double told = std::hypot(report.noise, report.interpolation);
-        // Noise is known from four quarters of the rays, interpolation from nine places: both to a third or so.
+        // Noise is estimated from four quarters of the rays, interpolation from nine nodes: both to about a third.
         EXPECT_LT(truth, 1.5 * told);
         EXPECT_GT(truth, 0.6 * told);
         EXPECT_LT(truth, 1.5 * std::hypot(demand.noise, demand.tolerance));
     }
 }
 
-TEST_F(OneBrightFace, HasTheVarianceThatQuartersAndHalvesOfTheRaysTell) {
+TEST_F(OneBrightFace, HasTheVarianceEstimatedFromQuartersAndHalves) {
     const Point x = {0.9, 0.6, 0.4};
     const Normal n = normalized(Vec3{0.3, 0.2, 0.1} - scene.regions()[bright].plane.n);
     constexpr unsigned gathers = 1000;
     GatherWorkspace workspace;
-    double told = 0, by_chance = 0;  // logarithms of what is told of the variance over what it is
+    double told = 0, by_chance = 0;  // logarithms of the estimated over the actual variance
     for (const unsigned rays : {32u, 64u, 128u, 256u}) {
         double sum = 0, square = 0, quarters = 0, halves = 0;
         for (unsigned k = 0; k < gathers; ++k) {
@@ -79,12 +79,12 @@ TEST_F(OneBrightFace, HasTheVarianceThatQuartersAndHalvesOfTheRaysTell) {
         told += 0.25 * std::log(halves / quarters * halves / variance);
         by_chance += 0.25 * std::log(quarters / variance);
     }
-    // Powers of 4 fill the square better than their doubles: a power law holds for both together, to a third.
+    // Powers of 4 fill the square more evenly than their doubles; a power law describes both together to about a third.
     EXPECT_NEAR(std::exp(told), 1, 0.35);
     EXPECT_GT(std::exp(by_chance), 1.5);
 }
 
-TEST_F(OneBrightFace, IsNotGatheredAgainWhereItIsGoodEnough) {
+TEST_F(OneBrightFace, IsNotGatheredAgainIfAccurateEnough) {
     LocalPassReport first, same, finer, anew;
     const ElementFunction once = gather(coarse, first);
     const ElementFunction twice = gather(coarse, same);
@@ -92,7 +92,7 @@ TEST_F(OneBrightFace, IsNotGatheredAgainWhereItIsGoodEnough) {
     EXPECT_EQ(once.values, twice.values);
     const ElementFunction better = gather(fine, finer);
     EXPECT_LT(error(better), 0.7 * error(once));
-    // Other light: everything is gathered, on the mesh found so far, with the rays that it took.
+    // Other light: everything is gathered again, on the present mesh, with the numbers of rays used before.
     gather(fine, anew, true);
     EXPECT_GT(anew.rays, finer.rays / 2);
     EXPECT_LT(anew.rays, 2 * (first.rays + finer.rays));
@@ -107,14 +107,15 @@ TEST_F(OneBrightFace, AChangeOfTheLightIsGatheredByFewRays) {
     demand.change = &change;
     ElementFunction brighter = gather(demand, second);
     EXPECT_LT(second.rays, first.rays / 4);
-    // As far off as before, but for noise of the change that rays for all of the light would have: what is allowed.
+    // The error is as before, plus noise of the change that rays for the whole light would have too: within the
+    // allowance.
     for (std::array<float, bands>& value : brighter.values)
         for (float& v : value) v /= 1.05F;
     EXPECT_LT(error(brighter), 1.2 * error(dim) + 0.2 * fine.noise);
     EXPECT_GT(second.noise, 0.9 * first.noise);
 }
 
-TEST_F(OneBrightFace, StoppedEarlyIsWhatLargerElementsAre) {
+TEST_F(OneBrightFace, InheritsLargerElementsIfStoppedEarly) {
     LocalPassReport whole;
     const double least = error(gather(fine, whole));
     for (const double share : {0.7, 0.0}) {
@@ -128,7 +129,8 @@ TEST_F(OneBrightFace, StoppedEarlyIsWhatLargerElementsAre) {
         Progress progress;
         LocalPassReport report;
         const ElementFunction E = stopped.gather(until_stopped, true, fine, report, progress, stop);
-        EXPECT_EQ(report.interrupted, share == 0);  // before every element of the first mesh was gathered for
+        // True if stopped before every element of the first mesh was gathered.
+        EXPECT_EQ(report.interrupted, share == 0);
         if (report.interrupted) continue;
         EXPECT_LT(report.rays, whole.rays);
         EXPECT_LT(error(E), 3 * least);
@@ -136,14 +138,14 @@ TEST_F(OneBrightFace, StoppedEarlyIsWhatLargerElementsAre) {
     }
 }
 
-TEST_F(OneBrightFace, WhatIsFarLighterMayBeNoisier) {
+TEST_F(OneBrightFace, MayBeNoisierWhereItIsMuchBrighter) {
     LocalPassReport usual, dim;
     LocalPassDemand demand = fine;
     demand.noise = 1e-4;
     gather(demand, usual);
-    LocalPass other(stage, {.edge = 0.8, .grading_levels = 0}, 1);  // which has not gathered before
+    LocalPass other(stage, {.edge = 0.8, .grading_levels = 0}, 1);  // has not gathered before
     Progress progress;
-    demand.light = 0.002;  // of a room that is dark but for this face's light, which is up to 0.1 elsewhere
+    demand.light = 0.002;  // of a room that is dark except for this face's light, which is up to 0.1 elsewhere
     const double truth = error(other.gather(b, true, demand, dim, progress, StopRequest()));
     EXPECT_LT(dim.rays, usual.rays / 2);
     EXPECT_LT(truth, 1.5 * std::hypot(dim.noise, dim.interpolation));

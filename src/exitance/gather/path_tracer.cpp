@@ -73,7 +73,7 @@ std::optional<PathTracer::Vertex> PathTracer::follow(const Vertex& from, const V
                   hit.mirror >= 0};
 }
 
-/// Of each distant disc by one ray, uniform in its solid angle.
+/// Returns a sample of the light of all distant discs: one ray per disc, uniform in its solid angle.
 Spectrum PathTracer::light_of_discs(const Vertex& y, RandomStream& random) const {
     Spectrum sum;
     for (const DistantLight::Disc& disc : stage_.scene.distant().discs) {

@@ -23,10 +23,10 @@ class PathTracer {
         bool mirrored = false;
     };
 
-    /// What one step of a path finds at a vertex.
+    /// Result of one step of a path at a vertex.
     struct Step {
         Spectrum direct;             ///< One unbiased sample of the direct irradiance at the vertex, W/m^2.
-        std::optional<Vertex> next;  ///< Where a ray of density cos / pi arrives; none if it meets no front.
+        std::optional<Vertex> next;  ///< Hit of a ray with density cos / pi; none if it hits no front.
     };
 
     explicit PathTracer(const Stage& stage);

@@ -18,7 +18,7 @@ double mean_square(const Spectrum& s) {
 SampledElement fit_gathered(const ElementTree& tree, ElementId e, const std::vector<WeightedPlace>& places,
                             std::span<const Gathered> gathered, const Spectrum& rho, bool curved, double gain) {
     const ElementPolynomials polynomials(tree, e, places, curved);
-    std::array<Spectrum, ElementPolynomials::most> c{};
+    std::array<Spectrum, ElementPolynomials::most> c{};    ///< of each coefficient, for rho E
     std::array<double, ElementPolynomials::most> noise{};  // of each coefficient, as of rho E
     std::vector<ElementPolynomials::Values> phi;
     SampledElement out;
@@ -52,7 +52,7 @@ SampledElement fit_gathered(const ElementTree& tree, ElementId e, const std::vec
     }
     out.misfit_along = misfit_along(tree, e, places, rest, curved ? Degree::curved : Degree::straight);
     out.noise_in_misfit = std::max(0.0, whole_noise - straight - bent_noise);
-    // What is drawn in loses light as much as noise; the rest keeps its noise.
+    // Shrinking terms loses light as well as noise; the remaining terms keep their noise.
     const double kept = bent > bent_noise ? 1 - bent_noise / bent : 0, lost = 1 - kept;
     out.noise_squared = straight + kept * kept * bent_noise + lost * lost * std::max(0.0, bent - bent_noise);
     for (std::size_t k = 0; k < ElementPolynomials::most; ++k)
@@ -74,15 +74,16 @@ Spectrum SampledFunction::at(Vec2 uv) const {
 
 namespace {
 
-/// A straight element: its values at the corners, and the mean square of rho E that it leaves over of what it stands
-/// for.
+/// A linear element: its values at the corners, and the mean squared difference of rho E from the function that it
+/// replaces.
 struct StraightFit {
     std::array<Spectrum, 4> corner;
     double rest_squared = 0;
-    std::array<double, 2> rest_along = {};  ///< The same along one direction, as `SampledElement::misfit_along`.
+    /// Part that varies along one coordinate only, see `SampledElement::misfit_along`.
+    std::array<double, 2> rest_along = {};
 };
 
-/// Nearest to `part` of an element that holds `sampled`.
+/// Least-squares linear element for `part` of an element with the polynomial `sampled`.
 StraightFit straighten(const ElementTree& tree, ElementId part, ElementId whole, const SampledElement& sampled,
                        const Spectrum& rho) {
     const SampledFunction polynomial(tree, whole, sampled);

@@ -8,34 +8,35 @@
 
 namespace exitance {
 
-/// A polynomial fitted to irradiance gathered at the places of an element, and what the places say of it.
+/// A polynomial fitted to irradiance gathered at the places of an element, and statistics of the places.
 struct SampledElement {
-    std::array<std::array<float, bands>, ElementPolynomials::most> coefficient;  ///< Of ElementPolynomials, W/m^2.
-    bool curved = false;         ///< Are those of second degree among them?
+    /// Coefficients of ElementPolynomials, W/m^2.
+    std::array<std::array<float, bands>, ElementPolynomials::most> coefficient;
+    bool curved = false;         ///< True if it has terms of second degree.
     double light = 0;            ///< RMS of rho E over places and bands, W/m^2.
-    double noise_squared = 0;    ///< Of rho E of the polynomial, mean over bands, (W/m^2)^2.
-    double misfit_squared = 0;   ///< Mean of (rho (E - polynomial))^2 over the places, noise and all, (W/m^2)^2.
-    double noise_in_misfit = 0;  ///< How much of that the rays' noise makes, on average.
-    /// How much of `misfit_squared` is along one coordinate alone, see misfit_along().
+    double noise_squared = 0;    ///< Variance of rho times the polynomial, mean over bands, (W/m^2)^2.
+    double misfit_squared = 0;   ///< Mean of (rho (E - polynomial))^2 over the places, including noise, (W/m^2)^2.
+    double noise_in_misfit = 0;  ///< Expected part of misfit_squared that is due to noise.
+    /// Parts of `misfit_squared` that vary along one coordinate only, see misfit_along().
     std::array<double, 2> misfit_along = {};
     double quarters = 0, halves = 0;  ///< Means over the places of rho^2 `Gathered::quarters`, `halves`, (W/m^2)^2.
-    unsigned rays = 0;                ///< Spent in all.
-    unsigned place_rays = 0;          ///< Of one place; 0: not gathered yet.
+    unsigned rays = 0;                ///< Rays in total.
+    unsigned place_rays = 0;          ///< Rays per place; 0: not gathered yet.
 };
 
-/// The polynomial nearest to what was gathered at `places`, in the weighted mean square. Where it is `curved`, its part
-/// of second degree is drawn towards zero by as much as noise makes of it on average (James and Stein's estimator,
-/// [Efron73]), so that even light is no noisier for it. `rho`: the element's reflectance; `gain`: the variance of what
-/// was gathered, in what quarters of the rays tell of it.
+/// Weighted least-squares polynomial of the light gathered at `places`. If it is `curved`, its terms of second degree
+/// are shrunk according to their noise (James-Stein estimator, [Efron73]), so that they do not add noise to uniform
+/// light. `rho`: the element's reflectance. `gain`: ratio of the actual variance to its estimate from quarters of the
+/// rays.
 SampledElement fit_gathered(const ElementTree& tree, ElementId e, const std::vector<WeightedPlace>& places,
                             std::span<const Gathered> gathered, const Spectrum& rho, bool curved, double gain);
 
-/// The rule whose places `fit_gathered` has enough of.
+/// Quadrature rule with enough places for `fit_gathered`.
 inline RuleOrder rule_order(bool curved) {
     return curved ? RuleOrder::finer : RuleOrder::fine;
 }
 
-/// Its value anywhere on the element.
+/// Evaluates a fitted polynomial anywhere on the element.
 class SampledFunction {
   public:
     SampledFunction(const ElementTree& tree, ElementId e, const SampledElement& sampled);
@@ -47,14 +48,14 @@ class SampledFunction {
     const SampledElement& sampled_;
 };
 
-/// A leaf of a function, and the fitted element that it is, or is a part of.
+/// A leaf of a function, and the fitted element of which it is a part, or which it is.
 struct StraightLeaf {
     ElementId leaf, of;
 };
 
-/// Adds fitted elements, which are leaves of the function's tree, to it, as straight elements: where one is curved, it
-/// is cut until what they leave over is at most `tolerance(e)` (RMS of rho E, W/m^2). `sampled(e)`, `rho(e)`: its
-/// polynomial and reflectance; on any thread.
+/// Adds fitted elements, which must be leaves of the function's tree, as linear elements. Curved ones are split until
+/// the difference is at most `tolerance(e)` (RMS of rho E, W/m^2). `sampled(e)`, `rho(e)`: polynomial and reflectance
+/// of an element; called on any thread.
 std::vector<StraightLeaf> add_straight(ElementFunction& out, std::span<const ElementId> fitted,
                                        const std::function<const SampledElement&(ElementId)>& sampled,
                                        const std::function<Spectrum(ElementId)>& rho,

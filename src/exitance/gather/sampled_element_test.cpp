@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// Square and triangle, with f and noise of a standard deviation at the places of a rule.
+/// A square and a triangle, with f plus noise of a given standard deviation at the nodes of a rule.
 struct Noisy {
     ElementTree tree;
     std::vector<WeightedPlace> places;
@@ -33,7 +33,7 @@ double parabola(Vec2 p) {
     return 1 + p.x - p.y * p.y;
 }
 
-TEST(SampledElement, HoldsACurveAndTellsNoMisfit) {
+TEST(SampledElement, RepresentsACurveWithoutMisfit) {
     for (const auto shape : {Patch::Shape::parallelogram, Patch::Shape::triangle}) {
         const Noisy exact(shape, parabola, 0, 1);
         const SampledElement s = exact.fit();
@@ -43,8 +43,9 @@ TEST(SampledElement, HoldsACurveAndTellsNoMisfit) {
     }
 }
 
-TEST(SampledElement, IsNoNoisierForCurvesThatAreNotThere) {
-    // Even light: of nine freedoms' noise little more than four's may stay, and the sample is to know it.
+TEST(SampledElement, IsNotNoisierDueToAbsentCurvature) {
+    // Uniform light: little more than the noise of four out of nine coefficients may remain, and noise_squared must
+    // agree.
     double error = 0, told = 0, straight = 0;
     constexpr int seeds = 400;
     for (int seed = 0; seed < seeds; ++seed) {
@@ -56,17 +57,17 @@ TEST(SampledElement, IsNoNoisierForCurvesThatAreNotThere) {
         for (const WeightedPlace& p : even.places) error += p.weight * std::pow(0.5 * (f.at(p.uv)[0] - 1), 2) / seeds;
         straight += even.fit(false).noise_squared / seeds;
     }
-    EXPECT_LT(error, 1.5 * straight);  // 9/4 of it without drawing in
+    EXPECT_LT(error, 1.5 * straight);  // 9/4 of it without shrinking
     EXPECT_NEAR(error, told, 0.15 * told);
 }
 
-TEST(SampledElement, IsDeliveredAsStraightElementsThatHoldIt) {
+TEST(SampledElement, IsSplitIntoLinearElementsWithinTheTolerance) {
     for (const auto shape : {Patch::Shape::parallelogram, Patch::Shape::triangle}) {
         const Noisy exact(shape, parabola, 0, 1);
         ElementFunction out;
         out.tree = exact.tree;
         const SampledElement s = exact.fit();
-        constexpr double tolerance = 0.002;  // cuts four times: a quarter of the misfit each
+        constexpr double tolerance = 0.002;  // splits four times: a quarter of the misfit each time
         const std::vector<StraightLeaf> leaves = add_straight(
             out, out.tree.leaves(), [&](ElementId) -> const SampledElement& { return s; },
             [](ElementId) { return Spectrum(0.5); }, [](ElementId) { return tolerance; });

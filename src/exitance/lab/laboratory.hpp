@@ -8,7 +8,7 @@ namespace exitance {
 /// read without the parts that only it can evaluate.
 void install_laboratory();
 
-/// The same without files: for programs that neither read nor write solutions.
+/// Like `install_laboratory`, but without files: for programs that neither read nor write solutions.
 void install_lab_methods();
 
 }  // namespace exitance

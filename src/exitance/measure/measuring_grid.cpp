@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// Horizontal directions all around.
+/// Evenly spaced horizontal directions.
 std::vector<Normal> around() {
     std::vector<Normal> out;
     for (int i = 0; i < cylinder_planes; ++i) {
@@ -64,7 +64,7 @@ void measure(const RadiosityFunction& light, GridLight& grid, Progress& progress
     progress.phase("measure");
     const std::size_t count = grid.points.size();
     std::vector<std::uint8_t> open(count);
-    // Points on walls are measured on the side of the plane's middle, in all directions alike.
+    // Points on walls are measured on the side of the plane's middle, for all directions.
     const Point middle = grid.plane.origin + 0.5 * (grid.plane.u + grid.plane.v);
     std::vector<Point> places = grid.points;
     parallel_for(count, 32, [&](std::size_t i) {

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// A box whose faces all emit 1 W/m^2, E = factor / (1 - rho), all of it in the elements.
+/// A box whose faces all emit 1 W/m^2, with E = factor / (1 - rho), all of it in the elements.
 Solution furnace(double rho, double factor = 1) {
     Solution s;
     s.scene = box_scene(1, 2, 1, rho, 1, 1);
@@ -28,24 +28,24 @@ GridLight grid_of(const MeasuringPlane& plane) {
 }
 
 TEST(MeasuringGrid, SpacingIsThatOfTheStandard) {
-    // EN 12464-1, table A.1: lengths and distances, metres; the table rounds.
+    // EN 12464-1, table A.1: lengths and spacings, metres; the table has rounded values.
     for (const auto& [d, p] : {std::pair{1.0, 0.2}, {2.0, 0.3}, {5.0, 0.6}, {10.0, 1.0}, {25.0, 2.0}, {50.0, 3.0}})
         EXPECT_NEAR(en_12464_spacing(d, d), p, 0.09 * p) << d;
     EXPECT_EQ(en_12464_spacing(10, 2), en_12464_spacing(2, 2));
     EXPECT_EQ(en_12464_spacing(3, 2), en_12464_spacing(3, 3));
 }
 
-TEST(MeasuringGrid, PointsStandInTheMiddleOfEqualCellsWithinTheMargin) {
+TEST(MeasuringGrid, PointsAreAtTheCentresOfEqualCellsWithinTheMargin) {
     const GridLight grid = grid_of({{1, 2, 3}, {0, 4, 0}, {0, 0, 2}, 0.5, 0.25});
     ASSERT_EQ(grid.columns, 7);
     ASSERT_EQ(grid.rows, 3);
     EXPECT_NEAR(norm(grid.n - Normal{1, 0, 0}), 0, 1e-15);
     EXPECT_NEAR(norm(grid.points[0] - Point{1, 2.5, 3.5}), 0, 1e-12);
     EXPECT_NEAR(norm(grid.points.back() - Point{1, 5.5, 4.5}), 0, 1e-12);
-    EXPECT_NEAR(norm(grid.points[7] - Point{1, 2.5, 4.0}), 0, 1e-12);  // the second row
+    EXPECT_NEAR(norm(grid.points[7] - Point{1, 2.5, 4.0}), 0, 1e-12);  // second row
 }
 
-TEST(MeasuringGrid, WhatCannotBeMeasuredIsRefused) {
+TEST(MeasuringGrid, RefusesPlanesThatCannotBeMeasured) {
     EXPECT_FALSE(make_grid({{}, {1, 0, 0}, {2, 0, 0}, 0.1}));
     EXPECT_FALSE(make_grid({{}, {0, 0, 0}, {0, 1, 0}, 0.1}));
     EXPECT_FALSE(make_grid({{}, {1, 0, 0}, {0, 1, 0}, 0.1, 0.5}));
@@ -54,7 +54,7 @@ TEST(MeasuringGrid, WhatCannotBeMeasuredIsRefused) {
     EXPECT_FALSE(make_grid({{std::nan(""), 0, 0}, {1, 0, 0}, {0, 1, 0}, 1}));
 }
 
-TEST(MeasuringGrid, MeasuresWhatProbeDoes) {
+TEST(MeasuringGrid, AgreesWithProbe) {
     const Solution s = sample_solution();
     const RadiosityFunction light(s);
     Progress progress;
@@ -70,7 +70,7 @@ TEST(MeasuringGrid, MeasuresWhatProbeDoes) {
     }
 }
 
-TEST(MeasuringGrid, LevelsAreThoseOfTheValues) {
+TEST(MeasuringGrid, LevelsAreComputedFromTheValues) {
     const Levels levels = levels_of(std::array<double, 3>{2, 4, 6});
     EXPECT_EQ(levels.mean, 4);
     EXPECT_EQ(levels.uniformity(), 0.5);
@@ -79,7 +79,7 @@ TEST(MeasuringGrid, LevelsAreThoseOfTheValues) {
     EXPECT_EQ(levels_of({}).uniformity(), 0);
 }
 
-TEST(SurfaceLevels, OfAFurnaceAreEvenAndEveryFaceHasItsShareOfPoints) {
+TEST(SurfaceLevels, AreEvenInAFurnaceAndEveryFaceHasItsShareOfPoints) {
     const Solution s = furnace(0.5);
     const RadiosityFunction light(s);
     Progress progress;
@@ -97,13 +97,13 @@ TEST(SurfaceLevels, OfAFurnaceAreEvenAndEveryFaceHasItsShareOfPoints) {
     }
 }
 
-TEST(ErrorPercentile, OfAFurnaceIsNoneAndOfABrighterOneWhatItIsOff) {
+TEST(ErrorPercentile, IsZeroInAFurnaceAndTheDifferenceInABrighterOne) {
     Progress progress;
     const StopRequest stop;
     const Solution right = furnace(0.5), bright = furnace(0.5, 1.1);
     const ErrorPercentile none = find_error_percentile(RadiosityFunction(right), 40, 64, progress, stop);
     EXPECT_EQ(none.points, 40u);
-    EXPECT_NEAR(none.p99, 0, 1e-6);  // elements hold floats
+    EXPECT_NEAR(none.p99, 0, 1e-6);  // elements store floats
     // E = 2.2, E' = 1 + 0.5 x 2.2 = 2.1
     const ErrorPercentile off = find_error_percentile(RadiosityFunction(bright), 40, 64, progress, stop);
     EXPECT_NEAR(off.p99, 0.1 / 2.2, 1e-5);

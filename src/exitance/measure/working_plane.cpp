@@ -9,12 +9,12 @@
 namespace exitance {
 namespace {
 
-constexpr double level_tolerance = 1e-3;  ///< Metres: faces nearer to one plane than that lie in it.
-constexpr double upward = 0.999;          ///< Cosine to the vertical of faces that point up.
-constexpr double least_share = 0.1;       ///< Of the largest area: what is smaller is no plane to work on.
+constexpr double level_tolerance = 1e-3;  ///< Distance below which faces are in one plane, metres.
+constexpr double upward = 0.999;          ///< Cosine to the vertical for faces that point up.
+constexpr double least_share = 0.1;       ///< Share of the largest area; smaller planes are not used.
 constexpr std::size_t most_planes = 32;
 
-/// A polygon with holes: a region, or one face.
+/// A polygon with holes: a region or one face.
 struct Shape {
     std::vector<std::vector<Point>> loops;
     Plane plane;
@@ -28,7 +28,7 @@ struct Shape {
     }
 };
 
-/// Coplanar shapes that touch one another.
+/// Coplanar shapes that touch each other.
 struct Floor {
     std::vector<Shape> shapes;
     double area = 0;  ///< m^2
@@ -63,7 +63,7 @@ std::vector<Shape> floors(const Scene& scene) {
     return out;
 }
 
-/// Whole regions where all of their faces have the name, else faces one by one.
+/// Faces of a group: whole regions if all of their faces are in it, else single faces.
 std::vector<Shape> shapes_of_group(const Scene& scene, const std::string& name) {
     const auto is_named = [&](SurfaceId s) { return scene.groups()[scene.surfaces()[s].group] == name; };
     std::vector<Shape> out;
@@ -88,9 +88,9 @@ bool touch(const Shape& a, const Shape& b) {
     return dot(a.plane.n, b.plane.n) > upward && std::abs(a.plane.signed_distance(b.loops[0][0])) < level_tolerance;
 }
 
-/// Shapes by which of them lie in one plane and touch, directly or by others; the largest first.
+/// Groups shapes that are in one plane and touch each other directly or indirectly; the largest group first.
 std::vector<Floor> join(std::vector<Shape> shapes) {
-    // Sorted along x, so that only neighbours are compared.
+    // Sorted along x, so that only neighbours must be compared.
     std::stable_sort(shapes.begin(), shapes.end(),
                      [](const Shape& a, const Shape& b) { return a.box.lo.x < b.box.lo.x; });
     std::vector<std::size_t> root(shapes.size());
@@ -121,7 +121,8 @@ std::vector<Floor> join(std::vector<Shape> shapes) {
     return out;
 }
 
-/// The rectangle about a floor along its longest edge, its u that of the four sides that goes most along +x.
+/// Bounding rectangle of a floor, aligned with its longest edge. Its u axis is the one of the four side directions that
+/// is closest to +x.
 MeasuringPlane rectangle_about(const Floor& floor) {
     Vec3 longest;
     for (const Shape& shape : floor.shapes)
@@ -151,8 +152,8 @@ bool is_within(const Floor& floor, const Point& p) {
     return std::any_of(floor.shapes.begin(), floor.shapes.end(), [&](const Shape& shape) { return shape.holds(p); });
 }
 
-/// Does a point of the floor's plane lie within its outline, and no nearer to it than the border? By places on a circle
-/// about it, so that edges between shapes do not count.
+/// True if a point of the floor's plane is inside its outline, by at least the border. Tests places on a circle around
+/// the point, so that edges between shapes do not count.
 bool is_well_within(const Floor& floor, const Point& p, double border) {
     constexpr int places = 24;
     if (!is_within(floor, p)) return false;
@@ -208,7 +209,7 @@ Result<std::vector<GridLight>> make_working_planes(const Scene& scene, const Pla
     std::vector<GridLight> out;
     for (std::size_t i = 0; i < all.size(); ++i) {
         Result<GridLight> grid = make_plane(request, all[i]);
-        if (!grid && all.size() > 1 && i > 0) continue;  // a closet beside a hall
+        if (!grid && all.size() > 1 && i > 0) continue;  // e.g. a closet beside a hall
         if (!grid) return grid.error();
         grid->name = name_of(request, i, all.size());
         out.push_back(std::move(*grid));

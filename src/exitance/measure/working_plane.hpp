@@ -8,25 +8,26 @@
 
 namespace exitance {
 
-/// Planes on which lighting standards have light measured: over the floors of a scene, or over faces that have a name.
+/// Planes on which lighting standards require measurements: above the floors of a scene, or above named faces.
 struct PlaneRequest {
-    std::string group;             ///< Faces of this name; empty: the floors.
-    std::optional<double> height;  ///< Above them, metres; none: on them.
-    std::optional<double> border;  ///< Strip along the outline that does not count, metres; none: default_border.
-    double spacing = 0;            ///< As MeasuringPlane::spacing.
-    bool is_cylindrical = false;   ///< E_z, the mean of the illuminances of vertical planes of all directions.
+    std::string group;             ///< Name of the faces; empty: the floors.
+    std::optional<double> height;  ///< Height above them, metres; none: on the faces themselves.
+    /// Width of the strip along the outline that does not count, metres; none: default_border.
+    std::optional<double> border;
+    double spacing = 0;           ///< See MeasuringPlane::spacing.
+    bool is_cylindrical = false;  ///< Measure E_z, the mean illuminance of vertical planes of all directions.
 };
 
-/// The strip that EN 12464-1 leaves out along walls, 0.5 m, or 15% of the shorter side where that would be more than a
-/// quarter of it; nothing where light is measured on the faces themselves. Metres.
+/// Width of the strip along walls that EN 12464-1 excludes, metres: 0.5 m, or 15% of the shorter side if 0.5 m is more
+/// than a quarter of that side; 0 if light is measured on the faces themselves.
 double default_border(double length, double width, bool is_above);
 
-/// Grids over what a request names, one over every group of coplanar faces that touch one another, along their longest
-/// edge; those over less than a tenth of the largest one are left out, and the 32 largest remain. Points of the grid
-/// outside of the faces' outline, or nearer to it than the border, do not count. Floors are the faces that point up at
-/// the lowest level at which there is one of at least a tenth of the area of the largest. Of faces with a name those
-/// that point up count, if there are any. Errors of code `usage`: no such faces, nothing is left within the border, or
-/// more than 100,000 points.
+/// Makes one grid over every group of coplanar faces that touch each other, along their longest edge. Groups with less
+/// than a tenth of the largest one's area are omitted, and at most the 32 largest are used. Points of the grid outside
+/// the faces' outline, or nearer to it than the border, do not count. Floors are the faces that point up at the lowest
+/// level with a face of at least a tenth of the area of the largest one. Of named faces, those that point up are used,
+/// if there are any.
+/// Errors of code `usage`: no such faces, no point within the border, or more than 100,000 points.
 Result<std::vector<GridLight>> make_working_planes(const Scene& scene, const PlaneRequest& request);
 
 }  // namespace exitance

@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// Floors at z = 0 of outlines in the plane, each a group "floor" of its own material; and a table of 1 m^2 at 0.8 m.
+/// Floors at z = 0 with given outlines, each in a group "floor" with its own material, and a table of 1 m^2 at 0.8 m.
 Scene scene_of(const std::vector<std::vector<Vec2>>& outlines) {
     SceneDescription d;
     d.groups = {"floor", "table"};
@@ -39,7 +39,7 @@ PlaneRequest at_height(double height) {
     return request;
 }
 
-TEST(WorkingPlane, OfARoomHasTheStandardsSpacingWithinABorderOfHalfAMetre) {
+TEST(WorkingPlane, HasTheStandardSpacingWithinABorderOfHalfAMetre) {
     // 6 x 4 m: 5 x 3 m within the border, p = 0.2 * 5^log10(5) = 0.616 m: 9 x 5 points.
     const Scene scene = scene_of({{{0, 0}, {6, 0}, {6, 4}, {0, 4}}});
     const auto planes = make_working_planes(scene, at_height(0.75));
@@ -53,8 +53,8 @@ TEST(WorkingPlane, OfARoomHasTheStandardsSpacingWithinABorderOfHalfAMetre) {
     EXPECT_EQ(grid.name, "0.75 m above floor");
 }
 
-TEST(WorkingPlane, LeavesOutWhatLiesOutsideOfTheOutlineOrAtItsBorder) {
-    // An L of 6 x 6 m without its upper right quarter, cut in two along x = 3.
+TEST(WorkingPlane, OmitsPointsOutsideTheOutlineOrNearIt) {
+    // An L of 6 x 6 m without its upper right quarter, split into two faces along x = 3.
     const Scene scene = scene_of({{{0, 0}, {3, 0}, {3, 6}, {0, 6}}, {{3, 0}, {6, 0}, {6, 3}, {3, 3}}});
     PlaneRequest request = at_height(1);
     request.spacing = 0.5;
@@ -86,7 +86,7 @@ TEST(WorkingPlane, NamedFacesAreMeasuredOnThemselves) {
     EXPECT_NE(missing.error().hint.find("table"), std::string::npos);
 }
 
-TEST(WorkingPlane, RoomsApartHaveAPlaneEach) {
+TEST(WorkingPlane, SeparateRoomsHaveOnePlaneEach) {
     const Scene scene = scene_of({{{0, 0}, {3, 0}, {3, 4}, {0, 4}}, {{3.2, 0}, {8, 0}, {8, 4}, {3.2, 4}}});
     const auto planes = make_working_planes(scene, at_height(0.75));
     ASSERT_TRUE(planes);
@@ -101,7 +101,7 @@ TEST(WorkingPlane, BordersOfNarrowPlanesShrink) {
     EXPECT_EQ(default_border(6, 4, false), 0);
 }
 
-TEST(WorkingPlane, CylindricalIlluminanceOfAFurnaceIsThatOfItsWalls) {
+TEST(WorkingPlane, CylindricalIlluminanceInAFurnaceEqualsThatOfItsWalls) {
     // E = 1 / (1 - 0.5) everywhere, on planes of every direction.
     Solution s;
     s.scene = box_scene(3, 2, 2, 0.5, 1, 1);

@@ -13,8 +13,8 @@ struct FoundLeaves {
     std::uint32_t node_count = 0;
     std::vector<ElementId> leaf;
     std::vector<std::uint32_t> places, nodes;  ///< Per leaf: how many entries of `place` and of `node` belong to it.
-    std::vector<Vec2> place;                   ///< Of a fan: apex, then border. Leaves that stay whole have none.
-    /// Of a fan: nodes of the apex, then of the border. Otherwise: nodes of the leaf's corners.
+    std::vector<Vec2> place;  ///< Points of each fan: apex, then border. Leaves that stay whole have none.
+    /// Nodes of each leaf. For a fan: of the apex, then of the border. Otherwise: of the leaf's corners.
     std::vector<std::uint32_t> node;
 
     /// Adds a leaf; it stays whole if the fan has no border.

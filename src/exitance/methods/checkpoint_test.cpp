@@ -6,7 +6,7 @@
 namespace exitance {
 namespace {
 
-/// Keeps every state that passes; begins with one if it is given.
+/// Stores every state; optionally starts from a given one.
 class AllStates final : public CheckpointStore {
   public:
     explicit AllStates(std::string begin = {}) : begin_(std::move(begin)) {}
@@ -45,7 +45,7 @@ Solution solved(const Scene& scene, const SolveOptions& options, CheckpointStore
     return std::move(*solution);
 }
 
-/// Asks for a stop when it has heard of `count` steps forward.
+/// Requests a stop after `count` steps of progress.
 class StopsAfter final : public Progress {
   public:
     StopsAfter(int count, StopRequest& stop) : left_(count), stop_(stop) {}
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(Methods, Checkpoints,
 
 }  // namespace
 
-TEST_P(Checkpoints, AnyStateOnTheWayLeadsToTheSameBits) {
+TEST_P(Checkpoints, EverySavedStateLeadsToTheSameBits) {
     const Scene scene = built_scene("gcr2");
     const SolveOptions options{.method = GetParam().method, .error = GetParam().error};
     const Solution whole = solved(scene, options, nullptr);
@@ -87,7 +87,7 @@ TEST_P(Checkpoints, AnyStateOnTheWayLeadsToTheSameBits) {
     }
 }
 
-TEST(Checkpoint, WhatWasKeptBeforeAnInterruptLeadsToTheSameBits) {
+TEST(Checkpoint, AStateSavedBeforeAnInterruptLeadsToTheSameBits) {
     const Scene scene = built_scene("gcr2");
     const SolveOptions options{.method = Method::matrix, .error = 0.012};
     const Solution whole = solved(scene, options, nullptr);
@@ -102,10 +102,10 @@ TEST(Checkpoint, WhatWasKeptBeforeAnInterruptLeadsToTheSameBits) {
     }
 }
 
-TEST(Checkpoint, AnyStateOfAnAttemptThatRefinesLeadsToTheSameBits) {
+TEST(Checkpoint, EverySavedStateOfARefiningAttemptLeadsToTheSameBits) {
     const Scene scene = built_scene("cornell");
     SolveOptions options{.error = 0.03};
-    options.mesh_size = 3;  // elements as large as walls, so that the method is to blame
+    options.mesh_size = 3;  // elements as large as walls, so that the method's error dominates
     const Solution whole = solved(scene, options, nullptr);
     ASSERT_EQ(whole.statistics.figures.at("refinement_steps"), 1);
     AllStates on_the_way;
@@ -118,8 +118,8 @@ TEST(Checkpoint, AnyStateOfAnAttemptThatRefinesLeadsToTheSameBits) {
     }
 }
 
-TEST(Checkpoint, ADiscontinuityMeshThatWasInterruptedGoesOnWithWhatItHad) {
-    /// Asks for a stop once so many states have been kept.
+TEST(Checkpoint, AnInterruptedDiscontinuityMeshIsResumed) {
+    /// Requests a stop after a number of states have been saved.
     class StopsAfterStates final : public CheckpointStore {
       public:
         StopsAfterStates(std::size_t count, StopRequest& stop) : left_(count), stop_(stop) {}

@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// b = first + rho F b to convergence, starting from `light.reflected`.
+/// Solves b = first + rho F b iteratively, starting from `light.reflected`.
 void solve(const MethodInput& input, ConservingTransport& F, std::span<const Spectrum> rho,
            std::span<const Spectrum> first, std::span<const double> area, GlobalLight& light) {
     light.report = solve_conserving(
@@ -17,8 +17,8 @@ void solve(const MethodInput& input, ConservingTransport& F, std::span<const Spe
         {.residual = input.knobs.residual, .max_iterations = input.knobs.max_iterations, .request = &input.stop});
 }
 
-/// Where surfaces glow all over, the direct light that F finds by its own rays, F M, takes the share c of the exact
-/// one's place: E_ind = F (b + c M) - c E_dir. Then the noise of F meets only what varies of b + c M.
+/// If surfaces emit all over the scene, direct light found by the rays of F, F M, replaces the share c of the exact
+/// direct light: E_ind = F (b + c M) - c E_dir. The noise of F then affects only the variation of b + c M.
 void agree_with_direct_share(const MethodInput& input, ConservingTransport& F, std::span<const Spectrum> rho,
                              std::span<const double> area, GlobalLight& light) {
     const ElementLocator locator(light.tree, input.stage.scene.regions().size());
@@ -28,7 +28,7 @@ void agree_with_direct_share(const MethodInput& input, ConservingTransport& F, s
     std::vector<Spectrum> M(n), correction(n), first(n);
     for (std::size_t i = 0; i < n; ++i)
         M[i] = input.stage.scene.material(light.tree.region(light.numbering.leaves[i])).exitance;
-    ConservingTransport of_emitted = F;  // the noise of that is its own
+    ConservingTransport of_emitted = F;  // emitted light gets a scaling of its own
     if (!light.kept.empty()) of_emitted.conserve(M);
     of_emitted.gather(M, correction);
     for (std::size_t i = 0; i < n; ++i) {
@@ -38,7 +38,7 @@ void agree_with_direct_share(const MethodInput& input, ConservingTransport& F, s
     const SolveReport before = light.report;
     solve(input, F, rho, first, area, light);
     light.report.iterations += before.iterations;
-    light.report.unscaled = before.unscaled;  // F was scaled to begin with
+    light.report.unscaled = before.unscaled;  // F has been scaled in the first solve
     F.gather(light.reflected, light.indirect);
     for (std::size_t i = 0; i < n; ++i) light.indirect[i] += correction[i];
     light.direct_share = c;
@@ -63,7 +63,7 @@ void relax_constant_elements(const MethodInput& input, const TransportOperator& 
     light.indirect.resize(rho.size());
     if (light.reflected.empty() || input.options.bounces > 0) light.reflected = first;
     if (input.options.bounces > 0) {
-        // So many terms of the series first + rho F first + ...
+        // Terms of the series first + rho F first + ..., one per bounce.
         for (int bounce = 1; bounce < input.options.bounces; ++bounce) {
             F.gather(light.reflected, light.indirect);
             for (std::size_t i = 0; i < rho.size(); ++i) light.reflected[i] = first[i] + rho[i] * light.indirect[i];

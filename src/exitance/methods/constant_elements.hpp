@@ -5,19 +5,19 @@
 
 namespace exitance {
 
-/// b = rho (E_dir + F b) on the constant elements of `light.numbering`, from `light.direct`, the mean direct light of
-/// each: all reflections, or as many as were asked for. Writes b to `light.reflected`, the light that arrives before
-/// the last reflection to `light.indirect`, the report, and what F takes. Starts from `light.reflected`, where that is
-/// there.
+/// Solves b = rho (E_dir + F b) on the constant elements of `light.numbering`, for all reflections or `options.bounces`
+/// of them. `light.direct` holds the mean direct light of each element, W/m^2. Starts from `light.reflected` unless
+/// that is empty. Writes b to `light.reflected`, the light that arrives before the last reflection to `light.indirect`,
+/// and the report and memory of F to `light`.
 ///
-/// Where `light.kept` is known, F is scaled to lose no light but what escapes (`ConservingTransport`).
+/// If `light.kept` is given, F is scaled so that it loses no light except what escapes (`ConservingTransport`).
 ///
-/// Where surfaces glow all over, the direct light that F finds by its own rays takes a share of the exact one's place
-/// (`light.direct_share`): then the noise of F meets only what varies of reflected and emitted light together.
+/// If surfaces emit all over the scene, direct light found by the rays of F replaces a share of the exact direct light
+/// (`light.direct_share`). The noise of F then affects only the variation of reflected plus emitted light.
 void relax_constant_elements(const MethodInput& input, const TransportOperator& F, GlobalLight& light);
 
-/// `GlobalLight::kept` by rows of rays. Those of a diffusing pane leave by both sides, where its own light leaves by
-/// one: they tell how much arrives only where all does.
+/// Returns `GlobalLight::kept` for rows of rays, or nothing if it cannot be determined: rays of a diffusing pane leave
+/// from both sides whereas its own light leaves from one, so they are meaningful only if all light arrives.
 std::vector<double> kept_light(const RayRows& rows, const Scene& scene);
 
 }  // namespace exitance

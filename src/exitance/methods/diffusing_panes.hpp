@@ -6,7 +6,8 @@
 
 namespace exitance {
 
-/// Does what is asked for take light to both sides of the scene's diffusing panes? A usage error names what does.
+/// Returns a usage error that names the offending option if the requested method cannot transport light to both sides
+/// of the scene's diffusing panes.
 Result<void> check_diffusing_panes(const Scene& scene, const SolveOptions& options);
 
 }  // namespace exitance

@@ -1,4 +1,4 @@
-// Surfaces that light passes diffusely.
+// Surfaces that transmit light diffusely.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,9 +11,9 @@
 namespace exitance {
 namespace {
 
-constexpr double rho = 0.3, tau = 0.4;  // of the pane
+constexpr double rho = 0.3, tau = 0.4;  // reflectance and transmittance of the pane
 
-/// Two rooms side by side, 2 x 1 x 1 m and 1 x 1 x 1 m, a pane between them; the walls of each have a material.
+/// Two adjoining rooms, 2 x 1 x 1 m and 1 x 1 x 1 m, with a pane between them. Each room has a material for its walls.
 struct TwoRooms {
     SceneDescription d;
 
@@ -59,7 +59,7 @@ Material pane(double exitance = 0, double through = tau / (rho + tau)) {
     return {"pane", Spectrum(rho + tau), Spectrum(exitance), {}, through};
 }
 
-/// Light in the first room and none in the second.
+/// A lamp in the first room, none in the second.
 Scene lit_and_dark() {
     TwoRooms rooms(wall(0.5, 0), wall(0.6, 0), pane(), pane());
     rooms.d.materials.push_back(wall(0, 10));
@@ -73,20 +73,20 @@ const std::vector<ProbePoint> places = {{{0.5, 0.5, 0}, {0, 0, 1}}, {{1, 0.3, 0.
 
 }  // namespace
 
-constexpr double first = 5, second = 3;  // radiosity of two even rooms
+constexpr double first = 5, second = 3;  // uniform radiosities of the two rooms
 
-/// All of the first room glows with B_1 and all of the second with B_2 where walls emit (1 - rho) B and the pane what
-/// is missing on either side: then the light of each room is even, whatever its shape.
-Scene two_even_rooms() {
+/// Both rooms have uniform radiosity, B_1 and B_2, whatever their shape: walls emit (1 - rho) B, and the pane emits the
+/// difference on either side.
+Scene two_uniform_rooms() {
     constexpr double white = 0.5;
     return TwoRooms(wall(white, (1 - white) * first), wall(white, (1 - white) * second),
                     pane(first - rho * first - tau * second), pane(second - rho * second - tau * first))
         .scene();
 }
 
-void expect_even(const SolveOptions& options, const std::string& name) {
+void expect_uniform(const SolveOptions& options, const std::string& name) {
     SCOPED_TRACE(name);
-    const Scene scene = two_even_rooms();
+    const Scene scene = two_uniform_rooms();
     EXPECT_TRUE(scene.has_diffusing_panes());
     const Solution solution = solved(scene, options);
     const RadiosityFunction light(solution);
@@ -99,8 +99,8 @@ void expect_even(const SolveOptions& options, const std::string& name) {
     EXPECT_LT(solution.statistics.energy.defect, 2e-3);
 }
 
-/// Methods and what else decides how light is carried, with the error that each is asked for.
-std::vector<std::pair<std::string, SolveOptions>> all_ways(double error) {
+/// All methods and options that affect transport, with a requested error.
+std::vector<std::pair<std::string, SolveOptions>> all_methods(double error) {
     std::vector<std::pair<std::string, SolveOptions>> out;
     const auto add = [&](const std::string& name, SolveOptions o) {
         o.error = error;
@@ -125,16 +125,16 @@ std::vector<std::pair<std::string, SolveOptions>> all_ways(double error) {
     return out;
 }
 
-TEST(DiffusingPanes, TwoEvenRoomsStayEven) {
-    for (const auto& [name, options] : all_ways(0.1)) expect_even(options, name);
+TEST(DiffusingPanes, TwoUniformRoomsStayUniform) {
+    for (const auto& [name, options] : all_methods(0.1)) expect_uniform(options, name);
 }
 
-TEST(DiffusingPanes, LightComesIntoADarkRoomAsByPaths) {
+TEST(DiffusingPanes, LightInADarkRoomAgreesWithPathTracing) {
     const Scene scene = lit_and_dark();
     Progress progress;
     const std::vector<ReferenceLight> exact = reference_light(scene, places, 1 << 14, 1, progress, StopRequest());
     for (std::size_t i = 0; i < places.size(); ++i) EXPECT_GT(exact[i].irradiance[0], 0.01) << i;
-    auto ways = all_ways(0.05);
+    auto ways = all_methods(0.05);
     ways.push_back({"auto", {.error = 0.02}});
     for (auto [name, options] : ways) {
         SCOPED_TRACE(name);
@@ -151,7 +151,7 @@ TEST(DiffusingPanes, LightComesIntoADarkRoomAsByPaths) {
     }
 }
 
-/// Cells are coarse where few: all but the pane's border within a tenth.
+/// Few cells are coarse: all points except those at the pane's border are accurate to a tenth.
 TEST(DiffusingPanes, GrowingCellsPassLight) {
     const Scene scene = lit_and_dark();
     Progress progress;
@@ -164,7 +164,7 @@ TEST(DiffusingPanes, GrowingCellsPassLight) {
             << i;
 }
 
-TEST(DiffusingPanes, DirectLightIsThatOfBothSides) {
+TEST(DiffusingPanes, DirectLightComesFromBothSides) {
     const Scene scene = lit_and_dark();
     const Stage stage(scene);
     DirectLight::Workspace workspace;
@@ -184,14 +184,14 @@ TEST(DiffusingPanes, DirectLightIsThatOfBothSides) {
     EXPECT_NEAR(stage.direct.irradiance(light, x, workspace)[0], behind, 1e-9);
 }
 
-TEST(DiffusingPanes, APaneThatPassesNothingIsAWall) {
+TEST(DiffusingPanes, AnOpaquePaneIsAWall) {
     const Scene scene = TwoRooms(wall(0.5, 1), wall(0.5, 0), pane(0, 0), pane(0, 0)).scene();
     EXPECT_FALSE(scene.has_diffusing_panes());
     const Solution solution = solved(scene, {.error = 0.05});
     EXPECT_EQ(RadiosityFunction(solution).at(places)[0].irradiance[0], 0);
 }
 
-TEST(DiffusingPanes, AFileMayGiveOneSide) {
+TEST(DiffusingPanes, AFileMayDefineOneSideOnly) {
     TwoRooms rooms(wall(0.5, 1), wall(0.5, 0), pane(), pane());
     const std::size_t faces = rooms.d.faces.size();
     rooms.d.faces.pop_back();
@@ -200,7 +200,7 @@ TEST(DiffusingPanes, AFileMayGiveOneSide) {
     EXPECT_TRUE(scene.has_diffusing_panes());
 }
 
-TEST(DiffusingPanes, WhatTakesLightToOneSideRefusesThem) {
+TEST(DiffusingPanes, OneSidedMethodsRejectThem) {
     const Scene scene = lit_and_dark();
     Progress progress;
     for (const SolveOptions& options :

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "exitance/methods/methods.hpp"
 
 namespace exitance {
@@ -23,7 +25,10 @@ Result<void> check_extensions(const SolveOptions& options) {
     if (options.method != Method::automatic && !find_method(options.method))
         return not_linked(fmt::format("method {}", name_in(method_names, options.method)), "--method");
     const bool has_other_pass = options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e;
-    if ((has_other_pass || options.task_engine) && extensions().solves.empty())
+    const auto& solves = extensions().solves;
+    const bool has_solve =
+        std::any_of(solves.begin(), solves.end(), [&](const WholeSolve& whole) { return whole.is_selected(options); });
+    if ((has_other_pass || options.task_engine) && !has_solve)
         return not_linked("this form of the method", has_other_pass ? "--local-pass" : "--task-engine");
     const DiscontinuityChoice& c = options.discontinuity;
     const bool needs_lab = c.layers == true ||

@@ -20,7 +20,7 @@ struct WholeSolve {
 /// Direct light as the sum of one mesh per source.
 struct LayeredLight {
     LightFormPointer form;
-    double error = 0;  ///< Of the sum, relative, like DiscontinuityReport::error.
+    double error = 0;  ///< Relative error of the sum, like DiscontinuityReport::error.
     bool interrupted = false;
     std::map<std::string, double> figures = {};  ///< Sizes, by the names of their JSON keys.
 };
@@ -34,7 +34,8 @@ struct DiscontinuityExtension {
     std::map<std::string, double> (*figures)(const SixNodeMesh& mesh);
 };
 
-/// What a program adds to the engine. The engine includes none of it; the program, which links both, fills it in.
+/// Methods and functions that a program adds to the engine. The engine includes none of them; the program, which links
+/// both, fills in this struct.
 struct Extensions {
     std::vector<MethodEntry> methods;
     std::vector<WholeSolve> solves;

@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// The region that a point lies on; none in free space.
+/// The region that a point is on; none in free space.
 RegionId region_of(const Scene& scene, const Locator& faces, const ImportantPoint& point) {
     const SurfaceId face = faces.find(point.at, point.normal);
     return face.is_none() ? RegionId() : scene.surfaces()[face].region;

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// Two closed rooms of 2 m x 2 m x 2 m side by side, each with a lamp and two boards in it.
+/// Two separate closed rooms of 2 m x 2 m x 2 m, each with a lamp and two boards.
 Scene two_rooms() {
     std::vector<test::Face> faces;
     for (double x : {0.0, 3.0}) {
@@ -45,7 +45,7 @@ std::size_t links_in_second_room(const Solution& solution) {
 
 }  // namespace
 
-TEST(Importance, IsWherePointsAreAndWhatThoseInFreeSpaceSee) {
+TEST(Importance, IsAtSurfacePointsAndAtRayHitsOfFreePoints) {
     const Scene scene = two_rooms();
     const Stage stage(scene);
     const ElementTree tree = stage.make_elements({0.5, 0});
@@ -68,7 +68,7 @@ TEST(Importance, IsWherePointsAreAndWhatThoseInFreeSpaceSee) {
     EXPECT_TRUE(places_of(stage, tree, {{{4, 1, 1.5}, {0, 0, -1}}}).empty());
 }
 
-TEST(Importance, TheOtherRoomGetsFewLinksAndThePointsTheSameLight) {
+TEST(Importance, TheOtherRoomGetsFewerLinksAtTheSameAccuracy) {
     const Scene scene = two_rooms();
     std::vector<ProbePoint> points;
     for (const auto& [at, normal] : on_the_first_floor) points.push_back({at, normal});
@@ -90,7 +90,7 @@ TEST(Importance, TheOtherRoomGetsFewLinksAndThePointsTheSameLight) {
         here.importance = on_the_first_floor;
         const Solution all = solved(scene, everywhere), some = solved(scene, here);
         EXPECT_LT(10 * links_in_second_room(some), links_in_second_room(all)) << name_in(method_names, method);
-        // What is left of either is the local pass's, of about 1%, and the reference's own 0.3%.
+        // The remaining error is that of the local pass, about 1%, and of the reference, 0.3%.
         EXPECT_LT(error(some), std::max(0.015, 1.3 * error(all))) << name_in(method_names, method);
     }
 }

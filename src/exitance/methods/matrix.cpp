@@ -15,7 +15,8 @@ namespace {
 
 constexpr unsigned default_visibility_samples = 16;
 
-/// Linear elements: collocation at the nodes of every leaf, E = first + H rho E, unknowns E_ind.
+/// Solves on linear elements: collocation at the nodes of every leaf, E = first + H rho E, for the indirect irradiance
+/// E.
 void solve_linear(const MethodInput& input, GlobalLight& light) {
     const ElementLocator locator(light.tree, input.stage.scene.regions().size());
     const LinearRows H(input.stage, input.direct, light.numbering, locator, input.knobs.solve_rays, input.options.seed);
@@ -24,7 +25,7 @@ void solve_linear(const MethodInput& input, GlobalLight& light) {
     const std::vector<double> area = H.node_areas();
     std::vector<Spectrum> E = first;
     const Relaxation asked = input.options.relaxation.value_or(Relaxation::gmres);
-    // Collocation is not symmetric: conjugate gradients do not apply to it.
+    // The collocation matrix is not symmetric, so conjugate gradients do not apply.
     const Relaxation method = asked == Relaxation::cg ? Relaxation::gmres : asked;
     light.report = solve_radiosity(
         {H, ones, first, area}, method, E,
@@ -39,11 +40,11 @@ void solve_linear(const MethodInput& input, GlobalLight& light) {
     light.link_memory_bytes = H.memory_bytes();
 }
 
-/// So fine that a hemicube's rays are some 200 times as many as those of a row that is cast at random places.
+/// Default resolution of a hemicube: about 200 times as many rays as a row has with random directions.
 unsigned hemicube_cells(const MethodInput& input) {
     const double asked = input.options.hemicube_cells ? static_cast<double>(*input.options.hemicube_cells)
                                                       : 8 * std::sqrt(input.knobs.solve_rays.average);
-    return 2 * static_cast<unsigned>(std::clamp(std::ceil(asked / 2), 1.0, 512.0));  // given by memory
+    return 2 * static_cast<unsigned>(std::clamp(std::ceil(asked / 2), 1.0, 512.0));  // limited by memory
 }
 
 HierarchyBasis galerkin_basis(BasisKind basis) {
@@ -55,11 +56,14 @@ HierarchyBasis galerkin_basis(BasisKind basis) {
 }  // namespace
 
 /// Matrix radiosity [Goral84]: b = rho (E_dir + F b) on constant elements, solved by relaxation. The direct light of
-/// emitters is exact and stands apart, so that b is reflected light alone. Rows of F are cast by rays (entries are
-/// noisy, what they gather is not: O(n) rays), or computed, from elements to patches one level above them [Cohen86]
-/// (`--form-factors analytic`: O(n^2 / 4) entries of 16 rays each), or seen by hemicubes [Cohen85]. With `--basis
-/// linear` rows are cast from nodes, and what a ray reads is the polynomial of the element that it hits [Atkinson00].
-/// With `--basis galerkin1` to `3` blocks of Galerkin's matrix are integrated pair by pair [Zatz93].
+/// emitters is exact and separate, so that b is reflected light only. Rows of F are found in one of these ways:
+/// - cast by rays (single entries are noisy, gathered light is not; O(n) rays),
+/// - computed, from elements to patches one level above them [Cohen86] (`--form-factors analytic`: O(n^2 / 4) entries
+///   of 16 rays each),
+/// - rendered by hemicubes [Cohen85].
+///
+/// With `--basis linear`, rows are cast from nodes and a ray evaluates the polynomial of the element that it hits
+/// [Atkinson00]. With `--basis galerkin1` to `3`, blocks of the Galerkin matrix are integrated pair by pair [Zatz93].
 GlobalLight solve_matrix(const MethodInput& input) {
     const auto& [stage, options, knobs, direct, progress, stop, safe_points, may_give_up] = input;
     if (options.bounces < 0 && options.basis && is_galerkin(*options.basis))

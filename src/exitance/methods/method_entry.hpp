@@ -8,22 +8,23 @@
 
 namespace exitance {
 
-/// What every method is given.
+/// Input of every method.
 struct MethodInput {
     const Stage& stage;
     const SolveOptions& options;
     const Knobs& knobs;
-    /// Direct light on elements that follow its shadows: the mesh that methods solve on, unless they make their own.
+    /// Direct light on elements that follow its shadows. Methods solve on this mesh unless they make their own.
     const DirectProjection& direct;
     Progress& progress;
     const StopRequest& stop;
-    /// Where a method of several rounds may keep its state between them.
+    /// Checkpoints at which a method of several rounds may save its state.
     SafePoints safe_points = {};
-    /// Is there light of another attempt? Then a stop may leave this one unfinished: nothing of it is read.
+    /// True if an earlier attempt has a result: after a stop, this one may return unfinished, since its result is not
+    /// used.
     bool may_give_up = false;
 };
 
-/// Finds the reflected light of every element of a mesh that it makes. One file a method.
+/// Finds the reflected light of every element of a mesh. Each method is in a file of its own.
 using SolveMethod = GlobalLight (*)(const MethodInput&);
 
 /// Expected cost of a method.
@@ -31,11 +32,11 @@ struct MethodForecast {
     double rays = 0, bytes = 0;
 };
 
-/// A row of the table of methods.
+/// Row of the table of methods.
 struct MethodEntry {
     Method id;
     SolveMethod solve;
-    const char* basis;  ///< What its elements hold, when nothing else is asked for.
+    const char* basis;  ///< Default basis of its elements.
     /// Cost by a formula of the method's own; null: the engine's, by elements and links. `facing`: share of the pairs
     /// of points that face each other; `blocked`: true if anything lies between any of them.
     MethodForecast (*forecast)(const Stage& stage, const SolveOptions& options, const Knobs& knobs, double facing,

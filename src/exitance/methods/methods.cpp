@@ -14,8 +14,8 @@ std::vector<Spectrum> leaf_means(const DirectProjection& direct, const LeafNumbe
 
 namespace {
 
-/// What discontinuity meshing reads of reflected light, which is smooth: direct light is projected on a hierarchy, and
-/// links carry it. Reflections are counted by `matrix` alone.
+/// Finds the reflected light for discontinuity meshing. Since reflected light is smooth, direct light is projected on a
+/// hierarchy and transported by links. Only `matrix` supports a limited number of bounces.
 GlobalLight solve_beside_discontinuities(const MethodInput& input) {
     return input.options.bounces > 0 ? solve_matrix(input) : solve_hierarchical(input);
 }

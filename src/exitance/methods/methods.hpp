@@ -9,7 +9,7 @@ std::vector<Spectrum> leaf_means(const DirectProjection& direct, const LeafNumbe
 
 /// The row of a method in the table: one of the engine's, or one that `Extensions` adds; null where neither has it.
 const MethodEntry* find_method(Method id);
-/// The same for a method that is there.
+/// Like `find_method`, for a method that is known to exist.
 const MethodEntry& entry_of(Method id);
 
 GlobalLight solve_matrix(const MethodInput& input);

@@ -7,8 +7,8 @@
 namespace exitance {
 namespace {
 
-/// One step of stochastic Jacobi: shoots `power` (flux that each element still has to send, W, all bands) with about
-/// `rays` rays, as many from an element as its share of the whole, and returns the flux that arrives at each element.
+/// One step of stochastic Jacobi iteration. Shoots `power` (flux that each element still has to send, W, all bands)
+/// with about `rays` rays, distributed in proportion to power, and returns the flux that arrives at each element.
 class Shooter {
   public:
     Shooter(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering, std::uint64_t seed)
@@ -21,7 +21,7 @@ class Shooter {
 
     std::vector<Spectrum> shoot(std::span<const Spectrum> power, double rays) {
         const std::size_t n = power.size();
-        // Systematic sampling: ray k starts where the running sum of powers passes (k + offset) / rays of the whole.
+        // Systematic sampling: ray k starts where the running sum of powers exceeds (k + offset) / rays of the total.
         double total = 0;
         for (const Spectrum& p : power) total += mean(p);
         RandomStream random(seed_, Stream::shooting, ++step_);
@@ -37,7 +37,7 @@ class Shooter {
         parallel_ranges(n, 16, [&](std::size_t begin, std::size_t end) { trace(first, begin, end, target); });
         rays_shot += first[n];
 
-        // In the order of the rays, so that the sums have the same bits on any number of threads.
+        // Sum in the order of the rays, so that results are bitwise equal for any number of threads.
         std::vector<Spectrum> arrived(n);
         for (std::size_t i = 0; i < n; ++i) {
             if (first[i] == first[i + 1]) continue;
@@ -54,7 +54,7 @@ class Shooter {
   private:
     static constexpr std::uint32_t missed = ElementRays::missed;
 
-    /// Of panes, as flux that is met.
+    /// Adds the light that diffusing panes transmit, as flux.
     void pass(std::vector<Spectrum>& arrived) const {
         const auto area = [&](std::size_t i) { return tree_.area(numbering_.leaves[i]); };
         for (std::size_t i = 0; i < arrived.size(); ++i) arrived[i] = arrived[i] / area(i);
@@ -83,9 +83,9 @@ class Shooter {
 
 }  // namespace
 
-/// Stochastic Jacobi radiosity [Bekaert99], after [Neumann95]: every sweep shoots the light that the last one brought,
-/// with rays in proportion to the power that is left, and what arrives is the unbiased image of it. Independent runs
-/// are averaged; their spread is the standard error. O(rays), no form factors, memory of the elements alone.
+/// Stochastic Jacobi radiosity [Bekaert99], after [Neumann95]. Every sweep shoots the light that arrived in the last
+/// one. The number of rays is proportional to the power left; the arriving light is an unbiased estimate. Independent
+/// runs are averaged; their spread yields the standard error. O(rays), no form factors, memory of the elements only.
 GlobalLight solve_monte_carlo(const MethodInput& input) {
     const auto& [stage, options, knobs, direct_light, progress, stop, safe_points, may_give_up] = input;
     ElementTree tree = direct_light.tree;
@@ -107,7 +107,7 @@ GlobalLight solve_monte_carlo(const MethodInput& input) {
         for (const Spectrum& p : power) first_power += mean(p);
         for (left = first_power; left > knobs.residual * first_power && sweeps < runs * knobs.max_iterations;
              ++sweeps) {
-            // Given by the generator: a block of its points at least.
+            // At least one block of points of the generator.
             const double rays = std::max(64.0, knobs.solve_rays.average * static_cast<double>(n) * left / first_power);
             const std::vector<Spectrum> arrived = shooter.shoot(power, rays);
             left = 0;

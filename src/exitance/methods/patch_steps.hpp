@@ -8,14 +8,16 @@
 
 namespace exitance {
 
-constexpr int patch_sweeps = 3;  ///< Of cuts of substructuring's patches.
+constexpr int patch_sweeps = 3;  ///< Maximum number of refinement sweeps of substructuring.
 
-/// Steps of reflected light from an element to those beside it above which substructuring cuts it, W/m^2.
+/// Threshold of refinement: substructuring splits an element if its reflected light differs from that of a neighbour by
+/// more than this, W/m^2.
 constexpr double steep_step(double error, double mean_light) {
     return 8 * error * mean_light;
 }
 
-/// Largest difference of light between a leaf and its neighbours in the same region. light(e) of a leaf, W/m^2.
+/// Largest difference of light between a leaf and its neighbours in the same region, W/m^2. `light(e)`: light of a
+/// leaf, W/m^2.
 template <class Light>
 double steepest_step(const ElementTree& tree, const ElementLocator& locator, ElementId leaf, const Light& light) {
     const Patch& patch = tree.patch(leaf);
@@ -24,7 +26,7 @@ double steepest_step(const ElementTree& tree, const ElementLocator& locator, Ele
     const Point centre = patch.centre();
     for (int i = 0; i < patch.corner_count(); ++i) {
         const Point middle = 0.5 * (patch.corner(i) + patch.corner((i + 1) % patch.corner_count()));
-        const Point across = centre + 1.25 * (middle - centre);  // given by geometry: within any neighbour
+        const Point across = centre + 1.25 * (middle - centre);  // a point inside any neighbour
         steepest = std::max(steepest, std::abs(own - light(locator.find(tree.region(leaf), across).element)));
     }
     return steepest;

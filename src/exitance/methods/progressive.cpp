@@ -3,8 +3,8 @@
 namespace exitance {
 
 /// Progressive radiosity [Cohen88]: the element with the most unshot power shoots it to all others, until little is
-/// left. Form factors are taken at the receivers' points [Wallace89], so that none is larger than it can be. A column
-/// of n form factors a shot, computed when it is first wanted.
+/// left. Form factors are evaluated at the receivers' points [Wallace89], so that none exceeds its true maximum. A shot
+/// needs a column of n form factors, computed on first use.
 GlobalLight solve_progressive(const MethodInput& input) {
     ShootingSetup setup(input, input.direct);
     input.progress.phase("shoot");

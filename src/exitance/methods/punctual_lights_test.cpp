@@ -1,4 +1,4 @@
-// Lights without extent through every method: against paths, and against themselves.
+// Point and parallel lights with every method, compared with path tracing and with other methods.
 #include <gtest/gtest.h>
 
 #include "exitance/evaluate/radiosity_function.hpp"
@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// A closed room of 3 x 2 x 2 m with a board in it, lit by a bulb and a spot, and by sunlight through nothing.
+/// A closed room of 3 x 2 x 2 m with a board, lit by a bulb and a spot light.
 Scene room_with_bulb() {
     SceneDescription d;
     d.file = "bulb.glb";
@@ -57,12 +57,12 @@ TEST(PunctualLights, AgreeWithPathsInAClosedRoom) {
         mean_light += paths[i].irradiance[0];
     }
     const double n = static_cast<double>(points.size());
-    // The error asked for, and three times the noise of the mean square of the paths.
+    // The requested error, and three times the noise of the paths' mean square.
     EXPECT_LT(std::sqrt(std::max(0.0, square - noise) / n),
               (0.03 + 3 * std::sqrt(noise / n) / (mean_light / n)) * mean_light / n);
 }
 
-TEST(PunctualLights, TheirPowerIsWhatSurfacesAbsorb) {
+TEST(PunctualLights, TheirPowerIsAbsorbedBySurfaces) {
     const Scene scene = room_with_bulb();
     const Solution solution = solved(scene, {.error = 0.05});
     Spectrum power;

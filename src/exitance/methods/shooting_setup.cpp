@@ -13,8 +13,8 @@ constexpr unsigned default_visibility_samples = 16;
 }  // namespace
 
 std::size_t column_memory_bytes(const SolveOptions& options) {
-    constexpr std::size_t most = std::size_t{1} << 30;
-    return options.memory_limit_bytes ? std::min(most, *options.memory_limit_bytes / 4) : most;
+    constexpr std::size_t max_bytes = std::size_t{1} << 30;
+    return options.memory_limit_bytes ? std::min(max_bytes, *options.memory_limit_bytes / 4) : max_bytes;
 }
 
 ShootingSetup::ShootingSetup(const MethodInput& input, const DirectProjection& first)
@@ -72,7 +72,7 @@ SolveReport ShootingSetup::run() {
                                   .progress = &input_.progress,
                                   .shot = shot};
     const SolveReport report = shoot(problem, options, unshot, irradiance);
-    // What a patch has sent is all that it has: its reflected (and emitted) light, less what it has yet to send.
+    // A patch has sent its reflected (and emitted) light minus its unshot light.
     for (std::size_t p = 0; p < patches.size(); ++p) sent[p] = Spectrum();
     for (std::size_t i = 0; i < irradiance.size(); ++i)
         sent[patch_of[i]] += (area[i] / patch_area[patch_of[i]]) * (reflectance[i] * (direct[i] + irradiance[i]));
@@ -115,7 +115,7 @@ void ShootingSetup::split(const std::vector<ElementId>& leaves) {
             }
             const ElementId parent = tree.parent(e);
             patch_of[i] = patch_by_element[parent];
-            if (input_.stop.requested()) {  // half a sweep: the rest keeps what its elements had
+            if (input_.stop.requested()) {  // stopped within a sweep: the other leaves keep their parents' light
                 irradiance[i] = old_irradiance[parent], direct[i] = old_direct[parent];
                 continue;
             }
@@ -128,7 +128,7 @@ void ShootingSetup::split(const std::vector<ElementId>& leaves) {
     kept_bytes_ = 0;
 }
 
-/// What a leaf meets of all that patches have sent.
+/// Irradiance of a leaf by the light that all patches have sent.
 Spectrum ShootingSetup::light_of_patches(std::size_t leaf, PatchTransfer::Workspace& workspace) const {
     return passed_.met_at(leaf, [&](std::size_t i) {
         Spectrum sum;

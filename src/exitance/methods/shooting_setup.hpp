@@ -7,43 +7,44 @@
 
 namespace exitance {
 
-/// Bytes of columns that shooting keeps for later shots: a quarter of the memory limit, at most 1 GiB.
+/// Memory for columns that shooting keeps for later shots, bytes: a quarter of the memory limit, at most 1 GiB.
 std::size_t column_memory_bytes(const SolveOptions& options);
 
-/// What the shooting methods share: elements in patches, columns of form factors that are kept while they fit, and the
-/// light that is there before the first shot.
+/// Common parts of the shooting methods: elements grouped into patches, cached columns of form factors, and the light
+/// before the first shot.
 class ShootingSetup {
   public:
-    /// The mesh of `first` is taken over; each of its leaves is a patch.
+    /// Copies the mesh of `first`; each of its leaves is a patch.
     ShootingSetup(const MethodInput& input, const DirectProjection& first);
 
-    /// Shoots until little is left; adds what arrives to the irradiance of the leaves.
+    /// Shoots until the unshot power is below the requested residual. Adds the arriving light to the irradiance of the
+    /// leaves.
     SolveReport run();
-    /// Hands over what was found. The setup is empty afterwards.
+    /// Moves the results out. The setup must not be used afterwards.
     GlobalLight finish(const SolveReport& report);
 
-    /// Is the emitters' own light shot too (`--visibility fractional`), or exact and apart? Lights without extent and
-    /// skies have no patch to shoot from, and patches shoot diffusely: with any of them, or of directed emitters, it is
-    /// apart.
+    /// True if the emitters' own light is shot as well (`--visibility fractional`), false if direct light is exact and
+    /// separate. Point lights and skies have no patch to shoot from, and patches shoot diffusely: direct light is
+    /// separate if there are any, or if an emitter is directed.
     bool shoots_direct_light() const {
         return input_.options.visibility == VisibilityKind::fractional && !input_.stage.scene.has_light_apart() &&
                !input_.stage.scene.has_directed_emission();
     }
 
     ElementTree tree;
-    std::vector<ElementId> patches;      ///< Leaves of the tree as it was given.
+    std::vector<ElementId> patches;      ///< The leaves of the tree as given.
     std::vector<double> patch_area;      ///< m^2
-    std::vector<Spectrum> unshot, sent;  ///< By patch, W/m^2: yet to be sent, and sent so far.
+    std::vector<Spectrum> unshot, sent;  ///< Per patch, W/m^2: still to be shot, and shot so far.
 
-    /// Of the present leaves:
+    /// Per present leaf:
     LeafNumbering numbering;
     std::vector<std::uint32_t> patch_of;
     std::vector<Spectrum> reflectance, direct, irradiance;
     std::vector<double> area;
 
-    /// Cuts leaves; every new one gathers what all patches have sent, and its own direct light.
+    /// Splits leaves. Every new leaf gathers the light that all patches have sent, and its own direct light.
     void split(const std::vector<ElementId>& leaves);
-    /// Takes the patches' mean reflected light from their leaves anew; the change is to be shot.
+    /// Recomputes the patches' mean reflected light from their leaves; the difference becomes unshot light.
     void update_patches();
 
   private:
@@ -53,7 +54,7 @@ class ShootingSetup {
 
     const MethodInput& input_;
     PatchTransfer transfer_;
-    PassedLight passed_;  ///< Between the present leaves.
+    PassedLight passed_;  ///< Light transmitted by diffusing panes, between the present leaves.
     std::vector<std::vector<float>> columns_;
     std::vector<float> fresh_;
     std::size_t kept_bytes_ = 0;

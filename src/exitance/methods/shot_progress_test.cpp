@@ -21,7 +21,7 @@ class KeepsShots final : public ShotProgress {
     bool inside = true;
 };
 
-TEST(ShotProgress, SeesEveryPatchThatShoots) {
+TEST(ShotProgress, ReceivesEveryPatchThatShoots) {
     SolveOptions options;
     options.method = Method::progressive;
     options.error = 0.2;

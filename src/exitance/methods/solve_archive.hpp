@@ -9,8 +9,8 @@
 
 namespace exitance {
 
-// What a solve holds between its phases, for checkpoints. Bindings name every member, so that a new one is not
-// forgotten.
+// Serialization of a solve's state between its phases, for checkpoints. Structured bindings name every member, so that
+// a new member causes a compile error until it is added here.
 
 template <class Archive>
 void archive(Archive& a, LeafNumbering& numbering) {

@@ -20,7 +20,7 @@ void record_method(const Stage& stage, const GlobalLight& light, bool has_links,
     statistics.link_memory_bytes = light.link_memory_bytes;
     statistics.element_memory_bytes = light.element_memory_bytes;
     statistics.elements_by_level = light.elements_by_level;
-    // Links that rays have found lead between constants, whatever basis the method has else.
+    // Links found by rays connect constant elements, whatever basis the method has otherwise.
     const bool sharp = statistics.method == name_in(method_names, Method::discontinuity);
     if (has_links && !sharp && light.indirect_corners.empty()) statistics.basis = name_in(basis_names, BasisKind::haar);
     const double scale = light.mean_reflected(stage.area);
@@ -32,7 +32,7 @@ void record_certificate(const Certificate& certificate, const GlobalLight& light
     statistics.rays += certificate.rays;
     statistics.elements = light.tree.size() + delivered.tree.size();
     statistics.leaf_elements = light.numbering.leaves.size() + delivered.tree.leaves().size();
-    if (certificate.points == 0) return;  // nothing reflects, or so little was found that nothing can be told
+    if (certificate.points == 0) return;  // nothing reflects, or too little light was found for an estimate
     statistics.relative_error_estimate = certificate.estimate;
     statistics.relative_error_bound = certificate.bound;
     statistics.relative_error_estimate_worst_room = certificate.worst_room;

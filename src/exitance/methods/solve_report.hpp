@@ -9,24 +9,25 @@
 
 namespace exitance {
 
-// What a solve says of itself, in its statistics and as text.
+// Statistics of a solve, and their description as text.
 
-/// What a method did, added to what is counted already.
+/// Adds a method's work (iterations, rays, form factors) to the counts.
 void record_work(const GlobalLight& light, SolveStatistics& statistics);
 
-/// What the light that is delivered was found by. `has_links`: is it of one of the methods with a hierarchy?
+/// Records how the delivered light was found. `has_links`: true for hierarchical methods.
 void record_method(const Stage& stage, const GlobalLight& light, bool has_links, SolveStatistics& statistics);
 
-/// How right the delivered light is, and how many elements it is held by.
+/// Records the errors of the delivered light and the number of its elements.
 void record_certificate(const Certificate& certificate, const GlobalLight& light, const ElementFunction& delivered,
                         SolveStatistics& statistics);
 
-/// Measures the light that panes mirror and that the solve leaves out (`mirrored_share`), as the figure
-/// `mirrored_light_share`. If it certainly exceeds the error requested, the solution gets a warning, which is shown,
-/// too, and is not converged. Nothing is recorded for scenes without mirroring panes or light.
+/// Measures light that is reflected specularly by panes, which the solve omits (`mirrored_share`), and records it as
+/// the figure `mirrored_light_share`. If it certainly exceeds the requested error, adds a warning to the solution,
+/// reports it, and marks the solution as not converged. Records nothing for scenes without mirroring panes or without
+/// light.
 void record_mirrored_light(Solution& solution, const Stage& stage, const SolveOptions& options, Progress& progress);
 
-/// The parts of a certificate's error in one line, in per cent of the mean reflected light.
+/// Describes the parts of a certificate's error in one line, in per cent of the mean reflected light.
 std::string describe(const Certificate& certificate, const GlobalLight& light, const ElementFunction& delivered,
                      const LocalPassReport& gathered);
 

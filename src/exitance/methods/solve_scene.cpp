@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// Direct light, links and gather apart from the mesh, the solve and the reconstruction that they are parts of.
+/// Separates the times of direct light, links and gathering from those of the mesh, the solve and the reconstruction.
 void part_times(const PhaseTimes& phases, std::map<std::string, double>& seconds) {
     const auto move = [&](double part, const char* from, const char* to) {
         const double moved = std::min(part, seconds[from]);

@@ -11,21 +11,19 @@ namespace exitance {
 /// Receives the light that a solve has found so far, with its estimate; it is not converged.
 using ShowLight = std::function<void(Solution)>;
 
-/// The whole job: scene to solution, which takes the scene with it.
+/// Solves a scene and returns the solution, which takes over the scene.
 ///
-/// A method finds the light that each element reflects; the local pass gathers it into a function; the certificate says
-/// how far that function is from the truth. While it is farther than the error asked for, the knobs are tightened and
-/// the three run again. Direct light stands apart and is exact.
-/// Missing the error asked for is a finding in the statistics (`converged`, `stopped_by`), not an error; an Error means
-/// that there is no result at all.
+/// A method finds the light that each element reflects; the local pass gathers it into a function; the certificate
+/// estimates the error of that function. While the error is above the requested one, the internal parameters are
+/// tightened and the three steps are repeated. Direct light is separate and exact. A missed error is reported in the
+/// statistics (`converged`, `stopped_by`). An Error is returned only if there is no result at all.
 ///
-/// With a store for checkpoints, the state is kept from time to time: between the steps of an attempt and between
-/// slices of the local pass. A solve that goes on from there gives the same bits, statistics aside, as one that never
-/// stopped.
+/// If `checkpoints` is given, the state is saved from time to time: between the steps of an attempt and between slices
+/// of the local pass. A resumed solve yields the same bits as an uninterrupted one, except for the statistics.
 ///
-/// `show` is called after every attempt but the last, which is returned. The first attempt then aims at a relative
-/// error of 0.32, and each further one, which goes on from what there is, at 0.4 times what was reached, or
-/// at the error requested where that is near. Not with checkpoints.
+/// `show` is called after every attempt except the last, which is returned. The first attempt then aims at a relative
+/// error of 0.32. Each further attempt continues from the last one and aims at 0.4 times its error, or at the requested
+/// error if that is near. Not with checkpoints.
 Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress& progress, const StopRequest& stop,
                              CheckpointStore* checkpoints = nullptr, const ShowLight& show = {});
 

@@ -27,40 +27,40 @@ INSTANTIATE_TEST_SUITE_P(Methods, EveryMethod,
                          testing::Values(Method::matrix, Method::progressive, Method::substructuring,
                                          Method::monte_carlo, Method::hierarchical, Method::wavelet));
 
-TEST_P(EveryMethod, AFurnaceGlowsEverywhereAlike) {
+TEST_P(EveryMethod, AFurnaceIsUniform) {
     const double rho = 0.6;
     const Scene scene = box_scene(3, 2, 1.5, rho, 1, 1);
     const Solution solution = solved(scene, {.method = GetParam(), .error = 0.05});
     const RadiosityFunction light(solution);
     const std::vector<ProbePoint> points = {
         {{0.4, 0.3, 0}, {0, 0, 1}}, {{0.001, 0.9, 0}, {0, 0, 1}}, {{3, 1, 1.2}, {-1, 0, 0}}};
-    // E = M / (1 - rho), whatever the place; a random method may miss it by the error asked for, others by what the
-    // iteration leaves and, where visibility is sampled, nothing.
+    // E = M / (1 - rho) everywhere. A random method may be off by the requested error, others by the remaining residual
+    // and by sampled visibility.
     const double tolerance = GetParam() == Method::monte_carlo ? 0.05 : GetParam() == Method::matrix ? 3e-3 : 0.02;
     for (const Light& l : light.at(points)) EXPECT_NEAR(l.irradiance[0], 1 / (1 - rho), tolerance / (1 - rho));
 }
 
 TEST(SolveScene, LosesNoLightInClosedScenes) {
-    // The legs of the chairs are open at their ends, and dark inside; light in the tube is reflected again and again.
-    // Rays alone would leave up to 6e-3.
+    // The legs of the chairs are open at their ends and dark inside; light in the tube is reflected many times. Rays
+    // without conservation would lose up to 6e-3.
     for (const char* name : {"tube", "complex"})
         for (std::uint64_t seed : {1, 2, 3})
             EXPECT_LT(solved(built_scene(name), {.method = Method::matrix, .seed = seed}).statistics.energy.defect,
                       1e-3)
                 << name << " " << seed;
-    // Coarse means of direct light would leave up to 3e-3 more of what the lamps of an office give.
+    // Coarse means of direct light would lose up to 3e-3 more of the light of an office's lamps.
     for (std::uint64_t seed : {1, 2})
         EXPECT_LT(solved(built_scene("office"), {.method = Method::matrix, .error = 0.05, .seed = seed})
                       .statistics.energy.defect,
                   1e-3);
     for (const Method method : {Method::hierarchical, Method::progressive, Method::monte_carlo})
         EXPECT_LT(solved(built_scene("complex"), {.method = method}).statistics.energy.defect, 1e-4);
-    // Nothing hides the light in a tube, so its direct projection is off by rounding; all else is kept.
+    // Nothing blocks light in a tube, so its direct projection is exact to rounding; the rest is conserved.
     for (Method method : {Method::matrix, Method::hierarchical})
         EXPECT_LT(solved(built_scene("tube", {{"rho", "0.9"}}), {.method = method}).statistics.energy.defect, 1e-6);
 }
 
-TEST_P(EveryMethod, HasTheSameBitsOnAnyNumberOfThreads) {
+TEST_P(EveryMethod, IsBitwiseIndependentOfThreads) {
     const Scene scene = built_scene("gcr2");
     const SolveOptions one{.method = GetParam(), .error = 0.05, .threads = 1};
     const SolveOptions two{.method = GetParam(), .error = 0.05, .threads = 2};
@@ -68,13 +68,14 @@ TEST_P(EveryMethod, HasTheSameBitsOnAnyNumberOfThreads) {
     set_threads(0);
 }
 
-TEST_P(EveryMethod, ReachesTheErrorItWasAskedFor) {
+TEST_P(EveryMethod, ReachesTheRequestedError) {
     const Scene scene = built_scene("boxes");
     const Solution solution = solved(scene, {.method = GetParam(), .error = 0.05});
     EXPECT_TRUE(solution.statistics.converged);
     EXPECT_LE(solution.statistics.relative_error_estimate, 0.05);
     EXPECT_GE(solution.statistics.relative_error_bound, solution.statistics.relative_error_estimate);
-    // The noise of a random method is told, and smoothed by the gather: it may be more than what is delivered errs.
+    // The standard error of a random method is reported before the gather smooths it; it may exceed the delivered
+    // error.
     const double noise = solution.statistics.standard_error;
     if (GetParam() == Method::monte_carlo)
         EXPECT_TRUE(noise > 1e-4 && noise < 0.2) << noise;
@@ -82,7 +83,7 @@ TEST_P(EveryMethod, ReachesTheErrorItWasAskedFor) {
         EXPECT_EQ(noise, 0);
 }
 
-/// Relative RMS error against values at points, over the mean of those values; one reflectance everywhere.
+/// Relative RMS error against reference values at points, relative to their mean; all reflectances are equal.
 double error_at(const RadiosityFunction& light, const std::vector<ProbePoint>& points, const std::vector<double>& E) {
     double square = 0, mean = 0;
     const std::vector<Light> found = light.at(points);
@@ -94,8 +95,8 @@ double error_at(const RadiosityFunction& light, const std::vector<ProbePoint>& p
 }
 
 TEST(SolveScene, AgreesWithTheContinuousSolutionOfACube) {
-    // Unit cube, ceiling M = 1, all faces rho = 0.8: published values of the continuous solution, at the floor's centre
-    // and 0.001 from edges, where the light falls steeply.
+    // Unit cube, ceiling M = 1, all faces rho = 0.8. Published values of the continuous solution, at the floor's centre
+    // and 0.001 from edges, where light falls off steeply.
     const Scene scene = box_scene(1, 1, 1, 0.8, 1);
     const Solution solution = solved(scene, {.error = 0.01});
     const RadiosityFunction light(solution);
@@ -106,7 +107,7 @@ TEST(SolveScene, AgreesWithTheContinuousSolutionOfACube) {
     for (std::size_t i = 0; i < points.size(); ++i) EXPECT_NEAR(found[i].irradiance[0], E[i], 0.02 * E[i]);
 }
 
-/// A furnace of faces that reflect differently and emit what makes up for it: E = 1 on all of them.
+/// A furnace whose faces have different reflectances and emit what they do not reflect: E = 1 everywhere.
 Scene uneven_furnace() {
     SceneDescription d;
     d.groups = {"all"};
@@ -128,14 +129,14 @@ Scene uneven_furnace() {
     return std::move(*checked.scene);
 }
 
-TEST(SolveScene, AnUnevenFurnaceGlowsEverywhereAlike) {
+TEST(SolveScene, AFurnaceOfDifferentReflectancesIsUniform) {
     const Solution solution = solved(uneven_furnace(), {.error = 0.02});
     EXPECT_NEAR(solution.direct_share[0], 1, 1e-3);
     const RadiosityFunction light(solution);
     const std::vector<ProbePoint> points = {
         {{0.4, 0.3, 0}, {0, 0, 1}}, {{0.001, 0.9, 0}, {0, 0, 1}}, {{4, 1, 1.2}, {-1, 0, 0}}};
-    // What is gathered is alike everywhere, so neither rays nor elements leave an error: a hundredth of what was asked
-    // for is left by the iteration and by 1 - c.
+    // The gathered light is uniform, so neither rays nor elements cause an error. The iteration and 1 - c leave a
+    // hundredth of the requested error.
     const std::vector<Light> total = light.at(points), direct = light.at(points, Component::direct),
                              indirect = light.at(points, Component::indirect),
                              interpolant = light.interpolant_at(points);
@@ -148,7 +149,7 @@ TEST(SolveScene, AnUnevenFurnaceGlowsEverywhereAlike) {
     EXPECT_LT(solution.statistics.energy.defect, 1e-3);
 }
 
-/// E at points, by paths: known to about half a per cent.
+/// E at points, by path tracing, accurate to about half a per cent.
 std::vector<double> paths_at(const Scene& scene, const std::vector<ProbePoint>& points) {
     Progress progress;
     const StopRequest stop;
@@ -158,19 +159,19 @@ std::vector<double> paths_at(const Scene& scene, const std::vector<ProbePoint>& 
     return E;
 }
 
-TEST(SolveScene, ErrorIsAtMostWhatWasAskedFor) {
+TEST(SolveScene, ErrorIsAtMostTheRequestedOne) {
     const Scene scene = box_scene(4, 3, 2.5, 0.6, 1);
     std::vector<ProbePoint> points;
     for (int i = 0; i < 40; ++i) points.push_back({{0.1 * (i + 0.5), 0.07 * (i + 0.5), 0}, {0, 0, 1}});
     const std::vector<double> E = paths_at(scene, points);
     for (const double asked : {0.08, 0.01}) {
         const Solution solution = solved(scene, {.error = asked});
-        EXPECT_LT(error_at(RadiosityFunction(solution), points, E), asked + 0.004);  // the reference's own noise
+        EXPECT_LT(error_at(RadiosityFunction(solution), points, E), asked + 0.004);  // the noise of the reference
     }
 }
 
-TEST(SolveScene, ErrorFallsWithTheErrorAskedFor) {
-    // Under a chair and beside it, where errors are several times what they are on average.
+TEST(SolveScene, ErrorFallsWithTheRequestedOne) {
+    // Points under and next to a chair, where errors are several times the average.
     const Scene scene = built_scene("complex", {{"m", "1"}});
     std::vector<ProbePoint> points;
     for (int i = -20; i < 20; ++i) points.push_back({{0.02 * i, 0.05 * i, 0}, {0, 0, 1}});
@@ -190,11 +191,11 @@ TEST(SolveScene, ZeroBouncesIsDirectLightAlone) {
     EXPECT_GT(light.at(points)[0].irradiance[0], 0);
 }
 
-TEST(SolveScene, AFurnaceWithACornerKeepsItsEnergyOnManyElements) {
+TEST(SolveScene, AnLShapedFurnaceConservesEnergyOnManyElements) {
     const Scene scene = test::make(test::l_room(2, 1));
     const Solution solution = solved(scene, {.error = 0.05, .mesh_size = 0.09});
-    EXPECT_GT(solution.statistics.leaf_elements, 8000u);  // from where on weak emitters may be left to rays
-    EXPECT_LT(solution.statistics.energy.defect, 1e-4);   // what the iteration leaves
+    EXPECT_GT(solution.statistics.leaf_elements, 8000u);  // above this number, weak emitters may be sampled by rays
+    EXPECT_LT(solution.statistics.energy.defect, 1e-4);   // residual of the iteration
 }
 
 TEST(SolveScene, EachBounceAddsItsShareInAFurnace) {
@@ -205,18 +206,19 @@ TEST(SolveScene, EachBounceAddsItsShareInAFurnace) {
         const RadiosityFunction light(solution);
         const std::vector<ProbePoint> points = {{{0.3, 0.4, 0}, {0, 0, 1}}};
         const double series = (1 - std::pow(rho, bounces + 1)) / (1 - rho);
-        EXPECT_NEAR(light.at(points)[0].irradiance[0], series, 1e-6);  // single precision of what is stored
+        EXPECT_NEAR(light.at(points)[0].irradiance[0], series, 1e-6);  // results are stored in single precision
     }
 }
 
-TEST(SolveScene, EnergyIsKeptInAClosedRoom) {
+TEST(SolveScene, EnergyIsConservedInAClosedRoom) {
     const Solution solution = solved(box_scene(4, 3, 2.5, 0.7, 1), {.error = 0.01});
     EXPECT_NEAR(solution.statistics.energy.emitted, 12, 1e-9);  // 1 W/m^2 in every band over 12 m^2
     EXPECT_LT(solution.statistics.energy.defect, 1e-3);
 }
 
-TEST(SolveScene, CoarseLinksBehindObstaclesTakeNoLightAway) {
-    // By themselves links of a tenth leave 0.7 to 1% of the energy out; rays correct it, and leave their noise.
+TEST(SolveScene, CoarseOccludedLinksConserveEnergy) {
+    // Links with a tolerance of a tenth lose 0.7 to 1% of the energy unless rays correct them; the noise of the rays
+    // remains.
     const Scene scene = built_scene("complex", {{"m", "6"}});
     for (const Method method : {Method::hierarchical, Method::wavelet}) {
         for (const bool clusters : {false, true}) {
@@ -227,15 +229,15 @@ TEST(SolveScene, CoarseLinksBehindObstaclesTakeNoLightAway) {
     }
 }
 
-TEST(SolveScene, LightOfOrderThreeThatIsGatheredKeepsItsFlux) {
-    // What of it arrives is known by the leaves that it was solved on, and they are what is handed on: 6e-5, the direct
-    // projection's; 8e-4 where they were cut for delivery all the same.
+TEST(SolveScene, GatheredLightOfOrderThreeConservesFlux) {
+    // Flux is known for the leaves of the solve, and those are delivered. The defect is 6e-5, from the direct
+    // projection; it would be 8e-4 if the leaves were cut for delivery.
     SolveOptions options{.method = Method::wavelet, .basis = BasisKind::multiwavelet3};
     options.epsilon = 0.1;
     EXPECT_LT(solved(built_scene("complex", {{"m", "6"}}), options).statistics.energy.defect, 2e-4);
 }
 
-TEST(SolveScene, LinksAreFoundByRaysUnlessSomethingIsAskedOfThem) {
+TEST(SolveScene, LinksAreFoundByRaysUnlessOptionsRequestOtherwise) {
     const Scene scene = built_scene("complex", {{"m", "6"}});
     const auto with = [&](SolveOptions options) {
         options.error = 0.05;
@@ -244,14 +246,14 @@ TEST(SolveScene, LinksAreFoundByRaysUnlessSomethingIsAskedOfThem) {
     const SolveStatistics rows = with({.method = Method::matrix}), links = with({.method = Method::hierarchical});
     EXPECT_LT(2 * links.links, rows.links);
     EXPECT_LT(links.relative_error_estimate, 0.05);
-    // The noise of the rays of either.
+    // Noise of the rays of both methods.
     EXPECT_NEAR(links.energy.absorbed, rows.energy.absorbed, 5e-3 * rows.energy.absorbed);
     const SolveStatistics wavelets = with({.method = Method::wavelet});
     EXPECT_EQ(wavelets.links, with({.method = Method::wavelet, .basis = BasisKind::multiwavelet2}).links);
     EXPECT_NE(wavelets.links, links.links);
     const SolveStatistics judged = with({.method = Method::hierarchical, .epsilon = 0.05});
     EXPECT_NE(judged.links, links.links);
-    // Nothing stands in between: links of polynomials are judged, few of them, and give the light.
+    // If nothing is occluded, links of polynomials are refined pair by pair, and few of them suffice.
     const Scene box = box_scene(1, 1, 3, 0.5, 1);
     const SolveStatistics open = solved(box, {.method = Method::wavelet, .error = 0.05}).statistics;
     EXPECT_LT(open.links, solved(box, {.method = Method::hierarchical, .error = 0.05}).statistics.links);
@@ -269,15 +271,15 @@ TEST(SolveScene, ClustersSaveLinksAndGiveTheSameLight) {
     }
     EXPECT_LT(1.5 * static_cast<double>(found[1].links), static_cast<double>(found[0].links));
     const double absorbed = found[0].energy.absorbed;
-    EXPECT_NEAR(found[1].energy.absorbed, absorbed, 2e-3 * absorbed);  // the noise of the rays of either
+    EXPECT_NEAR(found[1].energy.absorbed, absorbed, 2e-3 * absorbed);  // noise of the rays of both solutions
 }
 
-TEST(SolveScene, WarnsWhereAllLightFallsOnBacks) {
+TEST(SolveScene, WarnsIfAllLightFallsOnBacks) {
     SceneDescription d;
     d.groups = {"all"};
     d.materials = {{"grey", Spectrum(0.5), {}}, {"light", {}, Spectrum(1)}};
     d.points = {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}, {0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}};
-    d.faces = {{.corners = {0, 1, 2, 3}, .material = 0}, {.corners = {4, 5, 6, 7}, .material = 1}};  // both look down
+    d.faces = {{.corners = {0, 1, 2, 3}, .material = 0}, {.corners = {4, 5, 6, 7}, .material = 1}};  // both face down
     const CheckedScene scene = make_scene(d);
     ASSERT_TRUE(scene.scene);
     EXPECT_EQ(solved(*scene.scene, {.error = 0.05}).statistics.warnings,
@@ -301,7 +303,7 @@ TEST(SolveScene, AnInterruptedSolveStillHasAResult) {
         for (float v : value) EXPECT_TRUE(std::isfinite(v));
 }
 
-TEST(SolveScene, ADiscontinuityMeshThatIsNeverMadeLeavesPlainElements) {
+TEST(SolveScene, WithoutADiscontinuityMeshPlainElementsAreDelivered) {
     const Scene scene = built_scene("gcr2");
     Progress progress;
     StopRequest stop;
@@ -314,8 +316,8 @@ TEST(SolveScene, ADiscontinuityMeshThatIsNeverMadeLeavesPlainElements) {
     EXPECT_GE(solution->interpolant.tree.roots().size(), scene.regions().size());
 }
 
-TEST(SolveScene, UnderALimitADiscontinuityMeshThatIsNotReadyLeavesLight) {
-    /// Asks for a stop once plain elements have their light.
+TEST(SolveScene, AnUnfinishedDiscontinuityMeshLeavesPlainElementsWithLight) {
+    /// Requests a stop once plain elements have their light.
     class StopsAfterPlainElements final : public Progress {
       public:
         explicit StopsAfterPlainElements(StopRequest& stop) : stop_(stop) {}
@@ -349,7 +351,7 @@ TEST(SolveScene, UnderALimitADiscontinuityMeshThatIsNotReadyLeavesLight) {
     EXPECT_EQ(limited->statistics.energy.absorbed, whole.statistics.energy.absorbed);
 }
 
-/// Interrupts a solve in a round of links of its second attempt.
+/// Interrupts a solve in the given linking round of its second attempt.
 class InterruptsSecondAttempt final : public Progress {
   public:
     InterruptsSecondAttempt(StopRequest& stop, int round) : stop_(stop), left_(round) {}
@@ -364,8 +366,8 @@ class InterruptsSecondAttempt final : public Progress {
     bool certified_ = false;
 };
 
-/// What an interrupt leaves unfinished is neither delivered nor told of.
-TEST(SolveScene, AnInterruptedAttemptLeavesWhatTheOneBeforeHasFound) {
+/// Unfinished results of an interrupted attempt are neither delivered nor reported.
+TEST(SolveScene, AnInterruptedAttemptDeliversTheResultOfThePreviousOne) {
     const Scene scene = built_scene("cornell");
     SolveOptions options{.method = Method::wavelet, .basis = BasisKind::haar, .error = 0.05};
     options.smoothing = false;
@@ -385,7 +387,7 @@ TEST(SolveScene, AnInterruptedAttemptLeavesWhatTheOneBeforeHasFound) {
     EXPECT_EQ(found[0].interpolant.values, found[1].interpolant.values);
 }
 
-TEST(SolveScene, FractionalVisibilityCarriesTheEmittersLightThroughTheElements) {
+TEST(SolveScene, FractionalVisibilityTransportsDirectLightByElements) {
     const Scene scene = built_scene("gcr2");
     const Solution solution =
         solved(scene, {.method = Method::progressive, .mesh_size = 0.2, .visibility = VisibilityKind::fractional});

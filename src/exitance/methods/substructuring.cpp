@@ -16,11 +16,11 @@ double light_of(const ShootingSetup& setup, ElementId leaf) {
 
 }  // namespace
 
-/// Substructuring radiosity [Cohen86], shooting form: patches shoot, and elements, cut finer where the light is steep,
-/// receive. Refining while the first shots arrive cuts for gradients that later shots fill in; so all light is solved
-/// on the patches first, then elements are cut by the converged light, at the ends of sweeps, and gather what the
-/// patches have sent; in the end the patches take their elements' means and shoot the difference [Willmott97]. One form
-/// factor per element and patch.
+/// Substructuring radiosity [Cohen86], shooting form: patches shoot, and elements, which are finer where light varies
+/// strongly, receive. Refining during the first shots would cut along gradients that later shots even out. Therefore
+/// all light is solved on the patches first. Then elements are split by the converged light, in sweeps, and gather the
+/// light that the patches have sent. Finally the patches take their elements' means and shoot the difference
+/// [Willmott97]. One form factor per element and patch.
 GlobalLight solve_substructuring(const MethodInput& input) {
     input.progress.phase("mesh");
     MeshSize coarse = input.knobs.solve_mesh;

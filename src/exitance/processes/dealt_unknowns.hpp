@@ -9,20 +9,23 @@
 
 namespace exitance {
 
-/// So many unknowns, one after the other, are one process's: few enough for even shares, and so many that a sum over
-/// all, of a value a block, moves little between processes.
+/// Size of the blocks of consecutive unknowns that are distributed over processes: a power of two, at least 16. There
+/// are at most 2^16 blocks, so that processes get even shares and a sum that exchanges one value per block transfers
+/// little.
 constexpr std::size_t dealt_block(std::size_t unknowns) {
-    constexpr std::size_t least = 16, most_blocks = 1 << 16;  // 2 MB with a number for each band
+    constexpr std::size_t least = 16, most_blocks = 1 << 16;  // 2 MB for one double per block and band
     return std::bit_ceil(std::max(least, (unknowns + most_blocks - 1) / most_blocks));
 }
 
-/// How the unknowns of a system are held where several processes solve it: each has vectors of its own unknowns alone,
-/// in their order; blocks are dealt out like cards. Or every process has all of them, as one process alone does. Sums
-/// go over the same blocks either way, block after block, so that they have the same bits on any number of processes.
+/// Distribution of the unknowns of a linear system over the processes that solve it. In the first form, block b belongs
+/// to process b mod processes(), and each process stores only its own unknowns, in ascending order. In the second form
+/// every process stores all unknowns. In both sums are formed block by block in the same order, so that they have the
+/// same bits on any number of processes.
 class DealtUnknowns {
   public:
-    /// All of them in every process.
+    /// Every process stores all unknowns.
     explicit DealtUnknowns(std::size_t count) : DealtUnknowns(count, dealt_block(count), 1, 0) {}
+    /// Blocks of `block` unknowns are assigned to all processes in turn.
     DealtUnknowns(std::size_t count, std::size_t block)
         : DealtUnknowns(count, block, exitance::processes(), exitance::own_process()) {}
     DealtUnknowns(std::size_t count, std::size_t block, std::size_t processes, std::size_t process)
@@ -35,27 +38,28 @@ class DealtUnknowns {
 
     std::size_t owner(std::size_t unknown) const { return unknown / block_ % processes_; }
     bool is_own(std::size_t unknown) const { return owner(unknown) == process_; }
-    /// Of an unknown: its place among those of its owner.
+    /// Index of an unknown among the unknowns of its owner.
     std::size_t place(std::size_t unknown) const { return unknown / block_ / processes_ * block_ + unknown % block_; }
-    /// Of a place among the own ones: the unknown.
+    /// The unknown at index `place` of this process's own ones.
     std::size_t unknown(std::size_t place) const {
         return (place / block_ * processes_ + process_) * block_ + place % block_;
     }
     std::size_t own_count() const { return count_of(process_); }
     std::size_t count_of(std::size_t process) const {
-        const std::size_t whole = count_ / block_, rest = count_ % block_;  // blocks, and what is left
+        const std::size_t whole = count_ / block_,
+                          rest = count_ % block_;  // full blocks; unknowns in the partial one
         const std::size_t blocks = whole / processes_ + (process < whole % processes_ ? 1 : 0);
         return blocks * block_ + (rest > 0 && process == whole % processes_ ? rest : 0);
     }
 
-    /// Of values of all unknowns those of the own ones.
+    /// Extracts the own unknowns' values from the values of all unknowns.
     template <class T>
     std::vector<T> own_part(std::span<const T> all) const {
         std::vector<T> out(own_count());
         parallel_for(out.size(), 4096, [&](std::size_t i) { out[i] = all[unknown(i)]; });
         return out;
     }
-    /// The values of every process's own unknowns, for all. All processes call it.
+    /// Sends every process's own values to all processes, which write them to `all`. Collective.
     template <class T>
     void tell(std::span<const T> own, std::span<T> all, const char* what) const {
         parallel_for(own.size(), 4096, [&](std::size_t i) { all[unknown(i)] = own[i]; });
@@ -64,7 +68,8 @@ class DealtUnknowns {
                 count_, block_, [&](std::size_t i) -> T& { return all[i]; }, what);
     }
 
-    /// Calls body(i) for the places of all own ones. Where they are few of all, it counts as what is dealt out.
+    /// Calls body(i) in parallel for every index i of an own unknown. If unknowns are distributed, the time is counted
+    /// as distributed work (`do_own_share`).
     template <class Body>
     void for_each_own(const Body& body) const {
         const auto all = [&] { parallel_for(own_count(), 1024, body); };
@@ -74,7 +79,8 @@ class DealtUnknowns {
             all();
     }
 
-    /// sum_i term(i, k), k < terms, over all unknowns; i is the place of an own one. All processes call it.
+    /// Returns sum_i term(i, k) over all unknowns for each k < terms. `i` is the index among the own unknowns.
+    /// Collective.
     template <class T, class Term>
     std::vector<T> sums(std::size_t terms, const Term& term) const {
         const std::size_t blocks = (count_ + block_ - 1) / block_, own = own_count();

@@ -9,7 +9,7 @@
 
 namespace exitance {
 
-TEST(DealtUnknowns, HaveOneOwnerAndOnePlaceEach) {
+TEST(DealtUnknowns, HaveOneOwnerAndOneIndexEach) {
     for (const std::size_t processes : {1, 2, 3, 5})
         for (const std::size_t count : {0, 1, 15, 16, 17, 100, 1000}) {
             std::vector<int> owners(count, 0);
@@ -35,7 +35,7 @@ TEST(DealtUnknowns, HaveOneOwnerAndOnePlaceEach) {
         }
 }
 
-TEST(DealtUnknowns, AreDealtOutInFewBlocksHoweverManyThereAre) {
+TEST(DealtUnknowns, HaveALimitedNumberOfBlocks) {
     EXPECT_EQ(dealt_block(1), 16u);
     EXPECT_EQ(dealt_block(std::size_t{1} << 20), 16u);
     for (const std::size_t count : {(std::size_t{1} << 20) + 1, std::size_t{1'000'000'000}}) {
@@ -44,8 +44,8 @@ TEST(DealtUnknowns, AreDealtOutInFewBlocksHoweverManyThereAre) {
     }
 }
 
-/// The bits of a sum are those of blocks in their order, which is what makes them the same on any number of processes.
-TEST(DealtUnknowns, AreSummedBlockAfterBlock) {
+/// Sums add up blocks in order, so that they have the same bits on any number of processes.
+TEST(DealtUnknowns, AreSummedBlockByBlock) {
     RandomStream random(1, Stream::mesh);
     std::vector<double> values(1000);
     for (double& v : values) v = random.uniform() - 0.5;
@@ -64,7 +64,7 @@ TEST(DealtUnknowns, AreSummedBlockAfterBlock) {
     EXPECT_NEAR(sums[2], 3 * expected, 1e-12);
 }
 
-TEST(DealtUnknowns, AloneAProcessHasAllOfThemAndFetchesNothing) {
+TEST(DealtUnknowns, ASingleProcessHasAllAndFetchesNothing) {
     const DealtUnknowns dealt(50, 16);
     EXPECT_FALSE(dealt.is_spread());
     std::vector<int> all(50);

@@ -18,25 +18,27 @@
 namespace exitance {
 namespace {
 
-/// What this process knows of the others.
+/// State of the communication with the other processes.
 struct Team {
     std::size_t size = 1, own = 0;
     bool joined = false;
     const StopRequest* asked = nullptr;
     StopRequest* agreed = nullptr;
     std::uint64_t meetings = 0;
-    MPI_Comm node = MPI_COMM_NULL;  ///< Those that have memory in common with this one.
+    MPI_Comm node = MPI_COMM_NULL;  ///< Processes of this node.
     int node_size = 1;
     std::size_t shared_bytes = 0;
-    int common_file = -1;  ///< Of what is open in common.
+    int common_file = -1;  ///< File of the memory that is open in common; -1: none.
     std::map<std::string, Traffic> traffic;
     ExchangeTime time;
     std::map<std::string, DealtTime> dealt;
-    double dealt_before = 0, taken_before = 0;  ///< Seconds of what was dealt to this process, and of all, by then.
+    double dealt_before = 0,
+           taken_before =
+               0;  ///< Values at the end of the last shared loop, seconds: distributed and total processor time.
 };
 Team team;
 
-/// Launchers tell their processes what they belong to.
+/// True if a launcher started this process as one of several; launchers set environment variables.
 bool was_launched() {
     for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMI_RANK", "PMIX_RANK"})
         if (const char* value = std::getenv(name); value && *value)
@@ -44,7 +46,7 @@ bool was_launched() {
     return false;
 }
 
-/// MPI's own calls end the job where they fail, which is its default. This is for what we find out.
+/// Ends all processes with a message. Failing MPI calls end the job by default; this is for errors that exitance finds.
 [[noreturn]] void end_job(const char* why) {
     std::fprintf(stderr, "error: process %zu of %zu: %s\n", team.own, team.size, why);
     MPI_Abort(MPI_COMM_WORLD, 1);
@@ -56,8 +58,8 @@ void count(const char* what, std::size_t bytes) {
     ++t.exchanges, t.messages += team.size - 1, t.bytes += bytes * (team.size - 1);
 }
 
-/// Until it is done, without taking the processor from others: MPI itself would look again and again. Looks follow one
-/// another at first; then the time between them is a share of what has been waited, so that little is lost by it.
+/// Waits for a request without occupying a processor, unlike MPI_Wait, which polls continuously. Polls 200 times in
+/// succession at first, then at intervals of a twentieth of the time waited so far, so that the added delay is small.
 void wait_for(MPI_Request& request) {
     constexpr int eager = 200;
     constexpr double share = 0.05, longest = 5000;  // microseconds
@@ -72,7 +74,7 @@ void wait_for(MPI_Request& request) {
     }
 }
 
-/// The same operation on the values of all processes of a group.
+/// Combines the values of all processes of a group by an operation. Collective in that group.
 template <class T>
 void reduce(const T* own, T* all, int count, MPI_Datatype type, MPI_Op operation, MPI_Comm group) {
     MPI_Request request = MPI_REQUEST_NULL;
@@ -159,9 +161,10 @@ std::string as_first(std::string bytes, const char* what) {
 }
 
 Result<void> by_first(const std::function<Result<void>()>& work) {
-    const ResultSharing sharing = std::exchange(result_sharing(), ResultSharing());  // the others do nothing
+    const ResultSharing sharing = std::exchange(result_sharing(), ResultSharing());  // the other processes do no work
     const int own_threads = threads();
-    // Those on its node sleep, and leave it their processors, as far as it may run on these.
+    // The other processes of the node sleep, so that their processors are available as far as this process may use
+    // them.
     if (is_first_process() && team.node_size > 1) set_threads(own_threads * team.node_size);
     const Result<void> done = is_first_process() ? work() : Result<void>();
     if (is_first_process() && team.node_size > 1) set_threads(own_threads);
@@ -229,7 +232,7 @@ void parallel_own_ranges(std::size_t count, std::size_t grain,
 
 namespace {
 
-/// Writes bytes to a place of a file; false where the system does not let it.
+/// Writes bytes at offset `place` of a file; returns false on failure.
 bool write_to(int file, std::size_t place, std::span<const char> bytes) {
     while (!bytes.empty()) {
         const ssize_t written = pwrite(file, bytes.data(), bytes.size(), static_cast<off_t>(place));
@@ -239,14 +242,14 @@ bool write_to(int file, std::size_t place, std::span<const char> bytes) {
     return true;
 }
 
-/// Is it so in all processes of the node?
+/// True in all processes of the node if `own` is true in all of them.
 bool all_on_node(bool own) {
     int value = own ? 1 : 0, all = 0;
     reduce(&value, &all, 1, MPI_INT, MPI_MIN, team.node);
     return all == 1;
 }
 
-/// What all processes of the node give alike, for what stands at one place of a page in all of them.
+/// True if two numbers are equal in all processes of the node.
 bool is_alike_on_node(std::size_t a, std::size_t b) {
     std::array<std::uint64_t, 4> own{a, ~std::uint64_t{a}, b, ~std::uint64_t{b}}, all{};
     reduce(own.data(), all.data(), 4, MPI_UINT64_T, MPI_MAX, team.node);
@@ -258,8 +261,8 @@ bool is_alike_on_node(std::size_t a, std::size_t b) {
 namespace detail {
 namespace {
 
-/// The whole pages of an array, where they are as many as `least` bytes make, and stand alike in all processes of the
-/// node; else empty.
+/// Whole pages of an array; empty unless they make at least `least` bytes and have the same layout in all processes of
+/// the node.
 std::span<char> whole_pages(std::span<char> array, std::size_t least) {
     const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
     const std::size_t skipped = (page - reinterpret_cast<std::uintptr_t>(array.data()) % page) % page;
@@ -267,8 +270,8 @@ std::span<char> whole_pages(std::span<char> array, std::size_t least) {
     return array.subspan(skipped, (array.size() - skipped) / page * page);
 }
 
-/// A file in memory of so many bytes, which the first of the node makes and the others find by its name; -1 in all
-/// where one of them does not.
+/// Creates a memory file of `size` bytes in the first process of the node, which the others open under its name in
+/// /proc. Returns -1 in all of them if one fails.
 int file_of_node(std::size_t size) {
     int rank = 0;
     MPI_Comm_rank(team.node, &rank);
@@ -287,18 +290,21 @@ int file_of_node(std::size_t size) {
     return -1;
 }
 
-/// `kind`: of mmap; private pages are those of whoever writes to them, and memory that is freed is nobody else's.
+/// Maps pages to a file at offset `place`. `kind`: MAP_SHARED or MAP_PRIVATE; a page of a private mapping becomes the
+/// process's own on the first write. Ends the job on failure.
 void map_pages(std::span<char> pages, int file, std::size_t place, int kind) {
     if (mmap(pages.data(), pages.size(), PROT_READ | PROT_WRITE, kind | MAP_FIXED, file, static_cast<off_t>(place)) ==
         MAP_FAILED)
         end_job("the system does not let processes have memory in common any more");
-    // All at once, where the system can: page by page costs several times as much.
+    // Populates all pages at once where the system supports it: page faults one by one cost several times as much.
     madvise(pages.data(), pages.size(), kind == MAP_SHARED ? MADV_POPULATE_WRITE : MADV_POPULATE_READ);
 }
 
-/// Has the pages stand in the file, as the first of the node holds them. Part by part, so that little stands twice.
+/// Copies the pages of the node's first process to the file and maps the file in their place, in parts, so that little
+/// memory is used twice.
 void move_pages(std::span<char> pages, int file, int kind) {
-    constexpr std::size_t least = std::size_t(1) << 23, most_parts = 64;  // the system counts what is mapped, too
+    constexpr std::size_t least = std::size_t(1) << 23,
+                          most_parts = 64;  // the number of mappings is limited by the system
     const std::size_t page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE)),
                       step = std::max(least, (pages.size() / most_parts / page + 1) * page);
     int rank = 0;
@@ -313,7 +319,8 @@ void move_pages(std::span<char> pages, int file, int kind) {
 }  // namespace
 
 void share_pages(char* begin, std::size_t size) {
-    constexpr std::size_t least = std::size_t(1) << 20;  // smaller ones stand among others (keep_large_arrays_apart)
+    constexpr std::size_t least = std::size_t(1)
+                                  << 20;  // smaller arrays share pages with other data (keep_large_arrays_apart)
     const std::span<char> pages = whole_pages({begin, size}, least);
     const int file = pages.empty() ? -1 : file_of_node(pages.size());
     if (file < 0) return;
@@ -350,7 +357,7 @@ void count_fetched(const Fetched& fetched, std::size_t bytes_each) {
 }
 
 void send_from_first(void* data, std::size_t size, const char* what) {
-    constexpr std::size_t most = std::size_t(1) << 28;  // MPI counts by int
+    constexpr std::size_t most = std::size_t(1) << 28;  // MPI counts are of type int
     for (std::size_t done = 0; done < size; done += most) {
         MPI_Request request = MPI_REQUEST_NULL;
         MPI_Ibcast(static_cast<char*>(data) + done, static_cast<int>(std::min(most, size - done)), MPI_BYTE, 0,
@@ -365,7 +372,7 @@ void send_from_first(void* data, std::size_t size, const char* what) {
 void meet(std::size_t things, const char* what) {
     const bool stops = team.agreed && ((team.asked && team.asked->requested()) || team.agreed->requested());
     const std::uint64_t place = ++team.meetings << 40 ^ things;
-    constexpr double ticks = 1e9;  // a second
+    constexpr double ticks = 1e9;  // per second
     const double dealt = result_sharing().dealt_seconds, since = dealt - std::exchange(team.dealt_before, dealt),
                  taken = processor_seconds(), all_since = taken - std::exchange(team.taken_before, taken);
     std::array<std::uint64_t, 4> own{place, ~place, stops, static_cast<std::uint64_t>(ticks * since)}, all{};

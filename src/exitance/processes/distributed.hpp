@@ -17,28 +17,29 @@
 
 namespace exitance {
 
-// Several processes that solve one scene together, each with threads of its own. All of them take the same steps: what
-// is cheap each computes for itself; the indices of what is expensive are dealt out, and what they give is sent to all.
-// So every process goes on from the same bits, which are those of one process alone. Every function that says "all"
-// has to be called by all processes, in the same order, by the thread that drives the work.
+// Several processes solve one scene together, each with its own threads. All processes execute the same steps. Cheap
+// results are computed by every process; the indices of expensive loops are distributed, and the results are sent to
+// all. Every process therefore continues from the same bits, and these are the bits of a single process. A function
+// marked "Collective" must be called by all processes, in the same order, by the thread that runs the solve.
 
-/// Finds out whether this process was started as one of several (by mpirun or a batch system) and joins the others. To
-/// be called once, first of all. A program that runs alone does nothing here.
+/// Joins the other processes if this one was started as one of several (by mpirun or a batch system). Must be called
+/// once, before anything else. Does nothing in a program that runs alone.
 Result<void> join_processes();
-/// The end of that, for all.
+/// Disconnects from the other processes. Collective.
 void leave_processes();
 
-/// How many there are, and which of them this is.
+/// Number of processes, and the index of this one.
 std::size_t processes();
 std::size_t own_process();
-/// The one that reads files, writes them, and speaks.
+/// True in the process that reads and writes files and prints messages.
 inline bool is_first_process() {
     return own_process() == 0;
 }
 
-/// While it lives, a stop that any process is asked for (`asked`: its signals, its clock) becomes one that all have
-/// agreed on (`agreed`, which the work looks at): at the end of every shared loop, so that no process goes on with less
-/// than others have. Within a shared loop a process that is asked stops its own part at once. One at a time.
+/// Makes stop requests common to all processes during its lifetime. `asked` is a request to one process (signals, its
+/// deadline); `agreed` is the common request that the work checks. At the end of every shared loop a request to any
+/// process becomes a request to all, so that no process continues with fewer results than others. Within a shared loop
+/// a process with a request stops its own part at once. Only one object may exist at a time.
 class StopTogether {
   public:
     StopTogether(const StopRequest& asked, StopRequest& agreed);
@@ -47,71 +48,73 @@ class StopTogether {
     StopTogether& operator=(const StopTogether&) = delete;
 };
 
-/// Seconds until the deadline, as the first process sees it; `agreed` as in StopTogether. All.
+/// Seconds until the deadline, by the clock of the first process; `agreed` as in StopTogether. Collective.
 double seconds_left(const StopRequest& agreed);
 
 namespace detail {
 void send_from_first(void* data, std::size_t size, const char* what);
 }
 
-/// The first process's value, for all.
+/// Returns the first process's value in all processes. Collective.
 template <class T>
 requires std::is_trivially_copyable_v<T> T as_first(T value) {
     if (processes() > 1) detail::send_from_first(&value, sizeof value, "agreement");
     return value;
 }
-/// The same for bytes of any number.
+/// Like the above, for a byte string of any length.
 std::string as_first(std::string bytes, const char* what);
-/// What only the first process does, with the threads of all that are on its node; how it went, for all.
+/// Runs `work` in the first process only, with the threads of all processes of its node. Returns its result in all
+/// processes. Collective.
 Result<void> by_first(const std::function<Result<void>()>& work);
 
-/// How many processes have memory in common with this one, itself among them: those of its node.
+/// Number of processes on this node, including this one.
 std::size_t processes_on_node();
-/// The sum of their values, the same for all of them. All.
+/// Sum of the values of the node's processes, the same in each of them. Collective.
 double sum_on_node(double value);
-/// The largest of all processes' values; their sum, in the order of the processes. All.
+/// Largest value of all processes, and the sum of their values in the order of the processes. Collective.
 double largest_of_all(double value);
 double sum_of_all(double value);
 
-/// What this process sends: messages to other processes, as if each exchange went straight from one to the other, and
-/// their bytes.
+/// Messages that this process sends to other processes, and their size in bytes. Counted as if every exchange went
+/// directly from sender to receiver.
 struct Traffic {
     std::size_t exchanges = 0, messages = 0, bytes = 0;
-    /// Of what goes to those alone who read it (`count_fetched`): with twice as many processes. Else 0.
+    /// Predicted numbers for twice as many processes, for data sent only to the processes that read them
+    /// (`count_fetched`); else 0.
     std::size_t messages_of_twice = 0, bytes_of_twice = 0;
 };
-/// By what was sent.
+/// Traffic by kind of data.
 const std::map<std::string, Traffic>& traffic();
 
-/// Wall time that this process has spent so far until the others came to where it was, and on sending, seconds.
+/// Wall time that this process has spent waiting for the others and sending data, seconds.
 struct ExchangeTime {
     double waiting = 0, sending = 0;
 };
 ExchangeTime exchange_time();
 
-/// Processor time from one end of a shared loop to the next, by what ended it, seconds: this process's of what was
-/// dealt out, and that of whichever process took most, which are the same where all have as much to do; and this one's
-/// of everything else, which all repeat or one does while others wait.
+/// Processor time between the ends of consecutive shared loops, by the name of the loop that ended the interval,
+/// seconds. `own`: distributed work of this process; `longest`: that of the slowest process, equal to `own` if the load
+/// is balanced; `repeated`: all other work of this process, done by every process or by one while others wait.
 struct DealtTime {
     double own = 0, longest = 0, repeated = 0;
 };
 const std::map<std::string, DealtTime>& dealt_time();
 
-/// Are the indices around i, `grain` of them a block, this process's? Blocks are dealt out like cards: neighbours cost
-/// alike, so all processes have about the same work.
+/// True if the block of `grain` indices that contains i belongs to this process. Blocks are assigned to processes in
+/// turn: neighbouring indices have similar cost, so that the load is balanced.
 inline bool is_own(std::size_t i, std::size_t grain) {
     return i / grain % processes() == own_process();
 }
 
-/// `parallel_ranges` over this process's own blocks of `grain` indices. Hears of stops.
+/// Runs `parallel_ranges` over this process's own blocks of `grain` indices. Observes stop requests.
 void parallel_own_ranges(std::size_t count, std::size_t grain,
                          const std::function<void(std::size_t, std::size_t)>& body, const Work& work = {});
 
 namespace detail {
 
-/// The end of a shared loop over `count` things: all agree on stops, and make sure that they are at the same place.
+/// Ends a shared loop over `count` items: the processes agree on stop requests and check that all are at the same loop.
 void meet(std::size_t count, const char* what);
-/// Everybody's bytes to everybody: process p's stand from first[p] on in `all`, `own` among them already.
+/// All-to-all exchange of bytes: process p's bytes start at first[p] in `all`. The own bytes must already be in place.
 void exchange(std::span<char> all, std::span<const std::size_t> first, const char* what);
 
 template <class T>
@@ -125,7 +128,8 @@ std::span<char> bytes_of(std::span<T> values) {
     return {reinterpret_cast<char*>(values.data()), values.size_bytes()};
 }
 
-/// value(i) of every i in blocks [block, end), whose bytes are together as many as given by process.
+/// Exchanges value(i) for every i in blocks [block, end). Process p's values start at byte first[p] of the exchanged
+/// buffer.
 template <class Value>
 void exchange_blocks(std::size_t block, std::size_t end, std::size_t count, std::size_t grain,
                      std::span<const std::size_t> first, const Value& value, const char* what) {
@@ -155,13 +159,14 @@ void exchange_blocks(std::size_t block, std::size_t end, std::size_t count, std:
 
 }  // namespace detail
 
-/// Sends value(i), a reference to a plain value or a span of them that is as long everywhere, from the process whose i
-/// is to all others, for every i in [0, count). In rounds, so that little memory is needed. All.
+/// Sends value(i), i in [0, count), from the process that owns i to all others. value(i) is a reference to a plain
+/// value, or a span of plain values that has the same length in every process. Works in rounds of about 32 MB to limit
+/// memory. Collective.
 template <class Value>
 void exchange_values(std::size_t count, std::size_t grain, const Value& value, const char* what) {
     if (processes() == 1) return;
     detail::meet(count, what);
-    constexpr std::size_t most_bytes = std::size_t(32) << 20;  // of a round, of all processes together
+    constexpr std::size_t most_bytes = std::size_t(32) << 20;  // in one round, of all processes together
     const std::size_t blocks = (count + grain - 1) / grain;
     for (std::size_t block = 0, end = 0; block < blocks; block = end) {
         std::vector<std::size_t> first(processes() + 1);
@@ -176,8 +181,9 @@ void exchange_values(std::size_t count, std::size_t grain, const Value& value, c
     }
 }
 
-/// Sends to all the values of `blocks` blocks, as many each, of which block b is process b % processes()'s. For few
-/// values, where all have met just before: in one round, without agreeing on stops. All.
+/// Sends the values of `blocks` blocks of equal size to all; block b belongs to process b % processes(). For few
+/// values, right after a step in which all processes agreed on stops: uses one round and does not agree on stops.
+/// Collective.
 template <class T>
 void exchange_equal_blocks(std::span<T> values, std::size_t blocks, const char* what) {
     const std::size_t each = blocks > 0 ? values.size() / blocks : 0, all = processes();
@@ -188,8 +194,8 @@ void exchange_equal_blocks(std::span<T> values, std::size_t blocks, const char* 
         0, blocks, blocks, 1, first, [&](std::size_t b) { return values.subspan(b * each, each); }, what);
 }
 
-/// `parallel_ranges`, dealt out to all processes: body(first, last) writes value(i), a reference to a plain value, for
-/// each i of its range and nothing else that lasts; afterwards all processes have all values. All.
+/// Distributes `parallel_ranges` over all processes. body(first, last) writes value(i), a reference to a plain value,
+/// for each i of its range and no other lasting data; afterwards all processes have all values. Collective.
 template <class Value>
 void shared_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body,
                    const Value& value, const Work& work) {
@@ -198,30 +204,33 @@ void shared_ranges(std::size_t count, std::size_t grain, const std::function<voi
 }
 
 namespace detail {
-/// Whole pages of an array that all processes hold alike, from here on one memory that all of them write to; empty, and
-/// nothing is done, where not all can see one another's memory, or the array is small. To be closed before the next.
+/// Maps the whole pages of an array that is equal in all processes to memory that all of them write to, and returns
+/// these pages. Returns an empty span and does nothing if the processes are not all on one node, or if the array is
+/// small. Must be closed before the next call.
 std::span<char> open_in_common(std::span<char> array);
-/// Each process has what stands there now; whoever writes to it gets pages of its own.
+/// Ends the sharing: each process keeps the present contents, and gets private pages where it writes.
 void close_in_common(std::span<char> pages);
-/// Counts bytes as sent that the processes have in common.
+/// Counts bytes in common memory as if they had been sent.
 void count_as_sent(std::size_t bytes, const char* what);
-/// What this process has fetched, as Traffic has it: counted by who gets it.
+/// Number of values that this process has fetched and of messages that carried them, as in Traffic: counted by the
+/// receiver.
 struct Fetched {
     std::size_t messages = 0, values = 0, messages_of_twice = 0, values_of_twice = 0;
 };
 void count_fetched(const Fetched& fetched, std::size_t bytes_each);
-/// `share_on_node` of bytes.
+/// `share_on_node` for bytes.
 void share_pages(char* begin, std::size_t size);
 }  // namespace detail
 
-/// `shared_ranges` where value(i) stands in `array`, which all hold alike and which lasts: on one node it stands there
-/// once, each process writes its own part of it, and nothing is sent. All.
+/// Like `shared_ranges`, for values in `array`, which is equal in all processes and outlives the call. Processes of one
+/// node share one copy: each writes its own part of it, and nothing is sent. Collective.
 template <class T, class Value>
 void shared_ranges_of(std::span<T> array, std::size_t count, std::size_t grain,
                       const std::function<void(std::size_t, std::size_t)>& body, const Value& value, const Work& work) {
     using Held = std::remove_reference_t<decltype(value(0))>;
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_copyable_v<Held>);
-    constexpr std::size_t sparse = 4;  // of an array little of which is written, more is moved than is sent
+    constexpr std::size_t sparse =
+        4;  // if less than 1 / sparse of the array is written, sharing would copy more bytes than sending does
     const bool is_dense = sparse * count * sizeof(Held) >= array.size_bytes();
     const std::span<char> pages =
         processes() > 1 && is_dense ? detail::open_in_common(detail::bytes_of(array)) : std::span<char>();
@@ -234,21 +243,22 @@ void shared_ranges_of(std::span<T> array, std::size_t count, std::size_t grain,
     std::size_t bytes = 0;
     for (std::size_t i = 0; i < count; ++i)
         if (is_own(i, grain) && is_common(i)) bytes += sizeof(Held);
-    // What stands in the pages around them is sent.
+    // Values outside the shared pages are sent.
     exchange_values(
         count, grain, [&](std::size_t i) { return std::span<Held>(&value(i), is_common(i) ? 0 : 1); }, work.name);
     detail::close_in_common(pages);
     detail::count_as_sent(bytes, work.name);
 }
 
-/// Makes an array of parts, part i of which is [first[i], first[i + 1]): body(begin, end) writes those of its range and
-/// nothing else that lasts; afterwards all processes have all of it. On one node it stands there once from the
-/// beginning. All.
+/// Fills an array of parts, part i being [first[i], first[i + 1]). body(begin, end) writes the parts of its range and
+/// no other lasting data; afterwards all processes have the whole array. Processes of one node share one copy from the
+/// start. Collective.
 template <class T>
 void shared_parts(std::vector<T>& array, std::span<const std::uint32_t> first, std::size_t grain,
                   const std::function<void(std::size_t, std::size_t)>& body, const Work& work) {
     static_assert(std::is_trivially_copyable_v<T>);
-    constexpr std::size_t largest_page = std::size_t(1) << 16;  // of systems that there are: room up to its end
+    constexpr std::size_t largest_page = std::size_t(1)
+                                         << 16;  // of all supported systems: room for the end of the last page
     const std::size_t count = first.size() - 1, size = first.back();
     array = {};
     array.reserve(size + largest_page / sizeof(T) + 1);
@@ -256,13 +266,14 @@ void shared_parts(std::vector<T>& array, std::span<const std::uint32_t> first, s
     const std::span<char> pages =
         processes() > 1 ? detail::open_in_common({all.data(), all.size() + largest_page}) : std::span<char>();
     array.resize(size);
-    if (!pages.empty()) detail::meet(count, work.name);  // before anybody writes, all have made it zero
+    if (!pages.empty())
+        detail::meet(count, work.name);  // all processes must have zeroed the array before any of them writes
     parallel_own_ranges(count, grain, body, work);
     const auto part = [&](std::size_t i) {
         return all.subspan(first[i] * sizeof(T), (first[i + 1] - first[i]) * sizeof(T));
     };
     if (pages.empty()) return exchange_values(count, grain, part, work.name);
-    // What stands before the first whole page is sent.
+    // The parts before the first whole page are sent.
     const auto before = static_cast<std::size_t>(pages.data() - all.data());
     const auto sent = [&](std::size_t i) {
         return part(i).first(std::min(part(i).size(), before - std::min(before, first[i] * sizeof(T))));
@@ -275,7 +286,7 @@ void shared_parts(std::vector<T>& array, std::span<const std::uint32_t> first, s
     detail::count_as_sent(bytes, work.name);
 }
 
-/// Of what this process holds, bytes that stand once a node.
+/// Bytes of this process's memory of which there is one copy per node.
 std::size_t shared_memory_bytes();
 
 }  // namespace exitance

@@ -2,7 +2,7 @@
 
 #include "exitance/processes/distributed.hpp"
 
-// A build without MPI: there is one process.
+// Implementation for builds without MPI: there is one process.
 
 namespace exitance {
 

@@ -7,7 +7,7 @@
 
 namespace exitance {
 
-TEST(Distributed, AloneAProcessDoesEverythingItself) {
+TEST(Distributed, ASingleProcessRunsTheWholeLoop) {
     ASSERT_EQ(processes(), 1u) << "tests are not started by a launcher";
     EXPECT_TRUE(is_first_process());
     std::vector<int> out(1000);
@@ -24,7 +24,7 @@ TEST(Distributed, AloneAProcessDoesEverythingItself) {
     EXPECT_TRUE(traffic().empty());
 }
 
-TEST(Distributed, AloneItMakesAllPartsOfAnArray) {
+TEST(Distributed, ASingleProcessMakesAllPartsOfAnArray) {
     const std::vector<std::uint32_t> first{0, 3, 3, 4, 10};
     std::vector<double> out(2, -1.0);
     shared_parts(out, first, 2,
@@ -39,7 +39,7 @@ TEST(Distributed, AloneItMakesAllPartsOfAnArray) {
     EXPECT_EQ(sum_on_node(1.5), 1.5);
 }
 
-TEST(Distributed, AloneItsWordIsThatOfAll) {
+TEST(Distributed, ASingleProcessAgreesWithItself) {
     EXPECT_EQ(as_first(42), 42);
     EXPECT_EQ(as_first(std::string("word"), "test"), "word");
     EXPECT_EQ(largest_of_all(1.5), 1.5);
@@ -53,7 +53,7 @@ TEST(Distributed, AloneItsWordIsThatOfAll) {
     EXPECT_LE(seconds_left(processes() > 1 ? agreed : asked), 0);
 }
 
-TEST(Distributed, AloneNothingOfItsMemoryIsShared) {
+TEST(Distributed, ASingleProcessSharesNoMemory) {
     std::vector<double> values(1 << 20, 0.5);
     const double* const before = values.data();
     share_on_node(std::span(values));

@@ -8,7 +8,7 @@ namespace exitance {
 
 FetchedValues::FetchedValues(const DealtUnknowns& dealt, std::span<const std::uint8_t> marked) : dealt_(dealt) {
     const std::size_t own = own_process(), all = dealt.processes();
-    std::vector<std::uint8_t> owners(all, 0), owners_of_twice(4 * all, 0);  // which have something that is read
+    std::vector<std::uint8_t> owners(all, 0), owners_of_twice(4 * all, 0);  // 1 for each owner of a value that is read
     for (std::size_t j = 0; j < marked.size(); ++j) {
         if (marked[j] == 0) continue;
         if (!dealt.is_own(j)) {

@@ -11,38 +11,42 @@
 
 namespace exitance {
 
-/// What a process reads of unknowns that others hold, and nothing else of them. 24 bytes a value.
+/// The values that a process reads of unknowns owned by other processes. Only these are transferred. 24 bytes per
+/// value.
 class FetchedValues {
   public:
-    /// Reads nothing.
+    /// Fetches nothing.
     FetchedValues() = default;
-    /// `marked`: of every unknown, not 0 where it is read (`mark`). Own ones are not fetched. All processes call it.
+    /// `marked`: one value per unknown, not 0 if it is read (see `mark`). Own unknowns are not fetched. Collective.
     FetchedValues(const DealtUnknowns& dealt, std::span<const std::uint8_t> marked);
 
-    /// Notes that the own unknown at `place` reads another; on any thread. Bit 0 tells that of those that would be own
-    /// ones with twice as many processes, bit 1 that of the others, so that one run counts what another would fetch.
+    /// Records that the own unknown at index `place` reads another unknown, in the `marked` value of that one.
+    /// Thread-safe. Sets bit 0 if the reader would still belong to this process with twice as many processes, else bit
+    /// 1, so that one run predicts the traffic of the other.
     static void mark(std::uint8_t& marked, const DealtUnknowns& dealt, std::size_t place) {
         const auto bit = static_cast<std::uint8_t>(1 << place / dealt.block() % 2);
         std::atomic_ref(marked).fetch_or(bit, std::memory_order_relaxed);
     }
 
-    /// `own`, one after the other, and behind them what they read of others. All processes call it.
+    /// Returns the values of the own unknowns, followed by the fetched values. Collective.
     std::vector<Spectrum> with_fetched(std::span<const Spectrum> own) const;
-    /// How many those are.
+    /// Number of own and fetched values.
     std::size_t size() const { return dealt_.own_count() + fetched_.size(); }
-    /// Which unknown's value stands there.
+    /// The unknown whose value is at index `place` of with_fetched().
     std::uint32_t unknown_at(std::size_t place) const {
         const std::size_t own = dealt_.own_count();
         return place < own ? static_cast<std::uint32_t>(dealt_.unknown(place)) : fetched_[place - own];
     }
-    /// And where that of every unknown stands; of those that are neither own nor read: anywhere. O(unknowns).
+    /// For every unknown, the index of its value in with_fetched(); arbitrary if it is neither own nor fetched.
+    /// O(unknowns).
     std::vector<std::uint32_t> places() const;
 
   private:
     DealtUnknowns dealt_{0};
-    std::vector<std::uint32_t> fetched_;                        ///< Unknowns, ascending.
-    std::size_t messages_ = 0;                                  ///< That bring them;
-    std::size_t messages_of_twice_ = 0, fetched_of_twice_ = 0;  ///< with twice as many processes, of both halves.
+    std::vector<std::uint32_t> fetched_;  ///< Fetched unknowns, ascending.
+    std::size_t messages_ = 0;            ///< Messages that deliver them.
+    /// Messages and fetched unknowns if there were twice as many processes, for both halves together.
+    std::size_t messages_of_twice_ = 0, fetched_of_twice_ = 0;
     std::shared_ptr<const ValueScatter> scatter_;
 };
 

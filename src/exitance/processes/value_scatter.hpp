@@ -9,17 +9,17 @@
 
 namespace exitance {
 
-/// Moves values from the processes that hold them to one that reads them. PETSc's scatters do (solve/petsc.cpp); in a
-/// build without PETSc everything goes to all (solve/petsc_none.cpp).
+/// Transfers values from the processes that own them to a process that reads them. Implemented by PETSc's scatters
+/// (solve/petsc.cpp); a build without PETSc sends everything to all (solve/petsc_none.cpp).
 class ValueScatter {
   public:
     virtual ~ValueScatter() = default;
-    /// `own`: the values of the own unknowns; `fetched`: those of the others that this process reads. All processes
-    /// call it.
+    /// `own`: values of the own unknowns; `fetched`: receives the values of the other processes' unknowns that this one
+    /// reads. Collective.
     virtual void fetch(std::span<const Spectrum> own, std::span<Spectrum> fetched) const = 0;
 };
 
-/// `read`: which unknowns of other processes this one reads, ascending. All processes call it.
+/// `read`: unknowns of other processes that this one reads, ascending. Collective.
 std::shared_ptr<const ValueScatter> make_scatter(const DealtUnknowns& dealt, std::span<const std::uint32_t> read);
 
 }  // namespace exitance

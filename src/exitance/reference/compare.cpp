@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// Sums over points and bands, once with every difference weighted by the reflectance and once as they are.
+/// Sums over points and bands, with weight w: the reflectance or 1.
 struct Sums {
     double squares = 0;      ///< (w (E - E_ref))^2
     double differences = 0;  ///< w (E - E_ref)
@@ -55,7 +55,7 @@ BothSums sum(const ErrorSamples& samples, const Scene& scene, Indices points) {
     });
 }
 
-/// a / b, where 0 / 0 is no error and anything else over 0 an infinite one.
+/// Returns a / b, with 0 / 0 = 0 and an infinite result for any other a over 0.
 double ratio(double a, double b) {
     return a == 0 ? 0 : b > 0 ? a / b : std::copysign(HUGE_VAL, a);
 }
@@ -99,7 +99,7 @@ ErrorMeasure measure(const ErrorSamples& samples, const Scene& scene, Indices po
     return out;
 }
 
-/// The points that count, sorted by face; all of them when none lies on a face.
+/// Returns the points on faces, sorted by face; all points if none is on a face.
 std::vector<std::size_t> points_by_face(const ErrorSamples& samples) {
     std::vector<std::size_t> points;
     for (std::size_t i = 0; i < samples.surfaces.size(); ++i)

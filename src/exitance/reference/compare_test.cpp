@@ -24,7 +24,7 @@ struct Samples {
 
 const SurfaceId floor_face(0u), wall(2u), lamp(3u);
 
-/// mean over bands of rho and of rho^2
+/// Means over the bands of rho and of rho^2.
 double mean_of(const Spectrum& s) {
     return mean(s);
 }
@@ -46,10 +46,10 @@ TEST(ErrorMeasure, IsTheRmsOfRadiosityOverTheMeanReflectedRadiosity) {
     EXPECT_EQ(m.reference_noise, 0);
     EXPECT_EQ(m.points, 2u);
     EXPECT_FALSE(m.of_irradiance);
-    EXPECT_NEAR(m.median_relative_error, 0.2, rounding);  // of 0.1 and 0.2, the upper
+    EXPECT_NEAR(m.median_relative_error, 0.2, rounding);  // the upper one of 0.1 and 0.2
 }
 
-TEST(ErrorMeasure, TakesTheNoiseOfTheReferenceOut) {
+TEST(ErrorMeasure, SubtractsTheNoiseOfTheReference) {
     Samples s;
     s.add(floor_face, 12, 10, 1);
     s.add(floor_face, 8, 10, 1);
@@ -61,7 +61,7 @@ TEST(ErrorMeasure, TakesTheNoiseOfTheReferenceOut) {
     EXPECT_EQ(measure_error(s.view(), s.scene).relative_rms_error, 0);
 }
 
-TEST(ErrorMeasure, IsOfIrradianceWhereNothingReflects) {
+TEST(ErrorMeasure, IsOfIrradianceIfNothingReflects) {
     Samples s;
     s.add(lamp, 11, 10);
     s.add(lamp, 30, 30);
@@ -71,7 +71,7 @@ TEST(ErrorMeasure, IsOfIrradianceWhereNothingReflects) {
     EXPECT_NEAR(m.bias, 0.5 / 20, 1e-14);
 }
 
-TEST(ErrorMeasure, LeavesOutFreeSpaceUnlessThereIsNothingElse) {
+TEST(ErrorMeasure, SkipsFreeSpaceUnlessAllPointsAreInIt) {
     Samples s;
     s.add(SurfaceId(), 100, 1);
     EXPECT_NEAR(measure_error(s.view(), s.scene).relative_rms_error, 99, 1e-12);  // rounding
@@ -80,7 +80,7 @@ TEST(ErrorMeasure, LeavesOutFreeSpaceUnlessThereIsNothingElse) {
     EXPECT_EQ(measure_error(s.view(), s.scene).points, 1u);
 }
 
-TEST(ErrorMeasure, OfDarknessIsNothingOrInfinite) {
+TEST(ErrorMeasure, OfADarkReferenceIsZeroOrInfinite) {
     Samples s;
     s.add(floor_face, 0, 0);
     EXPECT_EQ(measure_error(s.view(), s.scene).relative_rms_error, 0);
@@ -89,14 +89,14 @@ TEST(ErrorMeasure, OfDarknessIsNothingOrInfinite) {
     EXPECT_EQ(measure_error(s.view(), s.scene).relative_rms_error, HUGE_VAL);
 }
 
-TEST(ErrorMeasure, OfWhatIsNotFiniteIsInfinite) {
+TEST(ErrorMeasure, OfAResultThatIsNotFiniteIsInfinite) {
     Samples s;
     s.add(floor_face, 10, 10);
     s.add(floor_face, NAN, 10);
     EXPECT_EQ(measure_error(s.view(), s.scene).relative_rms_error, HUGE_VAL);
 }
 
-TEST(ErrorMeasure, FallsApartByFaceInTheOrderOfTheirIds) {
+TEST(ErrorMeasure, PerFaceIsSortedByFace) {
     Samples s;
     s.add(wall, 5.5, 5);
     s.add(SurfaceId(), 1, 2);

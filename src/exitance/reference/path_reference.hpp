@@ -8,21 +8,23 @@
 
 namespace exitance {
 
-/// An unbiased estimate of the irradiance at a point.
+/// Unbiased estimate of the irradiance at a point.
 struct ReferenceLight {
-    Spectrum irradiance;      ///< W/m^2
-    Spectrum standard_error;  ///< Of `irradiance`, from 16 independent randomisations; itself uncertain by some 18%.
-    SurfaceId surface;        ///< The face that the point lies on; none in free space.
-    bool is_between_sides = false;  ///< As that of Light.
+    Spectrum irradiance;  ///< W/m^2
+    /// Standard error of `irradiance`, from 16 independent randomisations; itself uncertain by about 18%.
+    Spectrum standard_error;
+    SurfaceId surface;              ///< The face at the point; none in free space.
+    bool is_between_sides = false;  ///< See Light::is_between_sides.
 };
 
-/// Irradiance at points (at the places that a PlaceFinder finds for them) without any mesh: E(x) = E_dir(x), exact,
-/// plus the mean over paths of what reaches x after one reflection or more. Light of emitters and skies that panes
-/// mirror is left out (mirrored_light.hpp). At every vertex of a path the direct light is estimated by one shadow ray,
-/// to an emitter chosen by its unoccluded contribution, and by the path's next ray, weighted by the balance heuristic;
-/// paths end by Russian roulette with the reflectance as survival. `paths` is rounded up to a multiple of 16.
-/// Deterministic by `seed` and a point's place in `points`. After a stop the result ends before the first point that is
-/// not finished. Source: [Kajiya86], [Veach95]. O(points x paths).
+/// Estimates irradiance at points (at the places that a PlaceFinder finds for them) without a mesh: E(x) = E_dir(x),
+/// exact, plus the mean over paths of the light that reaches x after at least one reflection. Emitters' and skies'
+/// light that panes mirror is not included (mirrored_light.hpp). At every vertex of a path, the direct light is
+/// estimated by one shadow ray, to an emitter chosen by its unoccluded contribution, and by the path's next ray,
+/// weighted by the balance heuristic. Paths end by Russian roulette, with the reflectance as survival probability.
+/// `paths`: number of paths per point, rounded up to a multiple of 16. Deterministic for a given `seed` and index of a
+/// point. After a stop request, the result ends before the first unfinished point. Source: [Kajiya86], [Veach95].
+/// O(points x paths).
 std::vector<ReferenceLight> reference_light(const Scene& scene, std::span<const ProbePoint> points, std::size_t paths,
                                             std::uint64_t seed, Progress& progress, const StopRequest& stop);
 

@@ -29,8 +29,8 @@ TEST(PathReference, FindsAFurnacesLightWithinItsOwnStandardError) {
     EXPECT_LT(z_squares / 30, 2.5);
 }
 
-/// From there a path may meet the light at no distance at all.
-TEST(PathReference, IsANumberBesideTheCornerOfALight) {
+/// From such points, a path may hit the emitter at distance zero.
+TEST(PathReference, IsFiniteBesideTheCornerOfAnEmitter) {
     const Scene scene = box_scene(1, 1, 1, 0.7, 1, 1);
     std::vector<ProbePoint> points;
     for (int i = 0; i < 16; ++i)

@@ -8,21 +8,21 @@
 
 namespace exitance {
 
-/// What a solution is held against.
+/// Reference with which a solution is compared.
 struct ReferencePoints {
     std::vector<ProbePoint> points;
     std::vector<Spectrum> irradiance;       ///< W/m^2
-    std::vector<Spectrum> standard_errors;  ///< W/m^2; empty: exact.
+    std::vector<Spectrum> standard_errors;  ///< W/m^2; empty: the reference is exact.
 };
 
-/// What of a solution is measured: the function that `probe` evaluates, or what `export` writes.
+/// The part of a solution that is compared: the function that `probe` evaluates, or the mesh that `export` writes.
 enum class Evaluated : std::uint8_t { function, interpolant };
 
-/// E of a solution at points, W/m^2.
+/// Returns the irradiance of a solution at points, W/m^2.
 std::vector<Spectrum> irradiance_at(const Solution& solution, const std::vector<ProbePoint>& points,
                                     Evaluated what = Evaluated::function);
 
-/// How far irradiance at the reference's points is from it, W/m^2.
+/// Compares irradiance at the reference's points, W/m^2, with the reference.
 ErrorMeasure error_against(std::span<const Spectrum> irradiance, const ReferencePoints& reference, const Scene& scene);
 ErrorMeasure error_against(const Solution& solution, const ReferencePoints& reference,
                            Evaluated what = Evaluated::function);

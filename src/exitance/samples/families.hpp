@@ -7,7 +7,7 @@
 
 namespace exitance {
 
-/// Values of a family's parameters, checked and complete.
+/// Complete and checked values of a family's parameters.
 using FamilyValues = std::map<std::string, double>;
 
 // Analytic scenes and rooms.
@@ -21,7 +21,7 @@ PolygonKit make_gcr2(const FamilyValues& values);
 PolygonKit make_office(const FamilyValues& values);
 PolygonKit make_carpet(const FamilyValues& values);
 
-// Open scenes under one to four lights of the same power.
+// Open scenes under one to four lights of equal power.
 PolygonKit make_flat(const FamilyValues& values);
 PolygonKit make_boxes(const FamilyValues& values);
 PolygonKit make_table(const FamilyValues& values);
@@ -29,7 +29,7 @@ PolygonKit make_chair(const FamilyValues& values);
 PolygonKit make_float(const FamilyValues& values);
 PolygonKit make_spiral(const FamilyValues& values);
 
-// Closed rooms whose light is hard to find.
+// Closed rooms in which light paths are hard to find.
 PolygonKit make_cove(const FamilyValues& values);
 PolygonKit make_blinds(const FamilyValues& values);
 PolygonKit make_clutter(const FamilyValues& values);
@@ -40,7 +40,7 @@ PolygonKit make_bright(const FamilyValues& values);
 PolygonKit make_tree(const FamilyValues& values);
 PolygonKit make_lightwell(const FamilyValues& values);
 
-/// A value as a file name carries it: 0.7 is 0p7.
+/// Formats a value for a file name: 0.7 becomes 0p7.
 std::string in_a_name(double value);
 
 }  // namespace exitance

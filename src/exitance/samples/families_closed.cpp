@@ -15,7 +15,7 @@ std::string in_a_name(double value) {
     return out;
 }
 
-/// A source over a receiver with a blocker between: all black, so that its light is analytic.
+/// A source over a receiver with a blocker in between: all black, so that the light has an analytic solution.
 PolygonKit make_blocker(const FamilyValues& values) {
     const double h = values.at("h");
     PolygonKit kit("blocker_h" + in_a_name(h));
@@ -64,8 +64,8 @@ PolygonKit make_furnace(const FamilyValues& values) {
 
 namespace {
 
-/// Places for m chairs on a triangular lattice within the triangle of the given corners; surplus places are left out
-/// at even distances.
+/// Returns positions for m chairs on a triangular lattice in the triangle of the given corners; surplus positions are
+/// omitted at even intervals.
 std::vector<Vec2> lattice(std::size_t m, const std::array<Vec2, 3>& corner) {
     std::size_t rows = 1;
     while (rows * (rows + 1) / 2 < m) ++rows;
@@ -91,8 +91,8 @@ std::vector<Vec2> lattice(std::size_t m, const std::array<Vec2, 3>& corner) {
 
 }  // namespace
 
-/// m chairs in a closed triangular room whose walls lean inwards under a triangular light. The room grows with sqrt(m),
-/// its area with m.
+/// m chairs in a closed triangular room with walls leaning inwards under a triangular light. The room's size grows with
+/// sqrt(m), its area with m.
 PolygonKit make_complex(const FamilyValues& values) {
     const int m = static_cast<int>(values.at("m"));
     PolygonKit kit("complex_m" + std::to_string(m));
@@ -102,10 +102,11 @@ PolygonKit make_complex(const FamilyValues& values) {
     kit.material("chair0", {0.55, 0.35, 0.20});
     kit.material("chair1", {0.25, 0.40, 0.55});
     kit.material("chair2", {0.50, 0.50, 0.45});
-    constexpr int whole_room = 36;  // chairs that an unscaled room is made for
+    constexpr int whole_room = 36;  // number of chairs for which an unscaled room is designed
     const double k = std::sqrt(values.at("scaled") > 0 ? m : std::max(m, whole_room)), outer = 2.4 * k, inner = 0.7 * k,
                  height = 2.4 * k;
-    const double chairs = 2 * (outer / 2 - 0.75);  // circumradius of the triangle of chairs, clear of the walls
+    // Circumradius of the triangle of chairs, which keeps a distance from the walls.
+    const double chairs = 2 * (outer / 2 - 0.75);
     std::vector<Point> floor, ceiling;
     std::array<Vec2, 3> corner;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -157,8 +158,8 @@ PolygonKit make_gcr2(const FamilyValues&) {
     return kit;
 }
 
-/// The measured Cornell box. The red wall's corners, not coplanar as measured, are moved into a plane, and the ceiling
-/// leaves out the light, which lies in it.
+/// The measured Cornell box. The corners of the red wall, which are not coplanar as measured, are moved to a plane. The
+/// ceiling has a hole for the light, which is in its plane.
 PolygonKit make_cornell(const FamilyValues&) {
     PolygonKit kit("cornell");
     kit.material("white", {0.76, 0.75, 0.74});

@@ -3,18 +3,18 @@
 #include "exitance/samples/families.hpp"
 #include "exitance/samples/mersenne_twister.hpp"
 
-// Closed rooms whose light is hard to find: by reflection alone, through small openings, in gaps, behind thousands of
-// thin things.
+// Closed rooms with light paths that are hard to find: only by reflection, through small openings, in gaps, or behind
+// thousands of thin objects.
 
 namespace exitance {
 namespace {
 
-/// A rectangle of a plane, and what of it is left open.
+/// An opening in a rectangle, in the rectangle's coordinates.
 struct Opening {
     double u0, v0, u1, v1;
 };
 
-/// A rectangle p + u a + v b, u in [0, width] and v in [0, height], around an opening.
+/// Adds a rectangle p + u a + v b, u in [0, width] and v in [0, height], without the opening.
 void add_around(PolygonKit& kit, const char* group, const char* material, const Point& p, const Vec3& a, const Vec3& b,
                 double width, double height, const Opening& o, const Point& seen) {
     const auto part = [&](double u0, double v0, double u1, double v1) {
@@ -28,7 +28,7 @@ void add_around(PolygonKit& kit, const char* group, const char* material, const 
     part(o.u0, o.v1, o.u1, height);
 }
 
-/// The inside of a box: floor, ceiling and walls.
+/// Adds the inside of a box: floor, ceiling and walls.
 void add_room(PolygonKit& kit, const Point& lo, const Point& hi, const char* floor, const char* ceiling,
               const char* wall) {
     kit.horizontal("floor", floor, lo.x, lo.y, hi.x, hi.y, lo.z);
@@ -49,14 +49,14 @@ void add_materials(PolygonKit& kit, double radiance) {
     kit.material("light", 0, radiance);
 }
 
-/// A lamp that looks down, with a box over it.
+/// Adds a lamp that faces down, with a housing above it.
 void add_lamp(PolygonKit& kit, double x, double y, double z, double width, double length, double thickness) {
     const Point lo{x - width / 2, y - length / 2, z}, hi{x + width / 2, y + length / 2, z + thickness};
     kit.box("lamp", "ceiling", lo, hi, {false, true, ~0u});
     kit.horizontal("lamp", "light", lo.x, lo.y, hi.x, hi.y, z, false);
 }
 
-/// A triangle that reflects on both sides.
+/// Adds a triangle that reflects on both sides.
 void add_sheet(PolygonKit& kit, const char* group, const char* material, const Point& a, const Point& b,
                const Point& c) {
     kit.polygon(group, material, {a, b, c});
@@ -70,7 +70,7 @@ Vec3 random_direction(MersenneTwister& random) {
 
 }  // namespace
 
-/// Emitters on shelves along two walls look up at the ceiling, hidden behind lips: all light in the room is reflected.
+/// Emitters on shelves along two walls face up to the ceiling, hidden behind lips: all light in the room is reflected.
 PolygonKit make_cove(const FamilyValues& v) {
     const double x = v.at("x"), y = v.at("y"), z = v.at("z"), deep = v.at("deep"), thick = v.at("thick");
     const double top = v.at("at") + thick, lip = v.at("lip"), lamp = v.at("lamp");
@@ -82,7 +82,7 @@ PolygonKit make_cove(const FamilyValues& v) {
     add_room(kit, {0, 0, 0}, {x, y, z}, "floor", "ceiling", "wall");
     const Point above{x / 2, y / 2, z}, below{x / 2, y / 2, 0};
     for (const double side : {1.0, -1.0}) {
-        // From the wall at `wall` inwards; `at` metres of it.
+        // `across` adds a strip along the shelf, from a to b metres inwards from the wall at x = `wall`.
         const double wall = side > 0 ? 0 : x;
         const auto across = [&](double a, double b, double height, const Point& seen, const char* material) {
             kit.facing(seen, material == std::string_view("light") ? "lamps" : "shelves", material,
@@ -98,7 +98,7 @@ PolygonKit make_cove(const FamilyValues& v) {
                         {wall + side * at, y, to},
                         {wall + side * at, 0, to}});
         };
-        constexpr double edge = 0.02;  // how thick the lip is
+        constexpr double edge = 0.02;  // thickness of the lip
         const double first = std::max(0.0, (deep - edge - lamp) / 2), last = std::min(deep - edge, first + lamp);
         across(0, deep, v.at("at"), below, "wall");
         if (first > 0) across(0, first, top, above, "wall");
@@ -111,7 +111,7 @@ PolygonKit make_cove(const FamilyValues& v) {
     return kit;
 }
 
-/// A window that emits, behind the slats of a blind.
+/// An emitting window behind the slats of a blind.
 PolygonKit make_blinds(const FamilyValues& v) {
     const auto slats = static_cast<int>(v.at("slats"));
     const double tilt = v.at("tilt") * pi / 180, deep = v.at("deep"), away = v.at("away");
@@ -131,7 +131,7 @@ PolygonKit make_blinds(const FamilyValues& v) {
     return kit;
 }
 
-/// Thin triangles at random, under a lamp.
+/// Random thin triangles under a lamp.
 PolygonKit make_clutter(const FamilyValues& v) {
     const auto n = static_cast<int>(v.at("n"));
     MersenneTwister random(static_cast<std::uint64_t>(v.at("seed")));
@@ -148,7 +148,7 @@ PolygonKit make_clutter(const FamilyValues& v) {
     return kit;
 }
 
-/// A lamp just below a ceiling, a board just off a wall, and two boxes just apart.
+/// A lamp just below a ceiling, a board just off a wall, and two boxes with a narrow gap.
 PolygonKit make_gaps(const FamilyValues& v) {
     const double lamp = v.at("lamp"), board = v.at("board"), boxes = v.at("boxes");
     PolygonKit kit("gaps");
@@ -162,7 +162,7 @@ PolygonKit make_gaps(const FamilyValues& v) {
     return kit;
 }
 
-/// Two rooms that a door joins; a lamp in the first one alone, a centimetre below its ceiling.
+/// Two rooms joined by a door; the only lamp is in the first room, a centimetre below its ceiling.
 PolygonKit make_door(const FamilyValues& v) {
     const double width = v.at("width"), height = v.at("height"), x = v.at("x");
     constexpr double y = 4, z = 2.7, thick = 0.12;
@@ -191,14 +191,14 @@ PolygonKit make_door(const FamilyValues& v) {
     return kit;
 }
 
-/// A lit box whose wall has a small hole, in a dark room.
+/// A lit box with a small hole in its wall, in a dark room.
 PolygonKit make_keyhole(const FamilyValues& v) {
     const double hole = v.at("hole");
     constexpr double thick = 0.05;
     PolygonKit kit("keyhole");
     add_materials(kit, 20);
     add_room(kit, {0, 0, 0}, {5, 4, 3}, "floor", "ceiling", "wall");
-    // The box, 1 m a side, stands in a corner of the room; its inside is smaller by the walls.
+    // The box has edges of 1 m and is in a corner of the room; its inside is smaller by the walls.
     const Point lo{0.5, 0.5, 0}, hi{1.5, 1.5, 1}, in_lo = lo + Vec3{thick, thick, thick},
                                                   in_hi = hi - Vec3{thick, thick, thick};
     kit.box("box", "thing", lo, hi, {false, true, 0b1101});
@@ -219,7 +219,7 @@ PolygonKit make_keyhole(const FamilyValues& v) {
         kit.facing(
             inside, "inside", "wall",
             {{in_lo.x, side, in_lo.z}, {in_hi.x, side, in_lo.z}, {in_hi.x, side, in_hi.z}, {in_lo.x, side, in_hi.z}});
-    // The hole's own four walls.
+    // The four side walls of the hole.
     const double y0 = lo.y + from, y1 = lo.y + to;
     const Point in_hole{hi.x - thick / 2, 1, 0.5};
     for (const double side : {y0, y1})
@@ -231,7 +231,7 @@ PolygonKit make_keyhole(const FamilyValues& v) {
     return kit;
 }
 
-/// A furnished room of one high reflectance: light goes round a hundred times.
+/// A furnished room with one high reflectance: light is reflected about a hundred times.
 PolygonKit make_bright(const FamilyValues& v) {
     PolygonKit kit("bright_r" + in_a_name(v.at("rho")));
     for (const char* name : {"floor", "ceiling", "wall", "thing"}) kit.material(name, v.at("rho"));
@@ -244,7 +244,7 @@ PolygonKit make_bright(const FamilyValues& v) {
     return kit;
 }
 
-/// Leaves that reflect on both sides, at random in a ball over a trunk, under a lamp.
+/// Two-sided leaves at random positions in a ball above a trunk, under a lamp.
 PolygonKit make_tree(const FamilyValues& v) {
     const auto leaves = static_cast<int>(v.at("leaves"));
     MersenneTwister random(static_cast<std::uint64_t>(v.at("seed")));

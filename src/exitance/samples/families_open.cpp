@@ -12,7 +12,7 @@ std::string name_with_lights(const char* family, const FamilyValues& values) {
     return lights == 1 ? family : family + std::string("_l") + std::to_string(lights);
 }
 
-/// Square lights that face down, together always of the same power.
+/// Adds square lights that face down; their total power does not depend on their number.
 void add_lights(PolygonKit& kit, const FamilyValues& values, double z, double size, double spread) {
     static const std::array<std::vector<Vec2>, 4> places = {{{{0, 0}},
                                                              {{-1, 0.2}, {1, -0.2}},

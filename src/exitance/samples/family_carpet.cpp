@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// Every face in triangles, and these in `cuts` times `cuts` of their shape, as programs for modelling write them.
+/// Splits every face into triangles, and each of these into `cuts` x `cuts` similar ones, like modelling programs do.
 void cut_faces(PolygonKit& to, const SceneDescription& from, int cuts) {
     std::vector<Point> outline;
     for (const auto& face : from.faces) {
@@ -31,10 +31,10 @@ void cut_faces(PolygonKit& to, const SceneDescription& from, int cuts) {
     }
 }
 
-/// v strips of u triangles each that face down, their heights a wave in either direction. Where u is odd, lines of
-/// u/2 - 1/2 and u/2 + 1/2 parts take turns.
+/// Adds v strips of u triangles each that face down, with heights that vary as waves in both directions. If u is odd,
+/// lines of u/2 - 1/2 and u/2 + 1/2 parts alternate.
 void add_wavy_sheet(PolygonKit& kit, const Vec2& lo, const Vec2& hi, double height, double wave, int u, int v) {
-    constexpr double waves = 4;  // across the sheet
+    constexpr double waves = 4;  // number of waves across the sheet
     const auto parts = [&](int line) { return line % 2 == 0 ? (u + 1) / 2 : std::max(u / 2, 1); };
     const auto at = [&](int line, int i) {
         const double s = static_cast<double>(i) / parts(line), t = static_cast<double>(line) / v;
@@ -44,7 +44,7 @@ void add_wavy_sheet(PolygonKit& kit, const Vec2& lo, const Vec2& hi, double heig
     for (int strip = 0; strip < v; ++strip) {
         const int first = parts(strip), second = parts(strip + 1);
         for (int i = 0, k = 0, count = 0; count < u && (i < first || k < second); ++count) {
-            // The line goes on that is behind, so that triangles are of one size.
+            // Advance on the line that lags behind, so that all triangles have similar sizes.
             if (k == second || (i < first && (2 * i + 1) * second <= (2 * k + 1) * first)) {
                 kit.polygon("carpet", "carpet", {at(strip, i), at(strip + 1, k), at(strip, i + 1)});
                 ++i;
@@ -58,8 +58,8 @@ void add_wavy_sheet(PolygonKit& kit, const Vec2& lo, const Vec2& hi, double heig
 
 }  // namespace
 
-/// Two furnished rooms of an office, all in triangles, their own lamps off; under the ceiling of the first one hangs a
-/// wavy sheet of triangles that emit downwards.
+/// Two furnished office rooms, all triangulated, with their own lamps off. A wavy sheet of triangles that emit
+/// downwards hangs under the ceiling of the first room.
 PolygonKit make_carpet(const FamilyValues& values) {
     const auto value = [&](const char* name) { return static_cast<int>(values.at(name)); };
     const int u = value("u"), v = value("v");

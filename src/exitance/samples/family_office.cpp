@@ -9,15 +9,15 @@
 namespace exitance {
 namespace {
 
-constexpr double room = 4.0;    // width and depth of a room
-constexpr double height = 2.8;  // of the ceiling
+constexpr double room = 4.0;    // width and depth of a room, metres
+constexpr double height = 2.8;  // of the ceiling, metres
 constexpr double half_wall = 0.06;
 constexpr double door_from = 0.45, door_width = 0.9, door_height = 2.1;
 
-/// A place on a wall: u along it, v out of it, z up.
+/// Maps wall coordinates to a point: u along the wall, v out of it, z up.
 using WallMap = std::function<Point(double u, double v, double z)>;
 
-/// Numbers joined by underscores: "room_2_0".
+/// Joins a name and numbers by underscores: "room_2_0".
 template <class... Ints>
 std::string numbered(const std::string& what, Ints... numbers) {
     std::string out = what;
@@ -39,7 +39,7 @@ void add_room(PolygonKit& kit, int i, int j) {
         }
 }
 
-/// One room's width of outer wall around a window panel that emits.
+/// Adds the outer wall of one room around an emitting window panel.
 void add_bay(PolygonKit& kit, const std::string& group, const WallMap& wall, const Point& inside) {
     const double a0 = 0.9, a1 = 3.1, z0 = 0.95, z1 = 2.15;
     const auto add = [&](const char* material, std::initializer_list<Vec2> outline) {
@@ -54,7 +54,7 @@ void add_bay(PolygonKit& kit, const std::string& group, const WallMap& wall, con
     add("window", {{a0, z0}, {a1, z0}, {a1, z1}, {a0, z1}});
 }
 
-/// An inner wall from u0 to u1 with a door opening: both faces are concave outlines, and the opening has jambs.
+/// Adds an inner wall from u0 to u1 with a door opening: both faces are concave outlines, and the opening has jambs.
 void add_inner_wall(PolygonKit& kit, const std::string& group, const WallMap& wall, double u0, double u1) {
     const double a = door_from, b = door_from + door_width, t = half_wall, top = door_height;
     for (double v : {t, -t}) {
@@ -101,9 +101,7 @@ void add_walls(PolygonKit& kit, int nx, int ny) {
             },
             inside);
     }
-    const auto first = [](int k) {
-        return k == 0 ? 0 : half_wall;
-    };  // where a wall begins: at the facade or a crossing
+    const auto first = [](int k) { return k == 0 ? 0 : half_wall; };  // start of a wall: at the facade or at a crossing
     const auto last = [](int k, int n) { return k == n - 1 ? room : room - half_wall; };
     for (int i = 1; i < nx; ++i)
         for (int j = 0; j < ny; ++j)
@@ -144,7 +142,7 @@ void add_materials(PolygonKit& kit) {
 
 }  // namespace
 
-/// An office floor of nx by ny rooms, closed: windows are panels that emit. 1e3 to 1e6 polygons.
+/// A closed office floor of nx by ny rooms; windows are emitting panels. 1e3 to 1e6 polygons.
 PolygonKit make_office(const FamilyValues& values) {
     const auto value = [&](const char* name) { return static_cast<int>(values.at(name)); };
     const int nx = value("nx"), ny = value("ny"), places = value("nfurn"), books = value("books");

@@ -13,7 +13,7 @@
 namespace exitance {
 namespace {
 
-/// A family and how it is made.
+/// A family and the function that generates it.
 struct Recipe {
     SceneFamily family;
     PolygonKit (*make)(const FamilyValues&);
@@ -24,7 +24,7 @@ const FamilyParameter reflectance = {"rho", 0.5, 0, 0.999999, false, "reflectanc
 
 const FamilyParameter seed = {"seed", 7, 0, 9e15, true, "of what is at random"};
 
-/// Rooms whose light is hard to find.
+/// Rooms with light paths that are hard to find.
 const std::vector<Recipe> hard_recipes{
     {{"cove",
       "a room lit by coves alone: emitters on shelves that look up, behind lips: 20 polygons",
@@ -86,7 +86,7 @@ const std::vector<Recipe> hard_recipes{
      make_lightwell},
 };
 
-/// Rooms and things of studies, and those of the papers.
+/// Rooms and objects for studies, and scenes of papers.
 std::vector<Recipe> study_recipes() {
     return {
         {{"blocker",
@@ -160,7 +160,7 @@ std::optional<double> number(const std::string& text) {
     return value;
 }
 
-/// "1,2,3" as numbers; nothing unless there are as many as `count`.
+/// Parses "1,2,3"; returns nothing unless there are exactly `count` numbers.
 std::optional<std::vector<double>> numbers(const std::string& text, std::size_t count) {
     std::vector<double> out;
     for (std::size_t from = 0; from <= text.size();) {
@@ -174,12 +174,12 @@ std::optional<std::vector<double>> numbers(const std::string& text, std::size_t 
     return out;
 }
 
-/// What is done to a scene of any family.
+/// The transformation that can be applied to a scene of any family.
 struct Motion {
     double degrees = 0, scale = 1;
     Vec3 axis{0, 0, 1}, shift;
 
-    /// Turned by Rodrigues' formula, scaled, shifted.
+    /// Rotates by Rodrigues' formula, then scales and translates.
     Point operator()(const Point& p) const {
         const double angle = degrees * pi / 180, c = std::cos(angle), s = std::sin(angle);
         return scale * (c * p + s * cross(axis, p) + (dot(axis, p) * (1 - c)) * axis) + shift;

@@ -25,16 +25,16 @@ Vec3 area_vector_of(const SceneDescription& scene) {
     return sum;
 }
 
-TEST(MersenneTwister, DrawsWhatPythonDraws) {
+TEST(MersenneTwister, AgreesWithPython) {
     MersenneTwister seven(7);
-    EXPECT_EQ(seven.uniform(0, 1), 0.32383276483316237);  // random.Random(7).random(), and so on
+    EXPECT_EQ(seven.uniform(0, 1), 0.32383276483316237);  // random.Random(7).random(), and following calls
     EXPECT_EQ(seven.uniform(0, 1), 0.15084917392450192);
     EXPECT_EQ(seven.uniform(0, 1), 0.6509344730398537);
     for (std::uint32_t expected : {0u, 4u, 0u, 2u, 4u, 0u, 4u, 1u}) EXPECT_EQ(seven.below(5), expected);
     EXPECT_EQ(MersenneTwister((1ull << 40) + 5).uniform(0, 1), 0.5043802970418443);
 }
 
-TEST(SceneFamilies, HaveThePolygonCountsTheyState) {
+TEST(SceneFamilies, HaveTheStatedPolygonCounts) {
     const std::vector<std::tuple<std::string, Parameters, std::size_t>> expected = {
         {"blocker", {}, 3},
         {"tube", {}, 6},
@@ -76,12 +76,12 @@ TEST(SceneFamilies, HaveThePolygonCountsTheyState) {
     }
 }
 
-TEST(SceneFamilies, EveryFamilyOfTheListCanBeMadeWithItsDefaults) {
+TEST(SceneFamilies, EveryFamilyCanBeMadeWithItsDefaults) {
     for (const SceneFamily& family : scene_families()) EXPECT_FALSE(make(family.name).faces.empty()) << family.name;
 }
 
 TEST(SceneFamilies, ClosedSolidsAreClosed) {
-    // Corners are rounded to 12 decimals; what stands on a floor, hides as much of it as it lacks.
+    // Corners are rounded to 12 decimals; an object on a floor hides as much of the floor as its own missing bottom.
     for (const char* family : {"tube", "furnace", "lightwell", "door"})
         EXPECT_LT(norm(area_vector_of(make(family))), 1e-10) << family;
 }
@@ -98,7 +98,7 @@ TEST(SceneFamilies, TheRoomOfChairsGrowsWithTheirNumber) {
     EXPECT_NEAR(make("complex", {{"m", "25"}}).points[0].y, 12, 1e-12);
 }
 
-TEST(SceneFamilies, MayBeTurnedScaledShiftedAndNamed) {
+TEST(SceneFamilies, MayBeRotatedScaledShiftedAndNamed) {
     const SceneDescription plain = make("flat");
     const SceneDescription moved =
         make("flat", {{"rot", "90,0,0,2"}, {"scale", "2"}, {"shift", "1,0,-1"}, {"name", "moved"}});

@@ -11,7 +11,7 @@ void MersenneTwister::seed_with(std::uint32_t seed) {
         state_[i] = 1812433253u * (state_[i - 1] ^ (state_[i - 1] >> 30)) + i;
 }
 
-/// The seed is a key of one or two words, "initialisation by array".
+/// The seed is a key of one or two 32-bit words ("initialisation by array").
 MersenneTwister::MersenneTwister(std::uint64_t seed) {
     seed_with(19650218u);
     const std::array<std::uint32_t, 2> key = {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)};

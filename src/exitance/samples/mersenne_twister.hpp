@@ -5,8 +5,8 @@
 
 namespace exitance {
 
-/// MT19937 with the seeding and the draws of Python's `random.Random(seed)`, so that scene families made by either hold
-/// the same numbers. For making scenes only: everything else uses RandomStream. Source: [Matsumoto98].
+/// MT19937 with the seeding and the draws of Python's `random.Random(seed)`, so that both produce the same scene
+/// families. Only for scene generation; all other code uses RandomStream. Source: [Matsumoto98].
 class MersenneTwister {
   public:
     explicit MersenneTwister(std::uint64_t seed);

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// Three bands of a colour on the bands of this build.
+/// Converts a colour of three bands to the bands of this build.
 Spectrum spectrum(const PolygonKit::Colour& c) {
     Spectrum out;
     if (bands == 1) return Spectrum((c[0] + c[1] + c[2]) / 3);

@@ -9,30 +9,30 @@
 
 namespace exitance {
 
-/// A turn about the vertical axis, then a move.
+/// A rotation about the vertical axis, followed by a translation.
 struct Placement {
     Vec3 move;
     double cosine = 1, sine = 0;
 
-    /// Turned by `degrees` (multiples of 90 exactly), then moved to (x, y, z).
+    /// Rotates by `degrees` (multiples of 90 are exact), then translates to (x, y, z).
     static Placement at(double x, double y, double z, double degrees = 0);
     Point operator()(const Point& p) const {
         return {move.x + cosine * p.x - sine * p.y, move.y + sine * p.x + cosine * p.y, move.z + p.z};
     }
-    /// First `inner`, then this.
+    /// Returns the placement that applies `inner` first, then this one.
     Placement after(const Placement& inner) const {
         return {(*this)(inner.move), cosine * inner.cosine - sine * inner.sine,
                 sine * inner.cosine + cosine * inner.sine};
     }
 };
 
-/// Which faces of a solid are there.
+/// Which faces of a solid exist.
 struct SolidFaces {
     bool bottom, top;
-    unsigned sides;  ///< A bit a side; of a box: 0 front (-y), 1 right, 2 back, 3 left.
+    unsigned sides;  ///< One bit per side; for a box: 0 front (-y), 1 right, 2 back, 3 left.
 };
 
-/// Builds scene descriptions of rectangles, boxes and prisms. Corners at the same coordinates are one point.
+/// Builds scene descriptions from rectangles, boxes and prisms. Corners with equal coordinates are one point.
 class PolygonKit {
   public:
     using Colour = std::array<double, 3>;
@@ -41,7 +41,7 @@ class PolygonKit {
 
     explicit PolygonKit(std::string name) { scene_.file = std::move(name) + ".obj"; }
 
-    /// Adds a material, or changes what its name means.
+    /// Adds a material, or redefines it if the name exists.
     void material(const std::string& name, const Colour& reflectance, const Colour& radiance = {0, 0, 0});
     void material(const std::string& name, double reflectance, double radiance = 0) {
         material(name, Colour{reflectance, reflectance, reflectance}, Colour{radiance, radiance, radiance});
@@ -51,11 +51,11 @@ class PolygonKit {
     void polygon(std::string_view group, std::string_view material, std::initializer_list<Point> outline) {
         polygon(group, material, std::span(outline.begin(), outline.size()));
     }
-    /// The same, turned over if need be so that its front sees the point.
+    /// Adds a polygon, reversed if necessary so that its front faces the point `seen`.
     void facing(const Point& seen, std::string_view group, std::string_view material, std::vector<Point> outline);
     void horizontal(std::string_view group, std::string_view material, double x0, double y0, double x1, double y1,
                     double z, bool up = true);
-    /// A solid between two matching outlines, both counter-clockwise seen from above.
+    /// Adds a solid between two matching outlines, both counter-clockwise seen from above.
     void prism(std::string_view group, std::string_view material, const std::vector<Point>& base,
                const std::vector<Point>& top, const Faces& faces = all);
     void box(std::string_view group, std::string_view material, const Point& lo, const Point& hi,

@@ -11,12 +11,13 @@
 namespace exitance {
 namespace {
 
-/// Joins faces that share both ends of an edge, in either direction.
+/// Joins faces that share both end points of an edge, in either direction.
 void join_by_edges(const Scene& scene, DisjointSets& sets) {
     std::vector<Point> corners;
     for (SurfaceId s : scene.surfaces().ids())
         corners.insert(corners.end(), scene.outline(s).begin(), scene.outline(s).end());
-    const std::vector<std::uint32_t> place = weld(corners, 1e-8 * scene.size());  // as findings about edges do
+    // Uses the tolerance of the findings about edges.
+    const std::vector<std::uint32_t> place = weld(corners, 1e-8 * scene.size());
     struct Edge {
         std::uint32_t low, high, face;
         auto operator<=>(const Edge&) const = default;
@@ -38,7 +39,7 @@ void join_by_edges(const Scene& scene, DisjointSets& sets) {
             sets.unite(edges[i].face, edges[i - 1].face);
 }
 
-/// What readers call the faces that belong to no object of the file.
+/// The group name that readers give to faces without an object in the file.
 constexpr std::string_view no_object = "default";
 
 /// Joins the faces of every named object, and those of every region.
@@ -56,12 +57,12 @@ void join_by_name(const Scene& scene, DisjointSets& sets) {
         for (SurfaceId s : region.surfaces) sets.unite(region.surfaces[0].value, s.value);
 }
 
-/// Gathers the faces of every set, in the order of their first ones.
+/// Collects the faces of every set, sorted by first face.
 SceneBodies bodies_of(const Scene& scene, DisjointSets& sets) {
     SceneBodies out;
     out.body.resize(scene.surfaces().size(), 0);
     for (SurfaceId s : scene.surfaces().ids()) {
-        const std::uint32_t root = sets.root(s.value);  // the least member: it comes first
+        const std::uint32_t root = sets.root(s.value);  // the smallest member, which comes first
         if (root == s.value) {
             out.body[s] = static_cast<std::uint32_t>(out.all.size());
             out.all.push_back({.first = s});
@@ -75,7 +76,7 @@ SceneBodies bodies_of(const Scene& scene, DisjointSets& sets) {
     return out;
 }
 
-/// Place of a point on a Morton curve through a box, 20 bits an axis.
+/// Returns the position of a point on a Morton curve through a box, 20 bits per axis.
 std::uint64_t morton(const Point& p, const Box& box) {
     std::uint64_t out = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -87,7 +88,7 @@ std::uint64_t morton(const Point& p, const Box& box) {
     return out;
 }
 
-/// Bodies in the order of a Morton curve, as a list from which the smallest are taken out.
+/// Bodies in the order of a Morton curve, as a linked list from which the smallest are removed.
 class Pool {
   public:
     Pool(const Scene& scene, const SceneBodies& bodies) : area_(bodies.all.size()) {
@@ -102,7 +103,8 @@ class Pool {
             before_[order[i].second] = order[i - 1].second, after_[order[i - 1].second] = order[i].second;
     }
 
-    /// Pools the smallest with the nearer of its two neighbours until `count` are left; `join(a, b)` is told each.
+    /// Merges the smallest body with the nearer of its two neighbours until `count` are left; calls join(a, b) for
+    /// each.
     template <class Join>
     void shrink(std::size_t count, const Join& join) {
         using Entry = std::pair<double, std::uint32_t>;
@@ -111,7 +113,7 @@ class Pool {
         for (std::size_t left = area_.size(); left > count;) {
             const auto [area, b] = smallest.top();
             smallest.pop();
-            if (area != area_[b]) continue;  // it has grown, or is gone
+            if (area != area_[b]) continue;  // outdated entry: the body has grown or was merged
             const std::uint32_t into = neighbour(b);
             join(b, into);
             const double share = area / (area_[into] + area);
@@ -133,7 +135,7 @@ class Pool {
         return squared_norm(centre_[x] - centre_[b]) <= squared_norm(centre_[y] - centre_[b]) ? x : y;
     }
 
-    std::vector<double> area_;  ///< m^2; negative for a body that was pooled with another.
+    std::vector<double> area_;  ///< m^2; negative for a body that was merged into another.
     std::vector<Point> centre_;
     std::vector<std::uint32_t> before_, after_;
 };

@@ -7,24 +7,23 @@
 
 namespace exitance {
 
-/// A part of a scene by which errors are judged: faces that are joined by edges or belong to one named object.
+/// A part of a scene for which an error is reported: faces that are joined by edges or belong to one named object.
 struct SceneBody {
     std::size_t surfaces = 0;  ///< Number of its faces.
-    double area = 0;           ///< m^2
+    double area = 0;           ///< Area in m^2.
     Point centre = {};         ///< Mean of its faces' centroids, weighted by area, metres.
-    SurfaceId first = {};      ///< The first of its faces.
+    SurfaceId first = {};      ///< Its first face.
 };
 
 struct SceneBodies {
-    std::vector<SceneBody> all;            ///< In the order of their first faces.
-    Field<SurfaceId, std::uint32_t> body;  ///< Index into `all` of every face.
+    std::vector<SceneBody> all;            ///< Sorted by first face.
+    Field<SurfaceId, std::uint32_t> body;  ///< For every face, the index of its body in `all`.
 
     std::uint32_t of(const Scene& scene, RegionId region) const { return body[scene.regions()[region].surfaces[0]]; }
 };
 
-/// Finds the bodies of a scene. Where there are more than `max_bodies`, the smallest ones are pooled with a neighbour,
-/// one after another; neighbours are those beside each other on a Morton curve through the bodies' centres.
-/// O(n log n) in corners.
+/// Finds the bodies of a scene. If there are more than `max_bodies`, merges the smallest one repeatedly with the nearer
+/// of its two neighbours on a Morton curve through the bodies' centres. O(n log n) in corners.
 SceneBodies find_bodies(const Scene& scene, std::size_t max_bodies = 512);
 
 }  // namespace exitance

@@ -5,7 +5,7 @@
 namespace exitance {
 namespace {
 
-/// Adds a cube of `size` metres with its lower corner at `at`; every face has corners of its own.
+/// Adds a cube of `size` metres with its lower corner at `at`; every face has its own corners.
 void add_cube(SceneDescription& d, const Point& at, double size, std::uint32_t group) {
     const std::vector<std::vector<int>> faces = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                                  {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}};
@@ -50,11 +50,11 @@ TEST(Bodies, AreFacesOfOneNamedObject) {
     add_cube(d, {0, 0, 0}, 1, 0), add_cube(d, {3, 0, 0}, 1, 0), add_cube(d, {6, 0, 0}, 1, 1),
         add_cube(d, {9, 0, 0}, 1, 1);
     const SceneBodies bodies = find_bodies(made(std::move(d)));
-    ASSERT_EQ(bodies.all.size(), 3u);  // "default" is what faces without a name are called
+    ASSERT_EQ(bodies.all.size(), 3u);  // "default" is the name given to faces without a name
     EXPECT_EQ(bodies.all[0].surfaces, 12u);
 }
 
-TEST(Bodies, TheSmallestArePooledWithNeighbours) {
+TEST(Bodies, TheSmallestAreMergedWithNeighbours) {
     SceneDescription d = with_groups({"default"});
     for (int i = 0; i < 20; ++i) add_cube(d, {i < 10 ? 2.0 * i : 1000 + 2.0 * i, 0, 0}, i < 10 ? 0.1 : 1, 0);
     const Scene scene = made(std::move(d));
@@ -65,7 +65,7 @@ TEST(Bodies, TheSmallestArePooledWithNeighbours) {
     for (const SceneBody& body : bodies.all) area += body.area, surfaces += body.surfaces;
     EXPECT_NEAR(area, 10 * 6 * 1.01, 1e-9);
     EXPECT_EQ(surfaces, 120u);
-    // The ten small cubes are one body, and no large one was pooled with them.
+    // The ten small cubes are one body, and no large one was merged with them.
     EXPECT_EQ(bodies.all[0].surfaces, 60u);
     EXPECT_NEAR(bodies.all[0].area, 0.6, 1e-9);
 }

@@ -28,12 +28,14 @@ inline Box grown(Box box, double by) {
     return {box.lo - d, box.hi + d};
 }
 
-/// A region, a part of one, or a pane.
+/// A region, a part of a region, or a pane.
 struct BorderedFace {
-    std::vector<std::vector<Point>> loops;  ///< Its border; where parts have an edge in common, that cancels out.
+    /// Its border, one loop per part; an edge common to two parts has no effect.
+    std::vector<std::vector<Point>> loops;
     std::vector<Triangle> triangles;
-    Normal n;                                               ///< Towards the front.
-    std::vector<std::pair<std::uint32_t, int>> edges = {};  ///< And the sense of each.
+    Normal n;  ///< Towards the front.
+    /// Indices of its edges, and its direction along each (1 or -1).
+    std::vector<std::pair<std::uint32_t, int>> edges = {};
 };
 
 /// The front or the back of a face.
@@ -42,7 +44,7 @@ struct FaceSide {
     bool is_front;
 };
 
-/// The borders of faces, cut at each other's corners, and what stands next about each edge.
+/// The borders of faces, split at each other's corners, and the adjacency of face sides about each edge.
 class Borders {
   public:
     Borders(std::vector<BorderedFace> faces, double tolerance) : faces_(std::move(faces)), tolerance_(tolerance) {
@@ -66,10 +68,10 @@ class Borders {
             }
     }
 
-    /// All sides that can be reached from one by steps over edges: about an edge onto the side that faces this one,
-    /// about a free one onto the back. No step leads through a face, so that the sides bound one part of space, and the
-    /// faces of which but one side is reached are a closed surface. Empty where two faces lie on one another beside an
-    /// edge that is come by and look the same way.
+    /// Returns all sides that can be reached from `start` by steps over edges. A step over a shared edge leads to the
+    /// side that faces the current one, a step over a free edge to the back of the face. No step leads through a face,
+    /// so that the sides bound one connected part of space, and the faces of which only one side is reached form a
+    /// closed surface. Returns nothing if two coincident faces with the same orientation meet at a visited edge.
     std::vector<FaceSide> sides_reached_from(const FaceSide& start) const {
         std::vector<FaceSide> reached{start};
         std::vector<std::array<std::uint8_t, 2>> is_reached(faces_.size());
@@ -86,10 +88,10 @@ class Borders {
         return reached;
     }
 
-    /// The parts that all sides fall into by such steps: the number of every side's part, [face][is front].
+    /// The components into which such steps divide all sides; part_of[face][is front] is the component of a side.
     struct Parts {
         std::vector<std::array<std::uint32_t, 2>> part_of;
-        std::vector<bool> is_sure;  ///< Of every part: no step from it met two faces that lie on one another.
+        std::vector<bool> is_sure;  ///< For every component: false if a step from it met two coincident faces.
     };
     Parts parts() const {
         constexpr std::uint32_t none = 0xffffffff;
@@ -107,7 +109,7 @@ class Borders {
                 for (const auto& [e, sense] : faces_[side.face].edges) {
                     const auto next = beyond(side, e, sense);
                     std::uint32_t* const there = next ? &out.part_of[next->face][next->is_front ? 1 : 0] : nullptr;
-                    // A step that does not lead back, or leads into another part, is one between doubtful faces.
+                    // A step that is not reversible, or that leads into another component, is at coincident faces.
                     if (!there || (*there != none && *there != part)) out.is_sure[part] = false;
                     if (there && *there != none && *there != part) out.is_sure[*there] = false;
                     if (there && *there == none) *there = part, open.push_back(*next);
@@ -120,7 +122,7 @@ class Borders {
     const BorderedFace& face(std::size_t f) const { return faces_[f]; }
 
   private:
-    /// Of a face, between two corners: cut where other corners lie on it.
+    /// Adds the edge of a face between two corners, split at other corners that are on it.
     void add_edge(std::uint32_t f, std::uint32_t a, std::uint32_t b) {
         if (a == b) return;
         const Vec3 d = at_[b] - at_[a];
@@ -145,18 +147,19 @@ class Borders {
         }
     }
 
-    /// From a face's edge into the face, of length 1.
+    /// Unit vector from an edge into the face, perpendicular to the edge.
     Vec3 inwards(std::uint32_t f, std::uint32_t e, int sense) const { return sense * cross(faces_[f].n, along_[e]); }
 
-    /// The side that faces `side` about an edge: the first that is met on the way round from it. Of two faces that lie
-    /// on one another and look opposite ways the fronts are outside. None where two look the same way.
+    /// Returns the side that faces `side` across an edge: the first one met when turning about the edge. Two coincident
+    /// faces with opposite orientation count as a sheet with its fronts outside; with the same orientation there is no
+    /// result.
     std::optional<FaceSide> beyond(const FaceSide& side, std::uint32_t e, int sense) const {
         const Vec3 from = inwards(side.face, e, sense);
         const Vec3 up = side.is_front ? Vec3(faces_[side.face].n) : -Vec3(faces_[side.face].n);
         const Vec3 axis = cross(from, up);
         constexpr double all_round = 2 * pi;
         FaceSide next{side.face, !side.is_front};
-        double nearest = all_round + 2 * one_direction;  // of the own other side
+        double nearest = all_round + 2 * one_direction;  // the other side of the same face
         for (const auto& [f, s] : users_[e]) {
             if (f == side.face && s == sense) continue;
             const Vec3 to = inwards(f, e, s);
@@ -175,15 +178,16 @@ class Borders {
         return next;
     }
 
-    static constexpr double one_direction = 1e-6;  ///< Radians: faces that are nearer lie on one another.
+    static constexpr double one_direction = 1e-6;  ///< Faces at a smaller angle, in radians, coincide.
 
     std::vector<BorderedFace> faces_;
     double tolerance_;
     std::vector<Point> at_;
-    std::vector<std::uint32_t> place_of_, places_;  ///< Of a corner; those that stand for themselves.
+    /// For each corner, the corner that represents its position; and the representatives.
+    std::vector<std::uint32_t> place_of_, places_;
     Bvh tree_;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edges_;
-    std::vector<Vec3> along_;  ///< Of an edge, of length 1, from the place that comes first.
+    std::vector<Vec3> along_;  ///< Unit vector along an edge, from its end with the lower index.
     std::vector<std::vector<std::pair<std::uint32_t, int>>> users_;
 };
 

@@ -1,4 +1,4 @@
-// The two sides of panes that light passes diffusely.
+// The two sides of diffusing panes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace exitance {
 
-/// Gives faces that light passes the side that their file leaves out.
+/// Adds the missing second side of diffusing panes that have only one face in the file.
 void SceneBuilder::add_other_sides() {
     const auto passes = [&](const SceneDescription::Face& face) {
         return face.material < in_.materials.size() && in_.materials[face.material].is_diffusing_pane();
@@ -31,7 +31,7 @@ void SceneBuilder::add_other_sides() {
     }
 }
 
-/// Tells regions that light passes which one lies behind them.
+/// Links the regions of the two sides of diffusing panes.
 void SceneBuilder::pair_sides(Scene& scene) {
     const auto passes = [&](RegionId r) { return scene.material(r).is_diffusing_pane(); };
     const auto ids = scene.regions_.ids();

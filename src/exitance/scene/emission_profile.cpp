@@ -9,7 +9,7 @@ namespace {
 using Angle = EmissionProfile::Angle;
 constexpr double degree = pi / 180;
 
-/// To and fro between 0 and m.
+/// Reflects an angle into the range 0 to m.
 double folded(double angle, double m) {
     const double rest = std::fmod(angle, 2 * m);
     return rest <= m ? rest : 2 * m - rest;
@@ -45,10 +45,10 @@ bool goes_round(Angle kind) {
     return kind == Angle::phi || kind == Angle::phi2 || kind == Angle::phi4;
 }
 
-/// Between which entries of an axis an angle lies; `inside` is false where the table says nothing.
+/// Position of an angle between two entries of an axis; `inside` is false outside of the table's range.
 struct Place {
     std::size_t first = 0;
-    double t = 0;  ///< Share of the entry after it.
+    double t = 0;  ///< Interpolation weight of the entry after it.
     bool inside = true;
 };
 
@@ -64,8 +64,8 @@ Place find(const EmissionProfile::Axis& axis, const Vec3& d) {
     return {next - 1, (angle - at[next - 1]) / (at[next] - at[next - 1])};
 }
 
-/// The narrowest stretch of k steps if a parabola through the ends and the middle of each is what the table says, to a
-/// thousandth; else 0.
+/// If parabolas through the ends and the middle of every k steps reproduce the table to a thousandth, returns the
+/// narrowest of these intervals, degrees; else 0.
 double parabolic_width(const std::vector<double>& at, const double* values, std::size_t stride, std::size_t k,
                        double least) {
     constexpr double negligible = 1e-3;
@@ -124,7 +124,8 @@ double EmissionProfile::radiance(const Vec3& d, double cosine) const {
 }
 
 void EmissionProfile::find_smooth_width() {
-    constexpr double widest = 30, jump = 1e-3;  // a shorter step is an edge of the light, which no rule follows
+    // A jump within a shorter step is an edge of the light, which no quadrature rule resolves.
+    constexpr double widest = 30, jump = 1e-3;
     double width = widest;
     double sum = 0;
     for (const double v : values) sum += v;
@@ -173,8 +174,8 @@ bool DirectedEmission::is_sane() const {
 }
 
 double exitance_of(const EmissionProfile& profile, const Normal& n) {
-    // Gauss' rule of two points on every step of a grid about the face's normal: exact where the table's steps are the
-    // grid's, which they are for lamps that shine straight down or up.
+    // Two-point Gauss rule on every step of a grid about the face's normal. Exact if the table's steps are the grid's,
+    // as for lamps that shine straight down or up.
     constexpr int fewest = 90;
     constexpr std::array gauss{0.5 - 0.28867513459481287, 0.5 + 0.28867513459481287};
     const bool is_upright = std::abs(n.z) > 1 - 1e-9;

@@ -10,100 +10,101 @@
 
 namespace exitance {
 
-/// How an emitter's light depends on direction: a table over two angles, as photometric files and Radiance's
-/// `brightdata` hold it, and what makes radiance of its values. The lamp's frame: straight down is (0, 0, -1).
+/// Directional distribution of an emitter's light: a table over two angles, as in photometric files and Radiance's
+/// `brightdata`, and the conversion of its values to radiance. In the lamp's frame, straight down is (0, 0, -1).
 struct EmissionProfile {
-    /// What an angle of the table measures, in degrees, of the direction d in which light leaves the lamp.
+    /// The angle that an axis of the table measures, in degrees, for the direction d in which light leaves the lamp.
     enum class Angle : std::uint8_t {
         theta,         ///< From straight down, 0 to 180.
         phi,           ///< About the vertical, from +x towards +y, 0 to 360;
-        phi2,          ///< folded to 0 to 180: the halves y > 0 and y < 0 are alike;
-        phi4,          ///< folded to 0 to 90: all quadrants are alike.
-        b_vertical,    ///< Of photometry of type B: towards +x, -180 to 180;
+        phi2,          ///< folded to 0 to 180: symmetric in y;
+        phi4,          ///< folded to 0 to 90: symmetric in x and y.
+        b_vertical,    ///< Type B photometry: towards +x, -180 to 180;
         b_vertical2,   ///< its absolute value;
         b_horizontal,  ///< towards -y;
         b_horizontal2  ///< its absolute value.
     };
     static constexpr int angle_kinds = 8;
 
-    /// What the table's value is divided by to make radiance.
+    /// The divisor that converts the table's values to radiance.
     enum class Body : std::uint8_t {
-        none,      ///< Nothing: it is radiance.
-        flat,      ///< The cosine to the face's normal: it is intensity per area of a plane opening.
-        box,       ///< The projected area of a box of `size`, metres: it is intensity.
-        cylinder,  ///< That of an upright cylinder, size.x its diameter, size.y its height.
+        none,      ///< 1: the values are radiance.
+        flat,      ///< Cosine to the face's normal: the values are intensity per area of a planar opening.
+        box,       ///< Projected area of a box of `size`, metres: the values are intensity.
+        cylinder,  ///< Projected area of an upright cylinder of diameter size.x and height size.y: the values are
+                   ///< intensity.
     };
     static constexpr int bodies = 4;
 
     struct Axis {
         Angle angle = Angle::theta;
         double offset = 0;             ///< Added to the angle, degrees.
-        std::vector<double> at = {0};  ///< Where the table has entries: ascending, degrees.
+        std::vector<double> at = {0};  ///< Angles of the table's entries: ascending, degrees.
     };
-    std::array<Axis, 2> axes;    ///< One entry in an axis: the same for all its angles.
-    std::vector<double> values;  ///< W/(m^2 sr) or W/sr, none below 0; the second angle is the fastest.
+    std::array<Axis, 2> axes;    ///< An axis with one entry: the value does not depend on its angle.
+    std::vector<double> values;  ///< W/(m^2 sr) or W/sr, not negative; the second angle varies fastest.
     Body body = Body::none;
     Vec3 size{1, 1, 1};
 
-    /// The table at a direction (of length 1), linear between its entries. Half a step beyond the first and the last
-    /// angle it is as there, and 0 beyond; about the vertical it goes on as at its ends.
+    /// Returns the table's value in a direction (unit vector), linear between entries. It is constant for half a step
+    /// beyond the first and the last angle, and 0 farther away; azimuths continue at the ends of the table.
     double value(const Vec3& d) const;
-    /// Radiance in that direction, of a face that it leaves under this cosine to the normal (> 0).
+    /// Returns the radiance in that direction for a face with this cosine (> 0) between direction and normal.
     double radiance(const Vec3& d, double cosine) const;
-    /// Over how wide an angle light is smooth enough for one rule of quadrature, radians: a step of the
-    /// table, or more where a parabola says what it says. Set by find_smooth_width(), once the table is there.
+    /// Angle over which the light is smooth enough for one quadrature rule, radians: a step of the table, or more where
+    /// a parabola fits the table. Set by find_smooth_width() once the table is complete.
     double smooth_width = 0;
     void find_smooth_width();
-    /// Is it a table that can be evaluated?
+    /// True if the table is valid and can be evaluated.
     bool is_sane() const;
 };
 
 using ProfileId = Id<struct ProfileTag>;
 
-/// How a material's face takes part in a profile: the lamp's frame in the world, and what normalizes it.
+/// How a face emits by a profile: the lamp's frame in world coordinates, and the normalization.
 struct DirectedEmission {
     ProfileId profile;                        ///< None: the face is diffuse.
-    Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  ///< The lamp's axes, of length 1 and at right angles.
+    Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  ///< The lamp's axes: orthonormal.
     double scale = 1;                         ///< pi over the profile's flux from the face's front.
 
     Vec3 in_lamp(const Vec3& w) const { return {dot(x, w), dot(y, w), dot(z, w)}; }
     bool is_sane() const;
 };
 
-/// Flux per area (W/m^2) of a face with that profile: its radiance times the cosine over all directions in front of it.
-/// n: the face's normal in the lamp's frame. Relative error about 1e-5, where n is vertical there less.
+/// Returns the flux per area (W/m^2) of a face with that profile: the integral of radiance times cosine over the
+/// hemisphere in front. n: the face's normal in the lamp's frame. Relative error about 1e-5, less if n is vertical.
 double exitance_of(const EmissionProfile& profile, const Normal& n);
 
 class SkyWindow;
-/// Of what is seen through a window (scene/sky/sky_window.hpp).
+/// Implemented in scene/sky/sky_window.hpp, for light that is seen through a window.
 double relative_radiance(const SkyWindow& window, const Vec3& w);
 double smooth_width(const SkyWindow& window);
 
-/// Radiance of a face by direction, as a multiple of that of a diffuse face of the same flux:
+/// Radiance of a face by direction, relative to a diffuse face of the same flux:
 ///
 ///     p(w) = pi L(w) / M,     mean of p over directions by the cosine = 1.
 class RelativeRadiance {
   public:
     RelativeRadiance() = default;  ///< Diffuse.
-    /// All must outlive it.
+    /// `profile` and `emission` must outlive it.
     RelativeRadiance(const EmissionProfile& profile, const DirectedEmission& emission, const Normal& n)
         : profile_(&profile), emission_(&emission), n_(n) {}
-    /// Of a far face of the sky; it must outlive it. `smooth_width`: of this face.
+    /// For a distant face of the sky, which must outlive it. `smooth_width` is that of this face.
     RelativeRadiance(const SkyModel& sky, double smooth_width, const Normal& n)
         : sky_(&sky), sky_width_(smooth_width), n_(n) {}
-    /// Of a window; it must outlive it.
+    /// For a window, which must outlive it.
     RelativeRadiance(const SkyWindow& window, const Normal& n) : window_(&window), n_(n) {}
 
     bool is_directed() const { return profile_ != nullptr || sky_ != nullptr || window_ != nullptr; }
-    /// Does it change at once at the horizon?
+    /// True if the radiance is discontinuous at the horizon.
     bool breaks_at_horizon() const { return window_ != nullptr; }
-    /// Towards w, of length 1, in front of the face.
+    /// Returns p in direction w, a unit vector in front of the face.
     double operator()(const Vec3& w) const {
         if (profile_) return emission_->scale * profile_->radiance(emission_->in_lamp(w), dot(n_, w));
         if (window_) return relative_radiance(*window_, -w);
         return sky_ ? sky_->relative(-w) : 1;
     }
-    /// Towards the point x from the point y of the face.
+    /// Returns p from the point y of the face towards the point x.
     double towards(const Point& x, const Point& y) const { return is_directed() ? (*this)(normalized(x - y)) : 1; }
     double smooth_width() const {
         return window_ ? exitance::smooth_width(*window_) : sky_ ? sky_width_ : profile_->smooth_width;

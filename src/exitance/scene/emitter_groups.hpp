@@ -8,20 +8,20 @@
 
 namespace exitance {
 
-/// Gives the emitting faces of every group materials of their own (of the same name), so that faces of two groups never
-/// become one region, and each group's light can be changed by itself.
+/// Gives the emitting faces of every group materials of their own (of the same name). Then faces of two groups never
+/// become one region, and each group's light can be changed separately.
 void part_emitters_by_group(SceneDescription& description);
 
-/// Light that is switched together: emitting faces of one group, a source without extent, or all distant light.
+/// Lights that are switched together: the emitting faces of one group, a punctual light, or all distant light.
 struct EmitterGroup {
     std::string name;
     std::vector<MaterialId> materials;
-    std::vector<std::uint32_t> lights;  ///< Among Scene::lights().
+    std::vector<std::uint32_t> lights;  ///< Indices into Scene::lights().
     bool is_distant = false;
 };
 
-/// The groups of a scene whose emitters were parted: by name, in the order in which they first emit; then lights by
-/// name, then "sky" where there is any distant light.
+/// Returns the groups of a scene after part_emitters_by_group(): named groups in the order of their first emitting
+/// face, then lights by name, then "sky" if there is distant light.
 std::vector<EmitterGroup> find_emitter_groups(const Scene& scene);
 
 }  // namespace exitance

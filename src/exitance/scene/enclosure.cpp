@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-constexpr double one_place = 1e-6;  ///< Of the scene's size: nearer places are the same.
+constexpr double position_tolerance = 1e-6;  ///< Relative to the scene's size: nearer points are equal.
 
 std::vector<Triangle> triangles_of(const Scene& scene, RegionId r) {
     std::vector<Triangle> out;
@@ -18,8 +18,8 @@ std::vector<Triangle> triangles_of(const Scene& scene, RegionId r) {
     return out;
 }
 
-/// The planes of panes that have an edge in a region's plane, where that is not theirs, too: there reveals go on
-/// beyond the pane. Each once.
+/// Returns the planes of panes that have an edge in a region's plane but are not parallel to it: there the reveal
+/// continues beyond the pane. Each plane once.
 std::vector<Plane> planes_across(const Region& region, const std::vector<Pane>& panes, const Bvh& index,
                                  double tolerance) {
     Box box;
@@ -52,7 +52,7 @@ std::vector<Plane> planes_across(const Region& region, const std::vector<Pane>& 
     return out;
 }
 
-/// The surfaces of a region, or its parts where panes stand across it.
+/// Returns the faces of a region, split where panes cross it.
 std::vector<BorderedFace> faces_of(const Scene& scene, RegionId r, const Bvh& panes, double tolerance) {
     using Parts = std::vector<std::vector<Point>>;  // convex
     const Region& region = scene.regions()[r];
@@ -94,7 +94,7 @@ std::vector<BorderedFace> faces_of(const Scene& scene, RegionId r, const Bvh& pa
     return out;
 }
 
-/// Volume that sides bound, m^3: negative where they look into it.
+/// Returns the volume behind the sides, m^3; negative if their fronts are inside.
 double volume_behind(const Borders& borders, const std::vector<FaceSide>& sides, const Point& origin) {
     double sum = 0;
     for (const FaceSide& side : sides)
@@ -103,11 +103,12 @@ double volume_behind(const Borders& borders, const std::vector<FaceSide>& sides,
     return sum;
 }
 
-/// The sides of faces that bound the rooms behind panes: 1 in front of a face, 2 behind it, 3 both.
+/// Which sides of a face bound a room behind panes: 1 front, 2 back, 3 both.
 using RoomSides = std::vector<std::uint8_t>;
 constexpr std::uint8_t in_front = 1, behind = 2;
 
-/// Does a room lie on one side of each pane, and space that has no end on the other? Panes stand from `first` on.
+/// Finds the rooms behind panes. Returns false unless each pane has a bounded room on one side and unbounded space on
+/// the other. Panes are the faces from `first` on.
 bool find_rooms(const Borders& borders, std::size_t first, RoomSides& rooms) {
     for (std::size_t f = first; f < rooms.size(); ++f) {
         const Point origin = borders.face(f).loops[0][0];
@@ -125,7 +126,7 @@ bool find_rooms(const Borders& borders, std::size_t first, RoomSides& rooms) {
                        [](std::uint8_t sides) { return sides == in_front || sides == behind; });
 }
 
-/// Can a way that has left by one window come in by another? Then some of either lies beyond the other.
+/// True if a straight path that leaves by one window may enter by the other: each has a part behind the other.
 bool face_each_other(const Pane& a, const Pane& b, double slack) {
     const auto reaches_beyond = [&](const Pane& one, const Pane& other) {
         return std::any_of(one.corners.begin(), one.corners.end(),
@@ -134,12 +135,12 @@ bool face_each_other(const Pane& a, const Pane& b, double slack) {
     return reaches_beyond(a, b) && reaches_beyond(b, a);
 }
 
-/// True, too, where very many stand so that some might.
+/// True if two windows face each other; also if there are too many candidate windows to test.
 bool any_face_each_other(const std::vector<Pane>& windows, double slack) {
     constexpr std::size_t too_many = 5000;
     Box box;
     for (const Pane& window : windows) box.add(box_of(window.corners));
-    std::vector<const Pane*> inner;  // most facades lie on the box
+    std::vector<const Pane*> inner;  // most facades are on the box itself
     for (const Pane& window : windows) {
         const Point farthest{window.n.x > 0 ? box.lo.x : box.hi.x, window.n.y > 0 ? box.lo.y : box.hi.y,
                              window.n.z > 0 ? box.lo.z : box.hi.z};
@@ -152,15 +153,15 @@ bool any_face_each_other(const std::vector<Pane>& windows, double slack) {
     return false;
 }
 
-/// Does the hull wind about all of a region, in front of it?
+/// True if the hull winds about the whole front side of a region.
 bool winds_about(const Scene& scene, RegionId r, const Hull& hull, double slack) {
-    constexpr double inwards = 1e-3;  // of the way from a triangle's corner to its middle
+    constexpr double inset = 1e-3;  // relative position between a triangle's corner and its centre
     const Normal& n = scene.regions()[r].plane.n;
     for (const Triangle& t : triangles_of(scene, r)) {
         if (hull.crosses(t, slack)) return false;
         const Point middle = (t[0] + t[1] + t[2]) / 3;
         for (const Point& p : {middle, t[0], t[1], t[2]})
-            if (!hull.winds_about(p + inwards * (middle - p) + slack * n)) return false;
+            if (!hull.winds_about(p + inset * (middle - p) + slack * n)) return false;
     }
     return true;
 }
@@ -169,7 +170,7 @@ bool winds_about(const Scene& scene, RegionId r, const Hull& hull, double slack)
 
 Enclosure find_enclosure(const Scene& scene) {
     if (scene.panes().empty() || scene.distant().domes.empty()) return {};
-    const double tolerance = one_place * scene.size();
+    const double tolerance = position_tolerance * scene.size();
     std::vector<Box> boxes;
     for (const Pane& pane : scene.panes()) boxes.push_back(box_of(pane.corners));
     const Bvh index(boxes);

@@ -6,26 +6,30 @@
 
 namespace exitance {
 
-/// Closed surfaces of faces and panes of glass, and what lies within: from there the sky is seen through panes alone,
-/// through one at a time. Faces that stand behind a pane may hide it from there (`looks_out_on_faces`).
+/// Closed surfaces of faces and glass panes, and the regions inside them. From inside, the sky is visible only through
+/// panes, through one at a time. Faces outside in front of a pane may hide it (`looks_out_on_faces`).
 struct Enclosure {
-    std::vector<Pane> windows;                ///< The scene's panes, their corners counter-clockwise seen from within.
-    Field<RegionId, std::uint8_t> is_within;  ///< All of a region, in front of it.
+    std::vector<Pane> windows;                ///< The scene's panes, corners counter-clockwise seen from inside.
+    Field<RegionId, std::uint8_t> is_within;  ///< 1 if the whole front side of the region is inside.
 
     bool empty() const { return windows.empty(); }
     bool holds(RegionId r) const { return !windows.empty() && !r.is_none() && is_within[r] != 0; }
 };
 
-/// Empty where the scene has no panes or no sky, or where one of these cannot be made sure of:
+/// Finds the enclosure of a scene. The result is empty if the scene has no panes or no sky, or unless all of the
+/// following is certain:
 ///
-/// - Who walks on a pane's inner side and steps over edges, cut where corners lie on them, onto the side that faces him
-///   there, over free ones onto the back, never comes to its outer side. The faces of which he comes by one side are a
-///   closed surface; furniture, partitions and what else hangs on it have both. Every way from where it winds about to
-///   the outside passes it. The space before the inner side has an end, that before the outer one has none.
-/// - Of no two panes some of either lies beyond the other, seen from within: what leaves by one comes in by none.
-/// - A region is within where the surface winds about all of its triangles, which cross no part of it.
+/// - The sides reached from a pane's inner side (`Borders::sides_reached_from`) do not include its outer side. The
+/// faces of which only one side is reached form a closed surface; furniture, partitions and other attached faces are
+/// reached on both sides. Every path from inside this surface to the outside crosses it. The space at the pane's inner
+/// side is bounded, that at its outer side is not.
+/// - No two panes are partly behind each other, seen from inside: a path that leaves through one cannot enter through
+/// another.
 ///
-/// Corners within a millionth of the scene's size are one. O(n log n) for n corners, about 2 us a corner.
+/// A region is inside if the surface winds about all of its triangles and crosses none of them.
+///
+/// Corners within a millionth of the scene's size are treated as equal. O(n log n) for n corners, about 2 us per
+/// corner.
 Enclosure find_enclosure(const Scene& scene);
 
 }  // namespace exitance

@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// A room of 4 x 3 x 2.5 m with a window of glass of 2 x 1 m in the wall y = 3, under a sky.
+/// A room of 4 x 3 x 2.5 m with a glass window of 2 x 1 m in the wall y = 3, under a sky.
 struct Room {
     SceneDescription d;
 
@@ -46,7 +46,8 @@ struct Room {
         }
         d.faces.push_back(std::move(f));
     }
-    /// The pane stands `depth` behind the inner wall; reveals, `beyond` deeper than that, are cut at it or not.
+    /// Moves the pane `depth` behind the inner wall. The reveals extend `beyond` farther and are split at the pane if
+    /// `cut`.
     void set_back(double depth, double beyond, bool cut) {
         for (Point& p : d.panes[0].corners) p.y = 3 + depth;
         if (cut) reveals(3, 3 + depth), reveals(3 + depth, 3 + depth + beyond);
@@ -59,7 +60,7 @@ struct Room {
         face({{1, from, 1}, {1, to, 1}, {1, to, 2}, {1, from, 2}});
         face({{3, from, 1}, {3, from, 2}, {3, to, 2}, {3, to, 1}});
     }
-    /// Outer walls, floor and roof about the room, `thick` away, with the window's opening.
+    /// Adds outer walls, floor and roof around the room, at a distance of `thick`, with the window's opening.
     void shell(double thick) {
         const double a = -thick, x = 4 + thick, y = 3 + thick, z = 2.5 + thick;
         face({{a, a, a}, {a, y, a}, {x, y, a}, {x, a, a}});
@@ -72,7 +73,7 @@ struct Room {
         face({{a, y, 1}, {a, y, 2}, {1, y, 2}, {1, y, 1}});
         face({{3, y, 1}, {3, y, 2}, {x, y, 2}, {x, y, 1}});
     }
-    /// A lawn and a house across the street.
+    /// Adds a lawn and a house across the street.
     void outdoors() {
         face({{-20, 3.4, -0.5}, {20, 3.4, -0.5}, {20, 30, -0.5}, {-20, 30, -0.5}});
         face({{1, 9, -0.5}, {8, 9, -0.5}, {8, 9, 4}, {1, 9, 4}});
@@ -93,7 +94,7 @@ std::size_t held(const Scene& scene) {
 
 }  // namespace
 
-TEST(Enclosure, OfARoomItsWindowIsSeenFromAllSurfaces) {
+TEST(Enclosure, AllSurfacesOfARoomAreInside) {
     Room room;
     EXPECT_EQ(held(room.scene()), room.scene().regions().size());
     const Enclosure enclosure = find_enclosure(room.scene());
@@ -103,14 +104,14 @@ TEST(Enclosure, OfARoomItsWindowIsSeenFromAllSurfaces) {
     EXPECT_NEAR(find_enclosure(room.scene()).windows.at(0).n.y, -1, 1e-12);
 }
 
-TEST(Enclosure, FurnitureAndPartitionsAreWithin) {
+TEST(Enclosure, FurnitureAndPartitionsAreInside) {
     Room room;
     room.face({{1, 1, 0.7}, {2, 1, 0.7}, {2, 2, 0.7}, {1, 2, 0.7}});
     room.face({{2, 0, 0}, {2, 2, 0}, {2, 2, 2.5}, {2, 0, 2.5}});
     EXPECT_EQ(held(room.scene()), room.scene().regions().size());
 }
 
-/// Gives every face its back, as formats have it whose faces shine on both sides.
+/// Adds the back of every face, as in formats whose faces reflect on both sides.
 void add_backs(Room& room) {
     const std::vector<SceneDescription::Face> faces = room.d.faces;
     for (SceneDescription::Face f : faces) {
@@ -139,7 +140,7 @@ TEST(Enclosure, RoomsMayShareAWallOfOneFaceWithTwoSides) {
     Room rooms;
     const std::vector<SceneDescription::Face> faces = rooms.d.faces;
     for (std::size_t i = 0; i < faces.size(); ++i) {
-        if (i == 3) continue;  // the wall at x = 0, of which the other room's wall takes the place
+        if (i == 3) continue;  // the wall at x = 0, which is replaced by the other room's wall
         std::vector<Point> corners;
         for (const std::uint32_t c : faces[i].corners) corners.push_back(rooms.d.points[c] + Vec3{4, 0, 0});
         rooms.face(corners);
@@ -152,18 +153,18 @@ TEST(Enclosure, RoomsMayShareAWallOfOneFaceWithTwoSides) {
     EXPECT_EQ(held(rooms.scene()), before + 1) << "and the back of the wall between";
 }
 
-TEST(Enclosure, WhatIsNotClosedOrStandsBeforeWindowsHasNone) {
+TEST(Enclosure, OpenRoomsAndRecessedPanesHaveNone) {
     Room gap;
     for (Point& p : gap.d.points)
         if (p.z == 2.5 && p.y == 0) p.z = 2.4;
-    gap.d.faces.erase(gap.d.faces.begin() + 3);  // a wall
+    gap.d.faces.erase(gap.d.faces.begin() + 3);  // removes a wall
     EXPECT_EQ(held(gap.scene()), 0u);
     Room recessed;
     for (Point& p : recessed.d.panes[0].corners) p.y = 2.9;
     EXPECT_EQ(held(recessed.scene()), 0u);
 }
 
-TEST(Enclosure, PanesInRevealsCloseTheirRoom) {
+TEST(Enclosure, PanesInRevealsCloseTheRoom) {
     Room flush;
     const std::size_t indoors = flush.scene().regions().size();
     flush.reveals(3, 3.3), flush.shell(0.3);
@@ -185,12 +186,12 @@ TEST(Enclosure, PanesInRevealsCloseTheirRoom) {
     EXPECT_EQ(held(within.scene()), indoors) << "a lawn and a house are outside";
 }
 
-TEST(Enclosure, WindowsThatFaceEachOtherCloseNothing) {
+TEST(Enclosure, WindowsThatFaceEachOtherHaveNone) {
     Room room;
     Pane other = room.d.panes[0];
     other.corners = {{3, 8, 1}, {1, 8, 1}, {1, 8, 2}, {3, 8, 2}};
     EXPECT_EQ(held(room.scene()), room.scene().regions().size());
-    // The same room again, turned about, across a court.
+    // Adds a rotated copy of the room across a courtyard.
     const std::vector<SceneDescription::Face> faces = room.d.faces;
     for (const SceneDescription::Face& f : faces) {
         std::vector<Point> corners;
@@ -202,16 +203,16 @@ TEST(Enclosure, WindowsThatFaceEachOtherCloseNothing) {
     EXPECT_EQ(held(room.scene()), 0u) << "a way may lead in again";
 }
 
-TEST(Enclosure, AFaceThatLeavesTheRoomIsNotWithin) {
+TEST(Enclosure, AFaceThatLeavesTheRoomIsNotInside) {
     Room room;
     room.face({{-1, 1, 0.7}, {2, 1, 0.7}, {2, 2, 0.7}, {-1, 2, 0.7}});
     const Scene scene = room.scene();
     EXPECT_EQ(held(scene), scene.regions().size() - 1);
 }
 
-TEST(Enclosure, TheSkyThroughItsWindowIsThatOfThePartsOfTheSky) {
+TEST(Enclosure, TheSkyThroughItsWindowAgreesWithThePartsOfTheSky) {
     Room room;
-    room.face({{1, 1, 0.7}, {2, 1, 0.7}, {2, 2, 0.7}, {1, 2, 0.7}});          // a table,
+    room.face({{1, 1, 0.7}, {2, 1, 0.7}, {2, 2, 0.7}, {1, 2, 0.7}});          // a table
     room.face({{2.2, 2, 0}, {2.2, 2.8, 0}, {2.2, 2.8, 1.6}, {2.2, 2, 1.6}});  // a screen
     const Scene scene = room.scene();
     const Stage stage(scene);
@@ -231,7 +232,7 @@ TEST(Enclosure, TheSkyThroughItsWindowIsThatOfThePartsOfTheSky) {
             for (std::size_t b = 0; b < bands; ++b) {
                 worst = std::max(worst, std::abs(through[b] - sky[b]));
                 sum += sky[b], ++count;
-                // Both are within 1e-3 of the integral.
+                // Both have an error of at most 1e-3.
                 EXPECT_NEAR(through[b], sky[b], 2e-3 * sky[b] + 1e-4) << own.value << " " << i << " " << b;
             }
         }
@@ -258,7 +259,7 @@ TEST(Enclosure, TheSkyThroughItsWindowIsTheIntegral) {
         const Spectrum E = stage.direct.irradiance(x, {0, 0, 1}, RegionId(0), workspace);
         for (std::size_t b = 0; b < bands; ++b) EXPECT_NEAR(E[b], sum[b], 1e-3 * sum[b]) << x.y << " " << b;
     }
-    // From the ceiling the ground is seen.
+    // The ground is visible from the ceiling.
     const RegionId ceiling(1);
     const Point x{2, 2, 2.5};
     Spectrum sum;
@@ -273,7 +274,7 @@ TEST(Enclosure, TheSkyThroughItsWindowIsTheIntegral) {
 
 namespace {
 
-/// Does a face stand in the way from x along w?
+/// True if a face blocks the ray from x along w.
 bool is_hidden(const Scene& scene, const Point& x, const Vec3& w) {
     for (const SurfaceId s : scene.surfaces().ids()) {
         const auto outline = scene.outline(s);
@@ -289,8 +290,8 @@ bool is_hidden(const Scene& scene, const Point& x, const Vec3& w) {
     return false;
 }
 
-/// Light of the sky through the pane, which faces -y, place by place: one at random in each cell, as shadows' edges run
-/// along rows of cells.
+/// Integrates the light of the sky over the pane, which faces -y, by one random point in each cell. Points are random
+/// because edges of shadows are parallel to rows of cells.
 Spectrum sum_over_pane(const Scene& scene, const Point& x, const Normal& n, int steps) {
     const Pane& pane = scene.panes()[0];
     const double y = pane.corners[0].y;
@@ -309,7 +310,8 @@ Spectrum sum_over_pane(const Scene& scene, const Point& x, const Normal& n, int 
 
 }  // namespace
 
-/// Some thousand of 400 x 200 cells lie across a shadow's edge and are lit or not: they leave 2e-4 of a window's light.
+/// About a thousand of 400 x 200 cells are on the edge of a shadow and either lit or not: this causes an error of 2e-4
+/// of a window's light.
 TEST(Enclosure, WhatStandsOutdoorsIsCutFromTheSky) {
     struct Case {
         double depth, beyond;

@@ -1,4 +1,4 @@
-// SceneBuilder's checks of the shape of a face: an area, holes that turn, crossings, one plane.
+// Checks of the shape of a face by SceneBuilder: area, orientation of holes, self-intersections, planarity.
 #include <fmt/format.h>
 
 #include <algorithm>

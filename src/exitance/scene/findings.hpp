@@ -6,16 +6,17 @@
 
 namespace exitance {
 
-/// Puts errors first, then orders by file and line.
+/// Sorts errors first, then by file and line.
 void sort_findings(std::vector<Finding>& findings);
 
-/// Is there an error among them?
+/// True if there is an error among the findings.
 bool has_errors(std::span<const Finding> findings);
 
-/// The first error among findings that hold one, as the reason why there is no scene; says how many more there are.
+/// Returns the first error among findings that contain one, as the reason why there is no scene. The message gives the
+/// number of further errors.
 Error error_of(std::span<const Finding> findings);
 
-/// "room.obj:41", "room.obj" without a line.
+/// Returns "room.obj:41", or "room.obj" without a line.
 std::string place_of(const Finding& finding);
 
 }  // namespace exitance

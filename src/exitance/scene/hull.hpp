@@ -10,7 +10,7 @@
 
 namespace exitance {
 
-/// A closed surface as triangles whose fronts look inwards.
+/// A closed surface, given as triangles with their fronts inside.
 class Hull {
   public:
     void add(const Triangle& t) { triangles_.push_back(t); }
@@ -21,20 +21,20 @@ class Hull {
         for (const Box& box : boxes) all_.add(box);
     }
 
-    /// True if the surface winds about a point. Three ways out of it must agree.
+    /// True if the surface winds about a point. Rays in three directions must agree.
     bool winds_about(const Point& x) const {
         constexpr std::array<Vec3, 3> ways{
             Vec3{0.5361, 0.3217, 0.7803}, {-0.7193, 0.5881, 0.3697}, {0.2719, -0.8017, 0.5323}};
         return std::all_of(ways.begin(), ways.end(), [&](const Vec3& way) { return crossings(x, way) > 0; });
     }
 
-    /// True if the surface runs through a triangle by more than `slack` (metres).
+    /// True if the surface intersects a triangle over more than `slack` (metres).
     bool crosses(const Triangle& t, double slack) const {
         return tree_.visit_box(box_of(t), [&](std::uint32_t i) { return runs_through(t, triangles_[i], slack); });
     }
 
   private:
-    /// How many more fronts than backs a way out of the surface meets.
+    /// Returns the number of fronts minus the number of backs that a ray from x meets.
     int crossings(const Point& x, const Vec3& way) const {
         int sum = 0;
         const Vec3 d = (2 * all_.diagonal() + norm(x - all_.centre())) * way;
@@ -45,7 +45,7 @@ class Hull {
         return sum;
     }
 
-    /// 1: the way from x along d meets the front of a triangle; -1: its back; 0: neither.
+    /// Returns 1 if the segment from x along d crosses the front of a triangle, -1 for its back, else 0.
     static int side_that_is_crossed(const Triangle& t, const Point& x, const Vec3& d) {
         const Vec3 a = t[0] - x, b = t[1] - x, c = t[2] - x;
         const double ab = dot(d, cross(a, b)), bc = dot(d, cross(b, c)), ca = dot(d, cross(c, a));
@@ -63,7 +63,7 @@ class Hull {
         for (std::size_t i = 0; i < 3; ++i) h[i] = dot(n, t[i] - of[0]);
         if (*std::min_element(h.begin(), h.end()) >= -slack || *std::max_element(h.begin(), h.end()) <= slack)
             return false;
-        std::vector<Point> ends;  // of where t meets the plane
+        std::vector<Point> ends;  // end points of the intersection of t with the plane
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t k = (i + 1) % 3;
             if (h[i] == 0) ends.push_back(t[i]);
@@ -87,7 +87,7 @@ class Hull {
     Box all_;
 };
 
-/// An outline as triangles, counter-clockwise seen from the side to which n points.
+/// Triangulates an outline, counter-clockwise seen from the side to which n points.
 inline std::vector<Triangle> triangles_of(std::span<const Point> outline, const Normal& n) {
     std::vector<Triangle> out;
     for (const auto& t : triangulate(outline, n)) out.push_back({outline[t[0]], outline[t[1]], outline[t[2]]});

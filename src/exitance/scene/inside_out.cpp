@@ -11,13 +11,13 @@
 namespace exitance {
 namespace {
 
-constexpr double one_place = 1e-6;  ///< Of the scene's size: corners that are nearer are one.
+constexpr double position_tolerance = 1e-6;  ///< Relative to the scene's size: nearer corners are equal.
 
-/// A part of space between faces: the sides that bound it.
+/// A connected part of space, with the face sides that bound it.
 struct Space {
-    std::vector<FaceSide> walls;        ///< Of faces that have this space on one side only.
-    std::vector<std::uint32_t> sheets;  ///< Faces that have it on both sides.
-    double volume = 0;                  ///< m^3; negative if the space lies outside of the walls.
+    std::vector<FaceSide> walls;        ///< Sides of faces that have this space on one side only.
+    std::vector<std::uint32_t> sheets;  ///< Faces that have this space on both sides.
+    double volume = 0;                  ///< m^3; negative if the space is outside of the walls.
     Box box;
     bool is_sure = true;
 
@@ -28,7 +28,7 @@ class BodyFinder {
   public:
     explicit BodyFinder(const BodyFaces& in)
         : in_(in),
-          borders_(bordered(in), one_place * in.size),
+          borders_(bordered(in), position_tolerance * in.size),
           turned_(in.outlines.size()),
           box_of_face_(in.outlines.size()) {
         for (std::size_t f = 0; f < in.outlines.size(); ++f) box_of_face_[f] = box_of(in.outlines[f]);
@@ -63,8 +63,8 @@ class BodyFinder {
     Borders borders_;
     std::vector<std::array<std::uint32_t, 2>> space_of_;
     std::vector<Space> spaces_;
-    std::vector<std::uint32_t> cavities_;     ///< By volume, the smallest first.
-    std::vector<std::optional<Hull>> hulls_;  ///< Of cavities, made when needed.
+    std::vector<std::uint32_t> cavities_;     ///< Sorted by volume, the smallest first.
+    std::vector<std::optional<Hull>> hulls_;  ///< Hulls of cavities, built on demand.
     std::vector<bool> turned_;
     std::vector<Box> box_of_face_;
     Bvh face_tree_;
@@ -105,7 +105,7 @@ void BodyFinder::measure(Space& space) const {
         space.volume += side.is_front ? -cone : cone;
         all += std::abs(cone);
     }
-    constexpr double rounding = 1e-6;  // of the cones: two sides of a sheet enclose nothing
+    constexpr double rounding = 1e-6;  // relative to the sum of the cones: the two sides of a sheet enclose no volume
     if (std::abs(space.volume) <= rounding * all) space.volume = 0;
 }
 
@@ -118,7 +118,7 @@ double BodyFinder::share_of_fronts(const Space& space) const {
     return all > 0 ? fronts / all : 0;
 }
 
-/// True if the point lies in a cavity, or in something that stands in it.
+/// True if the point is in a cavity, or in an object inside it.
 bool BodyFinder::holds(std::size_t space, const Point& p) {
     const Box& box = spaces_[space].box;
     for (std::size_t k = 0; k < 3; ++k)
@@ -134,7 +134,7 @@ bool BodyFinder::holds(std::size_t space, const Point& p) {
     return hull->winds_about(p);
 }
 
-/// A point just inside of the walls: beside the middle of the largest triangle.
+/// Returns a point just inside of the walls, near the centre of the largest triangle.
 Point BodyFinder::point_within(const Space& space) const {
     Point out;
     double largest = -1;
@@ -144,12 +144,12 @@ Point BodyFinder::point_within(const Space& space) const {
             if (area <= largest) continue;
             largest = area;
             const Vec3 inwards = side.is_front ? Vec3(in_.normals[side.face]) : -Vec3(in_.normals[side.face]);
-            out = (t[0] + t[1] + t[2]) / 3 + 10 * one_place * in_.size * inwards;
+            out = (t[0] + t[1] + t[2]) / 3 + 10 * position_tolerance * in_.size * inwards;
         }
     return out;
 }
 
-/// The smallest cavity that a cavity lies in. None in the open.
+/// Returns the smallest other cavity that contains a cavity; nothing if it is in the open.
 std::optional<std::size_t> BodyFinder::space_around(std::size_t space) {
     const Point p = point_within(spaces_[space]);
     for (const std::uint32_t k : cavities_)
@@ -165,7 +165,7 @@ bool BodyFinder::holds_light(std::size_t space) {
         const Vec3 up = turned_[f] ? -Vec3(in_.normals[f]) : Vec3(in_.normals[f]);
         if (space_of_[f][turned_[f] ? 0 : 1] == space) return true;
         return space_of_[f][0] != space && space_of_[f][1] != space &&
-               holds(space, centroid(in_.outlines[f]) + 10 * one_place * in_.size * up);
+               holds(space, centroid(in_.outlines[f]) + 10 * position_tolerance * in_.size * up);
     };
     for (std::uint32_t f = 0; f < in_.emits.size(); ++f)
         if (sends_into(f)) return true;
@@ -179,7 +179,7 @@ bool BodyFinder::holds_faces(std::size_t space) {
     });
 }
 
-/// True if light starts outside of all cavities.
+/// True if there is light outside of all cavities.
 bool BodyFinder::has_light_outside() {
     if (in_.has_light_from_afar) return true;
     const auto in_any = [&](const Point& p) {
@@ -189,12 +189,12 @@ bool BodyFinder::has_light_outside() {
     for (std::uint32_t f = 0; f < in_.emits.size(); ++f) {
         if (!in_.emits[f]) continue;
         const Vec3 up = turned_[f] ? -Vec3(in_.normals[f]) : Vec3(in_.normals[f]);
-        if (!in_any(centroid(in_.outlines[f]) + 10 * one_place * in_.size * up)) return true;
+        if (!in_any(centroid(in_.outlines[f]) + 10 * position_tolerance * in_.size * up)) return true;
     }
     return false;
 }
 
-/// True if everything outside of a cavity's walls is dark and empty.
+/// True if there is neither light nor a face outside of a cavity's walls.
 bool BodyFinder::is_alone(std::size_t space) {
     if (in_.has_light_from_afar) return false;
     if (std::any_of(in_.lights.begin(), in_.lights.end(), [&](const Point& p) { return !holds(space, p); }))
@@ -205,7 +205,7 @@ bool BodyFinder::is_alone(std::size_t space) {
     return true;
 }
 
-/// True if all fronts of a cavity's walls are inside and their backs stand where there is air.
+/// True if all fronts of a cavity's walls are inside, although their backs face air.
 bool BodyFinder::is_inward_body(std::size_t k) {
     const Space& space = spaces_[k];
     if (!std::all_of(space.walls.begin(), space.walls.end(), [&](const FaceSide& s) { return is_front(s); }))
@@ -216,10 +216,10 @@ bool BodyFinder::is_inward_body(std::size_t k) {
         return space_of_[s.face][s.is_front ? 0 : 1] == outside;
     });
     if (!is_one || !around.is_sure) return false;
-    constexpr double mostly = 0.5;
-    if (around.is_cavity()) return share_of_fronts(around) > mostly;  // it touches the walls of a room
-    if (!(around.volume <= -mostly * space.volume)) return false;     // two sides of a thin wall, or an open model
-    if (const auto room = space_around(k)) return share_of_fronts(spaces_[*room]) > mostly;
+    constexpr double majority = 0.5;
+    if (around.is_cavity()) return share_of_fronts(around) > majority;  // its walls touch the walls of a room
+    if (!(around.volume <= -majority * space.volume)) return false;     // two sides of a thin wall, or an open model
+    if (const auto room = space_around(k)) return share_of_fronts(spaces_[*room]) > majority;
     return share_of_fronts(around) == 0 && has_light_outside() && !holds_light(k) && !holds_faces(k);
 }
 
@@ -233,8 +233,8 @@ bool BodyFinder::is_outward_room(std::size_t k) {
 
 std::vector<InsideOut> BodyFinder::run() {
     std::vector<InsideOut> out;
-    // A body may be judged only when those around it stand right; each round settles one level of nesting, from the
-    // outermost inwards.
+    // A body can be classified only if the bodies around it have the right orientation. Each round completes one level
+    // of nesting, from the outside inwards.
     for (bool changed = true; std::exchange(changed, false);)
         for (auto k = cavities_.rbegin(); k != cavities_.rend(); ++k) {
             const bool is_room = is_outward_room(*k);

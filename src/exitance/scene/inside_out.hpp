@@ -10,14 +10,14 @@
 
 namespace exitance {
 
-/// Faces as the search for bodies sees them.
+/// Input of the search for inside-out bodies.
 struct BodyFaces {
     std::vector<std::vector<Point>> outlines;  ///< Metres; holes are joined to the rim by bridges.
     std::vector<Normal> normals;
     std::vector<bool> emits;
-    std::vector<Point> lights;         ///< Sources without extent.
-    bool has_light_from_afar = false;  ///< A sky, a sun, parallel light.
-    double size = 0;                   ///< Of the scene, metres.
+    std::vector<Point> lights;         ///< Positions of point lights and spotlights.
+    bool has_light_from_afar = false;  ///< True if there is a sky, a sun or parallel light.
+    double size = 0;                   ///< Diameter of the scene, metres.
 
     void add_lights(std::span<const PunctualLight> all, const DistantLight& distant);
     void add(std::span<const Point> outline, const Normal& n, bool is_emitter) {
@@ -26,21 +26,23 @@ struct BodyFaces {
     }
 };
 
-/// A closed body whose faces show their backs where there is air.
+/// A closed body whose faces have the wrong orientation.
 struct InsideOut {
     std::vector<std::uint32_t> faces;  ///< Ascending.
-    bool is_room = false;              ///< Its faces look outwards, away from light that it encloses; else inwards.
+    /// True: a room whose fronts face outwards, away from its light. False: an object whose fronts face inwards.
+    bool is_room = false;
 };
 
-/// Finds the closed bodies that are inside out. A body's faces hang together by their edges, cut where corners of
-/// others lie on them; corners within a millionth of the scene's size are one. Reported are
+/// Finds the closed bodies that are inside out. A body consists of faces connected by edges, split at corners of other
+/// faces; corners within a millionth of the scene's size are equal. Reported are
 ///
-/// - a body with all fronts inside that stands in a space whose walls show mostly fronts (furniture in a room), or in
-///   the open, if there is light outside of all closed bodies and the body holds neither light nor other faces;
-/// - a body with all fronts outside that encloses light, or outside of which there is neither a face nor light: a room.
+/// - a body with all fronts inside, if it is in a space whose walls show mostly fronts (furniture in a room); or in the
+/// open, if there is light outside of all closed bodies and the body contains neither light nor other faces;
+/// - a body with all fronts outside, if it encloses light, or if there is neither a face nor light outside of it: a
+/// room.
 ///
-/// A body within a body that is reported is judged as if the outer one were turned. A cavity within a solid body is
-/// none. O(n log n) in edges, and O(faces of the enclosing body) per body.
+/// A body inside a reported body is classified as if the outer one were corrected. Cavities of solid bodies are
+/// ignored. O(n log n) in edges, and O(faces of the enclosing body) per body.
 std::vector<InsideOut> find_inside_out(const BodyFaces& faces);
 
 }  // namespace exitance

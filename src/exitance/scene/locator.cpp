@@ -32,7 +32,7 @@ void Locator::look_at(SurfaceId s, const Point& p, const Normal& n, Candidate& b
     Candidate found = {s, std::abs(height), contains(outline, surface.normal, p)};
     if (!found.holds) found.distance = norm(p - nearest_on_border(outline, p));
     if (!(found.distance <= tolerance_)) return;
-    // Distances that differ by the rounding of a text file's digits are equal.
+    // Distances are equal if they differ only by the rounding of a text file's digits.
     const double gain = best.distance - found.distance, rounding = 1e-4 * tolerance_;
     if (std::abs(gain) <= rounding) {
         const auto level = [&](SurfaceId f) { return scene_->regions()[scene_->surfaces()[f].region].level; };

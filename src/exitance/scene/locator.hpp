@@ -5,16 +5,16 @@
 
 namespace exitance {
 
-/// Finds the face that a point lies on. A hierarchy of boxes over the faces; O(log faces) a query, O(n log n) to make.
-/// The scene must outlive the locator.
+/// Finds the face on which a point lies, by a bounding volume hierarchy over the faces. O(log faces) per query, O(n log
+/// n) to build. The scene must outlive the locator.
 class Locator {
   public:
     explicit Locator(const Scene& scene);
 
-    /// The face that `p` (metres) lies on: within the tolerance of the polygon, and its normal agrees with `n` (of
-    /// length 1; dot product above 0.999). Among several it is the nearest; among equally near ones, as on borders and
-    /// where faces coincide, a face that holds the foot of p, and then the one of the lowest id. None for a point in
-    /// free space. Safe to call from any thread.
+    /// Returns the face on which `p` (metres) lies: within the tolerance of the polygon, with a normal that agrees with
+    /// `n` (unit vector; dot product above 0.999). Among several it is the nearest. Among equally near ones, as on
+    /// borders and on coincident faces, it is a face that contains the projection of p, then the one with the lowest
+    /// id. None for a point in free space. Thread-safe.
     SurfaceId find(const Point& p, const Normal& n) const;
 
     double tolerance() const { return tolerance_; }  ///< 1e-5 of the scene's size, metres.

@@ -18,7 +18,7 @@ Scene scene_of(const std::vector<std::vector<Point>>& faces) {
             f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
             d.points.push_back(p);
         }
-        f.material = d.faces.size() % 2;  // never one region
+        f.material = d.faces.size() % 2;  // alternating materials prevent joining
         d.faces.push_back(f);
     }
     CheckedScene made = make_scene(d);
@@ -44,18 +44,18 @@ TEST(Locator, FindsTheFaceOfEveryPointOnOne) {
     }
 }
 
-TEST(Locator, LeavesPointsInFreeSpaceAlone) {
+TEST(Locator, FindsNoFaceForPointsInFreeSpace) {
     const Scene scene = sample_scene();
     const Locator locator(scene);
     EXPECT_TRUE(locator.find({1, 0.5, 0.5}, {0, 0, 1}).is_none());
     EXPECT_TRUE(locator.find({1, 0.5, 2 * locator.tolerance()}, {0, 0, 1}).is_none());
-    EXPECT_TRUE(locator.find({1, 0.5, 0}, {0, 0, -1}).is_none());                // seen from behind
-    EXPECT_TRUE(locator.find({1, 0.5, 0}, normalized({0.05, 0, 1})).is_none());  // 2.9 degrees off
+    EXPECT_TRUE(locator.find({1, 0.5, 0}, {0, 0, -1}).is_none());                // from behind
+    EXPECT_TRUE(locator.find({1, 0.5, 0}, normalized({0.05, 0, 1})).is_none());  // 2.9 degrees
     EXPECT_FALSE(locator.find({1, 0.5, 0}, normalized({0.04, 0, 1})).is_none());
     EXPECT_TRUE(locator.find({NAN, 0, 0}, {0, 0, 1}).is_none());
 }
 
-TEST(Locator, HoldsWhatIsOutsideByLessThanTheTolerance) {
+TEST(Locator, AcceptsPointsOutsideByLessThanTheTolerance) {
     const Scene scene = scene_of({rectangle(0, 0, 1, 1, 0)});
     const Locator locator(scene);
     const double t = locator.tolerance();
@@ -65,8 +65,8 @@ TEST(Locator, HoldsWhatIsOutsideByLessThanTheTolerance) {
     EXPECT_TRUE(locator.find({0.5, 0.5, 1.1 * t}, {0, 0, 1}).is_none());
 }
 
-TEST(Locator, TakesTheNearestOfFacesThatLieCloselyOnEachOther) {
-    const double gap = 5e-6;  // below the tolerance of 1.4e-5
+TEST(Locator, FindsTheNearestOfCloseParallelFaces) {
+    const double gap = 5e-6;  // less than the tolerance of 1.4e-5
     const Scene scene = scene_of({rectangle(0, 0, 1, 1, 0), rectangle(0.2, 0.2, 0.8, 0.8, gap)});
     const Locator locator(scene);
     EXPECT_EQ(locator.find({0.5, 0.5, 0.4 * gap}, {0, 0, 1}), SurfaceId(0u));
@@ -74,7 +74,7 @@ TEST(Locator, TakesTheNearestOfFacesThatLieCloselyOnEachOther) {
     EXPECT_EQ(locator.find({0.1, 0.5, gap}, {0, 0, 1}), SurfaceId(0u));
 }
 
-TEST(Locator, GivesABorderToOneFaceHoweverItIsRounded) {
+TEST(Locator, FindsOneFaceForABorderRegardlessOfRounding) {
     const Scene scene = scene_of({rectangle(0, 0, 1, 1, 0), rectangle(1, 0, 2, 1, 0)});
     const Locator locator(scene);
     EXPECT_FALSE(locator.find({1, 0.5, 0}, {0, 0, 1}).is_none());
@@ -82,7 +82,7 @@ TEST(Locator, GivesABorderToOneFaceHoweverItIsRounded) {
     EXPECT_EQ(locator.find({1 + 1e-12, 0.5, 1e-12}, {0, 0, 1}), SurfaceId(1u));
 }
 
-TEST(Locator, KnowsTheNotchesOfConcaveFaces) {
+TEST(Locator, ExcludesTheNotchesOfConcaveFaces) {
     const Scene scene = scene_of({{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {1, 1, 0}, {0, 1, 0}}});
     const Locator locator(scene);
     EXPECT_FALSE(locator.find({0.5, 0.5, 0}, {0, 0, 1}).is_none());
@@ -90,7 +90,7 @@ TEST(Locator, KnowsTheNotchesOfConcaveFaces) {
     EXPECT_TRUE(locator.find({0.5, 1.5, 0}, {0, 0, 1}).is_none());
 }
 
-TEST(Locator, FindsItsWayAmongManyFaces) {
+TEST(Locator, FindsTheFaceAmongManyFaces) {
     std::vector<std::vector<Point>> faces;
     for (int k = 0; k < 3; ++k)
         for (int j = 0; j < 20; ++j)

@@ -7,14 +7,13 @@
 
 namespace exitance {
 
-/// The name of a material that some faces of a textured one share: "bricks #a0522d".
-/// colour  linear, in [0, 1]
+/// Returns the name of a material for the faces of a textured one that share a colour: "bricks #a0522d".
 std::string name_with_colour(std::string_view material, const Spectrum& colour);
 
-/// The name that a file has, without such a colour.
+/// Returns the name in the file, without such a colour.
 std::string_view name_in_file(std::string_view material);
 
-/// The code of a linear value in sRGB's curve, 255 for 1.
+/// Returns the sRGB code of a linear value: 0 to 255 for 0 to 1.
 int srgb_code(double linear);
 
 }  // namespace exitance

@@ -9,13 +9,14 @@
 namespace exitance {
 namespace {
 
-/// How the faces at the six sides of the scene's box look: side 2 k is the lower one of axis k, side 2 k + 1 the upper.
+/// Area of faces at the six sides of the scene's box, by orientation: side 2 k is the lower one of axis k, side 2 k + 1
+/// the upper.
 struct BoxSides {
     std::array<double, 6> inwards{}, outwards{};  ///< m^2
 
     explicit BoxSides(const Scene& scene) {
         const Box& box = scene.box();
-        constexpr double near = 0.02;  // of the box's extent: windows and panelling stand a little off the walls
+        constexpr double near = 0.02;  // relative to the box's extent: windows and panelling are slightly off the walls
         for (const SurfaceId s : scene.surfaces().ids()) {
             const Surface& surface = scene.surfaces()[s];
             for (std::size_t k = 0; k < 3; ++k)
@@ -31,14 +32,14 @@ struct BoxSides {
     }
 
     bool is_inwards(std::size_t side) const { return inwards[side] > outwards[side]; }
-    /// A room shows its fronts inside on most of its sides, also where a side or two are open.
+    /// True if most sides have their fronts inside, even if one or two sides are open.
     bool is_room() const {
         int inside = 0, outside = 0;
         for (std::size_t side = 0; side < 6; ++side)
             inside += is_inwards(side), outside += outwards[side] > inwards[side];
         return inside >= 3 && outside <= 1;
     }
-    /// The only side on which there is nothing; 6 if there is none or are several.
+    /// Returns the only side without faces; 6 if there is none or more than one.
     std::size_t open_side() const {
         std::size_t open = 6;
         for (std::size_t side = 0; side < 6; ++side) {
@@ -56,8 +57,8 @@ bool contains_word(const std::string& name, std::string_view word) {
     return lower.find(word) != lower.npos;
 }
 
-/// A direction that is up, by the scene's lamps, floors and ceilings, each weighted by flux or area; zero if there are
-/// none.
+/// Returns the upward direction according to the scene's lamps, floors and ceilings, weighted by flux or area; zero if
+/// there are none.
 Vec3 upwards(const Scene& scene) {
     Vec3 by_lamps, by_names;
     for (const SurfaceId s : scene.surfaces().ids()) {
@@ -73,23 +74,24 @@ Vec3 upwards(const Scene& scene) {
 }
 
 bool is_y_up(const Scene& scene, const BoxSides& sides) {
-    constexpr double along = 0.9;  // cosine: clearly along one axis
+    constexpr double min_cosine = 0.9;  // cosine: clearly along one axis
     const Vec3 up = upwards(scene);
-    if (norm(up) > 0) return up.y > along * norm(up);
+    if (norm(up) > 0) return up.y > min_cosine * norm(up);
     constexpr std::size_t upper_y = 3;
     return sides.is_room() && sides.open_side() == upper_y;
 }
 
-/// The unit in which a room of so many units is nearest to a usual one; null if metres do.
+/// Returns the unit in which a room of this height is nearest to a typical one; null if metres are plausible.
 const char* unit_of_room(double height) {
-    constexpr double highest = 30;  // metres: of an atrium or a nave
-    if (height <= highest) return nullptr;
+    constexpr double max_height = 30;  // metres: an atrium or a nave
+    if (height <= max_height) return nullptr;
     constexpr std::array<std::pair<const char*, double>, 3> units{{{"mm", 1e-3}, {"cm", 1e-2}, {"in", 0.0254}}};
-    constexpr double usual = 2.7;  // metres
+    constexpr double typical_height = 2.7;  // metres
     const char* best = nullptr;
-    double least = std::log(highest / usual);
+    double least = std::log(max_height / typical_height);
     for (const auto& [name, metres] : units)
-        if (const double off = std::abs(std::log(height * metres / usual)); off < least) best = name, least = off;
+        if (const double off = std::abs(std::log(height * metres / typical_height)); off < least)
+            best = name, least = off;
     return best;
 }
 
@@ -102,17 +104,17 @@ ModelUnits guess_units(const Scene& scene) {
     const Vec3 extent = scene.box().size();
     const double height = out.y_is_up ? extent.y : extent.z;
     const double widest = std::max({extent.x, extent.y, extent.z});
-    constexpr double lowest_room = 0.5, smallest_model = 0.01;  // metres
+    constexpr double min_room_height = 0.5, min_model_size = 0.01;  // metres
     if (sides.is_room()) {
         out.unit = unit_of_room(height);
-        out.is_too_small = height < lowest_room && widest < lowest_room;
+        out.is_too_small = height < min_room_height && widest < min_room_height;
         return out;
     }
-    // Furniture in millimetres is a thousand metres wide and, unlike a landscape, nearly as high.
-    constexpr double widest_thing = 500, flattest_thing = 0.3;
+    // Furniture modelled in millimetres is a thousand units wide and, unlike a landscape, nearly as high.
+    constexpr double max_model_width = 500, min_height_share = 0.3;
     const double narrowest = std::min({extent.x, extent.y, extent.z});
-    if (widest > widest_thing && narrowest > flattest_thing * widest) out.unit = "mm";
-    out.is_too_small = widest < smallest_model;
+    if (widest > max_model_width && narrowest > min_height_share * widest) out.unit = "mm";
+    out.is_too_small = widest < min_model_size;
     return out;
 }
 

@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// A face in a cell of planes, whichever way they look.
+/// A face in a hash cell of planes, regardless of its orientation.
 struct Entry {
     std::uint64_t key;
     std::uint32_t face;
@@ -15,10 +15,10 @@ struct Entry {
     auto operator<=>(const Entry&) const = default;
 };
 
-/// The cells of a face's plane and of the same plane seen from its back. Faces that are one plane within the tolerance
-/// have a cell in common; so may others.
+/// Adds the cells of a face's plane and of the same plane seen from its back. Faces in one plane within the tolerance
+/// share a cell; other faces may share it, too.
 void add_entries(const Scene& scene, SurfaceId s, double tolerance, std::vector<Entry>& out) {
-    constexpr double cell = 1e-3, largest_tilt = 1e-4;  // an eighth of a cell at most, as each_cell_key asks
+    constexpr double cell = 1e-3, largest_tilt = 1e-4;  // at most an eighth of a cell, as each_cell_key requires
     const std::span<const Point> outline = scene.outline(s);
     Box box;
     for (const Point& p : outline) box.add(p);

@@ -5,28 +5,28 @@
 
 namespace exitance {
 
-/// Faces of planes that have faces looking both ways, as the two sides of a sheet do whose outlines differ: a ray that
-/// comes to such a place meets the face that looks towards it, whichever of them a search in single precision finds.
-/// The scene must outlive it. O(faces) to make.
+/// Finds the visible face where faces of one plane have both orientations, like the two sides of a sheet with different
+/// outlines. A ray that hits such a plane must hit the face whose front it meets, whichever of them the search in
+/// single precision returns. The scene must outlive it. O(faces) to build.
 class OpposedFaces {
   public:
-    /// other_side  of faces, as other_sides_of_surfaces() gives it: planes whose faces all have one are left out
-    /// tolerance   metres; planes nearer than this are one
+    /// other_side  as returned by other_sides_of_surfaces(): planes in which all faces have another side are omitted
+    /// tolerance   metres; planes at a smaller distance are equal
     OpposedFaces(const Scene& scene, const Field<SurfaceId, SurfaceId>& other_side, double tolerance);
 
-    /// Is this one of those faces?
+    /// True if the face is one of those.
     bool has(SurfaceId s) const { return is_opposed_.size() > 0 && is_opposed_[s] != 0; }
 
-    /// The face in whose plane and outline `at` lies (metres), within the tolerance, and whose front a ray along
-    /// `direction` meets; of several the one on top, then the one of the lowest id. None where there is none.
-    /// O(log faces). Safe to call from any thread.
+    /// Returns the face whose plane and outline contain `at` (metres), within the tolerance, and whose front a ray
+    /// along `direction` meets. Among several it is the top one, then the one with the lowest id. None if there is no
+    /// such face. O(log faces). Thread-safe.
     SurfaceId facing(const Point& at, const Vec3& direction) const;
 
   private:
     const Scene* scene_;
     double tolerance_;
     Field<SurfaceId, char> is_opposed_;  ///< 1 or 0; empty if no face is.
-    std::vector<SurfaceId> faces_;       ///< Those in the tree.
+    std::vector<SurfaceId> faces_;       ///< The faces in the tree.
     Bvh tree_;
 };
 

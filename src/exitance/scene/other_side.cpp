@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// A number for a set of points, whatever their order.
+/// Returns a hash of a set of points that does not depend on their order.
 std::uint64_t key_of(std::span<const Point> points, const Point& centre) {
     std::uint64_t key = 0;
     for (const Point& p : points) {

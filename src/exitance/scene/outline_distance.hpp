@@ -8,7 +8,7 @@
 
 namespace exitance {
 
-/// The point of an outline's border that is nearest to p, metres. O(corners).
+/// Returns the point of an outline's border that is nearest to p, metres. O(corners).
 inline Point nearest_on_border(std::span<const Point> outline, const Point& p) {
     Point best = outline[0];
     double least = HUGE_VAL;

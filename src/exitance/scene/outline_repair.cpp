@@ -22,17 +22,17 @@ std::vector<Point> places(std::span<const Point> points, std::span<const std::ui
     return out;
 }
 
-/// A loop within an outline: its own corners, and where it and the loops within it stand in the outline.
+/// A loop within an outline: its own corners, and the range of the outline that contains it and its inner loops.
 struct Loop {
     std::size_t first, end;
     std::vector<std::uint32_t> corners;
 };
 
-/// The loops of an outline that begins at a corner of its rim, inner ones first, the rim last; bridges are left out.
+/// Returns the loops of an outline that begins at a corner of its rim: inner ones first, the rim last, without bridges.
 std::vector<Loop> loops_of(std::span<const std::uint32_t> outline) {
     std::vector<Loop> loops;
-    std::vector<std::size_t> open;                            // positions in the outline that no loop has closed yet
-    std::unordered_map<std::uint32_t, std::size_t> place_of;  // of a point among these
+    std::vector<std::size_t> open;  // positions in the outline that are not yet part of a loop
+    std::unordered_map<std::uint32_t, std::size_t> place_of;  // position of a point among these
     const auto close = [&](std::size_t from, std::size_t end) {
         Loop loop{open[from], end, {}};
         for (std::size_t k = from; k < open.size(); ++k) loop.corners.push_back(outline[open[k]]);
@@ -52,7 +52,7 @@ std::vector<Loop> loops_of(std::span<const std::uint32_t> outline) {
     return loops;
 }
 
-/// A corner of `loop` that is none of `other`; the first where all are.
+/// Returns a corner of `loop` that is not in `other`; the first corner if there is none.
 std::uint32_t corner_apart(const Loop& loop, const Loop& other) {
     for (std::uint32_t c : loop.corners)
         if (std::find(other.corners.begin(), other.corners.end(), c) == other.corners.end()) return c;
@@ -64,17 +64,17 @@ std::uint32_t corner_apart(const Loop& loop, const Loop& other) {
 std::size_t turn_holes(std::span<const Point> points, const Normal& n, std::vector<std::uint32_t>& outline) {
     if (!repeats_a_corner(outline)) return 0;
     const Frame frame(n);
-    // The farthest corner along any direction is one of the rim.
+    // The farthest corner in any direction belongs to the rim.
     std::rotate(outline.begin(),
                 std::max_element(outline.begin(), outline.end(),
                                  [&](auto a, auto b) { return dot(points[a], frame.u) < dot(points[b], frame.u); }),
                 outline.end());
-    constexpr std::size_t most_loops = 1000;  // each is compared with all others
+    constexpr std::size_t max_loops = 1000;  // each is compared with all others
     std::size_t turned = 0;
     for (bool again = true; again;) {
         again = false;
         const std::vector<Loop> loops = loops_of(outline);
-        if (loops.size() > most_loops) return turned;
+        if (loops.size() > max_loops) return turned;
         for (std::size_t i = 0; i + 1 < loops.size() && !again; ++i) {
             if (dot(area_vector(places(points, loops[i].corners)), n) <= 0) continue;
             std::size_t depth = 0;
@@ -84,7 +84,7 @@ std::size_t turn_holes(std::span<const Point> points, const Normal& n, std::vect
             if (depth % 2 == 0) continue;
             const auto at = [&](std::size_t k) { return outline.begin() + static_cast<std::ptrdiff_t>(k); };
             std::reverse(at(loops[i].first + 1), at(loops[i].end));
-            again = ++turned <= loops.size();  // turning a loop turns those within it, too
+            again = ++turned <= loops.size();  // reversing a loop also reverses the loops inside it
         }
     }
     return turned;

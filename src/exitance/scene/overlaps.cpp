@@ -18,13 +18,13 @@ struct PlaneEntry {
     auto operator<=>(const PlaneEntry&) const = default;
 };
 
-/// An overlap, with the regions of its faces.
+/// An overlap and the regions of its faces.
 struct Found {
-    std::array<RegionId, 2> regions;  ///< Of the first and the second face.
+    std::array<RegionId, 2> regions;  ///< Regions of the first and the second face.
     Overlap overlap;
 };
 
-/// Compares the faces of regions of one cell of planes where their boxes overlap. Returns whether it gave up.
+/// Compares the faces of regions in one hash cell of planes if their boxes overlap. Returns true if it gave up.
 bool compare_all(const Scene& scene, std::span<const PlaneEntry> group, double tolerance, std::vector<Found>& out) {
     const Frame frame(scene.regions()[RegionId(group[0].region)].plane.n);
     std::vector<SurfaceId> faces;
@@ -33,7 +33,7 @@ bool compare_all(const Scene& scene, std::span<const PlaneEntry> group, double t
         faces.insert(faces.end(), own.begin(), own.end());
     }
     const auto& surfaces = scene.surfaces();
-    // The larger ones first: a face is compared with those that are.
+    // Sorted by decreasing area: each face is compared with the larger ones.
     std::sort(faces.begin(), faces.end(), [&](SurfaceId a, SurfaceId b) {
         return surfaces[a].area != surfaces[b].area ? surfaces[a].area > surfaces[b].area : a < b;
     });
@@ -80,7 +80,7 @@ Overlaps find_overlaps(const Scene& scene, double tolerance) {
         for (j = i + 1; j < entries.size() && entries[j].key == entries[i].key;) ++j;
         if (j - i > 1) out.gave_up |= compare_all(scene, std::span(entries).subspan(i, j - i), tolerance, found);
     }
-    // Either region's face may have the smaller id.
+    // The face with the smaller id may be of either region.
     for (Found& f : found) std::ranges::sort(f.regions);
     std::ranges::sort(found, [](const Found& a, const Found& b) {
         return std::tie(a.regions, b.overlap.area, a.overlap.first, a.overlap.second) <

@@ -4,21 +4,21 @@
 
 namespace exitance {
 
-/// Two faces of one plane and one orientation that cover a common area: which of them light meets is left to chance.
+/// Two faces of one plane and one orientation that overlap: which of them receives the light would be arbitrary.
 struct Overlap {
     SurfaceId first, second;  ///< The first is the one with the smaller id.
     double area;              ///< m^2
 };
 
-/// What was found of a scene.
+/// The overlaps of a scene.
 struct Overlaps {
-    std::vector<Overlap> pairs;  ///< One of each two regions, ordered by ids.
-    bool gave_up = false;        ///< So many faces lie over one another that not all were compared.
+    std::vector<Overlap> pairs;  ///< One per pair of regions, sorted by ids.
+    bool gave_up = false;        ///< True if too many faces overlap and not all were compared.
 };
 
-/// Finds faces of different regions that lie in one plane within `tolerance` (metres), look the same way and overlap by
-/// more than rounding. Of a face that covers more than four as large as itself, four are told; of two regions, the two
-/// faces that overlap most. Expected O(n log n) in faces.
+/// Finds faces of different regions that are in one plane within `tolerance` (metres), have the same orientation and
+/// overlap by more than rounding. Reports at most four overlaps of a face with faces as large as itself, and for two
+/// regions only the two faces that overlap most. Expected O(n log n) in faces.
 Overlaps find_overlaps(const Scene& scene, double tolerance);
 
 }  // namespace exitance

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// Reflectances of one face for both polarisations.
+/// Reflectances of one glass face for both polarisations.
 struct Fresnel {
     double across, along, cos_inside;
 };
@@ -36,7 +36,7 @@ Spectrum Pane::transmission(double cosine) const {
     Spectrum out;
     if (!(cosine > 0)) return out;
     for (std::size_t b = 0; b < bands; ++b) {
-        if (b > 0 && transmissivity[b] == transmissivity[b - 1]) {  // grey glass is most glass, and powers cost
+        if (b > 0 && transmissivity[b] == transmissivity[b - 1]) {  // most glass is grey, and pow() is expensive
             out[b] = out[b - 1];
             continue;
         }

@@ -7,31 +7,31 @@
 
 namespace exitance {
 
-/// A pane of clear glass: light goes straight through it, from either side, less what its faces reflect (Fresnel) and
-/// what it absorbs on the way. It is no surface and has no elements; rays of reflected light are mirrored by it.
+/// A pane of clear glass. Light passes straight through it in both directions, reduced by reflection at both faces
+/// (Fresnel) and by absorption. It is not a surface and has no elements. Rays of reflected light are mirrored by it.
 struct Pane {
-    std::vector<Point> corners;  ///< Of a planar, simple polygon, metres; in a Scene convex.
-    Normal n;                    ///< Of length 1, to either side.
-    Spectrum transmissivity;     ///< Share of light that passes the inside once, straight on; at most 1.
-    double index = 1.52;         ///< Of refraction.
-    int line = 0;                ///< Where it stands in the scene file.
+    std::vector<Point> corners;  ///< Planar, simple polygon, metres; convex in a Scene.
+    Normal n;                    ///< Unit normal, to either side.
+    Spectrum transmissivity;     ///< Share of light that is not absorbed in one perpendicular passage; at most 1.
+    double index = 1.52;         ///< Refractive index.
+    int line = 0;                ///< Line in the scene file.
 
-    /// Share of the light that passes under this cosine to the normal, above 0:
+    /// Returns the share of light transmitted at this cosine (> 0) to the normal:
     ///
     ///     T = t (1 - r)^2 / (1 - r^2 t^2) for either polarisation,   t = transmissivity^(1 / cos inside),
     ///
-    /// the mean of both, all reflections between the faces counted.
+    /// averaged over both polarisations; includes all internal reflections.
     Spectrum transmission(double cosine) const;
-    /// Share of the light that it mirrors: r + r (1 - r)^2 t^2 / (1 - r^2 t^2), the mean of both polarisations.
+    /// Returns the reflected share: r + r (1 - r)^2 t^2 / (1 - r^2 t^2), averaged over both polarisations.
     Spectrum reflection(double cosine) const;
     bool is_sane() const;
 };
 
-/// The transmissivity of which transmission(1) is `transmittance`, as most of what is known of glass is given; at most
-/// 1, which clear glass with an index of 1.52 comes to at 0.918.
+/// Returns the transmissivity for which transmission(1) is `transmittance`, the usual specification of glass. At most
+/// 1, which corresponds to a transmittance of 0.918 for an index of 1.52.
 Spectrum transmissivity_of(const Spectrum& transmittance, double index = 1.52);
 
-/// Panes cut to convex polygons, with their normals; those without area left out.
+/// Splits panes into convex polygons and computes their normals; omits panes without area.
 std::vector<Pane> convex_panes(const std::vector<Pane>& panes);
 
 }  // namespace exitance

@@ -6,12 +6,12 @@
 
 namespace exitance {
 
-TEST(Pane, TransmitsAsFresnelSays) {
+TEST(Pane, TransmissionFollowsFresnel) {
     Pane clear;
     clear.transmissivity = Spectrum(1.0);
     const double r = std::pow(0.52 / 2.52, 2);
-    EXPECT_NEAR(clear.transmission(1)[0], (1 - r) / (1 + r), 1e-12);  // all reflections between two faces
-    // At Brewster's angle one polarisation passes whole: T = (1 + T_s) / 2.
+    EXPECT_NEAR(clear.transmission(1)[0], (1 - r) / (1 + r), 1e-12);  // includes all reflections between the two faces
+    // At Brewster's angle one polarisation is transmitted completely: T = (1 + T_s) / 2.
     const double brewster = std::atan(1.52), c = std::cos(brewster),
                  inside = std::sqrt(1 - std::pow(std::sin(brewster) / 1.52, 2));
     const double rs = std::pow((c - 1.52 * inside) / (c + 1.52 * inside), 2);
@@ -20,7 +20,7 @@ TEST(Pane, TransmitsAsFresnelSays) {
     EXPECT_EQ(clear.transmission(0)[0], 0);
 }
 
-TEST(Pane, WhatDoesNotPassClearGlassIsMirrored) {
+TEST(Pane, ClearGlassReflectsAllThatItDoesNotTransmit) {
     Pane clear;
     clear.transmissivity = Spectrum(1.0);
     for (const double cosine : {1e-3, 0.1, 0.5, 0.9, 1.0})
@@ -28,7 +28,7 @@ TEST(Pane, WhatDoesNotPassClearGlassIsMirrored) {
     EXPECT_EQ(clear.reflection(0)[0], 1);
     clear.index = 1;
     EXPECT_EQ(clear.reflection(0.5)[0], 0);
-    // Of glass that lets nothing through the first face alone mirrors.
+    // Opaque glass reflects only at its first face.
     Pane dark;
     dark.transmissivity = Spectrum(0.0);
     EXPECT_NEAR(dark.reflection(1)[0], std::pow(0.52 / 2.52, 2), 1e-12);
@@ -43,7 +43,7 @@ TEST(Pane, RadiancesArgumentIsTheTransmissivity) {
     EXPECT_EQ(transmissivity_of(Spectrum(0.0))[0], 0);
 }
 
-TEST(Pane, OthersThanConvexOnesAreCut) {
+TEST(Pane, ConcavePanesAreSplit) {
     Pane bent;
     bent.transmissivity = Spectrum(0.9);
     bent.corners = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}};

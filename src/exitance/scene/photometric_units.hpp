@@ -6,18 +6,19 @@
 
 namespace exitance {
 
-/// lm/W of white light, as Radiance has it (WHTEFFICACY): what turns lumens into watts of three equal bands.
+/// Luminous efficacy of white light in lm/W, as in Radiance (WHTEFFICACY): converts lumens to watts for three equal
+/// bands.
 inline constexpr double daylight_efficacy = 179;
 
-/// Weights by which the bands make one luminous number, summing to 1: Radiance's 0.265, 0.670, 0.065 of R, G, B. In
-/// builds of other than three bands, whose bands have no names, all weigh alike.
+/// Weights of the bands in a luminous quantity, summing to 1: Radiance's 0.265, 0.670, 0.065 for R, G, B. With another
+/// number of bands, which have no names, all weights are equal.
 constexpr Spectrum luminous_weights() {
     Spectrum out(1.0 / static_cast<double>(bands));
     if constexpr (bands == 3) out[0] = 0.265, out[1] = 0.670, out[2] = 0.065;
     return out;
 }
 
-/// The sum of the bands by `luminous_weights()`.
+/// Returns the sum of the bands weighted by `luminous_weights()`.
 constexpr double luminous_sum(const Spectrum& light) {
     const Spectrum weights = luminous_weights();
     double sum = 0;
@@ -25,12 +26,12 @@ constexpr double luminous_sum(const Spectrum& light) {
     return sum;
 }
 
-/// The unit in which light is printed: that of the scene, or another.
+/// The unit for printed light: that of the scene, or another.
 enum class UnitChoice : std::uint8_t { scene, watt, lux };
 
-/// Light of all bands as one number: E in lx or W/m^2, M and B in lm/m^2 or W/m^2, power in lm or W. This is the one
-/// definition of a total over bands: watts are the mean of the bands, lumens the sum by `luminous_weights()` (of watts
-/// times the efficacy). Light that is in lumens is not converted to lumens again.
+/// Converts light of all bands to one number: E in lx or W/m^2, M and B in lm/m^2 or W/m^2, power in lm or W. This is
+/// the only definition of a total over bands: watts are the mean of the bands; lumens are the sum by
+/// `luminous_weights()`, times the efficacy if the light is in watts.
 class LightUnit {
   public:
     LightUnit() = default;
@@ -58,7 +59,7 @@ class LightUnit {
     double efficacy_ = daylight_efficacy;
 };
 
-/// The unit that a scene's own light is in.
+/// Returns the unit of the scene's own light.
 inline LightUnit own_unit(bool photometric) {
     return {UnitChoice::scene, photometric};
 }

@@ -5,7 +5,7 @@
 namespace exitance {
 namespace {
 
-TEST(LightUnit, WattsBecomeLuxByRadiancesWeights) {
+TEST(LightUnit, WattsAreConvertedToLuxByRadiancesWeights) {
     Spectrum light(1);
     if constexpr (bands == 3) light[0] = 3, light[1] = 2, light[2] = 1;
     const double weighted = bands == 3 ? 3 * 0.265 + 2 * 0.670 + 0.065 : 1;
@@ -24,7 +24,7 @@ TEST(LightUnit, LumensAreNotConvertedTwice) {
     EXPECT_FALSE(LightUnit(UnitChoice::scene, false).is_lux());
 }
 
-/// Light whose bands differ.
+/// Light with different values per band.
 Spectrum coloured() {
     Spectrum light;
     for (std::size_t b = 0; b < bands; ++b) light[b] = 100 * static_cast<double>(b + 1);
@@ -46,8 +46,9 @@ TEST(LightUnit, ATotalIsTheMeanOfWattsAndTheWeightedSumOfLumens) {
     EXPECT_STREQ(own_unit(true).power(), "lm");
 }
 
-TEST(LightUnit, WattsAndLumensOfOneLightAreThatLightInBothUnits) {
-    // A scene in lumens whose bands are 179 times those of one in watts has its lux and, but for the colour, its watts.
+TEST(LightUnit, WattsAndLumensOfTheSameLightAgreeInBothUnits) {
+    // A scene in lumens whose bands are 179 times those of one in watts has the same lux and, for white light, the same
+    // watts.
     const Spectrum watts = coloured(), lumens = daylight_efficacy * coloured();
     EXPECT_NEAR(LightUnit(UnitChoice::lux, true)(lumens), LightUnit(UnitChoice::lux, false)(watts), 1e-8);
     EXPECT_NEAR(LightUnit(UnitChoice::watt, true)(daylight_efficacy * Spectrum(2)), 2, 1e-12);

@@ -12,38 +12,41 @@ namespace exitance {
 struct PlaceFinder::Wall {
     std::span<const Point> outline;
     Normal n;
-    SurfaceId surface;  ///< None: a pane, which counts as a front on both sides.
+    SurfaceId surface;  ///< None: a pane, both sides of which count as fronts.
 };
 
-/// A half-line from the point, in its measuring plane, along which a wall leaves it.
+/// A half-line from the point in its measuring plane, along which a wall extends.
 struct PlaceFinder::Blade {
     Wall wall;
-    Vec3 way;       ///< Of length 1.
-    double angle;   ///< Of `way`, from 0 to 2 pi.
-    Vec3 across;    ///< Of length 1, in the measuring plane, to the wall's front.
-    double before;  ///< How far the point is before the wall along `across`, metres.
+    Vec3 way;       ///< Unit vector along the wall.
+    double angle;   ///< Angle of `way`, from 0 to 2 pi.
+    Vec3 across;    ///< Unit vector in the measuring plane, towards the wall's front.
+    double before;  ///< Distance of the point in front of the wall along `across`, metres.
 };
 
-/// What lies between two neighbouring blades.
+/// The sector between two neighbouring blades.
 struct PlaceFinder::Sector {
-    Point place;                  ///< The point moved into the sector.
-    Vec3 inwards;                 ///< The direction of its middle, of length 1.
-    int backs = 0;                ///< How many of its two sides are backs of walls.
-    bool holds_point = true;      ///< Does the point lie in it, by more than rounding?
-    bool is_reflex = false;       ///< Does it open by more than half a turn?
-    SurfaceId front;              ///< The first face, by its id, whose front it is at; none at panes alone.
-    bool is_before_pane = false;  ///< Does it lie on the side that a pane's normal points to?
+    Point place;              ///< The point, moved into the sector.
+    Vec3 inwards;             ///< Unit vector along the bisector.
+    int backs = 0;            ///< Number of its two sides that are backs of walls.
+    bool holds_point = true;  ///< True if the point is in the sector, by more than rounding.
+    bool is_reflex = false;   ///< True if the sector's angle is more than pi.
+    /// Among the faces whose fronts bound it, the one with the lowest id; none if there are only panes.
+    SurfaceId front;
+    bool is_before_pane = false;  ///< True if it is on the side to which a pane's normal points.
 };
 
 namespace {
 
-constexpr double parallel = 0.999;      ///< Cosine between normals of planes that count as parallel, as for a Locator.
-constexpr double same_way = 1e-3;       ///< Radians between blades that count as one.
-constexpr double step_share = 0x1p-20;  ///< Of the scene's diameter, as far as rays start off their surfaces.
-constexpr double slack = 1 + 0x1p-10;   ///< A place that was moved is not moved again because of rounding.
-/// Share of the step by which a point has to be off a wall to count as on one side of it. Coordinates that are rounded
-/// to twelve digits, a hundred scene sizes from the origin, are off by a ten-thousandth of the step.
-constexpr double clearly_off = 1e-3;
+/// Cosine between normals of planes that count as parallel, as for a Locator.
+constexpr double parallel_cosine = 0.999;
+constexpr double min_blade_angle = 1e-3;  ///< Radians; blades at a smaller angle count as one.
+/// Relative to the scene's diameter; rays start at the same distance from their surfaces.
+constexpr double step_share = 0x1p-20;
+constexpr double slack = 1 + 0x1p-10;  ///< Prevents that a point already moved is moved again because of rounding.
+/// Distance from a wall, in steps, beyond which a point is clearly on one side of it. Coordinates rounded to twelve
+/// digits, a hundred scene sizes from the origin, have an error of a ten-thousandth of a step.
+constexpr double min_offset = 1e-3;
 
 Point area_centroid(const Scene& scene) {
     Vec3 sum;
@@ -72,7 +75,7 @@ PlaceFinder::PlaceFinder(const Scene& scene) : scene_(&scene), locator_(scene), 
     tree_ = Bvh(boxes);
 }
 
-/// Does the wall come within a step of p?
+/// True if the wall is nearer to p than `step_`, the tolerance of positions.
 bool PlaceFinder::touches(const Wall& wall, const Point& p) const {
     const double height = dot(wall.n, p - wall.outline[0]);
     if (!(std::abs(height) <= step_)) return false;
@@ -80,7 +83,7 @@ bool PlaceFinder::touches(const Wall& wall, const Point& p) const {
     return norm(p - nearest_on_border(wall.outline, p)) <= step_;
 }
 
-/// Does the wall stand in the light that arrives at p from before the plane of normal n?
+/// True if the wall may block light that arrives at p from above the plane of normal n.
 bool PlaceFinder::rises_above(const Wall& wall, const Point& p, const Normal& n) const {
     return std::any_of(wall.outline.begin(), wall.outline.end(),
                        [&](const Point& corner) { return dot(n, corner - p) > step_; });
@@ -99,14 +102,15 @@ void PlaceFinder::visit_walls(const Point& p, const Visit& visit) const {
     });
 }
 
-/// The blades of all walls that touch p, counter-clockwise. A face of region `own` is none.
+/// Returns the blades of all walls that touch p, counter-clockwise. Faces of region `own` are skipped.
 std::vector<PlaceFinder::Blade> PlaceFinder::blades_at(const Point& p, const Normal& n, RegionId own) const {
-    constexpr double look_ahead = 4;  // steps, so that a wall that ends at p within a step does not go on beyond it
+    // In steps, so that a wall that ends within a step of p does not count as continuing beyond it.
+    constexpr double look_ahead = 4;
     const Frame frame(n);
     std::vector<Blade> out;
     visit_walls(p, [&](const Wall& wall) {
         const double cosine = dot(wall.n, n), sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-        if (std::abs(cosine) > parallel || !rises_above(wall, p, n)) return;
+        if (std::abs(cosine) > parallel_cosine || !rises_above(wall, p, n)) return;
         if (!own.is_none() && !wall.surface.is_none() && scene_->surfaces()[wall.surface].region == own) return;
         const Vec3 across = normalized(wall.n - cosine * n), along = cross(n, across);
         for (const Vec3& way : {along, -along}) {
@@ -120,24 +124,27 @@ std::vector<PlaceFinder::Blade> PlaceFinder::blades_at(const Point& p, const Nor
     return out;
 }
 
-/// `start`, `end`: the blades at either side, of one direction each; `angle`: between them, counter-clockwise.
+/// start, end  the blades at either side, each of one direction
+/// angle       from start to end, counter-clockwise
 PlaceFinder::Sector PlaceFinder::make_sector(const Point& p, const Normal& n, std::span<const Blade> start,
                                              std::span<const Blade> end, double angle) const {
     Sector out;
     out.inwards = std::cos(0.5 * angle) * start[0].way + std::sin(0.5 * angle) * cross(n, start[0].way);
-    out.is_reflex = angle > pi + same_way;
+    out.is_reflex = angle > pi + min_blade_angle;
     double way = 0;
     bool is_off_all = true, is_off_any = false;
     for (const bool at_start : {true, false}) {
         const std::span<const Blade> side = at_start ? start : end;
         const Vec3 off = at_start ? cross(n, side[0].way) : cross(side[0].way, n);  // from the side into the sector
-        const auto depth = [&](const Blade& b) { return b.before * dot(b.across, off); };  // of p within the sector
+        const auto depth = [&](const Blade& b) {
+            return b.before * dot(b.across, off);
+        };  // distance of p from the blade, positive inside the sector
         double least = HUGE_VAL;
         for (const Blade& b : side) least = std::min(least, depth(b));
         bool is_front = false;
         for (const Blade& b : side) {
-            // Of walls that stand behind one another the sector sees the outermost.
-            if (depth(b) > least + clearly_off * step_) continue;
+            // Among walls behind one another, the outermost bounds the sector.
+            if (depth(b) > least + min_offset * step_) continue;
             const bool is_pane = b.wall.surface.is_none(), is_before = dot(b.across, off) > 0;
             is_front |= is_pane || is_before;
             out.is_before_pane |= is_pane && is_before;
@@ -147,7 +154,7 @@ PlaceFinder::Sector PlaceFinder::make_sector(const Point& p, const Normal& n, st
         out.backs += !is_front;
         const double needed = slack * step_ - least, slope = std::max(dot(out.inwards, off), 1e-6);
         way = std::max(way, out.is_reflex ? slack * step_ + std::abs(least) : needed / slope);
-        is_off_all &= least > clearly_off * step_, is_off_any |= least > clearly_off * step_;
+        is_off_all &= least > min_offset * step_, is_off_any |= least > min_offset * step_;
     }
     out.holds_point = out.is_reflex ? is_off_any : is_off_all;
     out.place = p + way * out.inwards;
@@ -156,20 +163,20 @@ PlaceFinder::Sector PlaceFinder::make_sector(const Point& p, const Normal& n, st
 
 std::vector<PlaceFinder::Sector> PlaceFinder::sectors_at(const Point& p, const Normal& n,
                                                          const std::vector<Blade>& blades) const {
-    // Blades of one direction, the first of them: the turn begins where two directions differ.
+    // Blades of one direction form a group; the enumeration begins where two directions differ.
     const std::size_t count = blades.size();
     const auto gap_before = [&](std::size_t i) {
         const double gap = blades[i].angle - blades[i == 0 ? count - 1 : i - 1].angle;
         return i == 0 ? gap + 2 * pi : gap;
     };
     std::size_t first = 0;
-    while (first < count && gap_before(first) <= same_way) ++first;
+    while (first < count && gap_before(first) <= min_blade_angle) ++first;
     if (first == count) return {};
     std::vector<Blade> in_turn(blades.begin() + static_cast<std::ptrdiff_t>(first), blades.end());
     in_turn.insert(in_turn.end(), blades.begin(), blades.begin() + static_cast<std::ptrdiff_t>(first));
     std::vector<std::span<const Blade>> sides;
     for (std::size_t i = 0, begin = 0; i < count; ++i)
-        if (i + 1 == count || gap_before((first + i + 1) % count) > same_way)
+        if (i + 1 == count || gap_before((first + i + 1) % count) > min_blade_angle)
             sides.push_back(std::span(in_turn).subspan(begin, i + 1 - begin)), begin = i + 1;
     std::vector<Sector> out;
     for (std::size_t k = 0; k < sides.size(); ++k) {
@@ -181,13 +188,13 @@ std::vector<PlaceFinder::Sector> PlaceFinder::sectors_at(const Point& p, const N
     return out;
 }
 
-/// A point of free space is moved along its normal off walls that its measuring plane is parallel to, and off the upper
-/// edges of others, where rays would meet them at no distance.
+/// Moves a point in free space along its normal, away from walls parallel to its measuring plane and from the upper
+/// edges of others, where rays would hit them at distance 0.
 Point PlaceFinder::lifted_off_walls(const Point& p, const Normal& n) const {
     double lift = 0;
     visit_walls(p, [&](const Wall& wall) {
-        if (std::abs(dot(wall.n, n)) <= parallel && rises_above(wall, p, n)) return;
-        if (std::abs(dot(wall.n, n)) > parallel) {
+        if (std::abs(dot(wall.n, n)) <= parallel_cosine && rises_above(wall, p, n)) return;
+        if (std::abs(dot(wall.n, n)) > parallel_cosine) {
             lift = std::max(lift, slack * step_ - dot(wall.n, p - wall.outline[0]) / dot(wall.n, n));
         } else {
             for (const Point& corner : wall.outline) lift = std::max(lift, slack * step_ + dot(n, corner - p));
@@ -233,7 +240,7 @@ MeasuredPlace PlaceFinder::find(const Point& p, const Normal& n, const Point* to
         std::count_if(sectors.begin(), sectors.end(), [&](const Sector& s) { return s.backs == best->backs; }) > 1;
     if (std::count_if(sectors.begin(), sectors.end(), equals) > 1) {
         const Vec3 way = (towards ? *towards : middle(surface)) - foot;
-        // The step is small beside the way, so that a difference of less than a step is none.
+        // The step is small compared with the distance, so that differences of less than a step are ignored.
         const auto is_better = [&](const Sector& a, const Sector& b) {
             const double gain = dot(way, a.inwards) - dot(way, b.inwards);
             if (std::abs(gain) > step_) return gain > 0;

@@ -6,39 +6,41 @@
 
 namespace exitance {
 
-/// Where the light of a measuring point is evaluated.
+/// The point at which the light of a measuring point is evaluated.
 struct MeasuredPlace {
-    Point x;                        ///< Metres; off all walls and panes that the measuring point lies on.
-    SurfaceId surface;              ///< The face that it lies on; none in free space.
-    RegionId region;                ///< That of the face.
-    bool is_between_sides = false;  ///< Is the light there that of one of several sides, any of which could be meant?
+    Point x;                        ///< Metres; at a distance from all walls and panes that touch the measuring point.
+    SurfaceId surface;              ///< The face of the point; none in free space.
+    RegionId region;                ///< The region of that face.
+    bool is_between_sides = false;  ///< True if the light differs between several sides, any of which could be meant.
 };
 
-/// Finds out where measuring points lie. Light jumps at a point on the line of a wall, and the value there is the limit
-/// from one side:
+/// Resolves the position of measuring points. Light is discontinuous at a point on the line of a wall; its value there
+/// is the limit from one side:
 ///
-/// - On a face that ends at the wall, the limit from inside the face.
-/// - Where the face or the measuring plane goes on beyond the wall, the limit from before the wall's front. Both sides
-///   of a sheet or a pane are fronts.
-/// - In a plane of measuring that is parallel to the wall, the limit from the side that the normal points to.
+/// - On a face that ends at the wall: the limit from inside the face.
+/// - If the face or the measuring plane continues beyond the wall: the limit from the wall's front. Both sides of a
+/// sheet or a pane are fronts.
+/// - In a measuring plane parallel to the wall: the limit from the side to which the normal points.
 ///
-/// Where this leaves several sides, `is_between_sides` is set. The point's own position decides if it is off the wall
-/// by more than rounding, else the side where the face's centroid lies. The flag is set as well where a wall ends at
-/// the point or bends away from it, since the limit then depends on the direction of approach.
+/// If this leaves several sides, `is_between_sides` is set. The point's own position decides if it is off the wall by
+/// more than rounding; otherwise the side of the face's centroid is used. The flag is also set if a wall ends at the
+/// point or bends away from it, since the limit then depends on the direction of approach.
 ///
-/// The returned place is the point moved by `step()` into that side, within its plane. A place that is at least as far
-/// from every wall stays where it is. The step is a share of the scene's radius, so that a scene that is turned, moved
-/// or scaled gives the same places. The scene must outlive the finder. O(log faces) a query.
+/// The result is the point moved by `step()` to that side, within its plane. A point that is at least as far from every
+/// wall is not moved. The step is proportional to the scene's radius, so that rotating, translating or scaling the
+/// scene gives the same result. The scene must outlive the finder. O(log faces) per query.
 class PlaceFinder {
   public:
     explicit PlaceFinder(const Scene& scene);
 
-    /// `p`: metres; `n`: the normal of the measuring plane, of length 1. `towards`: a point on the side to take where
-    /// several are left (null: the face's centroid, or the scene's). Safe to call from any thread.
+    /// p        metres
+    /// n        unit normal of the measuring plane
+    /// towards  a point on the side to use if several are left (null: the centroid of the face, or of the scene)
+    /// Thread-safe.
     MeasuredPlace find(const Point& p, const Normal& n, const Point* towards = nullptr) const;
 
-    /// How far from a wall a place lies at least, metres: about ten roundings of coordinates in the single precision of
-    /// rays.
+    /// Returns the least distance of a result from walls, metres: about ten rounding errors of the single precision
+    /// coordinates of rays.
     double step() const { return step_; }
 
   private:
@@ -59,7 +61,7 @@ class PlaceFinder {
 
     const Scene* scene_;
     Locator locator_;
-    Point centroid_;  ///< Of the surfaces' area.
+    Point centroid_;  ///< Area-weighted centroid of the surfaces.
     double step_ = 0;
     Bvh tree_;  ///< Faces, then panes.
 };

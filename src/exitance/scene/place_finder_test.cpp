@@ -9,7 +9,7 @@ namespace {
 
 using Outline = std::vector<Point>;
 
-/// Faces of two materials in turn, so that no two are one region; panes.
+/// A scene of faces with alternating materials, so that no two are joined to one region, and of panes.
 Scene scene_of(const std::vector<Outline>& faces, const std::vector<Outline>& panes = {}) {
     SceneDescription d;
     d.materials = {{"grey", Spectrum(0.5), {}}, {"other", Spectrum(0.4), {}}};
@@ -38,7 +38,7 @@ Outline reversed(Outline outline) {
     return outline;
 }
 
-/// A floor of 4 x 3 m and the walls of its left, right and near edge, fronts inwards.
+/// A floor of 4 x 3 m and walls at its left, right and near edge, fronts inside.
 std::vector<Outline> open_box() {
     return {{{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}},
             {{0, 0, 0}, {0, 3, 0}, {0, 3, 2.5}, {0, 0, 2.5}},
@@ -46,9 +46,9 @@ std::vector<Outline> open_box() {
             {{0, 0, 0}, {0, 0, 2.5}, {4, 0, 2.5}, {4, 0, 0}}};
 }
 
-/// A large floor that things stand on.
+/// A large floor under the other objects.
 const Outline slab{{-10, -10, 0}, {10, -10, 0}, {10, 10, 0}, {-10, 10, 0}};
-/// A partition along y over the middle of the slab, its front to +x.
+/// A partition along y above the centre of the slab, its front towards +x.
 const Outline partition{{0, -2, 0}, {0, 2, 0}, {0, 2, 2}, {0, -2, 2}};
 const Normal up{0, 0, 1};
 
@@ -57,7 +57,8 @@ TEST(PlaceFinder, APointBelowAWallIsMovedIntoItsOwnFace) {
     const PlaceFinder finder(scene);
     const double step = finder.step();
     EXPECT_NEAR(step / scene.size(), 1e-6, 0.5e-6);
-    for (const double off : {-4e-6, -1e-9, 0.0, 1e-9, 1e-6}) {  // metres; less than a step and what a Locator allows
+    // Metres; less than a step and than the tolerance of a Locator.
+    for (const double off : {-4e-6, -1e-9, 0.0, 1e-9, 1e-6}) {
         const MeasuredPlace left = finder.find({off, 1.5, 0}, up), right = finder.find({4 - off, 1.5, 0}, up);
         EXPECT_NEAR(left.x.x, step, 0.01 * step) << off;
         EXPECT_NEAR(right.x.x, 4 - step, 0.01 * step) << off;
@@ -69,30 +70,30 @@ TEST(PlaceFinder, APointBelowAWallIsMovedIntoItsOwnFace) {
     EXPECT_NEAR(corner.x.x, step, 0.01 * step);
     EXPECT_NEAR(corner.x.y, step, 0.01 * step);
     EXPECT_FALSE(corner.is_between_sides);
-    // The floor is a wall to points at the foot of walls, and so is the next wall in their corner.
+    // For points at the foot of a wall the floor counts as a wall, and in a corner so does the neighbouring wall.
     const MeasuredPlace on_wall = finder.find({0, 1, 0}, {1, 0, 0}), in_corner = finder.find({0, 0, 1}, {1, 0, 0});
     EXPECT_NEAR(on_wall.x.z, step, 0.01 * step);
     EXPECT_NEAR(in_corner.x.y, step, 0.01 * step);
     EXPECT_EQ(on_wall.surface, SurfaceId(1));
 }
 
-TEST(PlaceFinder, APointOffAllWallsStaysWhereItIs) {
+TEST(PlaceFinder, APointOffAllWallsIsNotMoved) {
     const Scene scene = scene_of({slab, partition, {{3, -1, 0.7}, {4, -1, 0.7}, {4, 1, 0.7}, {3, 1, 0.7}}});
     const PlaceFinder finder(scene);
     for (const Point& p : {Point{1e-3, 0, 0}, Point{-1e-3, 0, 0}, Point{1, 1, 0}, Point{0, 3, 0}, Point{0, 2.1, 1}}) {
         EXPECT_EQ(finder.find(p, up).x, p);
         EXPECT_FALSE(finder.find(p, up).is_between_sides);
     }
-    // Nothing rises over the edge of a table or of the slab.
+    // Nothing is higher than the edge of a table or of the slab.
     for (const Point& p : {Point{3, 0, 0.7}, Point{3, -1, 0.7}, Point{10, 10, 0}}) EXPECT_EQ(finder.find(p, up).x, p);
-    // On the upper edge of the partition a place is above it.
+    // On the upper edge of the partition, the point is moved up.
     const MeasuredPlace on_top = finder.find({0, 0, 2}, up);
     EXPECT_EQ(on_top.x.x, 0);
     EXPECT_NEAR(on_top.x.z, 2 + finder.step(), 0.01 * finder.step());
     EXPECT_FALSE(on_top.is_between_sides);
 }
 
-TEST(PlaceFinder, APlaceStaysWhereItIs) {
+TEST(PlaceFinder, AResultIsNotMovedAgain) {
     const Scene scene = scene_of({slab, partition, reversed(partition), {{0, 2, 0}, {1, 3, 0}, {1, 3, 2}, {0, 2, 2}}});
     const PlaceFinder finder(scene);
     for (const Point& p : {Point{0, 0, 0}, Point{0, 0, 1}, Point{0, 2, 0}, Point{0, -2, 0}, Point{0.5, 2.5, 0}}) {
@@ -102,14 +103,14 @@ TEST(PlaceFinder, APlaceStaysWhereItIs) {
     }
 }
 
-TEST(PlaceFinder, WhereTheFloorGoesOnThePointIsBeforeTheFront) {
-    // Its other side is no front: the ground before the back of a wall is that before its front.
+TEST(PlaceFinder, IfTheFloorContinuesThePointIsMovedToTheFront) {
+    // The back of the wall is no front: a point on the ground at its back is moved to its front.
     const Scene one = scene_of({slab, partition});
     const MeasuredPlace front = PlaceFinder(one).find({0, 0, 0}, up);
     EXPECT_GT(front.x.x, 0);
     EXPECT_FALSE(front.is_between_sides);
-    EXPECT_GT(PlaceFinder(one).find({0, 0, 1}, up).x.x, 0);  // in free space, too
-    // A wall of 1 cm: the places are beside it, not within.
+    EXPECT_GT(PlaceFinder(one).find({0, 0, 1}, up).x.x, 0);  // also in free space
+    // A wall of 1 cm: the points are moved to its sides, not into it.
     Outline outer = reversed(partition);
     for (Point& p : outer) p.x -= 0.01;
     const Scene thick = scene_of({slab, partition, outer});
@@ -119,7 +120,7 @@ TEST(PlaceFinder, WhereTheFloorGoesOnThePointIsBeforeTheFront) {
     EXPECT_FALSE(PlaceFinder(thick).find({-0.01, 0, 0}, up).is_between_sides);
 }
 
-TEST(PlaceFinder, BelowASheetThePositionDecidesAndThenTheSideThatIsAskedFor) {
+TEST(PlaceFinder, BelowASheetThePositionDecidesThenTheRequestedSide) {
     const Scene scene = scene_of({slab, partition, reversed(partition)});
     const PlaceFinder finder(scene);
     const double step = finder.step();
@@ -136,7 +137,7 @@ TEST(PlaceFinder, BelowASheetThePositionDecidesAndThenTheSideThatIsAskedFor) {
     }
 }
 
-TEST(PlaceFinder, APlaneParallelToAWallSeesWhatItsNormalPointsTo) {
+TEST(PlaceFinder, APlaneParallelToAWallUsesTheSideOfItsNormal) {
     const Scene scene = scene_of({slab, partition}, {{{5, -1, 0}, {5, 1, 0}, {5, 1, 2}, {5, -1, 2}}});
     const PlaceFinder finder(scene);
     const MeasuredPlace behind = finder.find({0, 0, 1}, {-1, 0, 0});
@@ -147,14 +148,14 @@ TEST(PlaceFinder, APlaneParallelToAWallSeesWhatItsNormalPointsTo) {
         EXPECT_NEAR(finder.find({5, 0, 1}, {side, 0, 0}).x.x, 5 + side * finder.step(), 0.01 * finder.step());
         EXPECT_FALSE(finder.find({5, 0, 1}, {side, 0, 0}).is_between_sides);
     }
-    // On the line below a pane that cuts its face in half, the pane's normal decides.
+    // On the line below a pane that divides its face, the pane's normal decides.
     const Point on_line{5, 0, 0};
     EXPECT_GT(finder.find(on_line, up, &on_line).x.x, 5);
     EXPECT_TRUE(finder.find(on_line, up).is_between_sides);
     EXPECT_TRUE(finder.find({5, 0, 1}, up).is_between_sides);
 }
 
-TEST(PlaceFinder, WhereAWallEndsOrBendsAwayThePlaceIsAheadOfItAndTold) {
+TEST(PlaceFinder, AtTheEndOrBendOfAWallThePointIsFlagged) {
     const Scene scene = scene_of({slab, partition, {{0, 2, 0}, {-2, 2, 0}, {-2, 2, 2}, {0, 2, 2}}});
     const PlaceFinder finder(scene);
     const double step = finder.step();
@@ -167,8 +168,8 @@ TEST(PlaceFinder, WhereAWallEndsOrBendsAwayThePlaceIsAheadOfItAndTold) {
     EXPECT_TRUE(bend.is_between_sides);
 }
 
-TEST(PlaceFinder, FloorsThatMeetBelowAWallAreToldApart) {
-    // Two floors meet in x = 0, with and without a sheet on the line.
+TEST(PlaceFinder, FloorsThatMeetBelowAWallAreDistinguished) {
+    // Two floors meet at x = 0, with and without a sheet on the line.
     const Outline left{{-3, -2, 0}, {0, -2, 0}, {0, 2, 0}, {-3, 2, 0}},
         right{{0, -2, 0}, {3, -2, 0}, {3, 2, 0}, {0, 2, 0}};
     const Scene open = scene_of({left, right});
@@ -181,7 +182,7 @@ TEST(PlaceFinder, FloorsThatMeetBelowAWallAreToldApart) {
         EXPECT_GT(place.x.x * side, 0);
         EXPECT_TRUE(place.is_between_sides);
     }
-    // The strip below a wall of 1 cm is a floor of its own, which no sensor means.
+    // The strip below a wall of 1 cm is a separate floor face, which no measuring point is meant for.
     Outline outer = reversed(partition), strip{{-0.01, -2, 0}, {0, -2, 0}, {0, 2, 0}, {-0.01, 2, 0}}, rest = left;
     for (Point& p : outer) p.x -= 0.01;
     rest[1].x = rest[2].x = -0.01;
@@ -190,8 +191,8 @@ TEST(PlaceFinder, FloorsThatMeetBelowAWallAreToldApart) {
     EXPECT_EQ(PlaceFinder(thick).find({-0.01, 0, 0}, up).surface, SurfaceId(1));
 }
 
-TEST(PlaceFinder, WallsThatOverlapAreOneWall) {
-    // Two fronts closer than a step, the second one a tenth of a step behind the first.
+TEST(PlaceFinder, OverlappingWallsAreOneWall) {
+    // Two fronts closer than a step, the second a tenth of a step behind the first.
     const double step = PlaceFinder(scene_of({slab, partition})).step();
     Outline behind = partition;
     for (Point& p : behind) p.x -= 0.1 * step, p.y *= 1.1;
@@ -203,7 +204,7 @@ TEST(PlaceFinder, WallsThatOverlapAreOneWall) {
     }
 }
 
-/// A rotation about an odd axis, a scale and a shift.
+/// A rotation about an arbitrary axis, a scale and a translation.
 struct Motion {
     std::array<Vec3, 3> rows{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
     double scale = 1;
@@ -213,7 +214,7 @@ struct Motion {
     Point operator()(const Point& p) const { return scale * turned(p) + shift; }
 };
 
-TEST(PlaceFinder, PlacesMoveWithTheScene) {
+TEST(PlaceFinder, ResultsMoveWithTheScene) {
     const Frame odd(normalized(Vec3{0.3, -0.5, 0.71}));
     const std::vector<Motion> motions{
         {{Vec3{0, -1, 0}, Vec3{1, 0, 0}, Vec3{0, 0, 1}}, 1, {}},
@@ -237,7 +238,8 @@ TEST(PlaceFinder, PlacesMoveWithTheScene) {
         EXPECT_NEAR(moved_finder.step() / (motion.scale * finder.step()), 1, 1e-9);
         for (const Point& p : points) {
             const MeasuredPlace here = finder.find(p, up), there = moved_finder.find(motion(p), motion.turned(up));
-            // Rounding of coordinates 1000 m from the origin is 1e-13 m, of the wall's plane some times that.
+            // The rounding error of coordinates 1000 m from the origin is 1e-13 m, that of the wall's plane a few times
+            // as much.
             EXPECT_LT(norm(there.x - motion(here.x)), 1e-6 * moved_finder.step()) << p.x << ' ' << p.y << ' ' << p.z;
             EXPECT_EQ(here.surface, there.surface);
             EXPECT_EQ(here.is_between_sides, there.is_between_sides);

@@ -17,7 +17,8 @@ double PunctualLight::share_towards(const Normal& w) const {
 Spectrum PunctualLight::power() const {
     if (kind == Kind::directional) return {};
     if (kind == Kind::point) return 4 * pi * intensity;
-    // 2 pi (1 - cos inner) of full light, then 2 pi int t^2 d(cos) with t from 0 to 1 over cos inner - cos outer.
+    // 2 pi (1 - cos inner) for the full intensity, then 2 pi int t^2 d(cos) with t from 0 to 1 over cos inner - cos
+    // outer.
     const double outer = std::cos(outer_cone), inner = std::cos(inner_cone);
     return 2 * pi * ((1 - inner) + (inner - outer) / 3) * intensity;
 }

@@ -2,7 +2,7 @@
 
 namespace exitance {
 
-/// Edge of the cube that stands for a luminaire whose photometric file gives its opening no extent, metres.
+/// Edge of the cube that represents a luminaire whose photometric file gives no extent of its opening, metres.
 inline constexpr double point_opening_size = 0.001;
 
 }  // namespace exitance

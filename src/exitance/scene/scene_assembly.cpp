@@ -5,7 +5,7 @@
 
 namespace exitance {
 
-/// Regions with their planes, points moved into them where they stand off by more than rounding.
+/// Adds the regions with their planes. Points off the plane by more than rounding are projected to it.
 void SceneBuilder::add_regions(Scene& scene, const std::vector<JoinedFaces>& joined) {
     scene.regions_.reserve(joined.size());
     for (const JoinedFaces& set : joined) {

@@ -24,12 +24,12 @@ Tolerances tolerances(const Box& box, double short_edge) {
     return t;
 }
 
-constexpr std::size_t most_corners = 10'000;  ///< Of a face: triangulations take their square.
-constexpr double farthest = 1e15;             ///< Metres from the origin: powers of areas stay finite.
-constexpr double brightest = 1e30;            ///< W/m^2, cd, lx: float holds 3e38, and light is added up in it.
+constexpr std::size_t max_corners = 10'000;  ///< Per face: triangulation is quadratic in it.
+constexpr double max_coordinate = 1e15;      ///< Metres from the origin: powers of areas stay finite.
+constexpr double max_exitance = 1e30;        ///< W/m^2, cd, lx: light is accumulated in float, whose maximum is 3e38.
 
 bool is_near(const Point& p) {
-    return std::abs(p.x) <= farthest && std::abs(p.y) <= farthest && std::abs(p.z) <= farthest;
+    return std::abs(p.x) <= max_coordinate && std::abs(p.y) <= max_coordinate && std::abs(p.z) <= max_coordinate;
 }
 
 std::string SceneBuilder::name_of(const SceneDescription::Face& face) const {
@@ -44,7 +44,7 @@ void SceneBuilder::find(Finding::Kind kind, const SceneDescription::Face& face, 
         if (c < in_.points.size() && is_finite(in_.points[c])) marked.outline.push_back(in_.points[c]);
     if (face.line == 0 && face.group < in_.groups.size())
         message = fmt::format("in '{}': {}", in_.groups[face.group], message);
-    // Without lines nothing but the group tells faces apart.
+    // In files without lines, faces are identified only by their group.
     if (rest || face.line == 0) {
         const auto [told, is_new] =
             alike_.try_emplace(rest ? rest : message, Alike{findings_.size(), 0, rest ? rest : "like this"});
@@ -72,9 +72,9 @@ void SceneBuilder::check_materials() {
                 error(0,
                       fmt::format("material '{}' has reflectance {:g} in band {}", m.name, m.reflectance[b], band(b)),
                       "reflectances lie in [0, 1): at 1 light would never die out");
-            if (!(m.exitance[b] >= 0 && m.exitance[b] <= brightest))
+            if (!(m.exitance[b] >= 0 && m.exitance[b] <= max_exitance))
                 error(0, fmt::format("material '{}' has exitance {:g} in band {}", m.name, m.exitance[b], band(b)),
-                      fmt::format("emission is not negative, and at most {:g} W/m^2", brightest));
+                      fmt::format("emission is not negative, and at most {:g} W/m^2", max_exitance));
         }
     }
     if (white_ones > 0)
@@ -86,7 +86,7 @@ void SceneBuilder::check_materials() {
 void SceneBuilder::check_lights() {
     for (const PunctualLight& light : in_.lights) {
         if (!std::all_of(light.intensity.value.begin(), light.intensity.value.end(),
-                         [](double v) { return v >= 0 && v <= brightest; }))
+                         [](double v) { return v >= 0 && v <= max_exitance; }))
             error(0, fmt::format("light '{}' has an intensity that is negative, too large or not finite", light.name));
         if (!is_near(light.position) || !(std::abs(norm(light.direction) - 1) < 1e-6))
             error(0, fmt::format("light '{}' has no place or no direction", light.name));
@@ -120,7 +120,7 @@ void SceneBuilder::check_panes() {
         if (!pane.is_sane()) error(pane.line, "a pane of glass lets more light through than arrives");
 }
 
-/// Finds the scene's box and the points that stand at one place.
+/// Computes the scene's box and finds the points at equal positions.
 void SceneBuilder::place_corners() {
     std::vector<float> lengths;  // of all edges; only their magnitude matters
     for (std::uint32_t f = 0; f < in_.faces.size(); ++f) {
@@ -155,13 +155,13 @@ void SceneBuilder::check_faces() {
         error(in_.faces[0].line, "no polygon is left once faces without area are taken out");
 }
 
-/// Appends the face to the mesh if it can be used; reports why not otherwise.
+/// Appends the face to the mesh if it is valid; otherwise reports why not.
 void SceneBuilder::check_face(std::uint32_t f) {
     const SceneDescription::Face& face = in_.faces[f];
     if (!is_pane(f) && (face.material >= in_.materials.size() || face.group >= in_.groups.size()))
         return error(face, "face has no material or no group");
-    if (face.corners.size() > most_corners)
-        return error(face, fmt::format("face has {} corners; {} are the most", face.corners.size(), most_corners),
+    if (face.corners.size() > max_corners)
+        return error(face, fmt::format("face has {} corners; {} are the most", face.corners.size(), max_corners),
                      "make its outline simpler, or cut it up");
     std::vector<std::uint32_t> outline = face.corners;
     for (std::uint32_t& c : outline) {
@@ -172,7 +172,7 @@ void SceneBuilder::check_face(std::uint32_t f) {
             return error(face,
                          fmt::format("a corner of the face lies at ({:g}, {:g}, {:g}) m", in_.points[c].x,
                                      in_.points[c].y, in_.points[c].z),
-                         fmt::format("mend it, or scale the scene: coordinates go up to {:g} m", farthest));
+                         fmt::format("mend it, or scale the scene: coordinates go up to {:g} m", max_coordinate));
         c = place_[c];
     }
     const std::size_t given = outline.size(), dropped = drop_repeated_corners(outline);
@@ -210,8 +210,8 @@ void SceneBuilder::report_flattened() {
                          flattened_.farthest));
 }
 
-/// Leaves out faces that repeat an earlier one, corner by corner and to the same side: which of the two light meets
-/// would be left to chance.
+/// Removes faces that repeat an earlier one with the same corners and orientation: which of the two receives the light
+/// would be arbitrary.
 void SceneBuilder::drop_duplicates() {
     HashChains chains(mesh_.size());
     std::vector<std::uint32_t> rotated, other, kept;
@@ -284,9 +284,9 @@ void SceneBuilder::check_light() {
              "give a material an emission (in MTL: Ke r g b), or the scene a sky (solve --sky)");
 }
 
-/// Of faces that cover each other the later one is on top: regions learn how many lie under them, users that it is so.
+/// Stacks overlapping faces, the later one on top: counts the regions under each region, and reports the overlaps.
 void SceneBuilder::stack_overlaps(Scene& scene) {
-    // Rays that start this near a face cannot tell the two apart.
+    // Rays that start this near to a face cannot distinguish the two.
     const Overlaps overlaps = find_overlaps(scene, 100 * tol_.place);
     for (const Overlap& overlap : overlaps.pairs)
         find(Finding::Kind::warning, in_.faces[origin_[overlap.second.value]], Mark::Kind::covering,

@@ -11,10 +11,10 @@
 
 namespace exitance {
 
-/// Makes a scene step by step; findings gather on the way.
+/// Builds a scene step by step and collects findings.
 class SceneBuilder {
   public:
-    /// turn_bodies  true: turns the faces of closed bodies that are inside out (`find_inside_out`)
+    /// turn_bodies  true: reverses the faces of closed bodies that are inside out (`find_inside_out`)
     explicit SceneBuilder(SceneDescription description, bool turn_bodies = false)
         : in_(std::move(description)), turn_bodies_(turn_bodies) {}
     CheckedScene build();
@@ -26,32 +26,33 @@ class SceneBuilder {
     void check_faces();
     void check_face(std::uint32_t f);
     void check_shape(std::uint32_t f, std::vector<std::uint32_t> outline);
-    /// Corners, area vector (m^2) and extent of an outline.
+    /// Corners, area vector (m^2) and size of an outline.
     struct OutlineShape {
         std::vector<Point> corners;
         Vec3 area;
-        double extent = 0;  ///< Diagonal of its box, metres.
+        double extent = 0;  ///< Diagonal of its bounding box, metres.
 
         OutlineShape(std::span<const Point> points, std::span<const std::uint32_t> outline);
     };
-    /// Width (metres) below which no ray meets the outline: single precision does not resolve it beside its length.
+    /// Returns the width (metres) below which no ray hits the outline, because single precision does not resolve it
+    /// relative to its length.
     double narrowest_width(const OutlineShape& shape) const;
     bool is_too_narrow(const OutlineShape& shape) const;
-    /// Adds the parts of an outline that crosses itself.
+    /// Adds the parts of a self-intersecting outline.
     void split_crossed(std::uint32_t f, std::span<const std::uint32_t> outline);
-    /// Adds an outline that does not cross itself; splits it into triangles if it is bent.
+    /// Adds an outline without self-intersections; splits it into triangles if it is not planar.
     void add_shape(std::uint32_t f, std::span<const std::uint32_t> outline, const OutlineShape& shape);
-    /// Appends the outlines of panes to the faces, so that they get the same checks.
+    /// Appends the outlines of panes to the faces, so that they are checked in the same way.
     void add_pane_faces();
     bool is_pane(std::uint32_t f) const { return f >= first_pane_face_; }
     void check_panes();
     void add_face(std::uint32_t f, std::span<const std::uint32_t> outline, const Vec3& area);
-    /// A face may be bent by as much as its neighbours may be tilted.
+    /// True if the corners are out of plane by more than the tolerance that also applies to the tilt of neighbours.
     bool is_bent(std::span<const Point> corners, const Normal& n, double extent) const;
-    /// Four corners whose outline crosses itself because it is bent: two triangles, along the diagonal that leaves the
-    /// larger ones.
+    /// Splits four corners that cross only because they are not planar into two triangles, along the diagonal that
+    /// gives the larger ones.
     bool split_folded(std::uint32_t f, std::span<const std::uint32_t> outline, std::span<const Point> corners);
-    /// Three corners of an outline, where they have an area.
+    /// Adds the triangle of three corners of an outline, if it has an area.
     void add_triangle(std::uint32_t f, std::span<const std::uint32_t> outline, std::span<const Point> corners,
                       const std::array<std::size_t, 3>& t);
     void report_flattened();
@@ -69,8 +70,8 @@ class SceneBuilder {
     void error(int line, std::string message, std::string hint = "") {
         find(Finding::Kind::error, line, std::move(message), std::move(hint));
     }
-    /// About a face, which is named by its line or, where files have none, by its group; marked as `mark`. Of one kind,
-    /// which `rest` names ("faces without area"), the first is told, with the number of the others.
+    /// Adds a finding about a face, identified by its line or, in files without lines, by its group; marked as `mark`.
+    /// Findings with the same `rest` ("faces without area") are reported once, with the number of the others.
     void find(Finding::Kind kind, const SceneDescription::Face& face, Mark::Kind mark, std::string message,
               std::string hint = "", const char* rest = nullptr);
     void repair(const SceneDescription::Face& face, std::string message, const char* rest, std::string hint = "") {
@@ -87,14 +88,14 @@ class SceneBuilder {
     SceneDescription in_;
     bool turn_bodies_;
     std::vector<Finding> findings_;
-    std::vector<std::uint32_t> place_;  // of every point: the first point at its place
+    std::vector<std::uint32_t> place_;  // for every point: the first point at the same position
     Tolerances tol_;
     FaceMesh mesh_;
     std::vector<std::uint32_t> origin_;  // face of the mesh -> face of the description
     std::uint32_t first_pane_face_ = 0;  // the faces of the description from here on are outlines of panes
     std::vector<Pane> panes_;            // checked
     Box box_;
-    /// Faces out of plane by more than rounding, within the tolerance.
+    /// Faces that were out of plane by more than rounding, but within the tolerance.
     struct Flattened {
         std::size_t count = 0;
         double farthest = 0;  ///< m
@@ -105,7 +106,7 @@ class SceneBuilder {
         std::size_t finding, more = 0;
         std::string rest;
     };
-    std::map<std::string, Alike> alike_;  ///< By kind, or by message: where it is told first, and how often again.
+    std::map<std::string, Alike> alike_;  ///< Key: kind or message. Index of the first finding, number of others.
 };
 
 }  // namespace exitance

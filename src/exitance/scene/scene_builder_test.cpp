@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// Descriptions in a few strokes: every polygon brings its own points, as files from many programs do.
+/// Builds descriptions concisely: every polygon has its own points, as in files of many programs.
 struct Sketch {
     SceneDescription d;
     Sketch() {
@@ -30,7 +30,7 @@ struct Sketch {
     Sketch& rectangle(double x0, double y0, double x1, double y1, std::uint32_t material = 0) {
         return add({{x0, y0, 0}, {x1, y0, 0}, {x1, y1, 0}, {x0, y1, 0}}, material);
     }
-    /// Far above, so that it meets nothing.
+    /// Far above, so that it touches nothing.
     Sketch& light() { return add({{0, 0, 9}, {0, 1, 9}, {1, 1, 9}, {1, 0, 9}}, 1); }
     CheckedScene make() const { return make_scene(d); }
 };
@@ -44,7 +44,7 @@ const Region& region(const CheckedScene& s, std::size_t i) {
     return s.scene->regions()[RegionId(i)];
 }
 
-TEST(Regions, AnUncutFloorIsOneRegionWithItsCornersFromTheSmallestOn) {
+TEST(Regions, AnUncutFloorIsOneRegionThatStartsAtItsSmallestCorner) {
     const auto s = Sketch().add({{2, 0, 0}, {2, 1, 0}, {0, 1, 0}, {0, 0, 0}}).light().make();
     ASSERT_TRUE(s.scene);
     EXPECT_TRUE(s.findings.empty());
@@ -63,7 +63,8 @@ TEST(Regions, FloorsCutWithTVerticesAreOnePolygon) {
 }
 
 TEST(Regions, FloorsCutWithTVerticesAreOnePolygonEachInALongRow) {
-    // Short edges of a long scene hardly tell one line from the next: rows of them are compared by place.
+    // In a long scene, the lines of short edges can hardly be distinguished: rows of such edges are compared by
+    // position.
     constexpr int floors = 2000;
     for (const bool along_x : {false, true}) {
         Sketch sketch;
@@ -81,7 +82,7 @@ TEST(Regions, FloorsCutWithTVerticesAreOnePolygonEachInALongRow) {
 }
 
 TEST(Regions, FloorsCutWithTVerticesAreJoinedUnderAFarPoint) {
-    // Its distance leaves doubles few digits for what is near.
+    // The distance of the far point leaves doubles few digits for the near ones.
     constexpr int floors = 2000;
     for (const double far : {1e3, 1e6, 1e9, 1e11}) {
         Sketch sketch;
@@ -94,13 +95,14 @@ TEST(Regions, FloorsCutWithTVerticesAreJoinedUnderAFarPoint) {
         sketch.add({{0, 0, 5}, {1, 0, 5}, {0, 0, far}});
         const auto s = sketch.light().make();
         ASSERT_TRUE(s.scene);
-        const bool is_needle = far > 1e7;  // left out, but its corner has made the scene as large
+        const bool is_needle = far > 1e7;  // omitted, but its corner enlarges the scene
         EXPECT_EQ(s.scene->regions().size(), floors + (is_needle ? 1u : 2u)) << far;
     }
 }
 
-TEST(Regions, AWallThatStandsOnTheJointDoesNotKeepFloorsApart) {
-    // The wall's lower edge runs between the same points as the first floor's, either way round: one line, three edges.
+TEST(Regions, AWallOnTheJointDoesNotSeparateFloors) {
+    // The wall's lower edge has the same end points as the first floor's edge, in either direction: one line with three
+    // edges.
     for (const bool turned : {false, true}) {
         std::vector<Point> wall = {{1, 0, 0}, {1, 0, 1}, {1, 2, 1}, {1, 2, 0}};
         if (turned) std::reverse(wall.begin(), wall.end());
@@ -158,7 +160,7 @@ TEST(Regions, AHoleGivenByABridgeIsTheHoleOfTheSameRegion) {
     EXPECT_EQ(s.scene->outline(SurfaceId(0)).size(), 10u);
 }
 
-TEST(Regions, OtherMaterialsOtherSidesAndTouchingCornersStayApart) {
+TEST(Regions, OtherMaterialsOtherSidesAndTouchingCornersAreNotJoined) {
     EXPECT_EQ(Sketch().rectangle(0, 0, 1, 1).rectangle(1, 0, 2, 1, 2).light().make().scene->regions().size(), 3u);
     EXPECT_EQ(Sketch().rectangle(0, 0, 1, 1).rectangle(1, 1, 2, 2).light().make().scene->regions().size(), 3u);
     const auto turned = Sketch().rectangle(0, 0, 1, 1).add({{1, 0, 0}, {1, 1, 0}, {2, 1, 0}, {2, 0, 0}}).light().make();
@@ -174,7 +176,7 @@ TEST(Regions, TwoSquaresThatMeetInACornerAndAThirdThatJoinsThemAreOneRegion) {
     EXPECT_EQ(region(s, 0).loops[0].size(), 6u);
 }
 
-TEST(Regions, FacesBentWithinTheToleranceLieInOnePlane) {
+TEST(Regions, FacesBentWithinTheToleranceAreFlattened) {
     Sketch sketch;
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j) {
@@ -188,15 +190,15 @@ TEST(Regions, FacesBentWithinTheToleranceLieInOnePlane) {
     ASSERT_EQ(region(s, 0).loops[0].size(), 4u);
     for (std::size_t f = 0; f < 16; ++f)
         for (const Point& p : s.scene->outline(SurfaceId(f)))
-            EXPECT_NEAR(region(s, 0).plane.signed_distance(p), 0, 1e-15);  // moved into the plane, but for rounding
+            EXPECT_NEAR(region(s, 0).plane.signed_distance(p), 0, 1e-15);  // projected to the plane, up to rounding
 }
 
-TEST(Regions, AFaceThatCoversItsNeighbourStaysByItselfAndTheOthersAreJoined) {
+TEST(Regions, AFaceThatOverlapsItsNeighbourIsNotJoinedButTheOthersAre) {
     const auto s = Sketch()
                        .rectangle(0, 0, 1, 1)
                        .rectangle(1, 0, 2, 1)
                        .rectangle(2, 0, 3, 1)
-                       .add({{1, 1, 0}, {2, 1, 0}, {3, 0.2, 0}, {2, 2, 0}, {1, 2, 0}})  // reaches back over the third
+                       .add({{1, 1, 0}, {2, 1, 0}, {3, 0.2, 0}, {2, 2, 0}, {1, 2, 0}})  // overlaps the third
                        .light()
                        .make();
     ASSERT_TRUE(s.scene);
@@ -207,20 +209,20 @@ TEST(Regions, AFaceThatCoversItsNeighbourStaysByItselfAndTheOthersAreJoined) {
     EXPECT_EQ(s.findings[0].line, 4);
 }
 
-TEST(Regions, AFinelyCutCylinderIsNotTakenForAPlane) {
+TEST(Regions, AFinelyCutCylinderIsNotOnePlane) {
     Sketch sketch;
-    const int n = 20000;  // neighbours are tilted by 0.3 mrad, below what bent faces are allowed
+    const int n = 20000;  // neighbours are tilted by 0.3 mrad, less than the tolerance for bent faces
     const auto at = [&](int i, double z) { return Point{std::cos(2 * pi * i / n), std::sin(2 * pi * i / n), z}; };
     for (int i = 0; i < n; ++i) sketch.add({at(i, 0), at((i + 1) % n, 0), at((i + 1) % n, 1), at(i, 1)});
     const auto s = sketch.light().make();
     ASSERT_TRUE(s.scene);
     double area = 0;
     for (const Region& r : s.scene->regions()) area += r.area;
-    EXPECT_NEAR(area, 2 * pi + 1, 1e-5);  // the side and the light; a facet's area differs by 1e-8 of itself
+    EXPECT_NEAR(area, 2 * pi + 1, 1e-5);  // the side and the light; the area of a facet has a relative error of 1e-8
     EXPECT_GT(s.scene->regions().size(), 5000u);
 }
 
-TEST(Checks, CornersAtOnePlaceAreMergedAndSaid) {
+TEST(Checks, CoincidentCornersAreMergedAndReported) {
     const auto s = Sketch().add({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}).light().make();
     ASSERT_TRUE(s.scene);
     EXPECT_EQ(s.scene->outline(SurfaceId(0)).size(), 4u);
@@ -228,7 +230,7 @@ TEST(Checks, CornersAtOnePlaceAreMergedAndSaid) {
     EXPECT_EQ(s.findings[0].line, 1);
 }
 
-TEST(Checks, FacesWithoutAreaAreLeftOutAndSaid) {
+TEST(Checks, FacesWithoutAreaAreRemovedAndReported) {
     const auto s = Sketch()
                        .rectangle(0, 0, 1, 1)
                        .add({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}})
@@ -250,7 +252,7 @@ double area_of_face_line(const CheckedScene& s, int line) {
 }
 
 TEST(Checks, ABowTieIsSplitAtItsCrossingWhetherItsPartsCancelOrNot) {
-    // Parts of y = 1: 1/4 m^2 each. y = 1.5: the diagonals cross at (3/5, 3/5).
+    // y = 1: parts of 1/4 m^2 each. y = 1.5: the diagonals cross at (3/5, 3/5).
     for (const auto& [y, area] : {std::pair{1.0, 0.5}, {1.5, 0.5 * 1 * 0.4 + 0.5 * 1.5 * 0.6}}) {
         const auto s = Sketch().add({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, y, 0}}).light().make();
         ASSERT_TRUE(s.scene);
@@ -262,7 +264,7 @@ TEST(Checks, ABowTieIsSplitAtItsCrossingWhetherItsPartsCancelOrNot) {
     }
 }
 
-TEST(Checks, ACrossedFaceIsSplitAlikeWhereverItStands) {
+TEST(Checks, ACrossedFaceIsSplitEquallyInAnyPosition) {
     const auto area = [](double size, double turn, const Vec3& shift) {
         const Frame frame(normalized(Vec3{std::cos(turn), std::sin(turn), 0.7}));
         std::vector<Point> outline;
@@ -279,7 +281,7 @@ TEST(Checks, ACrossedFaceIsSplitAlikeWhereverItStands) {
     }
 }
 
-TEST(Checks, EveryPartThatAnOutlineRunsAroundCountsOnce) {
+TEST(Checks, EveryEnclosedPartOfAnOutlineCountsOnce) {
     std::vector<Point> star;
     for (int i = 0; i < 5; ++i) star.push_back({std::cos(4 * pi * i / 5), std::sin(4 * pi * i / 5), 0});
     const auto s = Sketch().add(star).light().make();
@@ -303,7 +305,7 @@ TEST(Checks, PanesAreCheckedLikeFaces) {
         Pane& p = sketch.d.panes.emplace_back();
         p.corners = std::move(corners), p.transmissivity = Spectrum(0.9), p.line = 7;
     };
-    pane({{0, 0, 1}, {1, 0, 1}});                                   // a loose edge
+    pane({{0, 0, 1}, {1, 0, 1}});                                   // only an edge
     pane({{0, 0, 1}, {1, 0, 1}, {1, 0, 1}, {1, 1, 1}, {1, 1, 1}});  // repeated corners
     pane({{0, 0, 2}, {1, 1, 2}, {1, 0, 2}, {0, 1, 2}});             // a bow tie
     const auto s = sketch.make();
@@ -324,7 +326,7 @@ TEST(Checks, AFaceFoldedUntilItCrossesItselfIsTwoTriangles) {
     EXPECT_NE(s.findings[0].message.find("folded"), std::string::npos);
 }
 
-TEST(Checks, BentFacesAreSplitIntoTrianglesAndSaidOnce) {
+TEST(Checks, BentFacesAreSplitIntoTrianglesAndReportedOnce) {
     Sketch sketch;
     sketch.add({{0, 0, 0}, {1, 0, 0.1}, {1, 1, 0}, {0, 1, 0.1}}).add({{5, 0, 0}, {6, 0, 0}, {6, 1, 0.04}, {5, 1, 0}});
     const auto s = sketch.light().make();
@@ -337,7 +339,7 @@ TEST(Checks, BentFacesAreSplitIntoTrianglesAndSaidOnce) {
     EXPECT_NE(s.findings[0].message.find("(and 1 more faces out of plane)"), std::string::npos);
 }
 
-TEST(Checks, ANeedleThatSinglePrecisionCannotResolveIsLeftOut) {
+TEST(Checks, ANeedleBelowSinglePrecisionIsRemoved) {
     const auto s = Sketch().rectangle(0, 0, 1, 1).add({{0, 0, 1}, {0.23, 0, 1}, {0.1, 1e-8, 1}}).light().make();
     ASSERT_TRUE(s.scene);
     EXPECT_EQ(s.scene->surfaces().size(), 2u);
@@ -345,7 +347,7 @@ TEST(Checks, ANeedleThatSinglePrecisionCannotResolveIsLeftOut) {
     EXPECT_EQ(Sketch().add({{0, 0, 1}, {0.23, 0, 1}, {0.1, 1e-6, 1}}).light().make().scene->surfaces().size(), 2u);
 }
 
-TEST(Checks, AHoleThatTurnsLikeItsRimIsAHole) {
+TEST(Checks, AHoleWithTheOrientationOfItsRimIsAHole) {
     const std::vector<Point> rim{{0, 0, 0}, {4, 0, 0}, {4, 3, 0}, {0, 3, 0}};
     const std::vector<Point> hole{{1, 1, 0}, {3, 1, 0}, {3, 2, 0}, {1, 2, 0}};
     for (const bool turned : {false, true})
@@ -362,14 +364,14 @@ TEST(Checks, AHoleThatTurnsLikeItsRimIsAHole) {
         }
 }
 
-TEST(Checks, AFaceThatCrossesItselfByRoundingIsMended) {
+TEST(Checks, AFaceThatCrossesItselfByRoundingIsRepaired) {
     const auto s = Sketch().add({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, -1e-6, 0}, {0, 1, 0}}).light().make();
     ASSERT_TRUE(s.scene) << s.scene.error().message;
     ASSERT_EQ(count(s, Finding::Kind::repair), 1);
     EXPECT_NE(s.findings[0].message.find("by rounding"), std::string::npos);
 }
 
-TEST(Checks, WhiteBecomesLessAndMoreThanWhiteIsAnError) {
+TEST(Checks, WhiteIsReducedAndMoreThanWhiteIsAnError) {
     Sketch sketch = Sketch().rectangle(0, 0, 1, 1).light();
     sketch.d.materials[0].reflectance[1] = 1;
     const auto s = sketch.make();
@@ -390,7 +392,7 @@ TEST(Checks, OfFacesInOnePlaneTheLaterOneIsOnTop) {
     EXPECT_EQ(count(s, Finding::Kind::warning), 1);
 }
 
-TEST(Checks, FindingsThatReadAlikeAreToldOnce) {
+TEST(Checks, EqualFindingsAreReportedOnce) {
     Sketch sketch;
     for (int i = 0; i < 3; ++i) sketch.add({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
     for (auto& face : sketch.rectangle(0, 0, 1, 1).light().d.faces) face.line = 0;  // as from glTF
@@ -401,7 +403,7 @@ TEST(Checks, FindingsThatReadAlikeAreToldOnce) {
         << s.findings[0].message;
 }
 
-TEST(Checks, EveryErrorIsFoundNotJustTheFirst) {
+TEST(Checks, EveryErrorIsReported) {
     Sketch sketch;
     sketch.add({{0, 0, 0}, {1, 0, 0}, {1e30, 1, 0}, {0, 1, 0}})
         .add({{0, 0, 0}, {1, 1, 0}, {1, 0, 1e40}, {0, 1.5, 0}})
@@ -412,7 +414,7 @@ TEST(Checks, EveryErrorIsFoundNotJustTheFirst) {
     EXPECT_NE(s.scene.error().message.find("2 more errors"), std::string::npos);
 }
 
-TEST(Checks, ARepeatedFaceIsLeftOutNamingBothLines) {
+TEST(Checks, ARepeatedFaceIsRemovedNamingBothLines) {
     const auto s = Sketch().rectangle(0, 0, 1, 1).light().add({{1, 1, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}}).make();
     ASSERT_TRUE(s.scene);
     EXPECT_EQ(s.scene->surfaces().size(), 2u);
@@ -421,7 +423,7 @@ TEST(Checks, ARepeatedFaceIsLeftOutNamingBothLines) {
     EXPECT_NE(s.findings[0].message.find("line 1"), std::string::npos);
 }
 
-TEST(Checks, AFaceThatCoversAnotherIsWarnedOfNamingBothLines) {
+TEST(Checks, AFaceThatCoversAnotherCausesAWarningNamingBothLines) {
     const auto s = Sketch().rectangle(0, 0, 2, 2).light().rectangle(1, 1, 3, 3, 2).make();
     ASSERT_TRUE(s.scene);
     ASSERT_EQ(count(s, Finding::Kind::warning), 1);
@@ -430,17 +432,17 @@ TEST(Checks, AFaceThatCoversAnotherIsWarnedOfNamingBothLines) {
     EXPECT_NE(s.findings[0].message.find("1 m^2"), std::string::npos) << s.findings[0].message;
 }
 
-TEST(Checks, EveryFaceThatCoversOneLargerIsWarnedOf) {
+TEST(Checks, EveryFaceThatCoversALargerOneIsReported) {
     Sketch sketch;
-    for (int i = 0; i < 9; ++i) sketch.rectangle(i, 0, i + 0.5, 1);  // all on the last
+    for (int i = 0; i < 9; ++i) sketch.rectangle(i, 0, i + 0.5, 1);  // all overlap the last face
     const auto s = sketch.light().rectangle(-1, -1, 10, 2, 2).make();
     ASSERT_TRUE(s.scene);
     ASSERT_EQ(count(s, Finding::Kind::warning), 1);
     EXPECT_TRUE(s.findings[0].message.ends_with("(and 8 more faces that cover an earlier one)"));
 }
 
-TEST(Checks, AHeapOfFacesInOnePlaneIsNotComparedInFull) {
-    constexpr int faces = 3000;  // 4.5 million pairs, all of which overlap
+TEST(Checks, AHeapOfFacesInOnePlaneIsNotComparedCompletely) {
+    constexpr int faces = 3000;  // 4.5 million overlapping pairs
     Sketch sketch;
     for (int i = 0; i < faces; ++i) sketch.rectangle(i, i, faces + i, faces + i, 2 * (i % 2));
     const auto s = sketch.light().make();
@@ -461,7 +463,7 @@ TEST(Checks, FacesBackToBackBesideEachOtherOrInAHoleAreNoOverlap) {
     EXPECT_TRUE(s.findings.empty()) << s.findings[0].message;
 }
 
-TEST(Checks, LobesOfOppositeSenseThatMeetInACornerAreSplitThere) {
+TEST(Checks, LobesOfOppositeOrientationThatShareACornerAreSplit) {
     const Point v{0, 0, 0};
     const auto s = Sketch().add({v, {2, -1, 0}, {2, 1, 0}, v, {-1, -0.5, 0}, {-1, 0.5, 0}}).light().make();
     ASSERT_TRUE(s.scene);
@@ -471,14 +473,14 @@ TEST(Checks, LobesOfOppositeSenseThatMeetInACornerAreSplitThere) {
     EXPECT_TRUE(proper.scene);
 }
 
-TEST(Checks, ASceneWithoutLightIsWarnedOfAndOneWithoutFacesIsNone) {
+TEST(Checks, ASceneWithoutLightIsReportedAndOneWithoutFacesIsAnError) {
     const auto dark = Sketch().rectangle(0, 0, 1, 1).make();
     EXPECT_TRUE(dark.scene);
     EXPECT_EQ(count(dark, Finding::Kind::warning), 1);
     EXPECT_FALSE(Sketch().make().scene);
 }
 
-TEST(Checks, ValuesThatAreNotNumbersOrPlacesAreErrors) {
+TEST(Checks, InvalidNumbersAndIndicesAreErrors) {
     Sketch far = Sketch().rectangle(0, 0, 1, 1).light();
     far.d.faces[0].corners[2] = 99;
     EXPECT_FALSE(far.make().scene);
@@ -493,17 +495,17 @@ TEST(Checks, ValuesThatAreNotNumbersOrPlacesAreErrors) {
     EXPECT_FALSE(cold.make().scene);
 }
 
-TEST(Checks, WhatLiesBeyondTheUniverseIsAnErrorAndSpoilsNothingElse) {
+TEST(Checks, HugeCoordinatesAreAnErrorAndAffectNothingElse) {
     const auto s = Sketch().rectangle(0, 0, 1, 1).light().add({{1e30, 0, 0}, {1e30, 1e30, 0}, {0, 1e30, 0}}).make();
     ASSERT_FALSE(s.scene);
     EXPECT_EQ(s.scene.error().message, "a corner of the face lies at (1e+30, 0, 0) m");
-    EXPECT_EQ(s.findings.size(), 1u);  // the small faces were not taken for points
+    EXPECT_EQ(s.findings.size(), 1u);  // the small faces were not reduced to points
     Sketch blinding = Sketch().rectangle(0, 0, 1, 1).light();
     blinding.d.materials[1].exitance[0] = 1e300;
     EXPECT_FALSE(blinding.make().scene);
 }
 
-TEST(Checks, AFaceOfTooManyCornersIsAnErrorThatSaysHowMany) {
+TEST(Checks, AFaceWithTooManyCornersIsAnErrorWithTheirNumber) {
     std::vector<Point> circle(10'001);
     for (std::size_t i = 0; i < circle.size(); ++i) {
         const double angle = 2 * pi * static_cast<double>(i) / static_cast<double>(circle.size());
@@ -526,7 +528,7 @@ TEST(Checks, ScenesMayBeTinyHugeAndFarAway) {
         }
 }
 
-TEST(Checks, AFarHorizonDoesNotBlurWhatIsNear) {
+TEST(Checks, AFarHorizonDoesNotMergeNearPoints) {
     Sketch sketch;
     sketch.add({{-1e7, -1e7, -1}, {1e7, -1e7, -1}, {1e7, 1e7, -1}, {-1e7, 1e7, -1}}, 2).light();
     for (int i = 0; i < 300; ++i) sketch.rectangle(0.01 * i, 0, 0.01 * i + 0.005, 0.005);

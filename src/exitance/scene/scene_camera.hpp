@@ -10,9 +10,9 @@ namespace exitance {
 struct SceneCamera {
     std::string name;
     Point eye, target;    ///< Metres.
-    Vec3 up = {0, 0, 1};  ///< What is upright in the picture; of length 1, not along the view.
+    Vec3 up = {0, 0, 1};  ///< Upward direction in the picture; unit vector, not parallel to the view.
     double fov = 60;      ///< Angle from the left to the right edge, degrees, in (0, 180).
-    double width = 0;     ///< Of an orthographic view, metres from left to right; 0 for a perspective one.
+    double width = 0;     ///< Width of an orthographic view, metres; 0 for a perspective one.
 };
 
 }  // namespace exitance

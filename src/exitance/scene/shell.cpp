@@ -16,10 +16,10 @@ namespace {
 struct Edge {
     std::uint32_t from, to;
     SurfaceId face;
-    std::uint32_t first = 0;  ///< The first edge between the same two points, in either direction.
+    std::uint32_t first = 0;  ///< Index of the first edge between the same two points, in either direction.
 };
 
-/// The edges between two points: how many, and the first two.
+/// The edges between two points: their number, and the first two.
 struct Meeting {
     std::uint32_t count = 0, one = 0, other = 0;
 };
@@ -61,7 +61,7 @@ class Inspector {
     double tolerance_;
     std::vector<Point> points_;
     std::vector<Edge> edges_;
-    std::vector<Meeting> meetings_;  ///< By first edge.
+    std::vector<Meeting> meetings_;  ///< Indexed by first edge.
     Shell out_;
 };
 
@@ -98,9 +98,9 @@ void Inspector::find_open_edges() {
     }
     const Bvh tree(boxes);
     const Vec3 around{tolerance_, tolerance_, tolerance_};
-    constexpr std::size_t most_near = 256;  // boxes around a point that are looked at: more only in heaps of faces
-    /// Lone edges, other than the one asked for, that hold p inside.
-    const auto holders = [&](const Point& p, std::uint32_t own, const auto& take) {
+    constexpr std::size_t max_boxes = 256;  // limit on the boxes tested around a point; exceeded only by piles of faces
+    /// Calls take() for the unpaired edges, other than `own`, that have p in their interior.
+    const auto visit_containing_edges = [&](const Point& p, std::uint32_t own, const auto& take) {
         Box box;
         box.add(p - around), box.add(p + around);
         std::size_t near = 0;
@@ -110,7 +110,7 @@ void Inspector::find_open_edges() {
             if (lone[i] != own && along > tolerance_ && along < length - tolerance_ &&
                 norm(cross(p - a, b - a)) <= tolerance_ * length)
                 take(i);
-            return ++near == most_near;
+            return ++near == max_boxes;
         });
     };
     std::vector<bool> joined(lone.size());
@@ -120,13 +120,13 @@ void Inspector::find_open_edges() {
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
     for (const std::uint32_t p : ends) {
         bool is_joint = false;
-        holders(points_[p], HashChains::end, [&](std::uint32_t i) { joined[i] = is_joint = true; });
+        visit_containing_edges(points_[p], HashChains::end, [&](std::uint32_t i) { joined[i] = is_joint = true; });
         out_.t_joints += is_joint;
     }
     for (std::size_t k = 0; k < lone.size(); ++k) {
         const Point &a = points_[edges_[lone[k]].from], &b = points_[edges_[lone[k]].to];
         bool within = joined[k];
-        if (!within) holders(0.5 * (a + b), lone[k], [&](std::uint32_t) { within = true; });
+        if (!within) visit_containing_edges(0.5 * (a + b), lone[k], [&](std::uint32_t) { within = true; });
         if (within) continue;
         ++out_.open_edges;
         out_.open_length += norm(b - a);
@@ -134,11 +134,11 @@ void Inspector::find_open_edges() {
     }
 }
 
-/// Faces that hang together over edges of two are given a side each: equal across an edge that they run along in
-/// opposite directions.
+/// Assigns a side to each face of a connected component (over edges of exactly two faces): equal across an edge that
+/// the faces traverse in opposite directions.
 void Inspector::find_turned_faces() {
     const std::size_t n = scene_.surfaces().size();
-    std::vector<std::uint32_t> first(n + 1, 0);  // edge of every face; they come face by face
+    std::vector<std::uint32_t> first(n + 1, 0);  // first edge of every face; edges are sorted by face
     for (const Edge& e : edges_) ++first[e.face.value + 1];
     for (std::size_t f = 0; f < n; ++f) first[f + 1] += first[f];
     enum : char { unseen, same, opposite };

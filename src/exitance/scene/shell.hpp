@@ -5,25 +5,25 @@
 
 namespace exitance {
 
-/// How the faces of a scene hang together.
+/// Connectivity and orientation of the faces of a scene.
 struct Shell {
-    std::size_t open_edges = 0;         ///< With a face on one side only, and no part of another edge on them.
-    double open_length = 0;             ///< Of these, m.
-    std::size_t t_joints = 0;           ///< Corners that stand inside another face's edge. They do no harm.
-    std::vector<SurfaceId> turned;      ///< Faces whose front is where their neighbours have their backs.
-    std::vector<InsideOut> inside_out;  ///< Closed bodies, by the numbers of their faces.
-    std::vector<Mark> marks;            ///< Of turned faces, of bodies that are inside out, and of open edges.
+    std::size_t open_edges = 0;         ///< Edges that belong to only one face and overlap no other edge.
+    double open_length = 0;             ///< Total length of these, m.
+    std::size_t t_joints = 0;           ///< Corners inside another face's edge; harmless.
+    std::vector<SurfaceId> turned;      ///< Faces with the opposite orientation of their neighbours.
+    std::vector<InsideOut> inside_out;  ///< Closed bodies that are inside out, by face numbers.
+    std::vector<Mark> marks;            ///< Marks of turned faces, inside-out bodies and open edges.
 };
 
-/// Looks at which edges faces share. A face is turned if it runs along shared edges in the direction of its neighbours,
-/// and at most a third of the faces that hang together are like it: which of two halves is wrong nobody knows. Edges
-/// where more than two faces meet join nothing. O(n log n) in edges.
+/// Analyses which edges the faces share. A face is turned if it traverses shared edges in the same direction as its
+/// neighbours, and if at most a third of its connected faces are like it; otherwise it is undecidable which part is
+/// wrong. Edges of more than two faces connect nothing. O(n log n) in edges.
 Shell inspect_shell(const Scene& scene);
 
-/// The message and the hint about a body that is inside out, with the name of the group of its first face.
+/// Returns the message and hint about an inside-out body; `group` is the group of its first face.
 Finding finding_of(const InsideOut& body, const std::string& group, Finding::Kind kind);
 
-/// Findings about it: a warning for every group with turned faces, and for every body that is inside out.
+/// Returns a warning for every group with turned faces, and for every inside-out body.
 std::vector<Finding> findings_of(const Shell& shell, const Scene& scene);
 
 }  // namespace exitance

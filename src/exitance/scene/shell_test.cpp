@@ -7,7 +7,7 @@
 
 namespace exitance {
 
-TEST(Shell, AClosedBoxIsClosedAndOfOneSense) {
+TEST(Shell, AClosedBoxIsClosedAndConsistentlyOriented) {
     const Shell shell = inspect_shell(test::make(test::closed_box({0, 0, 0}, {1, 2, 3})));
     EXPECT_EQ(shell.open_edges, 0u);
     EXPECT_EQ(shell.t_joints, 0u);
@@ -34,7 +34,7 @@ TEST(Shell, AMissingFaceLeavesItsEdgesOpen) {
 }
 
 TEST(Shell, TJointsAreNoOpenings) {
-    // One side of a box in two halves: the long edges above and below hold a corner each.
+    // One side of a box in two halves: the long edges above and below contain a corner each.
     std::vector<test::Face> faces = test::closed_box({0, 0, 0}, {1, 1, 1});
     const std::vector<Point> q = faces[0].corners;
     const Point a = 0.5 * (q[0] + q[1]), b = 0.5 * (q[3] + q[2]);
@@ -58,7 +58,7 @@ TEST(Shell, ASheetWithTwoSidesIsNeitherOpenNorTurned) {
     EXPECT_TRUE(shell.turned.empty());
 }
 
-/// The faces of a box that look inwards, like those of a room, or outwards.
+/// The faces of a box with their fronts inside, like a room, or outside.
 std::vector<test::Face> box(const Point& lo, const Point& hi, bool inwards,
                             const std::vector<test::Face>& others = {}) {
     std::vector<test::Face> faces = test::closed_box(lo, hi);
@@ -84,7 +84,7 @@ TEST(Shell, FurnitureInARoomIsInsideOutIfItLooksInwards) {
     EXPECT_TRUE(inspect_shell(test::make(box({1, 1, 0.5}, {2, 2, 1}, false, room))).inside_out.empty());
 }
 
-TEST(Shell, ABodyWithTJointsIsJudgedToo) {
+TEST(Shell, ABodyWithTJointsIsClassifiedToo) {
     const std::vector<test::Face> room = box({0, 0, 0}, {4, 3, 2.5}, true);
     std::vector<test::Face> faces = box({1, 1, 0.5}, {2, 2, 1}, true, room);
     const std::vector<Point> q = faces[6].corners;
@@ -98,7 +98,7 @@ TEST(Shell, CavitiesOfSolidBodiesAndRoomsSideBySideAreNotInsideOut) {
     const std::vector<test::Face> house = box({-0.2, -0.2, -0.2}, {4.2, 3.2, 2.7}, false);
     const std::vector<test::Face> rooms = box({0, 0, 0}, {2, 3, 2.5}, true, box({2.1, 0, 0}, {4, 3, 2.5}, true, house));
     EXPECT_TRUE(inspect_shell(test::make(rooms)).inside_out.empty());
-    // A cupboard in one of the rooms of the house, three levels deep.
+    // A cupboard in one of the rooms of the house: three levels of nesting.
     EXPECT_EQ(sizes(inspect_shell(test::make(box({0.5, 0.5, 0.5}, {1, 1, 1}, true, rooms)))),
               std::vector<std::size_t>{6});
     const std::vector<test::Face> touching = box({0, 0, 0}, {2, 3, 2.5}, true, box({2, 0, 0}, {4, 3, 2.5}, true));

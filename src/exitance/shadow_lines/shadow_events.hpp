@@ -26,8 +26,7 @@ struct ShadowEvent {
     double gain = HUGE_VAL;  ///< Upper bound of the source's contribution beyond the edge; see EventBounds::gains.
 };
 
-/// Possible occluders between a receiver and a source, used instead of a search: the minimum candidate lists of the
-/// receiver (bsp/minimum_lists.hpp), front to back.
+/// Possible occluders between a receiver and a source, used instead of a search, front to back (see BlockerSearch).
 struct WedgeLists {
     /// Per corner of the source. An edge of the source uses the lists of both ends.
     std::vector<std::vector<PieceId>> of_corner;

@@ -11,8 +11,8 @@
 namespace exitance {
 namespace {
 
-/// Products of the functions that are 1 at one corner of an element and 0 at the others, over its area: linear ones on
-/// a triangle, bilinear ones on a parallelogram.
+/// Integrals of products of an element's nodal functions (1 at one corner, 0 at the others) over its area: linear ones
+/// on a triangle, bilinear ones on a parallelogram.
 constexpr double triangle_mass[3][3] = {
     {2. / 24, 1. / 24, 1. / 24}, {1. / 24, 2. / 24, 1. / 24}, {1. / 24, 1. / 24, 2. / 24}};
 constexpr double square_mass[4][4] = {{4. / 36, 2. / 36, 1. / 36, 2. / 36},
@@ -36,7 +36,8 @@ Spectrum quotient(const Spectrum& a, const Spectrum& b) {
     return out;
 }
 
-/// The projection on one plane: M x = int phi f, where M holds the products of the nodes' functions phi.
+/// Least-squares projection on one plane: solves M x = int phi f, where M contains the integrals of products of the
+/// nodal functions phi.
 class Projection {
   public:
     Projection(const ElementFunction& f, const ElementTree& tree, const SharedNodes& nodes, std::size_t plane,
@@ -47,15 +48,15 @@ class Projection {
         for (ElementId e : leaves) area_.push_back(tree.area(e)), add_right_side(e, area_.back());
     }
 
-    /// Conjugate gradients from the nodes' means, preconditioned by the diagonal: M's condition depends on neither size
-    /// nor number of elements [Wathen87], so that a dozen steps give single precision.
+    /// Solves by conjugate gradients with diagonal preconditioning, starting from the nodes' means. The condition of M
+    /// depends neither on sizes nor on the number of elements [Wathen87], so that a dozen steps give single precision.
     std::vector<Spectrum> solve() const {
         constexpr int most_steps = 60;
-        constexpr double precision = 1e-14;  // of the residual's square, given by single precision
+        constexpr double precision = 1e-14;  // of the squared residual, for single precision
         const std::size_t count = right_.size();
         std::vector<Spectrum> x(count), r(count), p(count), Mp(count);
         for (std::size_t i = 0; i < count; ++i)
-            x[i] = right_[i] / std::max(mass_of(i), 1e-300);  // given by rounding: not 0
+            x[i] = right_[i] / std::max(mass_of(i), 1e-300);  // avoids division by zero
         multiply(x, Mp);
         Spectrum rz, start;
         for (std::size_t i = 0; i < count; ++i) {
@@ -85,13 +86,13 @@ class Projection {
   private:
     std::span<const std::uint32_t> of(ElementId leaf) const { return nodes_.of(leaf, tree_); }
 
-    /// A node's share of a vector by its entry of the diagonal. A fan that would have triangles without area is none
-    /// (`make_conforming`), and leaves a node that no element has: it has no entry, and nothing to solve for.
+    /// Divides a node's value by its diagonal entry. Returns 0 for a node without elements: such nodes remain if a fan
+    /// was not made because it would have triangles without area (`make_conforming`).
     Spectrum by_diagonal(std::size_t i, const Spectrum& value) const {
         return diagonal_[i] > 0 ? value / diagonal_[i] : Spectrum();
     }
 
-    /// int phi dA of a node: for all these elements what its diagonal entry says, but for a factor.
+    /// int phi dA of a node; proportional to its diagonal entry.
     double mass_of(std::size_t i) const { return lumped_[i]; }
 
     void add_right_side(ElementId e, double area) {
@@ -109,7 +110,7 @@ class Projection {
             add_products(e, area, std::span(value).first(corners), right_);
             return;
         }
-        // f is bilinear on the parent at most, its product with a linear function of degree 3.
+        // f is at most bilinear on the parent; its product with a linear function has degree 3.
         const Patch &patch = tree_.patch(e), &whole = tree_.patch(parent);
         for (const PlanarNode& place : triangle_rule(3)) {
             const Spectrum value = (area * place.weight) * f_.at({parent, whole.coordinates(patch.at(place.at))});
@@ -118,7 +119,7 @@ class Projection {
         }
     }
 
-    /// Adds an element's products with the function of these values at its corners.
+    /// Adds the integrals of an element's nodal functions times the function with the given corner values.
     void add_products(ElementId e, double area, std::span<const Spectrum> value, std::vector<Spectrum>& out) const {
         const std::span<const std::uint32_t> node = of(e);
         for (std::size_t i = 0; i < node.size(); ++i) {
@@ -143,14 +144,14 @@ class Projection {
     const ElementTree& tree_;
     const SharedNodes& nodes_;
     std::span<const ElementId> leaves_;
-    std::vector<double> area_;  ///< Of each, m^2.
+    std::vector<double> area_;  ///< Area of each leaf, m^2.
     std::uint32_t first_;
     std::vector<Spectrum> right_;   ///< int phi f dA of every node, W.
-    std::vector<double> diagonal_;  ///< int phi^2 dA, m^2,
-    std::vector<double> lumped_;    ///< and int phi dA.
+    std::vector<double> diagonal_;  ///< int phi^2 dA, m^2.
+    std::vector<double> lumped_;    ///< int phi dA, m^2.
 };
 
-/// The projection on all planes: the value of every node.
+/// Projects f on all planes and writes the value of every node.
 void project(const ElementFunction& f, const ElementTree& tree, const Field<RegionId, std::uint32_t>& plane,
              const SharedNodes& nodes, std::vector<Spectrum>& value) {
     const std::vector<std::vector<ElementId>> leaves = leaves_of_planes(tree, plane);
@@ -184,7 +185,7 @@ ElementFunction nearest_continuous(const ElementFunction& f, const Scene& scene,
     std::vector<Spectrum> value;  // of every node
     project(f, out.tree, plane, nodes, value);
     constexpr std::size_t together = 4096;
-    std::vector<std::uint32_t> first;  // value of so many elements
+    std::vector<std::uint32_t> first;  // index of the first value of every `together` elements
     std::uint32_t corners = 0;
     out.first_value.resize(out.tree.size());
     for (ElementId e : out.tree.ids()) {

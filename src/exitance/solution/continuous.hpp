@@ -6,16 +6,16 @@
 
 namespace exitance {
 
-/// The function nearest to `f` in the mean square among those that are continuous but where light jumps, on a mesh made
-/// conforming: of every plane, and of every part of it that such lines enclose, it holds as much light. Where the
-/// light that f stands for is continuous, it is no further from it than f, but for what triangles lack of cells and of
-/// the parallelograms that they are cut from. Elements keep their ids; new ones are children of what were leaves.
-/// O(n log n); the same bits on any number of threads.
-/// Where `stop` is requested while nodes are found, f itself is returned.
+/// Returns the least-squares approximation of `f` by functions that are continuous except at discontinuities of the
+/// light, on a mesh made conforming. In every plane, and in every part of it that such discontinuities enclose, it has
+/// the same flux as f. Where the exact light is continuous, its error is at most that of f, except where triangles
+/// replace cells and parallelograms. Elements keep their ids; new ones are children of former leaves. If `stop` is
+/// requested while nodes are computed, returns f itself. Same bits on any number of threads. O(n log n).
 ElementFunction nearest_continuous(const ElementFunction& f, const Scene& scene, const ContactLines& contacts,
                                    const StopRequest* stop = nullptr);
 
-/// How many elements a continuous function is made of: its leaves, those of a fan counted as the one they were.
+/// Number of elements of a continuous function: its leaves, where the leaves of a fan count as the one element that was
+/// split.
 std::size_t elements_of_continuous(const ElementTree& tree);
 
 }  // namespace exitance

@@ -20,7 +20,7 @@ Scene square() {
     return std::move(*make_scene(std::move(d)).scene);
 }
 
-/// A square cut `depth` times throughout, and `more` times here and there.
+/// A square that is split `depth` times everywhere, and `more` times in some places.
 ElementTree cut_square(int depth, int more) {
     ElementTree tree;
     tree.add_root(RegionId(0), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, Patch::Shape::parallelogram});
@@ -31,7 +31,7 @@ ElementTree cut_square(int depth, int more) {
     return tree;
 }
 
-/// On every leaf what is nearest to g, and `noise` at its corners.
+/// Least-squares fit of g on every leaf, plus `noise` at its corners.
 ElementFunction fitted(const ElementTree& tree, const std::function<double(Point)>& g, double noise) {
     ElementFunction out;
     out.tree = tree;
@@ -65,7 +65,7 @@ double wave(Point p) {
     return 1 + std::sin(3 * p.x) * std::cos(2 * p.y);
 }
 
-TEST(Continuous, KeepsALinearFunctionAndTheLightOfAnyOther) {
+TEST(Continuous, KeepsLinearFunctionsAndTheFluxOfAllOthers) {
     const Scene scene = square();
     const ContactLines contacts(scene);
     const ElementTree tree = cut_square(2, 20);
@@ -77,9 +77,9 @@ TEST(Continuous, KeepsALinearFunctionAndTheLightOfAnyOther) {
     EXPECT_NEAR(mean_of(nearest_continuous(rough, scene, contacts), light), mean_of(rough, light), 1e-6);
 }
 
-/// Strips that halve towards an edge have corners on the side of the leaf beside them that are too close for triangles.
-/// Nodes that no triangle has ended the projection before it began, at means over what is beside each node, which are
-/// no linear function where sizes change.
+/// Strips that halve towards an edge have corners on the side of the neighbouring leaf that are too close for
+/// triangles. Some nodes then belong to no triangle, which must not stop the solver at its initial values, the mean
+/// values around each node: these are no linear function if sizes change.
 TEST(Continuous, KeepsALinearFunctionBesideStripsThatHalveTowardsAnEdge) {
     const Scene scene = square();
     ElementTree tree = cut_square(1, 0);
@@ -90,14 +90,14 @@ TEST(Continuous, KeepsALinearFunctionBesideStripsThatHalveTowardsAnEdge) {
     EXPECT_LT(rms_error(nearest_continuous(fitted(tree, linear, 0), scene, ContactLines(scene)), linear), 1e-5);
 }
 
-TEST(Continuous, IsNoFurtherFromContinuousLightThanWhatItIsMadeOf) {
+TEST(Continuous, IsAsCloseToContinuousLightAsItsInput) {
     const Scene scene = square();
     const ContactLines contacts(scene);
     for (const double noise : {0.0, 0.05}) {
         const ElementFunction apart = fitted(cut_square(3, 40), wave, noise);
         const double before = rms_error(apart, wave),
                      after = rms_error(nearest_continuous(apart, scene, contacts), wave);
-        // Triangles have no uv: where they stand for parallelograms, half more at most.
+        // Triangles lack the term uv: where they replace parallelograms, the error is at most half as large again.
         EXPECT_LT(after, (noise > 0 ? 0.8 : 1.5) * before);
     }
 }
@@ -111,7 +111,7 @@ TEST(Continuous, ConvergesWithTheSquareOfTheSize) {
     EXPECT_NEAR(std::log2(error(3) / error(4)), 2, 0.1);
 }
 
-TEST(Continuous, IsTheFunctionItselfWhereAStopIsAskedFor) {
+TEST(Continuous, ReturnsItsInputOnAStopRequest) {
     const Scene scene = square();
     const ElementFunction f = fitted(
         cut_square(2, 9), [](Point p) { return p.x; }, 0.1);

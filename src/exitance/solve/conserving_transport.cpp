@@ -50,7 +50,7 @@ void ConservingTransport::multiply(std::span<Spectrum> irradiance) const {
 
 namespace {
 
-/// sum_i A_i (b_i - rhs_i): power of what is reflected but for the first time.
+/// Power of the light reflected at least twice, sum_i A_i (b_i - rhs_i), W.
 Spectrum power_of_returns(const RadiositySystem& system, std::span<const Spectrum> b) {
     return parallel_sum<Spectrum>(b.size(), [&](std::size_t i) { return system.area[i] * (b[i] - system.rhs[i]); });
 }
@@ -61,8 +61,8 @@ SolveReport solve_conserving(const RadiositySystem& system, ConservingTransport&
                              std::span<Spectrum> b, StopRule stop) {
     SolveReport report = solve_radiosity(system, method, b, stop);
     const Spectrum unscaled = power_of_returns(system, b);
-    constexpr int times = 2;
-    for (int i = 0; closed && i < times && !(stop.request && stop.request->requested()); ++i) {
+    constexpr int max_repeats = 2;
+    for (int i = 0; closed && i < max_repeats && !(stop.request && stop.request->requested()); ++i) {
         if (!F.conserve(b)) break;
         const std::size_t before = report.iterations + 1;
         report = solve_radiosity(system, method, b, stop);

@@ -4,28 +4,29 @@
 
 namespace exitance {
 
-/// Is so much of what is sent sure to arrive (power, W, by band) that none of it need be lost? Where over 2% escapes,
-/// it is not known well enough how much.
+/// True if at least 98% of the power `sent` arrives at surfaces, W per band. With a larger loss the escaping power is
+/// not known accurately enough to scale the rest.
 bool is_kept(const Spectrum& arriving, const Spectrum& sent);
 
-/// What makes power received into power that arrives, band by band; 1 where they are over 5% apart, which is no small
-/// loss but some other fault.
+/// Factor per band by which received power becomes the power that should arrive. 1 in bands where they differ by over
+/// 5%: that is not a small loss but some other error.
 Spectrum conserving_scale(const Spectrum& arriving, const Spectrum& received);
 
-/// E = s F b, with a factor s a band for which no light is lost between elements but what escapes:
+/// E = s F b, with a factor s per band such that no light is lost except light that escapes from the scene:
 ///
 ///     sum_i A_i E_i = sum_j k_j A_j b_j,
 ///
-/// where the share k_j of what leaves element j arrives at some front: all of it in a closed scene. What F misses is
-/// alike from place to place, comes back from every reflection, and so makes all of a bright room too dark by more than
-/// any link's error; s - 1 is that share, and small.
+/// where the share k_j of the light that leaves element j arrives at some front; 1 in a closed scene. F misses about
+/// the same share of the light everywhere and in every reflection. In a bright room these losses add up to more than
+/// the error of any link. s - 1 is that share, and small.
 class ConservingTransport final : public TransportOperator {
   public:
-    /// `area`: of each unknown, m^2; `kept`: k of each, all 1 if empty. All must outlive it. To begin with, s = 1.
+    /// `area`: of each unknown, m^2; `kept`: k of each unknown, all 1 if empty. All arguments must outlive the object.
+    /// Initially s = 1.
     ConservingTransport(const TransportOperator& F, std::span<const double> area, std::span<const double> kept = {})
         : F_(F), area_(area), kept_(kept) {}
 
-    /// Sets s for the light b. One gather. False, and s stays, where much escapes (`is_kept`).
+    /// Computes s for the light b by one gather. Returns false and keeps s if much light escapes (`is_kept`).
     bool conserve(std::span<const Spectrum> b);
     const Spectrum& scale() const { return scale_; }
 
@@ -46,8 +47,9 @@ class ConservingTransport final : public TransportOperator {
     Spectrum scale_{1.0};
 };
 
-/// b = rhs + rho s F b, from the b given; `F` is system.F. Solves for the s that there is, and, in a closed scene, for
-/// that of the light found, twice: s hardly depends on b. What the first of these found, by the last, is reported.
+/// Solves b = rhs + rho s F b, starting from the given b; `F` must be system.F. Solves with the present s and, if the
+/// scene is closed, up to twice more with the s of the light found; s hardly depends on b. The report contains the
+/// ratio of the first to the last solution's reflected power (`unscaled`).
 SolveReport solve_conserving(const RadiositySystem& system, ConservingTransport& F, bool closed, Relaxation method,
                              std::span<Spectrum> b, StopRule stop);
 

@@ -7,7 +7,8 @@
 namespace exitance {
 namespace {
 
-/// Between elements of different areas, in proportion to areas: closed, but for a share that is lost on the way.
+/// Transport between elements of different areas in proportion to their areas. The scene is closed, but a share of the
+/// light is lost.
 class LeakyTransport final : public TransportOperator {
   public:
     explicit LeakyTransport(double lost) : lost_(lost), area_{1, 2, 0.5, 3} {
@@ -30,7 +31,7 @@ class LeakyTransport final : public TransportOperator {
     std::vector<double> area_;
 };
 
-/// The power absorbed, of the power of `first`.
+/// Absorbed power as a share of the power of `first`.
 double absorbed(const LeakyTransport& leaky, bool closed) {
     const std::vector<Spectrum> rho(4, Spectrum(0.9)), first = {Spectrum(1.0), Spectrum(), Spectrum(0.3), Spectrum()};
     std::vector<Spectrum> b = first, E(4);
@@ -45,39 +46,39 @@ double absorbed(const LeakyTransport& leaky, bool closed) {
     return power / in;
 }
 
-TEST(ConservingTransport, LosesNoneOfTheLightOfAClosedScene) {
+TEST(ConservingTransport, ConservesLightInAClosedScene) {
     const LeakyTransport leaky(1e-3);
     EXPECT_NEAR(absorbed(leaky, false), 1 - 1e-2, 1.2e-3) << "of ten reflections a thousandth each";
     EXPECT_NEAR(absorbed(leaky, true), 1, 1e-9);  // the solver's residual
 }
 
-TEST(ConservingTransport, TellsWhatComesBackUnscaled) {
+TEST(ConservingTransport, ReportsReflectedPowerWithoutScaling) {
     const LeakyTransport leaky(1e-3);
     const std::vector<Spectrum> rho(4, Spectrum(0.9)), first = {Spectrum(1.0), Spectrum(), Spectrum(0.3), Spectrum()};
     std::vector<Spectrum> b = first;
     ConservingTransport F(leaky, leaky.area());
     const SolveReport report =
         solve_conserving({F, rho, first, leaky.area()}, F, true, Relaxation::gmres, b, {.residual = 1e-12});
-    // t / (1 - t) of what is sent, t = 0.9 but for what is lost
+    // Reflected power is t / (1 - t) of the sent power, where t = 0.9 with scaling and 0.8991 without.
     EXPECT_NEAR(report.unscaled[0], (0.8991 / 0.1009) / (0.9 / 0.1), 1e-9);
 }
 
-TEST(ConservingTransport, LeavesAloneWhatIsNoSmallLoss) {
+TEST(ConservingTransport, DoesNotCorrectLargeLosses) {
     const LeakyTransport leaky(0.3);
     EXPECT_EQ(absorbed(leaky, true), absorbed(leaky, false));
 }
 
-TEST(ConservingTransport, LetsEscapeWhatEscapes) {
+TEST(ConservingTransport, DoesNotReturnEscapedLight) {
     const LeakyTransport leaky(1.1e-2);
     const std::vector<double> kept(4, 0.99);
     const std::vector<Spectrum> b = {Spectrum(1.0), Spectrum(2.0), Spectrum(0.5), Spectrum(0.1)};
     ConservingTransport F(leaky, leaky.area(), kept);
     F.conserve(b);
-    // All elements see each other by area, so that whatever b is the same share of it arrives.
+    // F_ij depends on j only through its area, so that the same share of any b arrives.
     EXPECT_NEAR(F.scale()[0], 0.99 / (1 - 1.1e-2), 1e-12);
 }
 
-TEST(ConservingTransport, LeavesAnOpenSceneAlone) {
+TEST(ConservingTransport, DoesNotScaleInAnOpenScene) {
     const LeakyTransport leaky(0.11);
     const std::vector<double> kept(4, 0.9);
     ConservingTransport F(leaky, leaky.area(), kept);

@@ -16,7 +16,7 @@ std::vector<Spectrum> residual_of(const RadiositySystem& s, std::span<const Spec
     return r;
 }
 
-/// Sweeps until the rule stops them.
+/// Repeats sweeps until a criterion of the rule is met or the residual diverges.
 template <class Sweep>
 SolveReport sweep_until(const RadiositySystem& s, std::span<Spectrum> b, const StopRule& stop,
                         const std::function<void()>& swept, const Sweep& sweep) {
@@ -35,7 +35,7 @@ SolveReport sweep_until(const RadiositySystem& s, std::span<Spectrum> b, const S
     return report;
 }
 
-/// F itself, row by row: as many columns a gather as there are bands.
+/// The entries of F, row by row. Each gather computes as many columns as there are bands.
 std::vector<double> entries_of(const TransportOperator& F) {
     const std::size_t n = F.size();
     std::vector<double> out(n * n);
@@ -51,7 +51,8 @@ std::vector<double> entries_of(const TransportOperator& F) {
     return out;
 }
 
-/// Solves the system of a matrix (row by row, destroyed) in place; false once a stop is asked for.
+/// Solves A x = rhs in place; x is the right-hand side, A is stored row by row and destroyed. Returns false on a stop
+/// request.
 bool eliminate(std::vector<double>& A, std::vector<double>& x, const StopRequest& stop) {
     const std::size_t n = x.size();
     for (std::size_t k = 0; k < n; ++k) {

@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// Second moments about the mean, a value a band.
+/// Central second moments, one value per band.
 struct Moments {
     Spectrum b, M, both;
 
@@ -17,7 +17,8 @@ struct Moments {
     }
 };
 
-/// Lights without extent and skies are in E_dir, but no ray finds them: with any of them H M is not E_dir.
+/// True if rays find the emitters: a large share of the surface emits, and there are no lights without extent or skies.
+/// Those are in E_dir but are not hit by rays, so that H M would not be E_dir.
 bool emitters_are_large(const Scene& scene) {
     if (scene.has_light_apart()) return false;
     constexpr double least_share = 0.05;
@@ -29,7 +30,7 @@ bool emitters_are_large(const Scene& scene) {
     return emitting >= least_share * all;
 }
 
-/// Of what the rays of one point in the middle of a leaf meet.
+/// Moments of the light that rays from the centre of a leaf meet.
 Moments moments_at(const Stage& stage, const GlobalLight& light, const ElementLocator& locator, ElementId e,
                    std::uint64_t key) {
     constexpr std::uint32_t rays = 64;
@@ -61,7 +62,7 @@ Moments moments_at(const Stage& stage, const GlobalLight& light, const ElementLo
 
 Spectrum find_direct_share(const Stage& stage, const GlobalLight& light, const ElementLocator& locator,
                            std::uint64_t seed) {
-    // Emitters have to be diffuse: what a gather of M finds is their light then.
+    // Emitters must be diffuse, so that a gather of M gives their light.
     if (!emitters_are_large(stage.scene) || stage.scene.has_directed_emission()) return {};
     // One leaf in each of many strata of equal area.
     constexpr std::size_t count = 128;

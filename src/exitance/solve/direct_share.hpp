@@ -6,16 +6,18 @@
 
 namespace exitance {
 
-/// How much of the emitters' light is best gathered along with the reflected light b. Of all functions b + c M the one
-/// that varies least among the rays of a gather has
+/// Finds how much of the emitters' light is best gathered together with the reflected light b. Among the functions b +
+/// c M the variance over the rays of a gather is least for
 ///
 ///     c = -Cov(b, M) / Var(M),
 ///
-/// a value a band, both taken over the rays of one point and then averaged over points. What varies less is gathered
-/// with less noise and interpolated with less error: E_ind = H (b + c M) - c E_dir, with E_dir exact. A control variate
-/// [Glasserman03]; 0 where it would not take away three quarters of the variance, since E_dir may have shadow edges
-/// that E_ind has not. Where all surfaces of a closed room glow c comes near 1, and in a furnace nothing is left to
-/// vary. `locator` is that of light's tree. 8192 rays where emitters are a twentieth of all surface or more, else none.
+/// one value per band. Both moments are taken over the rays of one point and averaged over points. A function with less
+/// variance is gathered with less noise and interpolated with less error: E_ind = H (b + c M) - c E_dir, with exact
+/// E_dir. This is a control variate [Glasserman03]. c is 0 if it would not remove three quarters of the variance, since
+/// E_dir may have shadow edges that E_ind does not have. If all surfaces of a closed room emit, c is near 1; in a
+/// furnace it removes all variance.
+/// `locator`: of light's tree. Casts 8192 rays if emitters are at least a twentieth of all surface area; otherwise
+/// returns 0.
 Spectrum find_direct_share(const Stage& stage, const GlobalLight& light, const ElementLocator& locator,
                            std::uint64_t seed);
 

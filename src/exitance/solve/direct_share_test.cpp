@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// A closed box; the light that each element reflects is said by its exitance.
+/// A closed box of emitting faces. `reflected` computes an element's reflected light from its exitance.
 struct GlowingBox {
     Scene scene;
     Stage stage{scene};
@@ -33,19 +33,19 @@ struct GlowingBox {
     }
 };
 
-TEST(DirectShare, IsAllOfItWhereReflectedAndEmittedLightAddUpToAConstant) {
+TEST(DirectShare, IsOneIfReflectedAndEmittedLightAddUpToAConstant) {
     EXPECT_NEAR(GlowingBox({0.9, 0.2, 0.5, 0.3, 0.7, 0.4}, [](double M) { return 1 - M; }).share(), 1, 1e-12);
 }
 
-TEST(DirectShare, IsTheSlopeOfReflectedLight) {
+TEST(DirectShare, IsTheSlopeOfReflectedOverEmittedLight) {
     EXPECT_NEAR(GlowingBox({0.9, 0.2, 0.5, 0.3, 0.7, 0.4}, [](double M) { return 2 - 0.7 * M; }).share(), 0.7, 1e-12);
 }
 
-TEST(DirectShare, IsNothingWhereItWouldNotHelp) {
-    // Brightest between the darkest emitters and the brightest ones: no straight line follows that.
+TEST(DirectShare, IsZeroIfItWouldNotReduceTheVariance) {
+    // Reflected light is largest for medium exitance, which a linear function of the exitance cannot represent.
     const auto bow = [](double M) { return 1 - (M - 0.5) * (M - 0.5); };
     EXPECT_EQ(GlowingBox({0.9, 0.1, 0.5, 0.5, 0.9, 0.1}, bow).share(), 0);
-    // Nothing emits on the surfaces that rays meet.
+    // No surface that rays hit emits.
     EXPECT_EQ(GlowingBox({0, 0, 0, 0, 0, 0}, [](double) { return 1.0; }).share(), 0);
 }
 

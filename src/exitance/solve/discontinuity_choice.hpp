@@ -17,16 +17,18 @@ enum class TriangulationScheme {
     heuristic,  ///< Cuts along the diagonal that divides the angles at its ends best.
     delaunay,   ///< Constrained Delaunay triangulation of the curves: maximizes the smallest angle.
 };
-/// Lines of three edges: where they may bound an umbra, everywhere, nowhere.
+/// Selects where discontinuity lines due to three edges are computed: where they may bound an umbra, everywhere, or
+/// nowhere.
 enum class ThreeEdgeEvents { automatic, on, off };
-/// In which order a face is cut: all curves at once, those that bound half-shadows first, or a coarse grid before all.
+/// Order in which a face is split: along all curves at once, first along those that bound penumbrae, or by a coarse
+/// grid before any curve.
 enum class Premesh { off, penumbra_first, coarse };
-/// The function on a triangle: one quadratic polynomial, or three cubic ones whose tangent planes agree.
+/// Function on a triangle: one quadratic polynomial, or three cubic polynomials with matching tangent planes.
 enum class MeshElement { quadratic, clough_tocher };
-/// By what is found what may hide a source: a scene BSP tree's orderings with shadow volumes, one by one or merged into
-/// one tree a source, or shafts and a tree of boxes.
+/// Data structure that finds the blockers of a source: the order of a scene BSP tree with shadow volumes, used one by
+/// one or merged into one tree per source; or shafts and a tree of boxes (bvh).
 enum class OccluderStructure : std::uint8_t { bsp, bvh, merged };
-/// How triangles get their shape: by points that are added for it before light is looked at, or as bisection leaves it.
+/// How triangles get a good shape: by additional points before light is evaluated, or by bisection alone.
 enum class MeshQuality : std::uint8_t { delaunay, rivara };
 
 inline constexpr std::array<std::pair<ThreeEdgeEvents, std::string_view>, 3> three_edge_names{{
@@ -59,14 +61,14 @@ inline constexpr std::array<std::pair<TriangulationScheme, std::string_view>, 4>
     {TriangulationScheme::delaunay, "delaunay"},
 }};
 
-/// Surfaces whose reflected light has shadows of its own to cut along: so many, or those that send out so much, in
-/// order of their power.
+/// Surfaces whose reflected light causes shadows that are meshed, in descending order of their power: the first `count`
+/// ones, or those of at least the given power.
 struct SecondarySources {
     std::optional<std::size_t> count = {};
-    std::optional<double> power = {};  ///< W, in the mean of the bands.
+    std::optional<double> power = {};  ///< W, mean over bands.
 };
 
-/// How a discontinuity mesh is made. What is empty is as the method would have it.
+/// Options of a discontinuity mesh. Empty ones are chosen by the method.
 struct DiscontinuityChoice {
     std::optional<SecondarySources> sources = {};
     std::optional<ThreeEdgeEvents> three_edges = {};
@@ -74,7 +76,7 @@ struct DiscontinuityChoice {
     std::optional<Premesh> premesh = {};
     std::optional<MeshQuality> quality = {};
     std::optional<MeshElement> element = {};
-    std::optional<bool> layers = {};  ///< One mesh a source.
+    std::optional<bool> layers = {};  ///< One mesh per source.
     std::optional<OccluderStructure> structure = {};
 
     bool any() const {

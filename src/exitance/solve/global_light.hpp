@@ -10,54 +10,56 @@
 
 namespace exitance {
 
-/// What a method hands on: the light that every element reflects, constant on each leaf of its mesh.
+/// Result of a method: the light that every element reflects, constant on each leaf of its mesh.
 struct GlobalLight {
     ElementTree tree = {};
     LeafNumbering numbering = {};
-    /// By leaf number, W/m^2: mean irradiance by emitters, and by everything else.
+    /// Mean irradiance from emitters, and from all other surfaces, by leaf number, W/m^2.
     std::vector<Spectrum> direct = {}, indirect = {};
-    /// By leaf number, where the method holds polynomials: `indirect` at the corners of the leaf's patch, W/m^2.
+    /// `indirect` at the corners of each leaf's patch, W/m^2, by leaf number; empty unless the method's elements hold
+    /// polynomials.
     std::vector<std::array<Spectrum, 4>> indirect_corners = {};
-    /// By leaf number, where the method's leaves are not those of the projection: the projected direct light likewise.
+    /// Projected direct light at the corners of each leaf's patch, W/m^2, by leaf number; empty if the method's leaves
+    /// are those of the projection.
     std::vector<std::array<Spectrum, 4>> direct_corners = {};
-    /// Are the polynomials of `indirect_corners` as good as what is asked for, so that nothing has to gather again?
+    /// True if the polynomials of `indirect_corners` are as accurate as required, so that no final gather is needed.
     bool delivers = false;
-    /// By leaf number, W/m^2: b = rho (E_dir + E_ind), reflected radiosity.
+    /// Reflected radiosity b = rho (E_dir + E_ind), by leaf number, W/m^2.
     std::vector<Spectrum> reflected = {};
-    /// Is `tree` the mesh of the direct projection, leaf for leaf?
+    /// True if `tree` is the mesh of the direct projection, leaf for leaf.
     bool on_projection = false;
-    /// Of `indirect`, W/m^2, where the method is a random one; empty otherwise.
+    /// Standard error of `indirect`, W/m^2, for Monte Carlo methods; empty otherwise.
     std::vector<Spectrum> standard_error = {};
 
-    /// c of `find_direct_share` as the method used it: its elements agree with b + c M. Zero where it did not.
+    /// c of `find_direct_share` if the method used it, so that its elements suit b + c M; else 0.
     Spectrum direct_share = {};
 
-    /// True when the method carried the emitters' own light through its elements: then `indirect` is all light that
-    /// arrives, and `direct` is zero.
+    /// True if the method transported the emitters' own light through its elements: then `indirect` is all arriving
+    /// light, and `direct` is zero.
     bool holds_direct = false;
 
-    /// By leaf number, where the method saw to it that no light is lost but what escapes: the share of what leaves it
-    /// that arrives at some front. Empty otherwise.
+    /// Share of the light leaving each leaf that arrives at some front, by leaf number; empty unless the method
+    /// conserved light (`ConservingTransport`).
     std::vector<double> kept = {};
 
-    /// Did the method stop refining for want of memory?
+    /// True if the method stopped refining because of the memory limit.
     bool limited_by_memory = false;
 
     SolveReport report = {};
     std::size_t rays = 0, form_factors = 0, links = 0, link_memory_bytes = 0;
-    /// Of a hierarchy's elements, as far down as links come to them, and the light that they hold; and how many those
-    /// are at each depth.
+    /// For hierarchies: memory of the elements down to the deepest links, with the light that they hold, and the number
+    /// of these elements at each depth.
     std::size_t element_memory_bytes = 0;
     std::vector<std::size_t> elements_by_level = {};
 
-    /// Of a hierarchy, where they are asked for: links by receiver, then by source.
+    /// For hierarchies, if requested: links, sorted by receiver, then by source.
     std::vector<KeptLink> kept_links = {};
 
-    /// The light in the method's own representation, where it has one (growing cells): all of it with `holds_direct`,
-    /// else the indirect light. `indirect` is its projection.
+    /// For methods with a representation of their own (growing cells): the light in that form. It is all light with
+    /// `holds_direct`, otherwise the indirect light; `indirect` is its projection.
     LightFormPointer own_form = {};
 
-    /// Mean over all bands and a surface of `surface_area`, which is all that reflects, W/m^2.
+    /// Mean of `reflected` over all bands and all reflecting surfaces, W/m^2. `surface_area`: their area, m^2.
     double mean_reflected(double surface_area) const;
 };
 

@@ -9,12 +9,12 @@ namespace exitance {
 namespace {
 
 /// GMRES's small least-squares problem, kept triangular by Givens rotations. The order of operations is that of PETSc,
-/// whose bits these have to be.
+/// so that both give the same bits.
 struct Hessenberg {
     double H[gmres_restart + 1][gmres_restart] = {}, cosine[gmres_restart] = {}, sine[gmres_restart] = {},
                              g[gmres_restart + 1] = {};
 
-    /// Takes column k (entries 0..k+1 filled in) into the triangle; returns the size of the residual.
+    /// Adds column k (entries 0..k+1 must be set) to the triangle; returns the norm of the residual.
     double rotate(int k) {
         for (int i = 0; i < k; ++i) {
             const double h = H[i][k];
@@ -42,7 +42,7 @@ struct Hessenberg {
     }
 };
 
-/// Makes it 1 long, where it is not 0; returns how long it was.
+/// Scales x to length 1 unless it is 0; returns its previous length.
 double normalise(const KrylovVectors& vectors, std::span<Spectrum> x) {
     const double length = vectors.norm(x);
     if (length > 0) vectors.multiply(x, 1 / length);

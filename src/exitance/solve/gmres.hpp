@@ -4,18 +4,19 @@
 
 namespace exitance {
 
-/// GMRES begins anew after so many steps.
+/// Steps after which GMRES restarts.
 inline constexpr int gmres_restart = 20;
 
-/// GMRES(20) on (I - rho F) b = rhs, all bands in one Krylov space, by classical Gram-Schmidt [Saad86]. Vectors are
-/// those of own unknowns (`system.F.dealt()`).
+/// GMRES(20) on (I - rho F) b = rhs, with one Krylov space for all bands, by classical Gram-Schmidt. All vectors
+/// contain own unknowns (`system.F.dealt()`).
+/// Source: [Saad86].
 SolveReport gmres(const RadiositySystem& system, std::span<Spectrum> b, StopRule stop);
 
-/// The same steps by PETSc's KSP on vectors that are spread over processes (solve/petsc.cpp), to the same bits; `gmres`
-/// in a build without PETSc.
+/// Like `gmres`, by PETSc's KSP on vectors distributed over processes (solve/petsc.cpp), with the same bits. Calls
+/// `gmres` in a build without PETSc.
 SolveReport gmres_over_processes(const RadiositySystem& system, std::span<Spectrum> b, StopRule stop);
 
-/// out <- b - rho F b, of own unknowns.
+/// out <- b - rho F b, for own unknowns.
 void apply_system(const RadiositySystem& system, std::span<const Spectrum> b, std::span<Spectrum> out);
 
 }  // namespace exitance

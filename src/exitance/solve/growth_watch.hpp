@@ -7,9 +7,9 @@
 
 namespace exitance {
 
-/// Watches the fluxes of a light's reflections, which have to fall: with reflectances below 1 every reflection holds
-/// less light than the one before it, whatever the scene. Where they grow instead, the transport creates light (rows of
-/// F that sum to more than 1), and the series has no limit.
+/// Monitors the fluxes of successive reflections, which must decrease: with reflectances below 1 every reflection has
+/// less flux than the one before. If they increase, the transport creates light (rows of F that sum to more than 1),
+/// and the series diverges.
 class GrowthWatch {
   public:
     /// Adds the flux of the next reflection, any unit, not below 0. Returns true if the series grows: the flux rose
@@ -28,11 +28,11 @@ class GrowthWatch {
     int rises_ = 0;
 };
 
-/// Residual, relative to the light that enters, above which a relaxation is given up: it starts at 1 at most, and
-/// over-relaxed sweeps let it rise by less.
+/// Residual, relative to the light that enters, at which a relaxation is stopped as divergent: it is at most 1
+/// initially, and over-relaxed sweeps increase it by less.
 inline constexpr double hopeless_residual = 10;
 
-/// True if a solve ended with a residual of at least 1, no better than darkness. A series that grows is ended so.
+/// True if a solve ended with a residual of at least 1, no better than zero light. Divergent series end this way.
 inline bool has_diverged(const SolveReport& report) {
     return !report.converged && !report.interrupted && !(report.residual < 1);
 }

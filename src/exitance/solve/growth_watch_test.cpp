@@ -36,12 +36,12 @@ SolveReport relaxed(double factor, double sor) {
     return sor > 0 ? relax_in_turn(system, sor, b, stop, {}) : relax_at_once(system, b, stop, {});
 }
 
-TEST(GrowthWatch, FallingFluxesDoNotGrowAndARiseOrTwoDoesNotCount) {
+TEST(GrowthWatch, IgnoresOneOrTwoRises) {
     GrowthWatch watch;
     for (const double flux : {1.0, 0.5, 0.6, 0.7, 0.3, 0.1, 0.2, 0.05}) EXPECT_FALSE(watch.grows(flux)) << flux;
 }
 
-TEST(GrowthWatch, SlowAndFastGrowthAreNoticed) {
+TEST(GrowthWatch, DetectsSlowAndFastGrowth) {
     GrowthWatch slow;
     EXPECT_FALSE(slow.grows(1));
     EXPECT_FALSE(slow.grows(1.01));
@@ -53,9 +53,9 @@ TEST(GrowthWatch, SlowAndFastGrowthAreNoticed) {
     EXPECT_TRUE(GrowthWatch().grows(std::numeric_limits<double>::quiet_NaN()));
 }
 
-TEST(GrowthWatch, ARelaxationWhoseRowsCreateLightIsGivenUp) {
+TEST(GrowthWatch, StopsARelaxationWhoseTransportCreatesLight) {
     for (const double sor : {0.0, 1.0, 1.3}) {
-        const SolveReport settles = relaxed(1, sor), grows = relaxed(1.5, sor);  // rho F: 0.8, and 1.2
+        const SolveReport settles = relaxed(1, sor), grows = relaxed(1.5, sor);  // row sums of rho F: 0.8 and 1.2
         EXPECT_TRUE(settles.converged) << sor;
         EXPECT_FALSE(has_diverged(settles)) << sor;
         EXPECT_TRUE(has_diverged(grows)) << sor;

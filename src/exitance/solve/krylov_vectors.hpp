@@ -11,13 +11,13 @@ namespace exitance {
 
 using Values = std::vector<Spectrum>;
 
-/// What Krylov methods do with vectors of own unknowns, in one order of operations, so that ours and PETSc's give the
-/// same bits on any number of processes. All processes call each alike.
+/// Vector operations of Krylov methods on own unknowns. The order of operations is fixed, so that our methods and
+/// PETSc's give the same bits on any number of processes. All functions are collective.
 struct KrylovVectors {
     DealtUnknowns dealt;
     std::span<const double> area;  ///< m^2, of own unknowns.
 
-    /// x . y_j = sum_i A_i sum_band x_i y_ji, of every y.
+    /// Inner products of x with each y_j: sum_i A_i sum_band x_i y_ji.
     std::vector<double> products(std::span<const Spectrum> x, std::span<const std::span<const Spectrum>> y) const {
         return dealt.sums<double>(y.size(), [&](std::size_t i, std::size_t j) {
             double sum = 0;
@@ -29,7 +29,7 @@ struct KrylovVectors {
     double norm(std::span<const Spectrum> x) const {
         return std::sqrt(dealt.sum<double>([&](std::size_t i) { return area[i] * squared(x[i]); }));
     }
-    /// y <- y + sum_j a_j x_j, j after j.
+    /// y <- y + sum_j a_j x_j, added in order of j.
     void add_combination(std::span<Spectrum> y, std::span<const double> a,
                          std::span<const std::span<const Spectrum>> x) const {
         dealt.for_each_own([&](std::size_t i) {

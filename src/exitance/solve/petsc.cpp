@@ -10,10 +10,10 @@
 #include "exitance/solve/gmres.hpp"
 #include "exitance/solve/relaxation_watch.hpp"
 
-// PETSc's one door: scatters of vectors that are spread over processes, and its GMRES on them.
+// All use of PETSc: scatters of vectors that are distributed over processes, and its GMRES on them.
 //
-// The library is opened when processes first need it. Linked, it and the eighty that it wants would be loaded by every
-// start of the program, which takes as long as all else that a start does.
+// The library is loaded when several processes first need it. If it were linked, every start of the program would load
+// it and its eighty dependencies, which doubles the start-up time.
 
 namespace exitance {
 namespace {
@@ -27,12 +27,12 @@ constexpr auto values_each = static_cast<PetscInt>(bands);
     std::abort();
 }
 
-/// Errors of PETSc are those of this code, or no memory.
+/// Ends the program on an error of PETSc, which means a bug in this code or that memory has run out.
 void check(PetscErrorCode code) {
     if (code != 0) end_without("a call failed");
 }
 
-/// The functions of the library that are used here, by their own names.
+/// The functions of the library that are used here, with their own names.
 struct Petsc {
     void* library = dlopen(EXITANCE_PETSC_LIBRARY, RTLD_LAZY | RTLD_LOCAL);
 
@@ -80,11 +80,11 @@ struct Petsc {
 #undef EXITANCE_PETSC
 };
 
-/// Opened and begun by the first call, which all processes make alike. MPI ends it.
+/// Loads and initializes the library at the first call, which is collective. MPI finalizes it.
 const Petsc& petsc() {
     static const Petsc opened = [] {
         Petsc p;
-        // Signals are the program's own, and what users set for other programs is not for this one.
+        // The program handles signals itself, and options that users set for other programs must not apply to it.
         for (const char* option : {"-no_signal_handler", "-skip_petscrc"})
             check(p.PetscOptionsSetValue(nullptr, option, "1"));
         check(p.PetscInitializeNoArguments());
@@ -97,10 +97,10 @@ double* numbers_of(std::span<Spectrum> values) {
     return reinterpret_cast<double*>(values.data());
 }
 double* numbers_of(std::span<const Spectrum> values) {
-    return const_cast<double*>(reinterpret_cast<const double*>(values.data()));  // vectors that are only read
+    return const_cast<double*>(reinterpret_cast<const double*>(values.data()));  // for vectors that are only read
 }
 
-/// A vector of which every process holds some numbers, in an array of ours.
+/// Creates a vector distributed over processes, with this process's values in an array of ours.
 Vec spread_vector(std::size_t own, std::size_t all, const double* numbers) {
     Vec out = nullptr;
     check(petsc().VecCreateMPIWithArray(MPI_COMM_WORLD, values_each, static_cast<PetscInt>(own * bands),
@@ -108,7 +108,7 @@ Vec spread_vector(std::size_t own, std::size_t all, const double* numbers) {
     return out;
 }
 
-/// PETSc numbers unknowns by process, each one's in their order.
+/// Scatter from distributed unknowns. PETSc numbers unknowns process by process, in ascending order within each.
 class PetscScatter final : public ValueScatter {
   public:
     PetscScatter(const DealtUnknowns& dealt, std::span<const std::uint32_t> read) {
@@ -147,7 +147,7 @@ class PetscScatter final : public ValueScatter {
     VecScatter scatter_ = nullptr;
 };
 
-/// A vector's own values, for as long as they are looked at: to read (const Spectrum), or to write as well.
+/// Access to a vector's own values during the object's lifetime: read-only (const Spectrum) or writable.
 template <class Value>
 class OwnValues {
     static constexpr bool is_read = std::is_const_v<Value>;
@@ -179,7 +179,7 @@ class OwnValues {
 using ReadValues = OwnValues<const Spectrum>;
 using WrittenValues = OwnValues<Spectrum>;
 
-/// Several of them, to read.
+/// Read access to several vectors.
 class ReadVectors {
   public:
     ReadVectors(const Vec* vectors, PetscInt count) {
@@ -193,7 +193,7 @@ class ReadVectors {
     std::vector<std::span<const Spectrum>> values_;
 };
 
-/// What PETSc calls back for, one solve at a time.
+/// State for PETSc's callbacks; there is one solve at a time.
 struct Solve {
     const RadiositySystem& system;
     RelaxationWatch watch;
@@ -213,7 +213,7 @@ PetscErrorCode judge(KSP, PetscInt, PetscReal residual, KSPConvergedReason* reas
     return 0;
 }
 
-// The vector's arithmetic: PETSc's own sums depend on the number of processes, and its products on the BLAS.
+// Vector operations: PETSc's sums depend on the number of processes, and its products on the BLAS library.
 
 PetscErrorCode products(Vec x, PetscInt count, const Vec* y, PetscScalar* out) {
     const ReadVectors known(y, count);
@@ -246,7 +246,7 @@ PetscErrorCode add_multiple(Vec y, PetscScalar factor, Vec x) {
     return add_multiples(y, 1, &factor, &x);
 }
 
-/// A vector of the system's, whose copies have the same arithmetic.
+/// Creates a vector that uses these operations; copies of it do so, too.
 Vec system_vector(const DealtUnknowns& dealt, double* numbers) {
     Vec out = spread_vector(dealt.own_count(), dealt.count(), numbers);
     out->ops->dot = out->ops->tdot = product;
@@ -287,7 +287,7 @@ SolveReport gmres_over_processes(const RadiositySystem& system, std::span<Spectr
     check(p.KSPSetConvergenceTest(ksp, judge, nullptr, nullptr));
     check(p.KSPGMRESSetRestart(ksp, gmres_restart));
     check(p.KSPSolve(ksp, rhs, solution));
-    if (!solve.judged) solve.watch.done(0.0);  // nothing was left to begin with
+    if (!solve.judged) solve.watch.done(0.0);  // the initial residual was already zero
     check(p.KSPDestroy(&ksp)), check(p.MatDestroy(&matrix));
     check(p.VecDestroy(&rhs)), check(p.VecDestroy(&solution));
     running = nullptr;

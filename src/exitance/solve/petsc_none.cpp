@@ -1,7 +1,7 @@
 #include "exitance/processes/value_scatter.hpp"
 #include "exitance/solve/gmres.hpp"
 
-// A build without PETSc: what a process reads of others goes to all.
+// Implementation for builds without PETSc: values that a process reads from others are sent to all processes.
 
 namespace exitance {
 namespace {

@@ -30,14 +30,14 @@ SolveReport jacobi(const RadiositySystem& s, std::span<Spectrum> b, StopRule sto
         residual(s, b, r);
         ++watch.report.iterations;
         const bool done = watch.done(r);
-        // The residual is the change that one more sweep makes: it is taken along even when it is the last.
+        // The residual is the change of one more sweep, so it is applied even after the last test.
         watch.vectors.dealt.for_each_own([&](std::size_t i) { b[i] += r[i]; });
         if (done) return watch.report;
     }
 }
 
-/// A bound on the eigenvalues of rho F, a band: the largest (rho F x)_i / x_i for x = rho F 1 [Wielandt50], which
-/// holds where F has no negative entries. Two gathers.
+/// Upper bound on the eigenvalues of rho F, per band: the largest (rho F x)_i / x_i for x = rho F 1 [Wielandt50]. Valid
+/// if F has no negative entries. Two gathers.
 Spectrum spectral_bound(const RadiositySystem& s) {
     Values x(s.rhs.size(), Spectrum(1.0)), y(x.size());
     Spectrum bound(0.0);
@@ -68,7 +68,7 @@ SolveReport chebyshev(const RadiositySystem& s, std::span<Spectrum> b, StopRule 
         ++watch.report.iterations;
         const bool done = watch.done(change);
         constexpr double diverges = 10;
-        if (watch.report.residual > diverges * least) {  // the bound was none: entries below 0
+        if (watch.report.residual > diverges * least) {  // negative entries of F made the bound invalid
             for (double& v : r.value) v = 0.5 * (v + 1);
             step = 0;
         }
@@ -104,8 +104,8 @@ SolveReport conjugate_gradients(const RadiositySystem& s, std::span<Spectrum> b,
     const std::size_t n = b.size();
     RelaxationWatch watch(s, stop);
     Values r, p(n), q(n);
-    // Rows of black elements are solved at once; for the others the residual of the symmetric form is A r / rho, and
-    // its Jacobi preconditioner rho / A (1 - rho F_ii), F_ii = 0: so z = r, and the products carry the weight A / rho.
+    // b is known for black elements. For the others the residual of the symmetric form is A r / rho, and its Jacobi
+    // preconditioner is rho / A (1 - rho F_ii) with F_ii = 0. Hence z = r, and inner products have the weight A / rho.
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t k = 0; k < bands; ++k)
             if (s.reflectance[i][k] == 0) b[i][k] = s.rhs[i][k];

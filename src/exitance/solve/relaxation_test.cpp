@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// A reciprocal system of form factors between elements of different areas: A_i F_ij = A_j F_ji, rows below 1.
+/// A reciprocal system of form factors between elements of different areas: A_i F_ij = A_j F_ji, row sums below 1.
 class SmallTransport final : public TransportOperator {
   public:
     explicit SmallTransport(std::size_t n) : n_(n), F_(n * n), area_(n) {
@@ -45,7 +45,7 @@ struct Problem {
         for (std::size_t i = 0; i < F.size(); ++i) {
             Spectrum r, e;
             for (std::size_t b = 0; b < bands; ++b) r[b] = 0.95 * random.uniform(), e[b] = random.uniform();
-            rho.push_back(i % 7 == 0 ? Spectrum() : r);  // some black ones
+            rho.push_back(i % 7 == 0 ? Spectrum() : r);  // some black elements
             rhs.push_back(i % 5 == 0 ? Spectrum() : e);
         }
     }
@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(Relaxations, EveryRelaxation,
                          testing::Values(Relaxation::jacobi, Relaxation::gauss_seidel, Relaxation::cg,
                                          Relaxation::gmres, Relaxation::chebyshev));
 
-TEST_P(EveryRelaxation, LeavesNoResidual) {
+TEST_P(EveryRelaxation, ReachesTheRequestedResidual) {
     const Problem problem;
     std::vector<Spectrum> b(problem.F.size()), E(problem.F.size());
     const SolveReport report = solve_radiosity(problem.system(), GetParam(), b, {.residual = 1e-10});
@@ -68,7 +68,7 @@ TEST_P(EveryRelaxation, LeavesNoResidual) {
         EXPECT_LT(max(problem.rhs[i] + problem.rho[i] * E[i] - b[i]), 2e-9);
 }
 
-TEST_P(EveryRelaxation, SaysThatItRanOutOfIterations) {
+TEST_P(EveryRelaxation, ReportsThatItRanOutOfIterations) {
     const Problem problem;
     std::vector<Spectrum> b(problem.F.size());
     const SolveReport report =
@@ -87,7 +87,7 @@ TEST(Relaxation, KrylovNeedsFewerGathersThanJacobi) {
     EXPECT_LT(gathers(Relaxation::gmres), gathers(Relaxation::jacobi));
 }
 
-/// Two plates of even elements that see nothing but each other: eigenvalues 1 and -1 of F.
+/// Two plates of equal elements that see only each other: F has the eigenvalues 1 and -1.
 class TwoPlates final : public TransportOperator {
   public:
     std::size_t size() const override { return 8; }
@@ -102,7 +102,7 @@ class TwoPlates final : public TransportOperator {
     std::size_t memory_bytes() const override { return 0; }
 };
 
-TEST(Relaxation, ChebyshevNeedsTheRootOfJacobisGathersWhereLightIsReflectedOften) {
+TEST(Relaxation, ChebyshevNeedsFarFewerGathersThanJacobiAtHighReflectance) {
     const TwoPlates F;
     const std::vector<Spectrum> rho(F.size(), Spectrum(0.95));
     std::vector<Spectrum> rhs(F.size());
@@ -114,14 +114,14 @@ TEST(Relaxation, ChebyshevNeedsTheRootOfJacobisGathersWhereLightIsReflectedOften
         EXPECT_TRUE(report.converged);
         return report.iterations;
     };
-    // ln 1e-8 / ln 0.95 = 359, less what the light on one element alone begins with; and with (1 - (1 - r^2)^(1/2)) / r
-    // = 0.72 in place of r = 0.95: 57.
+    // Jacobi: ln 1e-8 / ln 0.95 = 359, less because only one element sends light at first. Chebyshev converges by (1 -
+    // (1 - r^2)^(1/2)) / r = 0.72 per step instead of r = 0.95: 57 steps.
     EXPECT_NEAR(static_cast<double>(gathers(Relaxation::jacobi)), 359, 15);
     EXPECT_LE(gathers(Relaxation::chebyshev), 65u);
 }
 
-/// Elements in a ring, each of which receives all that the one before it sends: Krylov spaces of few dimensions hold
-/// nothing of what comes round.
+/// Elements in a ring; each receives all light of the previous one. Krylov spaces of few dimensions do not contain
+/// light that has travelled around the ring.
 class Ring final : public TransportOperator {
   public:
     std::size_t size() const override { return 64; }
@@ -134,7 +134,7 @@ class Ring final : public TransportOperator {
     std::size_t memory_bytes() const override { return 0; }
 };
 
-TEST(Relaxation, GmresGoesOnWhereItHasToBeginAnew) {
+TEST(Relaxation, GmresConvergesAcrossRestarts) {
     const Ring F;
     Spectrum even;
     for (std::size_t k = 0; k < bands; ++k) even[k] = 0.9 - 0.2 * static_cast<double>(k);

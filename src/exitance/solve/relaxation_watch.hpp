@@ -5,13 +5,13 @@
 
 namespace exitance {
 
-/// What every relaxation shares: the norm to reach, and the count of gathers.
+/// Stopping test and report shared by all relaxations.
 class RelaxationWatch {
   public:
     RelaxationWatch(const RadiositySystem& system, StopRule stop)
         : vectors(KrylovVectors{system.F.dealt(), system.area}), stop_(stop), scale_(vectors.norm(system.rhs)) {}
 
-    /// One more application of F has left the residual `r`; is it time to stop?
+    /// Records the residual `r` after an application of F. Returns true if the relaxation should stop.
     bool done(std::span<const Spectrum> r) { return done(vectors.norm(r)); }
     bool done(double residual_norm) {
         report.residual = scale_ > 0 ? residual_norm / scale_ : 0;

@@ -15,14 +15,14 @@ double power_of(const Spectrum& u, double area) {
     return area * sum / static_cast<double>(bands);
 }
 
-/// What is unshot, and which patch has most to send.
+/// Unshot power, and the patch that has most to send.
 struct Unshot {
     double power = 0;  ///< W
     Spectrum flux;     ///< sum A u, W
-    double most = -1;  ///< W, of the first patch of those that would send most.
+    double most = -1;  ///< W; power of the first of the patches with most to send.
     std::size_t patch = 0;
 
-    /// Patch p would send `sent`, of which u is unshot; W/m^2.
+    /// Adds patch p with unshot light u, which would send `sent` in a shot; both W/m^2.
     void add(std::size_t p, const Spectrum& u, const Spectrum& sent, double area) {
         power += power_of(u, area);
         flux += area * u;
@@ -40,7 +40,7 @@ struct Unshot {
     }
 };
 
-/// Patches in blocks, which threads take in turn; sums go by block, so that they do not depend on threads.
+/// All patches in blocks, which threads process in parallel. Sums are formed by block and do not depend on threads.
 class Patches {
   public:
     Patches(const ShootingProblem& problem, bool overshooting, std::span<Spectrum> unshot,
@@ -65,14 +65,15 @@ class Patches {
 
     const Unshot& unshot() const { return sum_; }
 
-    /// Takes from patch p what it sends.
+    /// Removes from patch p the light that a shot sends, and returns it, W/m^2.
     Spectrum send(std::size_t p) {
         const Spectrum extra = expected(p), sent = unshot_[p] + extra;
         unshot_[p] = -1.0 * extra;
         return sent;
     }
 
-    /// Light `sent` arrives by form factors F, by receiver; none if there are none.
+    /// Adds the arriving part of the light `sent`, by form factors F (one per receiver). If F is empty, only updates
+    /// the sums.
     void receive(std::span<const float> F, const Spectrum& sent) {
         sum_ = over_blocks([&](std::size_t p) {
             if (!F.empty()) receive_at(p, F, sent);
@@ -87,7 +88,8 @@ class Patches {
   private:
     static constexpr std::size_t block = 512;
 
-    /// What is unshot once `sent(p)` has been called for every patch, which tells what it would send.
+    /// Calls `sent(p)` for every patch, which returns what a shot of the patch would send, and sums up the unshot light
+    /// afterwards.
     template <class Sent>
     Unshot over_blocks(const Sent& sent) {
         parallel_for(blocks_.size(), 4, [&](std::size_t b) {
@@ -111,19 +113,19 @@ class Patches {
         }
     }
 
-    /// What patch p may expect to have to send later.
+    /// Estimate of the light that patch p will receive and reflect later, W/m^2; 0 without overshooting.
     Spectrum expected(std::size_t p) const { return reflectance_[p] * ambient_; }
 
-    std::span<const double> area_;  ///< By patch, m^2.
+    std::span<const double> area_;  ///< Area of each patch, m^2.
     bool overshooting_;
     std::span<Spectrum> unshot_, irradiance_;
-    Groups receivers_;  ///< By patch.
+    Groups receivers_;  ///< Receivers of each patch.
     double total_area_;
-    std::vector<Spectrum> returned_;     ///< By receiver: its reflectance, times its share of its patch.
-    std::vector<Spectrum> reflectance_;  ///< By patch.
+    std::vector<Spectrum> returned_;     ///< Reflectance of each receiver times its share of the patch's area.
+    std::vector<Spectrum> reflectance_;  ///< Mean reflectance of each patch.
     Spectrum mean_reflectance_;
-    Spectrum
-        ambient_;  ///< If overshooting, mean of what is unshot and its reflections: sum A u / sum A / (1 - mean rho).
+    /// With overshooting: mean of the unshot light with all its reflections, sum A u / sum A / (1 - mean rho), W/m^2.
+    Spectrum ambient_;
     std::vector<Unshot> blocks_;
     Unshot sum_;
 };

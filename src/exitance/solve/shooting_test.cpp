@@ -7,8 +7,8 @@
 namespace exitance {
 namespace {
 
-/// The inside of a sphere, where F_ij = A_j / sum A whatever i: patches of two or three receivers each, which are not
-/// numbered side by side. Every patch sends 1 W/m^2 at first.
+/// Inside of a sphere, where F_ij = A_j / sum A for all i. Each patch has two or three receivers with non-consecutive
+/// numbers. Initially every patch sends 1 W/m^2.
 struct Sphere {
     explicit Sphere(std::size_t patches) : patch_area(patches), unshot(patches, Spectrum(1)) {
         const std::size_t receivers = 2 * patches + patches / 2;
@@ -46,11 +46,11 @@ struct Sphere {
 
 }  // namespace
 
-/// E = M / (1 - rho), less the share that is unshot: 1e-3 in the mean over bands, so that of one at most
-/// `bands` times that.
+/// E = M / (1 - rho), less the unshot share. That is 1e-3 in the mean over bands, and at most `bands` times that in one
+/// band.
 TEST(Shooting, LightsASphereEvenly) {
     for (const bool overshooting : {false, true}) {
-        Sphere sphere(600);  // more than a block of patches
+        Sphere sphere(600);  // more than one block of patches
         const SolveReport report = sphere.shoot({.overshooting = overshooting, .unshot = 1e-3});
         EXPECT_TRUE(report.converged);
         for (const Spectrum& E : sphere.irradiance)

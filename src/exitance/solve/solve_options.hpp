@@ -41,12 +41,13 @@ enum class BasisKind {
 };
 enum class VisibilityKind { automatic, fractional, quadrature, exact };
 enum class FormFactorKind { analytic, ray_cast, hemicube };
-/// Growing cells as published, all light through the networks, or with direct light apart and analytic kernels.
+/// Growing cells as published, with all light in the networks, or with separate direct light and analytic kernels.
 enum class CellsKind { classic, improved };
-/// Of discontinuity meshing: how light at a place is found from the global pass. See lab/local_passes/local_passes.hpp.
+/// For discontinuity meshing: how light at a point is computed from the global pass. See
+/// lab/local_passes/local_passes.hpp.
 enum class LocalPassRule { a, b, c, d, e };
 
-/// What users call each choice. `--help`, the parser, the recorded options and the statistics all read these tables.
+/// User-visible name of each choice. `--help`, the parser, the recorded options and the statistics use these tables.
 inline constexpr std::array<std::pair<Method, std::string_view>, 9> method_names{{
     {Method::automatic, "auto"},
     {Method::matrix, "matrix"},
@@ -108,21 +109,21 @@ inline constexpr std::array<std::pair<LocalPassRule, std::string_view>, 5> local
     {LocalPassRule::e, "e"},
 }};
 
-/// Constants to quadratic functions on leaves that are linked pair by pair, without a hierarchy.
+/// True for constant to quadratic functions on leaves that are linked pair by pair, without a hierarchy.
 constexpr bool is_galerkin(BasisKind basis) {
     return basis == BasisKind::galerkin1 || basis == BasisKind::galerkin2 || basis == BasisKind::galerkin3;
 }
 
-/// Can the elements of a method hold this basis?
+/// True if the elements of a method support this basis.
 constexpr bool fits(BasisKind basis, Method method) {
     const bool of_matrix = basis == BasisKind::constant || basis == BasisKind::linear || is_galerkin(basis);
     if (method == Method::automatic || method == Method::matrix) return of_matrix;
     if (method == Method::wavelet) return !of_matrix;
-    if (method == Method::growing_cells) return false;  // Gaussians, without a choice
+    if (method == Method::growing_cells) return false;  // always Gaussians
     return basis == (method == Method::hierarchical ? BasisKind::haar : BasisKind::constant);
 }
 
-/// The name of a choice in its table.
+/// Name of a choice in its table.
 template <class Choice, std::size_t N>
 constexpr std::string_view name_in(const std::array<std::pair<Choice, std::string_view>, N>& table, Choice choice) {
     for (const auto& [value, name] : table)
@@ -133,69 +134,70 @@ constexpr std::string_view name_in(const std::array<std::pair<Choice, std::strin
 inline constexpr int all_bounces = -1;
 inline constexpr double default_error = 0.02;  ///< Relative RMS error, of radiosity.
 
-/// A point where light is looked at, and the direction in which the receiving plane faces there, of length 1.
+/// A point at which irradiance is wanted, and the unit normal of the receiving plane there.
 struct ImportantPoint {
     Point at;
     Normal normal;
 };
 
-/// What a solve is asked for. An empty optional leaves the choice to the method, which derives it from the error asked
-/// for; a knob that is set by hand is used as it stands and lifts the default demand.
+/// Options of a solve. An empty optional is chosen by the method from the required error. A parameter that is set is
+/// used as given, and no error is then required by default.
 struct SolveOptions {
     Method method = Method::automatic;
     std::optional<BasisKind> basis = {};
     int bounces = all_bounces;  ///< 0: direct light alone; n: at most n reflections; all_bounces: until convergence.
 
-    std::optional<double> error = {};  ///< Relative RMS error of what `probe` evaluates; empty: see error_demand().
-    /// Relative RMS error of what `export` writes; empty: as the method comes by.
+    /// Relative RMS error of the light that `probe` evaluates; empty: see error_demand().
+    std::optional<double> error = {};
+    /// Relative RMS error of the exported mesh; empty: not limited.
     std::optional<double> error_interpolant = {};
 
-    std::optional<double> epsilon = {};              ///< Error of all links together, relative RMS.
-    std::optional<double> mesh_size = {};            ///< Longest edge of an element, metres.
-    std::optional<double> residual = {};             ///< Of the discrete system, relative to its right-hand side.
+    std::optional<double> epsilon = {};    ///< Tolerance for the total error of all links, relative RMS.
+    std::optional<double> mesh_size = {};  ///< Longest edge of an element, metres.
+    std::optional<double> residual = {};   ///< Residual of the discrete system, relative to its right-hand side.
     std::optional<std::size_t> max_iterations = {};  ///< Sweeps, Krylov steps or shots.
-    std::optional<double> min_area = {};             ///< No element is cut to pieces smaller than this, m^2.
+    std::optional<double> min_area = {};             ///< Smallest area of the parts of a split element, m^2.
     std::optional<Relaxation> relaxation = {};
-    bool overshooting = false;  ///< Shooting sends more than the unshot light, expecting what returns.
+    bool overshooting = false;  ///< Shooting also sends an estimate of the light that will be reflected back.
 
     VisibilityKind visibility = VisibilityKind::automatic;
-    std::optional<double> threshold = {};  ///< Of the oracles ff (no unit) and bf (W in the brightest band).
-    bool task_engine = false;              ///< Classical hierarchical radiosity as tasks that make tasks.
-    std::optional<std::size_t> visibility_samples = {};  ///< Rays a pair of elements.
-    bool triage = true;  ///< Links look for what is certainly visible or hidden before they cast rays.
-    LinkOracle oracle = LinkOracle::transport;  ///< By what links are held to be good enough.
-    std::optional<bool> clusters = {};  ///< Links between clusters of pieces, too; empty: where pieces are many.
+    std::optional<double> threshold = {};  ///< Threshold of the oracles ff (no unit) and bf (W in the brightest band).
+    bool task_engine = false;              ///< Use the task engine (lab/tasks) for classical hierarchical radiosity.
+    std::optional<std::size_t> visibility_samples = {};  ///< Rays per pair of elements.
+    bool triage = true;  ///< Links test for certain visibility or occlusion before they cast rays.
+    LinkOracle oracle = LinkOracle::transport;  ///< Criterion by which links are accepted or refined.
+    std::optional<bool> clusters = {};          ///< Also link clusters of pieces; empty: if there are many pieces.
     std::optional<FormFactorKind> form_factors = {};
-    std::optional<std::size_t> hemicube_cells = {};  ///< Along an edge of a hemicube's top.
-    std::optional<CellsKind> gcs = {};               ///< Of growing cells; empty: improved.
-    std::optional<std::size_t> max_units = {};       ///< Of each network of growing cells.
-    std::optional<LocalPassRule> local_pass = {};    ///< Of discontinuity meshing; empty: e.
-    /// Deliver what the method's elements hold in place of gathering it: smoothed (true) or as it is. Empty: whatever
-    /// is best.
+    std::optional<std::size_t> hemicube_cells = {};  ///< Cells along an edge of a hemicube's top.
+    std::optional<CellsKind> gcs = {};               ///< Variant of growing cells; empty: improved.
+    std::optional<std::size_t> max_units = {};       ///< Limit on the units of each network of growing cells.
+    std::optional<LocalPassRule> local_pass = {};    ///< Local pass of discontinuity meshing; empty: e.
+    /// Use the values of the method's elements instead of a final gather: smoothed (true) or unchanged (false). Empty:
+    /// the most accurate choice.
     std::optional<bool> smoothing = {};
-    /// Points where light is looked at; links are refined for their sake. Empty: light is as good everywhere.
+    /// Points at which irradiance is wanted; links are refined for accuracy there [Smits92]. Empty: uniform accuracy.
     std::vector<ImportantPoint> importance = {};
-    bool keep_links = false;  ///< Put the links of a hierarchy into the solution, for people to look at.
+    bool keep_links = false;  ///< Store the links of a hierarchy in the solution, for display.
 
-    DiscontinuityChoice discontinuity = {};  ///< Of discontinuity meshing.
+    DiscontinuityChoice discontinuity = {};  ///< Options of discontinuity meshing.
 
     int threads = 0;                         ///< 0: all cores. Results do not depend on it.
-    Schedule schedule = Schedule::stealing;  ///< How work comes to threads. Likewise.
+    Schedule schedule = Schedule::stealing;  ///< How work is distributed to threads. Results do not depend on it.
     std::uint64_t seed = 1;
-    std::optional<std::size_t> memory_limit_bytes = {};  ///< Of the whole process.
+    std::optional<std::size_t> memory_limit_bytes = {};  ///< Memory limit of the whole process.
 
-    /// Has any of the knobs been set that the error asked for would otherwise decide?
+    /// True if a parameter is set that would otherwise be derived from the required error.
     bool has_knobs() const {
         return epsilon || mesh_size || residual || max_iterations || min_area || visibility_samples || hemicube_cells ||
                max_units;
     }
-    /// The error to be reached: as asked for; `default_error` when nothing was said; none when knobs were set by hand.
-    /// Where points are looked at, it is the error there.
+    /// Required error: `error` if given; else empty if parameters were set by hand, for the task engine and with
+    /// important points; else `default_error`. With important points it is the error there.
     std::optional<double> error_demand() const {
         if (error) return error;
         return has_knobs() || task_engine || !importance.empty() ? std::nullopt : std::optional(default_error);
     }
-    /// The error that knobs left open are derived from.
+    /// Error from which unset parameters are derived.
     double error_target() const { return error.value_or(default_error); }
 };
 

@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// The polynomial nearest to value(x, parallel) at the places of the fine rule.
+/// Least-squares polynomial of value(x, parallel) at the nodes of the fine rule.
 template <class Value>
 DirectFit fit_at_places(const Stage& stage, const ElementTree& tree, ElementId e, const Value& value_at) {
     DirectFit out;
@@ -31,23 +31,23 @@ DirectFit fit_at_places(const Stage& stage, const ElementTree& tree, ElementId e
     return out;
 }
 
-/// How much of the noise of its places a fit keeps: as many parts as it has freedoms.
+/// Share of the nodes' noise that a fit keeps: its degrees of freedom over the number of nodes.
 double kept_noise_share(const ElementTree& tree, ElementId e) {
     const double places = static_cast<double>(element_rule(tree, e, RuleOrder::fine).size());
     return std::min(1.0, tree.patch(e).corner_count() / places);
 }
 
-/// Leaves noise in a fit to values whose noise has the mean square `noise`, by weight w: it has as many freedoms as the
-/// element has corners, as much of the noise stays in it, and the rest looks like misfit.
+/// Corrects a fit for noise. `noise`: mean square, over the nodes, of the noise of the values times w. A fit with one
+/// degree of freedom per corner keeps a share of the noise; the remaining noise looks like misfit and is subtracted.
 NoisyFit count_noise(const ElementTree& tree, ElementId e, double noise, DirectFit fit) {
     const double kept = kept_noise_share(tree, e);
-    constexpr double seldom = 2;  // of noise alone, the squares of a few freedoms are seldom more than this
-    fit.misfit_squared = std::max(0.0, fit.misfit_squared - seldom * (1 - kept) * noise) + kept * noise;
+    constexpr double max_noise_factor = 2;  // bound on the square of noise with few degrees of freedom, by its mean
+    fit.misfit_squared = std::max(0.0, fit.misfit_squared - max_noise_factor * (1 - kept) * noise) + kept * noise;
     return {fit, kept * noise};
 }
 
-/// Exact, but where rays find what is hidden for less (`CrowdedLight`). `named`: the sources to look at; none: all, and
-/// beams.
+/// Fits exact values, or values by rays if these are cheaper (`CrowdedLight`). `named`: the sources to evaluate; null:
+/// all sources and beams.
 NoisyFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
                     ReceiverLight& light, DirectLight::Workspace& workspace,
                     const std::vector<DirectLight::SourceName>* named = nullptr) {
@@ -79,10 +79,11 @@ NoisyFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, co
     return count_noise(tree, e, w * w * noise / static_cast<double>(next), out);
 }
 
-/// What clusters of emitters may miss at one place of an element that an error of `allowed` is left to.
+/// Largest error of clustered light at a point of an element, if the element's fit may have the mean squared error
+/// `allowed`.
 LightAccuracy accuracy_on(const Stage& stage, RegionId region, double allowed) {
-    constexpr double of_error = 0.5;   // an RMS error; a fit leaves a part of that
-    constexpr double at_least = 0.05;  // no place needs more than this part of its own light
+    constexpr double of_error = 0.5;   // the error of a fit is an RMS error, and smaller than that of its values
+    constexpr double at_least = 0.05;  // relative error that is always accepted
     return {at_least, of_error * std::sqrt(allowed) / mean(light_weight(stage.scene.material(region)))};
 }
 
@@ -103,7 +104,7 @@ NoisyFit fit_clusters(const Stage& stage, const ElementTree& tree, ElementId e, 
     return count_noise(tree, e, w * w * noise / places, out);
 }
 
-/// Would clusters do at the middle of an element?
+/// True if clusters are cheaper than exact light at the centre of an element.
 bool suits_clusters(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
                     ClusteredLight::Workspace& workspace) {
     if (!stage.clustered.is_possible()) return false;
@@ -167,30 +168,31 @@ NoisyFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId
                           unsigned rays, SampledLight& sampled, DirectFitRoom& room) {
     const RegionId region = tree.region(e);
     if (!stage.scene.behind(region).is_none()) return fit_all_light(stage, tree, e, allowed, room);
-    constexpr std::size_t few_strong = 24;  // exact visible parts of so many cost no more than clusters do
-    // Each source is looked at, if only roughly: where they are too many even for that, clusters are first.
-    constexpr std::size_t too_many = 10000;
-    const bool clusters_first = stage.clustered.tree().sources().size() > too_many;
+    constexpr std::size_t max_strong = 24;  // exact light of up to this many sources costs no more than clusters
+    // Each source is evaluated, if only approximately. Above this number of sources even that is expensive, and
+    // clusters are tried first.
+    constexpr std::size_t max_examined = 10000;
+    const bool clusters_first = stage.clustered.tree().sources().size() > max_examined;
     if (clusters_first && suits_clusters(stage, tree, e, allowed.squared, room.clustered))
         return fit_clusters(stage, tree, e, allowed.squared, room.clustered);
     const SampledLight::Estimate& of =
         sampled(tree, e, light_weight(stage.scene.material(region)), allowed.squared, rays);
-    if (of.strong.size() > few_strong && suits_clusters(stage, tree, e, allowed.squared, room.clustered))
+    if (of.strong.size() > max_strong && suits_clusters(stage, tree, e, allowed.squared, room.clustered))
         return fit_clusters(stage, tree, e, allowed.squared, room.clustered);
     NoisyFit out = fit_values(stage, tree, e, allowed, room.light, room.clustered.exact, &of.strong);
     for (Spectrum& corner : out.fit.corners) corner += of.weak;
     out.fit.mean += of.weak;
-    // What weak sources may leave is no reason to cut, but is counted where nothing is cut.
+    // The error bound of weak sources does not trigger a split; it is added to the error of elements that stay whole.
     out.fit.misfit_squared = std::max(out.fit.misfit_squared, of.misfit_squared);
     return out;
 }
 
 DirectFit fit_by_rays(const Stage& stage, const ElementTree& tree, ElementId e, SampledLight& sampled) {
-    constexpr double anything = 1e300;
+    constexpr double no_limit = 1e300;
     const Spectrum w = light_weight(stage.scene.material(tree.region(e)));
-    const SampledLight::Estimate& of = sampled(tree, e, w, anything, rays_an_element);
+    const SampledLight::Estimate& of = sampled(tree, e, w, no_limit, rays_an_element);
     const auto& emitters = stage.direct.emitters();
-    const bool all_outside = !emitters.empty() && stage.direct.is_distant(0);  // those of the sky come last
+    const bool all_outside = !emitters.empty() && stage.direct.is_distant(0);  // emitters of the sky come last
     const Spectrum parallel = all_outside ? of.weak : Spectrum();
     return {{of.weak, of.weak, of.weak, of.weak}, of.weak, parallel, of.misfit_squared, {}};
 }

@@ -5,31 +5,33 @@
 
 namespace exitance {
 
-/// A fit, and how much of its misfit is noise that it keeps, (W/m^2)^2: more rays would help, smaller elements would
-/// not.
+/// A fit, and the part of its squared misfit that is noise of rays, (W/m^2)^2. More rays reduce that part, smaller
+/// elements do not.
 struct NoisyFit {
     DirectFit fit;
     double noise = 0;
 };
 
-/// What noise of rays to crowded sources a fit may keep.
+/// Limits on the noise that a fit may keep, if sources with many blockers are sampled by rays (`CrowdedLight`).
 struct NoiseAllowed {
-    double squared = 0;     ///< Mean square of w (E - polynomial) that noise may leave, (W/m^2)^2; 0: exact.
-    double mean_light = 0;  ///< Mean of w E over all surfaces, W/m^2, where it is dealt out by light; else 0.
+    double squared = 0;  ///< Largest mean square of w (E - polynomial) due to noise, (W/m^2)^2; 0: exact light.
+    double mean_light =
+        0;  ///< Mean of w E over all surfaces, W/m^2, if noise is allotted in proportion to light; else 0.
 };
 
-/// For weak sources; more on elements larger than the first ones on average.
+/// Rays of an element to weak sources. Elements larger than the mean get more.
 constexpr unsigned rays_an_element = 16;
 
-/// As `fit_direct_light` has it.
+/// Like `fit_direct_light`, with limits on noise and the noise that was kept.
 NoisyFit fit_all_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
                        DirectFitRoom& room);
 
-/// The same where there are many elements: sources that do not count on this one are left to rays, so many of them.
+/// Like `fit_all_light`, for scenes of many elements: sources that contribute little to this element are only sampled,
+/// by `rays` rays together.
 NoisyFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
                           unsigned rays, SampledLight& sampled, DirectFitRoom& room);
 
-/// By rays alone, constant: for work that is cut short.
+/// Returns a constant fit from rays alone, for work that is stopped early.
 DirectFit fit_by_rays(const Stage& stage, const ElementTree& tree, ElementId e, SampledLight& sampled);
 
 }  // namespace exitance

@@ -9,9 +9,9 @@
 namespace exitance {
 namespace {
 
-constexpr double time_for_rays = 0.2;  ///< Seconds after a stop was asked for.
+constexpr double time_for_rays = 0.2;  ///< Seconds after a stop request during which rays are still cast.
 
-/// Sum of w E_dir over leaves, W.
+/// Sum of light_weight() times E_dir over the leaves' area, W.
 double weighted_flux(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,
                      const Field<ElementId, DirectFit>& fit) {
     double flux = 0;
@@ -20,7 +20,7 @@ double weighted_flux(const Stage& stage, const ElementTree& tree, std::span<cons
     return flux;
 }
 
-/// Of all surfaces, from leaves at even steps of their running sum of areas.
+/// Estimate of weighted_flux() by rays, from 2000 samples at equal steps of the leaves' cumulative area.
 double estimated_flux(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,
                       std::uint64_t seed, const StopRequest& stop) {
     constexpr double samples = 2000;
@@ -38,26 +38,27 @@ double estimated_flux(const Stage& stage, const ElementTree& tree, std::span<con
     return flux * stage.area;
 }
 
-/// The same where light comes from outside, too, and parallel: by some elements that rays do for wherever many things
-/// stand before a source.
+/// Estimate of weighted_flux() for scenes with a sky, beams or other light without emitting polygons. Fits some of the
+/// leaves; sources with many blockers are sampled by rays.
 double estimated_flux_apart(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,
                             const StopRequest& stop) {
     constexpr std::size_t samples = 512;
-    constexpr double anything = 1e300;
+    constexpr double no_limit = 1e300;
     DirectFitRoom room;
     double flux = 0, area = 0;
     const std::size_t step = std::max<std::size_t>(1, leaves.size() / samples);
     for (std::size_t i = step / 2; i < leaves.size() && !stop.requested(); i += step) {
         const ElementId e = leaves[i];
         const Spectrum w = light_weight(stage.scene.material(tree.region(e)));
-        flux += tree.area(e) * mean(w * fit_direct_light(stage, tree, e, anything, room).mean);
+        flux += tree.area(e) * mean(w * fit_direct_light(stage, tree, e, no_limit, room).mean);
         area += tree.area(e);
     }
     return area > 0 ? flux * stage.area / area : 0;
 }
 
-/// What squared error an element may have where rooms are judged apart: each room as if it were alone, but none for
-/// less than a hundredth of the light of all. (W/m^2)^2 m^2
+/// Squared error that an element of each room may have, (W/m^2)^2 m^2; empty if the scene is one room. Each room is
+/// treated as if it were the whole scene, but the mean light that its error is relative to is at least a hundredth of
+/// the scene's mean.
 std::vector<double> shares_by_room(const Stage& stage, const DirectProjection& light,
                                    const std::vector<ElementId>& leaves, double tolerance) {
     const std::size_t rooms = stage.rooms.count();
@@ -80,34 +81,34 @@ std::vector<double> shares_by_room(const Stage& stage, const DirectProjection& l
     return out;
 }
 
-/// The squared error of an element that smaller ones would not have, (W/m^2)^2 m^2. `noise`: see `NoisyFit`.
+/// Squared error of an element that smaller elements would remove, (W/m^2)^2 m^2. `noise`: see `NoisyFit`.
 double error_of_shape(const DirectProjection& light, const Field<ElementId, double>& noise, ElementId e) {
     return light.tree.area(e) * std::max(0.0, light.fit[e].misfit_squared - noise[e]);
 }
 
-/// Of a bound on the sum of the leaves' squared errors, (W/m^2)^2 m^2.
+/// Smallest squared error for which a leaf is split, if most elements are whole polygons (`share_of_crowd`). `bound`:
+/// on the sum of the leaves' squared errors. (W/m^2)^2 m^2
 double share_in_crowd(const DirectProjection& light, const Field<ElementId, double>& noise, double bound) {
     std::vector<double> errors;
     for (ElementId e : light.tree.leaves()) errors.push_back(error_of_shape(light, noise, e));
     return share_of_crowd(std::move(errors), bound);
 }
 
-/// Direct light on elements, which are cut until each errs by no more than its share.
+/// Fits direct light on elements and splits each until its error is at most its share.
 class Projector {
   public:
     Projector(const Stage& stage, const DirectProjectionOptions& options, const StopRequest& stop)
         : stage_(stage), options_(options), stop_(stop), out_{stage.make_elements(options.mesh, &stop), {}} {}
 
-    /// Nothing where it gives up.
+    /// Returns an empty projection if it gives up.
     DirectProjection run() {
         std::vector<ElementId> active = out_.tree.leaves();
         mean_area_ = stage_.area / static_cast<double>(active.size());
         many_ = are_many(active.size());
-        // Noise of small elements is small by itself, and that of large ones not to be less the more of those there
-        // are.
+        // Noise is neglected on small elements, and on large ones it need not decrease with the number of small ones.
         is_crowd_ = stage_.rooms.count() == 0 && ErrorShare::is_crowd(active.size(), stage_.pieces.size());
-        // Where elements are many, the first of them are to know what they may leave, too.
-        if (active.size() > few)
+        // In scenes of many elements the limit on errors is needed before the first fits.
+        if (active.size() > few_elements)
             share_ = share_of(stage_.scene.has_light_apart()
                                   ? estimated_flux_apart(stage_, out_.tree, active, stop_)
                                   : estimated_flux(stage_, out_.tree, active, options_.seed, stop_));
@@ -125,20 +126,20 @@ class Projector {
     }
 
   private:
-    // Where elements or emitters are few, or emitters large, all of them are looked at well. Then the elements tell
-    // what share of the squared error one may have.
-    static constexpr std::size_t few = 2000, few_emitters = 8;
+    // With few elements, few emitters, or large emitters, all emitters are evaluated on all elements.
+    // The fits of the first mesh then determine the error share of an element.
+    static constexpr std::size_t few_elements = 2000, few_emitters = 8;
 
     bool are_many(std::size_t elements) const {
-        constexpr double small = 0.25;  // of all area
+        constexpr double small = 0.25;  // share of all area
         double emitting = 0;
         for (const DirectLight::Emitter& emitter : stage_.direct.emitters())
             if (!emitter.region.is_none()) emitting += stage_.scene.regions()[emitter.region].area;
-        return elements > few && stage_.direct.emitters().size() > few_emitters &&
+        return elements > few_elements && stage_.direct.emitters().size() > few_emitters &&
                (emitting < small * stage_.area || stage_.clustered.is_possible()) && !stage_.scene.has_light_apart();
     }
 
-    /// Of the squared error, by all flux, (W/m^2)^2 m^2.
+    /// Squared error that an element of mean area may have, by the total flux, (W/m^2)^2 m^2.
     double share_of(double flux) const {
         const double allowed = options_.tolerance * flux / stage_.area;
         return allowed * allowed * mean_area_;
@@ -158,7 +159,7 @@ class Projector {
         return {std::max(even, of_area), std::sqrt(share_ / mean_area_) / options_.tolerance};
     }
 
-    /// The flux of weak sources is known best where rays lie evenly over the surfaces.
+    /// Number of rays to weak sources. The estimated flux is most accurate if rays are spread evenly over all area.
     unsigned rays_of(ElementId e) const {
         const double rays = rays_an_element * out_.tree.area(e) / mean_area_;
         return static_cast<unsigned>(
@@ -169,7 +170,7 @@ class Projector {
         if (stop_.requested() && depth > 0) return {inherited_fit(out_.tree, e, out_.fit[out_.tree.parent(e)])};
         if (stop_.requested() && stop_.seconds_overdue() < time_for_rays)
             return {fit_by_rays(stage_, out_.tree, e, sampled)};
-        if (stop_.requested()) return {};  // dark, where even rays would take too long
+        if (stop_.requested()) return {};  // dark: even rays would take too long
         if (many_) return fit_strong_light(stage_, out_.tree, e, noise_on(e), rays_of(e), sampled, room);
         return fit_all_light(stage_, out_.tree, e, noise_on(e), room);
     }
@@ -191,7 +192,7 @@ class Projector {
             out_.fit[active[i]] = found_[i].fit, noise_[active[i]] = is_crowd_ ? found_[i].noise : 0;
     }
 
-    /// The parts of those elements that err by more than they may.
+    /// Splits the elements whose error exceeds their share, and returns the new elements.
     std::vector<ElementId> cut(const std::vector<ElementId>& active) {
         const double least = is_crowd_ ? share_in_crowd(out_, noise_, share_ * stage_.area / mean_area_) : 0;
         std::vector<ElementId> fresh;
@@ -212,8 +213,8 @@ class Projector {
     DirectProjection out_;
     double mean_area_ = 0;
     bool many_ = false, is_crowd_ = false;
-    double share_ = 0;              ///< Of the squared error that an element may have, (W/m^2)^2 m^2,
-    std::vector<double> share_in_;  ///< and of the rooms, where there are several.
+    double share_ = 0;              ///< Squared error that an element may have if the scene is one room, (W/m^2)^2 m^2.
+    std::vector<double> share_in_;  ///< Like `share_`, for each room; used if there are several.
     std::vector<NoisyFit> found_;
     Field<ElementId, double> noise_;
 };

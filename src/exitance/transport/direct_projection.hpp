@@ -11,61 +11,62 @@ namespace exitance {
 struct DirectProjectionOptions {
     MeshSize mesh;
     double tolerance = 0;  ///< RMS error of rho E_dir over all surfaces, relative to the mean of rho E_dir.
-    int max_depth = 8;     ///< Cuts below the first mesh.
-    /// Elements of less than this are not cut, m^2; empty: as the tolerance asks.
+    int max_depth = 8;     ///< Levels of refinement below the initial mesh.
+    /// Smallest area of an element that is split, m^2; empty: only `tolerance` limits splitting.
     std::optional<double> least_area = {};
-    /// What to do when a stop is asked for: give up at once and return an empty tree, or leave the rest to rays, so
-    /// that there is something to return.
+    /// On a stop request: if true, return an empty tree at once; if false, estimate the remaining elements by rays, so
+    /// that there is a result.
     bool may_give_up = false;
-    std::uint64_t seed = 1;  ///< Of the rays to small elements, where there are many.
+    std::uint64_t seed = 1;  ///< Seed of the rays from small elements in scenes of many elements.
 };
 
-/// Exact direct light on one element, and the polynomial nearest to it.
+/// Exact direct irradiance on one element, and its least-squares polynomial.
 struct DirectFit {
     std::array<Spectrum, 4> corners;
-    Spectrum mean;                            ///< W/m^2
-    Spectrum parallel;                        ///< What parallel light has in the mean, W/m^2.
-    double misfit_squared = 0;                ///< Mean of (w (E - polynomial))^2, see light_weight().
-    std::array<double, 2> misfit_along = {};  ///< How much of it is along one coordinate alone, noise and all.
+    Spectrum mean;              ///< W/m^2
+    Spectrum parallel;          ///< Part of the mean that is parallel light, W/m^2.
+    double misfit_squared = 0;  ///< Mean of (w (E - polynomial))^2, see light_weight().
+    std::array<double, 2> misfit_along =
+        {};  ///< Parts of the misfit that vary along one coordinate only, noise included (basis/misfit_along.hpp).
 };
 
-/// Direct light projected onto elements, for readers that come in great numbers, such as rays.
+/// Direct irradiance projected onto elements, for consumers that evaluate it often, such as rays.
 ///
-/// On each leaf of an adaptive mesh it is the polynomial nearest in the mean square to exact values at the places of a
-/// quadrature rule: its means are right, its shadow edges as sharp as the elements are small. Where a method solves on
-/// the same mesh, its elements follow the shadows.
+/// Each leaf of an adaptive mesh holds the least-squares polynomial of exact values at the nodes of a quadrature rule.
+/// Its mean is exact, and shadow edges are resolved to the size of the elements. A method that solves on the same mesh
+/// gets elements that follow the shadows.
 struct DirectProjection {
     ElementTree tree;
-    Field<ElementId, DirectFit> fit;  ///< Of every leaf; of inner elements: what was there before they were cut.
+    Field<ElementId, DirectFit> fit;  ///< Fit of every leaf. An inner element keeps its fit from before it was split.
 
     Spectrum at(ElementTree::Place place) const;
 };
 
-/// How much an error of E counts on a region: as much as it reflects, and a little on black ones, where E is still
-/// looked at.
+/// Weight of an irradiance error on a surface: its reflectance, but at least 0.1, since irradiance is also viewed on
+/// black surfaces.
 Spectrum light_weight(const Material& material);
 
-/// Room to work in; one a thread.
+/// Workspace of one thread.
 struct DirectFitRoom {
     ReceiverLight light;
     ClusteredLight::Workspace clustered;
 };
 
-/// Of one element, by values at the places of its fine rule: by clusters of emitters where that pays
-/// (`ClusteredLight`), with rays to sources that many things stand before (`CrowdedLight`), else exact. `allowed`: mean
-/// square of w (E - polynomial) that noise may leave, (W/m^2)^2. Noise is no misfit, but what it leaves in the
-/// polynomial is.
+/// Fits direct light on one element from values at the nodes of its fine rule. Uses clusters of emitters where these
+/// are cheaper (`ClusteredLight`), rays to sources with many blockers (`CrowdedLight`), and exact values otherwise.
+/// `allowed`: largest mean square of w (E - polynomial) due to noise, (W/m^2)^2. Noise that the polynomial keeps counts
+/// as misfit; the rest of it does not.
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
                            DirectFitRoom& room);
 
-/// The same by exact values alone. `light` and `workspace` are room to work in.
+/// Like the above, from exact values only. `light` and `workspace` are scratch memory.
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, ReceiverLight& light,
                            DirectLight::Workspace& workspace);
 
-/// What an element's parent holds, in place of light of its own: for work that is cut short.
+/// Restricts the fit of an element's parent to the element, for work that is stopped early.
 DirectFit inherited_fit(const ElementTree& tree, ElementId e, const DirectFit& parent);
 
-/// O(elements x places x visible emitters).
+/// Projects direct light onto an adaptive mesh. O(elements x nodes x visible emitters).
 DirectProjection project_direct_light(const Stage& stage, const DirectProjectionOptions& options,
                                       const StopRequest& stop);
 

@@ -8,24 +8,24 @@
 
 namespace exitance {
 
-/// Rays that leave an element as diffuse light does: spread over its area, density cos / pi around its normal, at
-/// scrambled Sobol points. What they hit first is what the element gathers from, and, read the other way round, where
-/// its light goes. One object serves one thread.
+/// Casts rays that leave an element as diffuse light does: spread over its area, with density cos / pi around its
+/// normal, at scrambled Sobol points. The element gathers light from the surfaces that they hit first; read in the
+/// other direction, these are the surfaces that receive its light. One object serves one thread.
 class ElementRays {
   public:
     static constexpr std::uint32_t missed = 0xffffffffu;
 
-    /// By which sides rays leave a diffusing pane: by the element's own, as its light does, or as what it gathers from
-    /// asks for (`met_directions`).
+    /// Side by which rays leave an element of a diffusing pane: `front` is the element's own side, as for the light
+    /// that it sends; `as_met` chooses a side for the light that it gathers (`met_directions`).
     enum class Leave : std::uint8_t { front, as_met };
 
-    /// `tree`, over which `locator` finds leaves, and all else must outlive it.
+    /// `tree`, whose leaves `locator` finds, and all other arguments must outlive the object.
     ElementRays(const Stage& stage, const ElementTree& tree, const ElementLocator& locator)
         : stage_(stage), tree_(tree), locator_(locator) {}
 
-    /// Writes for each ray the number of the leaf whose front it hits, or `missed`. The rays are named by `key`; they
-    /// are as many of its points from number `first` on. With `counts`, as many as rays, half of the rays are aimed at
-    /// openings where that is worth it (`PortalAim`), and each counts as so many.
+    /// Casts leaves.size() rays and writes for each the number of the leaf whose front it hits, or `missed`. Uses the
+    /// points of sequence `key` from number `first` on. If `counts` is given (one number per ray), half of the rays are
+    /// aimed at openings where that pays (`PortalAim`), and counts[k] becomes the weight of ray k.
     void cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves, std::uint32_t first = 0,
               Leave leave = Leave::front, std::span<float> counts = {});
 
@@ -35,7 +35,7 @@ class ElementRays {
     const Stage& stage_;
     const ElementTree& tree_;
     const ElementLocator& locator_;
-    std::array<std::vector<double>, 4> coordinates_;  ///< Of the points that name the rays.
+    std::array<std::vector<double>, 4> coordinates_;  ///< Coordinates of the rays' sample points.
     std::vector<Point> origins_;
     std::vector<Vec3> directions_;
     std::vector<RayHit> hits_;

@@ -10,7 +10,7 @@ namespace exitance {
 
 Hemicube::Hemicube(unsigned cells) {
     const double h = 2.0 / cells;
-    // A face is spanned by two edges from a corner; seen from within, they run counter-clockwise.
+    // Each face is spanned by two edges from a corner, counter-clockwise as seen from inside.
     const auto add_face = [&](const Vec3& corner, const Vec3& s, const Vec3& t, unsigned columns, unsigned rows) {
         for (unsigned j = 0; j < rows; ++j)
             for (unsigned i = 0; i < columns; ++i) {
@@ -30,7 +30,7 @@ Hemicube::Hemicube(unsigned cells) {
 
 namespace {
 
-/// Rows of one thread's elements, one after the other.
+/// Makes the rows of one thread's elements, one at a time.
 class RowMaker {
   public:
     RowMaker(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering, const ElementLocator& locator,
@@ -43,7 +43,7 @@ class RowMaker {
           hits_(cube.direction.size()),
           sum_(numbering.leaves.size(), 0.0) {}
 
-    /// Calls add(leaf number, form factor) for every leaf that `e` sees, in their order.
+    /// Calls add(leaf number, form factor) for every leaf visible from the centre of `e`, in ascending order.
     template <class Add>
     void make(ElementId e, const Add& add) {
         const Patch& patch = tree_.patch(e);
@@ -82,7 +82,7 @@ class RowMaker {
     std::vector<RayHit> hits_;
     std::vector<LeafFinder::Query> queries_;
     std::vector<std::size_t> cell_;
-    std::vector<double> sum_;  ///< By leaf number.
+    std::vector<double> sum_;  ///< Form factor of each leaf, by number; zero between rows.
     std::vector<std::uint32_t> seen_;
 };
 

@@ -30,7 +30,7 @@ struct Rows {
           locator(tree, scene.regions().size()),
           F(stage, tree, numbering, locator, cells) {}
 
-    /// From the receiver's middle, nothing in between.
+    /// Form factor from the receiver's centre, without occlusion.
     double exact(std::size_t receiver, std::size_t source) const {
         const ElementId p = numbering.leaves[receiver];
         return point_to_polygon(tree.patch(p).at(tree.centre(p)), stage.scene.regions()[tree.region(p)].plane.n,
@@ -38,7 +38,7 @@ struct Rows {
     }
 };
 
-/// A square of side `size`, 1 m above the middle of a floor of 1 m x 1 m and `offset` m aside.
+/// A floor of 1 m x 1 m, and a square of side `size` 1 m above it, moved diagonally by `offset` from the centre, m.
 Scene small_square(double size, double offset) {
     const double lo = 0.5 - size / 2 + offset, hi = lo + size;
     return test::make(
@@ -63,14 +63,15 @@ TEST(Hemicube, HasTheDeltaFormFactorsOfThePaper) {
     for (std::size_t k = 0; k < cube.factor.size(); ++k) {
         const Vec3& d = cube.direction[k];
         const double rr = squared_norm(d);
-        // On top 1 / (pi (x^2 + y^2 + 1)^2), on the sides z / (pi (y^2 + z^2 + 1)^2); each at the middle of its cell,
-        // which is as right as the cell is small.
+        // 1 / (pi (x^2 + y^2 + 1)^2) on top, z / (pi (y^2 + z^2 + 1)^2) on the sides. The paper evaluates them at the
+        // centre of the cell, so that they differ for cells of finite size.
         EXPECT_NEAR(cube.factor[k], d.z * area / (pi * rr * rr), 3e-4 * area) << k;
     }
 }
 
-TEST(HemicubeRows, OfAClosedSceneSumToOne) {
-    // A room with a block that floats in it, whose edges no ray meets: there it might see a back.
+TEST(HemicubeRows, SumToOneInAClosedScene) {
+    // A room with a block that floats in it. Edges of the block do not coincide with any ray, which could then hit a
+    // back.
     std::vector<test::Face> faces = test::closed_box({0, 0, 0}, {3, 2, 2});
     for (test::Face block : test::closed_box({1.137, 0.713, 0.541}, {0.83, 0.52, 0.91})) {
         std::reverse(block.corners.begin(), block.corners.end());
@@ -82,7 +83,7 @@ TEST(HemicubeRows, OfAClosedSceneSumToOne) {
         EXPECT_NEAR(rows.F.gather_at(i, ones)[0], 1, 1e-6);  // entries are floats
 }
 
-TEST(HemicubeRows, ComeCloserToExactFormFactorsWithMoreCells) {
+TEST(HemicubeRows, ConvergeToExactFormFactors) {
     const Scene box = box_scene(1, 2, 3, 0.8, 1);
     std::vector<double> error;
     for (const unsigned cells : {16u, 64u, 256u}) {
@@ -95,14 +96,14 @@ TEST(HemicubeRows, ComeCloserToExactFormFactorsWithMoreCells) {
             }
         error.push_back(std::sqrt(sum / all));
     }
-    // A line of cells along each outline is all or nothing: O(1 / N), by chance better or worse.
+    // Whole cells along each outline belong to one element or the other: O(1 / N), with random variation.
     EXPECT_LT(error[1], error[0] / 2.5) << error[0];
     EXPECT_LT(error[2], error[1] / 2.5) << error[1];
     EXPECT_LT(error[2], 0.01);
 }
 
-TEST(HemicubeRows, MissWhatIsSmallerThanACellOrTakeAWholeCellForIt) {
-    // Straight above, rays are 2 / 16 m apart. A square of 2 cm lies between them, or one meets it.
+TEST(HemicubeRows, MissASourceSmallerThanACellOrCountAWholeCell) {
+    // Rays to the ceiling are 2 / 16 m apart. A square of 2 cm lies between them, or is hit by one.
     const Rows missed(small_square(0.02, 0), 2, 16), met(small_square(0.02, 1.0 / 16), 2, 16);
     EXPECT_EQ(missed.F.form_factor(0, 1), 0);
     EXPECT_GT(met.F.form_factor(0, 1), 20 * met.exact(0, 1));

@@ -10,13 +10,15 @@
 namespace exitance {
 namespace {
 
-constexpr double widest_opening = 0.1;  ///< Of the smaller room's walls.
-constexpr double narrower = 0.5;        ///< An opening, than cuts on either side of it.
-constexpr double beside = 0.2;          ///< Of the smaller room's walls: how far off these are.
-constexpr int steps =
-    60;  ///< Of light to and fro, half of which stays: what an opening of a twentieth joins differs by a third still.
+constexpr double max_opening = 0.1;              ///< Opening as a share of the smaller side's walls, at most.
+constexpr double max_ratio_to_neighbours = 0.5;  ///< Opening by that of the neighbouring cuts, at most.
+constexpr double neighbour_distance =
+    0.2;  ///< Distance of the neighbouring cuts, as a share of the smaller side's walls.
+/// Number of reflections; each keeps half of the previous values. A third of the difference across an opening of a
+/// twentieth is left.
+constexpr int steps = 60;
 
-/// What a leaf of exitance 1 sends to the sky, m^2.
+/// Flux that a leaf of exitance 1 W/m^2 sends to the sky, W.
 double sent_to_sky(const Flow& flow, std::uint32_t leaf) {
     const auto hits = flow.rows.hits(leaf);
     const auto lost = static_cast<double>(std::count(hits.begin(), hits.end(), RayRows::missed));
@@ -29,7 +31,7 @@ double sent_to_sky(const Flow& flow, const LeafNumbers& leaves) {
     return sum;
 }
 
-/// Of what leaves send to the sky.
+/// Mean of x over the leaves, weighted by the flux that each sends to the sky.
 double mean_towards_sky(const Flow& flow, const LeafNumbers& leaves, const std::vector<double>& x) {
     double sum = 0, all = 0;
     for (std::uint32_t i : leaves) {
@@ -39,7 +41,8 @@ double mean_towards_sky(const Flow& flow, const LeafNumbers& leaves, const std::
     return all > 0 ? sum / all : 0;
 }
 
-/// What is left of light that differs from place to place after it has gone to and fro within a part.
+/// Iterates reflection within a part from `flow.start`, and returns the differences that decay slowest: mean 0, largest
+/// absolute value 1.
 std::vector<double> slow_difference(const Flow& flow, const LeafNumbers& leaves, std::uint16_t part) {
     std::vector<double> x = flow.start, next(flow.area.size());
     for (int step = 0; step < steps; ++step) {
@@ -62,18 +65,18 @@ std::vector<double> slow_difference(const Flow& flow, const LeafNumbers& leaves,
     return x;
 }
 
-/// The opening between the first leaves of an order and the others, m^2, after each of them; by what the leaves on the
-/// smaller side see of the other: few rays from the larger one say little.
+/// Opening between the first leaves of an order and the others, m^2, for every position of the cut. Measured from the
+/// side with the smaller area: the few rays of a leaf on the larger side rarely find the opening.
 struct Cuts {
-    std::vector<double> area, opening;  ///< Of the first k + 1 leaves.
+    std::vector<double> area, opening;  ///< Area of the first k + 1 leaves, and their opening towards the others.
 };
 
 Cuts sweep(const Flow& flow, const LeafNumbers& order, std::uint16_t part) {
     std::vector<std::uint32_t> rank(flow.area.size());
     for (std::size_t k = 0; k < order.size(); ++k) rank[order[k]] = static_cast<std::uint32_t>(k);
     const std::size_t n = order.size();
-    // Light that a leaf sends to one of higher (lower) rank crosses all cuts in between; what meets nothing leaves by
-    // an opening, too.
+    // Light from a leaf to one of higher (lower) rank crosses all cuts between them. Rays that hit nothing leave
+    // through an opening, too.
     std::vector<double> up(n + 1), down(n + 1), lost(n);
     double all_lost = 0;
     for (std::size_t k = 0; k < n; ++k) {
@@ -86,7 +89,7 @@ Cuts sweep(const Flow& flow, const LeafNumbers& order, std::uint16_t part) {
             if (other > k) up[k] += each, up[other] -= each;
             if (other < k) down[other] += each, down[k] -= each;
         }
-        // Without a sky what sees nothing at all is covered, not outdoors.
+        // Without a sky, a leaf whose rays all hit nothing is covered by something, not outdoors.
         if (!flow.has_sky && std::count(hits.begin(), hits.end(), RayRows::missed) == std::ssize(hits)) lost[k] = 0;
         all_lost += lost[k];
     }
@@ -101,18 +104,20 @@ Cuts sweep(const Flow& flow, const LeafNumbers& order, std::uint16_t part) {
     return out;
 }
 
-/// Is the cut narrower than those beside it? Along a corridor all are alike.
+/// True if the opening at a cut is narrower than those at neighbouring cuts. Along a corridor all have the
+/// same size.
 bool is_narrow(const Cuts& cuts, std::size_t k, double smaller) {
-    for (const double off : {-beside, beside}) {
+    for (const double off : {-neighbour_distance, neighbour_distance}) {
         const auto at = std::lower_bound(cuts.area.begin(), cuts.area.end(), cuts.area[k] + off * smaller);
         const auto other = static_cast<std::size_t>(at - cuts.area.begin());
-        if (other + 1 < cuts.area.size() && other != k && cuts.opening[other] * narrower < cuts.opening[k])
+        if (other + 1 < cuts.area.size() && other != k &&
+            cuts.opening[other] * max_ratio_to_neighbours < cuts.opening[k])
             return false;
     }
     return true;
 }
 
-/// After how many leaves of an order to cut it, so that most lies behind the opening; 0: there is none.
+/// Number of leaves before the acceptable cut that has the largest area on its smaller side; 0 if there is no such cut.
 std::size_t best_cut(const Cuts& cuts) {
     const std::size_t n = cuts.area.size();
     const double total = cuts.area.back();
@@ -120,15 +125,15 @@ std::size_t best_cut(const Cuts& cuts) {
     double most = 0;
     for (std::size_t k = 0; k + 1 < n; ++k) {
         const double smaller = std::min(cuts.area[k], total - cuts.area[k]);
-        if (smaller <= most || cuts.opening[k] >= widest_opening * smaller || !is_narrow(cuts, k, smaller)) continue;
+        if (smaller <= most || cuts.opening[k] >= max_opening * smaller || !is_narrow(cuts, k, smaller)) continue;
         best = k + 1, most = smaller;
     }
     return best;
 }
 
-/// Moves leaves to the side that they see most of. An order by few rays has some on the wrong side of a cut, where the
-/// light of one room would be judged by that of the other. The sky is on the side that sends most to it. None, if a
-/// side is left without leaves.
+/// Moves each leaf to the side that most of its rays hit. An order from few rays puts some leaves on the wrong side of
+/// a cut, where they would be judged by the light of the other room. The sky belongs to the side that sends more light
+/// to it. Returns nullopt if a side has no leaves left.
 std::optional<OpeningBetween> by_what_is_seen(const Flow& flow, OpeningBetween sides, std::uint16_t part) {
     constexpr int most_sweeps = 8;
     std::vector<std::uint8_t> is_large(flow.area.size());

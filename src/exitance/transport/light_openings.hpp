@@ -10,24 +10,24 @@ namespace exitance {
 
 using LeafNumbers = std::vector<std::uint32_t>;
 
-/// Coarse elements, and which of them light joins.
+/// Coarse elements and the light that they exchange, by leaf number.
 struct Flow {
     const RayRows& rows;
-    std::vector<double> area;
-    std::vector<double> start;        ///< What differs from room to room as a rule.
-    std::vector<std::uint16_t> part;  ///< Of the scene that a leaf is in, so far.
-    bool has_sky = false;             ///< What meets nothing is joined by the sky, as if that were a wall.
+    std::vector<double> area;   ///< Area of each leaf, m^2.
+    std::vector<double> start;  ///< Starting values of find_opening()'s iteration: a guess that differs between rooms.
+    std::vector<std::uint16_t> part;  ///< The part of the scene that each leaf belongs to so far.
+    bool has_sky = false;  ///< If true, rays that hit nothing reach the sky, which connects leaves like a wall.
 };
 
-/// Leaves of a part on both sides of an opening.
+/// Leaves of a part on the two sides of an opening.
 struct OpeningBetween {
-    LeafNumbers small, large;  ///< By area.
+    LeafNumbers small, large;  ///< The sides with the smaller and the larger area.
 };
 
-/// Finds the opening behind which most of a part lies: light that differs from place to place goes to and fro within
-/// the part, what is left of it orders the leaves, and a cut of that order is an opening where what crosses it is less
-/// than a tenth of the smaller side, and less than what crosses the cuts beside it. None where there is no such cut.
-/// O(steps x rays).
+/// Finds the opening that divides a part into the two most equal sides. Light with an uneven distribution is reflected
+/// within the part; the differences that decay slowest order the leaves. Each cut of that order has an opening: the
+/// area through which light crosses the cut. It is accepted if it is less than a tenth of the smaller side's area and
+/// less than half the opening of the cuts nearby. Returns nullopt if there is no such cut. O(steps x rays).
 std::optional<OpeningBetween> find_opening(const Flow& flow, const LeafNumbers& leaves, std::uint16_t part);
 
 }  // namespace exitance

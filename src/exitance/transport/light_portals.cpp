@@ -13,19 +13,20 @@
 namespace exitance {
 namespace {
 
-constexpr unsigned most_rays = 1 << 18;   ///< That look for openings, in all.
-constexpr unsigned ray_batch = 1 << 10;   ///< Of a room, one after another.
-constexpr std::size_t enough_ways = 64;   ///< Through a room's openings: further ones would be the same again.
-constexpr std::size_t most_openings = 8;  ///< Between two rooms.
-constexpr std::size_t most_cells = 16;    ///< That rays of one room are aimed at.
+constexpr unsigned most_rays = 1 << 18;  ///< Rays that search for openings, in total.
+constexpr unsigned ray_batch = 1 << 10;  ///< Rays of a room that are cast in succession.
+constexpr std::size_t enough_ways =
+    64;  ///< Rays through a room's openings after which the search stops: more would find the same openings.
+constexpr std::size_t most_openings = 8;  ///< Openings between two rooms, at most.
+constexpr std::size_t most_cells = 16;    ///< Parallelograms at which rays of one room are aimed, at most.
 
-/// A ray from one room to another.
+/// A ray from one room into another.
 struct Way {
     Point from, to;
     std::size_t into;
 };
 
-/// Two numbers in [0, 1) as a direction, all alike.
+/// Maps two numbers in [0, 1) to a direction, uniformly over the sphere.
 Vec3 sphere_direction(double a, double b) {
     const double z = 1 - 2 * a, r = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * pi * b;
     return {r * std::cos(phi), r * std::sin(phi), z};
@@ -43,28 +44,29 @@ class PortalFinder {
         largest_ = std::max(box.diagonal(), 1e-300);
     }
 
-    /// From a room into larger ones.
+    /// Casts up to `most` rays from a room and returns those that arrive in a larger room.
     std::vector<Way> ways(std::size_t room, unsigned most, const StopRequest& stop) const;
 
-    /// The opening that a way goes through; of area 0 if its lines do not tell.
+    /// The opening that a ray passes through; of area 0 if too few lines through its neighbourhood find it.
     PortalCell opening(std::size_t room, const Way& way) const;
 
   private:
-    /// What rays from a point of free space meet: the room of each, `none` where no front.
+    /// Writes the room at the hit of each ray from a point of free space; `none` if it hits no front.
     static constexpr std::size_t none = ~std::size_t{0};
     void look(const Point& from, std::span<const Vec3> directions, std::vector<std::size_t>& met) const;
     Point middle(std::size_t room, const Way& way) const;
     Normal normal(std::size_t room, const Way& way, const Point& at) const;
-    /// Points of a parallelogram about `at` that lines from one room to the other go through, in its coordinates.
+    /// Casts lines through a rectangle about `at` in the plane of `frame`, from (lo) to (hi). Returns the coordinates
+    /// of those points whose line ends in one room on one side and in the other room on the other.
     std::vector<Vec2> open_points(std::size_t room, std::size_t other, const Point& at, const Frame& frame, Vec2 lo,
                                   Vec2 hi, std::uint64_t key) const;
 
     const Stage& stage_;
     const LightRooms& rooms_;
     const ElementTree& tree_;
-    std::vector<std::vector<ElementId>> leaves_;  ///< Of each room.
+    std::vector<std::vector<ElementId>> leaves_;  ///< Leaves of each room.
     std::uint64_t seed_;
-    double largest_;  ///< Any opening, metres.
+    double largest_;  ///< Size of the scene: limit on the size of an opening, metres.
 };
 
 std::vector<Way> PortalFinder::ways(std::size_t room, unsigned most, const StopRequest& stop) const {
@@ -111,7 +113,7 @@ std::vector<Vec3> all_directions(unsigned count) {
     return out;
 }
 
-/// Where as much is seen of either room.
+/// Point of the ray from which equally much is visible of both rooms.
 Point PortalFinder::middle(std::size_t room, const Way& way) const {
     constexpr int halvings = 16;
     const std::vector<Vec3> directions = all_directions(64);
@@ -126,7 +128,8 @@ Point PortalFinder::middle(std::size_t room, const Way& way) const {
     return way.from + 0.5 * (lo + hi) * (way.to - way.from);
 }
 
-/// From one room to the other: what is seen of each lies on its own side.
+/// Normal of the opening, from `room` to the other room: the mean of the directions in which each is visible, with
+/// opposite signs.
 Normal PortalFinder::normal(std::size_t room, const Way& way, const Point& at) const {
     const std::vector<Vec3> directions = all_directions(256);
     std::vector<std::size_t> met;
@@ -155,10 +158,10 @@ std::vector<Vec2> PortalFinder::open_points(std::size_t room, std::size_t other,
     return out;
 }
 
-/// A rectangle around points of a plane: its middle, and its sides' directions and lengths.
+/// A rectangle in a plane.
 struct Rectangle {
-    Vec2 lo, hi;   ///< In coordinates turned by
-    double angle;  ///< radians.
+    Vec2 lo, hi;   ///< Corners, in coordinates rotated by `angle`.
+    double angle;  ///< radians
 
     double area() const { return (hi.x - lo.x) * (hi.y - lo.y); }
 };
@@ -168,7 +171,8 @@ Vec2 turned(Vec2 p, double angle) {
     return {c * p.x + s * p.y, c * p.y - s * p.x};
 }
 
-/// The smallest around some points, of some dozens of angles; wider by what as many points leave out.
+/// Smallest rectangle around some points, among 48 orientations. Enlarged by 3% per side, about the margin that as many
+/// random points leave.
 Rectangle smallest_around(const std::vector<Vec2>& points) {
     constexpr int angles = 48;
     constexpr double wider = 0.03;
@@ -188,10 +192,10 @@ Rectangle smallest_around(const std::vector<Vec2>& points) {
 }
 
 PortalCell PortalFinder::opening(std::size_t room, const Way& way) const {
-    constexpr std::size_t fewest = 8;  // points that tell of a rectangle
+    constexpr std::size_t fewest = 8;  // points needed for a rectangle
     const Point at = middle(room, way);
     const Frame frame(normal(room, way, at));
-    // From small to large, until a frame as wide again around all of it holds nothing more.
+    // Doubles the search square until the half of it that surrounds all points found so far contains no more.
     const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::visibility), room, way.into);
     std::vector<Vec2> open;
     double reach = 0;
@@ -203,7 +207,7 @@ PortalCell PortalFinder::opening(std::size_t room, const Way& way) const {
         if (farthest > reach) open = found, reach = farthest;
     }
     if (open.empty()) return {};
-    for (int i = 0; i < 2; ++i) {  // by points that lie closer
+    for (int i = 0; i < 2; ++i) {  // refine the estimate with denser points
         const double wide = 1.2 * reach;
         open = open_points(room, way.into, at, frame, {-wide, -wide}, {wide, wide}, hash(key, i));
         if (open.size() < fewest) return {};
@@ -216,8 +220,8 @@ PortalCell PortalFinder::opening(std::size_t room, const Way& way) const {
     return {at + in_space(lo), in_space((r.hi.x - r.lo.x) * x), in_space((r.hi.y - r.lo.y) * y), frame.n, r.area()};
 }
 
-/// Does the line of a way go through a parallelogram, or beside it by less than half of its size? That is the same
-/// opening, though the way may end within it.
+/// True if a ray passes through a parallelogram, or beside it by less than half of its size. Such a ray belongs to the
+/// same opening, even if it ends within it.
 bool passes(const Way& way, const PortalCell& cell) {
     const Vec3 d = way.to - way.from;
     const double t = dot(cell.corner - way.from, cell.n) / dot(d, cell.n);
@@ -228,10 +232,11 @@ bool passes(const Way& way, const PortalCell& cell) {
     return std::max(std::abs(s - 0.5), std::abs(r - 0.5)) < 0.5 + beside;
 }
 
-/// Light of all emitters and of lights without extent on coarse elements: of each room's mean over some of them.
+/// Irradiance of the coarse elements from all sources, including those without emitting polygons: the mean over some
+/// elements of each room, W/m^2.
 std::vector<Spectrum> apart_light(const Stage& stage, const LightRooms& rooms, const ElementTree& tree,
                                   const LeafNumbering& numbering) {
-    constexpr std::size_t samples = 64;  // of a room
+    constexpr std::size_t samples = 64;  // per room
     std::vector<std::vector<std::size_t>> of_room(rooms.count());
     for (std::size_t i = 0; i < numbering.leaves.size(); ++i) of_room[rooms.of(tree, numbering.leaves[i])].push_back(i);
     std::vector<Spectrum> out(numbering.leaves.size());
@@ -281,7 +286,8 @@ std::vector<double> coarse_light(const Stage& stage, const LightRooms& rooms, co
 
 namespace {
 
-/// Cut along its longer side into pieces about as long as wide, since rays are not aimed at what is near.
+/// Splits an opening along its longer side into pieces that are about as long as wide, since rays are not aimed at
+/// pieces that are nearer than their length. Adds them to `cells`.
 void add_cells(const PortalCell& opening, double light, std::vector<PortalCell>& cells) {
     constexpr double most_pieces = 8;
     PortalCell piece = opening;
@@ -322,7 +328,7 @@ std::shared_ptr<const LightPortals> find_light_portals(const Stage& stage, const
             std::erase_if(ways, [&](const Way& other) { return other.into == way.into && passes(other, found); });
             const std::size_t darker = light[room] < light[way.into] ? room : way.into;
             const double share = found.area / rooms.area(darker), bright = std::max(light[room], light[way.into]);
-            // As much comes in at least.
+            // The ratio of light is limited by the light that comes in through the opening.
             const double more = bright > 0 ? bright / std::max(light[darker], share * bright) : 0;
             if (is_worth_aiming(share, more)) add_cells(found, more, by_room[darker]);
         }

@@ -6,16 +6,16 @@
 
 namespace exitance {
 
-/// A parallelogram that covers an opening into a lighter room, or a part of it.
+/// A parallelogram that covers all or part of an opening into a brighter room.
 struct PortalCell {
     Point corner;  ///< Its points are corner + s u + t v, s and t in [0, 1).
-    Vec3 u, v;     ///< At right angles.
-    Normal n;      ///< Of its plane.
+    Vec3 u, v;     ///< Edges, perpendicular to each other.
+    Normal n;      ///< Normal of its plane.
     double area = 0;
-    double light = 0;  ///< Reflected light of the room behind it by that of the room before it; rough.
+    double light = 0;  ///< Approximate ratio of the reflected light of the room behind it to that of the room in front.
 };
 
-/// Openings between rooms, by the room that rays are aimed at them from.
+/// Openings between rooms, listed by the room whose rays are aimed at them.
 class LightPortals {
   public:
     explicit LightPortals(std::vector<std::vector<PortalCell>> by_room) : by_room_(std::move(by_room)) {}
@@ -26,22 +26,23 @@ class LightPortals {
     std::vector<std::vector<PortalCell>> by_room_;
 };
 
-/// Would rays be aimed at an opening whose form factor from a place is that? Rays in all directions meet it with a
-/// variance of F light^2, and the walls of their own room with one of some 1.
+/// True if rays should be aimed at an opening of this form factor. Unaimed rays that find it have a variance of about F
+/// light^2, those to the walls of their own room a variance of about 1.
 inline bool is_worth_aiming(double form_factor, double light) {
     return form_factor * light * light > 1;
 }
 
-/// Mean reflected light of every room, W/m^2, as coarse elements and the dozens of rays of each, `rows`, have it.
-/// `rooms` were made of the elements that `tree` and `numbering` hold.
+/// Mean reflected light of every room, W/m^2, computed on coarse elements with the few dozen rays per element of
+/// `rows`. `rooms` must have been made from the elements of `tree` and `numbering`.
 std::vector<double> coarse_light(const Stage& stage, const LightRooms& rooms, const ElementTree& tree,
                                  const LeafNumbering& numbering, const RayRows& rows);
 
-/// Where rays from one room meet another one, a point of the opening is where as much is seen of both; lines through
-/// its neighbourhood that end in both rooms tell how large it is. An opening need not be found whole: rays that are not
-/// aimed meet the rest. `light` of every room, as above.
-/// Null where nothing is worth aiming at. The same on any number of threads. At most 2^18 rays, and some thousands an
-/// opening.
+/// Finds openings between rooms and covers them with parallelograms. For a ray from one room into another, the point
+/// where equally much is seen of both rooms is taken as a point of the opening; lines through its neighbourhood that
+/// end in both rooms give the size. An opening need not be covered completely, since unaimed rays hit the rest.
+/// `light`: from coarse_light().
+/// Returns null if no opening is worth aiming at. Deterministic on any number of threads. Casts at most 2^18 rays, and
+/// some thousands per opening.
 std::shared_ptr<const LightPortals> find_light_portals(const Stage& stage, const LightRooms& rooms,
                                                        const ElementTree& tree, const LeafNumbering& numbering,
                                                        std::span<const double> light, std::uint64_t seed,

@@ -15,20 +15,25 @@
 namespace exitance {
 namespace {
 
-constexpr double least_share = 0.05;     ///< Of a room in what is no ground or sky.
-constexpr double least_detail = 0.001;   ///< Of a small room beside ground and sky in all elements.
-constexpr double far_larger = 20;        ///< Ground and sky than all else, from corner to corner.
-constexpr double flattest = 0.1;         ///< A room's height by its length; below, it is a gap.
-constexpr double thinnest = 0.03;        ///< How far off what walls see is, by the root of their area; likewise.
-constexpr std::size_t fewest_walls = 4;  ///< Of a room.
+constexpr double least_share = 0.05;  ///< Area of a room as a share of all area but ground and sky, at least.
+constexpr double least_detail =
+    0.001;  ///< Elements of a small room beside ground and sky, as a share of all elements, at least.
+constexpr double far_larger = 20;  ///< Extent of ground and sky over that of all other geometry, at least.
+constexpr double flattest = 0.1;   ///< Smallest over largest extent of a room; anything flatter is a gap.
+constexpr double thinnest =
+    0.03;  ///< Mean distance between opposite walls over the square root of their area; anything thinner is a gap.
+constexpr std::size_t fewest_walls = 4;  ///< Walls of a room, at least.
 constexpr std::size_t most_rooms = 64;
-constexpr unsigned least_rays = 16;  ///< Of a leaf, and 24 of one of mean area: rooms that are all there is have many.
-constexpr unsigned most_rays = 256;  ///< Of a leaf. Outdoors most leaves are ground, and a room may have a few.
-constexpr std::size_t rays_outdoors = 1 << 18;  ///< Of all leaves there.
+constexpr unsigned least_rays =
+    16;  ///< Rays per leaf, at least; a leaf of mean area has 24. Enough if rooms make up the whole scene.
+constexpr unsigned most_rays =
+    256;  ///< Rays per leaf, at most. Outdoors most leaves are ground, and a room may have only a few leaves.
+constexpr std::size_t rays_outdoors = 1 << 18;  ///< Rays of all leaves together, outdoors.
 
-/// By place: rooms lie apart from, or within one another; and a little by chance.
+/// Starting values that differ between rooms: by position along a line, by distance from the centre, and a small random
+/// part.
 std::vector<double> starting_light(const ElementTree& tree, const LeafNumbering& numbering, std::uint64_t seed) {
-    constexpr Vec3 along{0.73, 0.54, 0.42};  // no direction that people build in
+    constexpr Vec3 along{0.73, 0.54, 0.42};  // not parallel to the walls of usual buildings
     constexpr double chance = 0.1;
     Box box;
     for (ElementId root : tree.roots()) box.add(tree.patch(root).centre());
@@ -40,11 +45,11 @@ std::vector<double> starting_light(const ElementTree& tree, const LeafNumbering&
     return out;
 }
 
-/// Elements that light joins, and what they enclose.
+/// Elements that exchange light, and the space that they enclose.
 struct Part {
     LeafNumbers leaves;
     double area = 0;    ///< m^2
-    double volume = 0;  ///< Areas times how high what they see is above them, m^3.
+    double volume = 0;  ///< Sum over elements of area times mean height of the elements it sees, m^3.
     Box box;
 
     void add(const Part& other) {
@@ -58,7 +63,7 @@ struct Part {
     friend void archive(Archive& a, Part& part) {
         a(part.leaves, part.area, part.volume, part.box);
     }
-    /// Not so a gap, several gaps, or a single wall.
+    /// False if the part is a gap, several gaps, or a single wall.
     bool may_be_room() const {
         const Vec3 size = box.size();
         return leaves.size() >= fewest_walls && volume >= thinnest * std::pow(area, 1.5) &&
@@ -77,7 +82,7 @@ class RoomFinder {
           tree_(tree),
           numbering_(numbering) {}
 
-    /// The rooms, the largest first; each leaf in one of them.
+    /// Returns the rooms in descending order of area. Each leaf belongs to one of them.
     std::vector<Part> find(const StopRequest& stop) {
         std::vector<Part> open = joined_by_light();
         while (!open.empty() && parts_.size() + open.size() < most_rooms && !stop.requested()) {
@@ -110,8 +115,8 @@ class RoomFinder {
         return part;
     }
 
-    /// How high the elements of a part that one of them sees are above its plane, on average over its rays, metres. Of
-    /// what gaps see through their mouths some is far away, but says nothing of the gaps.
+    /// Mean height, over an element's rays, of the elements of its part that it sees above its plane, metres. Elements
+    /// outside the part, seen through the mouth of a gap, are ignored: they say nothing about the gap.
     double height_seen(std::uint32_t i, const std::vector<std::uint8_t>& within) const {
         const Patch& patch = tree_.patch(numbering_.leaves[i]);
         const Normal n = patch.normal();
@@ -127,7 +132,7 @@ class RoomFinder {
         std::stable_sort(parts_.begin(), parts_.end(), [](const Part& a, const Part& b) { return a.area > b.area; });
     }
 
-    /// What no light joins is apart from the beginning; what cannot be a room belongs to the largest of these.
+    /// Parts between which no light passes. Those that cannot be rooms are added to the largest part.
     std::vector<Part> joined_by_light() {
         const std::size_t n = flow_.area.size();
         DisjointSets sets(n);
@@ -150,7 +155,7 @@ class RoomFinder {
         }
         std::stable_sort(out.begin(), out.end(), [](const Part& a, const Part& b) { return a.area < b.area; });
         if (out.empty()) {
-            if (flow_.has_sky) total_ = outer.area, whole_ = outer.box;  // ground, with or without anything on it
+            if (flow_.has_sky) total_ = outer.area, whole_ = outer.box;  // ground, with or without objects on it
             return {std::move(outer)};
         }
         out.back().add(outer);
@@ -166,11 +171,11 @@ class RoomFinder {
         return out;
     }
 
-    /// Do walls of a part lie all within it? Not so those of a pocket between polygons that run into one another, which
-    /// may be cut into many elements.
+    /// True if at least four walls lie entirely within a part. A pocket between intersecting polygons has no such
+    /// walls, even if it is split into many elements.
     bool has_own_walls(const Part& part) const {
         const auto region_of = [&](std::uint32_t i) { return tree_.region(numbering_.leaves[i]).value; };
-        std::unordered_map<std::uint32_t, std::ptrdiff_t> outside;  // how many leaves of each wall
+        std::unordered_map<std::uint32_t, std::ptrdiff_t> outside;  // number of leaves of each wall outside the part
         for (const std::uint32_t i : part.leaves) --outside[region_of(i)];
         for (std::uint32_t i = 0; i < flow_.area.size(); ++i)
             if (const auto at = outside.find(region_of(i)); at != outside.end()) ++at->second;
@@ -179,7 +184,7 @@ class RoomFinder {
         return own >= static_cast<std::ptrdiff_t>(fewest_walls);
     }
 
-    /// Has a part its share in the area that is no ground or sky?
+    /// True if a part is large enough to be a room of its own.
     bool counts(const Part& part) const {
         if (!part.may_be_room()) return false;
         if (part.area >= least_share * total_) return true;
@@ -191,7 +196,7 @@ class RoomFinder {
         return whole_.diagonal() >= far_larger * inner.diagonal();
     }
 
-    /// Moves what lies behind an opening from `part` to `rest`, if there is one.
+    /// Moves the elements behind an opening from `part` to `rest`; returns false if there is no opening.
     bool cut_at_opening(Part& part, Part& rest) {
         const std::uint16_t own = flow_.part[part.leaves[0]];
         const std::optional<OpeningBetween> opening = find_opening(flow_, part.leaves, own);
@@ -214,16 +219,16 @@ class RoomFinder {
     const ElementTree& tree_;
     const LeafNumbering& numbering_;
     std::vector<Part> parts_;
-    Box inner_, whole_;  ///< Around all rooms but the largest, and around everything.
+    Box inner_, whole_;  ///< Bounds of all rooms but the largest, and of the whole scene.
     double total_ = 0;
     std::uint16_t fresh_ = 1;  ///< Number of the next part.
 };
 
-/// Of every leaf: do all of its rays meet backs? Those that meet nothing see the sky, where there is one, which rows do
-/// not tell apart: a few rays more do.
+/// For every leaf, 1 if all its rays hit backs. Rows do not distinguish backs from the sky; if there is a sky, a few
+/// more rays do.
 std::vector<std::uint8_t> RoomFinder::blind_leaves() const {
-    constexpr std::size_t looks = 8;
-    const ScrambledSobol points(looks);
+    constexpr std::size_t checking_rays = 8;
+    const ScrambledSobol points(checking_rays);
     std::vector<std::uint8_t> out(numbering_.leaves.size());
     parallel_for(out.size(), 256, [&](std::size_t i) {
         const std::span<const std::uint32_t> seen = flow_.rows.hits(i);
@@ -233,18 +238,19 @@ std::vector<std::uint8_t> RoomFinder::blind_leaves() const {
         const ElementId e = numbering_.leaves[i];
         const RegionId region = tree_.region(e);
         const Frame frame(stage_.scene.regions()[region].plane.n);
-        std::array<Vec3, looks> directions;
-        std::array<RayHit, looks> hits;
-        for (std::uint32_t k = 0; k < looks; ++k) directions[k] = cosine_direction(frame, points(k, 0), points(k, 1));
+        std::array<Vec3, checking_rays> directions;
+        std::array<RayHit, checking_rays> hits;
+        for (std::uint32_t k = 0; k < checking_rays; ++k)
+            directions[k] = cosine_direction(frame, points(k, 0), points(k, 1));
         stage_.tracer.nearest(directions, tree_.patch(e).at(tree_.centre(e)), region, hits);
         out[i] = std::none_of(hits.begin(), hits.end(), [](const RayHit& hit) { return hit.surface.is_none(); });
     });
     return out;
 }
 
-/// Under a lamp that lies on a shelf no ray says which room this is, but light of the room gets in at the edges. Leaves
-/// that see nothing go with the largest one beside them that does: of the smallest element that has both, or of their
-/// region. Where there is none, no light comes, and they make no room of their own: they go with the largest.
+/// Assigns leaves without visible fronts to parts. No ray from below a lamp on a shelf hits a front, but light of the
+/// room enters at the edges. Such a leaf joins the part of the largest other leaf in the smallest inner element that
+/// contains both, or in their region. If there is none, no light reaches the leaf, and it joins the largest part.
 void RoomFinder::place_blind_leaves() {
     struct Largest {
         double area = 0;
@@ -279,7 +285,7 @@ void RoomFinder::place_blind_leaves() {
     sort();
 }
 
-/// Joins a part to the one that it exchanges most light with.
+/// Merges the smallest part with the part that it exchanges most light with.
 void RoomFinder::join_smallest() {
     const Part& small = parts_.back();
     const std::uint16_t own = flow_.part[small.leaves[0]];
@@ -297,7 +303,8 @@ void RoomFinder::join_smallest() {
     sort();
 }
 
-/// Parts follow from one another: the first process finds them, for all.
+/// Finds the parts. Each step depends on the one before, so the first process does all and sends the result.
+/// Collective.
 std::vector<Part> find_parts(const Stage& stage, const RayRows& rows, const ElementTree& tree,
                              const LeafNumbering& numbering, std::uint64_t seed, bool has_sky,
                              const StopRequest& stop) {
@@ -332,8 +339,8 @@ double LightRooms::importance(const ElementTree& tree, ElementId e) const {
     return static_cast<double>(importance_[locator_->find(tree.region(e), tree.patch(e).at(tree.centre(e))).element]);
 }
 
-/// What areas of coarse elements count by themselves, and by what they send elsewhere: i counts w_i A_i, and F_ij of
-/// its light comes from j.
+/// Computes the importance of coarse elements: their own weight w_i, plus the weight of the elements of other rooms
+/// that receive their light. Element i receives the share F_ij of its light from j and adds F_ij w_i A_i to j.
 void LightRooms::weigh(const ElementTree& tree, const LeafNumbering& numbering, const RayRows& rows) {
     const std::size_t n = numbering.leaves.size();
     std::vector<double> sent(n);
@@ -358,7 +365,7 @@ void LightRooms::weigh(const ElementTree& tree, const LeafNumbering& numbering, 
 }
 
 LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRequest& stop) {
-    constexpr std::size_t elements = 600;  // beyond those that the pieces are
+    constexpr std::size_t elements = 600;  // in addition to one per piece
     const std::vector<Piece> pieces = stage.lit_pieces();
     const ElementTree tree = stage.make_elements({edge_for_elements(pieces, pieces.size() + elements), 0}, &stop);
     auto locator = std::make_shared<const ElementLocator>(tree, stage.scene.regions().size());
@@ -370,7 +377,7 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     const RayRows rows(stage, tree, numbering, *locator, rays, seed, Dealing::by_element, RowsHeld::everywhere, &stop);
     const std::vector<Part> parts = find_parts(stage, rows, tree, numbering, seed, has_sky, stop);
     LightRooms out;
-    if (stop.requested()) return out;  // rows that were not cast tell nothing
+    if (stop.requested()) return out;  // rows that were not cast have no information
     const std::vector<double> kept = rows.kept();
     const bool loses = std::any_of(kept.begin(), kept.end(), [](double share) { return share < 1; });
     if (parts.size() < 2 && !loses) return out;

@@ -14,34 +14,35 @@ struct LeafNumbering;
 class RayRows;
 class LightPortals;
 
-/// The rooms of a scene: parts of free space cut at openings smaller than a tenth of their walls. Light of one differs
-/// from that of another by orders of magnitude, so that errors are judged by room: outdoors beside a cellar would hide
-/// anything. Rooms below a twentieth of the area that is no ground or sky belong to their neighbour.
+/// The rooms of a scene: parts of free space, separated at openings smaller than a tenth of their walls' area. Light
+/// levels of rooms differ by orders of magnitude, so that errors are judged room by room; otherwise the light outdoors
+/// would hide any error in a cellar. A room with less than a twentieth of the area (not counting ground or sky) is
+/// merged with a neighbour.
 class LightRooms {
   public:
-    /// All is one room.
+    /// The whole scene is one room.
     LightRooms() = default;
 
-    std::size_t count() const { return areas_.size(); }           ///< 0 where all is one room.
+    std::size_t count() const { return areas_.size(); }           ///< 0 if the whole scene is one room.
     double area(std::size_t room) const { return areas_[room]; }  ///< m^2
-    /// The room that a point of a region lies in, from 0 by area, the largest first.
+    /// Index of the room that contains a point of a region; rooms are sorted by descending area.
     std::size_t at(RegionId region, const Point& x) const;
-    /// The room of an element's centre.
+    /// Room of an element's centre.
     std::size_t of(const ElementTree& tree, ElementId e) const;
-    /// The share of the light that leaves a surface there which meets no front; by few rays.
+    /// Share of the light leaving the surface at x that does not arrive at any front, estimated by few rays.
     double lost_share(RegionId region, const Point& x) const {
         return locator_ ? lost_[locator_->find(region, x).element] : 0;
     }
-    /// What an area in the room of an element counts, so that all rooms count alike, and all together as much as they
-    /// are large: the mean area of a room by that of this one. 1 where all is one room.
+    /// Factor on the area of an element that gives all rooms equal total weight: the mean area of a room over the area
+    /// of this one. The weighted areas sum to the total area. 1 if the whole scene is one room.
     double weight(const ElementTree& tree, ElementId e) const;
-    /// The same with what the light of the element counts in the rooms that it shines into: the ground before a window
-    /// counts by the room behind it.
+    /// Like weight(), plus the weight that the element's light has in the other rooms that it illuminates: the ground
+    /// outside a window counts by the room behind the window.
     double importance(const ElementTree& tree, ElementId e) const;
-    /// The same of all elements of a piece, where they are of one room; the least of theirs where they are of several.
+    /// Smallest importance() of the elements of a piece.
     double importance_of_piece(std::size_t piece) const { return count() > 0 ? piece_importance_[piece] : 1; }
 
-    /// The openings between rooms that rays from the darker one are aimed at; null where there are none.
+    /// Openings between rooms at which rays from the darker room are aimed; null if there are none.
     const LightPortals* portals() const { return portals_.get(); }
 
   private:
@@ -50,18 +51,18 @@ class LightRooms {
     friend LightRooms find_light_rooms(const Stage&, std::uint64_t, const StopRequest&);
     std::vector<double> areas_;
     double mean_area_ = 0;
-    /// Of a coarse mesh over all pieces; none where all is one room that loses no light.
+    /// Locates leaves of a coarse mesh over all pieces; null if the scene is one room that loses no light.
     std::shared_ptr<const ElementLocator> locator_;
-    Field<ElementId, std::uint16_t> room_of_;  ///< Of the mesh's leaves.
+    Field<ElementId, std::uint16_t> room_of_;  ///< Room of each leaf of that mesh.
     std::vector<double> piece_importance_;
     Field<ElementId, float> lost_, importance_;
     std::shared_ptr<const LightPortals> portals_;
 };
 
-/// Light that goes to and fro between coarse elements evens out within a room long before it does between rooms: cuts
-/// are sought along the slowest differences [Lovasz93], and taken where they go through an
-/// opening: narrower than a tenth of the smaller side's walls, and than half of what cuts beside it are. Rays: some
-/// dozens an element; the same on any number of threads. O(elements x rays x log rooms).
+/// Finds the rooms of a scene. Light exchanged between coarse elements becomes even within a room long before it does
+/// between rooms, so that cuts are searched along the differences that decay slowest [Lovasz93]. A cut is accepted at
+/// an opening narrower than a tenth of the smaller side's walls and half of what neighbouring cuts have. Casts some
+/// dozens of rays per element. Deterministic on any number of threads. O(elements x rays x log rooms).
 LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRequest& stop);
 
 }  // namespace exitance

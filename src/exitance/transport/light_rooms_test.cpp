@@ -15,7 +15,7 @@ LightRooms rooms_of(const Scene& scene) {
     return find_light_rooms(Stage(scene), 1, StopRequest());
 }
 
-/// A closed box of grey walls that look inwards.
+/// Adds a closed box whose faces look inwards.
 void add_box(SceneDescription& d, Point lo, Point hi, std::uint32_t material) {
     const auto at = [&](int x, int y, int z) {
         d.points.push_back({x ? hi.x : lo.x, y ? hi.y : lo.y, z ? hi.z : lo.z});
@@ -40,20 +40,20 @@ Scene boxes(const std::vector<std::pair<Point, Point>>& corners) {
     return std::move(*make_scene(std::move(d)).scene);
 }
 
-TEST(LightRooms, AClosedRoomATubeAndAnOpenSceneAreOne) {
+TEST(LightRooms, AClosedRoomATubeAndAnOpenSceneAreOneRoom) {
     for (const char* name : {"furnace", "tube", "chair", "cornell", "complex"})
         EXPECT_EQ(rooms_of(built_scene(name)).count(), 0u) << name;
 }
 
-TEST(LightRooms, RoomsThatADoorJoinsAreTwo) {
+TEST(LightRooms, RoomsConnectedByADoorAreTwo) {
     const Scene scene = built_scene("office", {{"nx", "2"}, {"ny", "1"}});
     const LightRooms rooms = rooms_of(scene);
     ASSERT_EQ(rooms.count(), 2u);
     EXPECT_NEAR(rooms.area(0), rooms.area(1), 0.05 * rooms.area(0));
 }
 
-TEST(LightRooms, WhatSeesNothingGoesWithWhatIsBesideIt) {
-    // In the smaller one of two rooms, a board that lies 1 mm above the floor: below it no ray gets out.
+TEST(LightRooms, LeavesThatSeeNoFrontBelongToTheRoomBesideThem) {
+    // A board lies 1 mm above the floor of the smaller room: no ray from below it hits a front.
     SceneDescription d;
     d.groups = {"all"};
     d.materials = {{"grey", Spectrum(0.5), Spectrum(1)}};
@@ -70,7 +70,7 @@ TEST(LightRooms, WhatSeesNothingGoesWithWhatIsBesideIt) {
     EXPECT_EQ(rooms.at(floor, {11, 1, 0}), 1u);
 }
 
-TEST(LightRooms, WhatTwoThingsCoverOfEachOtherIsNoRoom) {
+TEST(LightRooms, CoveredFacesAreNoRoom) {
     SceneDescription d;
     d.groups = {"all"};
     d.materials = {{"grey", Spectrum(0.5), Spectrum(1)}};
@@ -82,13 +82,13 @@ TEST(LightRooms, WhatTwoThingsCoverOfEachOtherIsNoRoom) {
     EXPECT_EQ(rooms_of(*make_scene(std::move(d)).scene).count(), 0u);
 }
 
-/// Leaves of a tree that run into one another leave pockets, which light hardly enters; they are nobody's rooms.
-TEST(LightRooms, APocketBetweenThingsThatRunIntoOneAnotherIsNoRoom) {
+/// Leaves of a tree that intersect each other enclose pockets that little light enters. They are not rooms.
+TEST(LightRooms, APocketBetweenIntersectingPolygonsIsNoRoom) {
     SceneDescription d;
     d.groups = {"all"};
     d.materials = {{"grey", Spectrum(0.5), Spectrum(1)}};
     add_box(d, {-3, -3, -3}, {3, 3, 3}, 0);
-    // Six boards around a cube of 10 cm, which look into it and reach 10 cm beyond it.
+    // Six boards around a cube of 10 cm face its inside and extend 10 cm beyond it.
     for (const int axis : {0, 1, 2})
         for (const double side : {-0.05, 0.05}) {
             const auto first = static_cast<std::uint32_t>(d.points.size());
@@ -105,7 +105,7 @@ TEST(LightRooms, APocketBetweenThingsThatRunIntoOneAnotherIsNoRoom) {
     EXPECT_EQ(rooms_of(std::move(*make_scene(std::move(d)).scene)).count(), 0u);
 }
 
-TEST(LightRooms, WhatStoppedBeforeItsRaysTellsOfNoRoomsAndNoLoss) {
+TEST(LightRooms, AStopBeforeTheRaysGivesNoRoomsAndNoLoss) {
     const Scene scene = boxes({{{0, 0, 0}, {4, 4, 4}}, {{10, 0, 0}, {12, 2, 2}}});
     StopRequest stop;
     stop.interrupt();
@@ -114,7 +114,7 @@ TEST(LightRooms, WhatStoppedBeforeItsRaysTellsOfNoRoomsAndNoLoss) {
     EXPECT_EQ(rooms.lost_share(RegionId(0), {1, 1, 0}), 0);
 }
 
-TEST(LightRooms, WhatIsSealedIsApartAndCountsAlike) {
+TEST(LightRooms, SealedRoomsAreSeparateAndHaveEqualWeight) {
     const Scene scene = boxes({{{0, 0, 0}, {4, 4, 4}}, {{10, 0, 0}, {12, 2, 2}}});
     const Stage stage(scene);
     const LightRooms rooms = find_light_rooms(stage, 1, StopRequest());
@@ -130,7 +130,7 @@ TEST(LightRooms, WhatIsSealedIsApartAndCountsAlike) {
 }
 
 TEST(LightRooms, SmallRoomsBelongToTheirNeighbourUnlessThatIsGroundOrSky) {
-    // 0.7% of the area: too small, but for beside a box of the size of a landscape.
+    // 0.7% of the area: too small for a room, except beside a box of the size of a landscape.
     EXPECT_EQ(rooms_of(boxes({{{0, 0, 0}, {12, 12, 12}}, {{5, 5, 5}, {6, 6, 6}}})).count(), 0u);
     EXPECT_EQ(rooms_of(boxes({{{0, 0, 0}, {900, 900, 900}}, {{5, 5, 5}, {6, 6, 6}}})).count(), 2u);
 }
@@ -164,7 +164,7 @@ Scene house_on_ground() {
     return std::move(*make_scene(std::move(d)).scene);
 }
 
-TEST(LightRooms, AHouseOnGroundUnderTheSkyIsOneOfItsOwn) {
+TEST(LightRooms, AHouseOnGroundUnderTheSkyIsARoom) {
     const Scene scene = house_on_ground();
     const Stage stage(scene);
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
@@ -175,7 +175,7 @@ TEST(LightRooms, AHouseOnGroundUnderTheSkyIsOneOfItsOwn) {
 }
 
 TEST(LightRooms, SeveralGapsAreNoRoom) {
-    // Those over the lamp and behind the board see out, and one is far from the other, but both are centimetres high.
+    // The gaps over the lamp and behind the board receive light and are far apart, but both are centimetres high.
     for (const char* lamp : {"0.01", "0.03"})
         EXPECT_EQ(rooms_of(built_scene("gaps", {{"lamp", lamp}, {"boxes", "0.02"}})).count(), 0u) << lamp;
 }

@@ -14,7 +14,7 @@ std::uint16_t quantised(double t) {
     return static_cast<std::uint16_t>(std::clamp(t, 0.0, 1.0) * 65535 + 0.5);
 }
 
-/// The nodes of a leaf; a cell of many corners is content with eight of them.
+/// Nodes of a leaf. A cell with many corners uses eight of the rule's nodes.
 std::vector<WeightedPlace> leaf_nodes(const ElementTree& tree, ElementId e) {
     std::vector<WeightedPlace> nodes = element_rule(tree, e, RuleOrder::nodes);
     while (nodes.size() > 8) nodes.pop_back();
@@ -24,7 +24,7 @@ std::vector<WeightedPlace> leaf_nodes(const ElementTree& tree, ElementId e) {
     return nodes;
 }
 
-/// Turns the second half of the rays of a node towards openings, where that is worth it.
+/// Aims the second half of a node's rays at openings if that pays, and sets the rays' weights.
 void aim(const Stage& stage, const Point& x, const Normal& n, RegionId region, const ScrambledSobol& points,
          std::span<Vec3> directions, std::span<float> counts) {
     const std::span<const PortalCell> cells = PortalAim::candidates(stage, region, x, n);
@@ -52,7 +52,7 @@ LinearRows::LinearRows(const Stage& stage, const DirectProjection& direct, const
     find_what_is_met();
 }
 
-/// Nodes of all leaves, and which rays are those of the own ones; where they are.
+/// Numbers the nodes of all leaves and the rays of the own nodes. Returns the position of every node.
 std::vector<LinearRows::NodePlace> LinearRows::number_nodes(const Stage& stage, const ElementTree& tree,
                                                             const RayBudget& budget) {
     std::vector<NodePlace> places;
@@ -65,7 +65,7 @@ std::vector<LinearRows::NodePlace> LinearRows::number_nodes(const Stage& stage, 
         const std::vector<WeightedPlace> nodes = leaf_nodes(tree, e);
         leaf.node_count = static_cast<std::uint32_t>(nodes.size());
         for (std::size_t k = 0; k < nodes.size(); ++k) {
-            // The polynomial of a value of 1 at node k alone gives the column of weights of that node.
+            // The polynomial with value 1 at node k and 0 at the others gives the weights of that node.
             std::vector<Spectrum> unit(nodes.size());
             unit[k] = Spectrum(1.0);
             const ElementFit fit(tree, e, nodes, unit);
@@ -115,7 +115,7 @@ void LinearRows::cast(const Stage& stage, std::span<const NodePlace> places, con
     });
 }
 
-/// Finds out which leaves the own rows read, and numbers what rays met by where their values will stand.
+/// Finds the leaves that own rows read, and replaces leaf numbers in `hits_` by indices of `met_`.
 void LinearRows::find_what_is_met() {
     std::vector<std::uint8_t> met(leaves_.size(), 0), marked(nodes_.size(), 0);
     do_own_share([&] {

@@ -8,13 +8,14 @@
 
 namespace exitance {
 
-/// Transport by rays between linear elements, by collocation: the unknowns are values of E_ind at the nodes of the
-/// leaves (as many as each leaf's polynomial has freedoms), and row k gathers at node k
+/// Transport by rays between linear elements, by collocation. The unknowns are values of E_ind at the nodes of the
+/// leaves; a leaf has as many nodes as its polynomial has degrees of freedom. Row k gathers at node k:
 ///
 ///     (H rho E)(x_k) = mean over rays of rho(y) sum_l N_l(y) E_l,      y: what the ray hits first,
 ///
-/// with N_l the polynomials of the leaf that y lies on. Reflectance is inside, since a row crosses many surfaces.
-/// Source: [Atkinson00]. O(rays) to apply, 8 bytes a ray.
+/// where N_l are the polynomials of the leaf that contains y. The reflectance is part of the matrix, since a row
+/// reaches many surfaces. O(rays) to apply, 8 bytes per ray.
+/// Source: [Atkinson00].
 class LinearRows final : public TransportOperator {
   public:
     LinearRows(const Stage& stage, const DirectProjection& direct, const LeafNumbering& numbering,
@@ -28,35 +29,34 @@ class LinearRows final : public TransportOperator {
     std::size_t memory_bytes() const override {
         return sizeof(Hit) * hits_.size() + sizeof(float) * counts_.size() + sizeof(Node) * nodes_.size();
     }
-    /// Of all processes together; each has the rows of its own nodes.
+    /// Rays of all processes. Each process stores only the rows of its own nodes.
     std::size_t rays() const { return rays_; }
 
-    /// H rho E_dir at every node, with E_dir as projected: what the emitters' light brings after one reflection, W/m^2.
+    /// H rho E_dir at every node, with the projected E_dir: the light of the emitters after one reflection, W/m^2.
     std::vector<Spectrum> first_reflection(const DirectProjection& direct) const;
-    /// Area that each node stands for, m^2: its weight in the leaf's rule times the leaf's area.
+    /// Area that each node represents, m^2: its weight in the leaf's rule times the leaf's area.
     std::vector<double> node_areas() const;
-    /// The leaf's polynomial through its nodes' values, by its values at the corners of the leaf's patch.
+    /// Values at the corners of the leaf's patch of the polynomial through the leaf's nodal values.
     std::array<Spectrum, 4> corners(std::size_t leaf, std::span<const Spectrum> nodal) const;
-    /// Mean over the leaf, W/m^2.
+    /// Mean of the polynomial over the leaf, W/m^2.
     Spectrum mean(std::size_t leaf, std::span<const Spectrum> nodal) const;
 
   private:
     static constexpr std::uint32_t missed = 0xffffffffu;
-    /// Where a ray ends: a leaf, by its place among those that are met here, and the place there in steps of 2^-16 of
-    /// the patch.
+    /// End of a ray: a leaf, as an index into `met_`, and the position in units of 2^-16 of the patch's parameters.
     struct Hit {
         std::uint32_t leaf = missed;
         std::uint16_t u = 0, v = 0;
     };
     struct Node {
         double area = 0;
-        std::size_t first_ray = 0, last_ray = 0;  ///< Empty where the node is another process's.
+        std::size_t first_ray = 0, last_ray = 0;  ///< Empty if another process owns the node.
     };
     struct Leaf {
         std::uint32_t first_node = 0, node_count = 0;
         bool triangle = false;
         Spectrum reflectance;
-        /// Row c: the weights of the nodes' values in the value at corner c. A leaf has eight nodes at most.
+        /// to_corner[c][k]: weight of node k in the value at corner c. A leaf has at most eight nodes.
         std::array<std::array<float, 8>, 4> to_corner{};
     };
     using Corners = std::array<Spectrum, 4>;
@@ -68,7 +68,7 @@ class LinearRows final : public TransportOperator {
     void cast(const Stage& stage, std::span<const NodePlace> places, const LeafNumbering& numbering,
               const ElementLocator& locator, std::uint64_t seed);
     void find_what_is_met();
-    /// What the leaves that are met reflect, at their corners; `values`: own and fetched ones.
+    /// Reflected light at the corners of the leaves in `met_`. `values`: own and fetched nodal values.
     std::vector<Corners> reflected(std::span<const Spectrum> values) const;
     Spectrum read(const std::vector<Corners>& corners, const Node& node) const;
     void read_own(const std::vector<Corners>& corners, std::span<Spectrum> out) const;
@@ -76,14 +76,14 @@ class LinearRows final : public TransportOperator {
     DealtUnknowns dealt_{0};
     std::size_t rays_ = 0;
     FetchedValues fetched_;
-    std::vector<std::uint32_t> met_;         ///< Leaves that rays of own nodes end on, ascending.
-    std::vector<std::uint32_t> first_read_;  ///< Where the nodes of each begin in read_;
-    std::vector<std::uint32_t> read_;        ///< where their values stand among own and fetched ones.
+    std::vector<std::uint32_t> met_;         ///< Leaves hit by rays of own nodes, ascending.
+    std::vector<std::uint32_t> first_read_;  ///< Per leaf of met_: index of its first node in read_.
+    std::vector<std::uint32_t> read_;        ///< Index of each node's value among the own and fetched values.
 
     std::vector<Leaf> leaves_;
     std::vector<Node> nodes_;
     std::vector<Hit> hits_;
-    std::vector<float> counts_;  ///< As how many rays each of them counts; empty where all are 1.
+    std::vector<float> counts_;  ///< Weight of each ray; empty if all are 1.
     std::vector<ElementId> ids_;
 };
 

@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-TEST(LinearRows, OfAFurnaceReturnTheReflectance) {
+TEST(LinearRows, ReturnTheReflectanceInAFurnace) {
     const double rho = 0.4;
     const Scene scene = box_scene(2, 1, 1, rho, 1, 1);
     const Stage stage(scene);
@@ -18,19 +18,19 @@ TEST(LinearRows, OfAFurnaceReturnTheReflectance) {
     const LinearRows H(stage, direct, numbering, locator, {.average = 32, .least = 16, .most = 64}, 1);
     std::vector<Spectrum> ones(H.size(), Spectrum(1.0)), out(H.size());
     H.gather(ones, out);
-    // Every row sums to 1; corners are weighted in single precision.
+    // Every row sums to 1, up to single precision of the corner weights.
     for (std::size_t k = 0; k < H.size(); ++k) {
         EXPECT_NEAR(out[k][0], rho, 1e-6);
         EXPECT_NEAR(H.gather_at(k, ones)[0], out[k][0], 1e-12);
     }
-    // E_dir is 1 everywhere, and comes back once reflected.
+    // E_dir is 1 everywhere, and rho after one reflection.
     for (const Spectrum& first : H.first_reflection(direct)) EXPECT_NEAR(first[0], rho, 1e-6);
     double area = 0;
     for (double a : H.node_areas()) area += a;
     EXPECT_NEAR(area, stage.area, 1e-9);
 }
 
-TEST(LinearRows, ValuesAtNodesComeBackAtCornersAndInTheMean) {
+TEST(LinearRows, ReproduceALinearFunctionAtCornersAndInTheMean) {
     const Scene scene = box_scene(1, 1, 1, 0.5, 1);
     const Stage stage(scene);
     const StopRequest stop;
@@ -40,7 +40,7 @@ TEST(LinearRows, ValuesAtNodesComeBackAtCornersAndInTheMean) {
     const LinearRows H(stage, direct, numbering, locator, {.average = 16, .least = 16, .most = 16}, 1);
     ASSERT_EQ(H.size(), 24u);  // six squares of four nodes
     const double g = 0.5 / std::sqrt(3.0);
-    // f = 1 + u + 2 v at the nodes (0.5 -+ g, 0.5 -+ g), in the order of the rule.
+    // f = 1 + u + 2 v at the nodes (0.5 -+ g, 0.5 -+ g), in the order of the rule, u first.
     std::vector<Spectrum> nodal(24);
     for (std::size_t k = 0; k < 4; ++k)
         nodal[k] = Spectrum(1 + (0.5 + (k % 2 ? g : -g)) + 2 * (0.5 + (k / 2 ? g : -g)));

@@ -9,18 +9,20 @@
 namespace exitance {
 namespace {
 
-constexpr std::uint32_t looks = 4;  ///< Of a leaf.
-constexpr double coplanar = 1e-6;   ///< Of the scene's size, as Occluders::is_covered has it.
+constexpr std::uint32_t samples = 4;  ///< Points per leaf.
+constexpr double coplanar =
+    1e-6;  ///< Distance of touching surfaces over the scene's size, as in Occluders::is_covered.
 
-/// Is something in front of the leaf at one of its places, nearer than so many times its width?
+/// True if a front lies before the leaf at one of some sample points, nearer than `widths` times the leaf's width but
+/// farther than `touching`, metres.
 bool is_narrow(const Stage& stage, const ElementTree& tree, ElementId e, double touching, double widths) {
     const RegionId region = tree.region(e);
     const Normal& n = stage.scene.regions()[region].plane.n;
     const ScrambledSobol places(hash(static_cast<std::uint64_t>(Stream::mesh), e.value));
-    std::array<Point, looks> x;
-    std::array<Vec3, looks> up;
-    std::array<RayHit, looks> hits;
-    for (std::uint32_t k = 0; k < looks; ++k) {
+    std::array<Point, samples> x;
+    std::array<Vec3, samples> up;
+    std::array<RayHit, samples> hits;
+    for (std::uint32_t k = 0; k < samples; ++k) {
         x[k] = tree.patch(e).at(tree.uniform(e, places(k, 0), places(k, 1)));
         up[k] = n;
     }
@@ -48,11 +50,11 @@ Field<ElementId, std::uint8_t> find_narrow_leaves(const Stage& stage, const Elem
 }
 
 double share_of_light_in_gaps(const Stage& stage, const DirectProjection& direct) {
-    constexpr std::size_t enough = 4096;
-    constexpr double half = 0.5;  // else elements as large as walls had the room for a gap
+    constexpr std::size_t min_samples = 4096;
+    constexpr double half = 0.5;  // with 1, elements as large as a wall would make a whole room a gap
     const double touching = coplanar * stage.scene.size();
     const std::vector<ElementId> leaves = direct.tree.leaves();
-    const std::size_t step = leaves.size() / enough + 1;
+    const std::size_t step = leaves.size() / min_samples + 1;
     std::vector<std::uint8_t> narrow((leaves.size() + step - 1) / step);
     shared_ranges(
         narrow.size(), 256,

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// The area of narrow leaves, m^2, of elements about `edge` metres wide.
+/// Area of narrow leaves, m^2, on a mesh of elements about `edge` metres wide.
 double narrow_area(const Scene& scene, double edge) {
     const Stage stage(scene);
     const ElementTree tree = stage.make_elements({.edge = edge, .grading_levels = 0});
@@ -19,18 +19,18 @@ double narrow_area(const Scene& scene, double edge) {
     return out;
 }
 
-TEST(NarrowPlaces, AreThoseInGapsThatElementsAreLargerThan) {
-    // Both sides of the gaps over the lamp (1 m x 0.5 m) and behind the board (1.8 m x 1 m); between the boxes the
-    // smaller one's face (0.7 m x 0.6 m). Elements that reach out of a gap count as a whole.
+TEST(NarrowPlaces, AreLeavesWiderThanTheirGap) {
+    // Both sides of the gaps over the lamp (1 m x 0.5 m) and behind the board (1.8 m x 1 m), and between the boxes both
+    // sides of the smaller one's face (0.7 m x 0.6 m). Elements that extend out of a gap count as a whole.
     const double in_gaps = 2 * (0.5 + 1.8 + 0.42);
     const double area = narrow_area(built_scene("gaps"), 0.25);
     EXPECT_GT(area, 0.9 * in_gaps);
     EXPECT_LT(area, 1.5 * in_gaps);
 }
 
-TEST(NarrowPlaces, AreNoneWhereElementsAreSmallerThanTheRoom) {
+TEST(NarrowPlaces, DoNotExistInARoom) {
     EXPECT_EQ(narrow_area(box_scene(2, 1, 1.5, 0.5, 1), 0.5), 0);
-    // What stands on the floor touches it: no gap.
+    // Objects on the floor touch it, which is no gap.
     EXPECT_EQ(narrow_area(built_scene("bright"), 0.2), 0);
 }
 
@@ -39,7 +39,7 @@ double light_in_gaps(const Scene& scene) {
     return share_of_light_in_gaps(stage, project_direct_light(stage, {.mesh = {0.5, 0}, .tolerance = 0.1}, {}));
 }
 
-/// What of the direct light that surfaces reflect leaves things of this group, by exact light at places of its pieces.
+/// Share of the reflected direct light that leaves surfaces of a material, from exact light at sample points.
 double exact_share(const Scene& scene, const std::string& material) {
     const Stage stage(scene);
     DirectLight::Workspace scratch;
@@ -59,9 +59,9 @@ double exact_share(const Scene& scene, const std::string& material) {
     return of_group / all;
 }
 
-TEST(NarrowPlaces, HoldMuchOfTheLightOfABlindAndNoneOfARooms) {
-    // Slats have the ceiling's material, and are nearer to one another than most of their elements are wide; not the
-    // smallest of these, at their edges, where most of the light is.
+TEST(NarrowPlaces, HoldMuchOfTheLightOfABlindAndNoneOfARoom) {
+    // Slats have the ceiling's material. The gaps between them are narrower than most of their elements, except the
+    // smallest elements at their edges, which reflect most of the light.
     const Scene scene = built_scene("blinds");
     const double blinds = light_in_gaps(scene), slats = exact_share(scene, "ceiling");
     EXPECT_GT(blinds, 0.25 * slats);

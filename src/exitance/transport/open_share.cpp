@@ -28,7 +28,7 @@ bool is_certainly_open(const Stage& stage, const ElementTree& tree, ElementId p,
     return shaft.classify(candidates) == View::open;
 }
 
-/// One leaf in each of many strata of equal weight, by leaf number.
+/// Returns the leaf of the middle of each of 512 strata of equal weight. `weight`: by leaf number.
 std::vector<ElementId> leaves_in_strata(const LeafNumbering& numbering, std::span<const double> weight) {
     constexpr std::size_t count = 512;
     const double total = std::accumulate(weight.begin(), weight.end(), 0.0);
@@ -46,7 +46,7 @@ std::vector<ElementId> leaves_in_strata(const LeafNumbering& numbering, std::spa
 
 namespace {
 
-/// By one in `every` of the strata.
+/// open_share() from every `every`-th stratum.
 double open_share(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
                   const ElementLocator& locator, std::span<const Spectrum> radiosity, std::uint64_t seed,
                   std::size_t every) {
@@ -62,7 +62,7 @@ double open_share(const Stage& stage, const ElementTree& tree, const LeafNumberi
         const std::size_t k = i * every;
         ElementRays rays(stage, tree, locator);
         std::uint32_t hit = 0;
-        // Points of one sequence: the leaves together look everywhere.
+        // Leaves use points of one sequence, so that their directions together are stratified.
         rays.cast(leaves[k], hash(seed, static_cast<std::uint64_t>(Stream::rows)), {&hit, 1},
                   static_cast<std::uint32_t>(k));
         if (hit == ElementRays::missed) return Light();
@@ -83,9 +83,9 @@ double open_share(const Stage& stage, const ElementTree& tree, const LeafNumberi
 
 bool is_mostly_open(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
                     const ElementLocator& locator, std::span<const Spectrum> radiosity, std::uint64_t seed) {
-    constexpr std::size_t some = 8;
+    constexpr std::size_t every = 8;
     constexpr double far_below = 0.2;  // three standard errors of 64 strata
-    return open_share(stage, tree, numbering, locator, radiosity, seed, some) > mostly_open - far_below &&
+    return open_share(stage, tree, numbering, locator, radiosity, seed, every) > mostly_open - far_below &&
            open_share(stage, tree, numbering, locator, radiosity, seed, 1) > mostly_open;
 }
 

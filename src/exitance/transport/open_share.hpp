@@ -6,23 +6,23 @@
 
 namespace exitance {
 
-/// How much of the light that leaves receive goes between pieces with nothing in between, certainly: of `radiosity`, by
-/// leaf number. From a ray of each of some hundred leaves, one in each of as many strata of equal area.
+/// Share of the light received by leaves that is exchanged between pieces that are certainly unoccluded. `radiosity`:
+/// by leaf number, W/m^2. Estimated by one ray from one leaf in each of 512 strata of equal area.
 double open_share(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
                   const ElementLocator& locator, std::span<const Spectrum> radiosity, std::uint64_t seed);
 
-/// Where so much light passes in the open, links give it as exactly as it is asked for. Elsewhere they only find what
-/// the elements reflect, and rays gather that: from a place that sees many things in part, rays over the hemisphere say
-/// more than as many between pairs.
+/// Above this open share, links compute light as accurately as required. Below it, links only determine what elements
+/// reflect, and rays gather that light: at a point that sees many surfaces in part, rays over the hemisphere are more
+/// accurate than as many rays between pairs.
 constexpr double mostly_open = 0.9;
 
-/// Is open_share above that? Some of its rays tell, where it is far below.
+/// True if open_share() > mostly_open. Casts only an eighth of the rays if the share is far below.
 bool is_mostly_open(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
                     const ElementLocator& locator, std::span<const Spectrum> radiosity, std::uint64_t seed);
 
-/// Does whatever leaves send arrive at the front of a surface? As some four thousand rays tell, in proportion to
-/// `power` by leaf number, or from everywhere if that is empty: what less than that of the light escapes by is as good
-/// as closed.
+/// True if all light that leaves send arrives at the front of some surface, by some four thousand rays: distributed in
+/// proportion to `power` by leaf number, or over all surfaces if that is empty. Loss of a smaller share of the light is
+/// negligible.
 bool is_closed(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
                const ElementLocator& locator, std::uint64_t seed, std::span<const double> power = {});
 

@@ -8,7 +8,7 @@
 
 namespace exitance {
 
-/// Makes the rows of one scene's panes.
+/// Makes the rows of all panes of a scene.
 class PassedLight::Maker {
   public:
     Maker(PassedLight& out, const Scene& scene, const ElementTree& tree, std::span<const ElementId> elements,
@@ -44,7 +44,7 @@ class PassedLight::Maker {
     }
 
   private:
-    /// The common part of an element and one behind it, in part_.
+    /// Sets part_ to the intersection of an element and one behind it.
     void meet(std::span<const Point> outline, std::span<const Point> other, const Normal& n) {
         part_.assign(outline.begin(), outline.end());
         for (std::size_t k = 0; k < other.size() && !part_.empty(); ++k) {
@@ -59,7 +59,7 @@ class PassedLight::Maker {
 
     void add_row(std::uint32_t i, RegionId own, RegionId behind, const std::vector<std::uint32_t>& others,
                  const Bvh& index) {
-        constexpr double rounding = 1e-9;  ///< Of an element's area.
+        constexpr double rounding = 1e-9;  ///< Share of an element's area.
         const ElementId e = elements_[i];
         const std::vector<Point> outline = tree_.outline(e);
         Box box;
@@ -82,9 +82,9 @@ class PassedLight::Maker {
         if (row.first == row.last) return;
         for (std::size_t k = 0; k < n; ++k)
             if (gram_[k * n + k] > 0)
-                gram_[k * n + k] *= n > 1 ? 1 + 1e-12 : 1;  // slivers say little of some functions (given by rounding)
+                gram_[k * n + k] *= n > 1 ? 1 + 1e-12 : 1;  // regularizes functions that slivers hardly determine
             else
-                gram_[k * n + k] = 1;  // numbers that an element does without
+                gram_[k * n + k] = 1;  // values that an element does not use
         std::vector<double> weights(out_.weights_.begin() + static_cast<std::ptrdiff_t>(first_weight),
                                     out_.weights_.end());
         for (std::size_t t = 0; t < weights.size(); t += n * n) {
@@ -97,7 +97,8 @@ class PassedLight::Maker {
         out_.rows_.push_back(row);
     }
 
-    /// Adds to the matrix of the element's own functions, and sets that of products with those behind, over part_.
+    /// Integrates over part_: adds the products of the element's own functions to gram_, and sets `products` to those
+    /// of its functions with the functions behind.
     void integrate(ElementId e, ElementId other, double* products) {
         const std::size_t n = out_.nodes_;
         std::vector<double> own(n, 1.0), behind(n, 1.0);
@@ -124,7 +125,7 @@ class PassedLight::Maker {
     std::span<const ElementId> elements_;
     const Interpolate& interpolate_;
     std::span<const PlanarNode> rule_;
-    std::vector<std::vector<Point>> outlines_;  ///< Of the elements of the side behind.
+    std::vector<std::vector<Point>> outlines_;  ///< Outlines of the elements of the side behind.
     std::vector<Point> part_, buffer_;
     std::vector<double> gram_;
 };

@@ -11,28 +11,27 @@
 
 namespace exitance {
 
-/// What elements of diffusing panes meet, from what arrives at each of their sides by itself (`Material::through`):
-///
+/// Incident light E_met on elements of diffusing panes, computed from the light that arrives at each side
+/// (`Material::through`):
 ///     E_met = (1 - through) E + through P E_behind,
 ///
-/// with P the projection of what the elements behind hold, in the mean square, on the functions of an element. Both
-/// sides may be cut in ways of their own: P is made of integrals over the common parts of elements, so that no flux is
-/// lost on the way. O(elements of panes x elements that each meets).
+/// where P is the least-squares projection of the function on the elements behind onto the functions of an element. The
+/// two sides may have different meshes: P is computed from integrals over the intersections of elements, so that flux
+/// is conserved. O(elements of panes x elements that each overlaps).
 class PassedLight {
   public:
-    /// How an element's numbers make its function at a place: factors, as many as it holds.
+    /// Writes the factors by which the values of element e make up its function at x; one factor per value.
     using Interpolate = std::function<void(ElementId e, const Point& x, std::span<double> factors)>;
 
-    /// `elements`: all that values are given for, a partition of every pane; each holds one number, its mean.
+    /// `elements`: all elements that have values, which must partition every pane. Each has one value, its mean.
     PassedLight(const Scene& scene, const ElementTree& tree, std::span<const ElementId> elements);
-    /// The same where each holds `nodes` numbers, as many as a polynomial of degree `degree` in each direction takes at
-    /// most.
+    /// Like the above, for `nodes` values per element, enough for polynomials of degree `degree` in each direction.
     PassedLight(const Scene& scene, const ElementTree& tree, std::span<const ElementId> elements, std::size_t nodes,
                 int degree, const Interpolate& interpolate);
 
-    bool empty() const { return rows_.empty(); }  ///< Are there no panes?
+    bool empty() const { return rows_.empty(); }  ///< True if there are no panes.
 
-    /// Replaces E by E_met: number k of element i stands at i nodes + k.
+    /// Replaces E by E_met. Value k of element i is values[i nodes + k].
     template <class Value>
     void meet(std::span<Value> values) const {
         if (empty()) return;
@@ -45,7 +44,7 @@ class PassedLight {
             for (std::size_t k = 0; k < nodes_; ++k) values[rows_[r].element * nodes_ + k] = met[r * nodes_ + k];
     }
 
-    /// One of them, of what `value(i)` gives for number i.
+    /// Returns E_met of value i, where value(i) returns E.
     template <class Get>
     auto met_at(std::size_t i, const Get& value) const -> std::decay_t<decltype(value(i))> {
         const std::uint32_t row = row_of_.empty() ? none : row_of_[i / nodes_];
@@ -53,14 +52,14 @@ class PassedLight {
         return of_row(rows_[row], i % nodes_, value);
     }
 
-    /// Calls visit(j, weight) for the elements behind element i, where each holds one number; weights sum to 1.
+    /// Calls visit(j, weight) for the elements behind element i, if each element has one value. Weights sum to 1.
     template <class Visit>
     void visit_behind(std::size_t i, const Visit& visit) const {
         if (row_of_.empty() || row_of_[i] == none) return;
         const Row& row = rows_[row_of_[i]];
         for (std::uint32_t t = row.first; t < row.last; ++t) visit(terms_[t].element, weights_[terms_[t].weights]);
     }
-    /// The share of what comes through, of what element i meets.
+    /// Share of the light incident on element i that comes through the pane; 0 if i is not on a pane.
     double through(std::size_t i) const {
         return row_of_.empty() || row_of_[i] == none ? 0 : rows_[row_of_[i]].through;
     }
@@ -70,9 +69,9 @@ class PassedLight {
     struct Row {
         std::uint32_t element;
         double through;
-        std::uint32_t first, last;  ///< Of the terms.
+        std::uint32_t first, last;  ///< Range of the row's terms.
     };
-    /// An element behind, and nodes x nodes weights, row by row.
+    /// An element behind, and its nodes x nodes weights, stored row by row.
     struct Term {
         std::uint32_t element;
         std::size_t weights;
@@ -91,13 +90,13 @@ class PassedLight {
     }
 
     std::size_t nodes_ = 1;
-    std::vector<Row> rows_;              ///< Of elements of panes, in their order.
-    std::vector<std::uint32_t> row_of_;  ///< By element; empty where there are no panes.
+    std::vector<Row> rows_;              ///< One per element of a pane, in ascending order of elements.
+    std::vector<std::uint32_t> row_of_;  ///< Row of each element; empty if there are no panes.
     std::vector<Term> terms_;
     std::vector<double> weights_;
 };
 
-/// Transport of which diffusing panes meet what comes to both of their sides, of one that takes light to one side.
+/// Adds the passage through diffusing panes to a transport operator that carries light to one side only.
 class PassingTransport final : public TransportOperator {
   public:
     /// Both must outlive it.

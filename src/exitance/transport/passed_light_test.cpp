@@ -1,4 +1,4 @@
-// What comes through diffusing panes, between meshes of their own.
+// Tests of light through diffusing panes whose sides have different meshes.
 #include "exitance/transport/passed_light.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double through = 0.25;
 
-/// A pane of 2 x 1 m in the plane z = 0, seen from both sides.
+/// A pane of 2 x 1 m in the plane z = 0, with both sides visible.
 Scene sheet() {
     SceneDescription d;
     d.file = "sheet.obj";
@@ -26,7 +26,7 @@ Scene sheet() {
     return std::move(*checked.scene);
 }
 
-/// Both sides as one piece, the first halved twice over, the second along slanted lines, too.
+/// Meshes of the two sides: the first is split into halves and quarters, the second along slanted lines.
 ElementTree cut_unlike(const Scene& scene) {
     ElementTree tree;
     for (const RegionId r : scene.regions().ids()) {
@@ -42,7 +42,7 @@ ElementTree cut_unlike(const Scene& scene) {
 
 }  // namespace
 
-TEST(PassedLight, NoFluxIsLostBetweenUnlikeMeshes) {
+TEST(PassedLight, ConservesFluxBetweenDifferentMeshes) {
     const Scene scene = sheet();
     const ElementTree tree = cut_unlike(scene);
     const std::vector<ElementId> leaves = tree.leaves();
@@ -66,8 +66,8 @@ TEST(PassedLight, NoFluxIsLostBetweenUnlikeMeshes) {
     EXPECT_NEAR(met, arrived, 1e-12);
 }
 
-/// Of a polynomial on both sides nothing is lost by either mesh.
-TEST(PassedLight, PolynomialsComeThroughAsTheyAre) {
+/// A polynomial on each side is represented exactly by both meshes.
+TEST(PassedLight, IsExactForPolynomials) {
     const Scene scene = sheet();
     ElementTree tree;
     for (const RegionId r : scene.regions().ids()) {
@@ -85,7 +85,7 @@ TEST(PassedLight, PolynomialsComeThroughAsTheyAre) {
                                  [&](ElementId e, const Point& x, std::span<double> factors) {
                                      basis.interpolate(tree.patch(e).shape, tree.patch(e).coordinates(x), factors);
                                  });
-        const auto on_side = [&](ElementId e, const Point& x) {  // bilinear, another on each side
+        const auto on_side = [&](ElementId e, const Point& x) {  // bilinear, different on each side
             return tree.region(e).value == 0 ? 1 + x.x + 2 * x.y - x.x * x.y : 3 - x.x + 0.5 * x.x * x.y;
         };
         std::vector<Spectrum> E;
@@ -102,7 +102,7 @@ TEST(PassedLight, PolynomialsComeThroughAsTheyAre) {
     }
 }
 
-TEST(PassedLight, OfASceneWithoutPanesIsEmpty) {
+TEST(PassedLight, IsEmptyInASceneWithoutPanes) {
     SceneDescription d;
     d.file = "face.obj";
     d.materials = {{"grey", Spectrum(0.5), {}}};

@@ -10,11 +10,12 @@
 namespace exitance {
 namespace {
 
-/// Products with the third element of the field of four elements, in which addition is exclusive or.
+/// Multiplication by the third element of the field of four elements, whose addition is exclusive or.
 constexpr unsigned twice[4] = {0, 2, 3, 1};
 
-/// The orthogonal array OA(16, 4, 4, 2): a ray from cell (a, b) of one element leads to cell (a + b, a + 2 b) of the
-/// other. Cells are numbered row by row; a turn of the digits keeps the array orthogonal.
+/// Orthogonal array OA(16, 4, 4, 2): a ray from cell (a, b) of one element leads to cell (a + b, a + 2 b) of the other,
+/// in that field's arithmetic. Cells are numbered row by row. Adding a constant to the digits keeps the array
+/// orthogonal.
 constexpr std::array<unsigned, 16> partner_cell = [] {
     std::array<unsigned, 16> cell{};
     for (unsigned a = 0; a < 4; ++a)
@@ -22,7 +23,7 @@ constexpr std::array<unsigned, 16> partner_cell = [] {
     return cell;
 }();
 
-/// Place k goes to k ^ turn: as the array is linear, that turns the digits of the cells that rays lead to.
+/// Moves point k to k ^ turn. The array is linear, so that this adds a constant to the digits of the destination cells.
 RayEnds turned(const RayEnds& ends, unsigned turn) {
     RayEnds out;
     const unsigned within = turn & 3u;
@@ -49,7 +50,8 @@ PatchLevel::PatchLevel(const ElementTree& tree, const LeafNumbering& numbering, 
         wanted[i] = e;
         index[e] = 0;
     }
-    // An ancestor that is wanted by one leaf is the patch of every leaf below it: the highest one counts.
+    // If an ancestor is the patch of one leaf, it is the patch of every leaf below it; the highest such ancestor is
+    // used.
     for (std::size_t i = 0; i < wanted.size(); ++i)
         for (ElementId e = wanted[i]; !tree.parent(e).is_none(); e = tree.parent(e))
             if (index[tree.parent(e)] == 0) wanted[i] = tree.parent(e);
@@ -115,7 +117,7 @@ double PatchTransfer::visible_share(ElementId receiver, ElementId source, Worksp
     return 1 - static_cast<double>(blocked) / samples_;
 }
 
-/// Is the receiver's middle in front of the source, and none of its own region?
+/// True if the receiver's centre is in front of the source and the two belong to different regions.
 bool PatchTransfer::faces(ElementId receiver, ElementId source) const {
     const RegionId other = tree_.region(source);
     return tree_.region(receiver) != other &&

@@ -15,27 +15,27 @@
 
 namespace exitance {
 
-/// The elements that receive and the patches that send: two levels of one tree [Cohen86]. A patch is a leaf or an inner
-/// element; every leaf lies in exactly one patch.
+/// Receiving elements and sending patches: two levels of one tree [Cohen86]. A patch is a leaf or an inner element;
+/// every leaf belongs to exactly one patch.
 struct PatchLevel {
     std::vector<ElementId> patches;       ///< In order of their ids.
-    std::vector<std::uint32_t> patch_of;  ///< By leaf number: the leaf's patch, as an index into `patches`.
-    std::vector<double> share;            ///< By leaf number: area of the leaf over area of its patch.
+    std::vector<std::uint32_t> patch_of;  ///< The patch of each leaf, as an index into `patches`.
+    std::vector<double> share;            ///< Area of each leaf over the area of its patch.
 
-    /// Patches `levels` above the leaves: 0 makes every leaf a patch of its own.
+    /// Uses the ancestors `levels` above the leaves as patches; with 0 every leaf is its own patch.
     PatchLevel(const ElementTree& tree, const LeafNumbering& numbering, int levels);
 
-    /// Means over the patches of what the leaves hold (pull).
+    /// Area-weighted means of leaf values over the patches.
     std::vector<Spectrum> pull(std::span<const Spectrum> leaf_values) const;
 };
 
-/// Form factors between elements, and how much of them is visible, computed when asked for.
+/// Computes form factors between elements and their visibility on demand.
 ///
-/// F_ij is taken at the receiver's middle, exactly, towards the whole source polygon [Baum89], and times the share of
-/// `samples` rays between the two that meet nothing. Every element has its own places, one in each cell of a 4 x 4
-/// grid; which of them a ray joins follows an orthogonal array of strength 2, turned by the pair of elements: each pair
-/// of the four coordinates is stratified [Owen92]. One sample is one ray from middle to middle, as [Cohen88] and
-/// [Willmott97] shoot; other numbers are taken up to a multiple of 16.
+/// F_ij is the exact form factor from the receiver's centre to the whole source polygon [Baum89], times the share of
+/// `samples` rays between the elements that are unoccluded. Every element has its own sample points, one in each cell
+/// of a 4 x 4 grid. An orthogonal array of strength 2, shifted for each pair of elements, selects the points that a ray
+/// joins, so that every pair of the four coordinates is stratified [Owen92]. One sample is a ray from centre to centre,
+/// as in [Cohen88] and [Willmott97]; other numbers are rounded up to a multiple of 16.
 class PatchTransfer {
   public:
     PatchTransfer(const Stage& stage, const ElementTree& tree, unsigned samples, std::uint64_t seed)
@@ -47,10 +47,10 @@ class PatchTransfer {
         update_places();
     }
 
-    /// Makes places for the elements that the tree has got since it was last called.
+    /// Creates sample points for elements that were added to the tree since the last call.
     void update_places();
 
-    static constexpr unsigned most_samples = 256;  ///< Rays a pair; more are not asked for.
+    static constexpr unsigned most_samples = 256;  ///< Limit on the rays per pair.
 
     struct Workspace {
         ReceiverBatch batch;
@@ -59,22 +59,22 @@ class PatchTransfer {
         std::size_t rays = 0, form_factors = 0;
     };
 
-    /// F_ij from receiver i to source j, occlusion included: E_i = sum_j F_ij B_j.
+    /// F_ij from receiver i to source j, including occlusion: E_i = sum_j F_ij B_j.
     double form_factor(ElementId receiver, ElementId source, Workspace& workspace) const;
 
-    /// F_ij for every receiver in turn and one source. Counts go to `rays` and `form_factors`. `precise`, if not empty:
-    /// the same numbers as `form_factor` computes them.
+    /// Computes F_ij for all receivers and one source. Adds the counts to `rays` and `form_factors`. `precise`, if not
+    /// empty, receives the values that `form_factor` computes.
     void column(std::span<const ElementId> receivers, ElementId source, std::span<float> out,
                 std::span<double> precise = {}) const;
 
-    /// The share of `samples` rays between the two that meet nothing.
+    /// Share of `samples` rays between the two that are unoccluded.
     double visible_share(ElementId receiver, ElementId source, Workspace& workspace) const;
-    /// The ends of the rays of one group of sixteen.
+    /// End points of the rays of one group of sixteen.
     std::pair<RayEnds, RayEnds> rays(ElementId receiver, ElementId source, std::size_t group) const;
-    /// F_ij as if nothing stood in between.
+    /// F_ij without occlusion.
     double form_factor_in_the_open(ElementId receiver, ElementId source) const;
 
-    /// Adds what a workspace has counted to the totals.
+    /// Adds the counts of a workspace to the totals.
     void count(const Workspace& workspace) const {
         rays_ += workspace.rays;
         form_factors_ += workspace.form_factors;
@@ -87,17 +87,17 @@ class PatchTransfer {
 
     const Stage& stage_;
     const ElementTree& tree_;
-    std::vector<Point> centres_;  ///< Of every element.
-    /// Sixteen places a group, `samples_` of every element. As a source, they lie in the order of the cells that rays
-    /// from cells 0 to 15 lead to.
+    std::vector<Point> centres_;  ///< Centre of every element.
+    /// Sample points in groups of sixteen, `samples_` per element. `sending_` has them in the order of the cells to
+    /// which rays from cells 0 to 15 lead.
     std::vector<RayEnds> receiving_, sending_;
     unsigned samples_;    ///< A multiple of 16.
-    bool joins_middles_;  ///< By one ray, in place of samples.
+    bool joins_middles_;  ///< If true, one ray from centre to centre replaces the samples.
     std::uint64_t seed_;
     mutable std::atomic<std::size_t> rays_{0}, form_factors_{0};
 };
 
-/// The matrix of form factors from elements to patches, computed at once and kept: E = F (mean of b over each patch).
+/// Dense matrix of form factors from elements to patches, computed at construction: E = F (mean of b over each patch).
 /// O(elements x patches) form factors and floats.
 class DenseTransport final : public TransportOperator {
   public:
@@ -112,7 +112,7 @@ class DenseTransport final : public TransportOperator {
 
   private:
     const PatchLevel& level_;
-    Groups leaves_of_;      ///< By patch.
+    Groups leaves_of_;      ///< Leaves of each patch.
     std::vector<float> F_;  ///< Row of leaf i: F_[i * patches, (i + 1) * patches).
 };
 

@@ -5,14 +5,15 @@
 namespace exitance {
 namespace {
 
-/// Of rays with density cos / pi about n, the share towards a parallelogram that is far beside its size.
+/// Share of rays of density cos / pi about n that lead to a parallelogram, which must be far away compared with its
+/// size.
 double form_factor(const PortalCell& cell, const Point& x, const Normal& n) {
     const Vec3 d = cell.corner + 0.5 * (cell.u + cell.v) - x;
     const double square = squared_norm(d);
     return std::max(0.0, dot(d, n)) * std::abs(dot(d, cell.n)) * cell.area / (pi * square * square);
 }
 
-/// Is any corner above the plane of x, and x farther away than the parallelogram is long?
+/// True if some corner is above the plane of x, and x is farther away than the parallelogram is long.
 bool can_be_aimed_at(const PortalCell& cell, const Point& x, const Normal& n) {
     const Vec3 to_corner = cell.corner - x;
     const double height = dot(to_corner, n);
@@ -39,7 +40,8 @@ void PortalAim::set(std::span<const PortalCell> cells, const Point& x, const Nor
     for (const PortalCell& cell : cells) {
         if (count_ == most_targets || !can_be_aimed_at(cell, x, n)) continue;
         const Vec3 offset = cell.corner - x;
-        // Of so much light; a little where the middle is behind the horizon or the plane is seen edge on.
+        // Proportional to its light. The even part below covers parallelograms whose centre is below the horizon or
+        // whose plane is seen edge-on.
         const double light = form_factor(cell, x, n) * cell.light;
         targets_[count_++] = {&cell, light, dot(offset, cell.n), offset};
         sum += light;
@@ -51,13 +53,14 @@ void PortalAim::set(std::span<const PortalCell> cells, const Point& x, const Nor
     }
 }
 
-/// Of directions towards a point of a parallelogram at distance r, points uniform on it: r^2 / (A cos).
+/// Sum over parallelograms of the probability of each times the density r^2 / (A cos) of directions to uniform points
+/// at distance r.
 double PortalAim::density(const Vec3& direction) const {
     double sum = 0;
     for (std::size_t c = 0; c < count_; ++c) {
         const Target& target = targets_[c];
         const PortalCell& cell = *target.cell;
-        const double rise = dot(direction, cell.n);  // of the ray over the plane, from x on
+        const double rise = dot(direction, cell.n);  // of the ray above the parallelogram's plane, per unit length
         const double distance = target.height / rise;
         if (!(distance > 0) || !std::isfinite(distance)) continue;
         const Vec3 at = distance * direction - target.offset;
@@ -81,7 +84,7 @@ PortalAim::Ray PortalAim::aimed(double a, double b) const {
     const Vec3 to = target.offset + s * target.cell->u + b * target.cell->v;
     const Vec3 direction = normalized(to);
     const double cosine = dot(direction, n_), found = density(direction);
-    // On a border or edge on roundings may say that nothing is met: there is no light to miss.
+    // On an edge, or if seen edge-on, rounding may make the density 0: such a ray carries no light.
     return {direction, cosine > 0 && found > 0 ? cosine / (pi * found) : 0};
 }
 

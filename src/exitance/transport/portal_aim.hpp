@@ -8,41 +8,42 @@
 
 namespace exitance {
 
-/// Rays of a place that are aimed at openings into lighter rooms. Where a dark room is lit through a small hole, one
-/// ray in thousands would find it. The hemisphere is cut in two: what lies towards some parallelograms, and the rest,
+/// Aims rays from a point at openings into brighter rooms. If a dark room is lit through a small hole, only one unaimed
+/// ray in thousands would find it. The hemisphere is divided into the directions towards some parallelograms and the
+/// rest:
 ///
 ///     E = int_rest b cos / pi dw + int_towards b cos / pi dw.
 ///
-/// Half of the rays have density cos / pi and count where they are in the rest; the others have density
-/// sum_c q_c r_c^2 / (A_c cos_c), points uniform on parallelogram c taken with chance q_c. Unbiased, whether or not the
-/// parallelograms cover the openings, and whatever stands between.
+/// Half of the rays have density cos / pi and count only in the rest. The others have density sum_c q_c r_c^2 / (A_c
+/// cos_c): uniform points on parallelogram c, which is chosen with probability q_c. Unbiased, even if the
+/// parallelograms cover the openings incompletely or are occluded.
 class PortalAim {
   public:
-    /// The parallelograms that rays of a place are to be aimed at; none where that is not worth it.
+    /// Returns the parallelograms at which rays from x should be aimed; empty if that does not pay.
     static std::span<const PortalCell> candidates(const Stage& stage, RegionId own, const Point& x, const Normal& n);
 
-    /// Aims from x, off the parallelograms that are near or behind it. n is the normal there.
+    /// Prepares aiming from x with normal n. Skips parallelograms that are too near or behind x.
     void set(std::span<const PortalCell> cells, const Point& x, const Normal& n);
 
-    /// Is a direction one towards a parallelogram, so that rays that are not aimed do not count there?
+    /// True if a direction leads to a parallelogram, so that unaimed rays in that direction must not count.
     bool is_aimed_at(const Vec3& direction) const;
 
     struct Ray {
         Vec3 direction;
-        double weight = 0;  ///< Of what it meets in E: cos / pi by its density.
+        double weight = 0;  ///< Factor on the radiosity it hits, for its contribution to E: cos / pi over its density.
     };
-    /// An aimed ray by two numbers in [0, 1); of weight 0 where nothing is aimed at.
+    /// Returns an aimed ray for two numbers in [0, 1). Its weight is 0 if there are no targets.
     Ray aimed(double a, double b) const;
 
-    /// As how many rays each of both halves counts.
+    /// Weight of each ray, as each half has only half of the rays.
     static constexpr double share = 2;
 
   private:
     struct Target {
         const PortalCell* cell = nullptr;
-        double chance = 0;
-        double height = 0;  ///< Of x over its plane, metres.
-        Vec3 offset;        ///< From x to its corner.
+        double chance = 0;  ///< Probability of being chosen.
+        double height = 0;  ///< Height of x over its plane, metres, with sign.
+        Vec3 offset;        ///< Vector from x to its corner.
     };
     static constexpr std::size_t most_targets = 16;
 

@@ -10,13 +10,13 @@
 namespace exitance {
 namespace {
 
-/// Upright, a metre from the origin, of 10 cm by 20.
+/// Upright parallelogram of 10 cm by 20 cm, a metre from the origin.
 PortalCell upright(double y = 0) {
     return {{1, y, 0.3}, {0, 0.1, 0}, {0, 0, 0.2}, {1, 0, 0}, 0.02, 1000};
 }
 
-TEST(PortalAim, BothHalvesOfTheRaysMakeAWholeHemisphere) {
-    // Two that overlap as seen from the place, and one that is partly below the horizon.
+TEST(PortalAim, BothHalvesOfTheRaysCoverTheHemisphere) {
+    // Two parallelograms overlap as seen from the origin, and one is partly below the horizon.
     const std::vector<PortalCell> cells = {
         upright(), upright(0.05), {{0, 1, -0.1}, {0.2, 0, 0}, {0, 0, 0.2}, {0, 1, 0}, 0.04, 100}};
     const Normal n{0, 0, 1};
@@ -33,11 +33,11 @@ TEST(PortalAim, BothHalvesOfTheRaysMakeAWholeHemisphere) {
         if (!aim.is_aimed_at(w)) rest += 1.0 / rays;
     }
     EXPECT_GT(aimed, 0.003);
-    EXPECT_NEAR(aimed + rest, 1, 2e-4);  // the rest is a share of 65536 points, of which some hundreds are left out
+    EXPECT_NEAR(aimed + rest, 1, 2e-4);  // the rest is estimated from 65536 points, some hundreds of which are left out
     EXPECT_GT(towards / aimed, 0.3);
 }
 
-TEST(PortalAim, DoesNotAimAtWhatIsNearOrBehind) {
+TEST(PortalAim, DoesNotAimAtNearOrHiddenParallelograms) {
     PortalAim aim;
     const PortalCell cell = upright();
     aim.set(std::span(&cell, 1), {0.95, 0.05, 0.4}, {1, 0, 0});
@@ -50,7 +50,7 @@ TEST(PortalAim, DoesNotAimAtWhatIsNearOrBehind) {
     EXPECT_FALSE(aim.is_aimed_at({0.5, 0, 0.5}));
 }
 
-TEST(LightPortals, AHoleIsFoundWhereItIsAndAimedAtFromTheDarkSide) {
+TEST(LightPortals, AHoleIsFoundAndAimedAtFromTheDarkSide) {
     for (const char* hole : {"0.03", "0.1", "0.3"}) {
         const double side = std::atof(hole);
         const Scene scene = built_scene("keyhole", {{"hole", hole}});
@@ -58,7 +58,7 @@ TEST(LightPortals, AHoleIsFoundWhereItIsAndAimedAtFromTheDarkSide) {
         stage.rooms = find_light_rooms(stage, 1, StopRequest());
         ASSERT_EQ(stage.rooms.count(), 2u);
         ASSERT_NE(stage.rooms.portals(), nullptr) << hole;
-        EXPECT_TRUE(stage.rooms.portals()->of_room(1).empty());  // the box
+        EXPECT_TRUE(stage.rooms.portals()->of_room(1).empty());  // the brighter room, the box
         const auto cells = stage.rooms.portals()->of_room(0);
         ASSERT_FALSE(cells.empty()) << hole;
         double area = 0;
@@ -91,7 +91,7 @@ TEST(RayRows, FindAHoleByAimedRays) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
         const RayRows F(stage, tree, numbering, locator, {.average = 64, .least = 64, .most = 64}, seed);
         F.gather(b, E);
-        double sum = 0;  // of the box's unit light outside, W: the hole's area
+        double sum = 0;  // light outside the box from unit radiosity inside, W: the hole's area
         for (std::size_t i = 0; i < b.size(); ++i)
             if (b[i][0] == 0) sum += tree.area(numbering.leaves[i]) * E[i][0];
         received += sum / seeds, square += sum * sum / seeds;
@@ -99,8 +99,9 @@ TEST(RayRows, FindAHoleByAimedRays) {
         const std::vector<double> kept = F.kept();
         for (std::size_t i = 0; i < b.size(); ++i) EXPECT_NEAR(E[i][0], kept[i], 0.2);
     }
-    EXPECT_NEAR(received, hole * hole, 0.08 * hole * hole);  // walls of the hole are of either room by whole elements
-    // Without aim one ray in ten thousand meets it: 64 of every element tell its light to a half.
+    EXPECT_NEAR(received, hole * hole,
+                0.08 * hole * hole);  // each wall element of the hole counts for one of the rooms as a whole
+    // Without aiming one ray in ten thousand hits the hole: 64 rays per element then give its light to within a half.
     EXPECT_LT(std::sqrt(square - received * received), 0.1 * hole * hole);
 }
 

@@ -18,13 +18,14 @@ unsigned RayBudget::rays(double area, double mean_area) const {
 
 namespace {
 
-/// Which points of which sequence the rays of a leaf are.
+/// Selects the sample points of a leaf's rays: the sequence and the number of its first point.
 struct Deal {
     std::uint64_t key;
     std::uint32_t first = 0;
 };
 
-/// A leaf's points begin at a multiple of their number, so that they are stratified by themselves, too.
+/// Assigns points to leaves. The points of a leaf begin at a multiple of their number, so that they are also stratified
+/// by themselves.
 std::vector<Deal> deal(const ElementTree& tree, const LeafNumbering& numbering, const std::vector<std::size_t>& first,
                        std::uint64_t seed, Dealing dealing) {
     const auto key = [&](std::size_t i) { return hash(seed, static_cast<std::uint64_t>(Stream::rows), i); };
@@ -62,7 +63,7 @@ RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumberin
                  : DealtUnknowns(numbering.leaves.size(), dealt_block(numbering.leaves.size()))) {
     const std::size_t n = numbering.leaves.size(), block = dealt_.block();
     const double mean_area = stage.area / static_cast<double>(n);
-    std::vector<std::size_t> first(n + 1, 0);  // of all rows
+    std::vector<std::size_t> first(n + 1, 0);  // for all rows
     for (std::size_t i = 0; i < n; ++i)
         first[i + 1] = first[i] + budget.rays(stage.important_area(tree, numbering.leaves[i]), mean_area);
     rays_ = first[n];
@@ -100,7 +101,7 @@ void RayRows::tell_rows() {
     if (!counts_.empty()) exchange_values(size(), dealt_.block(), row_of(counts_), "cast rows");
 }
 
-/// Finds out which leaves the own rows read, and numbers what rays met by where their values will stand.
+/// Finds the leaves that own rows read, and replaces leaf numbers in `hits_` by the indices of their values.
 void RayRows::fetch_what_is_met() {
     std::vector<std::uint8_t> met(size(), 0);
     do_own_share([&] {

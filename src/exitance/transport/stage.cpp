@@ -6,7 +6,8 @@
 namespace exitance {
 namespace {
 
-/// How many times finer elements are where areas count `weight` times: a room has as many of them as if it were alone.
+/// Factor by which element edges are reduced if areas count `weight` times: a room then has as many elements as if it
+/// were alone.
 double finer_by(double weight) {
     return std::sqrt(std::max(1.0, weight));
 }
@@ -19,10 +20,11 @@ double longest_extent(const ElementTree& tree, ElementId e) {
     return longest;
 }
 
-/// Cuts what of pieces in several rooms lies in the smaller ones.
+/// Splits elements that belong to smaller rooms to the element size of their room.
 void cut_to_rooms(ElementTree& tree, const LightRooms& rooms, double edge) {
-    constexpr double diagonal = 1.5;      // of an element, by its edge
-    constexpr double coarsest = 64 * 64;  // by area: what is larger lies in both rooms
+    constexpr double diagonal = 1.5;  // longest extent of an element over its edge
+    constexpr double coarsest =
+        64 * 64;  // area over the requested one, above which an element is not split: it belongs to several rooms
     std::vector<ElementId> open = tree.leaves();
     while (!open.empty()) {
         const ElementId e = open.back();
@@ -42,7 +44,7 @@ ElementTree Stage::make_elements(MeshSize size, const StopRequest* stop) const {
     ElementTree tree = make_mesh(pieces, concave, size, unlit, finer);
     std::vector<ElementId> leaves = tree.leaves();
     std::erase_if(leaves, [&](ElementId e) { return is_left_out(tree.region(e)); });
-    // Of thousands of leaves that stand in each other's way none matters by itself: it is no more than one element.
+    // Among thousands of leaves or slats that intersect each other none matters on its own: small ones stay whole.
     if (ErrorShare::is_crowd(leaves.size(), pieces.size())) {
         const double mean_area = area / static_cast<double>(leaves.size());
         std::erase_if(leaves, [&](ElementId e) { return tree.area(e) < mean_area; });

@@ -16,7 +16,7 @@
 
 namespace exitance {
 
-/// A scene made ready for transport: what every method needs of it, made once.
+/// A scene prepared for transport: the data that every method needs, computed once.
 struct Stage {
     explicit Stage(const Scene& s)
         : scene(s),
@@ -40,10 +40,10 @@ struct Stage {
     RayTracer tracer;
     Occluders occluders;
     DirectLight direct;
-    ClusteredLight clustered;  ///< The same where emitters are many and small,
-    CrowdedLight crowded;      ///< and where many things stand before them.
-    /// Sides of sheets that no light reaches are no surfaces to anybody: they do not count in `area` and are not cut
-    /// into elements in advance. Light that comes there after all is treated as everywhere.
+    ClusteredLight clustered;  ///< Direct light of many small emitters.
+    CrowdedLight crowded;      ///< Direct light of sources with many blockers.
+    /// Excludes sides of sheets that no light reaches: they do not count in `area` and are not meshed in advance. Light
+    /// that does reach them is handled as on any other side.
     void leave_out(Field<RegionId, std::uint8_t> sides) {
         unlit = std::move(sides);
         area = 0;
@@ -52,7 +52,7 @@ struct Stage {
     }
     bool is_left_out(RegionId region) const { return unlit.size() > 0 && unlit[region]; }
 
-    /// The pieces that are not left out.
+    /// Pieces that are not excluded.
     std::vector<Piece> lit_pieces() const {
         std::vector<Piece> out;
         std::copy_if(pieces.begin(), pieces.end(), std::back_inserter(out),
@@ -60,25 +60,25 @@ struct Stage {
         return out;
     }
 
-    /// Elements over all pieces, graded towards concave edges and cut where other polygons touch them; finer in rooms
-    /// that are small beside others. Where a stop is asked for, not all are cut.
+    /// Meshes all pieces: graded towards concave edges, split along contacts with other polygons, and finer in rooms
+    /// that are smaller than others. On a stop request the mesh is valid but not everywhere split.
     ElementTree make_elements(MeshSize size, const StopRequest* stop = nullptr) const;
 
-    double area = 0;                      ///< Of all surfaces but those left out, m^2.
-    Field<RegionId, std::uint8_t> unlit;  ///< What is left out; empty: nothing.
-    LightRooms rooms;                     ///< By which errors are judged.
+    double area = 0;                      ///< Area of all surfaces that are not excluded, m^2.
+    Field<RegionId, std::uint8_t> unlit;  ///< Excluded regions; empty: none.
+    LightRooms rooms;                     ///< Rooms by which errors are judged.
 
-    /// The area of an element as errors are judged by it, m^2.
+    /// Area of an element as weighted in error measures, m^2.
     double counted_area(const ElementTree& tree, ElementId e) const {
         return rooms.count() > 0 ? tree.area(e) * rooms.weight(tree, e) : tree.area(e);
     }
 
-    /// The same as errors of what is gathered from it are, m^2.
+    /// Area of an element, weighted by how much its light matters to the rooms it illuminates, m^2.
     double important_area(const ElementTree& tree, ElementId e) const {
         return rooms.count() > 0 ? tree.area(e) * rooms.importance(tree, e) : tree.area(e);
     }
 
-    /// Is there anything that emits, and anything that reflects? Without either no light is indirect.
+    /// True if something emits and something reflects. Otherwise all light is direct.
     bool has_indirect_light() const {
         bool reflects = false;
         for (const Region& region : scene.regions())

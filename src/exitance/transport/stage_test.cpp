@@ -7,8 +7,8 @@
 namespace exitance {
 namespace {
 
-/// Leaves of a tree run through one another everywhere: cut along that, each would be several elements.
-TEST(Stage, SmallThingsOfACrowdAreOneElementEach) {
+/// Leaves of a tree intersect each other everywhere: split along these contacts, each would become several elements.
+TEST(Stage, ManySmallPolygonsAreOneElementEach) {
     const Scene scene = built_scene("tree", {{"leaves", "3000"}});
     const Stage stage(scene);
     const ElementTree tree = stage.make_elements({.edge = 5, .grading_levels = 0});
@@ -19,14 +19,14 @@ TEST(Stage, SmallThingsOfACrowdAreOneElementEach) {
     }
     EXPECT_EQ(leaves, 6000u);
     EXPECT_EQ(cut, 0u);
-    // What they stand on is cut where they touch it all the same.
+    // Splitting all elements along contacts, the small ones included, adds more than a tenth.
     ElementTree alone;
     for (const Piece& piece : stage.pieces) alone.add_root(piece.region, piece.patch);
     cut_along_contacts(alone, alone.leaves(), stage.contacts);
     EXPECT_GT(alone.leaves().size(), 1.1 * static_cast<double>(alone.roots().size()));
 }
 
-TEST(Stage, AFewThingsAreCutWhereTheyTouch) {
+TEST(Stage, FewPolygonsAreSplitWhereTheyTouch) {
     const Scene scene = built_scene("tree", {{"leaves", "300"}});
     const Stage stage(scene);
     const ElementTree tree = stage.make_elements({.edge = 5, .grading_levels = 0});

@@ -8,8 +8,8 @@
 
 namespace exitance {
 
-/// Diffuse transport between the elements of a mesh, E = F B. How F is held is the operator's affair: a dense matrix,
-/// rows of rays, columns made when asked for, or the links of a hierarchy.
+/// Diffuse transport between the elements of a mesh, E = F B. Implementations store F as a dense matrix, as rows of
+/// rays, as columns computed on demand, or as the links of a hierarchy.
 class TransportOperator {
   public:
     virtual ~TransportOperator() = default;
@@ -17,19 +17,21 @@ class TransportOperator {
     virtual std::size_t size() const = 0;
     /// irradiance[i] = sum_j F_ij radiosity[j], both W/m^2, both of size() entries; they must not overlap.
     virtual void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const = 0;
-    /// The same for one receiver.
+    /// irradiance[receiver] alone.
     virtual Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const = 0;
     virtual std::size_t memory_bytes() const = 0;
 
-    /// How processes hold vectors while they solve with it. Those that have all of every row hold all.
+    /// Distribution of vectors over processes during a solve. By default every process stores all rows and all
+    /// unknowns.
     virtual DealtUnknowns dealt() const { return DealtUnknowns(size()); }
-    /// `gather` of what this process holds of both, dealt().own_count() entries. All processes call it.
+    /// Like `gather`, for vectors of dealt().own_count() values, the own part of each. Collective.
     virtual void gather_own(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
         gather(radiosity, irradiance);
     }
 
   protected:
-    /// `gather` by way of `gather_own`, for operators that are dealt out: all processes have all of `irradiance`.
+    /// Implements `gather` by `gather_own` for distributed operators; all processes get the whole `irradiance`.
+    /// Collective.
     void gather_dealt(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const {
         const DealtUnknowns unknowns = dealt();
         const std::vector<Spectrum> own = unknowns.own_part(radiosity);

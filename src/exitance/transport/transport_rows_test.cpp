@@ -11,7 +11,7 @@ namespace {
 /// Form factor between opposite faces of a cube, in closed form.
 constexpr double opposite = 0.1998248956983874;
 
-/// Mean over the faces' elements: E of each face where only the ceiling (face 1) has b = 1.
+/// Area-weighted mean irradiance of each face if only the ceiling (face 1) has radiosity 1.
 std::vector<double> light_from_the_ceiling(const Stage& stage, const TransportOperator& F, const ElementTree& tree,
                                            const LeafNumbering& numbering) {
     std::vector<Spectrum> b(F.size()), E(F.size());
@@ -36,24 +36,24 @@ struct Cube {
     }
 };
 
-TEST(RayRows, OfAClosedSceneSumToOne) {
+TEST(RayRows, SumToOneInAClosedScene) {
     const Cube cube;
     const RayRows F = cube.rows(64);
     const std::vector<Spectrum> ones(F.size(), Spectrum(1.0));
     for (std::size_t i = 0; i < F.size(); ++i) EXPECT_NEAR(F.gather_at(i, ones)[0], 1, 1e-14);  // a sum of ones
 }
 
-TEST(RayRows, BringWhatTheClosedFormSays) {
+TEST(RayRows, AgreeWithTheClosedForm) {
     const Cube cube;
     const std::vector<double> face = light_from_the_ceiling(cube.stage, cube.rows(256), cube.tree, cube.numbering);
-    // 100 elements of 256 stratified rays a face: a standard error below 0.001.
+    // 100 elements of 256 stratified rays per face: a standard error below 0.001.
     EXPECT_NEAR(face[0], opposite, 0.003);
     EXPECT_NEAR(face[1], 0, 1e-15);
     for (std::size_t wall = 2; wall < 6; ++wall) EXPECT_NEAR(face[wall], (1 - opposite) / 4, 0.003);
 }
 
-/// What faces gather as wholes, of light that varies over the ceiling.
-TEST(RayRows, DealtOutOverAPieceAreBetterTogether) {
+/// Compares the error of the irradiance of whole faces, with light from the ceiling only.
+TEST(RayRows, OfOneSequencePerPieceAreMoreAccurateTogether) {
     const Cube cube;
     const auto square_error = [&](Dealing dealing) {
         std::vector<double> squares(6, 0.0);
@@ -81,7 +81,7 @@ TEST(RayRows, AreTheSameOnAnyNumberOfThreads) {
     EXPECT_EQ(once, again);
 }
 
-TEST(DenseTransport, BringsWhatTheClosedFormSays) {
+TEST(DenseTransport, AgreesWithTheClosedForm) {
     const Cube cube;
     Progress progress;
     const StopRequest stop;
@@ -90,7 +90,7 @@ TEST(DenseTransport, BringsWhatTheClosedFormSays) {
         const PatchTransfer transfer(cube.stage, cube.tree, 16, 1);
         const DenseTransport F(transfer, cube.numbering, patches, progress, stop);
         const std::vector<double> face = light_from_the_ceiling(cube.stage, F, cube.tree, cube.numbering);
-        // Exact towards each patch, at the middles of elements: the midpoint rule's error on elements of 0.25 m.
+        // Exact towards each patch; the error is that of the midpoint rule on elements of 0.25 m.
         EXPECT_NEAR(face[0], opposite, 0.002);
         for (std::size_t wall = 2; wall < 6; ++wall) EXPECT_NEAR(face[wall], (1 - opposite) / 4, 0.004);
     }

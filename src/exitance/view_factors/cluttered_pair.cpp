@@ -9,18 +9,23 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_parts = 48;  ///< Cut under edges.
-constexpr double near_edge = 0.1;       ///< Of the receiver's size: the height of edges that it is cut under.
-/// Of what a dark cell would hold at the slope at which light fades over the whole receiver: a corner that its points
-/// missed.
+constexpr std::size_t max_parts = 48;  ///< Parts of the receiver after cutting it below edges, at most.
+/// The receiver is cut below edges up to this height, as a share of its size.
+constexpr double max_cut_height = 0.1;
+/// Error of a cell of which all points are dark: this share of the light that it would hold if light faded at a
+/// constant slope over the whole receiver. Covers a bright corner that the points missed.
 constexpr double dark_corner = 0.03;
-constexpr double unseen_brightness = 0.05;  ///< Of the whole source: what may have been missed where nothing was seen.
-constexpr double between_points = 0.125;    ///< Of a cell's size: no strip so wide slips through its rules.
-constexpr double unseen_strip = 0.1;        ///< Of a strip's light: what may be lost where no point met it.
-constexpr double left = 0.5;                ///< Of the largest difference of a cell's rules.
-constexpr int most_halvings = 6;            ///< Of a source.
-constexpr double paying = 1.4;              ///< Blockers before both halves, over those before the whole.
-constexpr double exact_share = 0.1;         ///< Of the tolerance: smaller errors of clear cells stay.
+/// Share of the whole source that may have been missed if no point saw any light.
+constexpr double unseen_brightness = 0.05;
+/// Share of a cell's size: strips of this width always contain points of its rules.
+constexpr double between_points = 0.125;
+constexpr double unseen_strip = 0.1;  ///< Share of a strip's light that may be lost if no point is in it.
+/// Error of a cell as a share of the largest difference between its quadrature rules.
+constexpr double error_per_difference = 0.5;
+constexpr int max_halvings = 6;  ///< Limit on the halvings of a source.
+/// A source is halved if its halves together have at most this many blockers for each one of the whole source.
+constexpr double max_blocker_ratio = 1.4;
+constexpr double exact_share = 0.1;  ///< Share of the tolerance: errors of unoccluded cells below it are not reduced.
 
 double squared_distance(const Point& x, const Point& a, const Point& b) {
     const Vec3 e = b - a, d = x - a;
@@ -34,7 +39,8 @@ double area_of(std::span<const Vec2> part) {
     return 0.5 * twice;
 }
 
-/// Cuts a convex part along the line through p and q, if the segment between them runs through it.
+/// Cuts a convex part along the line through p and q. Returns false if the segment between them does not pass through
+/// it.
 bool cut_part(const std::vector<Vec2>& part, Vec2 p, Vec2 q, double slack, std::vector<Vec2>& left,
               std::vector<Vec2>& right) {
     const double length = std::sqrt(dot(q - p, q - p));
@@ -75,7 +81,7 @@ void ClutteredExchange::cut_along(Vec2 p, Vec2 q, double slack) {
     parts_.swap(next_);
 }
 
-/// Where something stands on the receiver, what it sees jumps.
+/// Cuts the receiver along its contacts with blockers, where visibility is discontinuous.
 void ClutteredExchange::cut_along_contacts(double slack) {
     for (const ConvexBlocker* blocker : pair_.blockers)
         for (const ConvexBlocker::Edge& e : blocker->edges) {
@@ -85,7 +91,7 @@ void ClutteredExchange::cut_along_contacts(double slack) {
         }
 }
 
-/// The parts as triangles and quadrilaterals.
+/// Splits the parts into triangles and quadrilaterals and evaluates these.
 void ClutteredExchange::add_cells(const std::vector<SourcePart>& sources) {
     for (const Part& part : parts_)
         for (std::size_t first = 1; first + 1 < part.size(); first += 2) {
@@ -112,17 +118,17 @@ void ClutteredExchange::find_edges(double slack) {
     std::stable_sort(edges_.begin(), edges_.end(), [](const Edge& e, const Edge& f) { return e.low.z < f.low.z; });
 }
 
-/// Where an edge passes closely over the receiver, what it sees nearly jumps.
+/// Cuts the receiver below edges that pass closely over it, where visibility is nearly discontinuous.
 void ClutteredExchange::cut_under_edges(double slack) {
-    const double near = near_edge * std::sqrt(area_);
+    const double near = max_cut_height * std::sqrt(area_);
     for (const Edge& e : edges_) {
-        if (parts_.size() > most_parts || e.low.z > near) break;
+        if (parts_.size() > max_parts || e.low.z > near) break;
         if (e.high.z <= near) cut_along({e.low.x, e.low.y}, {e.high.x, e.high.y}, slack);
     }
 }
 
-/// How much of a cell may lie under an edge that runs closer to it than the points of its rules lie to each other: what
-/// is seen changes within about the edge's height, and a wider strip is met by some points.
+/// Share of a cell that may be below an edge that is closer to the cell than the points of its rules are to each other.
+/// Visibility changes over a distance of about the edge's height; wider strips contain points.
 double ClutteredExchange::share_under_edges(const Cell& cell) const {
     Vec2 middle{};
     for (std::size_t i = 0; i < cell.count; ++i) middle = middle + (1.0 / cell.count) * cell.corner[i];
@@ -143,13 +149,13 @@ double ClutteredExchange::share_under_edges(const Cell& cell) const {
     return share;
 }
 
-/// What may have slipped between the points of a cell under an edge: some of what they saw, or of what little the cell
-/// would hold if it saw less than a third of what the receiver sees on average.
+/// Light that the points of a cell below an edge may have missed: a share of the light that they found or, if they
+/// found little, of a third of the receiver's average.
 double ClutteredExchange::unseen(const Cell& cell) const {
     return unseen_strip * std::max(cell.integral, 0.3 * total_ * area_of(cell.corners()) / area_);
 }
 
-/// Three rules that have no point in common; the best comes last.
+/// Places the nodes of three rules without common nodes, the most accurate one last.
 void ClutteredExchange::place_nodes(const Cell& cell) {
     nodes_.clear(), weights_.clear(), ends_.clear();
     const Vec2 o = cell.corner[0], a = cell.corner[1] - o;
@@ -182,7 +188,8 @@ ClutteredExchange::Blockers ClutteredExchange::seen_blockers() const {
     return blockers;
 }
 
-/// Adds the halves of a source, cut across its longest edge, where each is behind much less than the whole.
+/// Adds the halves of a source, cut across its longest edge. Returns false if the halves do not have far fewer
+/// blockers.
 bool ClutteredExchange::add_halves(Cell& cell, const SourcePart& source) {
     std::size_t longest = 0;
     Vec3 along;
@@ -203,12 +210,12 @@ bool ClutteredExchange::add_halves(Cell& cell, const SourcePart& source) {
         blockers += half.blockers.size();
         if (outlook != VisibleFromMany::Outlook::hidden) halves[open++] = std::move(half);
     }
-    if (static_cast<double>(blockers) > paying * static_cast<double>(source.blockers.size())) return false;
+    if (static_cast<double>(blockers) > max_blocker_ratio * static_cast<double>(source.blockers.size())) return false;
     for (std::size_t k = 0; k < open; ++k) add_source(cell, halves[k]);
     return true;
 }
 
-/// Adds what a cell's points see of a part of the source, and that part to those of the cell.
+/// Adds the light that a cell's points receive from a part of the source, and adds that part to the cell's sources.
 void ClutteredExchange::add_source(Cell& cell, const SourcePart& source) {
     SourcePart part{source.outline, {}, source.depth};
     const auto outlook = visible_.set(frame_, cell.corners(), source.outline, source.blockers);
@@ -223,7 +230,7 @@ void ClutteredExchange::add_source(Cell& cell, const SourcePart& source) {
     }
     part.blockers = seen_blockers();
     if (part.blockers.size() > SightTables::most_blockers) {
-        if (part.depth < most_halvings && add_halves(cell, part)) return;
+        if (part.depth < max_halvings && add_halves(cell, part)) return;
         visible_.set(frame_, cell.corners(), part.outline, part.blockers);
     }
     evaluations += nodes_.size();
@@ -235,7 +242,7 @@ void ClutteredExchange::add_source(Cell& cell, const SourcePart& source) {
     cell.sources.push_back(std::move(part));
 }
 
-/// The contour integral of a cell that sees all of its sources.
+/// Contour integral of a cell whose sources are all unoccluded.
 double ClutteredExchange::exact(const Cell& cell) const {
     std::array<Point, 4> corners;
     for (std::size_t i = 0; i < cell.count; ++i) corners[i] = frame_.at(cell.corner[i]);
@@ -245,7 +252,7 @@ double ClutteredExchange::exact(const Cell& cell) const {
     return sum;
 }
 
-/// Sets the error of a cell from what its rules found.
+/// Sets the integral and the error of a cell from its rules.
 void ClutteredExchange::judge(Cell& cell) {
     double most = 0, sum = 0;
     std::size_t k = 0;
@@ -255,15 +262,16 @@ void ClutteredExchange::judge(Cell& cell) {
             found[rule] += weights_[k] * values_[k], brightest_ = std::max(brightest_, values_[k]);
     sum = found.back();
     for (const double other : found) most = std::max(most, std::abs(sum - other));
-    cell.integral = sum, cell.error = left * most;
+    cell.integral = sum, cell.error = error_per_difference * most;
     if (cell.sources.empty()) {
-        cell.error = 0;  // hidden for certain
+        cell.error = 0;  // certainly hidden
         return;
     }
     const bool clear = std::ranges::all_of(cell.sources, [](const SourcePart& s) { return s.blockers.empty(); });
     if (clear && cell.error > exact_share * relative_ * sum) cell.integral = exact(cell), cell.error = 0;
     if (clear) return;
-    // Past several blockers some of a dark cell may see through a gap, no more of it than light fades over the cell.
+    // Between several blockers part of a dark cell may see light through a gap; bounded by the slope of light over the
+    // receiver.
     const double area = area_of(cell.corners());
     if (sum == 0) cell.error = dark_corner * brightest_ * area * std::sqrt(area / area_);
     cell.error = std::max(cell.error, share_under_edges(cell) * unseen(cell));
@@ -276,7 +284,7 @@ void ClutteredExchange::look(Cell& cell, const std::vector<SourcePart>& sources)
     judge(cell);
 }
 
-/// Across its longest edge, and for a quadrilateral across the edge opposite to that.
+/// Halves the cell with the largest error across its longest edge, and for a quadrilateral also the opposite edge.
 void ClutteredExchange::halve_worst() {
     std::pop_heap(heap_.begin(), heap_.end());
     const Cell cell = std::move(heap_.back());
@@ -342,7 +350,7 @@ double ClutteredExchange::operator()(const OccludedPair& pair, const Allowance& 
     };
     while (heap_.front().error > 0 && !good() && evaluations < enough && !stop_.requested()) halve_worst();
     if (all_lit_) return unoccluded = true, 0;
-    double sum = 0;  // anew: the running one has rounded
+    double sum = 0;  // a new sum: the running one has accumulated rounding errors
     for (const Cell& cell : heap_) sum += cell.integral;
     return sum;
 }

@@ -7,48 +7,48 @@
 
 namespace exitance {
 
-/// Integrates the exact visible part of a source over a receiver where much stands in between: critical lines would cut
-/// the receiver into thousands of cells, most of which hardly matter. Cells of the receiver are looked from by three
-/// rules, and the one on which these differ most is halved, until what is left is small. Each half sees past fewer
-/// blockers than its cell, and a source before many is halved, too, so that a point meets few of them at a time.
-/// Jumps are sought: the receiver is cut along the borders of what stands on it. Under edges that pass within a cell's
-/// size, rules that agree are not believed: what stands a finger's breadth before a wall darkens a strip that no point
-/// of a large cell may meet. One object serves one thread and many pairs.
+/// Integrates the exact visible part of a source over a receiver with many blockers, where critical lines would cut the
+/// receiver into thousands of cells, most of which hardly matter. Three quadrature rules are applied to cells of the
+/// receiver, and the cell on which they differ most is halved until the error is small. Each half has fewer relevant
+/// blockers than its cell. A source behind many blockers is halved, too, so that few of them are relevant at a time.
+/// Discontinuities are handled explicitly: the receiver is cut along its contacts with blockers. Below edges that pass
+/// within a cell's size, agreeing rules are not trusted: a blocker a centimetre in front of a wall darkens a strip that
+/// all points of a large cell may miss. One object serves one thread and many pairs.
 class ClutteredExchange {
   public:
-    /// What is computed when a stop is requested is of no use.
+    /// After a stop request the results are meaningless.
     explicit ClutteredExchange(const StopRequest& stop) : stop_(stop) {}
 
-    /// The error that may be left, as it is estimated: the larger of the first two.
+    /// Allowed estimated error: the larger of `relative` and `absolute`.
     struct Allowance {
-        double relative = 1e-4;                 ///< Of the value.
+        double relative = 1e-4;                 ///< Share of the value.
         double absolute = 0;                    ///< m^2
-        double ignored = 0;                     ///< m^2: smaller values need no digits.
-        std::size_t most_evaluations = 20'000;  ///< A bound on the worst pairs.
+        double ignored = 0;                     ///< m^2; smaller values need no accuracy.
+        std::size_t most_evaluations = 20'000;  ///< Limit on the evaluations of a pair.
     };
 
-    /// A_i F_ij, m^2, of a pair as for OccludedExchange. `unoccluded` tells that nothing was seen to stand between; the
-    /// value is then left to others.
-    /// turned  other points are looked from: this is the pair's second look from the same face
+    /// A_i F_ij of a pair, m^2; the pair must be as for OccludedExchange. Sets `unoccluded` if no blocker was found
+    /// between the faces; the value is then 0 and must be computed otherwise.
+    /// turned  use other sample points: this is the pair's second computation from the same face
     double operator()(const OccludedPair& pair, const Allowance& allowance, bool turned, bool& unoccluded);
 
-    std::size_t evaluations = 0;  ///< Points from which a part of a source was looked at, so far.
+    std::size_t evaluations = 0;  ///< Points from which parts of a source were evaluated, so far.
 
   private:
     using Part = std::vector<Vec2>;
     using Blockers = std::vector<const ConvexBlocker*>;
 
-    /// A part of the source, and what may stand before it as seen from a cell: nothing where it is clear.
+    /// A part of the source, and its possible blockers as seen from a cell: empty if it is unoccluded.
     struct SourcePart {
         std::vector<Point> outline;
         Blockers blockers;
-        int depth;  ///< Halvings of the source.
+        int depth;  ///< Number of halvings of the source.
     };
     struct Cell {
         std::array<Vec2, 4> corner;
         std::uint32_t count;
-        double integral = 0, error = 0;   ///< m^2; the second about.
-        std::vector<SourcePart> sources;  ///< Without what is hidden for certain.
+        double integral = 0, error = 0;   ///< m^2; `error` is an estimate.
+        std::vector<SourcePart> sources;  ///< Excludes parts that are certainly hidden.
         std::span<const Vec2> corners() const { return std::span(corner).first(count); }
         bool operator<(const Cell& other) const { return error < other.error; }
     };
@@ -74,22 +74,23 @@ class ClutteredExchange {
     PlaneFrame frame_{{}, {0, 0, 1}};
     VisibleFromMany visible_;
     std::vector<Part> parts_, next_;
-    std::vector<Cell> heap_;  ///< The largest error first.
+    std::vector<Cell> heap_;  ///< Largest error first.
     struct Edge {
-        Point low, high;  ///< Its ends in the receiver's frame: two coordinates and the height.
+        Point low, high;  ///< End points in the receiver's frame: two coordinates and the height.
     };
-    std::vector<Edge> edges_;  ///< Of the blockers, off the receiver, by their lower ends' heights.
+    std::vector<Edge> edges_;  ///< Edges of the blockers, off the receiver, sorted by the height of their lower end.
     std::vector<Vec2> nodes_;
-    std::vector<double> weights_, values_, factors_;  ///< m^2; form factors to all of the source, to a part of it.
+    /// Weights in m^2; form factors to the whole source; form factors to a part of it.
+    std::vector<double> weights_, values_, factors_;
     std::vector<Seen> seen_;
-    std::vector<std::size_t> ends_;  ///< Of the rules' nodes.
+    std::vector<std::size_t> ends_;  ///< End of each rule's nodes.
     double area_ = 0, total_ = 0, squared_error_ = 0, relative_ = 0;
-    double brightest_ = 0;  ///< The largest form factor seen, or what may have been missed.
+    double brightest_ = 0;  ///< Largest form factor found, or a bound on the one that may have been missed.
     bool all_lit_ = true, turned_ = false;
 };
 
-/// How unevenly a plane's points see past blockers: lengths of their edges over their heights. Of two faces the one
-/// with less is to receive. No face is counted closer than 0.002 of `size` (metres).
+/// Measure of how much blockers make the view from a plane vary: the sum of their edges' lengths over their heights.
+/// The face with the smaller value should be the receiver. Heights are at least 0.002 of `size` (metres).
 double crowding(const Plane& plane, double size, std::span<const ConvexBlocker* const> blockers);
 
 }  // namespace exitance

@@ -10,10 +10,10 @@
 namespace exitance {
 namespace {
 
-/// Defects of closure within so many standard deviations are noise: one row in 2,000 exceeds it by chance.
-constexpr double explained = 3.5;
-constexpr int most_sweeps = 200;        ///< Of the relaxation that distributes closure defects.
-constexpr double settled_share = 1e-6;  ///< Of the largest defect: what may be left of it.
+/// Closure defects within this many standard deviations are noise: one row in 2,000 exceeds it by chance.
+constexpr double max_noise_deviations = 3.5;
+constexpr int max_sweeps = 200;         ///< Sweeps of the relaxation that distributes closure defects, at most.
+constexpr double settled_share = 1e-6;  ///< Remaining share of the largest defect at which the relaxation stops.
 
 /// An exchange area A_i F_ij, m^2, and its variance.
 struct Exchange {
@@ -37,14 +37,14 @@ OneSide side_of(const RawRow& row, const RowEntry* entry, double face_area) {
 }
 
 Exchange combined(const OneSide& a, const OneSide& b, std::uint32_t column) {
-    double share = 0.5;  // of the first
+    double share = 0.5;  // of the first estimate
     if (a.density != b.density)
         share = std::isinf(a.density) ? 1 : std::isinf(b.density) ? 0 : a.density / (a.density + b.density);
     return {column, share * a.area + (1 - share) * b.area,
             share * share * a.variance + (1 - share) * (1 - share) * b.variance};
 }
 
-/// The combined rows, and the relaxation that closes them.
+/// The combined rows, and the relaxation that removes their closure defects.
 class Combination {
   public:
     Combination(const std::vector<RawRow>& rows, const std::vector<double>& areas)
@@ -56,7 +56,7 @@ class Combination {
         absent_.clear();
     }
 
-    /// Distributes the closure defects; returns the number of rows whose defect is not explained by their variance.
+    /// Distributes the closure defects. Returns the number of rows whose defect is not explained by their variance.
     std::size_t close() {
         const std::size_t n = rows_.size();
         defect_.assign(n, 0), stiffness_.assign(n, 0), multiplier_.assign(n, 0);
@@ -66,7 +66,7 @@ class Combination {
             double sum = areas_[i] * rows_[i].missed, variance = areas_[i] * areas_[i] * rows_[i].missed_variance;
             for (const Exchange& e : exchanges_[i]) sum += e.area, variance += e.variance;
             const double d = areas_[i] - sum;
-            if (std::abs(d) > explained * std::sqrt(variance) + areas_[i] * rows_[i].bound) {
+            if (std::abs(d) > max_noise_deviations * std::sqrt(variance) + areas_[i] * rows_[i].bound) {
                 ++unexplained;
                 continue;
             }
@@ -85,7 +85,7 @@ class Combination {
     void release(std::size_t i) { std::vector<Exchange>().swap(exchanges_[i]); }
 
   private:
-    /// Finds, for every row, the columns that have an entry for it and that it has none for.
+    /// For every row, finds the rows that have an entry for it although it has none for them.
     void find_absent() {
         absent_.assign(rows_.size(), {});
         for (std::uint32_t i = 0; i < rows_.size(); ++i)
@@ -99,7 +99,8 @@ class Combination {
         const auto add = [&](std::uint32_t j, const RowEntry* entry) {
             const OneSide mine = side_of(rows_[i], entry, areas_[i]);
             const OneSide theirs = side_of(rows_[j], find_entry(rows_[j], i), areas_[j]);
-            const Exchange e = i < j ? combined(mine, theirs, j) : combined(theirs, mine, j);  // the same bits in both
+            // In fixed order, so that both rows get the same bits.
+            const Exchange e = i < j ? combined(mine, theirs, j) : combined(theirs, mine, j);
             if (e.area > 0) out.push_back(e);
         };
         auto late = absent_[i].begin();
@@ -110,10 +111,11 @@ class Combination {
         for (; late != absent_[i].end(); ++late) add(*late, nullptr);
     }
 
-    /// Minimises sum (change_ij)^2 / v_ij subject to sum_j change_ij = d_i: change_ij = v_ij (m_i + m_j), where the
-    /// multipliers solve sum_j v_ij (m_i + m_j) = d_i, by Gauss-Seidel. Rows without variance keep m = 0.
+    /// Minimizes sum (change_ij)^2 / v_ij subject to sum_j change_ij = d_i. The solution is change_ij = v_ij (m_i +
+    /// m_j), where the multipliers satisfy sum_j v_ij (m_i + m_j) = d_i and are computed by Gauss-Seidel. Rows without
+    /// variance keep m = 0.
     void relax(double settled) {
-        for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+        for (int sweep = 0; sweep < max_sweeps; ++sweep) {
             double left = 0;
             for (std::size_t i = 0; i < rows_.size(); ++i) {
                 if (stiffness_[i] <= 0) continue;
@@ -133,7 +135,7 @@ class Combination {
     std::vector<double> defect_, stiffness_, multiplier_;  ///< m^2, m^4, 1 / m^2.
 };
 
-/// Sets both defects of rows as they were computed.
+/// Computes the reciprocity and closure defects of independently computed rows.
 void find_defects(const std::vector<RawRow>& rows, double error, SparseFactors& out) {
     std::vector<double> reciprocity(rows.size()), closure(rows.size());
     parallel_for(rows.size(), 16, [&](std::size_t i) {
@@ -153,7 +155,7 @@ void find_defects(const std::vector<RawRow>& rows, double error, SparseFactors& 
     }
 }
 
-/// Appends one row, without the entries that are too small.
+/// Appends rows entry by entry and drops entries that are too small.
 class RowAppender {
   public:
     RowAppender(const CombineOptions& options, SparseFactors& out) : options_(options), out_(out) {
@@ -185,7 +187,7 @@ class RowAppender {
 }  // namespace
 
 void combine_rows(const std::vector<RawRow>& rows, const CombineOptions& options, SparseFactors& out) {
-    if (out.starts.size() == 1) find_defects(rows, options.error, out);  // of the first pass
+    if (out.starts.size() == 1) find_defects(rows, options.error, out);  // after the first pass
     Combination combination(rows, out.areas);
     combination.combine();
     out.unclosed = combination.close();

@@ -9,13 +9,13 @@ namespace exitance {
 
 struct EntryFactorOptions {
     double tolerance = 1e-4;                    ///< Relative error of every entry above 1e-6.
-    double smallest = 0;                        ///< Entries below are dropped.
-    std::size_t memory_limit_bytes = SIZE_MAX;  ///< Rows end when the process holds more.
+    double smallest = 0;                        ///< Smaller entries are dropped.
+    std::size_t memory_limit_bytes = SIZE_MAX;  ///< Computation of rows stops if the process uses more.
 };
 
-/// compute_view_factors with rows that outlive a stop: finished rows are kept in `store`, and returned when a stop is
-/// requested or memory runs out. `is_settled` is false then, and so it is if pairs of rows that disagree were not all
-/// computed again. Memory: 8 bytes a pair, and the entries.
+/// Like compute_view_factors, with rows that survive a stop: finished rows are saved in `store` and returned if a stop
+/// is requested or the memory limit is reached. `is_settled` is false in that case, and also if not all pairs of rows
+/// that disagree could be recomputed. Memory: 8 bytes per pair, plus the entries.
 SparseFactors compute_entry_factors(const Scene& scene, const EntryFactorOptions& options, RawRowStore* store,
                                     Progress& progress, const StopRequest& stop);
 

@@ -13,7 +13,7 @@ class FaceSampler {
   public:
     FaceSampler(const Scene& scene, SurfaceId s);
 
-    /// u, v  in [0, 1)      returns a point of the face, metres
+    /// Returns a point of the face, metres, for u and v in [0, 1).
     Point operator()(double u, double v) const {
         const double wanted = u * area_;
         std::size_t k = 0;
@@ -40,7 +40,7 @@ class FaceSampler {
     Box box_;
 };
 
-/// Maps the unit square to directions about frame.n, distributed by the cosine law.
+/// Maps the unit square to directions about frame.n, with density cos / pi.
 inline Vec3 cosine_direction(const Frame& frame, double u, double v) {
     const double r = std::sqrt(u), phi = 2 * pi * v;
     return (r * std::cos(phi)) * frame.u + (r * std::sin(phi)) * frame.v + std::sqrt(std::max(1e-12, 1 - u)) * frame.n;

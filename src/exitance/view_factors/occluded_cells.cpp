@@ -7,12 +7,13 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_lines = 24, most_cells = 200;
-constexpr int most_searches = 6;  ///< Halvings of a receiver with more lines.
+constexpr std::size_t max_lines = 24, max_parts = 200;
+constexpr int max_halvings = 6;  ///< Halvings of a receiver with more lines, at most.
 
 }  // namespace
 
-/// Parts of a part on both sides of a line; false when the line misses it, or its events lie beside it.
+/// Cuts a part along a critical line. Returns false if the line, or the range of it where visibility changes, does not
+/// cross the part.
 bool OccludedExchange::cut(const Part& part, const CriticalLine& line, Part& front, Part& back) const {
     const double near = nearest_line * size_;
     std::array<double, Part::most> d;
@@ -41,13 +42,13 @@ bool OccludedExchange::cut(const Part& part, const CriticalLine& line, Part& fro
     return line.first < leaves - near && line.last > enters + near && front.count >= 3 && back.count >= 3;
 }
 
-/// Cuts a part of the receiver along the critical lines where their events lie, and adds triangles and quadrilaterals
-/// to cells_. A part with too many lines is halved first, as each half has fewer.
+/// Cuts a part of the receiver along the critical lines where visibility changes, and adds triangles and quadrilaterals
+/// to cells_. A part with too many lines is halved first, since each half has fewer.
 void OccludedExchange::cut_into_cells(const Part& part, int depth) {
     if (cells_.size() > most_cells_) return;
-    finder_.find(frame_, part.corners(), pair_.source, visible_.seen_edges(), nearest_line * size_, most_lines, lines_);
+    finder_.find(frame_, part.corners(), pair_.source, visible_.seen_edges(), nearest_line * size_, max_lines, lines_);
     Part front, back;
-    if (lines_.size() >= most_lines && depth < most_searches) {
+    if (lines_.size() >= max_lines && depth < max_halvings) {
         std::size_t longest = 0;
         Vec2 along{};
         for (std::size_t i = 0; i < part.count; ++i) {
@@ -64,10 +65,10 @@ void OccludedExchange::cut_into_cells(const Part& part, int depth) {
         }
     }
     parts_.assign(1, part);
-    bool complete = lines_.size() < most_lines;
+    bool complete = lines_.size() < max_lines;
     for (const CriticalLine& line : lines_) {
-        complete &= parts_.size() <= most_cells;
-        if (!complete && parts_.size() > most_cells) break;
+        complete &= parts_.size() <= max_parts;
+        if (!complete && parts_.size() > max_parts) break;
         for (std::size_t i = 0, count = parts_.size(); i < count; ++i)
             if (cut(parts_[i], line, front, back)) {
                 parts_[i] = front;
@@ -76,7 +77,7 @@ void OccludedExchange::cut_into_cells(const Part& part, int depth) {
     }
     for (const Part& convex : parts_) {
         std::size_t first = 1;
-        while (convex.count - first >= 2) {  // a fan of quadrilaterals, at last perhaps a triangle
+        while (convex.count - first >= 2) {  // a fan of quadrilaterals, with a triangle at the end if needed
             Cell piece;
             const std::size_t take = std::min<std::size_t>(3, convex.count - first);
             piece.add(convex.corner[0]);
@@ -88,7 +89,7 @@ void OccludedExchange::cut_into_cells(const Part& part, int depth) {
     }
 }
 
-/// Adds Gauss points of a triangle or quadrilateral: n x n on the square, on triangles those of degree 2n - 1.
+/// Adds Gauss points of a triangle or quadrilateral: n x n on a quadrilateral, those of degree 2n - 1 on a triangle.
 void OccludedExchange::place_nodes(const Cell& cell, int points) {
     const Vec2 o = cell.corner[0], a = cell.corner[1] - o;
     if (cell.count == 3) {

@@ -8,15 +8,16 @@
 namespace exitance {
 namespace {
 
-constexpr int deepest = 20;                 ///< Halvings of a cell: what is left is 1e-3 of its size in each direction.
-constexpr double dominating_share = 0.25;   ///< Of the tolerance, for such an entry.
-constexpr double dark_corner = 0.05;        ///< Of a dark cell's share of light, where it may be lit.
-constexpr double unseen_brightness = 0.05;  ///< Of the whole source: what may be seen where no point saw anything.
-constexpr double surely_ignored = 0.3;      ///< Of what needs no digits: a first look that finds less may be far off.
-/// Of a cell's allowance: what rules may leave for the source's nearness alone. Were it all of it, cells along a
-/// touching edge would fail at every size, as they are as near to the source as they are small.
+constexpr int max_depth = 20;              ///< Halvings of a cell, at most: down to 1e-3 of its size in each direction.
+constexpr double dominating_share = 0.25;  ///< Share of the tolerance for entries that dominate their row.
+constexpr double dark_corner = 0.05;  ///< Share of the light that a dark cell may receive, if parts of it may be lit.
+constexpr double unseen_brightness = 0.05;  ///< Share of the whole source that may be visible although no point saw it.
+constexpr double surely_ignored = 0.3;      ///< Share of demand.ignored: estimates above it may be inaccurate.
+/// Share of a cell's allowed error that its rules may have due to the nearness of the source alone. With the full
+/// allowance, cells along a common edge with the source would fail at every size, as they are as near to it as they are
+/// small.
 constexpr double near_part = 0.1;
-constexpr double near_share = 0.5;  ///< Of the difference of two rules that the better one may leave, at an edge.
+constexpr double near_share = 0.5;  ///< Error of the better of two rules at an edge, as a share of their difference.
 
 double cross_area(std::span<const Vec2> corners) {
     double twice = 0;
@@ -45,7 +46,7 @@ double squared_distance(const Point& x, const Point& a, const Point& b) {
     return dot(d - t * e, d - t * e);
 }
 
-/// From a point to a convex polygon with normal n, metres.
+/// Distance from a point to a convex polygon with normal n, metres.
 double distance(const Point& x, std::span<const Point> polygon, const Normal& n) {
     double nearest = HUGE_VAL;
     bool above = true;
@@ -59,7 +60,7 @@ double distance(const Point& x, std::span<const Point> polygon, const Normal& n)
 
 }  // namespace
 
-/// What the points placed so far see.
+/// Evaluates the visible part of the source from all placed nodes.
 void OccludedExchange::look_from_nodes() {
     evaluations += nodes_.size();
     factors_.resize(nodes_.size()), seen_.resize(nodes_.size());
@@ -72,7 +73,7 @@ void OccludedExchange::Glance::take(double F, Seen seen) {
     lowest = std::min(lowest, F), highest = std::max(highest, F);
 }
 
-/// Looks at cells with two Gauss points a side.
+/// Evaluates cells with 2 x 2 Gauss points.
 void OccludedExchange::look_at_cells(std::span<Cell* const> cells) {
     nodes_.clear(), weights_.clear(), lasts_.clear();
     for (const Cell* cell : cells) place_nodes(*cell, 2), lasts_.push_back(nodes_.size());
@@ -90,7 +91,7 @@ void OccludedExchange::look_at_cells(std::span<Cell* const> cells) {
     }
 }
 
-/// Looks from the middles of those cells that two points a side may settle.
+/// Evaluates the centres of the cells for which two points per side may suffice.
 void OccludedExchange::look_from_middles() {
     nodes_.clear(), weights_.clear(), lasts_.clear();
     for (const Task& task : tasks_)
@@ -102,7 +103,7 @@ void OccludedExchange::look_from_middles() {
         if (task.cell.glance.black == 0) task.cell.middle = factors_[k++];
 }
 
-/// The halves of a cell: across the longest edge, and for a quadrilateral across the edge opposite to it.
+/// Halves a cell across the longest edge, and for a quadrilateral also the opposite edge.
 void OccludedExchange::halve(const Task& task) {
     const Cell& cell = task.cell;
     std::size_t longest = 0;
@@ -125,7 +126,8 @@ void OccludedExchange::halve(const Task& task) {
     halves_.push_back(one), halves_.push_back(two);
 }
 
-/// A lower bound: boxes of slanting faces reach far beyond them, so that the source is asked itself.
+/// Lower bound on the distance of a cell from the source polygon itself; bounding boxes of slanting faces extend far
+/// beyond them.
 double OccludedExchange::distance_to_source(const Cell& cell) const {
     const Vec2 middle = middle_of(cell.corners());
     double radius = 0, height = HUGE_VAL;
@@ -137,19 +139,19 @@ double OccludedExchange::distance_to_source(const Cell& cell) const {
     return std::max({apart, height, 0.0});
 }
 
-/// No point of a cell d from the source has a larger form factor than this.
+/// Upper bound on the form factor to the source from points of a cell at distance d.
 double OccludedExchange::brightest(double d) const {
     return source_area_ < pi * d * d ? source_area_ / (pi * d * d) : 1;
 }
 
-/// An integrand that is analytic but for a place at a distance of g cell sizes (here the source) leaves n Gauss points
-/// a side an error like rho^(-2n), rho = 1 + 2g + 2 sqrt(g + g^2).
+/// Factor rho by which errors decrease. If an integrand is analytic except at a distance of g cell sizes (here the
+/// source), n Gauss points per side have an error of about rho^(-2n), with rho = 1 + 2g + 2 sqrt(g + g^2).
 double OccludedExchange::convergence(const Cell& cell, double d) const {
     const double g = d / diameter(cell.corners());
     return 1 + 2 * g + 2 * std::sqrt(g + g * g);
 }
 
-/// A cell that sees all of the source: as many Gauss points as its distance asks for.
+/// Integral over a cell that sees the whole source, with as many Gauss points as its distance requires.
 double OccludedExchange::integrate_smooth(const Cell& cell, double d, double allowed) {
     const double rho = convergence(cell, d);
     const double whole = cell.area * brightest(d);
@@ -165,8 +167,9 @@ double OccludedExchange::integrate_smooth(const Cell& cell, double d, double all
     return sum;
 }
 
-/// Does a blocker's edge pass over the cell within its size? What is seen changes within the edge's height over the
-/// receiver then, perhaps between the points of a rule, which agree with each other and are wrong.
+/// True if an edge of a blocker passes over the cell at less than its size. The visible part then changes over a
+/// distance of about the edge's height. That may happen between the points of a rule, so that rules agree and are
+/// wrong.
 bool OccludedExchange::is_under_an_edge(const Cell& cell) const {
     const Vec2 flat = middle_of(cell.corners());
     const Point middle = frame_.at(flat);
@@ -182,11 +185,11 @@ bool OccludedExchange::is_under_an_edge(const Cell& cell) const {
     return false;
 }
 
-/// Does a look at a cell tell its integral? The difference of two rules, d, is the error of the lesser one, the middle
-/// alone; where bends are of one kind the better one errs by about d^2 / 7 of the value. They need a second witness, as
-/// bends of opposite sign cancel in d: exp(a s) on [-1, 1] errs by a^4 / 270 and varies by v = a / sqrt 3 at the
-/// points, and whatever varies may err a little. Factors are from 45,000 cells of a room with blocks: as many are
-/// settled so as need be, and of 140 one errs by more than its allowance.
+/// True if 2 x 2 points are accurate enough. The difference d of two rules is the error of the worse one, the centre
+/// alone. If the curvature has one sign, the better one errs by about d^2 / 7 of the value. Curvatures of opposite sign
+/// cancel in d, so that a second criterion is needed: exp(a s) on [-1, 1] has the error a^4 / 270 and the variation v =
+/// a / sqrt 3 at the points; any variation may cause a small error. The factors are from 45,000 cells of a room with
+/// blocks: as many cells as possible are accepted, and one of 140 errs by more than its allowance.
 bool OccludedExchange::is_settled_by_two_points(const Task& task) const {
     const Cell& cell = task.cell;
     if (task.whole >= 0 || cell.glance.black > 0 || (dominates_ && is_under_an_edge(cell))) return false;
@@ -194,7 +197,7 @@ bool OccludedExchange::is_settled_by_two_points(const Task& task) const {
     const double far = 2 * cell.area * brightest(task.distance), middle = std::max(cell.middle, 1e-300);
     const double most = std::max(cell.glance.highest / middle - 1, 1 - cell.glance.lowest / middle),
                  varies = 3 * most * most, d = std::abs(cell.two_points - cell.area * middle);
-    const bool is_triangle = cell.count == 3;  // three points of a triangle are but of degree 2
+    const bool is_triangle = cell.count == 3;  // three points of a triangle have only degree 2
     double error = 0;
     if (matters_)
         error = (is_triangle ? 0.2 : 0.03) * d + cell.two_points * (varies * varies / 270 + 0.005 * most);
@@ -204,16 +207,16 @@ bool OccludedExchange::is_settled_by_two_points(const Task& task) const {
     return error + far * step * step <= task.allowed;
 }
 
-/// How much of the difference of two rules the better one may err by. Past several blockers the visible part may bend
-/// within a cell, where three edges meet in one line of sight.
+/// Error of the better of two rules as a share of their difference. Behind several blockers the visible part may have
+/// kinks within a cell, where a line of sight touches three edges.
 double OccludedExchange::share_left(const Task& task) const {
     if ((dominates_ || task.whole >= 0) && is_under_an_edge(task.cell)) return near_share;
     if (matters_ || relative_ < 1e-5) return 0.1;
     return visible_.seen_edges().size() > 1 ? 0.1 : 0.03;
 }
 
-/// What a cell of which no point has seen anything may hold: nothing to speak of when no line crosses it, else a corner
-/// that the points missed, at the slope at which light fades over the whole receiver.
+/// Light that a cell may receive although all its points are dark. Zero if no critical line crosses it, else that of a
+/// bright corner which the points missed, with the slope of light over the whole receiver.
 double OccludedExchange::dark(const Cell& cell) const {
     if (cell.complete) return 0;
     return dark_corner * brightest_seen_ * cell.area * std::sqrt(cell.area / receiver_area_);
@@ -237,13 +240,13 @@ void OccludedExchange::apply(int points) {
     }
 }
 
-/// Is the source so near that a rule of so many points a side could not be believed, whatever stands in between?
+/// True if the source is so near that a rule with this many points per side is inaccurate even without occlusion.
 bool OccludedExchange::is_near(const Task& task, int points) const {
     const double rho = convergence(task.cell, task.distance);
     return 2 * task.cell.area * brightest(task.distance) * std::pow(rho, -2 * points) > near_part * task.allowed;
 }
 
-/// The contour integral of a cell, nothing in between.
+/// Contour integral over a cell without occlusion.
 double OccludedExchange::exact(const Cell& cell, double allowed) const {
     std::array<Point, 4> corners;
     for (std::size_t i = 0; i < cell.count; ++i) corners[i] = frame_.at(cell.corner[i]);
@@ -252,8 +255,8 @@ double OccludedExchange::exact(const Cell& cell, double allowed) const {
                          std::clamp(0.1 * allowed / most, 1e-12, 1e-3));
 }
 
-/// Integrates over cells near to the source what is hidden, which is no nearer than what hides it: the whole is exact.
-/// Settles those that see all of the source, and returns their sum.
+/// Prepares cells near the source: their unoccluded integral is exact, and rules integrate only the hidden part, which
+/// is no nearer than its blockers. Finishes cells that see the whole source, and returns their sum.
 double OccludedExchange::settle_near_cells(int points) {
     double total = 0;
     std::erase_if(tasks_, [&](Task& task) {
@@ -270,9 +273,9 @@ double OccludedExchange::settle_near_cells(int points) {
     return total;
 }
 
-/// A rising row of rules until two agree, else halves. The better one's error is a small share of their difference, but
-/// no less than the source's distance lets expect. Shares are from cells of rooms with blocks: of 150 cells accepted
-/// one errs by more than its allowance, of 2300 one by ten times that.
+/// Applies rules of increasing order until two agree, else halves the cell. The better one's error is a small share of
+/// their difference, but at least that due to the source's distance. The shares are from cells of rooms with blocks: of
+/// 150 accepted cells one errs by more than its allowance, of 2300 one by ten times that.
 double OccludedExchange::integrate_tasks() {
     const bool fine = relative_ < 1e-5 || dominates_;
     double total = 0;
@@ -308,7 +311,7 @@ double OccludedExchange::integrate_tasks() {
         }
         halves_.clear();
         for (const Task& task : tasks_) {
-            if (task.depth >= deepest || evaluations > enough_)
+            if (task.depth >= max_depth || evaluations > enough_)
                 total += task.sum;
             else
                 halve(task);

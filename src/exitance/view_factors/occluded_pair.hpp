@@ -11,47 +11,49 @@
 
 namespace exitance {
 
-/// Two convex polygons and what may stand between them.
+/// Two convex polygons and their possible blockers.
 struct OccludedPair {
     std::span<const Point> receiver, source;  ///< Each wholly in front of the other's plane, 3 to 12 corners, metres.
     Plane receiver_plane, source_plane;
     std::span<const ConvexBlocker* const> blockers;
 };
 
-/// What the quadrature of a partly hidden pair is to reach.
+/// Accuracy required of the quadrature of a partly hidden pair.
 struct Demand {
-    double relative = 1e-4;             ///< Error over the pair's exchange area.
-    double absolute = 0;                ///< m^2: an error that never matters.
-    double ignored = 0;                 ///< m^2: smaller exchange areas need no digits.
-    double large = 0;                   ///< m^2: larger exchange areas are integrated with more care.
-    double dominating = 0;              ///< m^2: still larger ones make the error of their row.
-    std::size_t most_cells = SIZE_MAX;  ///< Of the receiver: where lines cut it into more, they do not pay.
+    double relative = 1e-4;  ///< Relative error of the pair's exchange area.
+    double absolute = 0;     ///< m^2; an error that is always accepted.
+    double ignored = 0;      ///< m^2; smaller exchange areas need no accuracy.
+    double large = 0;        ///< m^2; larger exchange areas are integrated more carefully.
+    double dominating = 0;   ///< m^2; larger exchange areas determine the error of their row.
+    /// Limit on the cells of the receiver: with more, critical lines are not worthwhile.
+    std::size_t most_cells = SIZE_MAX;
 };
 
-/// Integrates the exact visible part of a source over a receiver. The receiver is cut along the lines where the visible
-/// part changes its corners; within the cells the integrand is smooth and Gauss rules converge fast. Cells whose
-/// embedded rules disagree are halved. One object serves one thread and many pairs.
+/// Integrates the exact visible part of a source over a receiver. The receiver is cut along the critical lines at which
+/// the visible part gains or loses corners. Within the cells the integrand is smooth, and Gauss rules converge fast.
+/// Cells whose embedded rules disagree are halved. One object serves one thread and many pairs.
 class OccludedExchange {
   public:
-    /// What is computed when a stop is requested is of no use.
+    /// After a stop request the results are meaningless.
     explicit OccludedExchange(const StopRequest& stop) : stop_(stop) {}
 
-    /// A_i F_ij, m^2; nothing when lines would cut the receiver into more cells than the demand has it. `unoccluded`
-    /// tells that nothing stands between after all; the value is then left to others.
+    /// A_i F_ij, m^2; empty if critical lines would cut the receiver into more than demand.most_cells cells. Sets
+    /// `unoccluded` if no blocker is between the faces after all; the value is then 0 and must be computed otherwise.
     std::optional<double> operator()(const OccludedPair& pair, const Demand& demand, bool& unoccluded);
 
-    std::size_t evaluations = 0;  ///< Exact visible parts so far.
+    std::size_t evaluations = 0;  ///< Evaluations of exact visible parts so far.
 
   private:
-    /// What the points of a rule saw.
+    /// Visibility of the source from the points of a rule.
     struct Glance {
-        std::size_t count = 0, lit = 0, dark = 0;  ///< Of how many points, seeing all, hidden by one blocker alone.
-        std::size_t black = 0;                     ///< Seeing nothing.
+        /// Number of points; of those that see the whole source; of those from which a single blocker hides all of it.
+        std::size_t count = 0, lit = 0, dark = 0;
+        std::size_t black = 0;  ///< Number of points that see nothing.
         double lowest = HUGE_VAL, highest = 0;
         void take(double F, Seen seen);
     };
 
-    /// A convex part of the receiver. Copies take along the corners that there are.
+    /// A convex part of the receiver. Copies only the used corners.
     struct Part {
         static constexpr std::size_t most = 16;
         std::size_t count = 0;
@@ -69,27 +71,27 @@ class OccludedExchange {
         }
         std::span<const Vec2> corners() const { return std::span(corner).first(count); }
     };
-    /// A triangle or quadrilateral of it.
+    /// A triangle or quadrilateral of the receiver.
     struct Cell {
         std::size_t count = 0;
         std::array<Vec2, 4> corner;
-        double area = 0, two_points = 0;  ///< m^2; the second is the integral by two Gauss points a side.
-        double middle = 0;                ///< Form factor to what is seen from the middle.
+        double area = 0, two_points = 0;  ///< m^2; the latter is the integral by 2 x 2 Gauss points.
+        double middle = 0;                ///< Form factor from the centre to the visible part.
         Glance glance;
-        bool complete = false;  ///< No critical line that crosses it was left out.
+        bool complete = false;  ///< True if no critical line that crosses it was omitted.
 
         void add(Vec2 p) { corner[count++] = p; }
         std::span<const Vec2> corners() const { return std::span(corner).first(count); }
     };
-    /// A cell that is not done.
+    /// A cell whose integral is not accurate enough yet.
     struct Task {
         Cell cell;
-        double distance, allowed;  ///< Metres to the source; m^2.
+        double distance, allowed;  ///< Distance to the source, metres; allowed error, m^2.
         double sum;                ///< m^2, by the best rule so far.
-        Glance glance;             ///< Of that rule.
+        Glance glance;             ///< Visibility found by that rule.
         int depth;
-        /// m^2, of a cell that is too near to the source for rules: the exact integral with nothing in between, from
-        /// which a rule takes what is hidden. Negative for other cells.
+        /// m^2: for a cell too near to the source for quadrature, the exact integral without occlusion, from which a
+        /// rule subtracts the hidden part. Negative for other cells.
         double whole = -1;
     };
 
@@ -114,15 +116,16 @@ class OccludedExchange {
     double settle_near_cells(int points);
     double integrate_tasks();
 
-    static constexpr double nearest_line = 1e-6;  ///< Of the receiver's size: lines nearer to each other are one.
+    /// Share of the receiver's size; lines nearer to each other are merged.
+    static constexpr double nearest_line = 1e-6;
     const StopRequest& stop_;
     OccludedPair pair_;
     PlaneFrame frame_{{}, {0, 0, 1}};
     VisibleFromMany visible_;
     std::vector<Vec2> nodes_;
-    std::vector<double> weights_, factors_;  ///< m^2; form factors from the nodes.
+    std::vector<double> weights_, factors_;  ///< Weights in m^2; form factors from the nodes.
     std::vector<Seen> seen_;
-    std::vector<std::size_t> lasts_;  ///< Where the nodes of each cell end.
+    std::vector<std::size_t> lasts_;  ///< End of each cell's nodes.
     std::vector<double> befores_;
     std::vector<Task> tasks_, halves_;
     std::vector<Cell*> looking_;
@@ -132,11 +135,12 @@ class OccludedExchange {
     std::vector<Cell> cells_;
     double size_ = 0, source_area_ = 0, receiver_area_ = 0;
     double ignored_ = 0;
-    double brightest_seen_ = 0;  ///< The largest form factor, or what may have been missed.
+    double brightest_seen_ = 0;  ///< Largest form factor found, or a bound on the one that may have been missed.
     double relative_ = 0;
     bool matters_ = false, dominates_ = false;
     std::size_t most_cells_ = 0;
-    std::size_t enough_ = 0;  ///< Evaluations after which nothing is halved any more: a bound on the worst pairs.
+    /// Number of evaluations after which cells are not halved any more: limits the worst pairs.
+    std::size_t enough_ = 0;
 };
 
 }  // namespace exitance

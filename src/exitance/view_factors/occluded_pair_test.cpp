@@ -10,8 +10,8 @@ namespace {
 
 using Outline = std::vector<Point>;
 
-/// The side of a table's leg, the floor that it stands on, and two more legs.
-const Outline leg = {{0, 0, 0}, {0.05, 0, 0}, {0.05, 0, 0.7}, {0, 0, 0.7}};  // looks to -y
+/// The side of a table's leg, the floor below it, and two more legs.
+const Outline leg = {{0, 0, 0}, {0.05, 0, 0}, {0.05, 0, 0.7}, {0, 0, 0.7}};  // faces -y
 const Outline ground = {{-2, -4, 0}, {3, -4, 0}, {3, 0, 0}, {-2, 0, 0}};
 
 struct Legs {
@@ -20,7 +20,7 @@ struct Legs {
     OccludedPair pair{leg, ground, {{0, -1, 0}, 0}, {{0, 0, 1}, 0}, between};
 };
 
-TEST(OccludedExchange, OfFacesThatTouchTakesNoEndlessCellsAlongTheirEdge) {
+TEST(OccludedExchange, UsesFewCellsAlongTheCommonEdgeOfTouchingFaces) {
     const Legs legs;
     const StopRequest stop;
     OccludedExchange lines(stop);
@@ -32,13 +32,13 @@ TEST(OccludedExchange, OfFacesThatTouchTakesNoEndlessCellsAlongTheirEdge) {
     ASSERT_TRUE(value);
     EXPECT_FALSE(unoccluded);
     const double other = halving(legs.pair, {1e-5, 0, 0, 500'000}, false, unoccluded);
-    EXPECT_NEAR(*value / other, 1, 1.1e-4);  // as asked of both
-    // A cell's allowance falls with its area, and so does what it holds: where the source's nearness alone was to stay
-    // below it, cells along the touching edge were halved until 60,000 points had been spent.
+    EXPECT_NEAR(*value / other, 1, 1.1e-4);  // the tolerance of both
+    // A cell's allowed error decreases with its area, and so does its integral. If the error due to the source's
+    // nearness alone had to be below the allowance, cells along the common edge would be halved endlessly.
     EXPECT_LT(lines.evaluations, 10'000U);
 }
 
-TEST(OccludedExchange, GivesUpWhereLinesCutTheReceiverIntoTooMany) {
+TEST(OccludedExchange, GivesUpIfLinesCutTheReceiverIntoTooManyCells) {
     const Legs legs;
     const StopRequest stop;
     OccludedExchange lines(stop);

@@ -49,7 +49,7 @@ PairSampler::Estimate PairSampler::operator()(std::size_t i, std::size_t j, doub
     }
     const double k = static_cast<double>(batches);
     const double spread = std::max(0.0, squares - sum * sum / k) / (k * (k - 1));
-    // Where all samples agree their spread is 0, but up to about one sample in n may still differ.
+    // If all samples agree their spread is 0, but up to about one sample in n may still differ.
     const double one = 0.5 * unoccluded / (k * static_cast<double>(rays_a_batch));
     return {expected * unoccluded + sum / k, spread + one * one};
 }

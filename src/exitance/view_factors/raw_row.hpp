@@ -7,29 +7,29 @@
 
 namespace exitance {
 
-/// One view factor as its own row estimates it.
+/// One view factor as estimated by its own row.
 struct RowEntry {
     double F = 0;
     std::uint32_t column = 0;
-    float variance = 0;  ///< Of F; 0 where it is integrated.
-    /// Samples per m^2 behind F, known before they were drawn: rays cast from the row's face over its area, or the
-    /// number of such rays that a pair's own samples are worth. Infinite where F is integrated.
+    float variance = 0;  ///< Variance of F; 0 if it was integrated.
+    /// Samples per m^2 used for F, fixed before sampling: rays cast from the row's face over its area, or the number of
+    /// such rays to which a pair's own samples are equivalent. Infinite if F was integrated.
     float density = 0;
-    std::uint32_t unused = 0;  ///< Fills the record up, so that its bytes are known.
+    std::uint32_t unused = 0;  ///< Padding, so that all bytes of the record are defined.
 };
 
 inline constexpr float integrated = std::numeric_limits<float>::infinity();
 
-/// One row of view factors as it was computed by itself, before rows are combined.
+/// One row of view factors, computed independently of the other rows.
 struct RawRow {
     std::uint32_t face = 0;
-    std::uint32_t round = 0;  ///< 0: first pass; 1: computed again because its combined error was too large.
-    double cast_density = 0;  ///< Density behind entries that are absent; 0 where absent means 0 or dropped.
-    double missed = 0;        ///< Share of rays that met nothing, the back of a face, or began under another face.
+    std::uint32_t round = 0;  ///< 0: first pass; 1 and above: recomputed because its combined error was too large.
+    double cast_density = 0;  ///< Samples per m^2 behind absent entries; 0 if absent entries are zero or were dropped.
+    double missed = 0;        ///< Share of rays that hit nothing or the back of a face, or started below another face.
     double missed_variance = 0;
-    double bound = 0;  ///< Sum over the row of |error| of what was integrated or dropped.
+    double bound = 0;  ///< Sum of the error bounds of integrated and dropped entries.
     std::uint64_t rays = 0;
-    std::vector<RowEntry> entries;  ///< By column, none twice.
+    std::vector<RowEntry> entries;  ///< Sorted by column, without duplicates.
 
     /// sqrt(sum of variances) + bound.
     double error() const {

@@ -6,15 +6,15 @@
 
 namespace exitance {
 
-/// Where finished rows are kept, so that an interrupted run can go on from them.
+/// Storage for finished rows, from which an interrupted run can be resumed.
 class RawRowStore {
   public:
     virtual ~RawRowStore() = default;
-    /// Returns the rows that an earlier run of the same work kept; called once, first.
+    /// Returns the rows kept by an earlier run of the same work. Called once, before all other functions.
     virtual std::vector<RawRow> resumed() { return {}; }
-    /// Keeps a row. A failure is the store's to report; the run goes on without it.
+    /// Keeps a row. The store reports failures itself; the run continues without it.
     virtual void keep(const RawRow& row) = 0;
-    /// Everything kept so far should survive the end of the process.
+    /// Makes all rows kept so far survive the end of the process.
     virtual void flush() {}
 };
 

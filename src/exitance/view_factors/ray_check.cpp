@@ -15,13 +15,13 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t batches = 64;  ///< Means of so many are near enough to normal.
-/// Standard errors that no right entry is off by: of 64 batches one in ten million is. Of 3,200 entries of four scenes,
-/// checked with as many rays as by default, none was further off than 4.1 (`viewfactors --seed 1` to 8).
-constexpr double beyond_doubt = 6;
-constexpr double near_sizes = 0.2;  ///< Of the larger face's size: what is nearer has kernels without a bound.
+constexpr std::size_t batches = 64;  ///< the mean of this many is approximately normal
+/// Standard errors by which no correct entry is off: one in ten million is, with 64 batches. Of 3,200 entries of four
+/// scenes, checked with the default number of rays, none was off by more than 4.1 (`viewfactors --seed 1` to 8).
+constexpr double max_deviations = 6;
+constexpr double near_sizes = 0.2;  ///< Distance over the larger face's size; the kernel of nearer pairs is unbounded.
 
-/// Means of batches: their mean, and how far it may be off.
+/// Mean of the batches' means, and its standard error.
 struct BatchSums {
     double sum = 0, squares = 0;
     void add(double mean) { sum += mean, squares += mean * mean; }
@@ -32,7 +32,7 @@ struct BatchSums {
     }
 };
 
-/// Points on both faces; the kernel cos cos / (pi r^2) where nothing stands between.
+/// Estimates F by points on both faces: the mean of the kernel cos cos / (pi r^2) over unoccluded pairs.
 RayEntry by_points(const RayTracer& tracer, const FaceSampler& from, RegionId own, const FaceSampler& to,
                    RegionId other, std::size_t rays, std::uint64_t seed) {
     const std::size_t each = (rays + batches - 1) / batches;
@@ -57,12 +57,12 @@ RayEntry by_points(const RayTracer& tracer, const FaceSampler& from, RegionId ow
         for (std::size_t k = 0; k < xs.size(); ++k) unoccluded += kernels[k], sum += blocked[k] ? 0 : kernels[k];
         sums.add(sum / static_cast<double>(each));
     }
-    // One ray more may have come through: where few do, their spread tells too little.
+    // One more ray might have been unoccluded: if few are, their spread is no reliable error.
     const double all = static_cast<double>(each * batches), one = unoccluded / all / all;
     return {sums.mean(), std::sqrt(sums.squared_error() + one * one), each * batches};
 }
 
-/// Directions from a face, by the cosine law: how many meet the other's front first.
+/// Estimates F by rays of density cos / pi from a face: the share that hits the other's front first.
 RayEntry by_directions(const RayTracer& tracer, const FaceSampler& from, RegionId own, SurfaceId target,
                        std::size_t rays, std::uint64_t seed) {
     const std::size_t each = (rays + batches - 1) / batches;
@@ -91,7 +91,7 @@ struct DrawnEntry {
     double F;
 };
 
-/// Entries above the smallest, each once.
+/// Draws entries above the smallest one without repetition.
 std::vector<DrawnEntry> draw_entries(const SparseFactors& table, const RayCheckOptions& options) {
     std::vector<DrawnEntry> above;
     for (std::uint32_t i = 0; i < table.size(); ++i)
@@ -116,7 +116,7 @@ RayEntry view_factor_by_rays(const Scene& scene, const RayTracer& tracer, Surfac
     const Vec3 apart = max(max(two.box().lo - one.box().hi, one.box().lo - two.box().hi), Vec3{});
     const double size = std::max(one.box().diagonal(), two.box().diagonal());
     if (norm(apart) > near_sizes * size) return by_points(tracer, one, a.region, two, b.region, rays, seed);
-    // From the smaller face more directions meet the other.
+    // More rays from the smaller face hit the other one.
     if (one.area() <= two.area()) return by_directions(tracer, one, a.region, j, rays, seed);
     RayEntry back = by_directions(tracer, two, b.region, i, rays, seed);
     back.F *= two.area() / one.area(), back.standard_error *= two.area() / one.area();
@@ -147,7 +147,7 @@ RayCheck check_by_rays(const Scene& scene, const SparseFactors& table, const Ray
         ++check.entries, check.rays += found[k].rays;
         relative_errors.push_back(relative_error);
         check.largest_deviation = std::max(check.largest_deviation, off / found[k].standard_error);
-        check.wrong += off > options.tolerance * F + beyond_doubt * found[k].standard_error;
+        check.wrong += off > options.tolerance * F + max_deviations * found[k].standard_error;
         if (off / F <= check.largest_relative) continue;
         check.largest_relative = off / F, check.relative_error_there = relative_error;
     }

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// Two unit squares face to face, one metre apart, and in the middle between them a board over half of the way.
+/// Two unit squares facing each other at 1 m, and half-way between them a board that covers half of the view.
 Scene squares_with_a_board(bool with_board) {
     SceneDescription d;
     d.materials.push_back({"grey", Spectrum(0.25), Spectrum()});
@@ -36,17 +36,17 @@ SparseFactors table_of(const Scene& scene) {
 
 constexpr double parallel_squares = 0.199824895698387;  // of unit size, one apart [Howell]
 
-TEST(RayCheck, RaysFindThePublishedFactorWithinTheirErrors) {
+TEST(RayCheck, RaysAgreeWithThePublishedFactorWithinTheirErrors) {
     const Scene scene = squares_with_a_board(false);
     const RayEntry found = view_factor_by_rays(scene, RayTracer(scene), SurfaceId(0), SurfaceId(1), 1u << 14, 1);
     EXPECT_NEAR(found.F, parallel_squares, 4 * found.standard_error);
     EXPECT_LT(found.standard_error, 0.01 * parallel_squares);
 }
 
-TEST(RayCheck, ATableThatIsRightLiesWithinAFewStandardErrors) {
+TEST(RayCheck, ACorrectTableIsWithinAFewStandardErrors) {
     const Scene scene = squares_with_a_board(true);
     const RayCheck check = check_by_rays(scene, table_of(scene), {}, StopRequest());
-    EXPECT_EQ(check.entries, 2u + 1u * 2u);  // each square and the other, the board's front and the upper one
+    EXPECT_EQ(check.entries, 2u + 1u * 2u);  // the two squares to each other, the board's front and the upper square
     EXPECT_GE(check.rays, check.entries << 14);
     EXPECT_LT(check.largest_deviation, 4);
     EXPECT_EQ(check.wrong, 0u);
@@ -65,7 +65,7 @@ TEST(RayCheck, AWrongEntryIsFound) {
     EXPECT_EQ(check_by_rays(scene, table, {.tolerance = 0.2}, StopRequest()).wrong, 0u) << "so much it may be off";
 }
 
-TEST(RayCheck, AStopEndsIt) {
+TEST(RayCheck, AStopRequestEndsTheCheck) {
     const Scene scene = squares_with_a_board(true);
     StopRequest stop;
     stop.interrupt();

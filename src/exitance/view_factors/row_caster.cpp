@@ -19,10 +19,10 @@ double RowCaster::variance(const Count& count) const {
     return std::max(0.0, spread) / (k * (k - 1) * m * m);
 }
 
-/// Traces the rays in origins_ and directions_ and counts what they meet.
+/// Traces the rays in origins_ and directions_ and counts the faces that they hit.
 void RowCaster::trace(std::size_t face, bool under_others) {
     const RegionId own = scene_.region(face);
-    if (under_others) {  // rays that begin under another face meet it at once
+    if (under_others) {  // rays that start below another face hit it at once
         std::size_t kept = 0;
         for (std::size_t k = 0; k < origins_.size(); ++k)
             if (!scene_.occluders.is_covered(origins_[k], scene_.faces[face].plane.n, own))

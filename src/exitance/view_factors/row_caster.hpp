@@ -8,11 +8,11 @@
 
 namespace exitance {
 
-/// Casts rays from a face by the cosine law and counts which fronts they meet first:
+/// Casts rays of density cos / pi from a face and counts the faces whose fronts they hit first:
 ///
 ///     F_ij = h_ij / n,   h_ij hits of the front of j among n rays.
 ///
-/// Rays come in independent batches of Owen-scrambled Sobol points over the face and the directions; the spread of the
+/// Rays are in independent batches of Owen-scrambled Sobol points over the face and the directions; the spread of the
 /// batches gives the variances. One object serves one thread.
 class RowCaster {
   public:
@@ -23,11 +23,11 @@ class RowCaster {
         double hits, squares;  ///< Sums over batches of the hits of a batch and of their squares.
     };
 
-    /// rays_a_batch  a power of two, at least 16      under_others  some of the face may be covered by another one
+    /// `rays_a_batch`: a power of two, at least 16; `under_others`: true if another face may cover part of the face.
     void cast(std::size_t face, std::size_t batches, std::size_t rays_a_batch, bool under_others, std::uint64_t seed);
 
-    std::span<const Count> counts() const { return counts_; }  ///< By column.
-    double missed() const { return missed_.hits; }             ///< Rays that met no front.
+    std::span<const Count> counts() const { return counts_; }  ///< Sorted by column.
+    double missed() const { return missed_.hits; }             ///< Number of rays that hit no front.
     std::size_t rays() const { return batches_ * rays_a_batch_; }
     double share(const Count& count) const { return count.hits / static_cast<double>(rays()); }
     /// Variance of share().
@@ -39,11 +39,11 @@ class RowCaster {
     void trace(std::size_t face, bool under_others);
     void finish_batch();
 
-    static constexpr std::size_t block = 1024;  ///< Rays that are traced in one call.
+    static constexpr std::size_t block = 1024;  ///< Number of rays traced in one call.
     const RowScene& scene_;
     std::size_t batches_ = 0, rays_a_batch_ = 0;
-    std::vector<std::uint32_t> of_batch_;  ///< Hits of every face in this batch.
-    std::vector<double> hits_, squares_;   ///< Of every face.
+    std::vector<std::uint32_t> of_batch_;  ///< Hits of every face in the current batch.
+    std::vector<double> hits_, squares_;   ///< Sums over batches, for every face.
     std::vector<std::uint32_t> met_in_batch_, met_;
     std::uint32_t missed_in_batch_ = 0;
     Count missed_{};

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t block = 1024;
 
-/// Shares of n pseudo-random rays from a face that meet each front first.
+/// Shares of n pseudo-random rays from a face that hit each front first.
 std::vector<double> cast_half(const RowScene& ready, std::size_t face, std::size_t n, RandomStream random,
                               const StopRequest& stop) {
     const FaceSampler& sampler = ready.samplers[face];
@@ -48,7 +48,7 @@ Point middle_of(const ViewFace& face) {
     return 0.5 * (face.box.lo + face.box.hi);
 }
 
-/// 1 for a random number of faces that lie next to a random one, 0 for the others.
+/// Indicator of a random number of faces nearest to a random one: 1 for these, 0 for the others.
 std::vector<double> random_group(const RowScene& ready, RandomStream& random) {
     const std::size_t n = ready.faces.size();
     const Point middle = middle_of(ready.faces[std::min(n - 1, std::size_t(random.uniform() * double(n)))]);
@@ -61,7 +61,7 @@ std::vector<double> random_group(const RowScene& ready, RandomStream& random) {
     return x;
 }
 
-/// Variance of sum_j (F - G1)(F - G2) for hits that are multinomial: 2 e'Se + tr(SS), S = (diag G - GG') / n.
+/// Variance of sum_j (F - G1)(F - G2) for multinomial hits: 2 e'Se + tr(SS), S = (diag G - GG') / n.
 double squared_error_variance(const std::vector<double>& F, const std::vector<double>& G1,
                               const std::vector<double>& G2, double n) {
     double linear = 0, mean = 0, two = 0, three = 0;
@@ -83,7 +83,7 @@ CheckedRow check_row(const RowScene& ready, const SparseFactors& table, std::siz
     CheckedRow checked;
     checked.face = face;
     for (std::size_t j = 0; j < F.size(); ++j) checked.squared_error += (F[j] - G1[j]) * (F[j] - G2[j]);
-    const double one = 1 / (n * n);  // one ray more may have hit
+    const double one = 1 / (n * n);  // in case one more ray might have hit
     checked.squared_error_deviation = std::sqrt(squared_error_variance(F, G1, G2, n) + one * one);
     RandomStream random(options.seed, Stream::reference, face, 3);
     checked.largest_sum_excess = -HUGE_VAL;

@@ -10,35 +10,38 @@
 namespace exitance {
 
 struct RowCheckOptions {
-    std::size_t rows = 4;         ///< Drawn at random among the finished ones, none twice.
-    std::size_t rays = 1u << 17;  ///< A half of a row.
-    std::size_t groups = 16;      ///< Random groups of neighbouring faces, per row.
+    std::size_t rows = 4;         ///< Chosen at random from the finished rows, without repetition.
+    std::size_t rays = 1u << 17;  ///< Per half of a row.
+    std::size_t groups = 16;      ///< Random groups of neighbouring faces per row.
     std::uint64_t seed = 1;
-    double error = 1e-3;  ///< R of every row.
+    double error = 1e-3;  ///< R, allowed error of every row.
 };
 
-/// One row F against independent rays in two halves, G1 and G2.
+/// Comparison of one row F with independent rays in two halves, G1 and G2.
 struct CheckedRow {
     std::size_t face = 0;
-    double squared_error = 0;            ///< sum_j (F - G1)_j (F - G2)_j: unbiased for the squared error of the row.
+    double squared_error = 0;  ///< sum_j (F - G1)_j (F - G2)_j, an unbiased estimate of the squared error of the row.
     double squared_error_deviation = 0;  ///< Its standard error.
-    /// max over x of (|sum_j (F - G)_j x_j| - R) in standard errors, for x = 1 and x of the groups.
+    /// Maximum over x of (|sum_j (F - G)_j x_j| - R) in standard errors, for x = 1 and for the indicators of the
+    /// groups.
     double largest_sum_excess = 0;
-    /// Standard errors by which the squared error is above R^2; below 0 where it is not.
+    /// Excess of the squared error over R^2 in standard errors; negative if it is below.
     double squared_excess(double R) const { return (squared_error - R * R) / squared_error_deviation; }
 };
 
-/// What rays say about rows. Entry-wise checks pass a table of zeros; sums over rows and groups do not.
+/// Result of checking rows by rays. A table of zeros would pass checks of entries, but fails those of sums over rows
+/// and groups.
 struct RowCheck {
     std::vector<CheckedRow> rows;
-    std::size_t rays = 0;     ///< In all.
-    std::size_t wrong = 0;    ///< Rows for which either excess is above `beyond_noise`.
-    double error = 0;         ///< Root of the mean squared error of the rows, 0 where noise made it negative.
-    bool is_complete = true;  ///< False: stopped before the last row.
+    std::size_t rays = 0;     ///< Rays of all rows together.
+    std::size_t wrong = 0;    ///< Number of rows with an excess above `beyond_noise`.
+    double error = 0;         ///< Root mean squared error of the rows; 0 if noise makes the mean negative.
+    bool is_complete = true;  ///< False if a stop was requested before the last row.
     static constexpr double beyond_noise = 3.5;
 };
 
-/// Checks random rows with independent pseudo-random rays. The same on any number of threads. About 0.3 us a ray.
+/// Checks random rows with independent pseudo-random rays. Deterministic on any number of threads. About 0.3 us per
+/// ray.
 RowCheck check_rows_by_rays(const Scene& scene, const SparseFactors& table, const RowCheckOptions& options,
                             const StopRequest& stop);
 

@@ -15,23 +15,23 @@ enum class Use : std::uint64_t { pilot, cast, pair_pilot, pair };
 
 constexpr std::size_t pilot_batches = 4, pilot_rays_a_batch = 256;
 
-/// Costs in rays cast (0.25 us each), measured in an office of 446 polygons and a room with 180 blocks.
-constexpr double pair_cost = 12;  ///< Of looking whether anything stands between two faces, and of a pair's pilot.
+/// Costs in units of a cast ray (0.25 us), measured in an office of 446 polygons and a room with 180 blocks.
+constexpr double pair_cost = 12;  ///< Finding the blockers between two faces, and a pair's pilot.
 constexpr double shadow_ray_cost = 0.25;
 
-/// Variances fall with the number of samples n by n^-rate: n^-1.25 is the rate of stratified samples in four
-/// dimensions of something that jumps at a surface.
+/// Variances decrease with the number of samples n like n^-rate; 1.25 is the rate of stratified samples in four
+/// dimensions for an integrand with a discontinuity.
 constexpr double cast_rate = 1.25, pair_rate = 1.25;
 
-constexpr double near_sizes = 0.5;      ///< Of the larger face: nearer pairs have kernels that vary too much.
-constexpr double contour_share = 1e-4;  ///< Of the error: the contour integral's own tolerance.
+constexpr double near_sizes = 0.5;  ///< Distance over the larger face's size; kernels of nearer pairs vary too much.
+constexpr double contour_share = 1e-4;  ///< Share of the error: tolerance of the contour integral.
 constexpr double integrated_share =
-    1e-2;  ///< Of the error: bound of what is integrated, contour sums that cancel included.
-constexpr std::size_t fewest_batches = 8, fewest_rays_a_batch = 16;
-constexpr std::size_t most_rays = std::size_t{1} << 30;
-constexpr int most_attempts = 6;
+    1e-2;  ///< Share of the error: bound for integrated entries, including cancellation in contour sums.
+constexpr std::size_t min_batches = 8, min_rays_a_batch = 16;
+constexpr std::size_t max_rays = std::size_t{1} << 30;
+constexpr int max_attempts = 6;
 
-/// Batches of a power of two of rays, at least n in all.
+/// Number of batches and rays per batch (a power of two), at least n rays in all.
 std::pair<std::size_t, std::size_t> batches_of(double n, std::size_t fewest, std::size_t smallest) {
     const double each = std::max(static_cast<double>(smallest), n / static_cast<double>(2 * fewest));
     const std::size_t rays = std::bit_ceil(static_cast<std::size_t>(std::ceil(each)));
@@ -50,26 +50,27 @@ Point middle(const ViewFace& face) {
 RowEstimator::RowEstimator(const RowScene& scene, double error, std::uint64_t seed, const StopRequest& stop)
     : scene_(scene), error_(error), seed_(seed), stop_(stop), caster_(scene), sampler_(scene) {}
 
-/// Standard deviation of one shadow ray's estimate. The pilot's share is pulled off 0 and 1, where few rays tell
-/// little.
+/// Standard deviation of one shadow ray's estimate. The pilot's visible share is moved away from 0 and 1, since few
+/// rays give no reliable value there.
 double RowEstimator::Pair::deviation() const {
     const double n = PairSampler::pilot_rays, p = (visible * n + 0.5) / (n + 1);
     return unoccluded * std::sqrt(left * p * (1 - p));
 }
 
-/// Share of a cast entry's variance that is left once it is combined with the other row, if both cast equally many
-/// rays: n + n A_i / A_j rays are as good as were cast from i.
+/// Share of a cast entry's variance that remains after combination with the other row, if both cast equally many rays:
+/// together they are equivalent to n + n A_i / A_j rays cast from i.
 double RowEstimator::left_of_cast(std::size_t face, std::uint32_t column) const {
     return std::pow(1 + scene_.faces[face].area / scene_.faces[column].area, -cast_rate);
 }
 
-/// The same for a pair's own samples: the rows' numbers are as (U_ij / U_ji)^(2 / (1 + rate)), for equal demands.
+/// Like left_of_cast(), for a pair's own samples: for equal requirements the rows' numbers of samples have the ratio
+/// (U_ij / U_ji)^(2 / (1 + rate)).
 double RowEstimator::left_of_pair(std::size_t face, std::uint32_t column) const {
     const double ratio = scene_.faces[face].area / scene_.faces[column].area;
     return std::pow(1 + std::pow(ratio, 2 / (1 + pair_rate)), -pair_rate);
 }
 
-/// Error that is expected of a row once it is combined.
+/// Expected error of a row after it is combined.
 double RowEstimator::combined_error(const RawRow& row) const {
     double sum = 0;
     auto pair = pairs_.begin();
@@ -81,7 +82,7 @@ double RowEstimator::combined_error(const RawRow& row) const {
     return std::sqrt(sum) + row.bound;
 }
 
-/// May `other` cover some of the face, so that rays that begin there are stopped at once (Occluders::is_covered)?
+/// True if `other` may cover part of the face, so that rays starting there are blocked at once (Occluders::is_covered).
 bool RowEstimator::may_be_under(std::size_t face, std::size_t other) const {
     const ViewFace &a = scene_.faces[face], &b = scene_.faces[other];
     if (std::abs(dot(a.plane.n, b.plane.n)) < 0.999) return false;
@@ -92,7 +93,7 @@ bool RowEstimator::may_be_under(std::size_t face, std::size_t other) const {
     return std::abs(height) < reach && (dot(a.plane.n, b.plane.n) < 0 || height > scene_.slack);
 }
 
-/// Finds the faces that the face may see, with about their unoccluded view factors.
+/// Finds the faces that may be visible from the face, with approximate unoccluded view factors, in descending order.
 void RowEstimator::find_candidates(std::size_t face) {
     const ViewFace& own = scene_.faces[face];
     const Point x = middle(own);
@@ -118,8 +119,8 @@ void RowEstimator::find_candidates(std::size_t face) {
     });
 }
 
-/// Candidates from this size on are treated by themselves: the least estimated cost of looking at them and of casting
-/// rays for the others. What the pilot saw of the others tells their number of rays.
+/// View factor from which candidates are treated individually. Minimizes the estimated cost of treating them and of
+/// casting rays for the others, whose number follows from the pilot's hits of the others.
 double RowEstimator::smallest_candidate(std::size_t face, double variance) const {
     const double n = static_cast<double>(pilot_batches * pilot_rays_a_batch);
     std::vector<double> seen(scene_.faces.size());
@@ -142,7 +143,7 @@ double RowEstimator::smallest_candidate(std::size_t face, double variance) const
     return best;
 }
 
-/// What all pieces of two faces see of each other.
+/// Visibility between all pieces of two faces.
 View RowEstimator::view_of(std::size_t face, std::size_t other) {
     const ViewFace &a = scene_.faces[face], &b = scene_.faces[other];
     bool any = false, all = true;
@@ -192,8 +193,8 @@ void RowEstimator::classify(std::size_t face, std::uint32_t round) {
     }
 }
 
-/// Numbers of samples that reach a variance at the least cost: with variances a^2 n^-r each gets n so that one more
-/// sample takes equally much variance per cost from all.
+/// Numbers of samples that reach a variance at the least cost: for variances a^2 n^-r, one more sample must reduce the
+/// variance by the same amount per cost in all estimators.
 RowEstimator::Plan RowEstimator::plan(double variance) {
     const auto pair_samples = [&](const Pair& pair, double price) {
         const double a = pair.deviation();
@@ -201,7 +202,7 @@ RowEstimator::Plan RowEstimator::plan(double variance) {
                                 std::pow(pair_rate * a * a / (price * shadow_ray_cost), 1 / (1 + pair_rate)));
     };
     const auto cast_samples = [&](double price) {
-        return std::max<double>(fewest_batches * fewest_rays_a_batch,
+        return std::max<double>(min_batches * min_rays_a_batch,
                                 std::pow(cast_rate * rest_ / price, 1 / (1 + cast_rate)));
     };
     const auto variance_at = [&](double price) {
@@ -213,7 +214,7 @@ RowEstimator::Plan RowEstimator::plan(double variance) {
         }
         return sum;
     };
-    double low = 1e-40, high = 1;  // variance a unit of cost
+    double low = 1e-40, high = 1;  // variance per unit of cost
     for (int step = 0; step < 60; ++step) {
         const double price = std::sqrt(low * high);
         (variance_at(price) > variance ? high : low) = price;
@@ -221,7 +222,7 @@ RowEstimator::Plan RowEstimator::plan(double variance) {
     for (Pair& pair : pairs_) std::tie(pair.batches, pair.rays_a_batch) = batches_of(pair_samples(pair, low), 4, 4);
     Plan plan;
     std::tie(plan.batches, plan.rays_a_batch) =
-        batches_of(std::min<double>(most_rays, cast_samples(low)), fewest_batches, fewest_rays_a_batch);
+        batches_of(std::min<double>(max_rays, cast_samples(low)), min_batches, min_rays_a_batch);
     return plan;
 }
 
@@ -249,7 +250,7 @@ RawRow RowEstimator::measure(std::size_t face, std::uint32_t round, const Plan& 
                      hash(seed_, face, round, std::uint64_t(Use::pair), std::uint64_t(pair.column)));
         const double n = static_cast<double>(pair.batches * pair.rays_a_batch);
         row.rays += pair.batches * pair.rays_a_batch;
-        // n samples of variance U^2 / 4 are worth 2 n / U cast rays, whose variance is about U / 2 each.
+        // n samples of variance U^2 / 4 are equivalent to 2 n / U cast rays, each with a variance of about U / 2.
         row.entries.push_back({found.F, pair.column, static_cast<float>(found.variance),
                                static_cast<float>(2 * n / (pair.unoccluded * area))});
     };
@@ -274,7 +275,7 @@ std::optional<RawRow> RowEstimator::operator()(std::size_t face, std::uint32_t r
     const double wanted = share * error_;
     double aim = wanted;
     RawRow row;
-    for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    for (int attempt = 0; attempt < max_attempts; ++attempt) {
         if (stop_.requested()) return {};
         const std::uint64_t key = hash(round, static_cast<std::uint64_t>(attempt));
         row = measure(face, static_cast<std::uint32_t>(key), plan(aim * aim));

@@ -12,37 +12,40 @@
 
 namespace exitance {
 
-/// Computes one row of view factors so that sqrt(sum_j v_ij) + sum_j |c_ij| <= R once it is combined with the other
-/// rows: v the variance of what is sampled, c the bound of what is integrated. Three estimators share a row:
+/// Computes one row of view factors with the error R that it has after it is combined with the other rows: sqrt(sum_j
+/// v_ij) + sum_j |c_ij| <= R, where v is the variance of sampled entries and c the error bound of integrated ones. A
+/// row uses three estimators:
 ///
-///   - pairs that nothing stands between: the closed form (PairFormFactor);
-///   - partly hidden pairs that are apart: the unoccluded factor times a visible share by shadow rays (PairSampler);
-///   - all others, near ones and the many small ones: rays cast from the face (RowCaster).
+///   - for unoccluded pairs, the closed form (PairFormFactor);
+///   - for partly hidden pairs that are not near, the unoccluded factor times a visible share by shadow rays
+/// (PairSampler);
+///   - for all others, near pairs and the many small ones, rays cast from the face (RowCaster).
 ///
-/// A pilot that is not used in the result decides which pairs are treated one by one and how many samples each gets:
-/// the least cost for the variance allowed. Results depend on the scene, the row, R and the seed alone. One object
-/// serves one thread.
+/// A pilot, which does not enter the result, decides which pairs are treated one by one and how many samples each gets,
+/// to reach the allowed variance at the least cost. Results depend only on the scene, the row, R and the seed. One
+/// object serves one thread.
 class RowEstimator {
   public:
     RowEstimator(const RowScene& scene, double error, std::uint64_t seed, const StopRequest& stop);
 
-    /// The row of a face; nothing when a stop is requested meanwhile.
-    /// round  repeats have other random numbers       share  of R that the row may use
+    /// Computes the row of a face; empty if a stop is requested meanwhile.
+    /// round  repetitions use other random numbers
+    /// share  share of R that the row may use
     std::optional<RawRow> operator()(std::size_t face, std::uint32_t round, double share);
 
   private:
-    /// A pair that is treated by itself, or, if `to_cast`, by the cast after all.
+    /// A pair that is treated individually, unless `to_cast` returns it to the cast rays.
     struct Pair {
         std::uint32_t column;
-        double unoccluded = 0;  ///< F_ij with nothing between.
-        double visible = 0;     ///< Share that the pilot saw.
+        double unoccluded = 0;  ///< F_ij without occlusion.
+        double visible = 0;     ///< Visible share found by the pilot.
         std::size_t batches = 0, rays_a_batch = 0;
         bool is_exact = false, to_cast = false;
-        double left = 1;  ///< Share of the variance that is left once both estimates are combined.
+        double left = 1;  ///< Share of the variance that remains after both rows' estimates are combined.
         double deviation() const;
     };
     struct Plan {
-        std::size_t batches = 0, rays_a_batch = 0;  ///< Of the cast.
+        std::size_t batches = 0, rays_a_batch = 0;  ///< Numbers for the cast rays.
     };
 
     void find_candidates(std::size_t face);
@@ -66,14 +69,14 @@ class RowEstimator {
     Shaft shaft_;
     std::vector<PieceId> blockers_;
     struct Candidate {
-        double about;  ///< F_ij with nothing between, from the faces' middles.
+        double about;  ///< F_ij without occlusion, from the faces' centres.
         std::uint32_t column;
     };
     std::vector<Candidate> candidates_;
-    bool under_others_ = false;  ///< Some of the face may be covered.
+    bool under_others_ = false;  ///< True if another face may cover part of the face.
     std::vector<RowCaster::Count> pilot_;
     std::vector<Pair> pairs_;
-    double rest_ = 0;  ///< Pilot's sum of the entries that are left to the cast, each times left_of_cast.
+    double rest_ = 0;  ///< Pilot's sum of the entries that are left to cast rays, each times left_of_cast.
 };
 
 }  // namespace exitance

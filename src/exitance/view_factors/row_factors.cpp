@@ -15,14 +15,14 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t rows_a_step = 64;  ///< Between reports, and looks at memory.
+constexpr std::size_t rows_a_step = 64;  ///< Rows between progress reports and checks of memory.
 
-/// Share of R that rows aim at in the first pass, for the error expected of them once they are combined.
+/// Share of R that rows use in the first pass, as the expected error after combination.
 constexpr double first_share = 1;
-/// Rows above R after the second pass are computed again, with this share of the error that would do if all of their
-/// variance were their own, so many times at most.
+/// Rows above R after the second pass are recomputed at most `max_repeats` times, each time with this share of the
+/// error that would suffice if all variance were their own.
 constexpr double repeated_share = 0.75;
-constexpr std::uint32_t most_repeats = 4;
+constexpr std::uint32_t max_repeats = 4;
 
 class RowRun {
   public:
@@ -45,7 +45,7 @@ class RowRun {
         for (std::uint32_t round = 0; compute_rows(faces, round); ++round) {
             progress_.phase("combine rows");
             combine_rows(rows_, combine, out);
-            faces = round < most_repeats ? faces_above(out) : std::vector<std::size_t>();
+            faces = round < max_repeats ? faces_above(out) : std::vector<std::size_t>();
             if (faces.empty()) return out;
         }
         store_raw_rows(rows_, finished_, combine, out);
@@ -53,7 +53,7 @@ class RowRun {
     }
 
   private:
-    /// Rows whose combined error is above R, dropped entries not counted; sets what they may use now.
+    /// Rows whose combined error, without dropped entries, is above R. Sets the share of R that they may use next.
     std::vector<std::size_t> faces_above(const SparseFactors& out) {
         std::vector<std::size_t> faces;
         for (std::size_t i = 0; i < out.size(); ++i) {
@@ -65,7 +65,7 @@ class RowRun {
         return faces;
     }
 
-    /// Takes over the rows of a round that an earlier run kept; returns the faces that are left.
+    /// Restores the rows of a round that an earlier run kept; returns the remaining faces.
     std::vector<std::size_t> take_resumed(const std::vector<std::size_t>& faces, std::uint32_t round) {
         std::vector<std::uint8_t> taken(rows_.size());
         for (RawRow& row : resumed_) {
@@ -79,7 +79,7 @@ class RowRun {
         return left;
     }
 
-    /// Computes the rows of some faces; false if it was stopped before the last of them.
+    /// Computes the rows of some faces; returns false if stopped before the last of them.
     bool compute_rows(const std::vector<std::size_t>& faces, std::uint32_t round) {
         const std::vector<std::size_t> left = take_resumed(faces, round);
         if (left.empty()) return true;
@@ -97,7 +97,7 @@ class RowRun {
         return true;
     }
 
-    /// Computes and keeps a few rows; false if a stop left some out.
+    /// Computes and keeps a few rows; returns false if a stop request left some out.
     bool compute_step(std::span<const std::size_t> faces, std::uint32_t round) {
         std::vector<std::optional<RawRow>> made(faces.size());
         parallel_ranges(faces.size(), 4, [&](std::size_t from, std::size_t to) {
@@ -127,7 +127,7 @@ class RowRun {
     const StopRequest& stop_;
     std::optional<RowScene> ready_;
     std::vector<RawRow> rows_, resumed_;
-    std::vector<double> shares_;  ///< Of R, that each row may use by itself.
+    std::vector<double> shares_;  ///< Share of R that each row may use on its own.
     std::vector<std::uint8_t> finished_;
 };
 

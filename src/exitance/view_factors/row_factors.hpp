@@ -10,17 +10,17 @@
 namespace exitance {
 
 struct RowFactorOptions {
-    double error = 1e-3;  ///< R: for every row sqrt(sum of variances) + sum of bounds.
-    double smallest = 0;  ///< Entries below are dropped, and their sum counts in their row's error.
+    double error = 1e-3;  ///< R: limit for every row on sqrt(sum of variances) + sum of bounds.
+    double smallest = 0;  ///< Smaller entries are dropped; their sum is added to their row's error.
     std::uint64_t seed = 1;
-    std::size_t memory_limit_bytes = SIZE_MAX;  ///< Rows end when the process holds more.
+    std::size_t memory_limit_bytes = SIZE_MAX;  ///< Computation of rows stops if the process uses more.
 };
 
-/// Computes view factors between all faces of a scene to an error of every row, in two passes: rows by themselves
-/// (RowEstimator), then both estimates of every pair combined (combine_rows). A face blocks from both sides and is seen
-/// from its front. When a stop is requested or memory runs out, returns the finished rows, not combined. The same bits
-/// on any number of threads, and after any number of interruptions with `store`. Memory is in proportion to the number
-/// of entries.
+/// Computes view factors between all faces of a scene with a given error of every row, in two passes: each row
+/// independently (RowEstimator), then the two estimates of every pair are combined (combine_rows). Faces block light
+/// from both sides and receive it at their front. If a stop is requested or the memory limit is reached, returns the
+/// finished rows without combining them. The result has the same bits on any number of threads and, with `store`, after
+/// any number of interruptions. Memory is proportional to the number of entries.
 SparseFactors compute_row_factors(const Scene& scene, const RowFactorOptions& options, RawRowStore* store,
                                   Progress& progress, const StopRequest& stop);
 

@@ -29,7 +29,7 @@ Scene scene_of(const std::vector<Outline>& outlines) {
     return *make_scene(d).scene;
 }
 
-/// The six faces of a turned box, fronts inwards or outwards.
+/// Adds the six faces of a rotated box, with fronts inwards or outwards.
 void add_box(std::vector<Outline>& faces, const Point& middle, const Vec3& size, double turn, bool inwards) {
     for (std::size_t axis = 0; axis < 3; ++axis)
         for (const double side : {-0.5, 0.5}) {
@@ -46,7 +46,7 @@ void add_box(std::vector<Outline>& faces, const Point& middle, const Vec3& size,
         }
 }
 
-/// A closed room with boxes in the air, one of which stands on the floor.
+/// A closed room with three boxes, one of which stands on the floor.
 Scene furnished_room() {
     std::vector<Outline> faces;
     add_box(faces, {2, 1.5, 1.25}, {4, 3, 2.5}, 0, true);
@@ -56,7 +56,7 @@ Scene furnished_room() {
     return scene_of(faces);
 }
 
-/// Keeps rows in memory and asks for a stop after some.
+/// Keeps rows in memory and requests a stop after `most` of them.
 class StoppingStore final : public RawRowStore {
   public:
     StoppingStore(std::vector<RawRow>& rows, StopRequest& stop, std::size_t most)
@@ -84,7 +84,7 @@ double entry(const SparseFactors& table, std::size_t i, std::size_t j) {
     return at != columns.end() && *at == j ? table.row_values(i)[static_cast<std::size_t>(at - columns.begin())] : 0;
 }
 
-TEST(RowFactors, RowsHoldTheErrorRequestedAgainstQuadrature) {
+TEST(RowFactors, RowsReachTheRequestedErrorComparedWithQuadrature) {
     const Scene scene = furnished_room();
     const double R = 3e-3;
     const SparseFactors table = factors_of(scene, {.error = R});
@@ -109,19 +109,19 @@ TEST(RowFactors, AreReciprocalAndClosed) {
     for (std::size_t i = 0; i < table.size(); ++i)
         for (std::size_t j = 0; j < table.size(); ++j)
             EXPECT_NEAR(table.areas[i] * entry(table, i, j), table.areas[j] * entry(table, j, i), 1e-14);
-    // Walls other than the floor, which the third box covers in part, see nothing but fronts. One ray in 20,000 may
-    // meet the edge of two faces and count as missed.
+    // Only fronts are visible from the walls other than the floor, which the third box covers in part. One ray in
+    // 20,000 may hit the edge between two faces and count as missed.
     EXPECT_EQ(table.unclosed, 0U);
     for (const std::size_t wall : {0, 1, 2, 3, 5}) EXPECT_NEAR(table.row_sums[wall], 1, 1e-4) << wall;
 }
 
-TEST(RowFactors, RaysFindNoFaultInThemAndFindATableOfZeros) {
+TEST(RowFactors, PassTheCheckByRaysUnlikeATableOfZeros) {
     const Scene scene = furnished_room();
     const double R = 3e-3;
     SparseFactors table = factors_of(scene, {.error = R});
     const RowCheckOptions options{.rows = 8, .rays = 30'000, .error = R};
     EXPECT_EQ(check_rows_by_rays(scene, table, options, StopRequest()).wrong, 0U);
-    SparseFactors moved = table;  // every row sum is right, entries are not
+    SparseFactors moved = table;  // row sums are correct, entries are not
     for (std::size_t i = 0; i < moved.size(); ++i)
         std::reverse(moved.values.begin() + std::ptrdiff_t(moved.starts[i]),
                      moved.values.begin() + std::ptrdiff_t(moved.starts[i + 1]));
@@ -144,7 +144,7 @@ TEST(RowFactors, AreTheSameOnAnyNumberOfThreadsAndAfterStops) {
         StopRequest stop;
         StoppingStore store(rows, stop, most);
         const SparseFactors part = compute_row_factors(scene, options, &store, progress, stop);
-        if (part.combined) continue;  // a stop in the last step is too late
+        if (part.combined) continue;  // a stop in the last step has no effect
         EXPECT_EQ(std::count(part.finished.begin(), part.finished.end(), 1), std::ptrdiff_t(rows.size()));
     }
     StopRequest never;
@@ -152,7 +152,7 @@ TEST(RowFactors, AreTheSameOnAnyNumberOfThreadsAndAfterStops) {
     EXPECT_EQ(compute_row_factors(scene, options, &store, progress, never).values, one.values);
 }
 
-TEST(RowFactors, EntriesBelowTheSmallestAreDroppedAndCounted) {
+TEST(RowFactors, SmallEntriesAreDroppedAndCounted) {
     const Scene scene = furnished_room();
     const SparseFactors all = factors_of(scene, {.error = 1e-2});
     const SparseFactors some = factors_of(scene, {.error = 1e-2, .smallest = 0.01});
@@ -164,7 +164,7 @@ TEST(RowFactors, EntriesBelowTheSmallestAreDroppedAndCounted) {
     }
 }
 
-TEST(RowFactors, MovingAndScalingTheSceneChangesNothingButNoise) {
+TEST(RowFactors, MovingAndScalingTheSceneChangesOnlyNoise) {
     std::vector<Outline> near, far;
     add_box(near, {0, 0, 0}, {2, 2, 2}, 0.4, true), add_box(near, {0.1, 0.2, 0}, {0.7, 0.5, 0.6}, 0.9, false);
     for (const Outline& outline : near) {

@@ -9,7 +9,8 @@
 
 namespace exitance {
 
-/// A scene made ready for rows of view factors: faces, samplers, occluders and rays. Immutable; memory O(faces).
+/// A scene prepared for computing rows of view factors: faces, samplers, occluders and ray tracer. Immutable; memory
+/// O(faces).
 struct RowScene {
     explicit RowScene(const Scene& s);
 
@@ -18,7 +19,7 @@ struct RowScene {
     RayTracer tracer;
     std::vector<ViewFace> faces;
     std::vector<FaceSampler> samplers;
-    double slack;  ///< Metres: a point nearer to a plane than this lies in it.
+    double slack;  ///< Metres; points nearer to a plane than this are in it.
 
     RegionId region(std::size_t face) const {
         return scene.surfaces()[SurfaceId(static_cast<std::uint32_t>(face))].region;

@@ -11,22 +11,24 @@
 namespace exitance {
 namespace {
 
-constexpr double smallest_entry = 1e-6;    ///< Entries below it need no digits of their own.
-constexpr double large_entry = 3e-4;       ///< Entries above it may be among the largest of their rows.
-constexpr double dominating_entry = 0.03;  ///< Entries above it make their rows' errors.
-constexpr std::size_t few_blockers = 12;   ///< With more, critical lines cut large faces into thousands of cells.
-constexpr std::size_t many_blockers = 20;  ///< With more, finding the lines takes longer than doing without.
-constexpr double alike_areas = 4;          ///< Areas of one order: either face may receive.
+constexpr double smallest_entry = 1e-6;    ///< Smaller entries need no relative accuracy.
+constexpr double large_entry = 3e-4;       ///< Larger entries may be among the largest of their row.
+constexpr double dominating_entry = 0.03;  ///< Larger entries determine their row's error.
+/// With more blockers, critical lines cut large faces into thousands of cells.
+constexpr std::size_t few_blockers = 12;
+/// With more blockers, finding critical lines takes longer than integration without them.
+constexpr std::size_t many_blockers = 20;
+constexpr double alike_areas = 4;  ///< Ratio of areas below which either face may be the receiver.
 constexpr std::size_t patient_evaluations = 500'000;
-constexpr double much_less = 8;          ///< Crowded than the other face.
-constexpr double much_larger = 16;       ///< Than another face.
-constexpr double larger_among_many = 2;  ///< The same past more than few blockers.
-/// Contour sums of faces of very different sizes cancel: at a tenth of the tolerance one was wrong by 0.6%.
+constexpr double min_crowding_ratio = 8;  ///< Ratio of crowding() of two faces that decides for the less crowded one.
+constexpr double max_area_ratio = 16;     ///< Ratio of areas above which the smaller face is the receiver.
+constexpr double max_area_ratio_cluttered = 2;  ///< Like max_area_ratio, with more than few_blockers.
+/// Contour sums of faces of very different sizes cancel: with a tenth of the tolerance one was wrong by 0.6%.
 constexpr double contour_share = 1e-4;
 
-/// Into how many cells critical lines may cut a receiver. Cells cost the same at any tolerance; without lines the work
-/// grows by about the power given. In an office at 1e-3 lines of up to 300 cells took 0.02 to 2 ms a pair and one of 60
-/// pairs missed the tolerance, where halving alone took four times as long and missed ten.
+/// Limit on the cells into which critical lines may cut a receiver. Cells cost the same at any tolerance; without lines
+/// the work grows with the given power of 1 / tolerance. In an office at 1e-3, up to 300 cells took 0.02 to 2 ms per
+/// pair and one of 60 pairs missed the tolerance; halving alone took four times as long and missed ten.
 constexpr double cells_at_a_thousandth = 300, power_of_halving = 0.75;
 
 std::size_t most_cells(double tolerance) {
@@ -35,14 +37,14 @@ std::size_t most_cells(double tolerance) {
 
 }  // namespace
 
-/// How many Gauss points a side an unoccluded receiver takes; more than most_points when the pair is too near. What
-/// the receiver sees of the source is analytic but at the source, g of the receiver's sizes away.
+/// Number of Gauss points per side for an unoccluded receiver; above most_points if the pair is too near. The integrand
+/// is analytic except at the source, which is g receiver sizes away.
 int RowWorker::points_for(const ViewFace& receiver, const ViewFace& source) const {
     const Vec3 apart = max(max(source.box.lo - receiver.box.hi, receiver.box.lo - source.box.hi), Vec3{});
     const double g = norm(apart) / receiver.diameter, rho = 1 + 2 * g + 2 * std::sqrt(g + g * g);
     if (rho < 1.5) return most_points + 1;
-    // A source that is near to a large receiver is brighter somewhere than on average, by about the receiver's area
-    // over the square of their distance: so many digits more.
+    // A source near a large receiver is brighter somewhere than on average, by about the receiver's area over the
+    // squared distance, which requires that many more digits.
     const double peak = std::max(1.0, receiver.area / std::max(dot(apart, apart), 1e-300));
     return std::max(2, static_cast<int>(std::ceil(std::log(peak / (0.01 * tolerance_)) / (2 * std::log(rho)))));
 }
@@ -60,7 +62,7 @@ void RowWorker::add_unoccluded(std::size_t i, std::size_t j, bool cut) {
     batch.faces.push_back(static_cast<std::uint32_t>(j));
 }
 
-/// Gauss points of all of a receiver, weights summing to one.
+/// Makes the Gauss points of a whole receiver; weights sum to one.
 void RowWorker::make_nodes(const ViewFace& receiver, int points) {
     nodes_.clear();
     for (const std::vector<Point>& piece : receiver.pieces)
@@ -83,7 +85,8 @@ void RowWorker::make_nodes(const ViewFace& receiver, int points) {
         }
 }
 
-/// Unoccluded pairs: analytic in the source, Gauss points on the receiver, many sources at a time.
+/// Integrates the collected unoccluded pairs: analytically in the source, by Gauss points on the receiver, for many
+/// sources at a time.
 void RowWorker::flush_batches(std::size_t i, std::span<double> row) {
     const ViewFace& receiver = pairs_.faces()[i];
     for (std::size_t points = 2; points < batches_.size(); ++points) {
@@ -103,24 +106,25 @@ void RowWorker::flush_batches(std::size_t i, std::span<double> row) {
     exact_.clear();
 }
 
-/// One convex piece of the receiver and one of the source, both before each other's plane.
+/// Exchange area of one convex piece of the receiver and one of the source, each in front of the other's plane.
 double RowWorker::occluded_pieces(const ViewFace& receiver, const ViewFace& source, std::span<const Point> r,
                                   std::span<const Point> s, bool& unoccluded) {
     const double smallest = smallest_entry * std::min(source.area, receiver.area);
     const OccludedPair straight{r, s, receiver.plane, source.plane, standing_between_},
         back{s, r, source.plane, receiver.plane, standing_between_};
-    // What a large face sees of a small one changes within the size of the small one: there the small one looks back,
-    // without lines, as those that its own row is cut along would have both rows wrong alike.
-    const double larger = standing_between_.size() > few_blockers ? larger_among_many : much_larger;
+    // The view of a small face from a large one varies within the size of the small one; then the small one is the
+    // receiver. No critical lines are used in that case: the small face's own row uses the same lines, and both rows
+    // would have the same error.
+    const double larger = standing_between_.size() > few_blockers ? max_area_ratio_cluttered : max_area_ratio;
     if (!is_cluttered_ && larger * source.area >= receiver.area) {
         Demand demand{.relative = tolerance_, .absolute = tolerance_ * smallest, .ignored = smallest};
         demand.large = large_entry * receiver.area, demand.dominating = dominating_entry * receiver.area;
         demand.most_cells = most_cells(tolerance_);
         if (const std::optional<double> found = exchange_(straight, demand, unoccluded)) return *found;
     }
-    // Of faces of about one size that one receives which less stands close to.
+    // If both faces have a similar size, the one with fewer nearby blockers is the receiver.
     const bool alike = source.area < alike_areas * receiver.area && receiver.area < alike_areas * source.area;
-    const bool turned = alike ? much_less * crowding(source.plane, source.diameter, standing_between_) <
+    const bool turned = alike ? min_crowding_ratio * crowding(source.plane, source.diameter, standing_between_) <
                                     crowding(receiver.plane, receiver.diameter, standing_between_)
                               : source.area < receiver.area;
     const ClutteredExchange::Allowance allowance{0.5 * tolerance_, tolerance_ * smallest, is_alone_ ? 0 : smallest,
@@ -129,7 +133,7 @@ double RowWorker::occluded_pieces(const ViewFace& receiver, const ViewFace& sour
                   : cluttered_exchange_(straight, allowance, false, unoccluded);
 }
 
-/// Keeps what is left of a blocker, if it may still hide something.
+/// Keeps the remaining part of a blocker if it may still hide something.
 void RowWorker::add_clipped(ConvexBlocker&& part, const ViewFace& receiver, const ViewFace& source) {
     const std::uint8_t by_r = pairs_.standing(part, receiver.plane), by_s = pairs_.standing(part, source.plane);
     if (!(by_r & ViewPairs::in_front) || !(by_s & ViewPairs::in_front)) return;
@@ -138,7 +142,7 @@ void RowWorker::add_clipped(ConvexBlocker&& part, const ViewFace& receiver, cons
     standing_between_.push_back(&clipped_.back());
 }
 
-/// F_ij with blockers between. A blocker that crosses the plane of either face counts with its part before both.
+/// F_ij with blockers. Of a blocker that crosses the plane of either face, only the part in front of both counts.
 double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::uint32_t> blockers, bool& unoccluded) {
     const ViewFace &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
     standing_between_.clear();

@@ -13,27 +13,27 @@
 
 namespace exitance {
 
-/// Computes view factors, a row or an entry at a time, with scratch memory of its own. One object serves one thread;
-/// results do not depend on what it computed before.
+/// Computes view factors by rows or by entries, with its own scratch memory. One object serves one thread; results do
+/// not depend on earlier calls.
 class RowWorker {
   public:
     RowWorker(const ViewPairs& pairs, double tolerance, const StopRequest& stop)
         : pairs_(pairs), tolerance_(tolerance), stop_(stop), exchange_(stop), cluttered_exchange_(stop) {}
 
-    /// All of a row, from points of its own face (of a much smaller one, where that sees more evenly). What it holds
-    /// when a stop is requested is of no use.
+    /// Computes row i from points of face i (or of a much smaller face, if the view from there varies less). After a
+    /// stop request the contents of `row` are meaningless.
     void compute(std::size_t i, std::span<double> row);
 
     enum class Means : std::uint8_t {
         usual,
-        without_lines,  ///< Cells are halved where that changes something, and no critical lines are sought.
-        patient,        ///< The same, up to 25 times as long.
+        without_lines,  ///< Find no critical lines; halve cells where the error is large.
+        patient,        ///< Like without_lines, with up to 25 times as many evaluations.
     };
-    /// F_ij by itself, to another tolerance.
+    /// Computes F_ij alone, with its own tolerance.
     double entry(std::size_t i, std::size_t j, double tolerance, Means means);
 
   private:
-    static constexpr int most_points = 8;  ///< Gauss points a side; nearer pairs take the contour integral.
+    static constexpr int most_points = 8;  ///< Gauss points per side, at most; nearer pairs use the contour integral.
 
     int points_for(const ViewFace& receiver, const ViewFace& source) const;
     double occluded(std::size_t i, std::size_t j, std::span<const std::uint32_t> blockers, bool& unoccluded);
@@ -58,7 +58,7 @@ class RowWorker {
     const StopRequest& stop_;
     std::vector<std::uint32_t> of_row_, of_pair_;
     std::array<Batch, most_points + 1> batches_;
-    std::vector<std::uint32_t> exact_;  ///< Unoccluded pairs for the contour integral.
+    std::vector<std::uint32_t> exact_;  ///< Unoccluded pairs that use the contour integral.
     std::vector<Node> nodes_;
     std::vector<double> values_;
     std::vector<const ConvexBlocker*> standing_between_;
@@ -66,10 +66,11 @@ class RowWorker {
     std::vector<Point> front_r_, front_s_;
     OccludedExchange exchange_;
     ClutteredExchange cluttered_exchange_;
-    static constexpr std::size_t usual_evaluations = 20'000;  ///< Of a pair among much clutter.
+    /// Limit on the evaluations of a pair with many blockers.
+    static constexpr std::size_t usual_evaluations = 20'000;
     std::size_t most_evaluations_ = usual_evaluations;
-    bool is_alone_ = false;      ///< Is an entry at hand that is known to matter?
-    bool is_cluttered_ = false;  ///< May many things hide some of the pair at hand?
+    bool is_alone_ = false;      ///< True while entry() computes a single entry, which is known to matter.
+    bool is_cluttered_ = false;  ///< True if many blockers may hide parts of the current pair.
 };
 
 }  // namespace exitance

@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// Faces of every row, by their numbers.
+/// Indices of the faces of every row.
 std::vector<std::vector<std::uint32_t>> members_of(std::span<const std::uint32_t> rows, std::size_t count) {
     std::vector<std::vector<std::uint32_t>> members(count);
     for (std::uint32_t i = 0; i < rows.size(); ++i)

@@ -11,28 +11,30 @@ namespace exitance {
 /// View factors between all faces of a scene as compressed rows, in the order of its file. F_ij is the share of the
 /// diffuse flux leaving face i that reaches the front of face j directly.
 struct SparseFactors {
-    std::vector<double> areas;              ///< m^2, one a face.
-    std::vector<double> emittances;         ///< 1 - reflectance, mean over the bands, one a face.
-    std::vector<std::size_t> starts = {0};  ///< Where rows begin in `columns` and `values`, and the end.
-    std::vector<std::uint32_t> columns;     ///< Ascending within a row.
+    std::vector<double> areas;       ///< m^2, one per face.
+    std::vector<double> emittances;  ///< 1 - reflectance, mean over the bands, one per face.
+    /// Start of each row in `columns` and `values`, and the end of the last one.
+    std::vector<std::size_t> starts = {0};
+    std::vector<std::uint32_t> columns;  ///< Ascending within a row.
     std::vector<double> values;
 
-    std::vector<double> row_sums;    ///< One a face.
-    std::vector<double> row_errors;  ///< Empty for a table with a tolerance of entries; sqrt(sum of variances) + sum of
-                                     ///< bounds of every row; infinite if not finished.
-    std::vector<double> dropped;     ///< Sum of the entries of every row that were left out as too small.
-    std::vector<std::uint8_t> finished;  ///< 1 for rows that were computed.
-    bool combined = false;  ///< F_ij and F_ji come from both rows, so that A_i F_ij = A_j F_ji but for rounding.
+    std::vector<double> row_sums;  ///< One per face.
+    /// Error of each row, sqrt(sum of variances) + sum of bounds; infinite if not finished. Empty for a table with a
+    /// tolerance of entries.
+    std::vector<double> row_errors;
+    std::vector<double> dropped;         ///< Sum of the entries of each row that were dropped as too small.
+    std::vector<std::uint8_t> finished;  ///< 1 for each computed row.
+    bool combined = false;  ///< True if F_ij and F_ji combine both rows, so that A_i F_ij = A_j F_ji up to rounding.
 
-    double reciprocity_defect = 0;  ///< max |A_i F_ij - A_j F_ji| / (A_i max_j F_ij) of rows computed independently.
-    double entry_defect = 0;        ///< As of ViewFactors; 0 for tables with an error of rows.
-    /// max |1 - sum_j F_ij - share of the sky and of backs| over rows computed independently, for rows whose share is
-    /// known to the error requested.
+    double reciprocity_defect = 0;  ///< max |A_i F_ij - A_j F_ji| / (A_i max_j F_ij) of independently computed rows.
+    double entry_defect = 0;        ///< See ViewFactors; 0 for tables with an error per row.
+    /// max |1 - sum_j F_ij - share of the sky and of backs| over independently computed rows whose share is known to
+    /// the requested error.
     double closure_defect = 0;
-    std::size_t unclosed = 0;  ///< Rows whose closure defect is more than their variance explains.
+    std::size_t unclosed = 0;  ///< Number of rows whose closure defect exceeds the one that their variance explains.
 
-    bool is_settled = true;                 ///< False if a stop ended the run after its rows.
-    std::size_t mended = 0, unsettled = 0;  ///< As of ViewFactors; 0 for tables with an error of rows.
+    bool is_settled = true;                 ///< False if the run was stopped after its rows.
+    std::size_t mended = 0, unsettled = 0;  ///< See ViewFactors; 0 for tables with an error per row.
 
     std::size_t size() const { return areas.size(); }
     std::size_t entries() const { return values.size(); }
@@ -44,14 +46,15 @@ struct SparseFactors {
     }
 };
 
-/// The entries of a table that are not zero and at least `smallest`. Row errors are left empty.
+/// Returns the entries of a table that are not zero and at least `smallest`. Row errors are left empty.
 SparseFactors sparse_from(const ViewFactors& table, double smallest = 0);
 
 inline constexpr std::uint32_t no_row = 0xffffffff;
 
-/// A table whose rows are unions of faces: F of a union is the mean of its faces' rows, weighted by area, and the sum
-/// of their columns. `rows` has the row of every face, or no_row for one that only blocks; `count` rows are returned.
-/// The error of a row is at most the mean of its faces' errors. Defects are those of the faces' table.
+/// Returns a table whose rows are unions of faces: the row of a union is the area-weighted mean of its faces' rows, and
+/// its column is the sum of their columns. `rows` contains the row of every face, or no_row for a face that only
+/// blocks; `count` rows are returned. The error of a row is at most the mean of its faces' errors. Defects are those of
+/// the faces' table.
 SparseFactors merge_rows(const SparseFactors& table, std::span<const std::uint32_t> rows, std::size_t count);
 
 }  // namespace exitance

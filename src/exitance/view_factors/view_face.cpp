@@ -5,7 +5,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_corners = 12;  ///< Of a convex piece.
+constexpr std::size_t most_corners = 12;  ///< Limit on the corners of a convex piece.
 
 ViewFace make_face(const Scene& scene, SurfaceId s) {
     const Surface& surface = scene.surfaces()[s];

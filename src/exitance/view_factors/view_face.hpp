@@ -14,7 +14,7 @@ struct ViewFace {
     Plane plane;
     double area = 0;  ///< m^2
     Box box;
-    std::vector<std::vector<Point>> pieces;  ///< Convex, of at most 12 corners.
+    std::vector<std::vector<Point>> pieces;  ///< Convex parts with at most 12 corners.
     double diameter = 0;                     ///< Diagonal of its box, metres.
     bool is_quad = false;                    ///< Convex, with three or four corners.
 };
@@ -22,11 +22,11 @@ struct ViewFace {
 /// Returns a scene's faces in the order of its file. The scene must outlive them.
 std::vector<ViewFace> make_view_faces(const Scene& scene);
 
-/// Returns true if some of each face is in front of the other; a point within `slack` metres of a plane lies in it.
-/// `cut` is set if some of a face is behind the other's plane.
+/// Returns true if each face is at least partly in front of the other; points within `slack` metres of a plane are in
+/// it. Sets `cut` if part of a face is behind the other's plane.
 bool face_each_other(const ViewFace& a, const ViewFace& b, double slack, bool& cut);
 
-/// Distance between the faces' boxes, metres: a lower bound of the distance between the faces.
+/// Distance between the faces' bounding boxes, metres: a lower bound on the distance between the faces.
 double box_distance(const ViewFace& a, const ViewFace& b);
 
 }  // namespace exitance

@@ -14,11 +14,11 @@
 namespace exitance {
 namespace {
 
-/// Of the tolerance: rows that differ by less need no second look. Both may err alike. Of the town's pairs that were
-/// within 0.7 of each other one of 120 was off by more than the tolerance, up to 1.5 times as far (2.0 at 1e-4); of
-/// those within 0.3 one of 7,500, up to 1.2 times as far, for which quadrature aims lower.
+/// Shares of the tolerance: rows that differ by less than `agreeing` are not recomputed, and quadrature uses
+/// `aimed_at`. Both rows may have the same error. In a town, one of 120 pairs within 0.7 of each other was off by more
+/// than the tolerance, up to 1.5 times as much (2.0 at 1e-4); of those within 0.3 one of 7,500, up to 1.2 times.
 constexpr double agreeing = 0.3, aimed_at = 0.8;
-constexpr std::size_t rows_a_step = 64, pairs_a_step = 512;  ///< Between reports.
+constexpr std::size_t rows_a_step = 64, pairs_a_step = 512;  ///< Between progress reports.
 
 Error stopped(const std::string& what) {
     return {ErrorCode::limit, "stopped " + what, "", "allow more time or a larger --tolerance"};
@@ -28,10 +28,10 @@ bool exceeds_memory(std::size_t limit) {
     return limit != SIZE_MAX && proportional_memory_bytes() > limit;
 }
 
-/// Where both rows hold a pair of faces, computed from either: how far they are apart, of the larger.
+/// Relative difference of the two rows' values for a pair of faces, by the larger one.
 double disagreement(const ViewFactors& table, std::size_t i, std::size_t j) {
     const double there = table.areas[i] * table.row(i)[j], back = table.areas[j] * table.row(j)[i];
-    if (!std::isfinite(there) || !std::isfinite(back)) return HUGE_VAL;  // a quadrature that failed: computed again
+    if (!std::isfinite(there) || !std::isfinite(back)) return HUGE_VAL;  // failed quadrature: is recomputed
     const double larger = std::max(there, back);
     return larger > 0 ? std::abs(there - back) / larger : 0;
 }
@@ -45,7 +45,7 @@ struct Pair {
     std::uint32_t i, j;
 };
 
-/// Pairs whose rows disagree by more than `most`, i < j.
+/// Pairs i < j whose rows disagree by more than `most`.
 std::vector<Pair> disagreeing(const ViewFactors& table, double most) {
     std::vector<Pair> found;
     for (std::uint32_t i = 0; i < table.size(); ++i)
@@ -62,7 +62,7 @@ void add_row_sums(ViewFactors& table) {
     }
 }
 
-/// Sets both defects of a table.
+/// Sets the reciprocity and entry defects of a table.
 void find_defects(ViewFactors& table) {
     for (std::size_t i = 0; i < table.size(); ++i) {
         const std::span<const double> row = table.row(i);
@@ -77,13 +77,13 @@ void find_defects(ViewFactors& table) {
     }
 }
 
-/// One run: rows first, then those entries again where rows disagree.
+/// Computes a table: first the rows, then again the entries on which rows disagree.
 class TableMaker {
   public:
     TableMaker(ViewPairs& pairs, ViewFactors& table, double tolerance, Progress& progress, const StopRequest& stop)
         : pairs_(pairs), table_(table), tolerance_(tolerance), progress_(progress), stop_(stop) {}
 
-    /// Most pairs of faces of a town are hidden by several houses: proved once, that holds for both of their rows.
+    /// Finds hidden pairs once for both of their rows. In a town most pairs of faces are hidden by several houses.
     Result<void> find_hidden() {
         const std::size_t n = table_.size();
         progress_.phase("hidden pairs");
@@ -96,7 +96,7 @@ class TableMaker {
         return {};
     }
 
-    /// Computes the rows that are not finished and keeps each.
+    /// Computes and keeps the rows that are not finished.
     Result<void> compute_rows(std::vector<std::uint8_t>& finished, RawRowStore* store, std::size_t memory_limit) {
         const std::size_t n = table_.size();
         progress_.phase("view factors");
@@ -124,11 +124,11 @@ class TableMaker {
         return {};
     }
 
-    /// Two faces that look at each other from points of their own agree, or at least one of them is wrong. Both look
-    /// again more closely then, a few times, at last by other means.
+    /// Recomputes pairs whose two rows disagree, so that at least one is wrong: up to four times with smaller
+    /// tolerances, the last times without critical lines.
     Result<void> mend() {
         struct Round {
-            double share;  ///< Of the tolerance.
+            double share;  ///< Share of the tolerance.
             RowWorker::Means means;
         };
         constexpr Round rounds[] = {{0.2, RowWorker::Means::usual},
@@ -158,7 +158,7 @@ class TableMaker {
     }
 
   private:
-    /// Where one row's quadrature gave no number, the other row's entry stands for both.
+    /// Replaces entries whose quadrature failed by the other row's entry.
     void take_finite() {
         for (std::size_t i = 0; i < table_.size(); ++i)
             for (std::size_t j = 0; j < table_.size(); ++j)
@@ -176,7 +176,7 @@ class TableMaker {
 
     double& at(std::size_t i, std::size_t j) { return table_.factors[i * table_.size() + j]; }
 
-    /// Keeps what agrees better.
+    /// Recomputes both entries of a pair, and keeps them unless the old ones agree better.
     void look_again(RowWorker& worker, Pair pair, double tolerance, RowWorker::Means means) {
         const auto [i, j] = pair;
         const double before = disagreement(table_, i, j), there = at(i, j), back = at(j, i);
@@ -192,7 +192,7 @@ class TableMaker {
     const StopRequest& stop_;
 };
 
-/// A table with nothing but facts of the faces.
+/// A table with only the faces' areas and emittances set.
 ViewFactors empty_table(const Scene& scene) {
     ViewFactors table;
     for (SurfaceId s : scene.surfaces().ids()) {
@@ -203,7 +203,7 @@ ViewFactors empty_table(const Scene& scene) {
     return table;
 }
 
-/// Takes over the rows that an earlier run kept; returns 1 for each of them.
+/// Restores the rows that an earlier run kept; returns 1 for each of them.
 std::vector<std::uint8_t> take_resumed(RawRowStore* store, ViewFactors& table) {
     std::vector<std::uint8_t> finished(table.size());
     if (!store) return finished;
@@ -214,7 +214,7 @@ std::vector<std::uint8_t> take_resumed(RawRowStore* store, ViewFactors& table) {
     return finished;
 }
 
-/// All phases of a run. An error of code `limit` leaves `table` with the rows that are `finished`.
+/// Runs all phases. On an error of code `limit`, `table` contains the rows marked in `finished`.
 Result<void> fill(const Scene& scene, const EntryFactorOptions& options, RawRowStore* store, Progress& progress,
                   const StopRequest& stop, ViewFactors& table, std::vector<std::uint8_t>& finished) {
     ViewPairs pairs(scene, stop);
@@ -243,7 +243,7 @@ SparseFactors compute_entry_factors(const Scene& scene, const EntryFactorOptions
     ViewFactors table = empty_table(scene);
     std::vector<std::uint8_t> finished = take_resumed(store, table);
     const bool is_settled = static_cast<bool>(fill(scene, options, store, progress, stop, table, finished));
-    for (std::size_t i = 0; i < table.size(); ++i)  // a row that a stop left half done
+    for (std::size_t i = 0; i < table.size(); ++i)  // clears rows that a stop left incomplete
         if (!finished[i]) std::fill_n(table.factors.begin() + std::ptrdiff_t(i * table.size()), table.size(), 0.0);
     add_row_sums(table);
     if (is_settled) find_defects(table);

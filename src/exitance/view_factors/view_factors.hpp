@@ -10,31 +10,32 @@
 
 namespace exitance {
 
-/// View factors between all faces of a scene, in the order of its file. Row i gathers: F_ij is the share of the diffuse
-/// flux leaving face i that reaches the front of face j directly.
+/// View factors between all faces of a scene, in the order of its file. Row i is for gathering: F_ij is the share of
+/// the diffuse flux leaving face i that reaches the front of face j directly.
 struct ViewFactors {
-    std::vector<double> areas;       ///< m^2, one a face.
-    std::vector<double> emittances;  ///< 1 - reflectance, mean over the bands, one a face.
+    std::vector<double> areas;       ///< m^2, one per face.
+    std::vector<double> emittances;  ///< 1 - reflectance, mean over the bands, one per face.
     std::vector<double> factors;     ///< n x n, row by row, each in [0, 1].
-    std::vector<double> row_sums;    ///< Never adjusted: 1 but for the error in a closed scene.
-    /// max |A_i F_ij - A_j F_ji| / (A_i max_j F_ij). Rows are computed independently, so it measures their error.
+    std::vector<double> row_sums;    ///< Never normalized: 1 up to the error in a closed scene.
+    /// max |A_i F_ij - A_j F_ji| / (A_i max_j F_ij). Measures the error of rows, since they are computed independently.
     double reciprocity_defect = 0;
     /// max |A_i F_ij - A_j F_ji| / max(A_i F_ij, A_j F_ji) over pairs with an entry above 1e-6.
     double entry_defect = 0;
-    std::size_t mended = 0;     ///< Pairs of faces whose rows disagreed at first, and were looked at again.
-    std::size_t unsettled = 0;  ///< Those that still disagree by more than the tolerance.
+    std::size_t mended = 0;     ///< Number of pairs of faces whose rows disagreed at first and were recomputed.
+    std::size_t unsettled = 0;  ///< Number of pairs that still disagree by more than the tolerance.
 
-    static constexpr double smallest_entry = 1e-6;  ///< What lies below needs no digits of its own.
+    static constexpr double smallest_entry = 1e-6;  ///< Entries below need no relative accuracy.
 
     std::size_t size() const { return areas.size(); }
     std::span<const double> row(std::size_t i) const { return std::span(factors).subspan(i * size(), size()); }
 };
 
-/// All view factors of a scene; every face by itself, never merged, rows never forced to sum to one. A face blocks from
-/// both sides and is seen from its front. Rows are computed in parallel, each from points of its own receiver; where
-/// two rows disagree on a pair of faces, both entries are computed again, more closely. The same on any number of
-/// threads. tolerance  relative error asked for of every entry above 1e-6; 1e-12 to 0.1 returns an error of code
-/// `limit` when a stop is requested before the last row is done. Memory: 8 bytes a pair.
+/// Computes all view factors of a scene. Faces are treated individually, and rows are not normalized. Faces block light
+/// from both sides and receive it at their front. Rows are computed in parallel, each from points of its own receiver.
+/// If two rows disagree on a pair of faces, both entries are recomputed more accurately. Deterministic on any number of
+/// threads.
+/// tolerance  relative error of every entry above 1e-6; 1e-12 to 0.1
+/// Returns an error of code `limit` if a stop is requested before the last row is finished. Memory: 8 bytes per pair.
 Result<ViewFactors> compute_view_factors(const Scene& scene, double tolerance, Progress& progress,
                                          const StopRequest& stop);
 

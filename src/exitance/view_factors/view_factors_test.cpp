@@ -37,7 +37,7 @@ ViewFactors factors_of(const Scene& scene, double tolerance) {
     return *compute_view_factors(scene, tolerance, progress, stop);
 }
 
-/// The six faces of a box, cut into k x k pieces, fronts inwards or outwards.
+/// Adds the six faces of a box, each split into k x k pieces, with fronts inwards or outwards.
 void add_box(std::vector<Outline>& faces, const Point& lo, const Point& hi, bool inwards, int k) {
     const Vec3 size = hi - lo;
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -69,22 +69,22 @@ TEST(ViewFactors, RowsOfABoxSumToOneAndAreReciprocal) {
     std::vector<Outline> faces;
     add_box(faces, {0, 0, 0}, {5, 4, 3}, true, 2);
     const ViewFactors table = factors_of(scene_of(faces), 1e-9);
-    for (double sum : table.row_sums) EXPECT_NEAR(sum, 1, 1e-8);  // entries are asked for 1e-9
+    for (double sum : table.row_sums) EXPECT_NEAR(sum, 1, 1e-8);  // entries have a tolerance of 1e-9
     EXPECT_LT(table.reciprocity_defect, 1e-8);
     EXPECT_EQ(table.emittances[0], 0.75);
 }
 
-TEST(ViewFactors, RowsOfARoomWithBlocksSumToOneThoughNothingForcesThem) {
+TEST(ViewFactors, RowsOfARoomWithBlocksSumToOneWithoutNormalization) {
     const Scene scene = room_with_blocks();
     const ViewFactors coarse = factors_of(scene, 1e-4), fine = factors_of(scene, 1e-6);
     for (double sum : coarse.row_sums) EXPECT_NEAR(sum, 1, 1e-4);
-    for (double sum : fine.row_sums) EXPECT_NEAR(sum, 1, 2e-6);  // of entries asked for 1e-6
+    for (double sum : fine.row_sums) EXPECT_NEAR(sum, 1, 2e-6);  // entries have a tolerance of 1e-6
     EXPECT_LT(coarse.reciprocity_defect, 1e-4);
     EXPECT_LT(fine.reciprocity_defect, 2e-6);
 }
 
 TEST(ViewFactors, RowsOfAClutteredRoomSumToOneAndAreReciprocal) {
-    // Ten blocks, one on the floor: walls see each other past all of them.
+    // Ten blocks, one on the floor; walls see each other between them.
     std::vector<Outline> faces;
     add_box(faces, {0, 0, 0}, {2, 2, 1}, true, 1);
     for (int i = 0; i < 9; ++i) {
@@ -95,15 +95,16 @@ TEST(ViewFactors, RowsOfAClutteredRoomSumToOneAndAreReciprocal) {
     const double tolerance = 4e-3;
     const ViewFactors table = factors_of(scene_of(faces), tolerance);
     for (std::size_t i = 0; i < table.size(); ++i) {
-        const bool covered = std::abs(table.row_sums[i]) < 1e-12;  // the foot of the block on the floor
-        const double stands = i == 4 ? 0.1 * 0.12 / 4 : 0;         // which covers that much of the floor
-        EXPECT_NEAR(table.row_sums[i], covered ? 0 : 1 - stands, 2 * tolerance) << i;  // several entries err in a sum
+        const bool covered = std::abs(table.row_sums[i]) < 1e-12;  // the bottom of the block on the floor
+        const double stands = i == 4 ? 0.1 * 0.12 / 4 : 0;         // share of the floor that it covers
+        // Errors of several entries add up.
+        EXPECT_NEAR(table.row_sums[i], covered ? 0 : 1 - stands, 2 * tolerance) << i;
     }
-    EXPECT_LT(table.reciprocity_defect, 2 * tolerance);  // as both rows err
+    EXPECT_LT(table.reciprocity_defect, 2 * tolerance);  // both rows have errors
 }
 
-/// The room of the complex family, whose slanting walls lie in boxes that hold all of the room, with one of its chairs'
-/// seats on one leg. The seat's edge passes over the leg's sides at a fortieth of their height.
+/// The room of the complex family with the seat of one chair on one leg. The bounding boxes of the slanting walls
+/// contain the whole room. The seat's edge passes over the leg's sides at a fortieth of their height.
 Scene room_with_a_stool() {
     const auto prism = [](const Outline& low, const Outline& high, std::vector<Outline>& faces) {
         for (std::size_t k = 0; k < low.size(); ++k) {
@@ -136,11 +137,11 @@ Scene room_with_a_stool() {
     return scene_of(faces);
 }
 
-TEST(ViewFactors, OfALegUnderAnOverhangingSeatSumToOneBetweenSlantingWalls) {
+TEST(ViewFactors, SumToOneForALegUnderAnOverhangingSeatBetweenSlantingWalls) {
     const ViewFactors table = factors_of(room_with_a_stool(), 1e-4);
     ASSERT_EQ(table.size(), 15U);
-    // One sum was 1.005 once: boxes had it that the wall was near everywhere, no rule was believed, and the budget was
-    // spent before all of the leg was seen. 1e-4: the tolerance asked for; 2e-4 is that of two entries.
+    // With distances to bounding boxes one sum was 1.005: walls seemed near everywhere, no rule was accepted, and the
+    // limit on evaluations was reached. 1e-4 is the tolerance; 2e-4 that of two entries.
     for (std::size_t leg = 4; leg < 8; ++leg) {
         EXPECT_NEAR(table.row_sums[leg], 1, 1e-4) << leg;
         const double largest = *std::max_element(table.row(leg).begin(), table.row(leg).end());
@@ -150,9 +151,9 @@ TEST(ViewFactors, OfALegUnderAnOverhangingSeatSumToOneBetweenSlantingWalls) {
     }
 }
 
-TEST(ViewFactors, OfAWallBehindBoardsAFingersBreadthAwayAreReciprocal) {
-    // The wall looks between the boards from strips as wide as they stand off: points that met none of them agreed, and
-    // entries from there were believed that are wrong by 0.6%.
+TEST(ViewFactors, AreReciprocalForAWallCloselyBehindBoards) {
+    // The wall sees between the boards from strips as wide as the gap behind them. Rules whose points all miss the
+    // strips agree, but their entries are wrong by 0.6%.
     std::vector<Outline> faces;
     add_box(faces, {0, 0, 0}, {4, 3, 2.5}, true, 1);
     for (int i = 0; i < 3; ++i)
@@ -166,7 +167,7 @@ TEST(ViewFactors, OfAWallBehindBoardsAFingersBreadthAwayAreReciprocal) {
     EXPECT_LT(table.reciprocity_defect, tolerance);
 }
 
-/// Houses of several heights without bottoms, touching nothing but the ground: as the town of real models.
+/// Houses of several heights without bottoms that touch only the ground, as in real models of towns.
 Scene small_town() {
     std::vector<Outline> faces;
     for (int x = 0; x < 4; ++x)
@@ -185,7 +186,8 @@ Scene small_town() {
     return scene_of(faces);
 }
 
-/// Expects entries above 1e-6 to be those of a finer matrix within a share of them; how many there are.
+/// Expects entries above 1e-6 to agree with those of a finer table within the relative error `share`. Returns their
+/// number.
 std::size_t entries_within(double share, const ViewFactors& coarse, const ViewFactors& fine) {
     std::size_t entries = 0;
     for (std::size_t i = 0; i < coarse.size(); ++i)
@@ -198,7 +200,7 @@ std::size_t entries_within(double share, const ViewFactors& coarse, const ViewFa
     return entries;
 }
 
-TEST(ViewFactors, EveryEntryOfATownAbove1e6HoldsTheTolerance) {
+TEST(ViewFactors, EveryEntryOfATownAbove1e6IsWithinTheTolerance) {
     const Scene scene = small_town();
     const double tolerance = 1e-3;
     const ViewFactors coarse = factors_of(scene, tolerance), fine = factors_of(scene, 0.02 * tolerance);
@@ -207,8 +209,8 @@ TEST(ViewFactors, EveryEntryOfATownAbove1e6HoldsTheTolerance) {
     EXPECT_EQ(coarse.unsettled, 0U);
 }
 
-TEST(ViewFactors, EntriesOfAFurnishedRoomHoldTheTolerance) {
-    // A table on four legs, whose feet stand on the floor that they look along, and a box below it.
+TEST(ViewFactors, EntriesOfAFurnishedRoomAreWithinTheTolerance) {
+    // A table on four legs, whose bottoms touch the floor, and a box below it.
     std::vector<Outline> faces;
     add_box(faces, {0, 0, 0}, {4, 3, 2.5}, true, 1);
     add_box(faces, {1.2, 0.9, 0.7}, {2.6, 1.9, 0.74}, false, 1);
@@ -218,7 +220,7 @@ TEST(ViewFactors, EntriesOfAFurnishedRoomHoldTheTolerance) {
     const Scene scene = scene_of(faces);
     const double tolerance = 4e-3;
     const ViewFactors coarse = factors_of(scene, tolerance), fine = factors_of(scene, 0.1 * tolerance);
-    EXPECT_GT(entries_within(1.1 * tolerance, coarse, fine), 300U);  // the finer one errs, too
+    EXPECT_GT(entries_within(1.1 * tolerance, coarse, fine), 300U);  // the finer table has errors, too
     EXPECT_EQ(coarse.unsettled, 0U);
     EXPECT_EQ(fine.unsettled, 0U);
 }
@@ -236,7 +238,7 @@ TEST(ViewFactors, CuttingAFaceSplitsItsColumnAndAveragesItsRow) {
                 column += c.row(24 + face)[4 * wall + piece];
                 row += c.row(4 * wall + piece)[24 + face] / 4;
             }
-            EXPECT_NEAR(w.row(6 + face)[wall], column, 5e-6 * column + 1e-12);  // four entries asked for 1e-6
+            EXPECT_NEAR(w.row(6 + face)[wall], column, 5e-6 * column + 1e-12);  // four entries with a tolerance of 1e-6
             EXPECT_NEAR(w.row(wall)[6 + face], row, 5e-6 * row + 1e-12);
         }
 }
@@ -274,7 +276,7 @@ nlohmann::json published() {
                : table;
 }
 
-TEST(ViewFactors, ReproduceThePublishedPairsWithThingsBetween) {
+TEST(ViewFactors, ReproduceThePublishedPairsWithBlockers) {
     const nlohmann::json table = published();
     for (const auto& c : table["cases"]) {
         if (c["kind"] != "polygon-polygon" || c["occluders"].empty()) continue;

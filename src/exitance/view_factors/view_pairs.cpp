@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// A box-to-box shaft: planes parallel to an axis that have both boxes on one side. Source: [Haines91].
+/// Shaft between two boxes: planes parallel to an axis with both boxes on one side. Source: [Haines91].
 class BoxShaft {
   public:
     BoxShaft(const Box& a, const Box& b) {
@@ -22,7 +22,8 @@ class BoxShaft {
                     return up ? box.hi[axis] : box.lo[axis];
                 };
                 const double ds = at(b, s, up_s) - at(a, s, up_s), dt = at(b, t, up_t) - at(a, t, up_t);
-                // The normal across this corner's line that points away from both boxes, if there is one.
+                // The normal perpendicular to the line through this corner of both boxes that points away from them, if
+                // there is one.
                 const double sign = dt * (up_s ? 1 : -1) > 0 ? 1 : -1, ns = sign * dt, nt = -sign * ds;
                 if (ns * (up_s ? 1 : -1) <= 0 || nt * (up_t ? 1 : -1) <= 0) continue;
                 sides_[count_++] = {s, t, ns, nt, ns * at(a, s, up_s) + nt * at(a, t, up_t)};
@@ -92,7 +93,7 @@ void ViewPairs::find_blockers(std::size_t face, std::vector<std::uint32_t>& foun
 void ViewPairs::find_blockers(std::size_t i, std::size_t j, std::span<const std::uint32_t> before_i,
                               std::vector<std::uint32_t>& found) const {
     found.clear();
-    const std::uint32_t* sides_i = sides_.data() + i * blockers_.size();  // of nothing, where there are no blockers
+    const std::uint32_t* sides_i = sides_.data() + i * blockers_.size();  // null if there are no blockers
     const std::uint32_t* sides_j = sides_.data() + j * blockers_.size();
     for (std::uint32_t b : before_i)
         if ((sides_i[b] & sides_j[b]) == 0 && (standing_[j * blockers_.size() + b] & in_front)) found.push_back(b);

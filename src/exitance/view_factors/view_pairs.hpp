@@ -12,37 +12,39 @@
 
 namespace exitance {
 
-/// All faces of a scene and what may stand between any two of them. Immutable once made, shared by all rows.
+/// All faces of a scene and the possible blockers between any two of them. Immutable after find_hidden; shared by all
+/// rows.
 class ViewPairs {
   public:
-    /// Where a blocker stands to a plane, as bits.
+    /// Position of a blocker relative to a plane, as bits.
     enum Standing : std::uint8_t { in_front = 1, behind = 2 };
 
-    /// O(faces x blockers) time, five bytes a pair of them. Of no use when a stop is requested meanwhile.
+    /// O(faces x blockers) time, five bytes per pair. After a stop request the object is unusable.
     ViewPairs(const Scene& scene, const StopRequest& stop);
 
-    /// Finds pairs of faces that blockers hide from each other for certain, one alone or several together. A byte a
-    /// pair of faces. Of no use when a stop is requested meanwhile.
+    /// Finds pairs of faces, the larger index in [first, last), that are certainly hidden from each other, by one
+    /// blocker or several together. One byte per pair of faces. After a stop request the result is unusable.
     void find_hidden(std::size_t first, std::size_t last, const StopRequest& stop);
-    /// Is it certain that two faces do not see each other? Known after find_hidden of the larger number.
+    /// True if two faces are certainly hidden from each other. Requires find_hidden for the larger index.
     bool is_hidden(std::size_t i, std::size_t j) const { return hidden_[i * faces_.size() + j] != 0; }
 
     const std::vector<ViewFace>& faces() const { return faces_; }
     const std::vector<ConvexBlocker>& blockers() const { return blockers_; }
-    /// Metres: what lies nearer to a plane than this lies in it.
+    /// Metres; points nearer to a plane than this are in it.
     double slack() const { return slack_; }
 
-    /// Is some of each in front of the other? `cut` when only some of one is.
+    /// True if each face is at least partly in front of the other. Sets `cut` if part of one is behind the other's
+    /// plane.
     bool face_each_other(std::size_t i, std::size_t j, bool& cut) const {
         return exitance::face_each_other(faces_[i], faces_[j], slack_, cut);
     }
-    /// Blockers with some part in front of a face.
+    /// Finds blockers that are at least partly in front of a face.
     void find_blockers(std::size_t face, std::vector<std::uint32_t>& found) const;
-    /// Those of them that may hide some of j from some of i: not kept apart from both by one of their own faces, and
-    /// not outside the shaft between the boxes.
+    /// Finds those blockers in `before_i` that may hide part of j from part of i: not separated from both by one of
+    /// their own faces, and not outside the shaft between the bounding boxes.
     void find_blockers(std::size_t i, std::size_t j, std::span<const std::uint32_t> before_i,
                        std::vector<std::uint32_t>& found) const;
-    /// Does a blocker cross the plane of a face?
+    /// True if a blocker crosses the plane of a face.
     bool crosses(std::size_t face, std::uint32_t b) const {
         return standing_[face * blockers_.size() + b] == (in_front | behind);
     }
@@ -54,10 +56,10 @@ class ViewPairs {
     std::vector<ViewFace> faces_;
     std::vector<ConvexBlocker> blockers_;
     std::vector<Box> boxes_;
-    std::vector<std::uint32_t> sides_;    ///< A row a face, a column a blocker.
-    std::vector<std::uint8_t> standing_;  ///< Likewise.
+    std::vector<std::uint32_t> sides_;    ///< One row per face, one column per blocker.
+    std::vector<std::uint8_t> standing_;  ///< One row per face, one column per blocker.
     BlockerPlanes planes_;
-    std::vector<std::uint8_t> hidden_;  ///< A row and a column a face.
+    std::vector<std::uint8_t> hidden_;  ///< One row and one column per face.
 };
 
 }  // namespace exitance

@@ -145,24 +145,28 @@ class VisibleFromFour::Work {
             beside |= 15 & ~standing.inside;
             if (beside == 15) return true;
             alike &= standing.alike;
-            if (standing.any_out && count < cuts.size()) cuts[count++] = k;
+            if (!standing.any_out) continue;
+            if (count == cuts.size()) return alike_ = false;
+            cuts[count++] = k;
         }
         alike_ &= alike && beside == 0;
         return false;
     }
 
-    /// The part of a polygon with sign * height >= 0.
-    static void cut(const Polygon& polygon, const Real* heights, const int* signs, int sign, Polygon& out) {
+    /// Computes the part of a polygon with sign * height >= 0. Returns false if it has too many corners.
+    static bool cut(const Polygon& polygon, const Real* heights, const int* signs, int sign, Polygon& out) {
         out.count = 0;
         for (std::size_t i = 0; i < polygon.count; ++i) {
             const std::size_t j = i + 1 == polygon.count ? 0 : i + 1;
-            if (sign * signs[i] >= 0 && out.count < most_corners) out.corner[out.count++] = polygon.corner[i];
-            if (signs[i] * signs[j] < 0 && out.count < most_corners) {
+            if (out.count + 2 > most_corners) return false;
+            if (sign * signs[i] >= 0) out.corner[out.count++] = polygon.corner[i];
+            if (signs[i] * signs[j] < 0) {
                 const Real t = heights[i] / (heights[i] - heights[j]);
                 const Vec &p = polygon.corner[i], e = polygon.corner[j] - p;
                 out.corner[out.count++] = {p.x + t * e.x, p.y + t * e.y, p.z + t * e.z};
             }
         }
+        return true;
     }
 
     void add_edges(const Polygon& polygon, double weight) {
@@ -208,8 +212,8 @@ class VisibleFromFour::Work {
             beside = standing.inside == 0;
             alike_ &= standing.alike;
             if (beside || !standing.any_out) continue;
-            if (!last) cut(*polygon, heights, signs, -1, pool_[fragments_++]);
-            cut(*polygon, heights, signs, 1, pool_[spare]);
+            if (!last) alike_ &= cut(*polygon, heights, signs, -1, pool_[fragments_++]);
+            alike_ &= cut(*polygon, heights, signs, 1, pool_[spare]);
             std::swap(rest, spare);
             polygon = &pool_[rest];
         }

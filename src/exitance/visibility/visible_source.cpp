@@ -34,12 +34,29 @@ void VisibleSource::set(std::span<const Point> source, std::span<const ConvexBlo
     bodies_.clear();
     points_.clear();
     faces_.clear();
-    for (const ConvexBlocker* shape : blockers) {
+    split_.clear();
+    for (const ConvexBlocker* shape : blockers)
+        if (!shape->is_solid() && shape->edges.size() > Polygon::max_lines) split_sheet(*shape);
+    const auto add = [&](const ConvexBlocker& shape) {
         bodies_.push_back(
-            {shape, static_cast<std::uint32_t>(points_.size()), static_cast<std::uint32_t>(faces_.size())});
-        for (const Point& p : shape->points) points_.push_back(turned(p - frame_.origin));
-        for (const Plane& face : shape->faces)
+            {&shape, static_cast<std::uint32_t>(points_.size()), static_cast<std::uint32_t>(faces_.size())});
+        for (const Point& p : shape.points) points_.push_back(turned(p - frame_.origin));
+        for (const Plane& face : shape.faces)
             faces_.push_back({turned(face.n), face.offset - dot(face.n, frame_.origin)});
+    };
+    for (const ConvexBlocker* shape : blockers)
+        if (shape->is_solid() || shape->edges.size() <= Polygon::max_lines) add(*shape);
+    for (const ConvexBlocker& part : split_) add(part);
+}
+
+/// Adds the parts of a sheet, each with at most max_lines edges, which have diagonals in common.
+void VisibleSource::split_sheet(const ConvexBlocker& sheet) {
+    const std::vector<std::uint32_t>& loop = sheet.loops[0];
+    for (std::size_t first = 1; first + 1 < loop.size(); first += Polygon::max_lines - 2) {
+        std::vector<Point> outline{sheet.points[loop[0]]};
+        for (std::size_t i = first; i < std::min(loop.size(), first + Polygon::max_lines - 1); ++i)
+            outline.push_back(sheet.points[loop[i]]);
+        split_.push_back(make_sheet(outline, sheet.faces[0]));
     }
 }
 
@@ -171,6 +188,7 @@ void VisibleSource::find_cuts(const Polygon& fragment, const Pyramid& pyramid) {
 /// Adds the contour of what remains of a fragment after subtracting the pyramids reaching_[first, last). Pyramids that
 /// miss the fragment miss all its parts, too, so they are dropped here.
 void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::size_t last, bool is_whole) {
+    if (fragment.count > Polygon::max_fragment) return subtract_halves(fragment, first, last);
     const std::size_t mark = pool_used_, first_cut = cuts_.size(), first_left = reaching_.size();
     for (std::size_t i = first; i < last; ++i) {
         const std::uint32_t p = reaching_[i];
@@ -225,6 +243,21 @@ void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::si
     }
     pool_used_ = mark;
     reaching_.resize(first_left);
+}
+
+/// Does the same for two halves of a fragment with many corners, whose common side cancels in the contour.
+void VisibleSource::subtract_halves(const Polygon& fragment, std::size_t first, std::size_t last) {
+    const std::size_t middle = fragment.count / 2;
+    Polygon half;
+    const auto subtract_corners = [&](std::size_t from, std::size_t to) {
+        half.clear();
+        for (std::size_t i = from; i <= to; ++i)
+            half.add(fragment.u[i % fragment.count], fragment.v[i % fragment.count]);
+        half.close();
+        subtract(half, first, last, false);
+    };
+    subtract_corners(0, middle);
+    subtract_corners(middle, fragment.count);
 }
 
 /// Computes the part of the source inside a pyramid. Sets `is_whole` if that is the whole source.

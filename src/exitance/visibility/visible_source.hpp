@@ -42,7 +42,13 @@ class VisibleSource {
   private:
     /// A convex part of the source, in coordinates of its plane with the origin at the foot of the current point.
     struct Polygon {
-        static constexpr std::size_t most = 24, lanes = 4;
+        static constexpr std::size_t lanes = 4;
+        /// Corners of a fragment that is cut: one of more is split first.
+        static constexpr std::size_t max_fragment = 24;
+        /// Lines of a blocker's silhouette: a sheet with more edges is split; solids have at most 32 faces.
+        static constexpr std::size_t max_lines = 32;
+        /// Capacity: every line adds at most one corner. The rest is a margin for solids with many silhouette edges.
+        static constexpr std::size_t most = max_fragment + max_lines + 8;
         std::size_t count;
         double u[most + lanes], v[most + lanes];
         double low_u, high_u, low_v, high_v;
@@ -88,7 +94,9 @@ class VisibleSource {
     Sides measure(const Polygon& polygon, const Line& line, double* heights) const;
     bool misses(const Polygon& fragment, Pyramid& pyramid) const;
     void find_cuts(const Polygon& fragment, const Pyramid& pyramid);
+    void split_sheet(const ConvexBlocker& sheet);
     void subtract(const Polygon& fragment, std::size_t first, std::size_t last, bool is_whole);
+    void subtract_halves(const Polygon& fragment, std::size_t first, std::size_t last);
     void clip_source(const Pyramid& pyramid, Polygon& inside, bool& is_whole) const;
     bool find_shadows();
     bool take_shadows();
@@ -111,7 +119,8 @@ class VisibleSource {
     std::vector<Pyramid> pyramids_;
     std::vector<std::uint32_t> reaching_;  ///< A stack of pyramids that may hide some of the current fragments.
     std::vector<std::uint8_t> in_front_;
-    std::vector<Polygon> pool_;  ///< A stack of fragments.
+    std::vector<ConvexBlocker> split_;  ///< Parts of sheets with more edges than max_lines.
+    std::vector<Polygon> pool_;         ///< A stack of fragments.
     std::size_t pool_used_ = 0;
     std::vector<Polygon> shadows_;     ///< Shadows on the source, one per pyramid.
     std::vector<std::uint32_t> cuts_;  ///< Lines that cross the fragments on the stack.

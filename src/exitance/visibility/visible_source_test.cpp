@@ -45,6 +45,29 @@ TEST(VisibleSource, ASheetHidesItsShadow) {
     EXPECT_NEAR(F, point_to_polygon({0, 0, 0}, up, ceiling) - point_to_polygon({0, 0, 0}, up, shadow), 1e-15);
 }
 
+Outline regular(std::size_t corners, double radius, double z) {
+    Outline out;
+    for (std::size_t i = 0; i < corners; ++i) {
+        const double a = 2 * pi * static_cast<double>(i) / static_cast<double>(corners);
+        out.push_back({radius * std::cos(a), radius * std::sin(a), z});
+    }
+    return out;
+}
+
+TEST(VisibleSource, RoundSheetsHideAllOfTheirShadowWhateverTheirNumberOfCorners) {
+    for (const std::size_t corners : {20u, 30u, 50u, 100u, 300u}) {
+        const ConvexBlocker disc = sheet(regular(corners, 0.4, 1)), small = sheet(level_square(0.2, 0.3, 1.5, 0.1));
+        Outline shadow = regular(corners, 0.8, 2);
+        std::reverse(shadow.begin(), shadow.end());
+        const double lit = point_to_polygon({0, 0, 0}, up, ceiling) - point_to_polygon({0, 0, 0}, up, shadow);
+        Seen how;
+        EXPECT_NEAR(seen({0, 0, 0}, up, ceiling, {&disc}, how), lit, 1e-13) << corners;
+        EXPECT_EQ(how, Seen::part);
+        // A second blocker within the shadow hides nothing more; its cuts leave fragments with many corners.
+        EXPECT_NEAR(seen({0, 0, 0}, up, ceiling, {&small, &disc}, how), lit, 1e-13) << corners;
+    }
+}
+
 TEST(VisibleSource, DistinguishesHidingByOneBlockerAndBySeveral) {
     const ConvexBlocker whole = sheet(level_square(0, 0, 1, 0.6));
     const ConvexBlocker left = sheet(level_square(-0.5, 0, 1, 0.55)), right = sheet(level_square(0.5, 0, 1, 0.55));

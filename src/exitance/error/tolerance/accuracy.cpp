@@ -20,35 +20,37 @@ void apply_user_knobs(Knobs& knobs, const SolveOptions& options) {
 Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const SolveOptions& options) {
     namespace c = calibrated;
     const auto count = [&](double n) { return static_cast<std::size_t>(n / error); };
-    const auto whole = [](double n) { return static_cast<int>(std::ceil(n)); };
-    // A strip of width w along a concave edge, where light varies like w^0.7, has a share of w^1.2 in the error
-    // (given by [Atkinson00]).
+    const auto round_up = [](double n) { return static_cast<int>(std::ceil(n)); };
+    // A strip of width w along a concave edge, where the light varies like w^0.7, contributes w^1.2 to the error
+    // (derived from [Atkinson00]).
     const double strips = std::log2(std::max(1.0, c::strip_share / error)) / 1.2;
     const double further = std::clamp(std::log2(c::finer_strips_below / error), 0.0, 1.0);
     Knobs knobs;
-    // Half of them beyond those that the pieces are: a thousand books are no reason to leave the floor whole.
+    // At least half of the elements are additional to the pieces, so that a scene with a thousand books still has a
+    // mesh on its floor.
     const std::size_t elements =
         std::max(count(c::solve_elements), pieces.size() + count(c::solve_elements_beyond_pieces));
-    knobs.solve_mesh = {edge_for_elements(pieces, elements), whole(strips + further)};
+    knobs.solve_mesh = {edge_for_elements(pieces, elements), round_up(strips + further)};
     knobs.solve_rays = {.average = std::clamp(c::row_rays / error, c::least_row_average, c::most_row_average),
                         .least = static_cast<unsigned>(c::least_rays),
                         .most = static_cast<unsigned>(c::most_row_rays)};
-    // What is projected is only gathered from, and its means are right; unless it is what is delivered.
+    // The projected direct light is only used for gathering, and its means are exact, so that a large misfit is
+    // acceptable; unless it is itself delivered.
     const bool is_delivered = options.visibility == VisibilityKind::fractional;
     knobs.direct_tolerance = (is_delivered ? c::direct_tolerance_fractional : c::direct_tolerance) * error;
     knobs.residual = c::residual_share * error;
     knobs.link_error = c::link_error_share * error;
-    // Curved elements may be larger; and they are sampled at more places, so that fewer rays do for each. An element
-    // takes about as many rays whatever its size: few elements to begin with, and where light turns sooner they are
-    // cut.
+    // Curved elements may be larger. They are sampled at more points, so that fewer rays per point are sufficient. The
+    // number of rays of an element hardly depends on its size: start with few elements, which are split where the light
+    // varies.
     const bool curved = knobs.gather_curved = error < c::curved_below;
     const double of_curved = 0.5 * c::curved_gather_elements * std::clamp(c::finer_gather_below / error, 1.0, 2.0);
     knobs.gather_mesh = {edge_for_elements(pieces, count(curved ? of_curved : c::straight_gather_elements)),
-                         whole(strips)};
+                         round_up(strips)};
     const double rays = (curved ? c::curved_gather_rays : c::straight_gather_rays) * std::pow(0.5 / error, 4.0 / 3);
     const double least = std::max(curved ? c::least_curved_rays : c::least_rays, rays / 4);
     knobs.gather_rays = {.average = rays, .least = static_cast<unsigned>(least), .most = 16384};
-    // What hides from all places of an element weighs more where there is less noise to hide in.
+    // Features missed by all points of an element matter more when the noise is lower.
     knobs.gather_noise =
         c::gather_noise * error * std::pow(std::min(1.0, error / c::finer_gather_below), c::quieter_exponent);
     knobs.gather_tolerance = (curved ? c::curved_tolerance : c::straight_tolerance) * error;
@@ -58,32 +60,33 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
 
 namespace {
 
-/// Summed light costs by the element that is summed, not by the element that it is summed for.
+/// The cost of a sum grows with the number of source elements, not of receivers.
 double edge_for_sums(const std::vector<Piece>& pieces, double error) {
     return edge_for_elements(pieces, static_cast<std::size_t>(4 / error));
 }
 
-/// For errors below which every place is to be right by itself.
+/// Settings for errors at which every point must be accurate, not only the mean square.
 Knobs knobs_for_fine_sums(const Knobs& knobs, double error, const std::vector<Piece>& pieces) {
     namespace c = calibrated;
     Knobs out = knobs;
-    // The gather smooths what the method has, and its own elements are cut where they have to be.
+    // The gather smooths the method's solution, and its own elements are split as needed.
     out.solve_mesh.edge *= 2, out.solve_rays.average *= 0.5;
     out.gather_mesh.edge = 2 * edge_for_sums(pieces, error);
-    // At an edge, too, light is to be right: two strips more than the mean square needs, cut to squares at open ends,
-    // and no strip with so few rays that its noise is seen from the strip across the edge.
+    // Light must be accurate at edges, too: that takes two strips more than the mean square needs.
     out.gather_mesh.grading_levels += 2;
+    // The strips are split into squares at open ends, and get enough rays that their noise is not visible from the
+    // strip across the edge.
     out.solve_mesh.longest_end = out.gather_mesh.longest_end = c::fine_longest_end;
     out.solve_rays.least = static_cast<unsigned>(c::fine_least_rays);
     out.gather_tolerance = c::fine_sum_tolerance * error;
-    // Well above what the sum itself may miss, a few shares: finer elements would follow that for ever.
+    // At least 15 element shares. A tighter tolerance would refine the error of the sum itself and never end.
     out.gather_relative_tolerance = c::fine_relative_tolerance * error;
     out.gather_element_share = c::fine_element_share * error;
     return out;
 }
 
-/// What is gathered is refined, so that the method may be rough; but the certificate follows late reflections on its
-/// elements, and through fewer of them sees too little.
+/// The summed light is refined, so that the method may be inaccurate. But the certificate follows late reflections on
+/// the method's elements and underestimates them if the elements are too few.
 Knobs knobs_for_refined_sums(const Knobs& knobs, double error, const std::vector<Piece>& pieces,
                              const SolveOptions& options) {
     namespace c = calibrated;
@@ -99,12 +102,12 @@ Knobs knobs_for_refined_sums(const Knobs& knobs, double error, const std::vector
     return out;
 }
 
-/// Of two settings, the share `t` of the way from the first to the second, in the logarithm of each.
+/// Interpolates two sets of settings logarithmically: t = 0 gives a, t = 1 gives b.
 Knobs between(const Knobs& a, const Knobs& b, double t) {
     const auto of = [t](double x, double y) { return std::pow(x, 1 - t) * std::pow(y, t); };
     const auto mesh = [&](const MeshSize& x, const MeshSize& y) {
         const double levels = (1 - t) * x.grading_levels + t * y.grading_levels;
-        // Without bounds on ends the first are as long as may be.
+        // `a` has no limit on strip ends, so that the limit grows without bound as t approaches 0.
         return MeshSize{of(x.edge, y.edge), static_cast<int>(std::lround(levels)), y.longest_end / t};
     };
     Knobs out = a;
@@ -122,7 +125,8 @@ Knobs between(const Knobs& a, const Knobs& b, double t) {
 Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>& pieces, const SolveOptions& options) {
     namespace c = calibrated;
     Knobs straight = knobs;
-    // Places cost alike on any element, so that more straight elements cost less than places to bend fewer by.
+    // Cost per gather point does not depend on the element, so that more straight elements cost less than the points
+    // that curved ones need.
     straight.gather_curved = false;
     Knobs out = straight;
     const double t = std::clamp(
@@ -132,8 +136,8 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
         const Knobs fine = knobs_for_fine_sums(straight, error, pieces);
         out = t < 1 ? between(out, fine, t) : fine;
     }
-    // Light of so many reflections solves no equation to refine by; and where much is allowed, the method is below it
-    // by itself.
+    // Refining the delivered light (`refined_light`) iterates the equation for all reflections, so it cannot be used
+    // for a limited number of them. For large errors, and where all settings are fine (t = 1), it is not needed.
     out.refined = options.bounces < 0 && t < 1 && error < c::refined_below;
     apply_user_knobs(out, options);
     return out;
@@ -141,11 +145,11 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
 
 namespace {
 
-/// Tightens the local pass where its parts are more than is allowed for both.
+/// Tightens the local pass if its parts exceed the error allowed for both together.
 void tighten_local(Tightened& out, const ErrorParts& parts, double allowed) {
     namespace c = calibrated;
     if (std::hypot(parts.noise, parts.interpolation) <= allowed) return;
-    // Each part is given its share by itself: one that is small already is not made smaller for the other's sake.
+    // Each part has its own share: a part that is within its share is not tightened because of the other.
     const auto share_of = [&](double part, double share) {
         return part > share * allowed ? std::clamp(share * allowed / part, c::least_tightening, c::least_step) : 1.0;
     };
@@ -158,7 +162,7 @@ void tighten_local(Tightened& out, const ErrorParts& parts, double allowed) {
     out.work = std::max(out.work, std::pow(std::min(noise, interpolation), -4.0 / 3));
 }
 
-/// What the local pass may err where the method errs so much: at least half of the target.
+/// Returns the error allowed for the local pass, given that of the method: at least half of the target.
 double allowed_locally(double target, double method) {
     return std::sqrt(std::max(0.5 * 0.5 * target * target, target * target - method * method));
 }
@@ -167,13 +171,13 @@ double allowed_locally(double target, double method) {
 
 Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, const SolveOptions& options) {
     namespace c = calibrated;
-    // The method may have half of the target, or all of it where nothing is gathered. Its light is smoothed by the
-    // gather, and much finer is soon much dearer.
+    // The method may use half of the target, or all of it if nothing is gathered. The gather smooths its light, and
+    // much finer meshes soon become expensive.
     const double methods_share = parts.noise > 0 || parts.interpolation > 0 ? 0.5 : 1;
     Tightened out{knobs};
     double method = parts.method;
     const double local = std::hypot(parts.noise, parts.interpolation);
-    // Where all parts are small, their sum is not: the error is one that reflects to and fro, which is the method's.
+    // Each part is below its limit but their sum is not: the excess comes from interreflection, so refine the method.
     out.method = method > methods_share * target || std::hypot(method, local) <= target;
     if (out.method) {
         const double factor =
@@ -196,7 +200,7 @@ Tightened refined(const Knobs& knobs, const ErrorParts& parts, double left, doub
                   const SolveOptions& options) {
     Tightened out{.knobs = knobs, .method = true, .left = left};
     const double method = left * parts.method, local = std::hypot(parts.noise, parts.interpolation);
-    // Steps go on until the method has no more than its half.
+    // Further steps follow until the method's part is at most half of the target.
     if (std::hypot(method, local) > limit)
         tighten_local(out, parts, allowed_locally(target, std::min(method, 0.5 * target)));
     apply_user_knobs(out.knobs, options);

@@ -16,7 +16,7 @@ const Knobs knobs = [] {
     return k;
 }();
 
-/// Knobs move by little where the error does, and all in the direction of more work as less is asked for.
+/// Checks that settings change little when the error does, and only towards more work as the error decreases.
 void expect_continuous(bool sums) {
     std::vector<Piece> pieces;
     for (int i = 0; i < 12; ++i)
@@ -45,15 +45,15 @@ void expect_continuous(bool sums) {
     }
 }
 
-TEST(Knobs, AreContinuousInTheErrorAskedFor) {
+TEST(Knobs, AreContinuousInTheError) {
     expect_continuous(false);
 }
 
-TEST(Knobs, OfSumsAreContinuousInTheErrorAskedFor) {
+TEST(Knobs, OfSumsAreContinuousInTheError) {
     expect_continuous(true);
 }
 
-TEST(Tightened, LeavesTheMethodAloneWhereTheLocalPassIsToBlame) {
+TEST(Tightened, KeepsTheMethodIfTheLocalPassIsInaccurate) {
     const Tightened finer = tightened(knobs, {.method = 0.003, .noise = 0.01, .interpolation = 0.03}, 0.02, {});
     EXPECT_FALSE(finer.method);
     EXPECT_EQ(finer.knobs.direct_tolerance, knobs.direct_tolerance);
@@ -61,13 +61,13 @@ TEST(Tightened, LeavesTheMethodAloneWhereTheLocalPassIsToBlame) {
     EXPECT_LT(finer.knobs.gather_tolerance, 0.7 * knobs.gather_tolerance);
 }
 
-TEST(Tightened, AsksForMoreRaysOnlyWhereTheyAreTooFew) {
+TEST(Tightened, AddsRaysOnlyIfNoiseIsTooLarge) {
     const Tightened finer = tightened(knobs, {.method = 0.003, .noise = 0.002, .interpolation = 0.03}, 0.02, {});
     EXPECT_EQ(finer.knobs.gather_noise, knobs.gather_noise);
     EXPECT_LT(finer.knobs.gather_tolerance, knobs.gather_tolerance);
 }
 
-TEST(Tightened, LeavesTheLocalPassAloneWhereTheMethodIsToBlame) {
+TEST(Tightened, KeepsTheLocalPassIfTheMethodIsInaccurate) {
     const Tightened finer = tightened(knobs, {.method = 0.04, .noise = 0.005, .interpolation = 0.005}, 0.02, {});
     EXPECT_TRUE(finer.method);
     EXPECT_LT(finer.knobs.direct_tolerance, knobs.direct_tolerance);
@@ -79,7 +79,7 @@ TEST(Tightened, AlwaysTightensSomething) {
     EXPECT_TRUE(tightened(knobs, {.method = 0.001, .noise = 0.001, .interpolation = 0.001}, 0.02, {}).method);
 }
 
-TEST(Refined, LeavesTheLocalPassAloneWhereAStepIsEnough) {
+TEST(Refined, KeepsTheLocalPassIfAStepIsEnough) {
     const ErrorParts parts{.method = 0.03, .noise = 0.01, .interpolation = 0.005};
     const Tightened enough = refined(knobs, parts, 0.3, 0.02, 0.014, {});
     EXPECT_EQ(enough.knobs.gather_noise, knobs.gather_noise);
@@ -92,7 +92,7 @@ TEST(Refined, LeavesTheLocalPassAloneWhereAStepIsEnough) {
     EXPECT_EQ(too_little.knobs.solve_rays.average, knobs.solve_rays.average);
 }
 
-TEST(Tightened, KeepsWhatTheUserSet) {
+TEST(Tightened, KeepsSettingsOfTheUser) {
     const Tightened finer = tightened(knobs, {.method = 0.05}, 0.02, {.mesh_size = 0.5});
     EXPECT_EQ(finer.knobs.solve_mesh.edge, 0.5);
 }

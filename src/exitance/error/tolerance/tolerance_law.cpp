@@ -12,7 +12,7 @@ double ToleranceLaw::factor(double error, double allowed) {
     double exponent = exponent_;
     if (round_ > 1 && last_factor_ < 1) {
         const double fallen =
-            std::log(error / last_error_) / std::log(last_factor_);  // as which power of the tolerance
+            std::log(error / last_error_) / std::log(last_factor_);  // measured power of the tolerance
         exponent = fallen > 0 ? std::clamp(1 / fallen, exponent_, std::max(exponent_, steepest)) : steepest;
     }
     ++round_;

@@ -2,17 +2,17 @@
 
 namespace exitance {
 
-/// How a tolerance is lowered from round to round, until the errors that add up under it are no larger than allowed.
+/// Lowers a tolerance from round to round until the accumulated error is within the allowed one.
 ///
-/// A lower tolerance makes more links, so that their errors together fall more slowly than it: like a power of it,
-/// which depends on the scene. A guess to begin with; later what the last two rounds have shown.
+/// A lower tolerance creates more links, so that their total error falls more slowly than the tolerance: like a power
+/// of it that depends on the scene. The power is a guess at first, later an estimate from the last two rounds.
 class ToleranceLaw {
   public:
-    /// `exponent`: the tolerance is to fall like the error to this power, or faster.
+    /// exponent  the tolerance is lowered in proportion to the error to this power, or faster
     explicit ToleranceLaw(double exponent) : exponent_(exponent) {}
 
-    /// What to multiply the tolerance by that `error` came of; 1 where it is no larger than allowed. Nothing is learnt
-    /// from the first round, whose light lacks reflections.
+    /// Returns the factor by which to multiply the tolerance after a round with this error; 1 if the error is allowed.
+    /// The estimate ignores the first round, whose light lacks reflections.
     double factor(double error, double allowed);
 
     template <class Archive>

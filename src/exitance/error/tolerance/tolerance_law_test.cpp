@@ -7,13 +7,13 @@
 namespace exitance {
 namespace {
 
-TEST(ToleranceLaw, LeavesWhatIsSmallEnough) {
+TEST(ToleranceLaw, KeepsTheToleranceForAnAllowedError) {
     ToleranceLaw law(1);
     EXPECT_EQ(law.factor(0.9, 1), 1);
     EXPECT_LT(law.factor(1.1, 1), 1);
 }
 
-/// Rounds until an error that falls like tolerance^power is at most a tenth of what it is at first.
+/// Returns the number of rounds until an error that falls like tolerance^power is a tenth of its initial value.
 int rounds_to_a_tenth(double power) {
     ToleranceLaw law(0.8);
     double tolerance = 1;
@@ -26,10 +26,10 @@ int rounds_to_a_tenth(double power) {
 TEST(ToleranceLaw, LearnsHowSlowlyErrorsFall) {
     EXPECT_LE(rounds_to_a_tenth(1), 3);
     EXPECT_LE(rounds_to_a_tenth(0.5), 4);
-    EXPECT_LE(rounds_to_a_tenth(0.25), 8);  // by the guess alone: 14
+    EXPECT_LE(rounds_to_a_tenth(0.25), 8);  // 14 with the initial guess alone
 }
 
-TEST(ToleranceLaw, NeverGoesFurtherThanCanBeForeseen) {
+TEST(ToleranceLaw, LimitsTheStepOfARound) {
     ToleranceLaw law(1.7);
     for (int round = 0; round < 5; ++round) {
         const double factor = law.factor(1e6, 1);

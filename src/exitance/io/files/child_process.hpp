@@ -50,7 +50,7 @@ bool is_program(const std::string& name);
 
 /// Result of running a program.
 struct ProgramRun {
-    int status = -1;  ///< As ChildProcess::status(); -1: it could not be started.
+    int status = -1;  ///< See ChildProcess::status(); -1: the program could not be started.
     bool out_of_time = false, stopped = false;
     double seconds = 0, processor_seconds = 0;
     std::size_t peak_bytes = 0;

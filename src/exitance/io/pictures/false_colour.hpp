@@ -25,7 +25,7 @@ double value_of(const Pixel& pixel, Quantity quantity);
 /// User options for a colour scale.
 struct ScaleChoice {
     std::optional<std::pair<double, double>> range = {};  ///< None: the range of the picture.
-    bool by_ratio = false;                  ///< Steps of equal ratio; otherwise depends on the range of light.
+    bool by_ratio = false;  ///< Steps of equal ratio, whatever the range of light; false: as the range suggests.
     std::optional<std::size_t> bands = {};  ///< Number of colours; none: round steps.
     bool smooth = false;                    ///< Interpolates between colours.
     Palette palette = Palette::viridis;

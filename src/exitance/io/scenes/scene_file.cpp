@@ -11,6 +11,7 @@
 #include "exitance/io/photometry/placed_luminaire.hpp"
 #include "exitance/io/scenes/gltf/gltf.hpp"
 #include "exitance/io/scenes/obj/obj.hpp"
+#include "exitance/io/scenes/ply.hpp"
 #include "exitance/io/scenes/radiance/radiance.hpp"
 #include "exitance/io/scenes/stl.hpp"
 #include "exitance/io/scenes/view3d.hpp"
@@ -81,6 +82,7 @@ Reader reader_of(const std::string& path) {
     if (end == ".rad") return read_radiance;
     if (end == ".vs3") return read_view3d;
     if (end == ".stl") return read_stl;
+    if (end == ".ply") return read_ply;
     if (end == ".gltf" || end == ".glb" || looks_like_gltf(path)) return read_gltf;
     return nullptr;
 }
@@ -234,7 +236,7 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
             return refused(ErrorCode::cannot_read, path, "there is no such file", "");
         if (!reader_of(path))
             return refused(ErrorCode::bad_input, path, "this kind of scene file is not known",
-                           "known endings: .obj, .gltf, .glb, .rad, .stl, .vs3");
+                           "known endings: .obj, .gltf, .glb, .rad, .stl, .ply, .vs3");
         if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), path) !=
             paths.begin() + static_cast<std::ptrdiff_t>(i))
             return refused(ErrorCode::usage, path, "is named twice", "each file of a scene once");

@@ -51,7 +51,7 @@ SixNodeMesh read_discontinuity(Hdf5Reader& file, const std::string& group, std::
 
 /// A group of a solution's file for a LightForm, which the library that defines the form adds.
 struct LightFormGroup {
-    const char* name;  ///< Of the group, below "exitance".
+    const char* name;  ///< Name of the group, below "exitance".
     /// Writes the group if the solution has such a form.
     void (*write)(Hdf5Writer& file, const std::string& group, const Solution& solution);
     /// Reads the group, which is there, into the solution, whose scene is read.

@@ -6,18 +6,18 @@
 
 namespace exitance {
 
-/// What one candidate hides of one source.
+/// Umbra and penumbra volume of one candidate blocker and one source.
 struct OrderedLight::Volume {
     PieceId piece;
     ShadowVolume shadow;
 
-    /// All of its source from all of a face?
+    /// True if the blocker hides all of the source from all of the face.
     bool hides(std::span<const Point> face, Counts& counts) const {
         return shadow.has_umbra() && shadow.in_umbra(face, counts.plane_tests) == ShadowVolume::Place::inside;
     }
 };
 
-/// What all candidates hide of one source.
+/// The volumes of all candidates of one source.
 struct OrderedLight::SourceVolumes {
     std::vector<Volume> all;
     std::optional<MergedVolumes> merged = {};
@@ -47,7 +47,7 @@ bool OrderedLight::face_each_other(std::span<const Point> receiver, const Normal
            rises_over(occluders.corners(source.piece), plane);
 }
 
-/// Bit k: is corner k above the receiver's plane? Of a rectangle in place of the corners, all are asked about.
+/// Bit k: corner k of the emitter is above the receiver's plane. If a rectangle replaces the corners, all bits are set.
 std::uint64_t OrderedLight::corners_over(std::uint32_t emitter, std::span<const Point> receiver,
                                          const Normal& n) const {
     std::uint64_t out = 0;
@@ -59,8 +59,8 @@ std::uint64_t OrderedLight::corners_over(std::uint32_t emitter, std::span<const 
     return out;
 }
 
-/// Of all pieces, those that stand before a source as a region sees it, and whether one hides it from all of the
-/// outline.
+/// Returns the volumes of all pieces that may block a source seen from the region's outline. `is_hidden`: set if one of
+/// them hides the source from all of the outline.
 std::vector<OrderedLight::Volume> OrderedLight::volumes_before(const DirectLight::SourceName& source,
                                                                std::span<const Point> outline, RegionId region,
                                                                bool& is_hidden, Counts& counts) const {
@@ -89,7 +89,7 @@ std::vector<OrderedLight::Volume> OrderedLight::volumes_before(const DirectLight
 
 namespace {
 
-/// Adds the sources and candidates of one light to those of another.
+/// Appends the sources and candidates of one light to those of another.
 void append(const ReceiverLight& more, ReceiverLight& light) {
     const auto first = static_cast<std::uint32_t>(light.candidates.size());
     for (ReceiverLight::Source s : more.sources) s.first += first, light.sources.push_back(s);
@@ -110,7 +110,7 @@ ReceiverLight OrderedLight::look(std::span<const Point> outline, RegionId region
         if (direct_->is_distant(e) && direct_->shines_on(direct_->emitters()[e], region))
             for (const PieceId piece : direct_->emitters()[e].pieces) distant.push_back({e, piece});
     direct_->prepare(outline, n, region, distant, out, workspace);
-    if (!scene.behind(region).is_none()) return out;  // of both sides, as it is
+    if (!scene.behind(region).is_none()) return out;  // all sources of a diffusing pane, both sides, use shafts
     if (!direct_->beams().empty()) direct_->beams().prepare(outline, n, region, out.beams, out.candidates);
     ReceiverLight open = {}, rest = {};
     open.n = n, open.own = region;
@@ -131,14 +131,14 @@ ReceiverLight OrderedLight::look(std::span<const Point> outline, RegionId region
             for (const Volume& v : candidates) rest.candidates.push_back(v.piece);
         }
     }
-    // Those that are all visible are laid out for many at once, then come the others.
+    // Sources without candidates come first: they are evaluated in one batch.
     ReceiverLight light;
     direct_->prepare(outline, open, light, workspace);
     append(rest, light), append(out, light);
     return light;
 }
 
-/// What all candidates hide of one source from places within a space.
+/// The volumes of all candidates of one source. If volumes are merged, they are built for points within `space`.
 OrderedLight::SourceVolumes OrderedLight::volumes_of(const ReceiverLight& whole, const ReceiverLight::Source& source,
                                                      const Box& space) const {
     const Occluders& occluders = direct_->occluders();
@@ -152,7 +152,8 @@ OrderedLight::SourceVolumes OrderedLight::volumes_of(const ReceiverLight& whole,
     return out;
 }
 
-/// Is all of a source hidden from a face? If not, `candidates` are what may hide parts of it.
+/// True if all of a source is hidden from a face. Otherwise appends the blockers that may hide part of it to
+/// `candidates`.
 bool OrderedLight::hides(const SourceVolumes& volumes, std::span<const Point> face, const ReceiverLight& whole,
                          const ReceiverLight::Source& source, std::vector<PieceId>& candidates, Counts& counts) const {
     const MinimumLists::Limits limits = lists_->limits(source.emitter, whole.own, face, whole.n);
@@ -176,8 +177,8 @@ bool OrderedLight::hides(const SourceVolumes& volumes, std::span<const Point> fa
            std::any_of(reaching.begin(), reaching.end(), [&](const Volume* v) { return v->hides(face, counts); });
 }
 
-/// The volumes before each source of a light, if any; what shafts look at goes to `others`: the sky, lights without
-/// extent, and all sources of both sides.
+/// The volumes of each source's candidates, in the order of `whole.sources`. Sources that shafts process get none and
+/// are copied to `others`: the sky, point and parallel lights, unblocked sources, and all sources of diffusing panes.
 std::vector<OrderedLight::SourceVolumes> OrderedLight::volumes_of(const ReceiverLight& whole, const Box& space,
                                                                   ReceiverLight& others) const {
     std::vector<SourceVolumes> out;

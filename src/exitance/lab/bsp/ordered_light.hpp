@@ -7,22 +7,24 @@
 
 namespace exitance {
 
-/// What shines on regions and faces, as DirectLight::prepare finds it by shafts and a tree of boxes, by the thesis's
-/// structures instead: candidates come from the minimum lists of a scene BSP tree; of these, penumbra volumes of wedge
-/// planes keep what reaches a face, and umbra volumes tell what hides all of a source, asked only where bit masks leave
-/// no corner of the source that sees the face. Source: [Gatenby95], [Chin89]. The same light to rounding.
-/// Or, with faces, the volumes of a source are merged into one tree for each region that it lights (MergedVolumes):
-/// faces are then asked about all at once, and those that several umbrae hide together are found, too.
+/// Finds the visible sources and candidate blockers of regions and faces, like DirectLight::prepare but with the
+/// structures of the thesis in place of shafts and a tree of boxes. The minimum lists of a scene BSP tree yield the
+/// candidates. Penumbra volumes bounded by wedge planes select those that reach a face. Umbra volumes detect blockers
+/// that hide all of a source; they are tested only if the bit masks show that no corner of the source sees the face. If
+/// `merges_volumes`, the volumes of a source are merged into one tree per region (MergedVolumes): a face is then tested
+/// against all of them at once, and several umbras that hide it only together are detected as well.
 ///
-/// The sky, lights without extent and the two sides of diffusing panes are looked at by shafts all the same.
+/// The sky, point and parallel lights, and the two sides of diffusing panes still use shafts. The resulting light is
+/// equal to rounding. Source: [Gatenby95], [Chin89].
 class OrderedLight : public BlockerSearch {
   public:
-    /// It must outlive this. O(emitters x corners x fragments) memory.
+    /// `direct` must outlive this. O(emitters x corners x fragments) memory.
     explicit OrderedLight(const DirectLight& direct, bool merges_volumes = false);
 
     ReceiverLight look(std::span<const Point> outline, RegionId region, DirectLight::Workspace& workspace,
                        Counts& counts) const override;
-    /// Faces of one region, of which `whole` tells what shines on all of it.
+    /// Finds the light of the faces of one region. `whole`: the light of the region; `lights`: one for each face. Faces
+    /// not processed before `stop` is requested stay dark.
     void look(const FaceOutlines& outlines, const ReceiverLight& whole, std::span<ReceiverLight> lights,
               const StopRequest& stop, DirectLight::Workspace& workspace, Counts& counts) const override;
 
@@ -45,7 +47,7 @@ class OrderedLight : public BlockerSearch {
 
     const DirectLight* direct_;
     bool merges_;
-    std::vector<std::vector<Point>> corners_;  ///< Of emitters.
+    std::vector<std::vector<Point>> corners_;  ///< Per emitter.
     std::optional<MinimumLists> lists_;
 };
 

@@ -13,7 +13,7 @@
 namespace exitance {
 namespace {
 
-/// A floor, triangles anywhere above it, which may cross, and two lamps, the second one not convex.
+/// A floor, random triangles above it, which may intersect, and two lamps, the second one not convex.
 Scene crowd(std::uint64_t seed, int count) {
     RandomStream random(seed, Stream::mesh);
     std::vector<test::Face> faces = {{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}, 0},
@@ -27,7 +27,7 @@ Scene crowd(std::uint64_t seed, int count) {
     return test::make(faces);
 }
 
-TEST(OrderedLight, IsTheLightThatShaftsFind) {
+TEST(OrderedLight, EqualsTheLightFoundByShafts) {
     for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         const Scene scene = crowd(seed, 14);
         const Occluders occluders(scene);
@@ -40,7 +40,7 @@ TEST(OrderedLight, IsTheLightThatShaftsFind) {
             if (region.loops.size() != 1 || !is_convex(region.loops[0], region.plane.n)) continue;
             OrderedLight::Counts counts;
             const ReceiverLight whole = ordered.look(region.loops[0], r, workspace, counts);
-            // Faces: a fan of triangles around a place within.
+            // The faces are a fan of triangles around an interior point.
             const Point middle = centroid(region.loops[0]);
             FaceOutlines outlines{{}, {}, {}};
             const auto& loop = region.loops[0];
@@ -55,7 +55,7 @@ TEST(OrderedLight, IsTheLightThatShaftsFind) {
                     const auto& face = outlines.faces[f];
                     const Point x = face[0] + a * (face[1] - face[0]) + b * (face[2] - face[0]);
                     const double expected = mean(direct.irradiance(x, region.plane.n, r, workspace));
-                    // Rounding, and slivers as thin as it at the borders of volumes.
+                    // Tolerance: rounding, and slivers of that width at the borders of volumes.
                     EXPECT_NEAR(mean(direct.irradiance(whole, x, workspace)), expected, 1e-8);
                     EXPECT_NEAR(mean(direct.irradiance(lights[f], x, workspace)), expected, 1e-8);
                 }
@@ -89,7 +89,7 @@ TEST(OrderedLight, WedgesAreClippedToTheSameCurvesAsByATreeOfBoxes) {
         const auto& figures = by_lists.statistics.figures;
         EXPECT_GT(figures.at("plane_tests"), 0);
         EXPECT_GE(figures.at("fragments"), static_cast<double>(scene.regions().size()));
-        // Lists are those before volumes tell what of them reaches a face.
+        // Lists are counted before shadow volumes remove pieces that do not reach a face.
         EXPECT_GE(figures.at("candidate_share"), by_boxes.statistics.figures.at("candidate_share"));
     }
     EXPECT_GT(found, 200u);

@@ -6,9 +6,9 @@
 
 namespace exitance {
 
-/// Illuminance (lx) in a cube of 4 m with an isotropic source of 10,000 lm in its middle, all faces of one reflectance:
-/// at places (x, y) of the floor. From the integral equation by collocation at Gauss points of panels graded to all
-/// edges; two grids agree to 1.4e-6.
+/// Illuminance (lx) at points (x, y) of the floor of a cube of 4 m, with an isotropic source of 10,000 lm at its centre
+/// and equal reflectance of all faces. Computed from the integral equation by collocation at Gauss points of panels
+/// graded towards all edges; two grids agree to 1.4e-6.
 inline constexpr std::array cube_reflectances{0.00, 0.05, 0.10, 0.20, 0.30, 0.40, 0.50, 0.60, 0.70, 0.80, 0.90, 0.95};
 struct CubePlace {
     Vec2 at;

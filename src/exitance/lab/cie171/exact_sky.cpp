@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// a, b, c, d, e of the fifteen types.
+/// Parameters a, b, c, d, e of the fifteen types.
 constexpr std::array<std::array<double, 5>, 15> types{{{4, -0.7, 0, -1, 0},
                                                        {4, -0.7, 2, -1.5, 0.15},
                                                        {1.1, -0.8, 0, -1, 0},
@@ -31,16 +31,16 @@ void add(SkyValues& sum, const SkyValues& values, double weight) {
 }
 
 double difference(const SkyValues& a, const SkyValues& b) {
-    double most = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
-    return most;
+    double largest_difference = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) largest_difference = std::max(largest_difference, std::abs(a[i] - b[i]));
+    return largest_difference;
 }
 
 double largest(const SkyValues& a) {
     return difference(a, SkyValues{});
 }
 
-/// Integral of f(x, y) over a rectangle.
+/// Adaptive integral of f(x, y) over a rectangle.
 template <class F>
 class Adaptive {
   public:
@@ -60,7 +60,7 @@ class Adaptive {
         return sum;
     }
     SkyValues refined(double x0, double x1, double y0, double y1, const SkyValues& whole, int level) const {
-        constexpr int deepest = 14;
+        constexpr int max_level = 14;
         const double x = 0.5 * (x0 + x1), y = 0.5 * (y0 + y1);
         const std::array<std::array<double, 4>, 4> parts{
             {{x0, x, y0, y}, {x, x1, y0, y}, {x0, x, y, y1}, {x, x1, y, y1}}};
@@ -70,7 +70,7 @@ class Adaptive {
             found[i] = panel(parts[i][0], parts[i][1], parts[i][2], parts[i][3]);
             add(sum, found[i], 1);
         }
-        if (level == deepest || difference(sum, whole) <= tolerance_ * largest(sum)) return sum;
+        if (level == max_level || difference(sum, whole) <= tolerance_ * largest(sum)) return sum;
         sum = {};
         for (std::size_t i = 0; i < 4; ++i)
             add(sum, refined(parts[i][0], parts[i][1], parts[i][2], parts[i][3], found[i], level + 1), 1);

@@ -21,21 +21,21 @@ void add_point(Case& c, const Point& x, const Normal& n, double exact, std::stri
     c.points.push_back({x, n}), c.exact.push_back(exact);
 }
 
-/// Configuration factor of a rectangle parallel to the plane of x, by its formula for a corner above x: a/c, b/c its
-/// sides over its height.
+/// Configuration factor of a rectangle parallel to the plane of x with a corner above x. a, b: its sides divided by its
+/// height.
 double parallel_corner(double a, double b) {
     const double p = std::sqrt(1 + a * a), q = std::sqrt(1 + b * b);
     return (a / p * std::atan(b / p) + b / q * std::atan(a / q)) / (2 * pi);
 }
 
-/// The same of a rectangle at right angles to the plane of x: from the plane up to b, and along it from 0 to a, at a
-/// distance of 1.
+/// Configuration factor of a rectangle perpendicular to the plane of x: from the plane up to b, and along it from 0 to
+/// a, at a distance of 1.
 double upright_corner(double a, double b) {
     const double q = std::sqrt(1 + b * b);
     return (std::atan(a) - std::atan(a / q) / q) / (2 * pi);
 }
 
-/// A rectangle x0..x1 by y0..y1 at a height above a point, parallel to its plane.
+/// Configuration factor of a rectangle x0..x1 by y0..y1 at a height above a point, parallel to its plane.
 double parallel_factor(double x0, double x1, double y0, double y1, double height) {
     const auto corner = [&](double x, double y) {
         return std::copysign(1.0, x * y) * parallel_corner(std::abs(x) / height, std::abs(y) / height);
@@ -43,8 +43,8 @@ double parallel_factor(double x0, double x1, double y0, double y1, double height
     return corner(x1, y1) - corner(x0, y1) - corner(x1, y0) + corner(x0, y0);
 }
 
-/// A rectangle at right angles to the plane of a point, at `distance` from it along the plane: x0..x1 along the plane
-/// and h0..h1 above it.
+/// Configuration factor of a rectangle perpendicular to the plane of a point, at `distance` from it along the plane:
+/// x0..x1 along the plane and h0..h1 above it.
 double upright_factor(double x0, double x1, double h0, double h1, double distance) {
     const auto corner = [&](double x, double h) {
         return std::copysign(1.0, x) * upright_corner(std::abs(x) / distance, h / distance);
@@ -52,7 +52,7 @@ double upright_factor(double x0, double x1, double h0, double h1, double distanc
     return corner(x1, h1) - corner(x0, h1) - corner(x1, h0) + corner(x0, h0);
 }
 
-/// A source without extent that is diffuse: I = I_0 cos, by a table of a quarter of a degree.
+/// A diffuse point source: I = I_0 cos, tabulated in steps of a quarter of a degree.
 Photometry diffuse_source(double candela) {
     Photometry p;
     p.file = "diffuse";
@@ -71,7 +71,7 @@ void add_isotropic(SceneDescription& scene, const Point& at, double lumens) {
     scene.lights.push_back(light);
 }
 
-/// The faces of a box seen from within; those named by `without` are left out.
+/// Adds the faces of a box seen from inside, except `without`.
 void add_room(PolygonKit& kit, double x, double y, double z, const std::string& without = "") {
     const Point middle{x / 2, y / 2, z / 2};
     const auto face = [&](const char* name, std::vector<Point> outline) {
@@ -98,7 +98,7 @@ SceneDescription lit(PolygonKit kit) {
     return scene;
 }
 
-/// A diffuse source 3 m above a plane, and one that is tilted within a room.
+/// A diffuse source 3 m above a plane, and a tilted one in a room.
 void add_5_2(std::vector<Case>& out) {
     Case c = make_case("5.2", "point_diffuse");
     PolygonKit kit("point_diffuse");
@@ -146,14 +146,14 @@ void add_5_3(std::vector<Case>& out) {
     kit.horizontal("source", "source", 1.5, 1.5, 2.5, 2.5, 3, false);
     c.description = lit(std::move(kit));
     const double M = 1000 * pi;
-    for (const double z : heights)  // the wall faces along +y, the source hangs from z = 3 above it
+    for (const double z : heights)  // the wall faces +y; the source is at z = 3 above it
         add_point(c, {2, 0, z}, {0, 1, 0}, M * upright_factor(-0.5, 0.5, 1.5, 2.5, 3 - z));
     for (const double y : depths)
         add_point(c, {2, y, 0}, {0, 0, 1}, M * parallel_factor(-0.5, 0.5, 1.5 - y, 2.5 - y, 3));
     out.push_back(std::move(c));
 }
 
-/// Flux on the faces of a black room: by their solid angles, for a point source in its middle.
+/// Flux on the faces of a black room, by their solid angles from a point source at its centre.
 void add_5_4(std::vector<Case>& out) {
     Case c = make_case("5.4", "flux_room");
     PolygonKit kit("flux_room");
@@ -178,9 +178,9 @@ void add_5_4(std::vector<Case>& out) {
     out.push_back(std::move(c));
 }
 
-/// Light of a horizontal diffuse square of M = 100 lm/m^2 on a wall and a ceiling: illuminance is the factor in %.
-/// The factors are of what nothing stands before: wall and ceiling are scenes of their own, since the wall would stand
-/// between the ceiling and a part of the largest square.
+/// Light of a horizontal diffuse square of M = 100 lm/m^2 on a wall and a ceiling: illuminance is the factor in per
+/// cent. The factors assume no blockers. Therefore wall and ceiling are separate scenes: the wall would hide a part of
+/// the largest square from the ceiling.
 void add_5_6(std::vector<Case>& out) {
     for (const auto& [name, h] : {std::pair{"s1_50cm", 0.25}, {"s2_4m", 2.0}, {"s3_500m", 250.0}})
         for (const bool is_wall : {true, false}) {
@@ -194,9 +194,9 @@ void add_5_6(std::vector<Case>& out) {
             else
                 kit.facing({2, 2, 1}, "s1_hz", "s1", {{0, 0, 3}, {0, 4, 3}, {4, 4, 3}, {4, 0, 3}});
             c.description = lit(std::move(kit));
-            const double near = std::max(0.0, 2 - h);  // what lies behind the wall's plane is not seen
+            const double near_edge = std::max(0.0, 2 - h);  // the part behind the wall's plane is not seen
             for (std::size_t i = is_wall ? 5 : 0; i-- > 0;)
-                add_point(c, {2, 0, heights[i]}, {0, 1, 0}, 100 * upright_factor(-h, h, near, 2 + h, heights[i]),
+                add_point(c, {2, 0, heights[i]}, {0, 1, 0}, 100 * upright_factor(-h, h, near_edge, 2 + h, heights[i]),
                           std::string(1, static_cast<char>('F' - i)));
             for (std::size_t i = 0; i < (is_wall ? 0 : depths.size()); ++i)
                 add_point(c, {2, depths[i], 3}, {0, 0, -1},
@@ -206,7 +206,7 @@ void add_5_6(std::vector<Case>& out) {
         }
 }
 
-/// The same from a wall, a black obstruction in between.
+/// Light from a wall, with a black obstruction in between.
 void add_5_7(std::vector<Case>& out) {
     Case c = make_case("5.7", "obstruction");
     PolygonKit kit("obstruction");
@@ -219,7 +219,7 @@ void add_5_7(std::vector<Case>& out) {
     for (Point& p : top) p.z = 1;
     kit.prism("obstruction", "room", base, top, PolygonKit::no_bottom);
     c.description = lit(std::move(kit));
-    // The part of the wall that is seen begins at the higher of the shadows of the obstruction's two upper edges.
+    // The visible part of the wall starts at the higher of the shadows of the obstruction's two upper edges.
     const auto lowest = [](const Point& p) {
         double z = 0;
         for (const double edge : {2.5, 2.7}) z = std::max(z, p.z + (1 - p.z) * (4 - p.y) / (edge - p.y));
@@ -236,7 +236,7 @@ void add_5_7(std::vector<Case>& out) {
     out.push_back(std::move(c));
 }
 
-/// A closed cube that reflects; as many reflectances at a time as there are bands.
+/// A closed cube with reflections; solves for one reflectance per band at a time.
 void add_5_8(const Cie171Options& options, std::vector<Case>& out) {
     constexpr double lumens = 10000, area = 96;
     std::vector<std::size_t> chosen;
@@ -261,7 +261,7 @@ void add_5_8(const Cie171Options& options, std::vector<Case>& out) {
         for (const CubePlace& place : cube_places)
             add_point(c, {place.at.x, place.at.y, 0}, {0, 0, 1}, place.lux[chosen[k]],
                       fmt::format("floor {:g},{:g}", place.at.x, place.at.y));
-        // All faces are alike: a sixth of the flux that arrives in all, which is that of the report's formula.
+        // All faces are equal: a sixth of the total arriving flux, as in the report's formula.
         c.fluxes = {{"flux floor", {0, 0, 0}, {4, 0, 0}, {0, 4, 0}, lumens / (1 - rho) / 6},
                     {"flux wall", {0, 0, 0}, {0, 4, 0}, {0, 0, 4}, lumens / (1 - rho) / 6}};
         static_assert(area == 96);

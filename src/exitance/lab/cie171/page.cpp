@@ -8,8 +8,8 @@
 namespace exitance {
 namespace {
 
-/// What a case is, and the best that is published of it: largest error unless said. Numbers of AGi32 (2007), Iray
-/// (2016) and Radiance (2008) as quoted in the validation of Blender's Cycles (2026).
+/// Description of a case and the best published result: the largest error unless stated otherwise. Numbers of AGi32
+/// (2007), Iray (2016) and Radiance (2008) as quoted in the validation of Blender's Cycles (2026).
 struct KnownCase {
     const char *study, *what, *published;
 };
@@ -44,12 +44,12 @@ std::string percent(double share) {
     return share == 0 ? "0" : share < rounding ? "rounding" : fmt::format("{:.2g}%", 100 * share);
 }
 
-/// A number with four digits after the first, without powers of ten.
+/// Formats a number with five significant digits, without exponent.
 std::string value(double v) {
     return v >= 1000 ? fmt::format("{:.1f}", v) : fmt::format("{:.5g}", v);
 }
 
-/// Of each scene the row that is farthest off.
+/// Returns the row with the largest error of each scene.
 std::vector<const Cie171Row*> worst_of_scenes(const std::vector<Cie171Row>& rows) {
     std::vector<const Cie171Row*> out;
     for (const Cie171Row& row : rows) {
@@ -64,17 +64,18 @@ std::vector<const Cie171Row*> worst_of_scenes(const std::vector<Cie171Row>& rows
     return out;
 }
 
-/// What case 5.8 comes to away from the room's edges.
+/// Describes case 5.8 away from the room's edges.
 std::string away_from_edges(const std::vector<Cie171Row>& rows) {
-    constexpr double near = 0.1;  // metres
-    double most = -1;
+    constexpr double min_distance = 0.1;  // metres
+    double largest = -1;
     for (const Cie171Row& row : rows)
-        if (row.study == "5.8" && std::min(row.x.x, row.x.y) >= near) most = std::max(most, row.relative_error);
-    if (most < 0) return "";
+        if (row.study == "5.8" && std::min(row.x.x, row.x.y) >= min_distance)
+            largest = std::max(largest, row.relative_error);
+    if (largest < 0) return "";
     return fmt::format(
         "\n5.8 is solved to an RMS error of 1e-4. Its largest errors are 4 mm from an edge, where reflected light "
         "bends most;\n0.1 m and farther from edges the largest error is {}.\n",
-        percent(most));
+        percent(largest));
 }
 
 constexpr const char* opening = R"(# Validation: CIE 171

@@ -7,8 +7,8 @@
 
 namespace exitance {
 
-/// The validation page (Markdown): for every case how far all values are off, beside the best that others have
-/// published, and for every scene of it the value that is farthest off, exact and as computed.
+/// Returns the validation page (Markdown): for every case the errors of all values next to the best published ones, and
+/// for every scene the value with the largest error, exact and computed.
 std::string cie171_page(const std::vector<Cie171Row>& rows);
 
 }  // namespace exitance

@@ -17,22 +17,22 @@ constexpr double degree = pi / 180;
 constexpr std::array<double, 6> heights{2.75, 2.25, 1.75, 1.25, 0.75, 0.25};
 constexpr std::array<double, 8> depths{0.25, 0.75, 1.25, 1.75, 2.25, 2.75, 3.25, 3.75};
 
-/// A hole in a wall: along x, and along the wall's other direction.
+/// A hole in a wall: range along x, and along the wall's other direction.
 struct Hole {
     double x0, x1, b0, b1;
 };
 
-/// What all skies of one scene share.
+/// Common data of all skies of one scene.
 struct Setting {
     const char *study, *scene;
     SceneDescription description;
     SkyOpening opening;
     std::vector<std::string> names;
     std::vector<ProbePoint> points;
-    std::vector<SkyOpening> visible = {};  ///< What each point sees of the opening; empty: all of it.
+    std::vector<SkyOpening> visible = {};  ///< Visible part of the opening for each point; empty: all of it.
 };
 
-/// The wall's rectangle 4 m long in x, from 0 to `length` in the direction v from `o`, around a hole.
+/// Adds a wall 4 m long in x, from 0 to `length` in direction v from `o`, around a hole.
 void add_frame(PolygonKit& kit, const Point& seen, const Point& o, const Vec3& v, double length, const Hole& h) {
     const auto part = [&](double x0, double x1, double b0, double b1) {
         if (x1 - x0 < 1e-12 || b1 - b0 < 1e-12) return;
@@ -99,7 +99,7 @@ std::vector<Setting> facades() {
     return out;
 }
 
-/// Black masks: a roof of some depth over the opening, or a wall of some height 6 m in front of it.
+/// Black masks: overhangs of several depths over the opening, and walls of several heights 6 m in front of it.
 std::vector<Setting> masks() {
     std::vector<Setting> out;
     const auto add = [&](const char* study, const char* name, std::vector<Point> mask, auto seen) {
@@ -125,14 +125,14 @@ std::vector<Setting> masks() {
     return out;
 }
 
-/// Radiance by direction as a table: light that leaves the sky downwards, and the ground upwards.
+/// Table of radiance by direction: light that leaves the sky downwards, and the ground upwards.
 EmissionProfile sky_profile(const Cie171Skies& skies, std::size_t sky) {
     constexpr double theta_step = 0.25, near_step = 0.5, far_step = 1, near = 40;
     EmissionProfile p;
     std::vector<double> theta, phi;
     for (int i = 0; i * theta_step < 90 - 1e-9; ++i) theta.push_back(i * theta_step);
     theta.insert(theta.end(), {89.9999, 90, 180});
-    // Light from the sun's side goes the other way: finer there.
+    // Light from the sun's side travels in the opposite direction: use smaller steps there.
     double opposite = std::atan2(-skies.sun().y, -skies.sun().x) / degree;
     if (opposite < 0) opposite += 360;
     for (double a = 0; a <= 360 + 1e-9;) {
@@ -151,8 +151,8 @@ EmissionProfile sky_profile(const Cie171Skies& skies, std::size_t sky) {
     return p;
 }
 
-/// A box around everything whose faces shine inwards with the sky's radiance: since that goes by direction alone, it is
-/// the sky wherever the faces stand.
+/// Adds a box around everything whose faces emit inwards with the sky's radiance. As radiance depends on direction
+/// only, the position of the faces does not matter.
 void add_sky(SceneDescription& scene, const Cie171Skies& skies, std::size_t sky) {
     constexpr double half = 40;
     const Point middle{2, 0, 0};
@@ -191,7 +191,8 @@ std::vector<Cie171Case> cie171_sky_cases(const Cie171Options& options) {
     std::vector<Case> out;
     for (const Setting& setting : settings) {
         const bool roof = std::string(setting.study) == "5.9";
-        const Cie171Skies skies({0, roof ? c : -c, s});  // towards the wall that is looked at, from before the facade
+        // the sun faces the wall with the points, or is in front of the facade
+        const Cie171Skies skies({0, roof ? c : -c, s});
         std::vector<SkyValues> exact(setting.points.size());
         parallel_for(exact.size(), 1, [&](std::size_t i) {
             const SkyOpening& seen = setting.visible.empty() ? setting.opening : setting.visible[i];

@@ -85,7 +85,7 @@ Result<ClassicalLight> find_light(Method method, const ClassicalInput& input) {
     return solve_classical_links(input, basis_of(method, input.options));
 }
 
-/// Exact direct light on the leaves of a tree; only its shape where the light is carried.
+/// Exact direct light on the leaves of a tree; zero if emitters' light is carried by the method.
 DirectProjection direct_on(const Stage& stage, bool carried, const ElementTree& tree) {
     DirectProjection out{.tree = tree, .fit = Field<ElementId, DirectFit>(tree.size())};
     if (carried) return out;
@@ -98,7 +98,7 @@ DirectProjection direct_on(const Stage& stage, bool carried, const ElementTree& 
     return out;
 }
 
-/// RMS-like measure of what is delivered, that tolerances of the gather are relative to, W/m^2.
+/// Mean reflected light, to which the gather's tolerances are relative, W/m^2.
 double mean_reflected(const ClassicalInput& input, const ElementFunction& E, const DirectProjection& direct) {
     double flux = 0;
     for (ElementId e : E.tree.leaves()) {
@@ -108,7 +108,7 @@ double mean_reflected(const ClassicalInput& input, const ElementFunction& E, con
     return flux / input.stage.area;
 }
 
-/// The final gather: E = H b by rays over what the method found, emitters' light among it where that is carried.
+/// The final gather: E = H b by rays, where b is the method's light, including that of emitters if it is carried.
 ElementFunction gathered(const ClassicalInput& input, const ElementFunction& E, SolveStatistics& statistics) {
     input.progress.phase("gather");
     const DirectProjection direct = direct_on(input.stage, input.carries(), E.tree);
@@ -130,7 +130,7 @@ ElementFunction gathered(const ClassicalInput& input, const ElementFunction& E, 
     return out;
 }
 
-/// All light on plain elements, for other programs: what was found, and direct light where that stands apart.
+/// Returns all light on plain elements, for other programs: the method's light plus exact direct light, if separate.
 ElementFunction with_direct(const ElementFunction& E, const DirectProjection& direct) {
     ElementFunction out;
     out.tree = E.tree;
@@ -145,8 +145,8 @@ ElementFunction with_direct(const ElementFunction& E, const DirectProjection& di
     return out;
 }
 
-// Among the figures: seconds, by the clock and of all processors, from the method's beginning to the end of gather and
-// smoothing, less what writing snapshots took.
+// Statistics: seconds of real time and of all processors, from the start of the method to the end of gather and
+// smoothing, without the time of writing snapshots.
 constexpr const char* method_key = "method_seconds";
 constexpr const char* processor_key = "processor_seconds";
 
@@ -181,7 +181,7 @@ void record(const ClassicalInput& input, Method method, const ClassicalLight& li
     facts.coefficient_memory_bytes = light.coefficient_memory_bytes;
 }
 
-/// A solution as it stands while the method is at work.
+/// Intermediate solution of a running method.
 Solution unfinished(const ClassicalInput& input, Method method, const Snapshots::Moment& moment) {
     const Stage& stage = input.stage;
     const ElementFunction& E = moment.light.irradiance;
@@ -198,7 +198,7 @@ Solution unfinished(const ClassicalInput& input, Method method, const Snapshots:
     return out;
 }
 
-/// Can patches emit what the scene emits, and pass on what it passes?
+/// Returns an error if patches cannot emit or transmit the scene's light.
 Result<void> check_emission(const Scene& scene, const ClassicalOptions& classical) {
     if (scene.has_diffusing_panes())
         return Error{ErrorCode::usage,
@@ -254,7 +254,7 @@ Result<Solution> solve_classical(const Scene& scene, const SolveOptions& options
     progress.phase("reconstruct");
     const DirectProjection direct = direct_on(stage, input.carries(), solution.indirect.tree);
     solution.interpolant = with_direct(solution.indirect, direct);
-    stage.rooms = find_light_rooms(stage, options.seed, stop);  // the balance asks them what escapes
+    stage.rooms = find_light_rooms(stage, options.seed, stop);  // the energy balance needs rooms to find escaping light
     statistics.energy = energy_balance(solution, direct, stage);
     if (!stop.requested()) record_mirrored_light(solution, stage, options, progress);
     statistics.seconds["reconstruct"] = watch.restart();

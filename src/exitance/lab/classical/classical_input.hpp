@@ -5,7 +5,7 @@
 
 namespace exitance {
 
-/// What a classical form of a method is given.
+/// Input of a classical form of a method.
 struct ClassicalInput {
     const Stage& stage;
     const SolveOptions& options;
@@ -15,14 +15,14 @@ struct ClassicalInput {
     const StopRequest& stop;
     Snapshots& snapshots;
 
-    /// Does it carry the emitters' light itself?
+    /// True if the method transports the emitters' light itself (`--direct carried`).
     bool carries() const { return classical.carried(); }
     const Material& material(const ElementTree& tree, ElementId e) const {
         return stage.scene.material(tree.region(e));
     }
 };
 
-/// What it found: E on its elements (all light where it carries that of emitters, else what is reflected).
+/// Result: irradiance on the elements (all light if the emitters' light is carried, otherwise indirect light only).
 struct ClassicalLight {
     ElementFunction irradiance;
     SolveReport report;
@@ -31,19 +31,19 @@ struct ClassicalLight {
     const char* stopped_by = "";
 };
 
-/// Constant elements to solve on: `uniform` by `--mesh-size` alone, or those of the direct projection, `aligned`.
+/// Constant elements to solve on: `uniform` ones of `--mesh-size`, or `aligned` ones, those of the direct projection.
 ElementTree constant_mesh(const ClassicalInput& input);
 /// Mean exact direct light of leaves, W/m^2.
 std::vector<Spectrum> mean_direct_light(const ClassicalInput& input, const ElementTree& tree,
                                         std::span<const ElementId> leaves);
-/// What leaves emit, W/m^2.
+/// Exitance of leaves, W/m^2.
 std::vector<Spectrum> exitances(const ClassicalInput& input, const ElementTree& tree,
                                 std::span<const ElementId> leaves);
 /// A function that is constant on every leaf.
 ElementFunction constant_function(const ElementTree& tree, std::span<const ElementId> leaves,
                                   std::span<const Spectrum> values);
 
-/// Fails where its entries do not fit into the memory that it may use.
+/// Returns an error if the matrix does not fit into the available memory.
 Result<ClassicalLight> solve_classical_matrix(const ClassicalInput& input);
 ClassicalLight solve_classical_shooting(const ClassicalInput& input, bool substructuring);
 ClassicalLight solve_classical_links(const ClassicalInput& input, HierarchyBasis basis);

@@ -10,13 +10,14 @@
 namespace exitance {
 namespace {
 
-/// A_eps where none is given, of the scene's area: eight cuts of a whole.
-constexpr double default_least_share = 1.0 / 65536;
+/// Default of A_eps, relative to the scene's area: eight cuts into quarters.
+constexpr double default_min_share = 1.0 / 65536;
 constexpr std::size_t default_memory = std::size_t(1) << 32;  // of links, bytes
-constexpr double rounding = 1e-6;         // of lengths and areas that count as equal: coordinates in files are rounded
-constexpr std::size_t most_rounds = 200;  // of refinement and gathering; a safeguard
+constexpr double rounding = 1e-6;                             // relative; lengths and areas in files are rounded
+constexpr std::size_t max_rounds = 200;                       // limit on rounds of refinement and gathering
 
-/// Into quarters; a parallelogram much longer than wide across its length, so that elements come to be as long as wide.
+/// Returns how to cut an element: into quarters, or across its length if a parallelogram is much longer than wide, so
+/// that elements become about as long as wide.
 Cut way_to_cut(const Patch& patch) {
     constexpr double long_ratio = 1.5;
     const double a = norm(patch.a), b = norm(patch.b);
@@ -26,12 +27,12 @@ Cut way_to_cut(const Patch& patch) {
 
 struct Link {
     ElementId source;
-    float share = 1;  ///< What of it is visible.
+    float share = 1;  ///< Visible share of the source.
     bool has_block = false;
-    std::uint64_t block = 0;  ///< Where its block stands.
+    std::uint64_t block = 0;  ///< Position of its block in `blocks_`.
 };
 
-/// Numbers of all elements, node by node.
+/// Coefficients of all elements, one per node.
 class Numbers {
   public:
     explicit Numbers(std::size_t nodes) : n_(nodes) {}
@@ -46,7 +47,7 @@ class Numbers {
     std::vector<Spectrum> values_;
 };
 
-/// Elements, their numbers, and the links that each gathers over.
+/// Elements, their coefficients, and the links over which each element gathers.
 class LinkedElements {
   public:
     LinkedElements(const ClassicalInput& input, HierarchyBasis kind)
@@ -62,14 +63,14 @@ class LinkedElements {
         for (ElementId e : tree_.roots()) set_light(e);
         B_ = rhs_;
         const double whole = input.stage.area;
-        least_area_ = input.options.min_area.value_or(by_oracle() ? default_least_share * whole : 0);
+        least_area_ = input.options.min_area.value_or(by_oracle() ? default_min_share * whole : 0);
         longest_edge_ = by_oracle() ? input.options.mesh_size.value_or(0) : input.knobs.solve_mesh.edge;
     }
 
     void link_roots();
-    /// Links that are too strong are cut; true when any was.
+    /// Splits links that are too strong. Returns true if any was split.
     bool refine(double threshold);
-    /// E = F b over the links, down to the leaves, and b up from them. Returns the change of b, relative.
+    /// Gathers E = F b over the links, pushes it down to the leaves and pulls b up. Returns the relative change of b.
     double gather();
 
     bool by_oracle() const { return input_.classical.threshold.has_value(); }
@@ -103,17 +104,18 @@ class LinkedElements {
     InteractionKernel kernel_;
     std::size_t n_;
     ElementTree tree_;
-    Numbers B_, E_, rhs_;                        ///< b; irradiance; M, or rho E_dir.
-    Field<ElementId, std::vector<Link>> links_;  ///< By receiver.
+    Numbers B_, E_, rhs_;                        ///< b; irradiance; source term M or rho E_dir.
+    Field<ElementId, std::vector<Link>> links_;  ///< Per receiver.
     std::vector<float> blocks_;
-    std::vector<std::uint64_t> free_;  ///< Blocks of links that were cut.
+    std::vector<std::uint64_t> free_;  ///< Blocks of links that were split, for reuse.
     InteractionKernel::Workspace work_;
     std::size_t initial_links_ = 0, link_count_ = 0, rays_ = 0, form_factors_ = 0;
-    double least_area_ = 0, longest_edge_ = 0;  ///< What is no larger is not cut: m^2, m.
+    /// Limits of refinement: area (m^2) below which and edge (m) up to which elements are not cut.
+    double least_area_ = 0, longest_edge_ = 0;
     bool out_of_memory_ = false;
 };
 
-/// What enters at an element: M, or rho E_dir at its nodes.
+/// Computes the source term of an element: M, or rho E_dir at its nodes.
 void LinkedElements::set_light(ElementId e) {
     const Material& material = input_.material(tree_, e);
     if (input_.carries()) {
@@ -136,7 +138,7 @@ bool LinkedElements::may_cut(ElementId e) const {
     return edge > longest_edge_ * (1 + rounding);
 }
 
-/// Children begin with their parent's light.
+/// Cuts an element. Its children start with their parent's light.
 void LinkedElements::cut(ElementId e) {
     if (!tree_.is_leaf(e)) return;
     tree_.split(e, way_to_cut(tree_.patch(e)));
@@ -153,9 +155,11 @@ void LinkedElements::cut(ElementId e) {
     }
 }
 
-/// F_eps: the larger form factor of the two. BF_eps: F_pq A_p B_q, W in the brightest band [Hanrahan91].
+/// Strength of a link. F_eps: the larger form factor of both directions. BF_eps: F_pq A_p B_q, W in the brightest band
+/// [Hanrahan91].
 double LinkedElements::strength(ElementId receiver, ElementId source) const {
-    // From either middle; by reciprocity both are the same number, of which one misses what lies near an end.
+    // Estimated from either centre: by reciprocity both should be equal, but each misses parts near an end of the
+    // other.
     const double F = std::max(kernel_.unoccluded(tree_, receiver, source),
                               kernel_.unoccluded(tree_, source, receiver) * tree_.area(source) / tree_.area(receiver));
     if (input_.options.oracle == LinkOracle::form_factor)
@@ -166,7 +170,7 @@ double LinkedElements::strength(ElementId receiver, ElementId source) const {
     return F * tree_.area(receiver) * max(B);
 }
 
-/// The one of the two that is to be cut, or none: the larger, unless that is too small to be.
+/// Returns the element to cut, or none: the larger one unless it is too small to be cut, then the smaller one.
 ElementId LinkedElements::to_cut(ElementId p, const Link& link, double threshold) const {
     const ElementId q = link.source;
     if (by_oracle()) {
@@ -182,15 +186,16 @@ void LinkedElements::look(ElementId p, Link& link) {
     link.share = static_cast<float>(kernel_.visible_share(tree_, p, link.source, work_));
 }
 
-/// What no ray found visible is no link; triage off, or exact parts: it stays one.
+/// Drops a link that no ray found visible, unless triage is off or visibility is exact.
 void LinkedElements::keep(ElementId p, const Link& link) {
     const bool sure = input_.options.triage && input_.options.visibility != VisibilityKind::exact;
     if (link.share == 0 && sure) return;
     links_[p].push_back(link), ++link_count_;
 }
 
-/// Cuts a link until nothing of it is too strong, and keeps what comes of it. True when it was cut. By an oracle every
-/// link is looked at, and what all rays of its parent found visible is so; else leaves alone are.
+/// Splits a link until none of its parts is too strong, and keeps these. Returns true if it was split. With an oracle,
+/// visibility is sampled for every link, but not below a link whose rays are all unblocked. Without an oracle, only
+/// links between leaves are sampled.
 bool LinkedElements::settle(ElementId p, Link link, double threshold) {
     const bool hidden = by_oracle() && link.share == 0 && input_.options.triage;
     const ElementId e = hidden ? ElementId() : to_cut(p, link, threshold);
@@ -227,7 +232,7 @@ void LinkedElements::link_roots() {
 
 bool LinkedElements::refine(double threshold) {
     bool cut_any = false;
-    const std::size_t before = tree_.size();  // what is made anew is settled already
+    const std::size_t before = tree_.size();  // new elements are settled already
     for (std::uint32_t i = 0; i < before && !input_.stop.requested(); ++i) {
         const ElementId p(i);
         const std::vector<Link> own = std::exchange(links_[p], {});
@@ -315,13 +320,13 @@ double LinkedElements::gather() {
     return scale > 0 ? std::sqrt(change / scale) : 0;
 }
 
-/// As the elements' polynomials have it: flatlets as the multiwavelets of their order [Willmott97]. Quadratic ones on
-/// quarters of quarters, (bi)linear each.
+/// Returns the elements' polynomials; flatlets as the multiwavelets of their order [Willmott97]. Quadratic ones are
+/// sampled on 4 x 4 cells that are (bi)linear.
 ElementFunction LinkedElements::irradiance() const {
     ElementFunction out;
     out.tree = tree_;
     const std::vector<ElementId> leaves = tree_.leaves();
-    std::vector<std::pair<ElementId, ElementId>> cells;  // a leaf, and what is delivered of it
+    std::vector<std::pair<ElementId, ElementId>> cells;  // a leaf, and a cell of it
     for (ElementId leaf : leaves) {
         if (basis_.order() < 3) {
             cells.push_back({leaf, leaf});
@@ -360,11 +365,11 @@ void LinkedElements::report(ClassicalLight& light) const {
 
 }  // namespace
 
-/// Hierarchical and wavelet radiosity as [Hanrahan91] and [Gortler93] had it: from whole polygons down, links are cut
-/// while F or B F A is above a threshold, which is halved where visibility is partial, and elements are larger than
-/// A_eps; gathered over, pushed and pulled; again by the light that came of it, until no link is cut and the change is
-/// small. With `--multigrid N` first by a threshold 2^(N-1) times as large, and so on down. Without an oracle all links
-/// lead between leaves of `--mesh-size`: the uniform mesh, O(leaves^2).
+/// Hierarchical and wavelet radiosity as in [Hanrahan91] and [Gortler93]. Starting from whole polygons, links are split
+/// while F or B F A is above a threshold and elements are larger than A_eps; the threshold is halved for partial
+/// visibility. Light is gathered over links, pushed and pulled. This is repeated with the new light until no link is
+/// split and the change is small. With `--multigrid N`, the first threshold is 2^(N-1) times as large and is halved in
+/// each round. Without an oracle, all links connect leaves of `--mesh-size`: a uniform mesh, O(leaves^2).
 ClassicalLight solve_classical_links(const ClassicalInput& input, HierarchyBasis kind) {
     ClassicalLight light;
     input.progress.phase("link");
@@ -373,9 +378,9 @@ ClassicalLight solve_classical_links(const ClassicalInput& input, HierarchyBasis
     const std::size_t grids = input.classical.multigrid.value_or(1);
     std::size_t grid = 1;
     double change = 1;
-    for (std::size_t round = 0; round < most_rounds + input.knobs.max_iterations; ++round) {
+    for (std::size_t round = 0; round < max_rounds + input.knobs.max_iterations; ++round) {
         const double coarser = std::exp2(static_cast<double>(grids - std::min(grid, grids)));
-        const bool cut = round < most_rounds && elements.refine(coarser * input.classical.threshold.value_or(0));
+        const bool cut = round < max_rounds && elements.refine(coarser * input.classical.threshold.value_or(0));
         change = elements.gather();
         ++light.report.iterations;
         input.snapshots.after_round([&] {

@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::size_t default_visibility_samples = 16;
 constexpr unsigned default_hemicube_cells = 64;
-constexpr double default_sor_factor = 1.15;  // within the 1.1 to 1.2 that radiosity likes [Gortler94]
+constexpr double default_sor_factor = 1.15;  // radiosity converges fastest with 1.1 to 1.2 [Gortler94]
 
-/// Relaxes b = rhs + rho F b as asked for; after every sweep `swept` is called.
+/// Solves b = rhs + rho F b by the requested relaxation. Calls `swept` after every sweep.
 SolveReport relax(const ClassicalInput& input, const RadiositySystem& system, std::vector<Spectrum>& b,
                   const std::function<void()>& swept) {
     const StopRule stop{
@@ -36,7 +36,7 @@ SolveReport relax(const ClassicalInput& input, const RadiositySystem& system, st
     return solve_radiosity(system, asked, b, stop);
 }
 
-/// E = F b once b is found.
+/// Solves for b and evaluates E = F b.
 void solve_with(const ClassicalInput& input, const ElementTree& tree, const LeafNumbering& numbering,
                 const TransportOperator& F, ClassicalLight& light) {
     input.progress.phase("solve");
@@ -49,7 +49,7 @@ void solve_with(const ClassicalInput& input, const ElementTree& tree, const Leaf
         for (std::size_t i = 0; i < n; ++i) rhs[i] *= rho[i];
     std::vector<Spectrum> b = rhs, E(n);
     light.link_memory_bytes = F.memory_bytes();
-    light.coefficient_memory_bytes = 3 * n * sizeof(Spectrum);  // b, E and what enters
+    light.coefficient_memory_bytes = 3 * n * sizeof(Spectrum);  // b, E and source term
     std::size_t rounds = 0;
     const auto light_so_far = [&] {
         F.gather(b, E);
@@ -74,7 +74,7 @@ RayBudget ray_budget(const ClassicalInput& input) {
     return budget;
 }
 
-/// Do the entries of n leaves fit into the memory asked for, or the machine's?
+/// Returns an error if the matrix of n leaves does not fit into the memory limit, or into available memory.
 Result<void> check_memory(const ClassicalInput& input, FormFactorKind kind, double n) {
     const double c = hemicube_cells(input.options), cells = 3 * c * c;
     const double bytes = kind == FormFactorKind::analytic   ? 4 * n * n
@@ -94,10 +94,12 @@ Result<void> check_memory(const ClassicalInput& input, FormFactorKind kind, doub
 
 }  // namespace
 
-/// The matrix method as [Goral84], [Cohen85] and [Cohen86] had it: constant elements, and all N x N form factors at
-/// once. `analytic` (the default): from the receiver's middle to the whole source polygon, times the share of rays
-/// between the two that meet nothing, without a level of patches: the reference among the methods. `hemicube`,
-/// `ray-cast`: rows of those. O(N^2) entries.
+/// The matrix method as in [Goral84], [Cohen85] and [Cohen86]: constant elements, and all N x N form factors at once.
+/// - `analytic` (default): from the receiver's centre to the whole source polygon, times the unblocked share of rays
+///   between them, without a level of patches. This is the reference among the methods.
+/// - `hemicube`, `ray-cast`: rows of hemicubes or rays.
+///
+/// O(N^2) entries.
 Result<ClassicalLight> solve_classical_matrix(const ClassicalInput& input) {
     ClassicalLight light;
     const ElementTree tree = constant_mesh(input);

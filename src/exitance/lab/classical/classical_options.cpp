@@ -12,18 +12,18 @@ namespace {
 constexpr std::array<Method, 5> classical_methods{Method::matrix, Method::progressive, Method::substructuring,
                                                   Method::hierarchical, Method::wavelet};
 
-/// An option that is set, and the methods that obey it.
+/// An option that is set, and the methods that support it.
 struct Asked {
     std::string option;
     std::vector<Method> methods;
 };
 
-const std::vector<Method> all_of_them(classical_methods.begin(), classical_methods.end());
+const std::vector<Method> all_methods(classical_methods.begin(), classical_methods.end());
 const std::vector<Method> of_matrix{Method::matrix};
 const std::vector<Method> shooting{Method::progressive, Method::substructuring};
 const std::vector<Method> of_constants{Method::matrix, Method::progressive, Method::substructuring};
 const std::vector<Method> linked{Method::hierarchical, Method::wavelet};
-const std::vector<Method> nobody;
+const std::vector<Method> no_method;
 
 void add_transfer(const SolveOptions& o, const ClassicalOptions& c, std::vector<Asked>& asked) {
     const auto add = [&](bool is_set, std::string option, const std::vector<Method>& methods) {
@@ -42,7 +42,7 @@ void add_transfer(const SolveOptions& o, const ClassicalOptions& c, std::vector<
     add(c.kernel.has_value(), "--kernel", linked);
 }
 
-/// All that is set and that not every method obeys.
+/// Returns all options that are set and that not every method supports.
 std::vector<Asked> asked_for(const SolveOptions& o, const ClassicalOptions& c) {
     std::vector<Asked> asked;
     const auto add = [&](bool is_set, std::string option, const std::vector<Method>& methods) {
@@ -66,17 +66,17 @@ std::vector<Asked> asked_for(const SolveOptions& o, const ClassicalOptions& c) {
     add(!c.snapshots.shots.empty(), "--snapshots shots", shooting);
     add(c.snapshots.rounds, "--snapshots rounds", {Method::matrix, Method::hierarchical, Method::wavelet});
     add_transfer(o, c, asked);
-    add(o.bounces != all_bounces, "--bounces", nobody);
-    add(!o.importance.empty(), "--importance", nobody);
-    add(o.clusters == true, "--clusters on", nobody);
-    add(o.keep_links, "--keep-links", nobody);
-    add(o.epsilon.has_value(), "--epsilon", nobody);
-    add(o.error_interpolant.has_value(), "--error-interpolant", nobody);
-    add(c.certify == true, "--certify on", nobody);
+    add(o.bounces != all_bounces, "--bounces", no_method);
+    add(!o.importance.empty(), "--importance", no_method);
+    add(o.clusters == true, "--clusters on", no_method);
+    add(o.keep_links, "--keep-links", no_method);
+    add(o.epsilon.has_value(), "--epsilon", no_method);
+    add(o.error_interpolant.has_value(), "--error-interpolant", no_method);
+    add(c.certify == true, "--certify on", no_method);
     return asked;
 }
 
-Error unobeyed(const Asked& asked, Method method) {
+Error unsupported(const Asked& asked, Method method) {
     const std::string hint =
         asked.methods.empty() ? "leave it out, or leave out the options of classical forms (docs/classical.md)" : "";
     std::vector<std::string_view> names;
@@ -111,7 +111,7 @@ Result<Method> classical_method(const SolveOptions& options, const ClassicalOpti
         return std::find(a.methods.begin(), a.methods.end(), method) != a.methods.end();
     };
     if (const Result<void> pairs = check_pairs(options, classical); !pairs) return pairs.error();
-    const bool has_form = std::find(all_of_them.begin(), all_of_them.end(), options.method) != all_of_them.end();
+    const bool has_form = std::find(all_methods.begin(), all_methods.end(), options.method) != all_methods.end();
     if (options.method != Method::automatic && !has_form)
         return Error{ErrorCode::usage,
                      fmt::format("{} has no classical form; matrix, progressive, substructuring, hierarchical and "
@@ -121,11 +121,11 @@ Result<Method> classical_method(const SolveOptions& options, const ClassicalOpti
     if (options.method == Method::matrix && options.basis && *options.basis != BasisKind::constant)
         return Error{ErrorCode::usage, "the classical matrix has constant elements; wavelet has higher orders",
                      "--basis", ""};
-    for (Method method : all_of_them) {
+    for (Method method : all_methods) {
         if (options.method != Method::automatic && options.method != method) continue;
         const auto broken = std::find_if(asked.begin(), asked.end(), [&](const Asked& a) { return !obeys(method, a); });
         if (broken == asked.end()) return method;
-        if (options.method == method || broken->methods.empty()) return unobeyed(*broken, method);
+        if (options.method == method || broken->methods.empty()) return unsupported(*broken, method);
     }
     return Error{ErrorCode::usage, "no method obeys all of the options of classical forms together", "--method", ""};
 }

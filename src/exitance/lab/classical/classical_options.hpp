@@ -29,8 +29,8 @@ inline constexpr std::array<std::pair<ClassicalRelaxation, std::string_view>, 2>
 inline constexpr std::array<std::pair<ShootingReceivers, std::string_view>, 2> shooting_receiver_names{
     {{ShootingReceivers::vertex, "vertex"}, {ShootingReceivers::middle, "middle"}}};
 
-/// When solutions on the way are kept: at these seconds of the method's own time, after these shots, or after every
-/// round (sweep, iteration) of a method.
+/// Times at which intermediate solutions are saved: at these seconds of the method's own time, after these shots, or
+/// after every round (sweep, iteration) of a method.
 struct SnapshotPlan {
     std::vector<double> seconds;
     std::vector<std::size_t> shots;
@@ -39,24 +39,26 @@ struct SnapshotPlan {
     bool any() const { return rounds || !seconds.empty() || !shots.empty(); }
 };
 
-/// What a method in the form of its paper is asked for, beside SolveOptions. An empty optional: not asked for.
+/// Options of classical forms, in addition to SolveOptions. Empty optionals: not set.
 struct ClassicalOptions {
-    std::optional<ClassicalDirect> direct;  ///< apart: E_dir exact; carried: through the method's own transport.
+    std::optional<ClassicalDirect> direct;  ///< apart: E_dir exact; carried: transported by the method.
     std::optional<MeshKind> mesh;
-    std::optional<bool> gather;            ///< The final gather.
-    std::optional<bool> certify;           ///< Only `off` is there: these forms have no certificate.
-    std::optional<double> threshold;       ///< F_eps, no unit, or BF_eps, W in the brightest band, by the oracle.
-    std::optional<std::size_t> multigrid;  ///< Rounds in which the threshold is halved down to what was asked for.
+    std::optional<bool> gather;   ///< final gather
+    std::optional<bool> certify;  ///< only `off` is supported: classical forms have no certificate
+    /// Threshold of the oracle: F_eps (no unit), or BF_eps (W in the brightest band).
+    std::optional<double> threshold;
+    /// Number of rounds in which the threshold is halved down to the requested one.
+    std::optional<std::size_t> multigrid;
     std::optional<TransferKernel> kernel;
-    std::optional<double> refine_gradient;  ///< Of radiosity across an element, W/m^2.
+    std::optional<double> refine_gradient;  ///< Largest difference of radiosity across an element, W/m^2.
     std::optional<RefineWhen> refine;
     std::optional<ClassicalRelaxation> relaxation;
-    std::optional<double> sor_factor;  ///< omega of over-relaxation, in (0, 2).
+    std::optional<double> sor_factor;  ///< Factor omega of over-relaxation, in (0, 2).
     std::optional<ShootingReceivers> receivers;
     bool ambient = false;
     SnapshotPlan snapshots;
 
-    /// Is a classical form asked for?
+    /// True if any option requests a classical form.
     bool any() const {
         return direct || mesh || gather || certify || threshold || multigrid || kernel || refine_gradient || refine ||
                relaxation || sor_factor || receivers || ambient || snapshots.any();
@@ -64,8 +66,8 @@ struct ClassicalOptions {
     bool carried() const { return direct == ClassicalDirect::carried; }
 };
 
-/// The method in force: as asked for, or of `auto` the first that obeys all that is asked for. A usage error names the
-/// option that the method does not obey, and the methods that do.
+/// Returns the requested method, or for `auto` the first method that supports all options that are set. Returns a usage
+/// error that names an unsupported option and the methods that support it.
 Result<Method> classical_method(const SolveOptions& options, const ClassicalOptions& classical);
 
 }  // namespace exitance

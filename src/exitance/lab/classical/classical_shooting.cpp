@@ -17,9 +17,9 @@ namespace {
 
 constexpr std::size_t default_visibility_samples = 16;
 constexpr unsigned default_hemicube_cells = 64;
-constexpr std::size_t column_memory = std::size_t{1} << 29;  // bytes of columns that are kept for later shots
-constexpr double default_least_share = 1.0 / 65536;          // of the scene's area: no element is cut smaller
-constexpr double vertex_rounding = 1e-6;  // of the scene's size: nearer corners of a region are one vertex
+constexpr std::size_t column_memory = std::size_t{1} << 29;  // of columns that are kept for later shots, bytes
+constexpr double default_min_share = 1.0 / 65536;            // of the scene's area: smallest element
+constexpr double vertex_rounding = 1e-6;  // of the scene's size: corners of a region that are closer are one vertex
 
 class Shooting {
   public:
@@ -43,8 +43,8 @@ class Shooting {
     float factor_at(std::size_t vertex, std::size_t patch) const;
     void add_vertices(std::span<const ElementId> elements);
     std::size_t refine();
-    void gather_anew(std::size_t first);
-    void gather_anew_at_middles(std::size_t first);
+    void gather_new(std::size_t first);
+    void gather_new_at_centres(std::size_t first);
     SolveReport shoot_once();
     ElementFunction irradiance() const;
     Spectrum ambient() const;
@@ -59,20 +59,20 @@ class Shooting {
     std::optional<HemicubeRows> hemicubes_;
     std::optional<RayRows> ray_rows_;
     std::vector<double> patch_area_;
-    std::vector<Spectrum> sent_, unshot_;  ///< By patch.
-    // By receiver: the leaves in the order of their ids, among them elements that have been cut since, whose area and
-    // form factors are 0. Receivers keep their numbers, new ones come last.
+    std::vector<Spectrum> sent_, unshot_;  ///< Per patch.
+    // Per receiver: the leaves in the order of their ids. Elements that have been cut since stay in the list, with area
+    // and form factors of 0. Receivers keep their numbers; new ones are appended.
     std::vector<ElementId> receivers_;
     std::vector<double> area_;
     std::vector<std::uint32_t> patch_of_;
     std::vector<Spectrum> reflectance_, direct_, irradiance_;
     std::size_t leaf_count_ = 0;
-    CornerSteps steps_;  ///< Of receivers, where they are refined.
+    CornerSteps steps_;  ///< Steps of receivers, if they are refined.
     ElementVertices vertices_;
     std::vector<Spectrum> at_vertex_;
-    std::vector<float> column_, vertex_column_;                ///< The last ones computed.
-    std::size_t vertex_column_of_ = ~std::size_t(0);           ///< Patch of the latter, or none.
-    std::vector<std::vector<float>> kept_, kept_at_vertices_;  ///< By patch; may end before the newest receivers.
+    std::vector<float> column_, vertex_column_;                ///< The columns computed last.
+    std::size_t vertex_column_of_ = ~std::size_t(0);           ///< Patch of `vertex_column_`, or none.
+    std::vector<std::vector<float>> kept_, kept_at_vertices_;  ///< Per patch; may lack the newest receivers.
     std::size_t kept_bytes_ = 0, shots_ = 0;
     mutable std::atomic<std::size_t> rays_{0}, form_factors_{0};
     double first_power_ = 0;
@@ -103,7 +103,7 @@ Shooting::Shooting(const ClassicalInput& input, bool substructuring)
     make_rows();
 }
 
-/// Into four; cells, which contacts have cut off, across their longest extents.
+/// Cuts an element into four. Cells of contact lines are bisected twice across their longest extents.
 void Shooting::cut(ElementId e) {
     const std::uint32_t patch = patch_of_element_[e];
     if (tree_.is_cell(e)) {
@@ -115,7 +115,7 @@ void Shooting::cut(ElementId e) {
     patch_of_element_.resize(tree_.size(), patch);
 }
 
-/// Makes receivers of the leaves from this element on.
+/// Adds the leaves from `first_element` on as receivers.
 void Shooting::add_receivers(std::size_t first_element) {
     const std::size_t first = receivers_.size();
     for (std::size_t i = first_element; i < tree_.size(); ++i) {
@@ -132,7 +132,7 @@ void Shooting::add_receivers(std::size_t first_element) {
     if (at_vertices_) add_vertices(std::span(receivers_).subspan(first));
 }
 
-/// Of an element that has been cut.
+/// Removes the receiver of an element that has been cut.
 void Shooting::drop_receiver(std::size_t i) {
     area_[i] = 0;
     direct_[i] = irradiance_[i] = {};
@@ -142,7 +142,7 @@ void Shooting::drop_receiver(std::size_t i) {
         if (i < kept.size()) kept[i] = 0;
 }
 
-/// New vertices gather what all patches have sent.
+/// Adds vertices. New ones gather the light that all patches have sent.
 void Shooting::add_vertices(std::span<const ElementId> elements) {
     const std::size_t before = vertices_.at.size();
     vertices_.add(input_.stage, tree_, elements);
@@ -161,7 +161,7 @@ void Shooting::add_vertices(std::span<const ElementId> elements) {
     }
 }
 
-/// What patches have to send at first: what they emit, or reflect of the direct light.
+/// Initial unshot light of patches: their exitance, or the reflected direct light.
 std::vector<Spectrum> Shooting::first_light() const {
     if (input_.carries()) return exitances(input_, tree_, patches_);
     std::vector<Spectrum> out(patches_.size());
@@ -170,7 +170,8 @@ std::vector<Spectrum> Shooting::first_light() const {
     return out;
 }
 
-/// Rows of what a patch sees, which reciprocity makes the columns that it shoots by, F_ij = F_ji A_j / A_i.
+/// Computes rows of form factors of patches. Reciprocity turns them into the columns for shooting, F_ij = F_ji A_j /
+/// A_i.
 void Shooting::make_rows() {
     if (!input_.options.form_factors || input_.options.form_factors == FormFactorKind::analytic) return;
     const ElementLocator locator(tree_, input_.stage.scene.regions().size());
@@ -187,7 +188,8 @@ void Shooting::make_rows() {
     ray_rows_.emplace(input_.stage, tree_, numbering, locator, budget, o.seed);
 }
 
-/// Exactly towards the polygon, times the share of rays from the vertex that meet nothing [Wallace89].
+/// Form factor from a vertex to a patch: exact for the polygon, times the unblocked share of rays from the vertex
+/// [Wallace89].
 float Shooting::factor_at(std::size_t v, std::size_t p) const {
     const ElementId patch = patches_[p];
     const RegionId own = vertices_.region[v], source = tree_.region(patch);
@@ -212,7 +214,7 @@ float Shooting::factor_at(std::size_t v, std::size_t p) const {
     return static_cast<float>(F * static_cast<double>(free) / static_cast<double>(count));
 }
 
-/// Appends to what is kept of a column the rest of it, if that fits into memory.
+/// Appends the missing rest of a column to the kept part if it fits into memory.
 void Shooting::keep_end(std::vector<float>& kept, std::span<const float> column) {
     const std::span<const float> end = column.subspan(kept.size());
     if (kept_bytes_ + end.size_bytes() > column_memory) return;
@@ -234,7 +236,7 @@ std::span<const float> Shooting::vertex_column(std::size_t patch) {
     return vertex_column_;
 }
 
-/// Computes the entries of `column_` from this receiver on.
+/// Computes the entries of `column_` from receiver `first` on.
 void Shooting::fill_column(std::size_t patch, std::size_t first) {
     const std::size_t n = receivers_.size();
     std::fill(column_.begin() + static_cast<std::ptrdiff_t>(first), column_.end(), 0.0f);
@@ -275,7 +277,7 @@ std::span<const float> Shooting::column(std::size_t patch) {
     return column_;
 }
 
-/// One shot, of the patch with most to send.
+/// Shoots once, from the patch with the most unshot light.
 SolveReport Shooting::shoot_once() {
     const std::vector<Spectrum> before = unshot_;
     std::size_t shooter = patches_.size();
@@ -298,14 +300,15 @@ SolveReport Shooting::shoot_once() {
     return report;
 }
 
-/// Elements across which radiosity changes by more than the gradient requested are cut, and their parts gather anew
-/// what all patches have sent. Returns how many. O(receivers), and a form factor for every new receiver and patch.
+/// Cuts elements across which radiosity changes by more than the requested gradient; their parts gather the light that
+/// all patches have sent. Returns the number of elements cut. O(receivers), and one form factor per new receiver and
+/// patch.
 std::size_t Shooting::refine() {
-    const double least = input_.options.min_area.value_or(default_least_share * input_.stage.area);
+    const double least = input_.options.min_area.value_or(default_min_share * input_.stage.area);
     std::vector<Spectrum> b(receivers_.size());
     for (std::size_t i = 0; i < b.size(); ++i) {
         b[i] = direct_[i] + irradiance_[i];
-        // Black surfaces reflect nothing: their irradiance is followed.
+        // For black surfaces, irradiance is used instead of radiosity.
         if (max(reflectance_[i]) > 0) b[i] = reflectance_[i] * b[i];
     }
     steps_.average(b);
@@ -319,22 +322,22 @@ std::size_t Shooting::refine() {
     for (std::size_t i : steep) cut(receivers_[i]), drop_receiver(i);
     transfer_->update_places();
     add_receivers(elements);
-    gather_anew(first);
+    gather_new(first);
     return steep.size();
 }
 
-/// Direct light of the receivers from this one on, and what all patches have sent to them.
-void Shooting::gather_anew(std::size_t first) {
+/// Computes direct light and the light of all patches for the receivers from `first` on.
+void Shooting::gather_new(std::size_t first) {
     const std::span<const ElementId> fresh = std::span(receivers_).subspan(first);
     if (!input_.carries()) {
         const std::vector<Spectrum> exact = mean_direct_light(input_, tree_, fresh);
         std::copy(exact.begin(), exact.end(), direct_.begin() + static_cast<std::ptrdiff_t>(first));
     }
-    if (!at_vertices_) return gather_anew_at_middles(first);
+    if (!at_vertices_) return gather_new_at_centres(first);
     for (std::size_t i = first; i < receivers_.size(); ++i) irradiance_[i] = mean_at_vertices(i);
 }
 
-void Shooting::gather_anew_at_middles(std::size_t first) {
+void Shooting::gather_new_at_centres(std::size_t first) {
     const std::span<const ElementId> fresh = std::span(receivers_).subspan(first);
     std::vector<double> factors(fresh.size());
     column_.resize(receivers_.size());
@@ -347,7 +350,7 @@ void Shooting::gather_anew_at_middles(std::size_t first) {
     }
 }
 
-/// Of the power that there was at first.
+/// Unshot power, relative to the initial power.
 double Shooting::unshot_share() const {
     return first_power_ > 0 ? unshot_power(unshot_, patch_area_) / first_power_ : 0;
 }
@@ -356,7 +359,7 @@ SolveReport Shooting::run() {
     const auto& c = input_.classical;
     const bool refines = c.refine_gradient.has_value();
     const bool during = refines && c.refine.value_or(RefineWhen::during) == RefineWhen::during;
-    const std::size_t most = input_.options.max_iterations.value_or(1'000'000);
+    const std::size_t max_shots = input_.options.max_iterations.value_or(1'000'000);
     SolveReport report;
     for (;;) {
         const std::size_t left = shots_;
@@ -372,10 +375,10 @@ SolveReport Shooting::run() {
                 return so_far;
             });
         }
-        if (report.converged || report.interrupted || shots_ == left || shots_ >= most) break;
+        if (report.converged || report.interrupted || shots_ == left || shots_ >= max_shots) break;
     }
-    constexpr int most_depth = 16;
-    for (int depth = 0; refines && !during && depth < most_depth && !input_.stop.requested() && refine() > 0; ++depth) {
+    constexpr int max_depth = 16;
+    for (int depth = 0; refines && !during && depth < max_depth && !input_.stop.requested() && refine() > 0; ++depth) {
     }
     report.iterations = shots_;
     report.residual = unshot_share();
@@ -391,7 +394,7 @@ Spectrum Shooting::mean_at_vertices(std::size_t receiver) const {
     return sum / static_cast<double>(around.size());
 }
 
-/// What is unshot, spread over all surfaces, with all its reflections [Cohen88]: for display.
+/// Ambient term: unshot light spread over all surfaces, with all its reflections [Cohen88]. For display.
 Spectrum Shooting::ambient() const {
     Spectrum flux, reflected;
     double whole = 0;
@@ -415,7 +418,7 @@ ElementFunction Shooting::irradiance() const {
             for (int k = 0; k < 4; ++k) out.add_value(irradiance_[i] + more);
             continue;
         }
-        // The corners of a cell are not those of its frame: it is delivered as its mean.
+        // The corners of a cell differ from those of its frame, so its mean is returned.
         for (int k = 0; k < tree_.patch(leaf).corner_count(); ++k)
             out.add_value(more + (tree_.is_cell(leaf)
                                       ? mean_at_vertices(i)
@@ -436,10 +439,10 @@ void Shooting::report(ClassicalLight& light) const {
 
 }  // namespace
 
-/// Progressive refinement [Cohen88] and substructuring [Cohen86]: the patch with most to send shoots it to all
-/// elements, at their middles, or at their vertices with (bi)linear functions in between [Wallace89]. Substructuring:
-/// patches are cut into four elements, and those, where `--refine-gradient` asks for it, while light is shot or once it
-/// is. A column of form factors a shot.
+/// Progressive refinement [Cohen88] and substructuring [Cohen86]: the patch with the most unshot light shoots it to all
+/// elements, either at their centres or at their vertices with (bi)linear interpolation [Wallace89]. With
+/// substructuring, patches are cut into four elements. If `--refine-gradient` is given, these are cut further while
+/// light is shot or afterwards. One column of form factors per shot.
 ClassicalLight solve_classical_shooting(const ClassicalInput& input, bool substructuring) {
     ClassicalLight light;
     input.progress.phase("shoot");

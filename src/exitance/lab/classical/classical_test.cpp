@@ -40,7 +40,7 @@ ClassicalOptions by_power(double threshold) {
     return out;
 }
 
-/// RMS over elements of the irradiance's departure from exact direct light, relative to its mean; of black scenes.
+/// RMS difference between the irradiance of elements and exact direct light, relative to its mean; for black scenes.
 double error_of(const Solution& solution) {
     Solution exact{.scene = solution.scene, .indirect = solution.indirect};
     for (auto& value : exact.indirect.values) value = {};
@@ -85,13 +85,13 @@ INSTANTIATE_TEST_SUITE_P(Methods, EveryClassicalMethod,
                                          std::pair(Method::wavelet, BasisKind::multiwavelet2),
                                          std::pair(Method::wavelet, BasisKind::multiwavelet3)));
 
-TEST_P(EveryClassicalMethod, CarriesLightInAFurnace) {
+TEST_P(EveryClassicalMethod, SolvesAFurnace) {
     const double rho = 0.5;
     const Scene scene = box_scene(1, 1, 1, rho, 1, 1);
     SolveOptions o = options(0.25);
     o.residual = 1e-6;
     const Solution solution = solve(scene, o, raw).solution;
-    // E = M / (1 - rho); at the edges elements' own form factors are exact, and rows sum to 1 where all are.
+    // E = M / (1 - rho). Form factors of elements at edges are exact, and rows sum to 1.
     const RadiosityFunction light(solution);
     for (const Light& l : light.at(std::vector<ProbePoint>{{{0.4, 0.3, 0}, {0, 0, 1}}, {{1, 0.6, 0.7}, {-1, 0, 0}}}))
         EXPECT_NEAR(l.irradiance[0], 1 / (1 - rho), 0.02 / (1 - rho));
@@ -105,10 +105,10 @@ TEST_P(EveryClassicalMethod, SolvesABlackSceneThroughItsOwnTransport) {
     const double coarse = error_of(solve(scene, options(0.5), raw).solution);
     const double fine = error_of(solve(scene, options(0.25), raw).solution);
     EXPECT_LT(fine, 0.12);
-    EXPECT_LT(fine, 0.75 * coarse);  // shadows blocky by one share a link: first order whatever the basis
+    EXPECT_LT(fine, 0.75 * coarse);  // one visibility per link makes shadows blocky: first order with any basis
 }
 
-TEST(Classical, ExactVisibilityWithinLinksGivesHighOrdersTheirDue) {
+TEST(Classical, ExactVisibilityMakesHighOrdersMoreAccurate) {
     const Scene scene = built_scene("blocker", {{"h", "0.7"}});
     SolveOptions o{.method = Method::wavelet, .basis = BasisKind::multiwavelet3, .mesh_size = 0.5};
     const double fractional = error_of(solve(scene, o, raw).solution);
@@ -116,7 +116,7 @@ TEST(Classical, ExactVisibilityWithinLinksGivesHighOrdersTheirDue) {
     EXPECT_LT(error_of(solve(scene, o, raw).solution), 0.25 * fractional);
 }
 
-TEST(Classical, LinksGrowAsOneOverTheirThreshold) {
+TEST(Classical, NumberOfLinksIsInverseToTheThreshold) {
     const Scene scene = built_scene("tube", {{"rho", "0.7"}});
     const SolveOptions o{.method = Method::hierarchical, .oracle = LinkOracle::power};
     const Solved coarse = solve(scene, o, by_power(0.08)), fine = solve(scene, o, by_power(0.02));
@@ -127,7 +127,7 @@ TEST(Classical, LinksGrowAsOneOverTheirThreshold) {
     EXPECT_EQ(fine.facts.initial_links, 30u);  // six polygons that all see each other
 }
 
-TEST(Classical, NoElementIsCutBelowTheLeastArea) {
+TEST(Classical, NoElementIsSmallerThanTheMinimumArea) {
     const Scene scene = built_scene("tube", {{"rho", "0.7"}});
     const double least = 0.04;
     ClassicalOptions c = by_power(1e-3);
@@ -137,7 +137,7 @@ TEST(Classical, NoElementIsCutBelowTheLeastArea) {
     for (ElementId e : solution.indirect.tree.leaves()) EXPECT_GE(solution.indirect.tree.area(e), least);
 }
 
-TEST(Classical, GatherAndSmoothingChangeNoSolver) {
+TEST(Classical, GatherAndSmoothingDoNotChangeTheSolve) {
     const Scene scene = built_scene("tube", {{"rho", "0.7"}});
     SolveOptions o{.method = Method::progressive, .mesh_size = 0.5};
     const Solution plain = solve(scene, o, raw).solution;
@@ -154,7 +154,7 @@ TEST(Classical, GatherAndSmoothingChangeNoSolver) {
     EXPECT_EQ(smooth.indirect.tree.size(), plain.indirect.tree.size());
 }
 
-TEST(Classical, SnapshotsFollowTheShotsAndAmbientLightFillsThem) {
+TEST(Classical, SnapshotsAreTakenAfterShotsAndAmbientLightIsAdded) {
     const Scene scene = built_scene("tube", {{"rho", "0.7"}});
     ClassicalOptions c = raw;
     c.snapshots.shots = {5, 2};
@@ -182,7 +182,7 @@ TEST(Classical, SnapshotsFollowTheShotsAndAmbientLightFillsThem) {
     for (std::size_t i = 0; i < 2; ++i) EXPECT_GT(filled[i], bare[i]);
 }
 
-TEST(Classical, RefinementCutsWhereLightChangesDuringShootingOrAfter) {
+TEST(Classical, RefinementCutsElementsDuringShootingOrAfter) {
     const Scene scene = built_scene("blocker", {{"h", "0.7"}});
     ClassicalOptions c = raw;
     c.receivers = ShootingReceivers::vertex;
@@ -201,7 +201,8 @@ TEST(Classical, RefinementCutsWhereLightChangesDuringShootingOrAfter) {
 }
 
 TEST(Classical, RefinementDuringShootingComputesNoFormFactorTwice) {
-    // A light above a floor that it alone lights: every element of the floor meets each patch of the light once.
+    // A light above a floor that only the light illuminates: every element of the floor is paired with each patch of
+    // the light once.
     const Scene scene = built_scene("blocker", {{"h", "0.7"}});
     ClassicalOptions c = raw;
     c.refine_gradient = 0.5;
@@ -217,8 +218,8 @@ TEST(Classical, RefinementDuringShootingComputesNoFormFactorTwice) {
     EXPECT_NEAR(static_cast<double>(rays[0]) / static_cast<double>(rays[1]), by_elements, 0.15 * by_elements);
 }
 
-TEST(Classical, ShootingCutsPatchesThatContactsHaveCut) {
-    // Boxes stand on the floor: their outlines cut it into cells, which are no parallelograms.
+TEST(Classical, ShootingCutsCellsOfContactLines) {
+    // Boxes on the floor: their outlines cut it into cells, which are not parallelograms.
     const Scene scene = built_scene("cornell");
     const ClassicalOptions aligned = carried_raw(false);
     SolveOptions o{.method = Method::matrix, .mesh_size = 0.3, .residual = 1e-3};
@@ -233,13 +234,13 @@ TEST(Classical, ShootingCutsPatchesThatContactsHaveCut) {
         const Solution shot = solve(scene, o, c).solution;
         EXPECT_GT(shot.statistics.leaf_elements, 4 * matrix.statistics.leaf_elements - 1);
         const std::vector<Light> light = RadiosityFunction(shot).at(places);
-        // Elements of thirty centimetres and of fifteen differ by as much as light changes across them.
+        // Elements of 0.3 m and of 0.15 m differ by the variation of light across them.
         for (std::size_t i = 0; i < places.size(); ++i)
             EXPECT_NEAR(light[i].irradiance[1], expected[i].irradiance[1], 0.3 * expected[i].irradiance[1]) << i;
     }
 }
 
-TEST(Classical, TheSameBitsOnAnyNumberOfThreads) {
+TEST(Classical, IsBitwiseIndependentOfThreads) {
     const Scene scene = built_scene("tube", {{"rho", "0.7"}});
     SolveOptions o{.method = Method::wavelet, .oracle = LinkOracle::power, .threads = 1};
     const Solution one = solve(scene, o, by_power(0.1)).solution;
@@ -247,7 +248,7 @@ TEST(Classical, TheSameBitsOnAnyNumberOfThreads) {
     EXPECT_TRUE(same_bits(one, solve(scene, o, by_power(0.1)).solution));
 }
 
-TEST(Classical, EveryRelaxationFindsTheSameLightInItsNumberOfSweeps) {
+TEST(Classical, RelaxationsDifferInTheirNumberOfSweeps) {
     const Scene scene = built_scene("tube", {{"rho", "0.9"}});
     SolveOptions o{.method = Method::matrix, .mesh_size = 0.5, .residual = 1e-6};
     const auto sweeps = [&](std::optional<Relaxation> relaxation, std::optional<ClassicalRelaxation> own) {
@@ -270,20 +271,20 @@ TEST(Classical, EveryRelaxationFindsTheSameLightInItsNumberOfSweeps) {
     EXPECT_LT(sweeps(Relaxation::southwell, {}), jacobi);
 }
 
-TEST(Classical, AMatrixThatMemoryDoesNotHoldIsRefused) {
+TEST(Classical, AMatrixThatExceedsMemoryIsRejected) {
     Progress progress;
     const StopRequest stop;
     ClassicalFacts facts;
     const Scene scene = built_scene("blocker", {{"h", "0.7"}});
     SolveOptions options{.method = Method::matrix, .mesh_size = 0.5};
     EXPECT_TRUE(solve_classical(scene, options, raw, progress, stop, facts, {}));
-    options.memory_limit_bytes = 1 << 20;  // less than any process holds
+    options.memory_limit_bytes = 1 << 20;  // less than any process uses
     const Result<Solution> none = solve_classical(scene, options, raw, progress, stop, facts, {});
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().code, ErrorCode::limit);
 }
 
-TEST(Classical, WhatAMethodDoesNotObeyNamesThoseThatDo) {
+TEST(Classical, UnsupportedOptionsNameTheMethodsThatSupportThem) {
     ClassicalOptions c = raw;
     c.ambient = true;
     const Result<Method> wrong = classical_method({.method = Method::matrix}, c);

@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// The largest step between corners of a leaf of a function that `averaged_at_vertices` has made.
+/// Largest difference between corners of a leaf of a function made by `averaged_at_vertices`.
 double step_of(const ElementFunction& f, ElementId e) {
     double largest = 0;
     for (std::size_t b = 0; b < bands; ++b) {
@@ -26,7 +26,7 @@ double step_of(const ElementFunction& f, ElementId e) {
     return largest;
 }
 
-TEST(CornerSteps, AreThoseOfAveragesMadeAnewWhileElementsAreCut) {
+TEST(CornerSteps, EqualThoseOfRecomputedAveragesWhileElementsAreCut) {
     const Scene scene = built_scene("table", {{"rot", "31.7,0.3,0.5,1"}});
     const Stage stage(scene);
     const double rounding = 1e-6 * scene.size();

@@ -5,7 +5,7 @@
 namespace exitance {
 
 void ElementVertices::add(const Stage& stage, const ElementTree& tree, std::span<const ElementId> elements) {
-    constexpr double drawn_in = 1e-4;  // of the way to the middle of the element
+    constexpr double drawn_in = 1e-4;  // share of the way to the centre of the element
     const double grid = 1e-6 * stage.scene.size();
     for (const ElementId e : elements) {
         const Point middle = tree.patch(e).at(tree.centre(e));

@@ -20,7 +20,7 @@ std::vector<Point> corners_of(const Patch& patch) {
     return out;
 }
 
-/// cos cos / (pi r^2 + area): the kernel that a disc of this area has from its axis; 0 from behind.
+/// Kernel cos cos / (pi r^2 + area), that of a disc of this area from its axis; 0 from behind.
 double disc_kernel(const Point& x, const Normal& n, const Point& y, const Normal& m, double area) {
     const Vec3 d = y - x;
     const double up = dot(n, d), down = -dot(m, d), squared = dot(d, d);
@@ -50,7 +50,7 @@ double InteractionKernel::visible_share(const ElementTree& tree, ElementId recei
     const unsigned cells = grid * grid, count = std::max(1u, choice_.rays);
     w.from.resize(count), w.to.resize(count);
     for (unsigned i = 0; i < count; ++i) {
-        // A latin arrangement: every cell of either grid once a round.
+        // Latin square: every cell of either grid is used once per round.
         const unsigned a = i % cells, b = (7 * a + 5 * (i / cells) + 3) % cells;
         const auto place = [&](unsigned cell, const Patch& patch) {
             const double s = (cell % grid + random.uniform()) / grid, t = (cell / grid + random.uniform()) / grid;
@@ -86,7 +86,7 @@ void InteractionKernel::open_row(const Point& x, const Normal& n, const Patch& s
     for (std::size_t l = 0; l < nodes.size(); ++l) row[l] = sum > 0 ? row[l] * (F / sum) : F * nodes[l].weight;
 }
 
-/// Pieces that come near the space between two elements, by boxes.
+/// Finds the pieces whose boxes meet the box of two elements.
 void InteractionKernel::find_blockers(const ElementTree& tree, ElementId receiver, ElementId source,
                                       Workspace& w) const {
     const std::vector<Point> p = corners_of(tree.patch(receiver)), q = corners_of(tree.patch(source));
@@ -106,8 +106,8 @@ void InteractionKernel::find_blockers(const ElementTree& tree, ElementId receive
     }
 }
 
-/// Takes from w.parts what a blocker hides from x: all within its pyramid. What of it lies behind the source's plane,
-/// or below the horizon, hides nothing.
+/// Removes from w.parts what a blocker hides from x: all inside the pyramid from x through it. Parts of the blocker
+/// behind the source's plane or below the horizon are ignored.
 void InteractionKernel::cut_away(const Point& x, const Normal& n, const Normal& m, double offset, PieceId blocker,
                                  Workspace& w) const {
     const double rounding = stage_.occluders.rounding();

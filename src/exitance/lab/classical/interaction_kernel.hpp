@@ -9,23 +9,25 @@
 
 namespace exitance {
 
-/// How a link's block is made.
+/// How a link's block is computed.
 struct KernelChoice {
     TransferKernel kernel = TransferKernel::exact;
     VisibilityKind visibility = VisibilityKind::fractional;
-    unsigned rays = 16;  ///< Of fractional visibility, a pair of elements.
+    unsigned rays = 16;  ///< Number of rays for fractional visibility, per pair of elements.
 };
 
-/// The block of a link, from nodes of the source to nodes of the receiver: E_k += sum_l K_kl B_l.
+/// Computes the block of a link, from nodes of the source to nodes of the receiver: E_k += sum_l K_kl B_l.
 ///
-///     point:  K_kl = A_q w_l cos cos / (pi r^2)           the singular transfer from point to point,
+///     point:  K_kl = A_q w_l cos cos / (pi r^2)           singular point-to-point transfer,
 ///     disc:   K_kl = A_q w_l cos cos / (pi r^2 + A_q w_l)  bounded [Wallace89],
 ///     exact:  disc, with the row scaled to the form factor from the node to the polygon [Baum89].
 ///
-/// Times what is visible. fractional: one share for all, of rays between places of a jittered 4 x 4 grid. quadrature:
-/// yes or no for each pair of nodes. exact: the source is cut by what stands before it as seen from the node, and the
-/// source's polynomial integrated over what is left, a share of disc's kernel at Dunavant's points of its triangles,
-/// scaled to the form factor of what is left.
+/// The kernel is multiplied by visibility:
+/// - fractional: one share for all nodes, from rays between points of a jittered 4 x 4 grid.
+/// - quadrature: visible or not for each pair of nodes.
+/// - exact: the source is clipped by its blockers as seen from the node. The source's polynomial is integrated over the
+///   visible parts with the disc kernel at the Dunavant points of their triangles, scaled to the form factor of each
+///   part.
 class InteractionKernel {
   public:
     InteractionKernel(const Stage& stage, const NodalBasis& basis, KernelChoice choice, std::uint64_t seed)
@@ -39,13 +41,13 @@ class InteractionKernel {
         std::size_t rays = 0, form_factors = 0;
     };
 
-    /// Does any of either element lie before the other?
+    /// True if part of each element is in front of the other.
     bool faces(const ElementTree& tree, ElementId receiver, ElementId source) const;
-    /// The share of the pair's rays that meet nothing.
+    /// Unblocked share of the pair's rays.
     double visible_share(const ElementTree& tree, ElementId receiver, ElementId source, Workspace& w) const;
-    /// The form factor from the receiver's middle to the source, nothing in between.
+    /// Form factor from the receiver's centre to the source without blockers.
     double unoccluded(const ElementTree& tree, ElementId receiver, ElementId source) const;
-    /// Row by receiver's node, count()^2 entries. `share`: what visible_share gave.
+    /// Fills count()^2 entries, one row per node of the receiver. `share`: result of visible_share.
     void block(const ElementTree& tree, ElementId receiver, ElementId source, double share, std::span<float> K,
                Workspace& w) const;
 

@@ -10,15 +10,15 @@ namespace exitance {
 
 struct ClassicalLight;
 
-/// Watches a solve, and hands over what there is when a snapshot of the plan is due. Writing does not count as the
-/// method's time.
+/// Passes intermediate results of a solve to a sink when a snapshot of the plan is due. The sink's time is not part of
+/// the method's time.
 class Snapshots {
   public:
-    /// What a method has found, and how long that took.
+    /// Intermediate result of a method, and its time so far.
     struct Moment {
         const ClassicalLight& light;
-        std::size_t number;                 ///< From 1.
-        double seconds, processor_seconds;  ///< Of the method alone.
+        std::size_t number;                 ///< Counted from 1.
+        double seconds, processor_seconds;  ///< Time of the method only.
     };
     using Sink = std::function<Result<void>(const Moment& moment)>;
 
@@ -27,14 +27,15 @@ class Snapshots {
         std::sort(plan_.shots.begin(), plan_.shots.end());
     }
 
-    /// After so many shots. `light()`, what there is and what it took, is called where a snapshot is due.
+    /// Must be called after every shot. `shots`: number of shots so far; `light()`: returns the present result, called
+    /// only if a snapshot is due.
     template <class Light>
     void after_shot(std::size_t shots, const Light& light) {
         bool due = is_time();
         for (; shot_ < plan_.shots.size() && plan_.shots[shot_] <= shots; ++shot_) due = true;
         if (due) take(light);
     }
-    /// After a sweep or an iteration.
+    /// Must be called after every sweep or iteration.
     template <class Light>
     void after_round(const Light& light) {
         const bool due = is_time();
@@ -44,11 +45,11 @@ class Snapshots {
     const Result<void>& written() const { return written_; }
     double seconds() const { return watch_.seconds() - writing_; }
     double processor_seconds() const { return processor_clock() - begun_ - processor_writing_; }
-    /// Spent on writing so far.
+    /// Seconds spent in the sink so far.
     double writing() const { return writing_; }
 
   private:
-    /// Seconds of all processors since the program began.
+    /// Seconds of all processors since the start of the program.
     static double processor_clock() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
     bool is_time() {
         bool due = false;

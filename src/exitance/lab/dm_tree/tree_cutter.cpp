@@ -14,7 +14,7 @@ bool is_convex_outline(const ReceiverCurves& receiver) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
         const Vec2 a = loop[(i + 1) % loop.size()] - loop[i],
                    b = loop[(i + 2) % loop.size()] - loop[(i + 1) % loop.size()];
-        constexpr double straight = 1e-9;  // sine, given by rounding of coordinates
+        constexpr double straight = 1e-9;  // sine of the angle; rounding of coordinates
         if (cross(a, b) < -straight * std::sqrt(dot(a, a) * dot(b, b))) return false;
     }
     return true;
@@ -33,7 +33,7 @@ double area_of(const LabelledTriangles& t) {
 }
 
 ReceiverTriangles by_tree(const ReceiverCurves& receiver, const TreeCut& cut, double tolerance) {
-    constexpr std::size_t cells = 4;  // along each side
+    constexpr std::size_t cells = 4;  // number along each side
     DmTree tree(receiver.loops.front(), tolerance);
     if (cut.grid) tree.insert_grid(cells);
     std::vector<const FlatCurve*> curves;
@@ -56,7 +56,8 @@ ReceiverTriangles by_tree(const ReceiverCurves& receiver, const TreeCut& cut, do
 std::optional<ReceiverTriangles> cut_by_tree(const ReceiverCurves& receiver, const TreeCut& cut, double tolerance) {
     if (!is_convex_outline(receiver)) return std::nullopt;
     ReceiverTriangles out = by_tree(receiver, cut, tolerance);
-    constexpr double lost = 1e-10;  // share of the area; derived from the 1e-9 that no mesh may lose
+    // Line trees merge nearby points, which may lose area.
+    constexpr double lost = 1e-10;  // share of the area; below the 1e-9 that no mesh may lose
     const double area = area_of(receiver.loops.front());
     if (std::abs(area_of(out.triangles) - area) > lost * area) return std::nullopt;
     return out;

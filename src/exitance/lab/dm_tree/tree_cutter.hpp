@@ -8,8 +8,9 @@ namespace exitance {
 /// A scheme of the thesis, and the order in which its tree takes the curves.
 struct TreeCut {
     TriangulationScheme scheme = TriangulationScheme::heuristic;
-    bool grid = false;            ///< Starts with a coarse grid.
-    bool penumbra_first = false;  ///< Inserts the curves that bound penumbrae first: lowest order, then longest.
+    bool grid = false;  ///< Insert a coarse grid into the line tree first.
+    /// Insert curves in the order D0, D1, D2, long ones first: the edges of penumbras before the rest.
+    bool penumbra_first = false;
 };
 
 /// Cuts convex receivers by a tree of lines (`DmTree`); returns nothing for others, and where the tree, which merges

@@ -10,23 +10,24 @@
 namespace exitance::flatland {
 namespace {
 
-/// Error makes units come; a little of density keeps them from where there is nothing to learn.
+/// Resource that every sample adds, relative to its squared target. Units are inserted by error; this share keeps them
+/// away from places where there is nothing to learn.
 constexpr double density_share = 0.01;
-constexpr std::size_t places_a_line = 64;  ///< At which errors are measured.
+constexpr std::size_t places_per_line = 64;  ///< Points per dimension at which errors are measured.
 
-/// What is to be learned: a value at a sample of n coordinates, made of k numbers in [0, 1].
-struct Lesson {
+/// The function to learn: its value at a sample of n coordinates, which are computed from k numbers in [0, 1].
+struct LearnedFunction {
     std::size_t k, n;
     std::function<std::vector<double>(std::span<const double>)> place;
     std::function<double(std::span<const double>)> value;
 };
 
-class Pupil {
+class Learner {
   public:
-    Pupil(const Lesson& lesson, const GrowingLinesOptions& options)
-        : lesson_(lesson),
+    Learner(const LearnedFunction& function, const GrowingLinesOptions& options)
+        : function_(function),
           options_(options),
-          random_(options.seed, Stream::mesh, lesson.n, 0),
+          random_(options.seed, Stream::mesh, function.n, 0),
           cells_(network(), corners()) {}
 
     void grow(std::size_t units) {
@@ -36,7 +37,7 @@ class Pupil {
         }
     }
 
-    /// Outputs as the options want them; growing goes on from those of the delta rule.
+    /// Error with outputs as requested in the options; growth continues from those of the delta rule.
     double error() {
         cells_.refresh();
         const std::vector<GrowingCells::Unit> units = cells_.units();
@@ -51,24 +52,24 @@ class Pupil {
   private:
     GrowingCellsOptions network() const {
         GrowingCellsOptions out;
-        out.simplex = lesson_.k, out.dimension = lesson_.n, out.outputs = 1;
+        out.simplex = function_.k, out.dimension = function_.n, out.outputs = 1;
         out.normalised = options_.weights == CellWeights::normalised_least_squares;
         return out;
     }
     std::vector<double> drawn() {
-        std::vector<double> s(lesson_.k);
+        std::vector<double> s(function_.k);
         for (double& x : s) x = random_.uniform();
         return s;
     }
     std::vector<double> corners() {
         std::vector<double> out;
-        for (std::size_t i = 0; i <= lesson_.k; ++i)
-            for (const double x : lesson_.place(drawn())) out.push_back(x);
+        for (std::size_t i = 0; i <= function_.k; ++i)
+            for (const double x : function_.place(drawn())) out.push_back(x);
         return out;
     }
     void learn(std::vector<double> s) {
-        const double target = lesson_.value(s);
-        cells_.learn(lesson_.place(s), std::span(&target, 1), density_share * target * target, 1);
+        const double target = function_.value(s);
+        cells_.learn(function_.place(s), std::span(&target, 1), density_share * target * target, 1);
         samples_.push_back(std::move(s));
     }
 
@@ -79,14 +80,14 @@ class Pupil {
         problem.samples = samples_.size(), problem.unknowns = units.size();
         problem.row = [&](std::size_t s, FitRow& row) {
             double sum = 0;
-            cells_.visit(lesson_.place(samples_[s]), [&](GrowingCells::Unit u, double w) {
+            cells_.visit(function_.place(samples_[s]), [&](GrowingCells::Unit u, double w) {
                 row.emplace_back(number[u], w);
                 sum += w;
             });
             if (cells_.options().normalised)
                 for (auto& entry : row) entry.second /= sum;
         };
-        problem.target = [&](std::size_t s, std::size_t) { return lesson_.value(samples_[s]); };
+        problem.target = [&](std::size_t s, std::size_t) { return function_.value(samples_[s]); };
         problem.weight = [](std::size_t) { return 1.0; };
         fit_least_squares(problem, values);
         for (std::size_t i = 0; i < units.size(); ++i) cells_.output(units[i])[0] = values[i];
@@ -94,34 +95,34 @@ class Pupil {
 
     double measured_error() const {
         double off = 0, all = 0;
-        std::vector<std::size_t> at(lesson_.k, 0);
+        std::vector<std::size_t> at(function_.k, 0);
         for (;;) {
             std::vector<double> s;
-            for (const std::size_t i : at) s.push_back((static_cast<double>(i) + 0.5) / places_a_line);
+            for (const std::size_t i : at) s.push_back((static_cast<double>(i) + 0.5) / places_per_line);
             double found = 0;
-            cells_.evaluate(lesson_.place(s), std::span(&found, 1));
-            const double right = lesson_.value(s);
+            cells_.evaluate(function_.place(s), std::span(&found, 1));
+            const double right = function_.value(s);
             off += (found - right) * (found - right), all += right * right;
             std::size_t digit = 0;
-            while (digit < at.size() && ++at[digit] == places_a_line) at[digit++] = 0;
+            while (digit < at.size() && ++at[digit] == places_per_line) at[digit++] = 0;
             if (digit == at.size()) return std::sqrt(off / all);
         }
     }
 
-    const Lesson& lesson_;
+    const LearnedFunction& function_;
     GrowingLinesOptions options_;
     RandomStream random_;
     GrowingCells cells_;
     std::vector<std::vector<double>> samples_;
 };
 
-std::vector<double> errors_of(const Lesson& lesson, std::span<const std::size_t> units,
+std::vector<double> errors_of(const LearnedFunction& function, std::span<const std::size_t> units,
                               const GrowingLinesOptions& options) {
-    Pupil pupil(lesson, options);
+    Learner learner(function, options);
     std::vector<double> errors;
     for (const std::size_t count : units) {
-        pupil.grow(count);
-        errors.push_back(pupil.error());
+        learner.grow(count);
+        errors.push_back(learner.error());
     }
     return errors;
 }

@@ -7,21 +7,23 @@
 
 namespace exitance::flatland {
 
-/// How the outputs of growing cells come about.
+/// How the outputs of growing cells are determined.
 enum class CellWeights { delta_rule, least_squares, normalised_least_squares };
 
 struct GrowingLinesOptions {
     CellWeights weights = CellWeights::least_squares;
-    std::size_t samples_a_unit = 300;  ///< Drawn between two insertions, uniformly; nothing is taken away.
+    std::size_t samples_a_unit = 300;  ///< Samples between two insertions, uniform; units are never removed.
     std::uint64_t seed = 1;
 };
 
-/// A function of x along a line in the plane (k = 1, n = 2: samples are the points (x, 0)), learned by growing cells of
-/// so many units, in ascending order: relative L2 errors. The method of docs/growing_cells.md in two dimensions.
+/// Learns a function of x along a line in the plane by growing cells (k = 1, n = 2: samples are the points (x, 0)).
+/// Returns the relative L2 error for each number of units, which must be ascending. The method of docs/growing_cells.md
+/// in two dimensions.
 std::vector<double> errors_of_growing_line(const std::function<double(double)>& f, std::span<const std::size_t> units,
                                            const GrowingLinesOptions& options);
 
-/// A kernel between two parallel lines, h apart, likewise (k = 2, n = 4: samples are pairs of points (x, 0), (y, h)).
+/// Likewise for a kernel between two parallel lines at a distance of h (k = 2, n = 4: samples are pairs of points (x,
+/// 0), (y, h)).
 std::vector<double> errors_of_growing_kernel(const std::function<double(double, double)>& kernel, double h,
                                              std::span<const std::size_t> units, const GrowingLinesOptions& options);
 

@@ -22,7 +22,7 @@ TEST(GrowingLines, LearnAFunctionAlongALine) {
     }
 }
 
-// The prototype of the handbook has 7% and 6.7% by least squares, 4.8% and 0.5% normalised, of a kernel like this one.
+// The handbook's prototype has errors of 7% and 6.7% by least squares, 4.8% and 0.5% normalised, for a similar kernel.
 TEST(GrowingLines, LearnASmoothKernelBetterByLeastSquaresThanByTheDeltaRule) {
     const auto rule = errors_of_growing_kernel(smooth, 1, counts, {.weights = CellWeights::delta_rule});
     const auto fitted = errors_of_growing_kernel(smooth, 1, counts, {.weights = CellWeights::least_squares});

@@ -54,7 +54,7 @@ KernelTerms::KernelTerms(LineBasis basis, Decomposition way, int levels, const s
     if (!step_.is_orthonormal()) measure_norms();
 }
 
-/// The norm of the function that a coefficient of level `n` stands for: by synthesis down to the finest space.
+/// Norm of the function that a coefficient of level `n` multiplies, by synthesis down to the finest space.
 double KernelTerms::norm_of_function(std::size_t n, std::size_t which) const {
     const std::size_t k = step_.order();
     std::vector<double> line(side_), out(side_);
@@ -73,8 +73,8 @@ double KernelTerms::norm_of_function(std::size_t n, std::size_t which) const {
     return std::sqrt(std::inner_product(line.begin(), line.end(), line.begin(), 0.0));
 }
 
-/// All functions of one kind and level have one norm; that of coarse functions stands beside the details of their
-/// level.
+/// All functions of one kind and level have the same norm. Those of coarse functions are stored at the indices of the
+/// details of their level.
 void KernelTerms::measure_norms() {
     const std::size_t k = step_.order();
     for (std::size_t a = 0; a < k; ++a) {
@@ -86,8 +86,8 @@ void KernelTerms::measure_norms() {
     }
 }
 
-/// Coarse coefficients of a line come first, then the details of ever finer levels: those of n intervals at [n k, 2 n
-/// k).
+/// Coarse coefficients of a line come first, then the details of finer and finer levels: those of n intervals at [n k,
+/// 2 n k).
 void KernelTerms::step_rows(std::vector<double>& a, std::size_t intervals, std::size_t rows, bool back) const {
     const std::size_t k = step_.order(), half = intervals / 2;
     std::vector<double> line(intervals * k);
@@ -159,7 +159,7 @@ std::vector<double> KernelTerms::reconstruct(std::vector<double> a) const {
 double KernelTerms::norm_of_term(std::size_t row, std::size_t column) const {
     if (step_.is_orthonormal()) return 1;
     if (way_ == Decomposition::standard) return detail_norm_[row] * detail_norm_[column];
-    // Of the two, the one that lies in the smaller half is a coarse function of the other's level.
+    // The smaller of the two indices belongs to a coarse function of the other's level.
     const std::size_t k = step_.order(), level = std::bit_floor(std::max(row, column) / k);
     if (level == 0) return detail_norm_[row] * detail_norm_[column];
     const auto norm = [&](std::size_t i) { return i / k >= level ? detail_norm_[i] : coarse_norm_[level * k + i % k]; };

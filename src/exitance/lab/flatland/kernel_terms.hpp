@@ -8,25 +8,25 @@
 
 namespace exitance::flatland {
 
-/// How products of one-dimensional functions are combined: every level of x with every level of y, or the two of one
-/// level. Source: [Gortler93], [Willmott97].
+/// How products of one-dimensional functions are combined: every level of x with every level of y, or only equal
+/// levels. Source: [Gortler93], [Willmott97].
 enum class Decomposition { standard, non_standard };
 
-/// A function of (x, y) in the unit square by its coefficients in a basis of products.
+/// A function of (x, y) on the unit square as coefficients of a product basis.
 class KernelTerms {
   public:
-    /// Projects k by Gauss rules on about 2^levels functions a direction (a power of two of intervals, k functions on
-    /// each, at least as many as that), and decomposes it. O(4^levels).
+    /// Projects k by Gauss rules on at least 2^levels functions per direction (a power of two of intervals, with as
+    /// many functions each as the basis has), and decomposes it. O(4^levels).
     KernelTerms(LineBasis basis, Decomposition way, int levels, const std::function<double(double, double)>& k);
 
-    std::size_t size() const { return side_ * side_; }  ///< Terms.
+    std::size_t size() const { return side_ * side_; }  ///< Number of terms.
 
-    /// Relative error in the mean square when the m terms are kept that contribute most by themselves (|c| times the
-    /// norm of the term), for every m of the list; m past size() counts as size(). Exact: by reconstruction, in the
-    /// finest space.
+    /// Returns the relative RMS error if only the m terms with the largest contributions are kept (|c| times the norm
+    /// of the term), for every m of the list; m above size() counts as size(). Exact: by reconstruction in the finest
+    /// space.
     std::vector<double> errors(std::span<const std::size_t> m) const;
 
-    /// The coefficients in the finest space, and those that reconstruction gives when all terms are kept.
+    /// The coefficients in the finest space, and those reconstructed from all terms.
     const std::vector<double>& finest() const { return finest_; }
     std::vector<double> reconstructed() const { return reconstruct(terms_); }
 
@@ -43,7 +43,8 @@ class KernelTerms {
     Decomposition way_;
     std::size_t intervals_, side_;  ///< side_ = k intervals_
     std::vector<double> finest_, terms_;
-    /// Norms of what is summed, by place among the coefficients of a line: as a detail, and as a coarse function.
+    /// Norms of the basis functions, by position among the coefficients of a line: as a detail, and as a coarse
+    /// function.
     std::vector<double> detail_norm_, coarse_norm_;
 };
 

@@ -14,15 +14,15 @@ double stepped(double x, double y) {
     return x > y ? smooth(x, y) : 0;
 }
 
-/// Of log error against log m, between two counts that lie where decay has set in.
-double slope(LineBasis basis, Decomposition way, const std::function<double(double, double)>& kernel, std::size_t few,
-             std::size_t many, int levels = 7) {
+/// Slope of log error over log m, between two counts in the asymptotic range.
+double slope(LineBasis basis, Decomposition way, const std::function<double(double, double)>& kernel,
+             std::size_t small_m, std::size_t large_m, int levels = 7) {
     const KernelTerms terms(basis, way, levels, kernel);
-    const std::vector<double> e = terms.errors(std::vector<std::size_t>{few, many});
-    return std::log(e[1] / e[0]) / std::log(static_cast<double>(many) / static_cast<double>(few));
+    const std::vector<double> e = terms.errors(std::vector<std::size_t>{small_m, large_m});
+    return std::log(e[1] / e[0]) / std::log(static_cast<double>(large_m) / static_cast<double>(small_m));
 }
 
-TEST(KernelTerms, AllTermsTogetherGiveTheKernelBack) {
+TEST(KernelTerms, AllTermsReconstructTheKernel) {
     for (const LineBasis basis : line_bases)
         for (const Decomposition way : {Decomposition::standard, Decomposition::non_standard}) {
             const KernelTerms terms(basis, way, 6, stepped);
@@ -30,7 +30,7 @@ TEST(KernelTerms, AllTermsTogetherGiveTheKernelBack) {
             ASSERT_EQ(back.size(), terms.finest().size());
             double off = 0;
             for (std::size_t i = 0; i < back.size(); ++i) off = std::max(off, std::abs(back[i] - terms.finest()[i]));
-            EXPECT_LT(off, 1e-12) << name_of(basis);  // rounding of six steps there and back
+            EXPECT_LT(off, 1e-12) << name_of(basis);  // rounding of six steps in each direction
         }
 }
 
@@ -59,17 +59,17 @@ TEST(KernelTerms, FlatletsHaveVanishingMoments) {
     }
 }
 
-/// Theory for smooth kernels: with m ~ 4^j terms of one level the error falls as 2^(-jk), so as m^(-k/2) [Gortler93].
-/// A quarter off the power is left for counts that are not yet asymptotic.
+/// Theory for smooth kernels: with m ~ 4^j terms of one level the error falls as 2^(-jk), hence as m^(-k/2)
+/// [Gortler93]. The tolerance of a quarter allows for counts that are not yet asymptotic.
 TEST(KernelTerms, NonStandardTermsDecayWithTheOrderWhereTheKernelIsSmooth) {
     EXPECT_NEAR(slope(LineBasis::haar, Decomposition::non_standard, smooth, 100, 1600), -0.5, 0.25);
     EXPECT_NEAR(slope(LineBasis::multiwavelet2, Decomposition::non_standard, smooth, 100, 1600), -1.0, 0.25);
     EXPECT_NEAR(slope(LineBasis::multiwavelet3, Decomposition::non_standard, smooth, 150, 1600), -1.5, 0.35);
 }
 
-/// A jump along the diagonal meets 2^j elements of level j, whose terms together have a norm of 2^(-j/2): m^(-1/2),
-/// whatever the order.
-TEST(KernelTerms, AStepTakesTheOrderAway) {
+/// A jump along the diagonal crosses 2^j elements of level j, whose terms together have a norm of 2^(-j/2): m^(-1/2)
+/// for any order.
+TEST(KernelTerms, AStepReducesTheOrder) {
     for (const LineBasis basis : {LineBasis::haar, LineBasis::multiwavelet2, LineBasis::multiwavelet3})
         EXPECT_NEAR(slope(basis, Decomposition::non_standard, stepped, 100, 600, 9), -0.5, 0.25) << name_of(basis);
 }

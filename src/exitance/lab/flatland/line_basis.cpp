@@ -16,7 +16,7 @@ double product(const std::vector<double>& a, const std::vector<double>& b) {
     return sum;
 }
 
-/// Adds orthonormal rows that are orthogonal to `given` (orthonormal), made of unit vectors in their order.
+/// Returns orthonormal rows that are orthogonal to `given` (orthonormal), made from unit vectors in their order.
 Rows complement(const Rows& given, std::size_t dimension) {
     Rows all = given, out;
     for (std::size_t i = 0; i < dimension && all.size() < dimension; ++i) {
@@ -48,7 +48,7 @@ Rows orthonormalised(Rows rows) {
     return rows;
 }
 
-/// Orthonormal Legendre polynomials of [0, 1].
+/// Orthonormal Legendre polynomials on [0, 1].
 double legendre(std::size_t degree, double s) {
     const double x = 2 * s - 1;
     if (degree == 0) return 1;
@@ -56,7 +56,8 @@ double legendre(std::size_t degree, double s) {
     return std::sqrt(5.0) * 0.5 * (3 * x * x - 1);
 }
 
-/// Coarse functions of multiwavelets by the fine ones: int L_i(s) sqrt(2) L_j(2 s - half) ds, exact by three nodes.
+/// Coarse functions of multiwavelets in terms of fine ones: int L_i(s) sqrt(2) L_j(2 s - half) ds, exact with three
+/// nodes.
 Rows coarse_legendre(std::size_t k) {
     const double nodes[] = {0.5 - std::sqrt(0.15), 0.5, 0.5 + std::sqrt(0.15)};
     const double weights[] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
@@ -70,7 +71,7 @@ Rows coarse_legendre(std::size_t k) {
     return rows;
 }
 
-/// A coarse box is two fine ones.
+/// A coarse box consists of two fine ones.
 Rows coarse_boxes(std::size_t k) {
     Rows rows(k, std::vector<double>(2 * k));
     for (std::size_t i = 0; i < k; ++i) rows[i][2 * i] = rows[i][2 * i + 1] = std::sqrt(0.5);
@@ -94,7 +95,7 @@ std::vector<double> flat(const Rows& rows) {
     return out;
 }
 
-/// By Gauss and Jordan, with pivots.
+/// Inverse by Gauss-Jordan elimination with pivoting.
 std::vector<double> inverse(std::vector<double> a, std::size_t n) {
     std::vector<double> out(n * n);
     for (std::size_t i = 0; i < n; ++i) out[i * n + i] = 1;

@@ -6,31 +6,33 @@
 
 namespace exitance {
 
-/// What the networks of a solve found.
+/// Result of the networks of a solve.
 struct LearnedLight {
-    CellLight light;  ///< All irradiance (classic), or the indirect one (improved).
+    CellLight light;  ///< All irradiance (classic), or indirect irradiance only (improved).
     SolveReport report;
-    std::size_t rays = 0, kernels = 0;  ///< Rays traced; values of the analytic kernel.
-    std::size_t memory_bytes = 0;       ///< Of both networks and what is between them.
+    std::size_t rays = 0, kernels = 0;  ///< Rays traced; evaluations of the analytic kernel.
+    std::size_t memory_bytes = 0;       ///< Memory of the matrix between the networks.
 };
 
-/// Units of each network: as asked for, or as many as the error asked for has elements on so much surface.
+/// Units of each network: `options.max_units` if given, otherwise as many as the surfaces have elements of the size
+/// that suits the requested error.
 std::size_t units_of(const Stage& stage, const Knobs& knobs, const SolveOptions& options);
 
-/// Cost of learning visibility and of reflecting by it, as MethodEntry::forecast.
+/// Estimates the cost of learning visibility and reflecting light, as MethodEntry::forecast.
 MethodForecast forecast_cells(const Stage& stage, const SolveOptions& options, const Knobs& knobs, double facing,
                               bool blocked);
 
 /// GlobalLight by growing cells: a row of the table of methods.
 GlobalLight solve_growing_cells(const MethodInput& input);
 
-/// All light through the networks, as published.
+/// Solves for all light through the networks, as published (classic).
 LearnedLight learn_flow(const MethodInput& input, const SurfacePool& pool);
 
-/// Direct light apart, visibility learned, kernels analytic, irradiance by linear maps.
+/// Solves for indirect light: direct light is separate, visibility is learned, kernels are analytic, and irradiance is
+/// interpolated by linear maps (improved).
 LearnedLight learn_visibility(const MethodInput& input, const SurfacePool& pool);
 
-/// The kernel network as it is stored.
+/// Copies the units and edges of the kernel network to `light`.
 void keep_network(const KernelNetwork& network, CellLight& light);
 
 }  // namespace exitance

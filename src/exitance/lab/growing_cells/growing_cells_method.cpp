@@ -9,10 +9,11 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t least_units = 8, usual_least = 256, usual_most = 2048;
-constexpr std::size_t least_pool = 1 << 15, points_a_unit = 64;  ///< Of the pool that samples come from.
+constexpr std::size_t min_units = 8, default_min_units = 256, default_max_units = 2048;
+/// minimum size of the pool of samples; points per unit
+constexpr std::size_t min_pool = 1 << 15, points_per_unit = 64;
 
-/// Light of the cells on the leaves of the projection: linear and bilinear, for all that reads elements.
+/// Evaluates the cells' light on the leaves of the projection, as means and linear or bilinear polynomials.
 void put_on_elements(const Stage& stage, const CellFunction& E, GlobalLight& light) {
     const std::size_t n = light.numbering.leaves.size();
     light.indirect.resize(n), light.indirect_corners.resize(n);
@@ -21,7 +22,7 @@ void put_on_elements(const Stage& stage, const CellFunction& E, GlobalLight& lig
         const RegionId region = light.tree.region(e);
         const Normal& normal = stage.scene.regions()[region].plane.n;
         const Patch& patch = light.tree.patch(e);
-        // Corners lie on folds, where cells of both sides are near: the values are taken a little inside.
+        // Corners are on folds, where cells of both sides are near: evaluate slightly inside.
         constexpr double inside = 0.05;
         const Vec2 centre{patch.is_triangle() ? 1.0 / 3 : 0.5, patch.is_triangle() ? 1.0 / 3 : 0.5};
         Spectrum sum;
@@ -33,7 +34,7 @@ void put_on_elements(const Stage& stage, const CellFunction& E, GlobalLight& lig
     });
 }
 
-/// RMS of what the elements are off from the cells, by the RMS of these, at the leaves' centres.
+/// RMS difference between elements and cells at the leaves' centres, relative to the RMS of the cells.
 double projection_error(const Stage& stage, const CellFunction& E, const GlobalLight& light) {
     struct Sums {
         double off = 0, all = 0;
@@ -52,11 +53,11 @@ double projection_error(const Stage& stage, const CellFunction& E, const GlobalL
 }  // namespace
 
 std::size_t units_of(const Stage& stage, const Knobs& knobs, const SolveOptions& options) {
-    if (options.max_units) return std::max(least_units, *options.max_units);
+    if (options.max_units) return std::max(min_units, *options.max_units);
     const double edge = knobs.solve_mesh.edge;
     const double wanted = edge > 0 ? stage.area / (edge * edge) : 0;
     return static_cast<std::size_t>(
-        std::clamp(wanted, static_cast<double>(usual_least), static_cast<double>(usual_most)));
+        std::clamp(wanted, static_cast<double>(default_min_units), static_cast<double>(default_max_units)));
 }
 
 void keep_network(const KernelNetwork& network, CellLight& light) {
@@ -76,10 +77,10 @@ void keep_network(const KernelNetwork& network, CellLight& light) {
             if (u < v) light.kernel_edges.push_back({number[u], number[v]});
 }
 
-/// Growing cells: a network of dimension four learns how light flows from y to x by sample rays, one of dimension two
-/// learns the surfaces; both grow where their error is [Fritzke94]. The mesh is not cut from polygons. Bohn's method of
-/// 2002 (`--gcs classic`), and as docs/growing_cells.md improves it. O(units^2) memory and O(units^2) kernels; rays in
-/// proportion to units.
+/// Growing cells: a network of dimension four learns from sample rays how light flows from y to x; one of dimension two
+/// learns the surfaces. Both grow where their error is large [Fritzke94]. The mesh does not depend on the polygons.
+/// Either Bohn's method of 2002 (`--gcs classic`) or its improvement described in docs/growing_cells.md. O(units^2)
+/// memory and kernels; the number of rays is proportional to units.
 GlobalLight solve_growing_cells(const MethodInput& input) {
     const bool classic = input.options.gcs == CellsKind::classic;
     GlobalLight light{.tree = input.direct.tree, .numbering = LeafNumbering(input.direct.tree)};
@@ -88,7 +89,7 @@ GlobalLight solve_growing_cells(const MethodInput& input) {
     light.on_projection = !classic;
     light.holds_direct = classic;
     const SurfacePool pool(input.stage,
-                           std::max(least_pool, points_a_unit * units_of(input.stage, input.knobs, input.options)),
+                           std::max(min_pool, points_per_unit * units_of(input.stage, input.knobs, input.options)),
                            input.options.seed);
     LearnedLight learned = classic ? learn_flow(input, pool) : learn_visibility(input, pool);
     const auto form = std::make_shared<const CellsForm>(std::move(learned.light));

@@ -23,8 +23,8 @@ Solution solve_cells(const Scene& scene, CellsKind kind, std::size_t units, int 
     return std::move(*solution);
 }
 
-TEST(GrowingCellsMethod, AFurnaceGlowsEverywhereAlike) {
-    const double rho = 0.5, right = 1 / (1 - rho);  // E where M = 1
+TEST(GrowingCellsMethod, AFurnaceIsUniform) {
+    const double rho = 0.5, right = 1 / (1 - rho);  // E for M = 1
     const Scene scene = box_scene(3, 2, 1.5, rho, 1, 1);
     const Solution solution = solve_cells(scene, CellsKind::improved, 96);
     ASSERT_TRUE(solution.delivers_own_form);
@@ -32,11 +32,11 @@ TEST(GrowingCellsMethod, AFurnaceGlowsEverywhereAlike) {
     std::vector<ProbePoint> points;
     for (const SurfaceId s : scene.surfaces().ids())
         points.push_back({centroid(scene.outline(s)), scene.surfaces()[s].normal});
-    // Cells are a quarter of a metre wide: what they send to one another is summed over points of 1e-3 m^2.
+    // Cells are a quarter of a metre wide; their light is summed over points of 1e-3 m^2.
     for (const Light& light : f.at(points)) EXPECT_NEAR(light.irradiance[0], right, 0.03 * right);
 }
 
-TEST(GrowingCellsMethod, BitsDoNotDependOnTheNumberOfThreads) {
+TEST(GrowingCellsMethod, IsBitwiseIndependentOfThreads) {
     const Scene scene = box_scene(3, 2, 1.5, 0.5, 1, 1);
     for (const CellsKind kind : {CellsKind::classic, CellsKind::improved}) {
         const Solution one = solve_cells(scene, kind, 16, 1), two = solve_cells(scene, kind, 16, 3);
@@ -50,13 +50,13 @@ TEST(GrowingCellsMethod, BitsDoNotDependOnTheNumberOfThreads) {
     set_threads(0);
 }
 
-TEST(GrowingCellsMethod, ClassicCarriesAllLightAndImprovedHasDirectLightApart) {
+TEST(GrowingCellsMethod, ClassicTransportsAllLightAndImprovedOnlyIndirectLight) {
     const Scene scene = box_scene(3, 2, 1.5, 0.5, 1, 1);
     EXPECT_TRUE(solve_cells(scene, CellsKind::classic, 16).direct_in_elements);
     EXPECT_FALSE(solve_cells(scene, CellsKind::improved, 16).direct_in_elements);
 }
 
-TEST(GrowingCellsMethod, ACellIsNotLitByItsOwnSurfaceHoweverTheSceneLies) {
+TEST(GrowingCellsMethod, ACellIsNotLitByItsOwnSurfaceInTransformedScenes) {
     const std::map<std::string, std::string> turn{{"rot", "31.7,0.3,0.5,1"}};
     for (auto more : {std::pair("shift", "0,0,0"), {"shift", "1000,370,-210"}, {"scale", "0.001"}, {"scale", "1000"}}) {
         std::map<std::string, std::string> parameters = turn;
@@ -64,13 +64,13 @@ TEST(GrowingCellsMethod, ACellIsNotLitByItsOwnSurfaceHoweverTheSceneLies) {
         const Scene scene = built_scene("gcr1", parameters);
         const Solution solution = solve_cells(scene, CellsKind::classic, 64);
         EXPECT_TRUE(solution.statistics.converged);
-        // The estimate of the scene as it is: 11%. With cells that light themselves: 30% and more.
+        // The estimate is 11% without rotation. It would be 30% and more if cells lit themselves.
         EXPECT_LT(*solution.statistics.relative_error_estimate, 0.2) << more.first << " " << more.second;
     }
 }
 
-TEST(GrowingCellsMethod, LightThatGrowsIsNotReached) {
-    // Far too few units for seventeen surfaces: reflections bring more light than there was.
+TEST(GrowingCellsMethod, DivergingLightIsReported) {
+    // Far too few units for seventeen surfaces: each reflection yields more light than the last.
     const Solution solution = solve_cells(built_scene("cornell"), CellsKind::classic, 32);
     EXPECT_FALSE(solution.statistics.converged);
     EXPECT_EQ(solution.statistics.stopped_by, "divergence");
@@ -78,7 +78,7 @@ TEST(GrowingCellsMethod, LightThatGrowsIsNotReached) {
     EXPECT_NE(solution.statistics.warnings.back().find("grows with every reflection"), std::string::npos);
 }
 
-TEST(SurfacePool, IsEvenAndItsBlocksLieTogether) {
+TEST(SurfacePool, IsUniformAndItsBlocksAreCompact) {
     const Scene scene = box_scene(3, 2, 1.5, 0.5, 1, 1);
     const Stage stage(scene);
     const SurfacePool pool(stage, 4096, 1);
@@ -93,10 +93,10 @@ TEST(SurfacePool, IsEvenAndItsBlocksLieTogether) {
     int far = 0, all = 0;
     for (std::uint32_t i = 0; i < pool.size(); i += 17, ++all)
         far += norm(pool[pool.near(i, 0.1, 0.99)].at - pool[i].at) > 0.4;
-    EXPECT_LT(far, all / 5);  // a block in which two faces meet is longer
+    EXPECT_LT(far, all / 5);  // blocks that span two faces are longer
 }
 
-TEST(LeastSquares, AreExactWhereTheFunctionCanBeHeld) {
+TEST(LeastSquares, AreExactForFunctionsInTheBasis) {
     FitProblem problem;
     problem.samples = 200, problem.unknowns = 5, problem.outputs = 2, problem.ridge = 1e-12;
     problem.row = [](std::size_t s, FitRow& row) {
@@ -110,10 +110,11 @@ TEST(LeastSquares, AreExactWhereTheFunctionCanBeHeld) {
     std::vector<double> v(10);
     fit_least_squares(problem, v);
     const double right[] = {1, 0, 2, 0, 0, 1, 0, -3, 0, 0};
-    for (std::size_t i = 0; i < 10; ++i) EXPECT_NEAR(v[i], right[i], 1e-4);  // powers are nearly alike: condition 1e5
+    // powers are nearly collinear: condition number 1e5
+    for (std::size_t i = 0; i < 10; ++i) EXPECT_NEAR(v[i], right[i], 1e-4);
 }
 
-TEST(CellFunction, NormalisedWithSlopesAPlaneIsExactAndFoldsPart) {
+TEST(CellFunction, NormalisedCellsWithSlopesReproduceAPlaneAndSeparateFolds) {
     CellLight light;
     const auto plane = [](const Point& p) { return 1 + 2 * p.x - 0.5 * p.y; };
     for (int i = 0; i < 100; ++i) {
@@ -124,7 +125,7 @@ TEST(CellFunction, NormalisedWithSlopesAPlaneIsExactAndFoldsPart) {
     light.cells.push_back({{0.5, 0.5, 0.0}, {1, 0, 0}, 0.3, Spectrum(70), {}});    // of a wall
     const CellFunction f(light);
     for (const Point& p : {Point{0.33, 0.42, 0}, Point{0.5, 0.5, 0}, Point{0.9, 0.05, 0}})
-        EXPECT_NEAR(f.at(p, {0, 0, 1})[0], plane(p), 1e-3 * plane(p));  // what is turned away weighs e^-10
+        EXPECT_NEAR(f.at(p, {0, 0, 1})[0], plane(p), 1e-3 * plane(p));  // cells of the wall have a weight of e^-10
     EXPECT_EQ(f.at({0.5, 0.5, 0}, {0, 0, -1})[0], 50);
 }
 

@@ -11,17 +11,20 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t simplex = 4;            ///< Rays are a manifold of four dimensions.
-constexpr std::size_t samples_a_weight = 40;  ///< Of flow, that least squares rest on.
-constexpr std::size_t most_tries = 64;        ///< To draw a pair that faces each other, by pair wanted.
-constexpr double resampled_weight = 0.3;      ///< Of samples near units of much resource, in fits over all pairs.
-constexpr double idle = 0.01;           ///< Of the mean number of samples won: units between surfaces win next to none.
-constexpr std::size_t thinnings = 4;    ///< Looks for idle units while a network grows to twice its size.
-constexpr std::size_t patience = 64;    ///< Insertions, or as many as there are units, that have left no more of them.
-constexpr double surely = 1e-3;         ///< Share of samples that may differ where a network is sure.
-constexpr double narrow = 0.6;          ///< Width of units of linear maps by their edges: maps reach on by themselves.
-constexpr double density_share = 0.05;  ///< Of resource that every sample brings, by the mean squared target.
-constexpr double slope_ridge = 1e-2;    ///< Of linear maps, by the spread of samples around their unit.
+constexpr std::size_t simplex = 4;              ///< Dimension of a simplex: rays are a four-dimensional manifold.
+constexpr std::size_t samples_per_weight = 40;  ///< Samples per weight in the least-squares fit of flow.
+constexpr std::size_t max_tries = 64;           ///< Attempts to draw a pair of points that face each other, per pair.
+/// Weight, in fits over all pairs, of samples drawn near units with a large resource.
+constexpr double resampled_weight = 0.3;
+/// Share of the mean number of samples won, below which a unit is idle. Units between surfaces win almost none.
+constexpr double idle_share = 0.01;
+constexpr std::size_t thinnings = 4;  ///< Searches for idle units while a network doubles in size.
+/// Growth ends after this many insertions without a net gain (or as many as there are units, if more).
+constexpr std::size_t max_vain_insertions = 64;
+constexpr double sure_share = 1e-3;      ///< Share of differing samples up to which a visibility is sure.
+constexpr double map_width_share = 0.6;  ///< Width of a linear map's unit, relative to its edges: maps extrapolate.
+constexpr double density_share = 0.05;   ///< Resource that every sample adds, relative to its mean squared target.
+constexpr double slope_ridge = 1e-2;     ///< Ridge of linear maps, relative to the spread of samples around their unit.
 
 }  // namespace
 
@@ -92,7 +95,8 @@ std::vector<double> KernelNetwork::coordinates(const Sample& s) const {
     return coordinates(pool_[s.x].at, pool_[s.x].n, pool_[s.y].at, pool_[s.y].n);
 }
 
-/// Pairs that face each other: of a share, each end near that of a sample that a unit of much resource has won.
+/// Draws pairs that face each other. A share of them are drawn near the last sample that a unit won, with units chosen
+/// in proportion to their resource.
 void KernelNetwork::draw(std::size_t count, std::vector<Sample>& out) {
     out.clear();
     if (receivers_.empty() || !(source_sum_.back() > 0)) return;
@@ -105,7 +109,7 @@ void KernelNetwork::draw(std::size_t count, std::vector<Sample>& out) {
                 sum.push_back(sum.back() + cells_->resource(u));
             }
     RandomStream random(options_.seed, Stream::shooting, 77, drawn_++);
-    for (std::size_t tries = 0; out.size() < count && tries < most_tries * count; ++tries) {
+    for (std::size_t tries = 0; out.size() < count && tries < max_tries * count; ++tries) {
         Sample s;
         s.resampled = !units.empty() && sum.back() > 0 && random.uniform() < options_.resampled;
         if (s.resampled) {
@@ -138,7 +142,7 @@ void KernelNetwork::draw(std::size_t count, std::vector<Sample>& out) {
     rays_ += out.size();
 }
 
-/// The first units are samples that lie apart.
+/// Makes the first units at samples that are spread over the batch.
 void KernelNetwork::make_cells(std::vector<Sample>& first) {
     const std::size_t n = options_.normal_scale > 0 ? 12 : 6;
     std::vector<double> corners;
@@ -150,7 +154,7 @@ void KernelNetwork::make_cells(std::vector<Sample>& first) {
     cells_ = std::make_unique<GrowingCells>(GrowingCellsOptions{.simplex = simplex,
                                                                 .dimension = n,
                                                                 .outputs = outputs(),
-                                                                .width_share = maps ? narrow : 1.0,
+                                                                .width_share = maps ? map_width_share : 1.0,
                                                                 .normalised = maps},
                                             corners);
 }
@@ -162,7 +166,7 @@ void KernelNetwork::learn(const Sample& s) {
         const Spectrum light = flow(s);
         std::copy(light.value.begin(), light.value.end(), target.begin());
     } else {
-        weight = kernel(s) * mean(radiosity_[s.y]);  // an error of V counts by the light that it would bring
+        weight = kernel(s) * mean(radiosity_[s.y]);  // an error of V counts by the light that the ray would transport
         weight *= weight;
     }
     const std::vector<double> at = coordinates(s);
@@ -194,18 +198,18 @@ bool KernelNetwork::grow(std::size_t units, const StopRequest& stop, Progress* p
         make_cells(fresh);
         for (const Sample& s : fresh) learn(s);
     }
-    std::size_t most = 0, most_at = inserted_;
+    std::size_t max_count = 0, max_count_at = inserted_;
     while (cells_->unit_count() < units && !stop.requested()) {
-        if (cells_->unit_count() > most) most = cells_->unit_count(), most_at = inserted_;
-        if (inserted_ - most_at > std::max(patience, most)) return true;
+        if (cells_->unit_count() > max_count) max_count = cells_->unit_count(), max_count_at = inserted_;
+        if (inserted_ - max_count_at > std::max(max_vain_insertions, max_count)) return true;
         draw(options_.samples_a_unit, fresh);
         if (fresh.empty()) return false;
         for (const Sample& s : fresh) learn(s);
         cells_->insert();
-        // Where folds count, edges across them are long, and units come to lie between surfaces.
+        // Edges across folds are long, so that units end up between surfaces: remove those that win nothing.
         ++inserted_;
         if (options_.normal_scale > 0 && ++since_look_ > 8 + cells_->unit_count() / thinnings)
-            cells_->remove_idle(idle, false), since_look_ = 0;
+            cells_->remove_idle(idle_share, false), since_look_ = 0;
         if (progress && cells_->unit_count() % 32 == 0)
             progress->advance(static_cast<double>(cells_->unit_count()) / static_cast<double>(units));
     }
@@ -224,8 +228,8 @@ std::vector<std::uint32_t> KernelNetwork::receivers_drawn() const {
 }
 
 void KernelNetwork::fit_flow() {
-    // So many samples determine the weights; all of them would take as many times longer.
-    const std::size_t stride = std::max<std::size_t>(1, samples_.size() / (samples_a_weight * cells_->unit_count()));
+    // A subset of samples is enough to determine the weights, and faster.
+    const std::size_t stride = std::max<std::size_t>(1, samples_.size() / (samples_per_weight * cells_->unit_count()));
     const std::vector<GrowingCells::Unit> units = cells_->units();
     std::vector<std::uint32_t> number(cells_->complex().unit_end());
     for (std::uint32_t i = 0; i < units.size(); ++i) number[units[i]] = i;
@@ -247,7 +251,7 @@ void KernelNetwork::fit_flow() {
         std::copy_n(&values[i * bands], bands, cells_->output(units[i]).begin());
 }
 
-/// Around every unit the linear map nearest to the samples, by its own Gaussian as weight.
+/// Fits a linear map to the samples around every unit, weighted by its Gaussian.
 void KernelNetwork::fit_maps() {
     constexpr std::size_t size = 7;
     const std::size_t end = cells_->complex().unit_end();
@@ -330,7 +334,7 @@ KernelNetwork::Seen KernelNetwork::seen(const Point& x, const Normal& n_x, const
         sum += w * seen_[u], weights += w;
     });
     const double share = weights > 0 ? sum / weights : 0.5;
-    return {share, share < surely || share > 1 - surely};
+    return {share, share < sure_share || share > 1 - sure_share};
 }
 
 Spectrum KernelNetwork::evaluate(const Point& x, const Normal& n_x, const Point& y, const Normal& n_y) const {
@@ -352,7 +356,7 @@ Point KernelNetwork::place_y(GrowingCells::Unit u) const {
 }
 
 std::size_t KernelNetwork::bytes_a_unit() const {
-    // Places, width and outputs in double precision; of visibility the map in place of an output.
+    // Position, width and outputs in double precision; for visibility the map instead of an output.
     const std::size_t n = cells_->options().dimension;
     return sizeof(double) * (n + 1 + (options_.target == KernelTarget::flow ? bands : 7));
 }

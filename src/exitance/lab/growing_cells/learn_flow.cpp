@@ -14,12 +14,12 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_reflections = 12;
-constexpr std::size_t system_steps = 1000;  ///< Of conjugate gradients on the mass matrix.
-constexpr double negligible = 1e-6;         ///< Amplitude of a product of Gaussians below which it is left out.
-constexpr double alike = 0.9;               ///< Cosine of normals that count as of one surface.
+constexpr std::size_t max_reflections = 12;
+constexpr std::size_t system_steps = 1000;  ///< Maximum iterations of conjugate gradients on the mass matrix.
+constexpr double negligible = 1e-6;         ///< Amplitude of a product of Gaussians below which it is omitted.
+constexpr double min_cosine = 0.9;          ///< Cosine between normals above which they count as equal.
 
-/// Gaussians integrated over the scene's polygons: exact at their borders.
+/// Integrals of Gaussians over the scene's polygons; exact at the polygons' edges.
 class PolygonIntegrals {
   public:
     PolygonIntegrals(const Stage& stage, double in_plane) : in_plane_(in_plane) {
@@ -45,7 +45,7 @@ class PolygonIntegrals {
     };
     const std::vector<Polygon>& polygons() const { return polygons_; }
 
-    /// Calls visit(polygon, integral over it, m^2) for all within three widths.
+    /// Calls visit(polygon, integral over it, m^2) for all polygons within three widths.
     template <class Visit>
     void visit(const Gaussian& g, const Visit& visit) const {
         const double reach = 3 * g.width;
@@ -56,15 +56,17 @@ class PolygonIntegrals {
             box, [&](std::uint32_t i) { visit(i, integral_over_polygon(g, polygons_[i].corners, polygons_[i].n)); });
     }
 
-    /// Over all polygons that face as a cell does, m^2.
+    /// Integral over all polygons with the cell's normal, m^2.
     double on_surface_of(const CellLight::Cell& cell, const Gaussian& g) const {
         double sum = 0;
-        visit(g, [&](std::uint32_t i, double integral) { sum += dot(polygons_[i].n, cell.n) > alike ? integral : 0; });
+        visit(g, [&](std::uint32_t i, double integral) {
+            sum += dot(polygons_[i].n, cell.n) > min_cosine ? integral : 0;
+        });
         return sum;
     }
 
-    /// Do a cell and a polygon face each other, as pairs of samples do? A cell never faces its own surface, on which
-    /// it lies but for rounding, nor what lies in one plane with it.
+    /// True if a cell and a polygon face each other, by the same test as for pairs of samples. A cell never faces its
+    /// own surface, on which it lies up to rounding, nor coplanar polygons.
     bool face_each_other(const CellLight::Cell& cell, const std::vector<RegionId>& own, std::uint32_t i) const {
         const Polygon& p = polygons_[i];
         if (std::binary_search(own.begin(), own.end(), p.region)) return false;
@@ -74,18 +76,18 @@ class PolygonIntegrals {
     }
 
   private:
-    double in_plane_;  ///< As `SurfacePool` has it, metres.
+    double in_plane_;  ///< Coplanarity tolerance of `SurfacePool`, metres.
     std::vector<Polygon> polygons_;
     Bvh tree_;
 };
 
-/// G_qp = int Phi_q Phi_p over the surface of q; 0 between cells that do not face alike.
+/// Mass matrix G_qp = int Phi_q Phi_p over the surface of q; 0 between cells of different normals.
 std::vector<double> mass_matrix(const std::vector<CellLight::Cell>& cells, const PolygonIntegrals& integrals) {
     const std::size_t n = cells.size();
     std::vector<double> G(n * n);
     parallel_for(n, 4, [&](std::size_t q) {
         for (std::size_t p = 0; p <= q; ++p) {
-            if (dot(cells[q].n, cells[p].n) < alike) continue;
+            if (dot(cells[q].n, cells[p].n) < min_cosine) continue;
             const Gaussian both = product({cells[q].at, cells[q].width}, {cells[p].at, cells[p].width});
             if (both.amplitude < negligible) continue;
             G[q * n + p] = integrals.on_surface_of(cells[q], both);
@@ -96,8 +98,8 @@ std::vector<double> mass_matrix(const std::vector<CellLight::Cell>& cells, const
     return G;
 }
 
-/// rhs_q = sum_o v_o I_q(o_x) J_q(o_y): I_q = int Phi_q(x) exp(-|x - o_x|^2 / d_o^2), J_q the same of y alone over all
-/// sources of the network's kind that q faces.
+/// Right-hand side rhs_q = sum_o v_o I_q(o_x) J_q(o_y) with I_q = int Phi_q(x) exp(-|x - o_x|^2 / d_o^2). J_q is the
+/// same integral over y, over all sources of the network's kind that q faces.
 std::vector<Spectrum> arriving(const std::vector<CellLight::Cell>& cells,
                                const std::vector<std::vector<RegionId>>& own_regions, const KernelNetwork& kernel,
                                const PolygonIntegrals& integrals, bool of_emitters) {
@@ -128,7 +130,7 @@ std::vector<Spectrum> arriving(const std::vector<CellLight::Cell>& cells,
     return out;
 }
 
-/// G b = rhs: the outputs of the shading network.
+/// Solves G b = rhs for the outputs of the shading network.
 void solve_outputs(const std::vector<double>& G, const std::vector<Spectrum>& rhs,
                    std::vector<CellLight::Cell>& cells) {
     const std::size_t n = cells.size();
@@ -140,7 +142,7 @@ void solve_outputs(const std::vector<double>& G, const std::vector<Spectrum>& rh
     }
 }
 
-/// The shading network, by a share from the ends of rays as these were drawn, the rest being even.
+/// Grows the shading network. A quarter of its samples are ends of the learned rays, the rest is uniform.
 ShadingNetwork grow_at_ends(const MethodInput& input, const SurfacePool& pool, const std::vector<std::uint32_t>& ends,
                             std::size_t units) {
     constexpr double by_ends = 0.25;
@@ -165,12 +167,16 @@ std::vector<Spectrum> reflected_radiosity(const Stage& stage, const SurfacePool&
 
 }  // namespace
 
-/// 1. A kernel network learns G V M from rays that begin on emitters, by the delta rule while it grows and by least
-/// squares in the end. 2. The shading network learns the surfaces from the ends of rays, as these were drawn, and
-/// becomes the mesh. 3. Light goes through both by closed integrals: E. 4. A kernel network learns G V B of what
-/// surfaces reflect, B = rho E; E is that of both; targets are renewed, more samples are drawn where light comes from
-/// now, and so on: a reflection a round. Two networks, since what one gets wrong where nothing emits would be summed
-/// over all of that.
+/// Bohn's classic scheme:
+/// 1. A kernel network learns G V M from rays that start on emitters: by the delta rule while it grows, then by least
+///    squares.
+/// 2. The shading network learns the surfaces from the rays' ends and becomes the mesh.
+/// 3. Light passes through both networks by closed-form integrals, which yields E.
+/// 4. A second kernel network learns G V B of the reflected light B = rho E, and E is recomputed from both networks.
+///    Targets are renewed and more samples are drawn from the present sources: one reflection per round.
+///
+/// The networks are separate because errors of one network on surfaces that do not emit would be summed over all of
+/// them.
 LearnedLight learn_flow(const MethodInput& input, const SurfacePool& pool) {
     const Stage& stage = input.stage;
     const std::size_t units = units_of(stage, input.knobs, input.options);
@@ -181,7 +187,8 @@ LearnedLight learn_flow(const MethodInput& input, const SurfacePool& pool) {
     KernelNetworkOptions options{.target = KernelTarget::flow, .uniform_sources = 0, .seed = input.options.seed};
     KernelNetwork emitted(stage, pool, options, M);
     emitted.restrict_to(everything, emits);
-    // Surfaces that touch have kernels without bound: between discs as large as a unit's share of surface.
+    // Kernels of touching surfaces are unbounded, so they are taken between discs as large as a unit's share of the
+    // surface.
     options.least_area = stage.area / std::sqrt(static_cast<double>(units));
     options.uniform_sources = 0.2;
     KernelNetwork reflected(stage, pool, options, M);
@@ -200,19 +207,19 @@ LearnedLight learn_flow(const MethodInput& input, const SurfacePool& pool) {
     const std::vector<Spectrum> first = arriving(out.light.cells, network.own_regions, emitted, integrals, true);
     solve_outputs(G, first, out.light.cells);
     input.progress.phase("solve");
-    const std::size_t most_rounds = std::min(most_reflections, input.knobs.max_iterations);
+    const std::size_t max_rounds = std::min(max_reflections, input.knobs.max_iterations);
     std::vector<Spectrum> B(pool.size());
     GrowthWatch watch;
-    for (std::size_t round = 0; round < most_rounds && !input.stop.requested(); ++round) {
+    for (std::size_t round = 0; round < max_rounds && !input.stop.requested(); ++round) {
         std::vector<Spectrum> next = reflected_radiosity(stage, pool, out.light);
         double change = 0, all = 0;
         for (std::size_t i = 0; i < pool.size(); ++i) change += mean(next[i] - B[i]), all += mean(next[i] + M[i]);
         B = std::move(next);
         out.report.iterations = round + 1;
         out.report.residual = all > 0 ? std::abs(change) / all : 0;
-        input.progress.advance(static_cast<double>(round) / static_cast<double>(most_rounds),
+        input.progress.advance(static_cast<double>(round) / static_cast<double>(max_rounds),
                                fmt::format("change {:.1e}", out.report.residual));
-        // Below the change that fresh samples make by themselves nothing is learned from another reflection.
+        // Fresh samples alone cause a change of this size, so further reflections would learn nothing.
         constexpr double settled = 2e-3;
         out.report.converged = out.report.residual < std::max(settled, input.knobs.residual);
         if (out.report.converged) break;

@@ -12,31 +12,32 @@
 namespace exitance {
 namespace {
 
-constexpr double near = 3;               ///< Cells nearer than so many of their sizes are summed point by point.
-constexpr std::size_t rays_a_pair = 4;   ///< Where the network is not sure what is seen.
-constexpr std::size_t nodes_a_cell = 4;  ///< Places that a cell sends light from, about.
-constexpr double turn_by_size = 0.2;     ///< Length that a turn counts as, by the scene's size.
-constexpr double slope_ridge = 0.02;     ///< Of slopes, by the spread of a cell's neighbours.
-constexpr std::size_t most_reflections = 200;
-constexpr double direct_accuracy = 0.01;  ///< Of direct light at places, where emitters are many.
+constexpr double near_distance = 3;  ///< Cells closer than this multiple of their widths are summed point by point.
+constexpr std::size_t rays_per_pair = 4;   ///< Rays per pair whose learned visibility is not sure.
+constexpr std::size_t nodes_per_cell = 4;  ///< Points per cell from which it sends light, on average.
+/// Length that a unit difference of normals counts as, relative to the scene's size.
+constexpr double turn_by_size = 0.2;
+constexpr double slope_ridge = 0.02;  ///< Ridge of slopes, relative to the spread of a cell's neighbours.
+constexpr std::size_t max_reflections = 200;
+constexpr double direct_accuracy = 0.01;  ///< Relative accuracy of direct light at points, if there are many emitters.
 
-/// Where light is sent from.
+/// Points (nodes) from which cells send light.
 struct Nodes {
-    std::vector<std::vector<std::uint32_t>> all;          ///< Points of the pool, by cell,
-    std::vector<Spectrum> mean_direct;                    ///< and the mean of rho E_dir over a cell, W/m^2.
-    std::vector<std::uint32_t> point;                     ///< In the pool, by cell.
-    std::vector<std::uint32_t> first;                     ///< Of every cell, and one past the last.
-    std::vector<double> area;                             ///< Of one node of a cell, m^2.
-    std::vector<Spectrum> reflectance, reflected_direct;  ///< rho, and rho E_dir (W/m^2), by node.
+    std::vector<std::vector<std::uint32_t>> all;  ///< Per cell: indices of its points in the pool.
+    std::vector<Spectrum> mean_direct;            ///< Per cell: mean of rho E_dir, W/m^2.
+    std::vector<std::uint32_t> point;             ///< Indices of the nodes in the pool, sorted by cell.
+    std::vector<std::uint32_t> first;             ///< Per cell: index of its first node; one more entry at the end.
+    std::vector<double> area;                     ///< Per cell: area of one node, m^2.
+    std::vector<Spectrum> reflectance, reflected_direct;  ///< Per node: rho, and rho E_dir (W/m^2).
 };
 
 Nodes make_nodes(const Stage& stage, const SurfacePool& pool, const ShadingNetwork& network) {
     const std::size_t cells = network.cells.size();
-    const std::size_t stride = std::max<std::size_t>(1, pool.size() / (nodes_a_cell * cells));
+    const std::size_t stride = std::max<std::size_t>(1, pool.size() / (nodes_per_cell * cells));
     std::vector<std::vector<std::uint32_t>> of_cell(cells);
     for (std::uint32_t i = 0; i < pool.size(); i += static_cast<std::uint32_t>(stride))
         of_cell[network.cell_of[i]].push_back(i);
-    for (std::uint32_t i = 0; i < pool.size(); ++i)  // a cell that the stride has missed
+    for (std::uint32_t i = 0; i < pool.size(); ++i)  // cells that the stride has missed
         if (of_cell[network.cell_of[i]].empty()) of_cell[network.cell_of[i]].push_back(i);
     Nodes out;
     out.all.resize(cells), out.mean_direct.resize(cells);
@@ -66,17 +67,17 @@ Nodes make_nodes(const Stage& stage, const SurfacePool& pool, const ShadingNetwo
     return out;
 }
 
-/// E = E_1 + T E between cells: T_pq = V(p, q) sum over nodes j of q of A_j G(p, j) rho_j, and E_1 alike from rho
-/// E_dir.
+/// Transport E = E_1 + T E between cells: T_pq = V(p, q) sum over nodes j of q of A_j G(p, j) rho_j, and E_1 likewise
+/// from rho E_dir.
 struct CellTransport {
     std::size_t size = 0;
-    std::vector<Spectrum> matrix;  ///< By rows.
+    std::vector<Spectrum> matrix;  ///< Row by row.
     std::vector<Spectrum> first;   ///< E_1, W/m^2.
     std::size_t kernels = 0, rays = 0;
 };
 
-/// Light that all of cell q sends to the middle of another, nothing in between: of its nodes, or of all its points
-/// where the two are near. Points are discs of their area, so that what they send is bounded.
+/// Unoccluded light that cell q sends to the centre of another: from its nodes, or from all of its points if the cells
+/// are near. Points count as discs of their area, so that the light is bounded.
 struct Sent {
     Spectrum share, light;
 };
@@ -89,7 +90,7 @@ Sent send(const Stage& stage, const SurfacePool& pool, const ShadingNetwork& net
         return a > pool.in_plane() && b > pool.in_plane() ? area * a * b / (r2 * (pi * r2 + area)) : 0;
     };
     const CellLight::Cell& source = network.cells[q];
-    const double reach = near * (source.width + receiver.width);
+    const double reach = near_distance * (source.width + receiver.width);
     if (squared_norm(source.at - receiver.at) < reach * reach) {
         for (const std::uint32_t i : nodes.all[q]) {
             const double F = factor(pool[i], pool.area_each());
@@ -108,7 +109,7 @@ Sent send(const Stage& stage, const SurfacePool& pool, const ShadingNetwork& net
     return out;
 }
 
-/// Rays between points of two cells, for the pairs of a row that the network is not sure of.
+/// Rays between points of two cells, for the pairs of a row whose learned visibility is not sure.
 class PairRays {
   public:
     PairRays(const Stage& stage, const SurfacePool& pool, const Nodes& nodes, std::uint64_t seed)
@@ -122,19 +123,20 @@ class PairRays {
             return pool_[points[i]];
         };
         pairs_.push_back(q);
-        for (std::size_t k = 0; k < rays_a_pair; ++k) {
+        for (std::size_t k = 0; k < rays_per_pair; ++k) {
             const PoolPoint x = any(p), y = any(q);
             from_.push_back({x.at, x.region}), to_.push_back({y.at, y.region});
         }
     }
-    /// Calls visit(q, share of the rays that met nothing).
+    /// Calls visit(q, unblocked share of the rays) for every pair.
     template <class Visit>
     void trace(const Visit& visit) {
         const std::unique_ptr<bool[]> blocked(new bool[from_.size()]);
         if (!from_.empty()) stage_.tracer.occluded(from_, to_, {blocked.get(), from_.size()});
         for (std::size_t i = 0; i < pairs_.size(); ++i) {
             double seen = 0;
-            for (std::size_t k = 0; k < rays_a_pair; ++k) seen += blocked[i * rays_a_pair + k] ? 0 : 1.0 / rays_a_pair;
+            for (std::size_t k = 0; k < rays_per_pair; ++k)
+                seen += blocked[i * rays_per_pair + k] ? 0 : 1.0 / rays_per_pair;
             visit(pairs_[i], seen);
         }
     }
@@ -176,9 +178,9 @@ CellTransport make_transport(const Stage& stage, const SurfacePool& pool, const 
     return T;
 }
 
-/// What cells on diffusing panes meet, from what arrives at each side: rows of a transport are mixed as
-/// `Material::through` says. Of the places of a cell, each takes what comes from behind from the cell of the nearest
-/// place there.
+/// Light that cells on diffusing panes receive from both sides: rows of the transport are mixed according to
+/// `Material::through`. Each node of a cell takes the light from behind from the cell of the nearest node on the other
+/// side.
 class PassedToCells {
   public:
     PassedToCells(const Stage& stage, const SurfacePool& pool, const ShadingNetwork& network, const Nodes& nodes)
@@ -192,13 +194,14 @@ class PassedToCells {
                 const PoolPoint& p = pool[nodes.point[j]];
                 const RegionId behind = stage.scene.behind(p.region);
                 if (behind.is_none() || of_region[behind].empty()) continue;
-                const auto farther = [&](std::uint32_t a, std::uint32_t b) {
+                const auto is_nearer = [&](std::uint32_t a, std::uint32_t b) {
                     return squared_norm(pool[a].at - p.at) < squared_norm(pool[b].at - p.at);
                 };
                 const std::vector<std::uint32_t>& there = of_region[behind];
                 const double share = stage.scene.material(p.region).through / (last - first);
                 own_[c] -= share;
-                behind_[c].push_back({network.cell_of[*std::min_element(there.begin(), there.end(), farther)], share});
+                behind_[c].push_back(
+                    {network.cell_of[*std::min_element(there.begin(), there.end(), is_nearer)], share});
             }
         });
     }
@@ -224,13 +227,13 @@ class PassedToCells {
         std::uint32_t cell;
         double share;
     };
-    std::vector<double> own_;  ///< By cell.
+    std::vector<double> own_;  ///< Per cell on a pane: weight of the light that arrives on the cell's side.
     std::vector<std::vector<Share>> behind_;
 };
 
-/// E = E_1 + T E_1 + T^2 E_1 + ...: one reflection after the other. `area`: of the cells, m^2.
+/// Sums E = E_1 + T E_1 + T^2 E_1 + ..., one reflection per term. `area`: area of the cells, m^2.
 SolveReport reflect(const CellTransport& T, std::span<const double> area, std::vector<Spectrum>& E, double residual,
-                    std::size_t most, const StopRequest& stop) {
+                    std::size_t max_iterations, const StopRequest& stop) {
     const std::size_t n = T.size;
     std::vector<Spectrum> last = T.first, next(n);
     E = T.first;
@@ -249,7 +252,7 @@ SolveReport reflect(const CellTransport& T, std::span<const double> area, std::v
     watch.grows(flux(E));
     SolveReport report{.iterations = 0, .residual = 1, .converged = !(whole > 0)};
     if (report.converged) report.residual = 0;
-    while (!report.converged && report.iterations < most && !stop.requested()) {
+    while (!report.converged && report.iterations < max_iterations && !stop.requested()) {
         parallel_for(n, 16, [&](std::size_t p) {
             Spectrum sum;
             for (std::size_t q = 0; q < n; ++q) sum += T.matrix[p * n + q] * last[q];
@@ -260,7 +263,7 @@ SolveReport reflect(const CellTransport& T, std::span<const double> area, std::v
         ++report.iterations;
         report.residual = size(last) / whole;
         report.converged = report.residual <= residual;
-        if (watch.grows(flux(last))) {  // as far too few units may make it
+        if (watch.grows(flux(last))) {  // can happen with far too few units
             report.converged = false, report.residual = std::max(1.0, report.residual);  // has_diverged
             break;
         }
@@ -268,7 +271,7 @@ SolveReport reflect(const CellTransport& T, std::span<const double> area, std::v
     return report;
 }
 
-/// The slope of every cell: a plane through its value, by least squares over the cells around it.
+/// Computes the slope of every cell: a plane through its value, fitted to the cells around it by least squares.
 void find_slopes(CellLight& light) {
     const CellFunction around(light);
     std::vector<std::array<Spectrum, 3>> slopes(light.cells.size());
@@ -296,9 +299,13 @@ void find_slopes(CellLight& light) {
 
 }  // namespace
 
-/// 1. The shading network grows over all surfaces alike. 2. Direct light, exact, at places of every cell. 3. The kernel
-/// network learns visibility where that light is sent from, half of its units. 4. Reflections. 5. The kernel network
-/// grows on where all light is sent from now. 6. Reflections again, and slopes.
+/// The improved scheme:
+/// 1. The shading network grows uniformly over all surfaces.
+/// 2. Exact direct light is computed at points of every cell.
+/// 3. The kernel network learns visibility, with half of its units, from the sources of direct light.
+/// 4. Light is reflected.
+/// 5. The kernel network grows further, with all light as sources.
+/// 6. Light is reflected again, and slopes are computed.
 LearnedLight learn_visibility(const MethodInput& input, const SurfacePool& pool) {
     const Stage& stage = input.stage;
     const std::size_t units = units_of(stage, input.knobs, input.options);
@@ -323,13 +330,13 @@ LearnedLight learn_visibility(const MethodInput& input, const SurfacePool& pool)
     out.light.triangles = network.triangles;
     std::vector<Spectrum> E(network.cells.size());
     for (const std::size_t part : {std::size_t(2), std::size_t(1)}) {
-        if (!kernel.grow(units / part, input.stop, &input.progress)) break;  // nothing faces anything
+        if (!kernel.grow(units / part, input.stop, &input.progress)) break;  // no points face each other
         kernel.fit();
         input.progress.phase("solve");
         CellTransport T = make_transport(stage, pool, network, nodes, kernel, input.options.seed);
         if (!passed.empty()) passed.meet(T);
         out.report = reflect(T, network.area, E, input.knobs.residual,
-                             std::min(most_reflections, input.knobs.max_iterations), input.stop);
+                             std::min(max_reflections, input.knobs.max_iterations), input.stop);
         out.kernels += T.kernels, out.rays += T.rays;
         out.memory_bytes = T.matrix.size() * sizeof(Spectrum);
         for (std::size_t i = 0; i < pool.size(); ++i) {
@@ -345,17 +352,17 @@ LearnedLight learn_visibility(const MethodInput& input, const SurfacePool& pool)
     return out;
 }
 
-/// Between surfaces as many units go as come, until growth ends. Of a network of so few units all that are near a pair
-/// have seen through only where nothing is between any surfaces: else rays find what is seen, twice.
+/// Between surfaces, as many units are removed as inserted until growth ends. In so small a network, all units near a
+/// pair agree on visibility only if nothing blocks any pair of surfaces. Otherwise rays determine it, in both rounds.
 MethodForecast forecast_cells(const Stage& stage, const SolveOptions& options, const Knobs& knobs, double facing,
                               bool blocked) {
-    constexpr double units_near = 80;    // a sample, at most: 12 (chairs in a room) to 79 (the Cornell box)
-    constexpr double insertions = 2;     // by units asked for
-    constexpr double vector_room = 1.5;  // of vectors that grow, on average
+    constexpr double units_near = 80;    // per sample, at most: 12 (chairs in a room) to 79 (the Cornell box)
+    constexpr double insertions = 2;     // per requested unit
+    constexpr double vector_room = 1.5;  // capacity of growing vectors per size, on average
     const double n = static_cast<double>(units_of(stage, knobs, options));
     const double samples = insertions * static_cast<double>(KernelNetworkOptions().samples_a_unit) * n;
     MethodForecast out{.rays = samples, .bytes = sizeof(Spectrum) * n * n};
-    if (blocked) out.rays += 2 * facing * n * n * rays_a_pair;
+    if (blocked) out.rays += 2 * facing * n * n * rays_per_pair;
     out.bytes += samples * units_near * vector_room * sizeof(std::pair<std::uint32_t, double>);
     return out;
 }

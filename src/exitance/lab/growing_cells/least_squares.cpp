@@ -8,7 +8,7 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t batch = 4096;  ///< Rows made in parallel before they are summed in order.
-constexpr double enough = 1e-9;
+constexpr double relative_residual = 1e-9;
 
 double product(const std::vector<double>& a, const std::vector<double>& b) {
     double sum = 0;
@@ -36,7 +36,7 @@ void solve_positive(const std::vector<double>& A, const std::vector<double>& b, 
     for (std::size_t i = 0; i < n; ++i) r[i] = b[i] - r[i], z[i] = inverse[i] * r[i];
     p = z;
     double rz = product(r, z);
-    const double limit = enough * std::sqrt(product(b, b));
+    const double limit = relative_residual * std::sqrt(product(b, b));
     for (std::size_t step = 0; step < steps && std::sqrt(product(r, r)) > limit; ++step) {
         multiply(A, p, Ap);
         const double curvature = product(p, Ap);
@@ -56,7 +56,7 @@ void fit_least_squares(const FitProblem& problem, std::vector<double>& values) {
     for (std::size_t first = 0; first < problem.samples; first += batch) {
         const std::size_t count = std::min(batch, problem.samples - first);
         parallel_for(count, 64, [&](std::size_t i) { rows[i].clear(), problem.row(first + i, rows[i]); });
-        // Every unknown's row of the sums belongs to one task; samples come in their order.
+        // Each unknown's row of the sums belongs to one task, which adds samples in order.
         for (auto& list : of_unknown) list.clear();
         for (std::size_t s = 0; s < count; ++s)
             for (const auto& [c, weight] : rows[s])
@@ -71,7 +71,7 @@ void fit_least_squares(const FitProblem& problem, std::vector<double>& values) {
     double mean = 0;
     for (std::size_t i = 0; i < n; ++i) mean += A[i * n + i] / static_cast<double>(n);
     const double ridge = problem.ridge * mean;
-    if (!(ridge > 0)) return;  // no sample reaches any unknown
+    if (!(ridge > 0)) return;  // no sample affects any unknown
     for (std::size_t i = 0; i < n; ++i) {
         A[i * n + i] += ridge;
         for (std::size_t k = 0; k < m; ++k) b[i * m + k] += ridge * values[i * m + k];

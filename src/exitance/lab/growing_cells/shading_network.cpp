@@ -10,20 +10,21 @@
 namespace exitance {
 namespace {
 
-constexpr double turn_by_size = 0.5;        ///< Length that a turn counts as, by the scene's size.
-constexpr std::size_t samples_a_unit = 60;  ///< Between two insertions.
-constexpr std::size_t thinnings = 4;        ///< Looks for idle units while a network grows to twice its size.
-constexpr double idle = 0.09;               ///< Threshold of [Fritzke94], by mean signals.
-constexpr std::size_t last_samples = 30;    ///< A unit, before the last look for idle ones.
-constexpr int last_looks = 3;
-constexpr double straddling = 0.9;     ///< Length of the mean normal below which a cell lies on a fold.
-constexpr double width_by_area = 1.0;  ///< Width over the root of a cell's area.
+/// Length that a unit difference of normals counts as, relative to the scene's size.
+constexpr double turn_by_size = 0.5;
+constexpr std::size_t samples_per_unit = 60;  ///< Samples between two insertions.
+constexpr std::size_t thinnings = 4;          ///< Searches for idle units while a network doubles in size.
+constexpr double idle_share = 0.09;           ///< Threshold of [Fritzke94], relative to the mean number of signals.
+constexpr std::size_t last_samples = 30;      ///< Samples per unit before the last search for idle units.
+constexpr int max_rounds = 3;
+constexpr double min_normal_length = 0.9;  ///< Length of the mean normal below which a cell is on a fold.
+constexpr double width_by_area = 1.0;      ///< Width of a cell relative to the square root of its area.
 
 std::array<double, 6> coordinates(const PoolPoint& p, double scale) {
     return {p.at.x, p.at.y, p.at.z, scale * p.n.x, scale * p.n.y, scale * p.n.z};
 }
 
-/// Which unit is nearest to every point, of those that count.
+/// The unit nearest to every point.
 std::vector<GrowingCells::Unit> winners(const SurfacePool& pool, const GrowingCells& cells, double scale) {
     std::vector<GrowingCells::Unit> out(pool.size());
     parallel_for(pool.size(), 256, [&](std::size_t i) { out[i] = cells.winner(coordinates(pool[i], scale)); });
@@ -35,7 +36,7 @@ struct Gathered {
     double count = 0;
 };
 
-/// What every unit has won: sums in the order of the pool.
+/// Sums of the points that every unit has won, in the order of the pool.
 std::vector<Gathered> gather(const SurfacePool& pool, const std::vector<GrowingCells::Unit>& won, std::size_t units) {
     std::vector<Gathered> out(units);
     for (std::size_t i = 0; i < pool.size(); ++i) {
@@ -45,19 +46,20 @@ std::vector<Gathered> gather(const SurfacePool& pool, const std::vector<GrowingC
     return out;
 }
 
-/// The mean distance of a unit's neighbours that face alike, metres; 0 for none.
+/// Mean distance to a unit's neighbours of equal normal, metres; 0 if there are none.
 double edge_length(const GrowingCells& cells, GrowingCells::Unit u, const std::vector<Gathered>& gathered) {
     double sum = 0, count = 0;
     const Vec3 at = gathered[u].place / gathered[u].count;
     for (const GrowingCells::Unit c : cells.complex().neighbours(u)) {
         if (gathered[c].count == 0) continue;
-        if (dot(gathered[c].normal, gathered[u].normal) < straddling * gathered[c].count * gathered[u].count) continue;
+        if (dot(gathered[c].normal, gathered[u].normal) < min_normal_length * gathered[c].count * gathered[u].count)
+            continue;
         sum += norm(gathered[c].place / gathered[c].count - at), count += 1;
     }
     return count > 0 ? sum / count : 0;
 }
 
-/// Units that follow samples of the pool, until there are so many of them.
+/// Grows units on samples of the pool until there are `units` of them.
 GrowingCells grow_units(const SurfacePool& pool, const std::function<std::uint32_t(double, double)>& draw, double scale,
                         std::size_t units, std::uint64_t seed, const StopRequest& stop) {
     RandomStream random(seed, Stream::mesh, 78);
@@ -72,27 +74,27 @@ GrowingCells grow_units(const SurfacePool& pool, const std::function<std::uint32
     }
     GrowingCells cells({.simplex = 2, .dimension = 6}, corners);
     std::size_t since = 0;
-    for (int look = 0; look < last_looks && !stop.requested(); ++look) {
-        // Long edges lead across folds, and units that come to lie between surfaces win nothing: they go again.
+    for (int look = 0; look < max_rounds && !stop.requested(); ++look) {
+        // Long edges cross folds, and units that end up between surfaces win nothing and are removed.
         for (std::size_t tries = 0; cells.unit_count() < units && tries < 4 * units && !stop.requested(); ++tries) {
-            for (std::size_t i = 0; i < samples_a_unit; ++i) cells.learn(sample(), {}, 1, 0);
+            for (std::size_t i = 0; i < samples_per_unit; ++i) cells.learn(sample(), {}, 1, 0);
             cells.insert();
-            if (++since > 8 + cells.unit_count() / thinnings) cells.remove_idle(idle, false), since = 0;
+            if (++since > 8 + cells.unit_count() / thinnings) cells.remove_idle(idle_share, false), since = 0;
         }
         cells.remove_idle(0, false);
         for (std::size_t i = 0; i < last_samples * units; ++i) cells.learn(sample(), {}, 1, 0);
-        if (cells.remove_idle(idle, false) == 0) break;
+        if (cells.remove_idle(idle_share, false) == 0) break;
     }
     cells.refresh();
     return cells;
 }
 
-/// Regions of the points that are nearest to each cell and face as it does: those of a wall beside a fold do not count.
+/// Regions of the points that are nearest to each cell and have its normal, which excludes walls at a fold.
 std::vector<std::vector<RegionId>> find_own_regions(const SurfacePool& pool, const ShadingNetwork& network) {
     std::vector<std::vector<RegionId>> out(network.cells.size());
     for (std::size_t i = 0; i < pool.size(); ++i) {
         const std::uint32_t c = network.cell_of[i];
-        if (dot(pool[i].n, network.cells[c].n) < straddling) continue;
+        if (dot(pool[i].n, network.cells[c].n) < min_normal_length) continue;
         std::vector<RegionId>& own = out[c];
         const auto at = std::lower_bound(own.begin(), own.end(), pool[i].region);
         if (at == own.end() || *at != pool[i].region) own.insert(at, pool[i].region);
@@ -114,16 +116,16 @@ ShadingNetwork grow_shading_network(const SurfacePool& pool, const std::function
     std::vector<std::uint32_t> number(gathered.size(), none);
     for (GrowingCells::Unit u = 0; u < gathered.size(); ++u) {
         const Gathered& g = gathered[u];
-        if (g.count == 0 || norm(g.normal) < straddling * g.count) continue;
+        if (g.count == 0 || norm(g.normal) < min_normal_length * g.count) continue;
         number[u] = static_cast<std::uint32_t>(out.cells.size());
         const double area = g.count * pool.area_each(), by_area = width_by_area * std::sqrt(area);
         const double by_edge = by_edges ? edge_length(cells, u, gathered) : 0;
         out.cells.push_back({g.place / g.count, normalized(g.normal), by_edge > 0 ? by_edge : by_area, {}, {}});
     }
-    if (out.cells.empty()) {  // a scene so small that every unit lies on a fold: one point speaks for itself
+    if (out.cells.empty()) {  // Every unit is on a fold, as in a very small scene: use a single cell.
         out.cells.push_back({pool[0].at, pool[0].n, std::sqrt(pool.area()), {}, {}});
     }
-    // Points of units that were left out go to the nearest cell that faces alike.
+    // Points of removed units go to the nearest cell in position and normal.
     out.cell_of.resize(pool.size());
     parallel_for(pool.size(), 64, [&](std::size_t i) {
         out.cell_of[i] = number[won[i]];

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// Length that a turn of a surface counts as, by the scene's size.
+/// Length that a unit difference of normals counts as, relative to the scene's size.
 constexpr double turn_by_size = 0.5;
 
 double coordinate(const PoolPoint& p, std::size_t axis, double normal_scale) {

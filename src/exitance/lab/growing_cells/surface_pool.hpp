@@ -7,20 +7,20 @@
 
 namespace exitance {
 
-/// A place of the pool that samples of growing cells are drawn from.
+/// A surface point from which samples of growing cells are drawn.
 struct PoolPoint {
     Point at;
     Normal n;
     RegionId region;
 };
 
-/// Points spread evenly over all surfaces, in an order in which aligned blocks of 2^j points lie together, in place and
-/// in the way they face. What is drawn near a point lies on the surfaces, then, whatever they are made of: a network
-/// that learns from the pool sees their shape and not how they were cut into polygons.
+/// Points spread evenly over all surfaces, ordered so that aligned blocks of 2^j points are close in position and
+/// normal. Points drawn near another one are thus on the surfaces again, however these are divided into polygons: a
+/// network that learns from the pool depends on their shape only.
 class SurfacePool {
   public:
-    /// `count` is rounded up to a power of two. Systematic in area, scrambled Sobol points within pieces. Sides that no
-    /// light reaches are left out. O(count log count + pieces).
+    /// `count` is rounded up to a power of two. Points are systematic in area, scrambled Sobol points within pieces.
+    /// Sides of surfaces that no light reaches are omitted. O(count log count + pieces).
     SurfacePool(const Stage& stage, std::size_t count, std::uint64_t seed);
 
     const std::vector<PoolPoint>& points() const { return points_; }
@@ -29,11 +29,11 @@ class SurfacePool {
     double area() const { return area_; }                                             ///< m^2
     double area_each() const { return area_ / static_cast<double>(points_.size()); }  ///< m^2
 
-    /// Height over a plane up to which a point lies in it, metres: coordinates in files are rounded, and those of
-    /// turned scenes are no exact multiples of anything. As `Locator` has it.
+    /// Height over a plane up to which a point counts as in it, metres. It allows for rounded coordinates in files and
+    /// for rotated scenes. As in `Locator`.
     double in_plane() const { return in_plane_; }
 
-    /// A point of the block around point i whose area is about pi width^2, by a number in [0, 1).
+    /// Returns a point of the block around point i whose area is about pi width^2, chosen by a number u in [0, 1).
     std::uint32_t near(std::uint32_t i, double width, double u) const;
 
   private:

@@ -11,16 +11,16 @@
 namespace exitance {
 namespace {
 
-/// Some emitters of a scene, and lights without extent or not.
+/// The sources of one layer: emitters, and optionally point and parallel lights.
 struct LayerSource {
-    RegionId region;  ///< None: several, or no region.
+    RegionId region;  ///< None if there are several emitters, or if it is not a region.
     std::vector<std::uint32_t> emitters;
     bool beams = false;
 };
 
-/// The brightest by themselves, in the order of the scene; then all others together.
+/// One layer for each of the brightest emitters, in the order of the scene, then one for all others together.
 std::vector<LayerSource> sources_of(const Stage& stage) {
-    constexpr std::size_t most = 64;  // every one takes a look at all regions
+    constexpr std::size_t max_single_layers = 64;  // each layer processes all regions
     const auto& emitters = stage.direct.emitters();
     const auto power = [&](std::uint32_t e) {
         return mean(emitters[e].exitance) * stage.scene.regions()[emitters[e].region].area;
@@ -31,10 +31,10 @@ std::vector<LayerSource> sources_of(const Stage& stage) {
         (stage.direct.is_distant(e) ? rest.emitters : bright).push_back(e);
     std::stable_sort(bright.begin(), bright.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return power(a) > power(b); });
-    if (bright.size() > most) {
-        rest.emitters.insert(rest.emitters.end(), bright.begin() + most, bright.end());
+    if (bright.size() > max_single_layers) {
+        rest.emitters.insert(rest.emitters.end(), bright.begin() + max_single_layers, bright.end());
         std::sort(rest.emitters.begin(), rest.emitters.end());
-        bright.resize(most);
+        bright.resize(max_single_layers);
     }
     std::sort(bright.begin(), bright.end());
     std::vector<LayerSource> out;
@@ -43,7 +43,7 @@ std::vector<LayerSource> sources_of(const Stage& stage) {
     return out;
 }
 
-/// A region's triangles in its own plane, for each band: their values differ, nothing else.
+/// A region's triangles in its own plane, once per band; only the values differ.
 std::array<LayerTriangles, bands> flat_triangles(const SixNodeMesh& mesh, std::span<const std::uint32_t> triangles,
                                                  const Region& region) {
     std::array<LayerTriangles, bands> out;
@@ -65,7 +65,7 @@ std::array<LayerTriangles, bands> flat_triangles(const SixNodeMesh& mesh, std::s
             if (is_new) at->second = add(n[k]);
             corner[k] = at->second;
         }
-        // Where light jumps across an edge between two corners that both sides share, this side has its own.
+        // If light jumps across an edge between two shared corners, this side gets corners of its own.
         for (std::size_t k = 0; k < 3; ++k) {
             const auto ends = std::minmax(corner[k], corner[(k + 1) % 3]);
             if (middle_of.try_emplace(ends, n[3 + k]).first->second != n[3 + k])
@@ -80,9 +80,9 @@ std::array<LayerTriangles, bands> flat_triangles(const SixNodeMesh& mesh, std::s
     return out;
 }
 
-/// Light of one colour: that and its mean over the bands.
+/// If all light has the same colour, stores its mean over the bands in band 0 and returns true with that colour.
 bool join_bands(std::array<LayerTriangles, bands>& of_band, Spectrum& colour) {
-    constexpr double rounding = 1e-6;  // given by 32-bit floats
+    constexpr double rounding = 1e-6;  // relative rounding error of 32-bit floats
     Spectrum sum;
     double largest = 0;
     const auto for_all = [&](const auto& visit) {
@@ -170,7 +170,7 @@ LightLayers make_light_layers(const Stage& stage, const DiscontinuityOptions& op
     one.scale = places.mean_light(), one.brightest = places.largest_light();
     one.error = share * options.error / together, one.largest_error = share * options.largest_error / together;
     LightLayers out;
-    constexpr int most_attempts = 4;
+    constexpr int max_attempts = 4;
     for (int attempt = 1;; ++attempt) {
         report = {}, out = {};
         for (const LayerSource& source : sources) {
@@ -190,7 +190,7 @@ LightLayers make_light_layers(const Stage& stage, const DiscontinuityOptions& op
             return options.indirect ? light + options.indirect(r, p) : light;
         });
         report.error = places.mean_light() > 0 ? error / places.mean_light() : 0;
-        if (report.error <= share * options.error || attempt == most_attempts) return out;
+        if (report.error <= share * options.error || attempt == max_attempts) return out;
         one.error *= calibrated::attempt_aim * share * options.error / report.error;
     }
 }

@@ -6,23 +6,23 @@
 namespace exitance {
 
 struct LayersReport {
-    double error = 0;                   ///< Of the layers' sum, like DiscontinuityReport::error.
-    std::size_t triangles = 0;          ///< Of all meshes, dark ones too.
-    std::size_t winged_edge_bytes = 0;  ///< Of the same meshes with winged edges.
+    double error = 0;                   ///< Error of the sum of all layers, like DiscontinuityReport::error.
+    std::size_t triangles = 0;          ///< Triangles of all meshes, including dark ones.
+    std::size_t winged_edge_bytes = 0;  ///< Memory of the same meshes as winged-edge structures, bytes.
     bool interrupted = false;
 };
 
-/// Direct light as one mesh a source, compressed: each is a discontinuity mesh of its own, with the curves and the
-/// light of that source alone. The brightest sources have one each, what else shines has one together. Errors of
-/// sources are taken to be independent of one another, until the sum is measured at places; then all are made again, if
-/// need be. O(sources x regions), beside what a discontinuity mesh takes.
+/// Computes direct light as one compressed mesh per source: a discontinuity mesh with the curves and the light of that
+/// source only. The 64 brightest sources get a mesh each, all others share one. The errors of sources are assumed to be
+/// independent. The error of the sum is then measured at sample points; if it is too large, all meshes are made again
+/// with a smaller error. O(sources x regions), plus the cost of the discontinuity meshes.
 LightLayers make_light_layers(const Stage& stage, const DiscontinuityOptions& options, LayersReport& report,
                               const StopRequest& stop);
 
-/// The same as the engine asks for it.
+/// Like `make_light_layers`, in the form that the engine uses.
 LayeredLight make_layered_light(const Stage& stage, const DiscontinuityOptions& options, const StopRequest& stop);
 
-/// What a mesh takes with winged edges, bytes, with one value a node.
+/// Memory of a mesh as a winged-edge structure with one value per node, bytes.
 std::size_t winged_edge_bytes(const SixNodeMesh& mesh);
 
 }  // namespace exitance

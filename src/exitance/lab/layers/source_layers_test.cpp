@@ -12,8 +12,8 @@
 namespace exitance {
 namespace {
 
-/// A floor, a board above it, and lamps over that: two that stand in one row, so that some of their shadows' edges lie
-/// on one line, each of its own colour.
+/// A floor, a board above it, and a row of lamps of different exitances over that. As the lamps are in a row, some
+/// edges of their shadows are collinear.
 Scene lamps(std::size_t count) {
     const auto square = [](double x, double y, double half, double z, bool up) {
         std::vector<Point> out{
@@ -64,7 +64,7 @@ TEST(SourceLayers, AddUpToTheLightOfAllSources) {
     }
 }
 
-TEST(SourceLayers, EachHoldsOneSourcesLightAlone) {
+TEST(SourceLayers, EachHasTheLightOfOneSource) {
     const Layered both(lamps(2), 0.01);
     Layered first(lamps(2), 0.01);
     first.stage.direct.keep_only(std::array<std::uint32_t, 1>{0}, false);
@@ -74,11 +74,11 @@ TEST(SourceLayers, EachHoldsOneSourcesLightAlone) {
     for (const double x : {-1.5, -0.9, 0.3, 0.6, 1.2}) {
         const Point p{x, 0.1, 0};
         const double exact = mean(first.stage.direct.irradiance(p, {0, 0, 1}, RegionId(0), workspace));
-        EXPECT_NEAR(mean(light_at(alone, both.scene, RegionId(0), p)), exact, 0.5);  // of some 20
+        EXPECT_NEAR(mean(light_at(alone, both.scene, RegionId(0), p)), exact, 0.5);  // values are about 20
     }
 }
 
-TEST(SourceLayers, LeaveOutTheDarkAndTakeLessThanHalfOfWingedEdges) {
+TEST(SourceLayers, OmitDarkTrianglesAndTakeLessThanHalfOfWingedEdges) {
     const Layered l(lamps(2), 0.01);
     EXPECT_LT(l.layers.size(), l.report.triangles);
     EXPECT_GT(l.layers.size(), 0u);
@@ -86,14 +86,14 @@ TEST(SourceLayers, LeaveOutTheDarkAndTakeLessThanHalfOfWingedEdges) {
     for (const auto& sheet : l.layers.sheets) EXPECT_EQ(l.scene.regions()[sheet.region].plane.n.z, 1);
 }
 
-TEST(SourceLayers, ManySourcesBeyondTheBrightestAreOneTogether) {
+TEST(SourceLayers, SourcesBeyondTheBrightest64ShareALayer) {
     const Layered l(lamps(70), 0.05);
     EXPECT_EQ(l.layers.sources.size(), 65u);
     EXPECT_TRUE(l.layers.sources.back().is_none());
     EXPECT_LE(l.report.error, 0.05);
 }
 
-TEST(SourceLayers, TheirBitsDoNotDependOnThreads) {
+TEST(SourceLayers, AreBitwiseIndependentOfThreads) {
     const auto bytes = [](int threads_used) {
         set_threads(threads_used);
         const Layered l(lamps(2), 0.02);
@@ -108,7 +108,7 @@ TEST(SourceLayers, TheirBitsDoNotDependOnThreads) {
     EXPECT_EQ(one, three);
 }
 
-TEST(SourceLayers, ARequestToStopLeavesNone) {
+TEST(SourceLayers, AreEmptyAfterARequestToStop) {
     const Scene scene = lamps(2);
     const Stage stage(scene);
     StopRequest stop;

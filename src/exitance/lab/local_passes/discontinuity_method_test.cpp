@@ -11,7 +11,7 @@
 namespace exitance {
 namespace {
 
-/// A room with a lamp under its ceiling and a board below that: hard light and reflections.
+/// A room with a lamp under its ceiling and a board below the lamp: hard shadows and reflections.
 Scene room_with_board() {
     std::vector<test::Face> faces = test::closed_box({0, 0, 0}, {2, 2, 2});
     const auto square = [](double lo, double hi, double z, bool up) {
@@ -31,7 +31,7 @@ std::vector<ProbePoint> on_the_floor() {
     return out;
 }
 
-TEST(DiscontinuityMethod, DirectLightIsSharpAndReflectedLightComesFromAHierarchy) {
+TEST(DiscontinuityMethod, UsesADiscontinuityMeshAndAHierarchy) {
     const Scene scene = room_with_board();
     const Solution solution =
         solved(scene, {.method = Method::discontinuity, .error = 0.02, .error_interpolant = 0.03});
@@ -50,16 +50,16 @@ TEST(DiscontinuityMethod, DirectLightIsSharpAndReflectedLightComesFromAHierarchy
         }
         return std::sqrt(sum / static_cast<double>(points.size())) / mean_light;
     };
-    EXPECT_LT(error(light.at(points)), 0.03);  // the paths' noise counts in it
+    EXPECT_LT(error(light.at(points)), 0.03);  // includes the noise of the path tracer
     EXPECT_LT(error(light.interpolant_at(points)), 0.045);
 }
 
-TEST(DiscontinuityMethod, ReflectedLightJumpsAtContactsWhereNoDirectLightComes) {
+TEST(DiscontinuityMethod, UnlitRegionsHaveContactCurves) {
     std::vector<test::Face> faces{{{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}}},
                                   {{{0.5, 0.5, 1}, {1.5, 0.5, 1}, {1.5, 1.5, 1}, {0.5, 1.5, 1}}},
                                   {{{0.5, 0.5, 1}, {0.5, 1.5, 1}, {1.5, 1.5, 1}, {1.5, 0.5, 1}}},
                                   {{{0.7, 0.7, 2}, {0.7, 1.3, 2}, {1.3, 1.3, 2}, {1.3, 0.7, 2}}, 10}};
-    // A leg that meets the board's dark side.
+    // A leg that touches the board's dark side.
     const std::vector<Vec2> leg{{0.9, 0.9}, {1.1, 0.9}, {1.1, 1.1}, {0.9, 1.1}};
     for (std::size_t i = 0; i < 4; ++i) {
         const Vec2 a = leg[i], b = leg[(i + 1) % 4];
@@ -75,7 +75,7 @@ TEST(DiscontinuityMethod, ReflectedLightJumpsAtContactsWhereNoDirectLightComes) 
     EXPECT_LT(solution.discontinuity.size(), 3000u);
 }
 
-TEST(DiscontinuityMethod, ReflectionsAreCounted) {
+TEST(DiscontinuityMethod, NumberOfBouncesIsSupported) {
     const Scene scene = room_with_board();
     const Solution once = solved(scene, {.method = Method::discontinuity, .bounces = 1, .error = 0.05});
     const Solution as_matrix = solved(scene, {.method = Method::matrix, .bounces = 1, .error = 0.05});

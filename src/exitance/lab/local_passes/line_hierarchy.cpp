@@ -15,7 +15,7 @@
 namespace exitance {
 namespace {
 
-constexpr double nearness = 2e-8;  // of the scene's size, as curves are arranged: given by rounding
+constexpr double nearness = 2e-8;  // of the scene's size; rounding, as for arranged curves
 
 std::vector<Vec2> flat_outline(const Patch& patch, const PlaneFrame& frame) {
     std::vector<Vec2> out;
@@ -96,7 +96,8 @@ void LineHierarchy::points_on(std::uint32_t node, std::uint64_t key, std::size_t
     }
 }
 
-/// Mean over the receiver: a point in each of its triangles; beside the source, where it changes fast, many.
+/// Mean form factor over the receiver: one point in each of its triangles, but many near the source, where it varies
+/// strongly.
 double LineHierarchy::form_factor(std::uint32_t p, std::uint32_t q) const {
     const LineTree::Node& node = tree_.nodes()[p];
     const PlaneFrame& frame = receivers_[node.region.value].frame;
@@ -106,7 +107,7 @@ double LineHierarchy::form_factor(std::uint32_t p, std::uint32_t q) const {
         return out;
     };
     constexpr double near = 3;  // times the receiver's radius, from the source's border
-    constexpr int parts = 4;    // of an edge
+    constexpr int parts = 4;    // per edge
     const Point x = frame.at(node.centre),
                 y = receivers_[tree_.nodes()[q].region.value].frame.at(tree_.nodes()[q].centre);
     const int n = norm(y - x) < near * span_of(p, x) + span_of(q, y) ? parts : 1;
@@ -114,7 +115,7 @@ double LineHierarchy::form_factor(std::uint32_t p, std::uint32_t q) const {
     for (const FanTriangle& t : fan_of(node.outline))
         for (int i = 0; i < n; ++i)
             for (int k = 0; k < 2 * (n - i) - 1; ++k) {
-                // Centres of the n^2 equal triangles: those that stand upright, and those between them.
+                // Centres of the n^2 equal triangles: upright ones (even k) and those between them.
                 const double third = k % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
                 const double u = (i + third) / n, v = (k / 2 + third) / n;
                 const Vec2 at = t.a + u * (t.b - t.a) + v * (t.c - t.a);
@@ -160,7 +161,7 @@ LineHierarchy::Judged LineHierarchy::judge(std::uint32_t p, std::uint32_t q) con
     const double F = form_factor(p, q);
     const bool both_whole = !can_cut(p) && !can_cut(q);
     const double carried = max(sent(q)) * F * tree_.nodes()[p].area;
-    constexpr double of_partial = 1.0 / 3, of_hidden = 8;  // [Wallach & Hanrahan]'s lower epsilon; rays miss slits
+    constexpr double of_partial = 1.0 / 3, of_hidden = 8;  // lower epsilon of [Wallach & Hanrahan]; rays may miss slits
     double V = visibility(p, q);
     const double allowed = (V >= 1 ? 1 : V > 0 ? of_partial : of_hidden) * threshold_;
     if (carried > allowed && !both_whole) {
@@ -179,12 +180,12 @@ bool LineHierarchy::cut(std::uint32_t node) {
     const std::uint32_t child = tree_.nodes()[node].first_child;
     for (std::uint32_t c = child; c < child + 2; ++c) {
         E_.push_back(E_[node]), b_.push_back(b_[node]), brightest_.push_back(brightest_[node]);
-        if (!direct_.empty()) direct_.push_back(direct_[node]);  // else none has been found yet
+        if (!direct_.empty()) direct_.push_back(direct_[node]);  // otherwise direct light has not been found yet
     }
     return true;
 }
 
-/// Links these pairs, or parts of them. False where a stop cut it short.
+/// Links these pairs, or parts of them. Returns false after a request to stop.
 bool LineHierarchy::link(Pairs pending, const StopRequest& stop) {
     while (!pending.empty() && !stop.requested()) {
         std::vector<Judged> judged(pending.size());
@@ -210,7 +211,7 @@ bool LineHierarchy::link(Pairs pending, const StopRequest& stop) {
     return pending.empty();
 }
 
-/// Links that are no longer good enough are cut; pairs that were too dark are looked at again.
+/// Splits links that carry too much light and tests pairs again that were too dark.
 bool LineHierarchy::refine(const StopRequest& stop) {
     Pairs pending = std::exchange(dark_, {});
     std::vector<Link> kept;
@@ -225,7 +226,7 @@ bool LineHierarchy::refine(const StopRequest& stop) {
             kept.push_back(l);
     }
     links_ = std::move(kept);
-    constexpr std::size_t slice = 500'000;  // pairs at a time, for the sake of memory
+    constexpr std::size_t slice = 500'000;  // pairs at a time, to limit memory
     bool whole = true;
     for (std::size_t first = 0; first < pending.size() && whole; first += slice) {
         const std::size_t count = std::min(slice, pending.size() - first);
@@ -265,12 +266,12 @@ void LineHierarchy::pull() {
     }
 }
 
-/// Gathers over the links, pushes to the leaves and pulls, until little changes.
+/// Gathers over the links, pushes to the leaves and pulls, until the change is small.
 void LineHierarchy::relax(const StopRequest& stop) {
-    constexpr int most = 200;
-    const double enough = calibrated::changed_light_settled;
+    constexpr int max_iterations = 200;
+    const double max_change = calibrated::changed_light_settled;
     std::vector<Spectrum> arriving(tree_.size());
-    for (int i = 0; i < most && !stop.requested(); ++i, ++iterations_) {
+    for (int i = 0; i < max_iterations && !stop.requested(); ++i, ++iterations_) {
         parallel_for(tree_.size(), 256, [&](std::size_t n) {
             Spectrum sum;
             for (const Link& l : links_of(static_cast<std::uint32_t>(n)))
@@ -289,17 +290,17 @@ void LineHierarchy::relax(const StopRequest& stop) {
         }
         pull();
         change_ = before > 0 ? moved / before : 0;
-        if (change_ < enough) break;
+        if (change_ < max_change) break;
     }
 }
 
-/// Leaves on which exact direct light varies by more than a link may carry are cut, then hold its mean.
+/// Splits leaves on which exact direct light varies by more than a link may carry; then stores its means.
 void LineHierarchy::cut_by_direct_light(const StopRequest& stop) {
     direct_.resize(tree_.size());
     std::vector<std::uint32_t> active(tree_.size());
     std::iota(active.begin(), active.end(), 0u);
     while (!active.empty() && !stop.requested()) {
-        std::vector<std::uint8_t> rough(active.size(), 0);
+        std::vector<std::uint8_t> is_varying(active.size(), 0);
         parallel_ranges(active.size(), 8, [&](std::size_t first, std::size_t last) {
             DirectLight::Workspace workspace;
             ReceiverLight light;
@@ -318,18 +319,18 @@ void LineHierarchy::cut_by_direct_light(const StopRequest& stop) {
                     sum += weight * E;
                     lo = std::min(lo, max(E)), hi = std::max(hi, max(E));
                 };
-                // Places a sixth of the way in from corners and edges' middles: exact for quadratic polynomials.
+                // Points a sixth of the way in from the edges: exact for quadratic polynomials.
                 for (const FanTriangle& t : fan_of(node.outline))
                     for (const auto& [a, b, c] : {std::tuple(t.a, t.b, t.c), {t.b, t.c, t.a}, {t.c, t.a, t.b}})
                         look(1.0 / 6 * (4 * a + b + c), t.area / (3 * node.area));
                 direct_[active[i]] = sum;
                 const double rho = max(stage_.scene.material(node.region).reflectance);
-                rough[i] = rho * (hi - lo) * node.area > threshold_ && can_cut(active[i]);
+                is_varying[i] = rho * (hi - lo) * node.area > threshold_ && can_cut(active[i]);
             }
         });
         std::vector<std::uint32_t> next;
         for (std::size_t i = 0; i < active.size(); ++i)
-            if (rough[i] && cut(active[i]))
+            if (is_varying[i] && cut(active[i]))
                 for (std::uint32_t c = 0; c < 2; ++c) next.push_back(tree_.nodes()[active[i]].first_child + c);
         active = std::move(next);
     }

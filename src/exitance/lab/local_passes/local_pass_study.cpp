@@ -15,7 +15,7 @@
 namespace exitance {
 namespace {
 
-/// Places that are uniform over all reflecting surfaces, with their true light.
+/// Points that are uniform over all reflecting surfaces, with their true light.
 class Truth {
   public:
     Truth(const Stage& stage, const LocalPassStudyOptions& options, Progress& progress, const StopRequest& stop)
@@ -39,7 +39,7 @@ class Truth {
         }
         for (const ReferenceLight& l :
              reference_light(scene_, points_, options.paths, options.seed + 1, progress, stop)) {
-            // Nothing reaches a place that another surface covers.
+            // No light reaches a point that another surface covers.
             const std::size_t i = truth_.size();
             const bool covered = stage.occluders.is_covered(points_[i].x, points_[i].n, regions_[i]);
             truth_.push_back(covered ? Spectrum() : l.irradiance);
@@ -69,7 +69,7 @@ std::optional<Error> refusal(const Scene& scene) {
                  "links between diffuse polygons do not carry these"};
 }
 
-/// Processor time of all threads since it was made, s: other programs do not count in it.
+/// Processor time of all threads since construction, s; other programs do not affect it.
 class ProcessorTime {
   public:
     double restart() {

@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// Triangles of a region: leaves' edges and curves are edges of theirs.
+/// Triangulates a region along leaves' edges and curves.
 LabelledTriangles triangles_of(const LineHierarchy& h, RegionId region, const std::vector<std::uint32_t>& leaves,
                                double tolerance) {
     const ReceiverCurves& receiver = h.receiver(region);
@@ -63,13 +63,14 @@ class Evaluator {
   private:
     Spectrum through(const LineHierarchy::Link& link, const Point& x, const Normal& n, RegionId region,
                      std::uint64_t key, LocalPassWork& work) {
-        const bool anew = rule_ == LocalPassRule::c || (rule_ == LocalPassRule::d && h_.is_primary(link.source));
+        const bool is_recomputed =
+            rule_ == LocalPassRule::c || (rule_ == LocalPassRule::d && h_.is_primary(link.source));
         const Spectrum b = rule_ == LocalPassRule::e ? h_.reflected(link.source) : h_.sent(link.source);
-        if (!(max(b) > 0) || (!anew && link.visible == 0)) return {};
+        if (!(max(b) > 0) || (!is_recomputed && link.visible == 0)) return {};
         ++work.form_factors;
         const double F = point_to_polygon(x, n, h_.corners(link.source));
         if (!(F > 0)) return {};
-        return F * (anew ? visible(link, x, n, region, key, work) : static_cast<double>(link.visible)) * b;
+        return F * (is_recomputed ? visible(link, x, n, region, key, work) : static_cast<double>(link.visible)) * b;
     }
 
     double visible(const LineHierarchy::Link& link, const Point& x, const Normal& n, RegionId region, std::uint64_t key,
@@ -94,7 +95,7 @@ class Evaluator {
     std::vector<char> blocked_;
 };
 
-/// The mesh's triangles as six-node ones, without values; `site` of every node.
+/// Converts the mesh to six-node triangles without values, and fills `sites`, one per node.
 SixNodeMesh take_mesh(const LineHierarchy& h, const BisectionMesh& mesh, const std::vector<RegionId>& region_of,
                       std::vector<Site>& sites) {
     SixNodeMesh out;
@@ -131,7 +132,7 @@ SixNodeMesh take_mesh(const LineHierarchy& h, const BisectionMesh& mesh, const s
 }  // namespace
 
 SixNodeMesh run_local_pass(const LineHierarchy& h, LocalPassRule rule, LocalPassWork& work, const StopRequest& stop) {
-    constexpr double nearness = 2e-8, nudge = 1e-6;  // of the scene's size, given by rounding
+    constexpr double nearness = 2e-8, nudge = 1e-6;  // of the scene's size; rounding
     const Stage& stage = h.stage();
     const std::size_t regions = stage.scene.regions().size();
     std::vector<std::vector<std::uint32_t>> leaves(regions);

@@ -13,7 +13,7 @@
 namespace exitance {
 namespace {
 
-/// A floor, a table that stands over it, and a lamp: hard light with a penumbra.
+/// A floor, a table above it, and a lamp: a penumbra on the floor.
 Scene table_and_lamp() {
     const auto square = [](double half, double z, bool up) {
         std::vector<Point> out{{-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z}};
@@ -39,7 +39,7 @@ std::vector<std::array<float, bands>> values_of(const Scene& scene, LocalPassRul
     return run_local_pass(hierarchy, rule, work, StopRequest()).values;
 }
 
-TEST(LineHierarchy, AFurnaceGlowsEverywhereAlike) {
+TEST(LineHierarchy, AFurnaceIsUniform) {
     const double rho = 0.5;
     std::vector<test::Face> faces = test::closed_box({0, 0, 0}, {2, 1, 1});
     for (test::Face& face : faces) face.exitance = 1;
@@ -60,7 +60,7 @@ TEST(LineHierarchy, AFurnaceGlowsEverywhereAlike) {
     }
 }
 
-TEST(LocalPasses, FormFactorsAnewAreNearerToTheTruth) {
+TEST(LocalPasses, RecomputedFormFactorsAreMoreAccurate) {
     const Scene scene = table_and_lamp();
     const Stage stage(scene);
     LineHierarchy hierarchy(stage, coarse());
@@ -84,11 +84,11 @@ TEST(LocalPasses, FormFactorsAnewAreNearerToTheTruth) {
     const double a = error(LocalPassRule::a), c = error(LocalPassRule::c), d = error(LocalPassRule::d),
                  e = error(LocalPassRule::e);
     EXPECT_LT(c, 0.6 * a);
-    EXPECT_LT(std::abs(d - c), 0.25 * c);  // d is like c, as published
+    EXPECT_LT(std::abs(d - c), 0.25 * c);  // d is about as accurate as c, as published
     EXPECT_LT(e, c);
 }
 
-TEST(LocalPasses, LayersLeaveOutLinksWhereLittleIsReflected) {
+TEST(LocalPasses, LayersOmitLinksOfDarkNodes) {
     const Scene scene = table_and_lamp();
     const Stage stage(scene);
     Progress progress;
@@ -105,7 +105,7 @@ TEST(LocalPasses, LayersLeaveOutLinksWhereLittleIsReflected) {
     }
 }
 
-TEST(LocalPasses, TheirBitsDoNotDependOnThreads) {
+TEST(LocalPasses, AreBitwiseIndependentOfThreads) {
     const Scene scene = table_and_lamp();
     set_threads(1);
     const auto one = values_of(scene, LocalPassRule::d);
@@ -116,7 +116,7 @@ TEST(LocalPasses, TheirBitsDoNotDependOnThreads) {
     EXPECT_EQ(one, three);
 }
 
-TEST(SolveByLines, DeliversWhatItExports) {
+TEST(SolveByLines, DeliversTheExportedFunction) {
     const Scene scene = table_and_lamp();
     Progress progress;
     SolveOptions options{.method = Method::discontinuity, .error = 0.2};

@@ -20,7 +20,7 @@
 namespace exitance {
 namespace {
 
-/// Delivered light on a coarse mesh, for the response of which errors are propagated by.
+/// The delivered light on a coarse mesh, from which the certificate computes how errors propagate.
 GlobalLight coarse_light(const Stage& stage, const ElementFunction& delivered, const SolveOptions& options) {
     GlobalLight out;
     out.tree =
@@ -37,7 +37,7 @@ GlobalLight coarse_light(const Stage& stage, const ElementFunction& delivered, c
     return out;
 }
 
-/// rho E of every leaf, for rays to read.
+/// rho E of every leaf, which rays evaluate.
 ElementFunction reflected_by(const ElementFunction& E, const Scene& scene) {
     ElementFunction out = E;
     for (const ElementId e : E.tree.leaves()) {
@@ -49,7 +49,7 @@ ElementFunction reflected_by(const ElementFunction& E, const Scene& scene) {
     return out;
 }
 
-/// Regions that have no triangle that is wide enough are dark.
+/// Adds dark elements for regions without any triangle that is wide enough.
 ElementFunction on_all_regions(ElementFunction f, const Stage& stage) {
     Field<RegionId, std::uint8_t> has_light(stage.scene.regions().size(), 0);
     for (const ElementId root : f.tree.roots()) has_light[f.tree.region(root)] = 1;
@@ -101,7 +101,7 @@ void record(const LineHierarchy& hierarchy, const LocalPassWork& work, const Six
     s.figures["min_area"] = hierarchy.options().min_area;
 }
 
-/// Both passes; false where a stop left no light.
+/// Runs both passes. Returns false if a stop left no new light.
 bool pass(const Stage& stage, const SolveOptions& options, double error, Solution& solution, Progress& progress,
           const StopRequest& stop) {
     Stopwatch watch;
@@ -112,7 +112,7 @@ bool pass(const Stage& stage, const SolveOptions& options, double error, Solutio
     progress.phase("local pass");
     LocalPassWork work;
     SixNodeMesh mesh;
-    const StopRequest go_on;  // of what was found in time the light is put together
+    const StopRequest go_on;  // not stopped: the light found in time is still evaluated
     if (!hierarchy.links().empty() || !stop.requested())
         mesh = run_local_pass(hierarchy, whole ? *options.local_pass : LocalPassRule::a, work, go_on);
     if (mesh.empty()) return whole;
@@ -133,7 +133,7 @@ EnergyBalance balance(const Solution& solution, const Stage& stage) {
 }  // namespace
 
 LineHierarchyOptions line_options(const SolveOptions& options, double error) {
-    // Errors of constants fall with the root of the least area, and of what a link carries.
+    // Errors of constant elements fall with the square root of the least area and of the light that a link may carry.
     constexpr double share = 0.5;
     LineHierarchyOptions out;
     out.threshold = share * error * error;
@@ -163,8 +163,8 @@ Result<Solution> solve_by_lines(const Scene& scene, const SolveOptions& options,
     s.surfaces = scene.surfaces().size();
     solution.direct_in_elements = true;
     solution.indirect = solution.interpolant = dark(stage);
-    constexpr int most_attempts = 4;
-    // What is exported is the function that is solved for: the stricter demand is that of both.
+    constexpr int max_attempts = 4;
+    // The exported function is the solution, so the stricter of both requested errors applies.
     std::optional<double> demand = options.error_demand();
     if (options.error_interpolant) demand = std::min(*options.error_interpolant, demand.value_or(HUGE_VAL));
     double error = demand.value_or(default_error);
@@ -182,13 +182,13 @@ Result<Solution> solve_by_lines(const Scene& scene, const SolveOptions& options,
         progress.note(fmt::format("estimated error {:.2f}%", 100 * *s.relative_error_estimate));
         s.converged = !demand || *s.relative_error_estimate <= *demand;
         if (s.converged) break;
-        // Twice as fine takes about four times the links and the places.
-        constexpr double dearer = 4, finer = 0.5;
-        if (attempt == most_attempts || stop.seconds_left() < dearer * attempt_watch.seconds()) {
-            s.stopped_by = attempt == most_attempts ? "iterations" : "time limit";
+        // Halving the error takes about four times as many links and nodes.
+        constexpr double cost_of_finer = 4, min_factor = 0.5;
+        if (attempt == max_attempts || stop.seconds_left() < cost_of_finer * attempt_watch.seconds()) {
+            s.stopped_by = attempt == max_attempts ? "iterations" : "time limit";
             break;
         }
-        error *= std::max(finer, calibrated::part_aim * *demand / *s.relative_error_estimate);
+        error *= std::max(min_factor, calibrated::part_aim * *demand / *s.relative_error_estimate);
     }
     s.energy = balance(solution, stage);
     s.seconds["total"] = watch.seconds();

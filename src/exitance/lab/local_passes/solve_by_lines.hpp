@@ -8,15 +8,15 @@
 
 namespace exitance {
 
-/// `--method discontinuity --local-pass a|b|c|d`: global pass and local pass as published (LineHierarchy,
-/// run_local_pass). The light of emitters goes through links like all other; what comes out are quadratic triangles,
-/// and the function that is solved for is what is exported. The error is estimated by the same residual as other
-/// methods'; where it is more than asked for, links are refined and the passes run again. An Error where the scene has
-/// light that links between diffuse polygons cannot carry.
+/// Solves for `--method discontinuity --local-pass a|b|c|d`: global and local pass as published (LineHierarchy,
+/// run_local_pass). Links transport the light of emitters as well. The result are quadratic triangles, and the function
+/// that is solved for is exported. The error is estimated by the residual, as for other methods; if it exceeds the
+/// requested one, links are refined and the passes are repeated. Returns an Error if the scene has light that links
+/// between diffuse polygons cannot transport.
 Result<Solution> solve_by_lines(const Scene& scene, const SolveOptions& options, Progress& progress,
                                 const StopRequest& stop);
 
-/// The hierarchy's settings for a relative error: rules of thumb that the estimate checks.
+/// Returns the hierarchy's settings for a relative error: rules of thumb that the error estimate checks.
 LineHierarchyOptions line_options(const SolveOptions& options, double error);
 
 }  // namespace exitance

@@ -4,7 +4,7 @@
 
 namespace exitance {
 
-/// lab/peers/blender.py
+/// Contents of experiments/peers/blender.py.
 extern const std::string_view blender_script;
 
 }  // namespace exitance

@@ -9,19 +9,19 @@
 namespace exitance {
 namespace {
 
-/// Light is divided by the most that is expected: POV-Ray stops rays of light below a limit of its own.
+/// Factor by which light is divided by its expected maximum: POV-Ray stops light rays below a fixed limit.
 double scale(const PeerScene& scene) {
     return 1 / std::max(scene.most_light, 1e-30);
 }
 
-/// POV-Ray leaves out what is nearer than a ten-thousandth of a unit: scenes are made so wide.
+/// Size of scenes in POV-Ray's units: it ignores hits closer than a ten-thousandth of a unit.
 constexpr double width = 100;
 
 std::string vector_text(Point p) {
     return fmt::format("<{:.9g},{:.9g},{:.9g}>", p.x, p.y, p.z);
 }
 
-/// POV-Ray's emission and its reflection are shares of one colour. Both sides are alike.
+/// POV-Ray's emission and reflection are shares of one colour. Both sides are equal.
 std::string texture_of(const PeerScene::Face& t, double scale) {
     Spectrum colour, emission;
     const bool reflects = max(t.reflectance) > 0;
@@ -35,7 +35,7 @@ std::string texture_of(const PeerScene::Face& t, double scale) {
         colour[0], colour[1], colour[2], reflects ? 1 : 0, emission[0], emission[1], emission[2]);
 }
 
-/// A small triangle about a point, which the camera looks from, down on its right side.
+/// A small triangle around a point. The mesh camera is slightly above it and faces down.
 std::string camera_triangle(const ProbePoint& p, double metre) {
     const Frame frame(p.n);
     const double h = 1e-3;
@@ -75,8 +75,8 @@ Result<std::vector<std::string>> prepare(const PeerTask& task) {
                                     "-A"};
 }
 
-/// The bytes of a Radiance picture of one line of pixels, red, green, blue and exponent each by itself; empty if it is
-/// damaged. Source: [Ward91], run lengths of 1991.
+/// Decodes the bytes of a Radiance picture with one line of pixels: red, green, blue and exponent, one channel after
+/// the other. Empty if it is damaged. Source: [Ward91], run lengths of 1991.
 std::vector<unsigned char> bytes_of_line(std::string_view file, std::size_t width) {
     const std::size_t header = file.find("\n\n");
     const std::size_t begin = header == file.npos ? header : file.find('\n', header + 2);

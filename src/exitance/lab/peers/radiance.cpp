@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// What emits is a source ("illum") with another material in its place for rays that meet it.
+/// An emitter is a source ("illum"), with another material for rays that hit it.
 std::string polygon_text(const PeerScene::Face& face, std::size_t number) {
     const Spectrum &rho = face.reflectance, &m = face.exitance;
     std::string text =

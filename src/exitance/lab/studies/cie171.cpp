@@ -19,11 +19,11 @@
 namespace exitance {
 namespace {
 
-/// Steps of a case have no phases of their own to show.
+/// Discards the phases of single cases.
 class Quiet : public Progress {};
 
-/// How a case's light is evaluated: as `probe` does, of a solution; or, where nothing reflects and the sky is an
-/// emitter all around, by the same exact direct light without a solution, which would hold elements for nothing.
+/// How a case's light is evaluated: like `probe` from a solution; or, if nothing reflects and the sky is an emitter all
+/// around, by the same exact direct light without a solution.
 using Evaluate = std::function<std::vector<Spectrum>(std::span<const ProbePoint>)>;
 
 Evaluate evaluate_solution(const RadiosityFunction& light) {
@@ -48,12 +48,12 @@ Evaluate evaluate_direct(const Stage& stage) {
     };
 }
 
-/// Integral of illuminance over a rectangle: Gauss points on cells that are finer towards its borders, where light in
-/// corners bends.
+/// Integral of illuminance over a rectangle by Gauss points on cells that are finer near its edges, where light bends
+/// in corners.
 double flux_of(const Evaluate& light, const Cie171Case::Flux& flux, std::size_t band) {
     constexpr std::array<double, 9> borders{0, 0.002, 0.02, 0.1, 0.5, 0.9, 0.98, 0.998, 1};
     const LineRule rule = gauss_legendre(8);
-    std::vector<std::pair<double, double>> line;  // places and weights
+    std::vector<std::pair<double, double>> line;  // positions and weights
     for (std::size_t i = 0; i + 1 < borders.size(); ++i)
         for (std::size_t k = 0; k < rule.size(); ++k) {
             const double width = borders[i + 1] - borders[i];
@@ -70,7 +70,7 @@ double flux_of(const Evaluate& light, const Cie171Case::Flux& flux, std::size_t 
     return sum * norm(area);
 }
 
-/// Cases that differ in the band alone are one scene.
+/// Cases that differ only in the band have the same scene.
 bool is_same_scene(const Cie171Case& a, const Cie171Case& b) {
     return a.study == "5.8" && b.study == "5.8" && b.band > 0;
 }
@@ -84,11 +84,11 @@ void add_rows(const Cie171Case& c, const Evaluate& light, std::vector<Cie171Row>
     for (const Cie171Case::Flux& flux : c.fluxes)
         rows.push_back(
             {c.study, c.scene, c.parameter, flux.name, flux.origin, {}, flux.exact, flux_of(light, flux, c.band)});
-    double most = 0;
-    for (std::size_t i = first; i < first + c.points.size(); ++i) most = std::max(most, rows[i].exact);
+    double largest = 0;
+    for (std::size_t i = first; i < first + c.points.size(); ++i) largest = std::max(largest, rows[i].exact);
     for (std::size_t i = first; i < rows.size(); ++i) {
         Cie171Row& row = rows[i];
-        row.relative_error = std::abs(row.computed - row.exact) / (row.exact > 0 ? row.exact : most);
+        row.relative_error = std::abs(row.computed - row.exact) / (row.exact > 0 ? row.exact : largest);
     }
 }
 
@@ -151,7 +151,7 @@ Result<void> write_cie171(const std::string& folder, const std::vector<Cie171Row
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
     if (failure) return Error{ErrorCode::cannot_write, "cannot be made: " + failure.message(), folder, ""};
-    // A comma in a point's name would begin another field.
+    // A comma in a point's name would start another field.
     const auto quoted = [](const std::string& text) {
         return text.find(',') == std::string::npos ? text : fmt::format("\"{}\"", text);
     };

@@ -26,9 +26,9 @@ std::vector<Cie171Row> run(const std::string& only) {
 }
 
 double largest_error(const std::string& only) {
-    double most = 0;
-    for (const Cie171Row& row : run(only)) most = std::max(most, row.relative_error);
-    return most;
+    double largest = 0;
+    for (const Cie171Row& row : run(only)) largest = std::max(largest, row.relative_error);
+    return largest;
 }
 
 TEST(Cie171, LampsAndDiffuseSurfacesAreExact) {
@@ -39,7 +39,7 @@ TEST(Cie171, LampsAndDiffuseSurfacesAreExact) {
     EXPECT_LT(largest_error("5.7"), 1e-10);
 }
 
-TEST(Cie171, SkiesBehindAMaskAreRightToAThousandth) {
+TEST(Cie171, SkiesBehindAMaskAreAccurateToAThousandth) {
     EXPECT_LT(largest_error("5.13"), 1e-3);
 }
 
@@ -53,8 +53,8 @@ TEST(Cie171, TheUniformSkyIsADiffuseOpening) {
     }
 }
 
-/// The values that rows are compared with, against those that another program found.
-TEST(Cie171, ExactValuesAreThoseOfTheReferences) {
+/// Compares the exact values of rows with those of another program.
+TEST(Cie171, ExactValuesAgreeWithTheReferences) {
     const std::filesystem::path folder = std::filesystem::path(test::shared_folder()) / "reference/cie171";
     if (bands != 3 || !std::filesystem::exists(folder)) return;
     const auto compare = [&](const std::string& file, const std::vector<Cie171Row>& rows, auto belongs) {
@@ -89,7 +89,7 @@ TEST(Cie171, ExactValuesAreThoseOfTheReferences) {
                     });
 }
 
-TEST(Cie171, WritesARowAValueAndACaseALine) {
+TEST(Cie171, WritesResultsAndSummary) {
     const TemporaryFolder folder;
     const std::vector<Cie171Row> rows = run("5.7");
     ASSERT_TRUE(write_cie171(folder / "new/results", rows));
@@ -101,7 +101,7 @@ TEST(Cie171, WritesARowAValueAndACaseALine) {
     EXPECT_FALSE(run_cie171({.only = "5.5"}, progress, StopRequest()));
 }
 
-TEST(Cie171, ThePageTellsTheWorstValueOfEverySceneBesideWhatIsPublished) {
+TEST(Cie171, ThePageListsTheWorstValuesAndPublishedErrors) {
     std::vector<Cie171Row> rows{{"5.3", "room", "", "A", {}, {}, 100, 101, 0.01},
                                 {"5.3", "room", "", "B", {}, {}, 2000, 2100, 0.05},
                                 {"5.8", "cube", "rho=0.5", "C", {}, {}, 310.98, 310.98, 0}};

@@ -20,7 +20,7 @@ struct Pair {
     double kernel;
 };
 
-/// Fresh pairs for measuring, and what the kernel is there.
+/// Draws new pairs of points for measurements, with the exact kernel.
 std::vector<Pair> make_pairs(const Stage& stage, std::size_t count, bool of_emitters, std::uint64_t seed) {
     std::vector<Piece> from, to;
     const auto emits = [&](const Piece& p) { return stage.scene.material(p.region).emits(); };
@@ -71,7 +71,7 @@ double error_of(const std::vector<Pair>& pairs, bool squares, const Answer& answ
     return squares ? std::sqrt(sums.off / sums.all) : sums.off / sums.all;
 }
 
-/// Links between elements, the one that carries most cut first.
+/// Links between elements, refined in the order of the light that they transport.
 class LinkedKernel {
   public:
     LinkedKernel(const Stage& stage, bool of_emitters, std::uint64_t seed) : stage_(stage), seed_(seed) {
@@ -86,7 +86,7 @@ class LinkedKernel {
             }
         roots_ = links_.size();
     }
-    /// The sum of values of a pair stays 0 where nothing faces.
+    /// Splits links until there are `count`. Links between elements that do not face each other are not split.
     void refine(std::size_t count) {
         while (alive_ < count && !queue_.empty() && queue_.top().first > 0) {
             const std::uint32_t at = queue_.top().second;
@@ -174,7 +174,7 @@ class LinkedKernel {
             for (const bool hidden : blocked) seen += hidden ? 0 : 1.0 / (side * side);
         }
         links_.push_back({x, y, kernel * seen, light, none, false});
-        // B F A: what the link carries.
+        // B F A: light that the link transports.
         queue_.emplace(light * kernel * seen * a.area() * b.area(), static_cast<std::uint32_t>(links_.size() - 1));
         ++alive_;
     }
@@ -193,8 +193,8 @@ void study(const Stage& stage, std::uint64_t seed, const std::vector<std::size_t
     const auto emission = [&](const Pair& p) {
         return of_emitters ? stage.scene.material(p.y.region).exitance : Spectrum(1);
     };
-    const auto tell = [&](const char* row, std::size_t asked, std::size_t n, double error, std::size_t bytes,
-                          double seconds) {
+    const auto print_row = [&](const char* row, std::size_t asked, std::size_t n, double error, std::size_t bytes,
+                               double seconds) {
         out.print("%s,%s,%s,%llu,%zu,%zu,%.5g,%zu,%.3f\n", scene.c_str(), of_emitters ? "light" : "touching", row,
                   static_cast<unsigned long long>(seed), asked, n, error, bytes, seconds);
     };
@@ -202,10 +202,10 @@ void study(const Stage& stage, std::uint64_t seed, const std::vector<std::size_t
     for (const std::size_t n : counts) {
         const Stopwatch watch;
         links.refine(n);
-        // A link holds two elements' numbers and its factor.
-        tell("links", n, links.count(),
-             error_of(pairs, of_emitters, [&](const Pair& p) { return links(p) * emission(p); }), links.count() * 16,
-             watch.seconds());
+        // A link stores the numbers of two elements and its factor.
+        print_row("links", n, links.count(),
+                  error_of(pairs, of_emitters, [&](const Pair& p) { return links(p) * emission(p); }),
+                  links.count() * 16, watch.seconds());
     }
     const SurfacePool pool(stage, 1 << 15, seed);
     std::vector<Spectrum> light;
@@ -232,14 +232,14 @@ void study(const Stage& stage, std::uint64_t seed, const std::vector<std::size_t
                 return flow ? a : a * (p.kernel * emission(p));
             };
             const std::size_t bytes = network.bytes_a_unit() * network.cells().unit_count();
-            if (flow) tell("cells delta rule", n, n, error_of(pairs, of_emitters, answer), bytes, grown);
+            if (flow) print_row("cells delta rule", n, n, error_of(pairs, of_emitters, answer), bytes, grown);
             watch.restart();
             KernelNetwork* fitted = &network;
             const std::vector<double> kept = network.outputs_as_learned();
             fitted->fit();
             const double fit_seconds = watch.seconds();
-            tell(flow ? "cells least squares" : "cells improved", n, network.cells().unit_count(),
-                 error_of(pairs, of_emitters, answer), bytes, grown + fit_seconds);
+            print_row(flow ? "cells least squares" : "cells improved", n, network.cells().unit_count(),
+                      error_of(pairs, of_emitters, answer), bytes, grown + fit_seconds);
             network.restore_outputs(kept);
         }
     }

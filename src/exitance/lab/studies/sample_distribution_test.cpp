@@ -29,13 +29,13 @@ TEST(SampleDistribution, FollowsTheResourceFromTheEmitterToOtherFaces) {
             << line;
         ++rows[units == 32];
         resampled += static_cast<std::size_t>(near);
-        EXPECT_EQ(visible, 1);  // nothing stands in between
+        EXPECT_EQ(visible, 1);  // there are no blockers
         EXPECT_DOUBLE_EQ(y[2], 1.5);
         EXPECT_LT(x[2], 1.5);
     }
     EXPECT_EQ(rows[0], 200u);
     EXPECT_EQ(rows[1], 200u);
-    EXPECT_GT(resampled, 100u);  // half of them, less pairs that do not face each other
+    EXPECT_GT(resampled, 100u);  // half of them, minus pairs that do not face each other
 }
 
 }  // namespace exitance

@@ -17,15 +17,15 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_processors = 1024;
+constexpr std::size_t max_processors = 1024;
 
 struct Measured {
     double wall = std::numeric_limits<double>::infinity(), processor = wall;
-    double busiest = wall;  ///< Processor time of the busiest thread, iteration by iteration, and what is serial.
+    double busiest = wall;  ///< Processor time of the busiest thread per iteration, plus serial time.
     std::size_t stolen = 0;
 };
 
-/// Tells tables apart by what stays the same.
+/// Columns that are common to all rows.
 struct Rows {
     const std::string& scene;
     const char* program;
@@ -44,7 +44,7 @@ struct Rows {
     }
 };
 
-/// What the wall clock would have told on a machine with nothing else to do.
+/// Real time on an otherwise idle machine.
 double busiest_seconds(const TaskGraph& graph) {
     double sum = 0;
     for (const TaskGraph::Iteration& iteration : graph.iterations) {
@@ -56,14 +56,14 @@ double busiest_seconds(const TaskGraph& graph) {
     return sum;
 }
 
-/// Interactions by equations 6 and 7 of [Vinod95].
+/// Number of interactions according to equations 6 and 7 of [Vinod95].
 double predicted_interactions(const TaskEngine& engine, const TaskOptions& options) {
     return predict_interactions(
         engine.visible_pairs(), [&](std::uint32_t root) { return engine.patches()[root].area; },
         [&](std::uint32_t root) { return max(engine.radiosity(root)); }, options);
 }
 
-/// The least of the repeats; the graph of the one with the least processor time, where it is wanted.
+/// Graph of the repeat with the least processor time, with its interactions.
 struct Recorded {
     TaskGraph graph;
     std::size_t interactions = 0;
@@ -88,7 +88,7 @@ Measured measure(const Stage& stage, TaskOptions options, int repeats, Recorded*
     return out;
 }
 
-/// What most of the processors' time went to beside tasks. Behind barriers one works and all others are idle.
+/// The largest use of the processors' time besides tasks. After barriers, one processor works and all others are idle.
 const char* limit_of(const SimulatedRun& run, std::size_t processors) {
     const double behind = run.serial * static_cast<double>(processors - 1);
     const std::pair<double, const char*> parts[] = {{run.idle - behind, "no task to do"},
@@ -101,11 +101,11 @@ const char* limit_of(const SimulatedRun& run, std::size_t processors) {
 void add_replays(const TaskGraph& graph, Schedule schedule, const Rows& rows, Table& runs) {
     for (const MachineModel& machine : machine_models) {
         const double alone = simulate_schedule(graph, schedule, 1, machine).seconds;
-        for (std::size_t P = 1; P <= most_processors; P *= 2) {
+        for (std::size_t P = 1; P <= max_processors; P *= 2) {
             const SimulatedRun run = simulate_schedule(graph, schedule, P, machine);
             rows.add(runs, "simulated", P, run.seconds, alone, run.tasks, run.stolen);
             runs.set("machine", std::string(machine.name)), runs.set("queue_seconds", field(run.queue));
-            // What is left of a difference of sums is rounding where one processor works.
+            // With one processor the idle time is a difference of sums: only rounding.
             const double idle = P > 1 ? run.idle : 0;
             runs.set("remote_seconds", field(run.remote)), runs.set("idle_seconds", field(idle));
             runs.set("serial_seconds", field(run.serial)), runs.set("limit", P > 1 ? limit_of(run, P) : "");
@@ -146,7 +146,7 @@ void add_iterations(const TaskGraph& graph, const Rows& rows, Table& iterations)
     }
 }
 
-/// A solve as users have it.
+/// An ordinary solve.
 struct ProductionRun {
     TaskTrace trace;
     double seconds = 0, processor_seconds = 0;
@@ -215,7 +215,7 @@ TaskGraph graph_of_loops(const TaskTrace& trace) {
         TaskGraph::Iteration iteration;
         iteration.begin = loops[i].begin, iteration.end = loops[i].end;
         iteration.first_task = graph.tasks.size(), iteration.task_count = loops[i].tasks.size();
-        // Before the first loop, too, there is what nobody shares.
+        // Time before the first loop is serial, too.
         const double before = i == 0 ? loops[i].begin : 0;
         const double next = i + 1 < loops.size() ? loops[i + 1].begin : end;
         iteration.serial = before + std::max(0.0, next - loops[i].end);

@@ -11,34 +11,35 @@
 
 namespace exitance {
 
-/// What is known of schedules; seconds everywhere. The first column of all tables is the scene.
+/// Measurements of schedules; all times in seconds. The first column of all tables is the scene.
 struct ScheduleTables {
-    /// `program` (engine: the tasks of 1995; production: a solve as users have it), `kind`, `schedule`, `machine`,
-    /// `processors`, `seconds`, `speedup`, what the seconds of all processors went to, and the largest of these beside
-    /// tasks, `limit`. `measured` rows have the
-    /// wall clock, `busiest` ones the processor time of the busiest thread of every iteration (the wall clock of a
-    /// machine with nothing else to do), `simulated` ones that of `simulate_schedule`.
+    /// Columns: `program` (engine: the tasks of 1995; production: an ordinary solve), `kind`, `schedule`, `machine`,
+    /// `processors`, `seconds`, `speedup`, the seconds of all processors by use, and `limit`, the largest of these
+    /// besides tasks. `measured` rows have real time. `busiest` ones have the processor time of the busiest thread of
+    /// every iteration (the real time of an otherwise idle machine). `simulated` ones are results of
+    /// `simulate_schedule`.
     Table runs;
-    /// A recorded graph: its tasks, interactions found and predicted, all its tasks' time, and the longest chain.
+    /// A recorded graph: its tasks, interactions found and predicted, the time of all its tasks, and the longest chain.
     Table graphs;
-    Table iterations;  ///< Of the engine, by one thread: tasks, interactions, seconds by kind, the light after it.
-    Table phases;      ///< Of a production solve, by one thread: seconds, and those in loops that are dealt out.
+    Table iterations;  ///< Engine with one thread: tasks, interactions, seconds by kind, and the light, per iteration.
+    Table phases;      ///< Production solve with one thread: seconds, and seconds in parallel loops, per phase.
 };
 
-/// The engine's thresholds in W and m^2, as of `--threshold` and `--min-area`, and of how many runs the least is taken.
+/// The engine's thresholds in W and m^2, as for `--threshold` and `--min-area`, and the number of runs of which the
+/// fastest counts.
 struct ScheduleStudy {
     std::optional<double> threshold, min_area;
     int repeats = 1;
-    double error = 0.02;  ///< Asked of the production solve.
+    double error = 0.02;  ///< Requested error of the production solve.
 };
 
-/// How schedules scale, on 1 and 2 threads, and replayed on 1 to 1024 processors from the graphs that one thread has
-/// recorded: those of the task engine, and of the parallel loops of a solve.
+/// Measures how schedules scale: on 1 and 2 threads, and simulated on 1 to 1024 processors from graphs recorded with
+/// one thread, those of the task engine and those of the parallel loops of a solve.
 void measure_schedules(const std::string& scene_name, const Scene& scene, const ScheduleStudy& study,
                        ScheduleTables& out, const StopRequest& stop);
 
-/// The loops of a run by one thread as a graph: a loop is an iteration, behind whose barrier stands what is done until
-/// the next one begins; tasks make no tasks.
+/// Converts the loops of a run with one thread to a graph. Each loop is an iteration whose serial time after the
+/// barrier lasts until the next loop; tasks create no tasks.
 TaskGraph graph_of_loops(const TaskTrace& trace);
 
 }  // namespace exitance

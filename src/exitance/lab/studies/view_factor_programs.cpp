@@ -18,9 +18,9 @@ namespace exitance {
 
 namespace {
 
-constexpr double smallest_compared = 1e-5;
+constexpr double min_compared = 1e-5;
 
-/// Four corners of which each turns to the left.
+/// True for four corners of which each is convex.
 bool is_convex_quadrangle(std::span<const Point> p, const Normal& n) {
     if (p.size() != 4) return false;
     for (std::size_t i = 0; i < 4; ++i)
@@ -28,7 +28,7 @@ bool is_convex_quadrangle(std::span<const Point> p, const Normal& n) {
     return true;
 }
 
-/// What `exitance viewfactors` wrote as CSV.
+/// Reads a CSV file written by `exitance viewfactors`.
 Result<AreaMatrix> read_own_result(const std::string& path, std::size_t n) {
     const Result<Table> table = read_csv(path);
     if (!table) return table.error();
@@ -64,7 +64,7 @@ void add_errors(Table& out, const AreaMatrix& m, const AreaMatrix& reference) {
         for (std::size_t j = 0; j < n; ++j) {
             const double f = m.factors[i * n + j], r = reference.factors[i * n + j];
             sum += f - r;
-            if (r > smallest_compared) errors.push_back(std::abs(f - r) / r);
+            if (r > min_compared) errors.push_back(std::abs(f - r) / r);
         }
         row_error = std::max(row_error, std::abs(sum));
     }
@@ -77,7 +77,7 @@ void add_errors(Table& out, const AreaMatrix& m, const AreaMatrix& reference) {
     out.set("reciprocity", field(reciprocity_defect(m)));
 }
 
-/// A run of one program, and what it made.
+/// A run of one program, and its matrix.
 struct MatrixRun {
     ProgramRun program;
     Result<AreaMatrix> matrix;
@@ -107,7 +107,7 @@ class MatrixRuns {
     }
 
   private:
-    /// A file that no run before has left.
+    /// Returns the path of a file after removing that of earlier runs.
     std::string path(const char* name) const {
         const std::filesystem::path file = std::filesystem::absolute(options_.folder) / name;
         std::error_code none;
@@ -121,7 +121,8 @@ class MatrixRuns {
     const StopRequest& stop_;
 };
 
-/// `exitance viewfactors` ends so where some pairs of rows disagree by more than the tolerance; the matrix is there.
+/// Exit code of `exitance viewfactors` if some pairs of rows disagree by more than the tolerance; the matrix is
+/// written.
 constexpr int not_reached_status = 4;
 
 std::string status_of(const MatrixRun& run) {
@@ -135,7 +136,7 @@ std::string status_of(const MatrixRun& run) {
 
 std::string view3d_text(const Scene& scene, double eps) {
     struct Piece {
-        std::array<std::size_t, 4> corners;  ///< Numbers of vertices; 0 in place of a fourth.
+        std::array<std::size_t, 4> corners;  ///< Numbers of vertices; 0 instead of a fourth one.
         SurfaceId face;
     };
     std::string vertices, text;

@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// View3D's result of two surfaces that see half of one another's light.
+/// View3D's result for two surfaces with a given view factor.
 std::string view3d_result(float factor) {
     const float numbers[] = {1, 2, 0, factor, factor / 2, 0, 0.9f, 0.9f};
     return std::string(32, ' ') + std::string(reinterpret_cast<const char*>(numbers), sizeof numbers);
@@ -37,7 +37,7 @@ TEST(View3dText, HoldsFacesOfAnyShapeInTheScenesOrder) {
         const Scene scene = generated(family);
         const CheckedScene read = written_and_read(scene);
         ASSERT_TRUE(read.scene) << family;
-        std::vector<double> areas(scene.surfaces().size() + 1);  // the last: obstructions
+        std::vector<double> areas(scene.surfaces().size() + 1);  // the last one: obstructions
         for (const Surface& s : read.scene->surfaces()) areas.at(s.group.value) += s.area;
         for (const SurfaceId s : scene.surfaces().ids())
             EXPECT_NEAR(areas[s.value], scene.surfaces()[s].area, 1e-9 * scene.surfaces()[s].area)
@@ -45,7 +45,7 @@ TEST(View3dText, HoldsFacesOfAnyShapeInTheScenesOrder) {
     }
 }
 
-TEST(View3dResult, IsReadWhereItIsOfAsManySurfaces) {
+TEST(View3dResult, RequiresTheNumberOfSurfaces) {
     const TemporaryFolder folder;
     ASSERT_TRUE(write_file(folder / "r.vf", view3d_result(0.5f)));
     const Result<AreaMatrix> matrix = read_view3d_result(folder / "r.vf", 2);

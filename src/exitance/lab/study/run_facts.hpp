@@ -5,8 +5,8 @@
 
 namespace exitance {
 
-/// The plain values of a JSON object as text, by key; nothing where the text is no JSON object. Keys of objects in it
-/// come after a point: "seconds.total".
+/// Returns the plain values of a JSON object as text, by key; nothing if the text is not a JSON object. Keys of nested
+/// objects are joined by a dot: "seconds.total".
 std::map<std::string, std::string> facts_of_json(const std::string& text);
 
 }  // namespace exitance

@@ -14,57 +14,57 @@
 
 namespace exitance {
 
-/// A scene of a study, made anew for every value of the study's parameter. "{value}" in its words stands for that.
+/// A scene of a study, generated for every value of the study's parameter, which replaces "{value}" in its text.
 struct StudyScene {
     std::string name;
-    std::string generate;  ///< "complex m={value}", as `generate` takes it; empty where there is a file,
-    std::string file;      ///< which is looked up beside the study.
+    std::string generate;  ///< Arguments of `generate`, for example "complex m={value}"; empty if `file` is given.
+    std::string file;      ///< Scene file, relative to the study's folder.
     std::vector<double> values, quick_values;
 };
 
-/// A way to solve: the options of `solve`, with "{value}" and "{setting}" replaced.
+/// A way to solve: the options of `solve`, in which "{value}" and "{setting}" are replaced.
 struct StudyRow {
     std::string label;
     std::string options;
-    std::string peer;  ///< Another program, whose options these are then (`peer_names()`); empty: ours.
+    std::string peer;  ///< Another program that these options are for (`peer_names()`); empty: this one.
     std::vector<std::string> settings, quick_settings;      ///< Empty: one run without a setting.
-    bool equal_time = true;                                 ///< Does it take part in the table `equal_time`?
-    bool quick = true;                                      ///< Is it run with --quick?
-    double most = std::numeric_limits<double>::infinity();  ///< Of the parameter; larger values are not run.
-    std::vector<std::string> scenes;                        ///< Empty: all.
+    bool equal_time = true;                                 ///< True if included in the table `equal_time`.
+    bool quick = true;                                      ///< True if run with --quick.
+    double most = std::numeric_limits<double>::infinity();  ///< Largest value of the parameter that is run.
+    std::vector<std::string> scenes;                        ///< Scenes to run; empty: all.
 };
 
-/// Light that errors are measured against, at points uniform in area: a careful solve, held against unbiased paths in
-/// the table `references`; or those paths alone, which are exact where nothing reflects; or what a file holds.
+/// Reference light for errors, at points uniform in area. It is a careful solve, compared with unbiased paths in the
+/// table `references`; or those paths only, which are exact if nothing reflects; or the contents of a file.
 struct StudyReference {
-    std::string options, quick_options;  ///< Of the careful solve; empty: paths alone.
-    std::size_t points = 0, paths = 0;   ///< 0 points: no errors are measured.
+    std::string options, quick_options;  ///< Options of the careful solve; empty: only paths.
+    std::size_t points = 0, paths = 0;   ///< 0 points: errors are not measured.
     std::size_t quick_points = 0, quick_paths = 0;
-    std::string file;  ///< A probe CSV in place of paths, with "{value}" replaced.
+    std::string file;  ///< Probe CSV file instead of paths, in which "{value}" is replaced.
 };
 
-/// Which rows of a table: a column, and the texts that it may have.
+/// Filter of a table's rows: accepted texts per column.
 using RowFilter = std::map<std::string, std::vector<std::string>>;
 
 struct StudyPlot {
     std::string name, title;
     std::string table = "results";
     std::string x, y;
-    std::string series = "row";  ///< A curve for each text of this column.
-    std::string panel;           ///< A picture for each text of this column; empty: one.
+    std::string series = "row";  ///< Column with the names of curves.
+    std::string panel;           ///< Column with the names of panels, one picture each; empty: one picture.
     std::string x_label, y_label;
     std::string log;     ///< "", "x", "y" or "xy"
-    std::string labels;  ///< A column whose numbers stand above the points of every x; empty: none.
-    std::string fit;     ///< "power": exponents of the curves in the legend; "quadratic": a x^2 + b x, drawn, too.
+    std::string labels;  ///< Column of numbers to print above the points of every x; empty: none.
+    std::string fit;     ///< "power": exponents of the curves in the legend; "quadratic": also draws a x^2 + b x.
     RowFilter where;
-    bool checkpoints = false;  ///< Take solutions on the way, too?
+    bool checkpoints = false;  ///< True if intermediate solutions are included.
 };
 
-/// Which of a study's solutions; what is empty, or NaN, fits all.
+/// Selects solutions of a study; empty fields and NaN match all.
 struct ChosenSolution {
     std::string row, scene, setting;
-    double value = std::numeric_limits<double>::quiet_NaN();  ///< Of the parameter.
-    /// Seconds of the method: the last solution on the way that is no later. NaN: the one at the end.
+    double value = std::numeric_limits<double>::quiet_NaN();  ///< Value of the parameter.
+    /// Seconds of the method: selects the last intermediate solution up to then. NaN: the final one.
     double at = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -76,24 +76,24 @@ struct StudyLine {
     std::size_t points = 200;
 };
 
-/// Light, the method's mesh, or the left half of one beside the right half of the other, of one solution.
+/// A picture of one solution: light, the method's mesh, or the left half of one and the right half of the other.
 struct StudyPicture {
     ChosenSolution of;
     std::string caption;
-    std::string options;  ///< Of `render`.
+    std::string options;  ///< Options of `render`.
     enum class Shows : std::uint8_t { light, mesh, halves } shows = Shows::light;
 };
 
-/// A number taken from a table, and the range in which a statement holds.
+/// A number computed from a table, to be compared with the range in which a statement holds.
 enum class Measure : std::uint8_t {
-    value,       ///< The mean of y.
-    largest,     ///< Of y.
+    value,       ///< Mean of y.
+    largest,     ///< Largest y.
     last,        ///< y at the largest x.
-    slope,       ///< Of log y over log x, by least squares.
-    ratio,       ///< The geometric mean of y over y of `against`, row by row of the same scene, parameter and setting.
-    last_ratio,  ///< The same at the largest x alone.
-    crossing,    ///< The x where y and y of `against` cross; the last such place.
-    quadratic,   ///< sigma of y = sigma x^2 + beta x by least squares.
+    slope,       ///< Slope of log y over log x, by least squares.
+    ratio,       ///< Geometric mean of y / (y of `against`), for rows of the same scene, parameter and setting.
+    last_ratio,  ///< Like `ratio`, but only at the largest x.
+    crossing,    ///< Last x at which y and y of `against` cross.
+    quadratic,   ///< sigma of y = sigma x^2 + beta x, by least squares.
 };
 
 struct StudyConclusion {
@@ -105,18 +105,18 @@ struct StudyConclusion {
     double least = -std::numeric_limits<double>::infinity(), most = std::numeric_limits<double>::infinity();
 };
 
-/// A study: scenes by rows of options by values of a parameter, or a table that a part of the program makes; plots of
-/// it, and conclusions from it. See docs/experiments.md.
+/// A study: scenes by rows of options by values of a parameter, or a table that a part of the program computes; plots
+/// of it, and conclusions from it. See docs/experiments.md.
 struct Study {
     std::string name, title, about;
     std::string parameter = "value", unit;
-    std::string table;                             ///< Of `study_tables`; empty: runs of `solve`.
-    std::map<std::string, std::string> arguments;  ///< Of that table.
+    std::string table;                             ///< One of `study_tables`; empty: runs of `solve`.
+    std::map<std::string, std::string> arguments;  ///< Arguments of that table.
     int threads = 1;
-    double time_limit = 300, quick_time_limit = 20;  ///< A run, seconds.
+    double time_limit = 300, quick_time_limit = 20;  ///< Seconds per run.
     std::string memory_limit = "8G";
-    bool ascending = true;    ///< Larger values are harder: after one that took too long they are not run.
-    bool equal_time = false;  ///< Make the table `equal_time`.
+    bool ascending = true;  ///< Larger values take longer: after a run that exceeds its limit, larger ones are skipped.
+    bool equal_time = false;  ///< Compute the table `equal_time`.
     std::vector<StudyScene> scenes;
     std::vector<StudyRow> rows;
     StudyReference reference;
@@ -124,16 +124,16 @@ struct Study {
     std::vector<StudyPicture> pictures;
     std::vector<StudyLine> lines;
     std::vector<StudyConclusion> conclusions;
-    std::string text;    ///< As it was read.
-    std::string folder;  ///< That file names are relative to.
+    std::string text;    ///< Original text.
+    std::string folder;  ///< Folder that file names are relative to.
 };
 
-/// Reads a study from TOML. Error: bad_input with file and line, where the text is no TOML, a key is unknown or
-/// missing, or a value makes no sense.
+/// Parses a study from TOML. Error: bad_input with file and line, if the text is not TOML, a key is unknown or missing,
+/// or a value is invalid.
 Result<Study> parse_study(const std::string& text, const std::string& name, const std::string& file);
 Result<Study> load_study(const std::string& path);
 
-/// The studies that the program holds: name and text of each.
+/// Name and text of a study that is built into the program.
 struct BuiltInStudy {
     std::string_view name, text;
 };

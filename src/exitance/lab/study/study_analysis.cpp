@@ -17,7 +17,7 @@ struct Curve {
     std::vector<double> x, y;
 };
 
-/// y over x of the chosen rows, by x; what is no number is left out.
+/// y over x of the selected rows, sorted by x; values that are no numbers are omitted.
 Curve curve_of(const Table& table, const std::string& x, const std::string& y, const RowFilter& where) {
     std::vector<std::pair<double, double>> points;
     for (const std::size_t row : measured_rows(table, where, true)) {
@@ -30,7 +30,7 @@ Curve curve_of(const Table& table, const std::string& x, const std::string& y, c
     return curve;
 }
 
-/// Where one curve goes through another, both straight between places that they share; the last such place.
+/// Last x at which two curves cross, with both linear between the x that they share.
 double crossing(const Curve& a, const Curve& b) {
     double found = unknown, last_x = 0, last = unknown;
     for (std::size_t i = 0; i < a.x.size(); ++i) {
@@ -43,8 +43,8 @@ double crossing(const Curve& a, const Curve& b) {
     return found;
 }
 
-/// The geometric mean of y over that of the other rows, of the same scene and parameter; at the largest x alone where
-/// `last`.
+/// Geometric mean of the ratio of y to that of the other rows with the same scene and parameter; only at the largest x
+/// if `last`.
 double mean_ratio(const Table& table, const StudyConclusion& c, bool last) {
     const std::vector<std::size_t> others = measured_rows(table, c.against, true);
     std::vector<std::pair<double, double>> ratios;  // by x
@@ -67,7 +67,7 @@ double mean_ratio(const Table& table, const StudyConclusion& c, bool last) {
 }
 
 double measured(const Table& table, const StudyConclusion& c) {
-    if (c.measure == Measure::ratio || c.measure == Measure::last_ratio)  // x may be text there
+    if (c.measure == Measure::ratio || c.measure == Measure::last_ratio)  // x may be text
         return mean_ratio(table, c, c.measure == Measure::last_ratio);
     const Curve curve = curve_of(table, c.x, c.y, c.where);
     if (curve.y.empty()) return unknown;
@@ -100,7 +100,7 @@ std::string range_text(const StudyConclusion& c) {
     return std::isfinite(c.most) ? fmt::format("at most {:g}", c.most) : "any";
 }
 
-/// How long a row took to its last solution, and its errors on the way: logarithms, by time.
+/// A row's time until its final solution, and its errors up to then.
 struct History {
     std::string row, setting, method, basis;
     std::vector<std::pair<double, double>> steps;  ///< Logarithms of seconds and of errors.
@@ -165,7 +165,7 @@ std::vector<Verdict> judge(const Study& study, const StudyTables& tables) {
 }
 
 QuadraticFit fit_quadratic(const std::vector<double>& x, const std::vector<double>& y) {
-    // Misfits are weighted by 1 / y: 1 = sigma x^2 / y + beta x / y.
+    // Residuals are weighted by 1 / y: 1 = sigma x^2 / y + beta x / y.
     double aa = 0, ab = 0, bb = 0, a1 = 0, b1 = 0;
     std::size_t n = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {

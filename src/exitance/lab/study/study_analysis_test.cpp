@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// Rows of two methods whose errors are 1/x and 0.1 x, with one solution on the way each.
+/// Rows of two methods with errors 1/x and 0.1 x, and one intermediate solution each.
 Table two_methods() {
     Table table{{"study", "scene", "parameter", "row", "setting", "is_last", "status"}, {}};
     for (const bool second : {false, true})
@@ -34,7 +34,7 @@ double measured(Measure measure, const std::string& y, const RowFilter& where, c
     return judge(study, tables).at(0).value;
 }
 
-TEST(StudyAnalysis, FitsFindWhatTheyWereMadeOf) {
+TEST(StudyAnalysis, FitsRecoverTheirCoefficients) {
     const std::vector<double> x{1, 2, 5, 9};
     std::vector<double> quadratic, power;
     for (double v : x) quadratic.push_back(3 * v * v + 5 * v), power.push_back(7 * std::pow(v, 1.5));
@@ -48,21 +48,21 @@ TEST(StudyAnalysis, FitsFindWhatTheyWereMadeOf) {
 
 TEST(StudyAnalysis, RunsThatMetALimitAreNotMeasured) {
     Table table = two_methods();
-    table.set("status", "memory limit");  // of the last row of b, at x = 8
+    table.set("status", "memory limit");  // for the last row of b, at x = 8
     EXPECT_EQ(chosen_rows(table, {{"row", {"b"}}}, true).size(), 4u);
     const std::vector<std::size_t> rows = measured_rows(table, {{"row", {"b"}}}, true);
     ASSERT_EQ(rows.size(), 3u);
     for (const std::size_t row : rows) EXPECT_LT(table.number(row, "parameter"), 8);
 }
 
-TEST(StudyAnalysis, MeasuresTakeLastSolutionsAlone) {
+TEST(StudyAnalysis, MeasuresUseFinalSolutionsOnly) {
     const RowFilter a{{"row", {"a"}}}, b{{"row", {"b"}}};
     EXPECT_NEAR(measured(Measure::slope, "relative_rms_error", a), -1, 1e-6);
     EXPECT_NEAR(measured(Measure::largest, "relative_rms_error", b), 0.8, 1e-6);
     EXPECT_NEAR(measured(Measure::last, "relative_rms_error", a), 0.125, 1e-6);
     EXPECT_NEAR(measured(Measure::quadratic, "links", a), 3, 1e-6);
     EXPECT_NEAR(measured(Measure::last_ratio, "relative_rms_error", b, a), 6.4, 1e-5);
-    // 0.1 x over 1/x is 0.1 x^2: its geometric mean over 1, 2, 4, 8 is 0.1 * 8.
+    // The ratio of 0.1 x to 1/x is 0.1 x^2; its geometric mean over 1, 2, 4, 8 is 0.1 * 8.
     EXPECT_NEAR(measured(Measure::ratio, "relative_rms_error", b, a), 0.8, 1e-5);
     // Straight lines between x = 2 (0.5, 0.2) and x = 4 (0.25, 0.4) meet at 2 + 2 * 0.3 / 0.45.
     EXPECT_NEAR(measured(Measure::crossing, "relative_rms_error", a, b), 2 + 2 * 0.3 / 0.45, 1e-5);
@@ -86,7 +86,7 @@ TEST(StudyAnalysis, AStatementHoldsWithinItsRange) {
 
 TEST(StudyAnalysis, EqualTimeInterpolatesLogarithms) {
     const Table table = equal_time_table(Study(), two_methods());
-    // a ends at 16 s, b at 64; b has 4 * 0.1 x at 4 s and 0.1 x at 64 s: half-way between, 0.2 x.
+    // a ends at 16 s, b at 64 s; b has 4 * 0.1 x at 4 s and 0.1 x at 64 s: half-way between, 0.2 x.
     ASSERT_EQ(table.rows.size(), 8u);
     for (std::size_t row = 0; row < table.rows.size(); ++row) {
         const double x = table.number(row, "parameter");

@@ -25,12 +25,12 @@ constexpr std::array<std::pair<Measure, std::string_view>, 8> measure_names{{
     {Measure::quadratic, "quadratic"},
 }};
 
-/// Thrown and caught in this file alone.
+/// Exception that is thrown and caught in this file only.
 struct Wrong {
     Error error;
 };
 
-/// One table of the file: takes keys one by one, and refuses those that nobody took.
+/// A table of the file: takes keys one by one, and rejects those that are not taken.
 class Keys {
   public:
     Keys(const toml::table& table, std::string file) : table_(table), file_(std::move(file)) {}
@@ -113,7 +113,7 @@ class Keys {
     std::set<std::string> known_;
 };
 
-/// What `[[key]]` lists, each read by a function.
+/// Reads the tables `[[key]]`, each by a function.
 template <class T, class Read>
 void take_list(Keys& keys, const std::string& key, std::vector<T>& target, const Read& read) {
     const toml::node* node = keys.find(key);

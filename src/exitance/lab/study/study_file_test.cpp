@@ -29,7 +29,7 @@ TEST(StudyFile, HoldsScenesAndRows) {
     EXPECT_EQ(study->rows.at(0).options, "--method wavelet");
 }
 
-TEST(StudyFile, TellsWhereItIsWrong) {
+TEST(StudyFile, ReportsTheLineOfAnError) {
     expect_error("title = \n", "s.toml:1", "");
     expect_error("titel = \"T\"\n", "s.toml:1", "'title' is missing");
     expect_error(smallest + "colour = 1\n", "s.toml:10", "'colour' is not known here");
@@ -41,7 +41,7 @@ TEST(StudyFile, TellsWhereItIsWrong) {
     expect_error("title = \"T\"\n", "s.toml:1", "a study has");
 }
 
-TEST(StudyFile, EveryBuiltInStudyIsRight) {
+TEST(StudyFile, EveryBuiltInStudyIsValid) {
     EXPECT_GE(built_in_studies().size(), 15u);
     for (const BuiltInStudy& built_in : built_in_studies()) {
         const Result<Study> study = parse_study(std::string(built_in.text), std::string(built_in.name), "s.toml");

@@ -26,7 +26,7 @@ std::vector<ProbePoint> points_of(const StudyLine& line) {
     return points;
 }
 
-/// Where the records of runs are whose solutions stay.
+/// Returns the records of runs whose solutions are kept.
 std::vector<fs::path> kept_records(const std::string& folder) {
     std::vector<fs::path> records;
     std::error_code failed;
@@ -86,7 +86,7 @@ Result<Table> profile_table(const Study& study, const StudyOptions& options, Pro
                  "error_interpolant"},
                 {}};
     const std::size_t paths = options.quick ? study.reference.quick_paths : study.reference.paths;
-    std::map<std::pair<std::string, std::string>, std::vector<double>> truths;  // by line's name and scene
+    std::map<std::pair<std::string, std::string>, std::vector<double>> truths;  // by the line's name and the scene
     for (const StudyLine& line : study.lines)
         for (fs::path path : kept_records(options.folder)) {
             const Result<Table> record = read_csv(path.string());

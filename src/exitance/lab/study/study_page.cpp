@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double render_seconds = 300;
-constexpr std::size_t most_rows_shown = 600;
+constexpr std::size_t max_rows_shown = 600;
 
 constexpr const char* style = R"css(
 :root { color-scheme: light; }
@@ -56,7 +56,7 @@ std::string escaped(const std::string& text) {
     return out;
 }
 
-/// A file as an address that holds it.
+/// Returns a data URL with the contents of a file.
 std::string data_address(const std::string& path, const char* kind) {
     const Result<std::string> content = read_whole_file(path);
     if (!content) return "";
@@ -118,7 +118,7 @@ std::string table_html(const Table& table) {
     html += "</tr>\n";
     std::size_t count = 0;
     for (const std::size_t row : chosen_rows(table, {}, true)) {
-        if (++count > most_rows_shown) break;
+        if (++count > max_rows_shown) break;
         html += "<tr>";
         for (const std::string& column : shown) {
             const std::string& text = table.text(row, column);

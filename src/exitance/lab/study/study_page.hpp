@@ -5,15 +5,15 @@
 
 namespace exitance {
 
-/// A picture of a solution, or the two that are shown half and half.
+/// A picture of a solution, or the two pictures of which each half is shown.
 struct DrawnPicture {
     const StudyPicture* picture = nullptr;
     std::string caption;
     std::vector<std::string> files;  ///< PNG
 };
 
-/// Pictures of solutions that stayed in FOLDER/runs, by `exitance render`, into FOLDER/pictures; those whose run has no
-/// solution are left out.
+/// Draws pictures of solutions that are kept in FOLDER/runs, by `exitance render`, into FOLDER/pictures. Pictures
+/// without a solution are omitted.
 std::vector<DrawnPicture> draw_pictures(const Study& study, const StudyOptions& options, const Table& results,
                                         const StopRequest& stop);
 
@@ -24,10 +24,10 @@ struct StudyPage {
     const std::vector<DrawnPlot>& plots;
     const std::vector<DrawnPicture>& pictures;
     bool quick = false;
-    double seconds = 0;  ///< That this run of the study took.
+    double seconds = 0;  ///< Time that this run of the study took.
 };
 
-/// Writes a page that holds everything: what is concluded, plots, pictures, tables, exact commands, the machine.
+/// Writes a page with conclusions, plots, pictures, tables, exact commands, and the machine.
 Result<void> write_study_page(const StudyPage& page, const std::string& path);
 
 }  // namespace exitance

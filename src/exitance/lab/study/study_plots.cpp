@@ -17,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double gnuplot_seconds = 60;
-constexpr std::size_t most_marked = 60;   // points of a curve that are marked
-constexpr double room_for_labels = 0.08;  // of the span of the data
+constexpr std::size_t max_marked = 60;    // curves with more points get no markers
+constexpr double room_for_labels = 0.08;  // of the range of the data
 
 struct PlotCurve {
     std::string name;
@@ -31,7 +31,7 @@ struct PlotLabel {
     std::string text;
 };
 
-/// Points of one x become one, at their mean: geometric where y is drawn as a logarithm.
+/// Replaces points of equal x by their mean: geometric if y has a logarithmic axis.
 void take_means(std::vector<std::pair<double, double>>& points, bool log) {
     std::stable_sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<std::pair<double, double>> means;
@@ -47,7 +47,7 @@ void take_means(std::vector<std::pair<double, double>>& points, bool log) {
     points = std::move(means);
 }
 
-/// Text in gnuplot's double quotes.
+/// Quotes text for gnuplot.
 std::string quoted(const std::string& text) {
     std::string out = "\"";
     for (const char c : text) {
@@ -67,8 +67,8 @@ bool is_log(const StudyPlot& plot, char axis) {
     return plot.log.find(axis) != std::string::npos;
 }
 
-/// The curves of a panel, in the order in which their names come; a curve's points by x, one an x, or as they come
-/// where solutions on the way are among them.
+/// Returns the curves of a panel, in the order in which their names occur. Points are averaged and sorted by x, but
+/// keep their order if intermediate solutions are included.
 std::vector<PlotCurve> curves_of(const Table& table, const StudyPlot& plot, const std::string& panel) {
     std::vector<PlotCurve> curves;
     for (const std::size_t row : measured_rows(table, plot.where, !plot.checkpoints)) {
@@ -87,7 +87,7 @@ std::vector<PlotCurve> curves_of(const Table& table, const StudyPlot& plot, cons
     return curves;
 }
 
-/// What the plot's column of labels tells of every x, above the highest point there.
+/// Returns the values of the plot's column of labels for every x, placed above its highest point.
 std::vector<PlotLabel> labels_of(const Table& table, const StudyPlot& plot, const std::string& panel) {
     std::vector<PlotLabel> labels;
     if (plot.labels.empty()) return labels;
@@ -126,8 +126,7 @@ Range range_of(char axis, const std::vector<PlotCurve>& curves) {
     return range;
 }
 
-/// Where an axis ends: what the data take and a little more, `room` of it above for labels; not below zero where no
-/// value is.
+/// Range of a linear axis: the data and a margin, plus `room` above it for labels; not below zero if no value is.
 std::string linear_axis(char axis, Range data, double room) {
     constexpr double margin = 0.04;
     const double span = data.hi > data.lo ? data.hi - data.lo : std::max(1.0, std::abs(data.hi));
@@ -135,7 +134,7 @@ std::string linear_axis(char axis, Range data, double room) {
     return fmt::format("set {}range [{:.6g}:{:.6g}]\n", axis, data.lo >= 0 ? std::max(0.0, lo) : lo, hi);
 }
 
-/// The same of a logarithm. Where there are few powers of ten, digits between them are marked, too.
+/// Range of a logarithmic axis. If it spans few powers of ten, digits between them are marked as well.
 std::string log_axis(char axis, Range data, double room) {
     constexpr double share = 0.05, least_margin = 1.1, few = 100, fewest = 10;
     const double ratio = data.hi / data.lo, margin = std::max(least_margin, std::pow(ratio, share));
@@ -152,7 +151,7 @@ std::string log_axis(char axis, Range data, double room) {
     return text + fmt::format("set {}tics ({})\n", axis, fmt::join(marks, ", "));
 }
 
-/// The curve's law, for the legend, where the plot wants one: x^exponent, or a x^2 + b x.
+/// Fitted law of a curve for the legend, if the plot requests it: x^exponent, or a x^2 + b x.
 std::string law_of(const StudyPlot& plot, const PlotCurve& curve, std::string& drawn) {
     std::vector<double> x, y;
     for (const auto& [at, value] : curve.points) x.push_back(at), y.push_back(value);
@@ -193,13 +192,13 @@ std::string script(const StudyPlot& plot, const std::string& title, const std::v
         const Range data = range_of(axis, curves);
         text += is_log(plot, axis) ? log_axis(axis, data, room) : linear_axis(axis, data, room);
     }
-    // Colours that people who see few of them tell apart [Okabe08].
+    // Colours that are distinct with colour vision deficiencies [Okabe08].
     constexpr std::array colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < curves.size(); ++i) {
         const char* colour = colours[i % colours.size()];
         const std::string marks =
-            curves[i].points.size() > most_marked ? "lines" : fmt::format("linespoints ps 0.7 pt {}", 4 + i % 11);
+            curves[i].points.size() > max_marked ? "lines" : fmt::format("linespoints ps 0.7 pt {}", 4 + i % 11);
         std::string fitted;
         const std::string law = law_of(plot, curves[i], fitted);
         parts.push_back(fmt::format("$curve{} using 1:2 with {} lw 1.6 dt {} lc rgb '{}' title {}", i, marks,

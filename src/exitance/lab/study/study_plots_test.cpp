@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// The script of the plot of y = 3 x^2 at x = 1, 2, 4, where x = 2 has two rows, 9 and 16, and every x a label 10 x.
+/// Script of the plot of y = 3 x^2 at x = 1, 2, 4, where x = 2 has two rows, 9 and 16, and each x has a label 10 x.
 std::string script_of(const std::string& fit, const std::string& labels) {
     const std::filesystem::path folder = std::filesystem::temp_directory_path() / ("exitance_plots_" + fit + labels);
     Table table;

@@ -21,13 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Runs of one row on one scene by one setting, for all values of the parameter, the easiest first.
+/// Runs of one row on one scene with one setting, for all values of the parameter, in ascending order of cost.
 struct Chain {
     const StudyScene* scene;
     const StudyRow* row;
     std::string setting;
     std::vector<double> values;
-    std::vector<Table> tables;  ///< One a value that was reached.
+    std::vector<Table> tables;  ///< One per value that was reached.
 };
 
 std::string lower(std::string text) {
@@ -71,7 +71,7 @@ Table row_that_did_not_run(const Study& study, const Chain& chain, double value,
     return table;
 }
 
-/// Scenes by name and value, with what their errors are measured against.
+/// Scenes by name and value, with their references.
 using Prepared = std::map<std::pair<std::string, double>, StudyStage>;
 
 Result<Prepared> prepare(const Study& study, const std::vector<Chain>& chains, const StudyOptions& options,
@@ -91,7 +91,7 @@ Result<Prepared> prepare(const Study& study, const std::vector<Chain>& chains, c
     return out;
 }
 
-/// Deals chains out to as many runs at a time as there are cores for.
+/// Distributes chains over as many simultaneous runs as there are cores.
 class Runner {
   public:
     Runner(const Study& study, const StudyOptions& options, std::vector<Chain> chains, const Prepared& prepared,
@@ -165,12 +165,12 @@ class Runner {
     Progress& progress_;
     const StopRequest& stop_;
     std::atomic<std::size_t> next_{0};
-    std::mutex mutex_;  ///< Of what follows, of the progress, and of files of solutions.
+    std::mutex mutex_;  ///< Guards the members below, the progress, and files of solutions.
     std::size_t done_ = 0, runs_ = 0;
     std::optional<Error> failure_;
 };
 
-/// How far references that are careful solves are from paths.
+/// Differences between references that are careful solves and paths.
 Table reference_table(const Prepared& prepared) {
     Table table{{"scene", "parameter", "against_paths", "noise_of_paths", "points"}, {}};
     for (const auto& [key, stage] : prepared) {

@@ -37,13 +37,13 @@ Result<void> make_scene(const std::vector<std::string>& words, const std::string
     return write_obj(*scene, path);
 }
 
-/// What makes a scene's reference.
+/// Input for computing a scene's reference.
 struct ReferenceWork {
     const StudyOptions& options;
     const StudyReference& asked;
     const std::string& scene_path;
     const Scene& scene;
-    std::string stem;  ///< Of the files in which it is kept.
+    std::string stem;  ///< Common path prefix of the files in which it is kept.
     Progress& progress;
     const StopRequest& stop;
 
@@ -52,7 +52,7 @@ struct ReferenceWork {
     const std::string& words() const { return options.quick ? asked.quick_options : asked.options; }
 };
 
-/// Light by paths, read again where it was made before.
+/// Returns light by paths; reads it from a file if it exists.
 Result<ReferencePoints> path_reference(const ReferenceWork& work) {
     const std::string path = work.stem + "_paths.csv";
     if (fs::exists(path)) return load_reference_points(path);
@@ -65,7 +65,7 @@ Result<ReferencePoints> path_reference(const ReferenceWork& work) {
     return out;
 }
 
-/// Light by a careful solve at the same points, likewise.
+/// Returns light by a careful solve at the same points, likewise.
 Result<ReferencePoints> solved_reference(const ReferenceWork& work) {
     const std::string path = work.stem + "_solve.csv", solution_path = work.stem + ".h5";
     if (fs::exists(path)) return load_reference_points(path);

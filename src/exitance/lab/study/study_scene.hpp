@@ -12,22 +12,22 @@ namespace exitance {
 
 /// A scene of a study for one value of its parameter.
 struct StudyStage {
-    std::string path;       ///< Of its file.
-    std::string words;      ///< What it is made by, for people: "complex m=6".
-    std::uint64_t key = 0;  ///< Of what runs depend on: its content and its reference.
+    std::string path;       ///< Path of its file.
+    std::string words;      ///< Readable description of its origin, for example "complex m=6".
+    std::uint64_t key = 0;  ///< Key of everything that runs depend on: its content and its reference.
     std::size_t polygons = 0;
     std::optional<ReferencePoints> reference;
-    std::optional<ErrorMeasure> check;  ///< Of a reference that is a careful solve, against paths.
+    std::optional<ErrorMeasure> check;  ///< Error against paths, if the reference is a careful solve.
 };
 
-/// Words between blanks; those in quotation marks of either kind are one.
+/// Splits text at blanks; words in single or double quotes may contain blanks.
 std::vector<std::string> split_words(const std::string& text);
-/// `text` with "{name}" replaced, for all names.
+/// Replaces "{name}" in `text` for all names.
 std::string filled_in(std::string text, const std::vector<std::pair<std::string, std::string>>& values);
-/// A key of a text, the same on all machines.
+/// Key of a text, equal on all machines.
 std::uint64_t key_of(std::string_view text);
 
-/// Makes the scene (FOLDER/scenes) and its reference (FOLDER/references), unless they are there.
+/// Generates the scene (FOLDER/scenes) and its reference (FOLDER/references) unless they exist.
 Result<StudyStage> prepare_scene(const Study& study, const StudyScene& scene, double value, const StudyOptions& options,
                                  Progress& progress, const StopRequest& stop);
 

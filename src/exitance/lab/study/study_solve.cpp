@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int not_reached_status = 4, no_result_status = 5;  // of `solve`
-/// A process that does not heed its limit is ended after so many times that limit, and so many seconds.
-constexpr double patience = 1.5, patience_seconds = 10;
+constexpr int not_reached_status = 4, no_result_status = 5;  // exit codes of `solve`
+/// A process that exceeds its time limit is killed after this multiple of it plus some seconds.
+constexpr double kill_factor = 1.5, kill_seconds = 10;
 
 using Facts = std::map<std::string, std::string>;
 
@@ -53,20 +53,20 @@ bool fits(const StudySolve& run, const ChosenSolution& of) {
            (of.setting.empty() || of.setting == run.setting) && (std::isnan(of.value) || of.value == run.value);
 }
 
-/// Is there a picture of this run, or a line through it?
+/// True if the study has a picture of this run, or a line through it.
 bool is_shown(const StudySolve& run) {
     const Study& study = run.study;
     return std::any_of(study.pictures.begin(), study.pictures.end(), [&](const auto& p) { return fits(run, p.of); }) ||
            std::any_of(study.lines.begin(), study.lines.end(), [&](const auto& l) { return fits(run, l.of); });
 }
 
-/// Was a run ended by another limit of time than it would have now?
+/// True if a run was ended by a time limit other than the present one.
 bool has_other_limit(const Table& record, const std::string& command) {
     const std::size_t last = record.rows.size() - 1;
     return record.text(last, "status") == "time limit" && record.text(last, "command") != command;
 }
 
-/// The seconds of its solutions on the way that pictures show.
+/// Returns the times (s) of intermediate solutions that pictures show.
 std::vector<double> shown_instants(const StudySolve& run) {
     std::vector<double> instants;
     for (const StudyPicture& picture : run.study.pictures)
@@ -74,7 +74,7 @@ std::vector<double> shown_instants(const StudySolve& run) {
     return instants;
 }
 
-/// Does a record have a solution that a picture shows, and is that not there?
+/// True if a solution of a record is shown in a picture but is not kept.
 bool lacks_picture(const StudySolve& run, const Table& record) {
     const std::string stem = (fs::path(run.options.folder) / "runs" / run_name(run)).string();
     if (record.text(record.rows.size() - 1, "status") == "done" && is_shown(run) && !fs::exists(stem + ".h5"))
@@ -90,7 +90,7 @@ std::string get(const Facts& facts, const std::string& key) {
     return at == facts.end() ? "" : at->second;
 }
 
-/// The share of the leaf elements that lie on what emits.
+/// Share of the leaf elements that are on emitters.
 double emitter_share(const Solution& solution) {
     const ElementTree& tree = solution.indirect.tree;
     const std::vector<ElementId> leaves = tree.leaves();
@@ -105,7 +105,7 @@ void add_measures(Table& table, const StudySolve& run, const Solution& solution)
     add_error(table, error_against(solution, *run.stage.reference));
 }
 
-/// A solution on the way.
+/// Adds a row for an intermediate solution.
 void add_checkpoint(Table& table, const StudySolve& run, std::size_t number, const Solution& solution) {
     const SolveStatistics& s = solution.statistics;
     const auto count = [&](const char* column, std::size_t value) { table.set(column, std::to_string(value)); };
@@ -134,11 +134,11 @@ void add_last(Table& table, const StudySolve& run, std::size_t number, const Pro
     table.set("processor_seconds", classical ? get(facts, "processor_seconds") : field(program.processor_seconds));
     if (facts.contains("coefficient_memory_bytes")) copy("element_bytes", "coefficient_memory_bytes");
     const std::size_t row = table.rows.size() - 1;
-    // Columns that shooting keeps for later shots are a cache of ours, which the papers had not.
+    // Columns that shooting keeps for later shots are a cache that the papers did not have.
     const bool shoots = get(facts, "method") == "progressive" || get(facts, "method") == "substructuring";
     const double links = shoots ? 0 : table.number(row, "link_bytes");
     table.set("memory_bytes", field(links + table.number(row, "element_bytes")));
-    // What the system counts of a child begins with the memory of its parent.
+    // The system's count of a child process includes the memory of its parent.
     table.set("peak_bytes", std::to_string(program.peak_bytes));
     if (facts.contains("peak_memory_bytes")) copy("peak_bytes", "peak_memory_bytes");
     table.set("wall_seconds", field(program.seconds));
@@ -149,7 +149,7 @@ std::string checkpoint_path(const std::string& stem, std::size_t number) {
     return fmt::format("{}.{:04}.h5", stem, number);
 }
 
-/// Keeps a solution on the way for the pictures of instants that it is no later than, or removes it.
+/// Keeps an intermediate solution for pictures at later times, or removes it.
 void keep_or_remove(const StudySolve& run, const std::string& path, double seconds) {
     std::error_code ignored;
     for (const double at : shown_instants(run))
@@ -159,7 +159,7 @@ void keep_or_remove(const StudySolve& run, const std::string& path, double secon
     fs::remove(path, ignored);
 }
 
-/// Measures what a run left, and removes it.
+/// Measures the solutions of a run, and removes their files.
 Table measured(const StudySolve& run, const std::string& stem, const ProgramRun& program, const std::string& command) {
     Table table{result_columns, {}};
     std::error_code ignored;
@@ -226,7 +226,7 @@ std::vector<std::string> solve_words(const StudySolve& run) {
 std::string run_name(const StudySolve& run) {
     std::vector<std::string> words = solve_words(run);
     words[1] = run.scene.name;
-    // A run that ended by itself is the same under another limit of the study.
+    // The result of a run that ended in time does not depend on the study's time limit.
     const auto limit = std::find(words.begin(), words.end(), "--time-limit");
     if (!has(split_words(run.row.options), "--time-limit")) words.erase(limit, limit + 2);
     return fmt::format("{}_{:016x}", run.scene.name,
@@ -249,7 +249,7 @@ Result<std::optional<Table>> solve_for_study(const StudySolve& run, std::mutex& 
     words.insert(words.begin(), run.options.program);
     for (const std::string& word : {std::string("-o"), stem + ".h5", std::string("--json"), std::string("-q")})
         words.push_back(word);
-    const ProgramRun program = run_program(words, "", patience * study_time_limit(run) + patience_seconds, stop);
+    const ProgramRun program = run_program(words, "", kill_factor * study_time_limit(run) + kill_seconds, stop);
     if (stop.requested()) return std::optional<Table>();
     const std::lock_guard lock(files);
     Table table = measured(run, stem, program, command);

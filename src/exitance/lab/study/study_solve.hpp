@@ -18,22 +18,22 @@ struct StudySolve {
     const StudyStage& stage;
 };
 
-/// What the column `setting` holds: the row's label, and its setting where there is one.
+/// Contents of the column `setting`: the row's label, and its setting if there is one.
 std::string setting_text(const StudyRow& row, const std::string& setting);
-/// The program's words for a run, from `solve` on, without the file that is written.
+/// Command line of a run, starting at `solve`, without the output file.
 std::vector<std::string> solve_words(const StudySolve& run);
-/// The name of everything that is kept of a run.
+/// Name of all files that are kept of a run.
 std::string run_name(const StudySolve& run);
-/// Seconds that it may take.
+/// Time limit of a run, seconds.
 double study_time_limit(const StudySolve& run);
 
-/// A new row of a table of results, with what is known before a run.
+/// Adds a row to a table of results, with the values known before the run.
 void begin_row(Table& table, const StudySolve& run, std::size_t checkpoint);
-/// The measured error of a table's last row.
+/// Sets the measured error in a table's last row.
 void add_error(Table& table, const ErrorMeasure& error);
 
-/// Runs a solve in a process of its own, and measures its solutions while `files` is held; or reads what was found
-/// before. Nothing where a stop was asked for. The last solution stays, for pictures, where the study shows one of it.
+/// Runs a solve in a process of its own, and measures its solutions while `files` is locked; or reads an earlier
+/// result. Returns nothing after a request to stop. The final solution is kept if the study shows a picture of it.
 Result<std::optional<Table>> solve_for_study(const StudySolve& run, std::mutex& files, const StopRequest& stop);
 
 }  // namespace exitance

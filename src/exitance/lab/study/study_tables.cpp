@@ -39,7 +39,7 @@ void add_flatland_row(Table& table, const FlatKernel& kernel, const std::string&
     table.set("decomposition", way), table.set("m", std::to_string(m)), table.set("relative_l2_error", field(error));
 }
 
-/// Means over seeds, and half of what lies between the least and the largest, as `spread`.
+/// Adds means over seeds, with half of the range between the smallest and the largest as `spread`.
 void add_growing_rows(Table& table, const FlatKernel& kernel, std::span<const std::size_t> counts, int seeds) {
     using namespace flatland;
     static constexpr std::pair<CellWeights, const char*> ways[] = {
@@ -55,7 +55,7 @@ void add_growing_rows(Table& table, const FlatKernel& kernel, std::span<const st
             double sum = 0, least = of_seed[0][i], most = least;
             for (const auto& errors : of_seed)
                 sum += errors[i], least = std::min(least, errors[i]), most = std::max(most, errors[i]);
-            // Beside both decompositions, for plots.
+            // in both decompositions, for plots
             for (const char* way : {"standard", "non-standard"}) {
                 add_flatland_row(table, kernel, name, way, counts[i], sum / seeds);
                 table.set("spread", field((most - least) / 2));
@@ -121,8 +121,8 @@ Result<StudyTables> cie171_tables(const Study&, const StudyOptions& options, Pro
     return StudyTables{{"results", std::move(table)}, {"summary", std::move(summary)}};
 }
 
-/// Calls use(name, scene, its stage), with the value in the name of a scene that has one, for the scenes of a study,
-/// values in their order.
+/// Calls use(name, scene, its stage) for the scenes of a study and the values in their order. Names include the value
+/// if a scene has one.
 template <class Use>
 Result<void> for_scenes(const Study& study, const StudyOptions& options, Progress& progress, const StopRequest& stop,
                         const Use& use) {
@@ -144,8 +144,8 @@ Result<void> for_scenes(const Study& study, const StudyOptions& options, Progres
     return {};
 }
 
-/// Tables whose rows belong to scenes. What make(name, scene) gives for a scene, a Result<StudyTables> with the tables
-/// `names`, stays in FOLDER/runs, and is not made again when the study goes on.
+/// Tables whose rows belong to scenes. The result of make(name, scene), a Result<StudyTables> with the tables `names`,
+/// is kept in FOLDER/runs and reused when the study is resumed.
 template <class Make>
 Result<StudyTables> tables_by_scene(const Study& study, const StudyOptions& options, Progress& progress,
                                     const StopRequest& stop, const std::vector<std::string>& names, const Make& make) {
@@ -180,7 +180,7 @@ Result<StudyTables> tables_by_scene(const Study& study, const StudyOptions& opti
     return all;
 }
 
-/// The one table of rows that write(name, scene, text) writes under a header.
+/// A single table of the rows that write(name, scene, text) writes under a header.
 template <class Write>
 Result<StudyTables> results_by_scene(const Study& study, const StudyOptions& options, Progress& progress,
                                      const StopRequest& stop, std::string_view header, const Write& write) {
@@ -200,7 +200,7 @@ double argument(const Study& study, const std::string& name, double otherwise) {
     return at == study.arguments.end() ? otherwise : parse_number(at->second).value_or(otherwise);
 }
 
-/// One of the tables about the thesis's structures, its scenes named after their values where there are several.
+/// One of the tables about the thesis's structures; scene names include their values if there are several.
 Result<StudyTables> scene_tables(std::span<const SceneStudy> known, const Study& study, const StudyOptions& options,
                                  Progress& progress, const StopRequest& stop) {
     const auto part = std::find_if(known.begin(), known.end(), [&](const auto& p) { return p.name == study.table; });
@@ -229,7 +229,7 @@ Result<StudyTables> kernel_tables(const Study& study, const StudyOptions& option
                             });
 }
 
-/// `samples` is an argument; units are doubled from 8 to 256.
+/// Argument: `samples`. The number of units is doubled from 8 to 256.
 Result<StudyTables> sample_tables(const Study& study, const StudyOptions& options, Progress& progress,
                                   const StopRequest& stop) {
     const auto samples = static_cast<std::size_t>(std::clamp(argument(study, "samples", 1000), 1.0, 1e6));
@@ -240,7 +240,7 @@ Result<StudyTables> sample_tables(const Study& study, const StudyOptions& option
         });
 }
 
-/// `threshold_W`, `min_area_m2`, `repeats` and `error` (of the production solve) are arguments.
+/// Arguments: `threshold_W`, `min_area_m2`, `repeats` and `error` (of the production solve).
 Result<StudyTables> schedule_tables(const Study& study, const StudyOptions& options, Progress& progress,
                                     const StopRequest& stop) {
     const auto given = [&](const char* name) {
@@ -285,7 +285,7 @@ Result<StudyTables> view_factor_tables(const Study& study, const StudyOptions& o
     return StudyTables{{"results", std::move(table)}};
 }
 
-/// Local passes on global ones, and links against the threshold of initial links.
+/// Local passes after global ones, and links by the threshold of initial links.
 Result<StudyTables> local_pass_tables(const Study& study, const StudyOptions& options, Progress& progress,
                                       const StopRequest& stop) {
     LocalPassStudyOptions asked;

@@ -7,7 +7,7 @@
 
 namespace exitance {
 
-/// A part of the program that makes the tables of a study in place of runs of `solve`: `table = "flatland"`.
+/// A part of the program that computes the tables of a study instead of runs of `solve`: `table = "flatland"`.
 struct StudyTableMaker {
     std::string_view name;
     Result<StudyTables> (*make)(const Study&, const StudyOptions&, Progress&, const StopRequest&);

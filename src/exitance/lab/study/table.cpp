@@ -32,7 +32,7 @@ std::string quoted(const std::string& text) {
     return out;
 }
 
-/// Fields of the line that begins at `at`, which moves to the next one; quotes may hold line ends.
+/// Returns the fields of the line at `at`, which is advanced to the next line; quoted fields may contain line ends.
 std::vector<std::string> next_fields(const std::string& text, std::size_t& at) {
     std::vector<std::string> fields(1);
     bool in_quotes = false;

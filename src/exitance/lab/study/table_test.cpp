@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-TEST(Table, ComesBackAsItWasWritten) {
+TEST(Table, IsReadAsWritten) {
     const TemporaryFolder folder;
     Table table{{"row", "error"}, {}};
     table.add_row();

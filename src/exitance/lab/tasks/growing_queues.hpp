@@ -12,32 +12,34 @@
 
 namespace exitance {
 
-/// A patch whose list is to be processed, and the place of the task that made it in its worker's record.
+/// A patch whose list is to be processed.
 struct PatchTask {
     std::uint32_t patch = 0;
-    std::uint32_t maker = 0xffffffffu;  ///< A patch; none: the iteration begins with it.
+    /// Patch whose task created this one; none for the first tasks of an iteration.
+    std::uint32_t maker = 0xffffffffu;
 };
 
-/// Queues of tasks that make tasks. Source: the three schemes of [Vinod95].
+/// Queues of tasks that create further tasks. Source: the three schemes of [Vinod95].
 ///
-/// static    a worker's tasks and what they make stay in its own queue, first in, first out;
-/// dynamic   one queue for all, first in, first out;
-/// stealing  what a task makes comes to the head of its worker's queue, from where the worker takes; who has none left
-///           takes from the tail of another's, where the oldest and largest are.
-/// A queue has a lock: that many workers want one is part of what the schemes differ in. Held for a few instructions.
+/// static    a worker's tasks and those that they create stay in its own queue, first in, first out;
+/// dynamic   one queue for all workers, first in, first out;
+/// stealing  created tasks go to the head of the worker's own queue, from where it takes its next task; a worker whose
+/// queue is empty takes from the tail of another's, where the oldest and largest tasks are.
+/// Every queue has a lock, held for a few instructions: contention is part of the comparison of the schemes.
 class GrowingQueues {
   public:
     GrowingQueues(Schedule schedule, std::size_t workers);
 
-    /// What an iteration begins with, dealt out by polygon like cards. Not while workers are about.
+    /// Adds a task with which an iteration begins; queues are assigned to polygons in turn. Must not be called while
+    /// workers run.
     void deal(std::uint32_t polygon, PatchTask task);
-    /// What a worker's task has made, the first of them to be taken first.
+    /// Adds the tasks that a worker's task has created, to be taken in this order.
     void push(std::size_t worker, std::span<const PatchTask> tasks);
-    /// The next task of a worker; none at present.
+    /// Takes the next task of a worker; empty if there is none at present.
     std::optional<PatchTask> next(std::size_t worker);
-    /// A task that next() gave out has ended, and what it made is pushed.
+    /// Must be called after a task from next() has ended and the tasks that it created were pushed.
     void finish() { open_.fetch_sub(1, std::memory_order_acq_rel); }
-    /// Will no more tasks come?
+    /// True if no task is left and none runs that could create others.
     bool are_done() const { return open_.load(std::memory_order_acquire) == 0; }
     std::size_t stolen() const { return stolen_.load(std::memory_order_relaxed); }
 
@@ -45,7 +47,7 @@ class GrowingQueues {
     struct alignas(64) Queue {
         std::mutex lock;
         std::deque<PatchTask> tasks;
-        std::atomic<std::size_t> size{0};  ///< Read without the lock, to pass by what is empty.
+        std::atomic<std::size_t> size{0};  ///< Number of tasks, read without the lock to skip empty queues.
     };
     enum class End { head, tail };
     std::optional<PatchTask> take(std::size_t queue, End end);
@@ -53,7 +55,7 @@ class GrowingQueues {
     Schedule schedule_;
     std::size_t count_;
     std::unique_ptr<Queue[]> queues_;
-    alignas(64) std::atomic<std::size_t> open_{0};  ///< Tasks that wait or run.
+    alignas(64) std::atomic<std::size_t> open_{0};  ///< Number of tasks that wait or run.
     std::atomic<std::size_t> stolen_{0};
 };
 

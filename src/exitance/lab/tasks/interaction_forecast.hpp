@@ -7,16 +7,18 @@
 
 namespace exitance {
 
-/// How many interactions the thresholds predict. Source: [Vinod95], equations 6 and 7:
+/// Predicts the number of interactions from the thresholds. Source: [Vinod95], equations 6 and 7:
 ///
 ///     n_ij = sum_a sum_b f(i, a; j, b),    N = sum_i sum over j visible from i of n_ij
 ///
-/// over the levels a, b of the two quadtrees, at most ceil(log_4(A / A_eps)) of each. The equation's limits are hard to
-/// read in the copies that there are. Read here: all 4^(a+b) parts of a pair are alike, F_ij / 4^b and A_i / 4^a; as
-/// the larger is cut, a pair passes through one sequence of levels; f is 4^(a+b) at the first of them where the pair is
-/// weak enough or cannot be cut, else 0. Both directions are counted, each for its own list.
-/// pairs   of pieces that see each other, both directions
-/// area    of a piece, m^2;  power  of a piece: its radiosity in the brightest band, W/m^2 (not read by F_eps)
+/// over the levels a, b of the two quadtrees, at most ceil(log_4(A / A_eps)) each. The limits of the sums are illegible
+/// in available copies of the paper. They are interpreted as follows. All 4^(a+b) parts of a pair are alike, with F_ij
+/// / 4^b and A_i / 4^a. Since the larger patch is split, a pair passes through one sequence of levels. f is 4^(a+b) at
+/// the first level at which the pair is weak enough or cannot be split, else 0. Both directions are counted, each in
+/// its own list.
+/// pairs   pieces that are visible to each other, in both directions
+/// area    of a piece, m^2
+/// power   radiosity of a piece in the brightest band, W/m^2 (not used with the form-factor threshold)
 double predict_interactions(std::span<const PiecePair> pairs, const std::function<double(std::uint32_t)>& area,
                             const std::function<double(std::uint32_t)>& power, const TaskOptions& options);
 

@@ -8,10 +8,11 @@
 namespace exitance {
 namespace {
 
-/// Products with the third element of the field of four elements, in which addition is exclusive or.
+/// Multiplication by the third element of the field of four elements, whose addition is exclusive or.
 constexpr unsigned twice[4] = {0, 2, 3, 1};
 
-/// The orthogonal array OA(16, 4, 4, 2): ray (a, b) leads from cell (a, b) to cell (a + b, a + 2 b).
+/// Orthogonal array OA(16, 4, 4, 2): ray (a, b) leads from cell (a, b) to cell (a + b, a + 2 b), in that field's
+/// arithmetic.
 constexpr std::array<unsigned, RayEnds::size> partner = [] {
     std::array<unsigned, RayEnds::size> cell{};
     for (unsigned a = 0; a < 4; ++a)
@@ -19,7 +20,7 @@ constexpr std::array<unsigned, RayEnds::size> partner = [] {
     return cell;
 }();
 
-/// Points of equal weight: those of Gauss, two by two, on a square; three, of degree 2, on a triangle.
+/// Points of equal weight: the 2 x 2 Gauss points of a parallelogram, or three points of a triangle (degree 2).
 std::array<Point, 4> receiving_points(const Patch& shape) {
     std::array<Point, 4> out;
     if (shape.is_triangle()) {
@@ -100,7 +101,7 @@ std::uint32_t PatchPool::children(std::uint32_t parent, std::size_t slot) {
         }
         patch.first_child.store(first, std::memory_order_release);
     }
-    while (first == TaskPatch::being_made) {  // for as long as four patches take to be made
+    while (first == TaskPatch::being_made) {  // while another thread makes the four patches
         std::this_thread::yield();
         first = patch.first_child.load(std::memory_order_acquire);
     }

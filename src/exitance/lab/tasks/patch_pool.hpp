@@ -10,12 +10,12 @@
 
 namespace exitance {
 
-/// Light from one patch to the patch whose list this stands in.
+/// Transport of light from a source patch to the patch that owns the list.
 struct Interaction {
     static constexpr float unknown = -1;
     std::uint32_t source = 0;
-    float form_factor = unknown;  ///< F_pq of the receiver p in the open.
-    float visible = unknown;      ///< Share of the rays between them that pass.
+    float form_factor = unknown;  ///< F_pq of the receiver p without occlusion.
+    float visible = unknown;      ///< Share of unoccluded rays between them.
 };
 
 /// A node of a quadtree over a piece, with its list of interactions.
@@ -26,28 +26,30 @@ struct TaskPatch {
     Plane plane;
     RegionId region;
     double area = 0;              ///< m^2
-    std::uint32_t polygon = 0;    ///< The piece below which it lies.
+    std::uint32_t polygon = 0;    ///< Index of the piece that contains it.
     std::uint32_t parent = none;  ///< None for a piece.
     std::uint8_t level = 0, corner_count = 4;
-    std::uint64_t path = 0;  ///< Two bits a level, from the highest down: its name, whoever made it when.
+    /// Two bits per level from the highest down. Identifies the patch independently of its id.
+    std::uint64_t path = 0;
     std::array<Point, 4> corners;
-    std::array<Point, 4> receiving;  ///< Where form factors to it are taken, as many as corners.
-    RayEnds places;                  ///< Stratified, where rays begin and end.
+    std::array<Point, 4> receiving;  ///< Points at which form factors are evaluated, as many as corners.
+    RayEnds places;                  ///< Stratified end points of visibility rays.
 
-    std::atomic<std::uint32_t> first_child{none};  ///< Of four side by side.
+    std::atomic<std::uint32_t> first_child{none};  ///< First of four consecutive children.
     std::vector<Interaction> list;
-    Spectrum irradiance;                  ///< What it and the patches above it have gathered in an iteration, W/m^2.
+    Spectrum irradiance;                  ///< Irradiance gathered by it and its ancestors in an iteration, W/m^2.
     std::array<Spectrum, 2> radiosity{};  ///< After iterations of even and odd number, W/m^2.
-    std::atomic<std::uint32_t> open_children{0};  ///< Whose radiosity is not known yet, in this iteration.
-    std::uint32_t reached = 0;                    ///< The last iteration whose tasks came to it.
+    /// Number of children whose radiosity is not known yet in this iteration.
+    std::atomic<std::uint32_t> open_children{0};
+    std::uint32_t reached = 0;  ///< Last iteration in which a task processed it.
 
     std::span<const Point> outline() const { return std::span(corners).first(corner_count); }
 };
 
-/// Quadtrees over the pieces of a scene, which any number of threads may cut at once.
+/// Quadtrees over the pieces of a scene; any number of threads may split patches concurrently.
 ///
-/// What a patch is follows from its piece and its path alone; who cuts its parent first makes it. Ids tell when it was
-/// made and are no part of any result, but for parents' being smaller than their children's.
+/// The contents of a patch depend only on its piece and path; the thread that first splits its parent creates it. Ids
+/// depend on the order of creation and do not affect results, except that parents have smaller ids than their children.
 class PatchPool {
   public:
     PatchPool(const Stage& stage, std::uint64_t seed);
@@ -60,15 +62,16 @@ class PatchPool {
         return chunks_[id / chunk].load(std::memory_order_acquire)[id % chunk];
     }
     std::uint32_t size() const { return size_.load(std::memory_order_acquire); }
-    std::uint32_t root_count() const { return root_count_; }  ///< These come first, in the order of the pieces.
+    std::uint32_t root_count() const { return root_count_; }  ///< Roots have the first ids, in the order of the pieces.
 
-    /// The first of a patch's four children, which are made where there are none: with the radiosity of their parent
-    /// in `slot`.
+    /// Returns the first of a patch's four children. Creates them if there are none, with their parent's radiosity in
+    /// `slot`.
     std::uint32_t children(std::uint32_t parent, std::size_t slot);
 
-    /// Two patches' rays: places are paired by an orthogonal array, turned by what the patches are.
+    /// End points of the rays of a group between two patches. An orthogonal array pairs the points, shifted by a hash
+    /// of the two patches.
     std::pair<RayEnds, RayEnds> rays(const TaskPatch& p, const TaskPatch& q, std::size_t group) const;
-    /// Bit k: do both ends of ray k lie in front of the other patch?
+    /// Bit k: true if each end of ray k is in front of the other patch.
     std::uint32_t facing_rays(const TaskPatch& p, const TaskPatch& q, std::size_t group) const;
 
     std::size_t memory_bytes() const;

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// One iteration, whose tasks stand at [first, first + count) of the graph.
+/// Replay of one iteration, whose tasks are [first, first + count) of the graph.
 class Replay {
   public:
     Replay(const TaskGraph& graph, const TaskGraph::Iteration& iteration, Schedule schedule, std::size_t processors,
@@ -34,7 +34,7 @@ class Replay {
         }
     }
 
-    /// When the last task has ended, from 0.
+    /// Time at which the last task ends, counted from 0.
     double run() {
         for (std::size_t p = 0; p < processors_; ++p) events_.push({0, p});
         double end = 0;
@@ -50,7 +50,7 @@ class Replay {
 
   private:
     static constexpr std::size_t none = ~std::size_t(0);
-    using Event = std::pair<double, std::size_t>;  ///< When, and which processor becomes free.
+    using Event = std::pair<double, std::size_t>;  ///< Time, and the processor that becomes free.
 
     void add_last(std::size_t queue, std::size_t task) {
         if (queues_[queue].empty()) filled_.insert(queue);
@@ -67,7 +67,7 @@ class Replay {
         if (tasks.empty()) filled_.erase(queue);
         return task;
     }
-    /// A queue's lock is got one after the other. Returns when this processor is done with it.
+    /// Waits for a queue's lock and uses the queue. Returns the time at which this processor is done with it.
     double at_queue(std::size_t queue, double now) {
         const double begin = std::max(now, free_at_[queue]);
         free_at_[queue] = begin + machine_.queue;
@@ -75,7 +75,8 @@ class Replay {
         return free_at_[queue];
     }
 
-    /// What the task that has ended has made comes to a queue, and whoever waits for it is woken. Returns when.
+    /// Pushes the tasks created by the task that has ended, and wakes processors that wait for them. Returns the time
+    /// at which they are available.
     double push_made(double now, std::size_t p) {
         const std::vector<std::size_t>& made = children_[std::exchange(running_[p], none) - first_];
         if (made.empty()) return push_done_ = now;
@@ -85,7 +86,7 @@ class Replay {
             for (std::size_t i = made.size(); i-- > 0;) add_first(queue, made[i]);
         else
             for (std::size_t t : made) add_last(queue, t);
-        // Those that wait look again; as many as there are tasks.
+        // One waiting processor per new task tries again.
         if (schedule_ != Schedule::fixed)
             for (std::size_t i = 0; i < made.size() && !waiting_.empty(); ++i) {
                 const auto [since, waiter] = waiting_.front();
@@ -131,7 +132,7 @@ class Replay {
     SimulatedRun& run_;
     std::vector<std::deque<std::size_t>> queues_;
     std::set<std::size_t> filled_;  ///< Queues that are not empty.
-    std::vector<double> free_at_;   ///< When each queue's lock is to be had.
+    std::vector<double> free_at_;   ///< Time at which each queue's lock becomes free.
     std::vector<std::size_t> running_;
     std::deque<Event> waiting_;
     std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;

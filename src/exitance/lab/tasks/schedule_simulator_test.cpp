@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// Two iterations of trees of tasks, a root a polygon; costs about a millisecond.
+/// Two iterations of trees of tasks, with one root per polygon; tasks cost up to a millisecond.
 TaskGraph random_graph(std::uint64_t seed, std::uint32_t polygons) {
     RandomStream random(seed, Stream::mesh);
     TaskGraph graph;
@@ -38,7 +38,7 @@ double all_work(const TaskGraph& graph) {
 
 }  // namespace
 
-TEST(ScheduleSimulator, OneProcessorTakesWhatTheTasksTake) {
+TEST(ScheduleSimulator, OneProcessorNeedsTheSumOfTheTaskTimes) {
     const TaskGraph graph = random_graph(1, 20);
     for (const auto& [schedule, name] : schedule_names) {
         const SimulatedRun run = simulate_schedule(graph, schedule, 1, no_overhead);
@@ -47,7 +47,7 @@ TEST(ScheduleSimulator, OneProcessorTakesWhatTheTasksTake) {
     }
 }
 
-TEST(ScheduleSimulator, NoScheduleBeatsTheWorkOrTheCriticalPathAndStealingIsWithinTheirSum) {
+TEST(ScheduleSimulator, RespectsTheBoundsOfWorkAndCriticalPath) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         const TaskGraph graph = random_graph(seed, 3 + 5 * static_cast<std::uint32_t>(seed));
         const double longest = critical_path(graph), work = all_work(graph);
@@ -60,7 +60,8 @@ TEST(ScheduleSimulator, NoScheduleBeatsTheWorkOrTheCriticalPathAndStealingIsWith
                 double tasks = 0;
                 for (const TaskGraph::Task& task : graph.tasks) tasks += task.cost();
                 EXPECT_NEAR(run.tasks, tasks, 1e-9) << "every task runs once";
-                // Of a greedy schedule, [Graham69]; static ones may leave processors idle while others have work.
+                // Bound for greedy schedules [Graham69]; a static schedule may leave processors idle while others have
+                // work.
                 if (schedule != Schedule::fixed) {
                     EXPECT_LE(run.seconds, work / static_cast<double>(P) + longest + 1e-9) << name << " on " << P;
                 }
@@ -69,7 +70,7 @@ TEST(ScheduleSimulator, NoScheduleBeatsTheWorkOrTheCriticalPathAndStealingIsWith
     }
 }
 
-TEST(ScheduleSimulator, OneQueueForAllSaturatesWhereItsLockDoes) {
+TEST(ScheduleSimulator, OneSharedQueueIsLimitedByItsLock) {
     const TaskGraph graph = random_graph(3, 400);
     MachineModel slow_queue = no_overhead;
     slow_queue.queue = 50e-6;  // a twentieth of the longest task

@@ -17,7 +17,8 @@
 namespace exitance {
 namespace {
 
-/// The engine's quadtrees as a tree of elements, with the light of its leaves. Pieces first, then level by level.
+/// Converts the engine's quadtrees to a tree of elements with the light of its leaves: pieces first, then level by
+/// level.
 GlobalLight light_of(const TaskEngine& engine, const Stage& stage) {
     const PatchPool& patches = engine.patches();
     GlobalLight light;
@@ -69,7 +70,7 @@ void record(const TaskEngine& engine, const TaskReport& report, const GlobalLigh
         [&](std::uint32_t root) { return max(engine.radiosity(root)); }, asked);
     s.figures["tasks"] = static_cast<double>(report.tasks);
     s.figures["stolen_tasks"] = static_cast<double>(report.stolen);
-    // Processor time of all threads, parts of what the solve took.
+    // Processor time of all threads; parts of the solve's time.
     s.seconds["visibility"] = report.seconds[TaskGraph::vis], s.seconds["form_factors"] = report.seconds[TaskGraph::ff];
     for (std::size_t k = 0; k < TaskGraph::cost_names.size(); ++k)
         s.figures[std::string(TaskGraph::cost_names[k]) + "_seconds"] = report.seconds[k];
@@ -78,10 +79,10 @@ void record(const TaskEngine& engine, const TaskReport& report, const GlobalLigh
 }  // namespace
 
 TaskOptions task_options(const Scene& scene, const SolveOptions& options) {
-    // Of the power that the brightest band emits; of all area; F_eps; and of the total radiosity. Six or seven
-    // iterations in rooms that reflect half of their light.
+    // Defaults: share of the power emitted in the brightest band; share of the area; F_eps; relative change of total
+    // radiosity, which takes six or seven iterations in rooms of reflectance 0.5.
     constexpr double power_share = 1e-5, area_share = 2e-6, least_form_factor = 0.02, change = 0.01;
-    constexpr std::size_t most_iterations = 100;
+    constexpr std::size_t default_max_iterations = 100;
     TaskOptions out;
     out.by_power = options.oracle != LinkOracle::form_factor;
     Spectrum emitted;
@@ -93,7 +94,7 @@ TaskOptions task_options(const Scene& scene, const SolveOptions& options) {
     out.threshold = options.threshold.value_or(out.by_power ? power_share * max(emitted) : least_form_factor);
     out.min_area = options.min_area.value_or(area_share * area);
     out.change = options.residual.value_or(change);
-    out.max_iterations = options.max_iterations.value_or(most_iterations);
+    out.max_iterations = options.max_iterations.value_or(default_max_iterations);
     out.rays = (options.visibility_samples.value_or(RayEnds::size) + RayEnds::size - 1) / RayEnds::size * RayEnds::size;
     out.triage = options.triage;
     out.schedule = options.schedule;
@@ -134,7 +135,7 @@ Result<Solution> solve_by_tasks(const Scene& scene, const SolveOptions& options,
     statistics.converged = report.converged || options.max_iterations;
     if (stop.requested()) statistics.stopped_by = stop.interrupted() ? "interrupt" : "time limit";
     if (!statistics.converged && statistics.stopped_by.empty()) statistics.stopped_by = "iterations";
-    stage.rooms = find_light_rooms(stage, options.seed, stop);  // which tell what escapes
+    stage.rooms = find_light_rooms(stage, options.seed, stop);  // the energy balance needs rooms to find escaping light
     statistics.energy = energy_balance(solution, stage);
     if (!stop.requested()) record_mirrored_light(solution, stage, options, progress);
     if (task_trace()) task_trace()->add_graph(engine.take_graph());

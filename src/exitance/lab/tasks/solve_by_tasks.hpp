@@ -7,13 +7,14 @@
 
 namespace exitance {
 
-/// `--method hierarchical --task-engine`: the light that a TaskEngine finds, constant on its leaves, as the solution.
-/// The light of emitters goes through the links like all other, and nothing is gathered again or certified: there is no
-/// error estimate. An Error where the scene has light that links between diffuse patches cannot carry.
+/// Solves for `--method hierarchical --task-engine`: the light found by a TaskEngine, constant on its leaves. Links
+/// transport the light of emitters as well. Nothing is gathered or certified afterwards, so there is no error estimate.
+/// Returns an Error if the scene has light that links between diffuse patches cannot transport.
 Result<Solution> solve_by_tasks(const Scene& scene, const SolveOptions& options, Progress& progress,
                                 const StopRequest& stop);
 
-/// The engine's settings: as asked for, else relative to the scene's area and to what its brightest band emits.
+/// Returns the engine's settings: those requested, otherwise relative to the scene's area and to the flux emitted in
+/// the brightest band.
 TaskOptions task_options(const Scene& scene, const SolveOptions& options);
 
 }  // namespace exitance

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// A worker's part of an iteration: until no task is left that may make others.
+/// Runs one worker's part of an iteration, until no task is left that could create others.
 void work(GrowingQueues& queues, TaskWorker& worker, std::size_t number, const IterationState& iteration) {
     while (!queues.are_done()) {
         const std::optional<PatchTask> task = queues.next(number);
@@ -81,8 +81,8 @@ void TaskEngine::count() {
     }
 }
 
-/// Patches that were cut for others' sake in this iteration have their parent's light: tasks came to all older ones. A
-/// child's id is larger than its parent's.
+/// Copies the parent's light to patches that were split off for another patch's list in this iteration; tasks processed
+/// all older ones. Parents come first, as their ids are smaller.
 void TaskEngine::settle_new_patches(std::uint32_t old_size) {
     for (std::uint32_t id = old_size; id < patches_.size(); ++id) {
         TaskPatch& patch = patches_[id];
@@ -108,7 +108,8 @@ void TaskEngine::collect_pairs() {
     });
 }
 
-/// What workers have recorded, in an order that does not depend on them: by piece, parents before children.
+/// Appends the workers' records to the graph in an order that does not depend on the workers: by piece, parents before
+/// children.
 void TaskEngine::record(TaskGraph::Iteration iteration) {
     std::vector<TaskWorker::Record> all;
     for (TaskWorker& worker : workers_) {

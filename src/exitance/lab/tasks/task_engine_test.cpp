@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// Radiosity and list lengths of all patches, by their names.
+/// Radiosity and list length of every patch, by its path.
 using State = std::map<std::tuple<std::uint32_t, std::uint64_t, int>, std::pair<Spectrum, std::size_t>>;
 
 State state_of(const TaskEngine& engine) {
@@ -51,9 +51,9 @@ TEST(TaskEngine, BitsDoNotDependOnScheduleOrThreads) {
     EXPECT_GT(first.size(), 4 * stage.pieces.size()) << "patches were cut";
 }
 
-TEST(TaskEngine, AClosedRoomOfOneReflectanceHasTheRadiosityOfItsSeries) {
-    // All faces emit 1 and reflect a half: B = 1 / (1 - 1/2), whatever the mesh, but for form factors that do not sum
-    // to 1 when they are taken at four points of coarse patches.
+TEST(TaskEngine, AClosedRoomOfOneReflectanceHasTheExactRadiosity) {
+    // All faces emit 1 and reflect one half: B = 1 / (1 - 1/2) on any mesh. The tolerance is for form factors that do
+    // not sum to 1, since they are evaluated at four points of coarse patches.
     const Scene scene = box_scene(2, 3, 2.5, 0.5, 1, 1);
     const Stage stage(scene);
     TaskEngine engine(stage, options(0.02));
@@ -66,7 +66,7 @@ TEST(TaskEngine, AClosedRoomOfOneReflectanceHasTheRadiosityOfItsSeries) {
     EXPECT_NEAR(power / area, 2, 0.02);
 }
 
-TEST(TaskEngine, SmallerThresholdsMakeMoreInteractionsAndThePredictionFollows) {
+TEST(TaskEngine, SmallerThresholdsMakeMoreInteractionsAsPredicted) {
     const Scene scene = box_scene(2, 3, 2.5, 0.5, 5);
     const Stage stage(scene);
     std::size_t before = 0;
@@ -79,13 +79,13 @@ TEST(TaskEngine, SmallerThresholdsMakeMoreInteractionsAndThePredictionFollows) {
         const double predicted = predict_interactions(
             engine.visible_pairs(), [&](std::uint32_t r) { return engine.patches()[r].area; },
             [&](std::uint32_t r) { return max(engine.radiosity(r)); }, o);
-        // The equation takes all parts of a pair for alike.
+        // The equation assumes that all parts of a pair are alike.
         EXPECT_GT(predicted, 0.3 * static_cast<double>(report.interactions));
         EXPECT_LT(predicted, 3 * static_cast<double>(report.interactions));
     }
 }
 
-TEST(TaskEngine, TheOracleOfFormFactorsKnowsNoLight) {
+TEST(TaskEngine, TheFormFactorOracleIgnoresLight) {
     std::size_t found[2];
     for (int i = 0; i < 2; ++i) {
         const Scene scene = box_scene(2, 3, 2.5, 0.5, i == 0 ? 5 : 500);
@@ -98,7 +98,7 @@ TEST(TaskEngine, TheOracleOfFormFactorsKnowsNoLight) {
     EXPECT_EQ(found[0], found[1]);
 }
 
-TEST(TaskEngine, TheGraphTellsWhoMadeEveryTaskAndWhatItTook) {
+TEST(TaskEngine, TheGraphRecordsMakerAndTimeOfEveryTask) {
     const Scene scene = built_scene("complex", {{"m", "1"}});
     const Stage stage(scene);
     TaskEngine engine(stage, options(0.05, Schedule::stealing, 2));
@@ -133,7 +133,7 @@ TEST(TaskEngine, TheGraphTellsWhoMadeEveryTaskAndWhatItTook) {
     EXPECT_NEAR(seconds, reported, 1e-3 * reported);
 }
 
-TEST(TaskEngine, AStopLeavesAWholeIteration) {
+TEST(TaskEngine, AStopBeforeTheFirstIterationRunsNone) {
     const Scene scene = box_scene(2, 3, 2.5, 0.5, 5);
     const Stage stage(scene);
     StopRequest stop;

@@ -10,14 +10,14 @@
 namespace exitance {
 namespace {
 
-/// Of the calling thread: other programs on the machine do not count.
+/// Processor time of the calling thread; other programs on the machine do not affect it.
 double processor_seconds() {
     timespec t{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// May some point of p see the front of q?
+/// True if some corner of p is in front of q.
 bool reaches_before(const TaskPatch& p, const TaskPatch& q) {
     const auto corners = p.outline();
     return std::any_of(corners.begin(), corners.end(), [&](const Point& x) { return q.plane.signed_distance(x) > 0; });
@@ -27,7 +27,7 @@ bool may_face(const TaskPatch& p, const TaskPatch& q) {
     return p.region != q.region && reaches_before(p, q) && reaches_before(q, p);
 }
 
-/// Mean over p's points of the form factor to q.
+/// Mean form factor to q over p's receiving points.
 double mean_form_factor(const TaskPatch& p, const TaskPatch& q) {
     double sum = 0;
     for (std::size_t i = 0; i < p.corner_count; ++i) sum += point_to_polygon(p.receiving[i], p.plane.n, q.outline());
@@ -80,7 +80,8 @@ void TaskWorker::link_pieces(std::uint32_t p) {
     spend(TaskGraph::init);
 }
 
-/// Of two patches that hardly face each other, p's points may all lie where they do not: then q's count.
+/// Form factor from p to q. If two patches barely face each other, all points of p may be where they do not; then q's
+/// points are used, by reciprocity.
 float TaskWorker::form_factor(const TaskPatch& p, const TaskPatch& q) {
     if (!may_face(p, q)) return 0;
     form_factors += p.corner_count;
@@ -123,7 +124,7 @@ bool TaskWorker::is_too_strong(const TaskPatch& patch, const Interaction& i) con
     return F * std::max(1.0, patch.area / source.area) > limit;  // reciprocity: F_qp = F_pq A_p / A_q
 }
 
-/// The larger of the two is cut, the source where they are alike.
+/// Splits the larger patch of an interaction, or the source if both have the same area.
 void TaskWorker::cut_interaction(std::uint32_t p, const Interaction& i) {
     const TaskPatch& patch = (*patches_)[p];
     Interaction part;
@@ -141,7 +142,8 @@ void TaskWorker::cut_interaction(std::uint32_t p, const Interaction& i) {
     }
 }
 
-/// Rounds: all of the list, then the parts of sources that were cut, until nothing is too strong.
+/// Refines a patch's list in rounds: first the whole list, then the parts of split sources, until no interaction is too
+/// strong.
 void TaskWorker::refine(std::uint32_t p) {
     TaskPatch& patch = (*patches_)[p];
     bool are_pieces = iteration_->number == 1 && patch.level == 0;
@@ -173,7 +175,7 @@ void TaskWorker::refine(std::uint32_t p) {
     spend(TaskGraph::init);
 }
 
-/// E_p = E_parent + sum F_pq V_pq B_q over its list, B as the last iteration left it.
+/// E_p = E_parent + sum F_pq V_pq B_q over the list, with B of the last iteration.
 void TaskWorker::gather(TaskPatch& patch) {
     Spectrum E = patch.parent == TaskPatch::none ? Spectrum() : (*patches_)[patch.parent].irradiance;
     for (const Interaction& i : patch.list)
@@ -183,8 +185,8 @@ void TaskWorker::gather(TaskPatch& patch) {
     patch.reached = iteration_->number;
 }
 
-/// Children that there were, or that the patch's own interactions have made lists for, are gone on with. One with
-/// nothing to do is no task.
+/// Creates tasks for the children that have a list or had children before the iteration, and finishes the others here.
+/// A patch whose children are all new and have no lists is finished as a leaf.
 void TaskWorker::hand_down(std::uint32_t p) {
     TaskPatch& patch = (*patches_)[p];
     const std::uint32_t first = patch.first_child.load(std::memory_order_acquire);
@@ -212,8 +214,8 @@ void TaskWorker::finish_leaf(TaskPatch& patch) {
     pull_up(patch);
 }
 
-/// B of a patch is the mean over its children, which cover a quarter of it each; summed in pairs, so that four equal
-/// ones give the same.
+/// Sets B of ancestors whose children are all finished to the mean over their children, which have a quarter of the
+/// area each. Sums in pairs, so that four equal values give exactly that value.
 void TaskWorker::pull_up(const TaskPatch& patch) {
     for (const TaskPatch* child = &patch; child->parent != TaskPatch::none;) {
         TaskPatch& parent = (*patches_)[child->parent];

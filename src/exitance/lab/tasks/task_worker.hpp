@@ -10,43 +10,43 @@
 
 namespace exitance {
 
-/// Two pieces that see each other, as the first iteration found them.
+/// Two pieces that are visible to each other, found in the first iteration.
 struct PiecePair {
     std::uint32_t receiver = 0, source = 0;
-    float form_factor = 0;  ///< F of the receiver, in the open.
+    float form_factor = 0;  ///< F of the receiver without occlusion.
 };
 
-/// What is alike for all tasks of an iteration.
+/// Data shared by all tasks of an iteration.
 struct IterationState {
     std::uint32_t number = 1;
     std::uint32_t old_size = 0;  ///< Patches from here on were made in this iteration.
     const StopRequest& stop;
     const Stopwatch& clock;
-    double origin = 0;  ///< Of the times recorded, seconds.
+    double origin = 0;  ///< Offset of recorded times, seconds.
 
-    std::size_t last() const { return (number + 1) % 2; }  ///< Slot of the radiosities that are read,
-    std::size_t present() const { return number % 2; }     ///< and of those that are written.
+    std::size_t last() const { return (number + 1) % 2; }  ///< Slot of the radiosities that are read.
+    std::size_t present() const { return number % 2; }     ///< Slot of the radiosities that are written.
 };
 
-/// Processes tasks, one a time; one a thread. What it leaves on patches does not depend on who it is.
+/// Processes tasks one at a time; one object per thread. The results do not depend on which worker runs a task.
 class alignas(64) TaskWorker {
   public:
     TaskWorker(const Stage& stage, const TaskOptions& options, PatchPool& patches, std::uint32_t number)
         : stage_(&stage), options_(&options), patches_(&patches), number_(number) {}
 
-    /// What the task has made is in made(), until the next one.
+    /// Processes a task. The tasks that it creates are in made() until the next call.
     void process(const PatchTask& task, const IterationState& iteration);
     std::span<const PatchTask> made() const { return made_; }
 
-    /// A task as it was recorded, by patches in place of indices.
+    /// A recorded task, with patches instead of indices into the graph.
     struct Record {
         std::uint32_t patch = 0, maker = 0;
         TaskGraph::Task task;
     };
-    std::vector<Record> records;           ///< Where they are asked for.
+    std::vector<Record> records;           ///< Filled if options.record is set.
     std::vector<PiecePair> visible_pairs;  ///< Found in the first iteration.
     std::size_t rays = 0, form_factors = 0, tasks = 0;
-    std::array<double, 5> seconds{};  ///< Of all tasks, by TaskGraph::Cost.
+    std::array<double, 5> seconds{};  ///< Processor time of all tasks, by TaskGraph::Cost.
 
   private:
     void link_pieces(std::uint32_t p);
@@ -70,9 +70,10 @@ class alignas(64) TaskWorker {
     std::uint32_t number_;
     const IterationState* iteration_ = nullptr;
     std::vector<PatchTask> made_;
-    std::vector<Interaction> fresh_, next_, kept_;  ///< To be looked at; parts of what was cut; good enough.
-    std::array<double, 5> before_{};                ///< `seconds` before the task at hand.
-    double mark_ = 0;                               ///< Processor time up to which it is dealt out.
+    /// Interactions to be examined; parts of split ones; accepted ones.
+    std::vector<Interaction> fresh_, next_, kept_;
+    std::array<double, 5> before_{};  ///< `seconds` before the current task.
+    double mark_ = 0;                 ///< Processor time at the last call of spend().
 };
 
 }  // namespace exitance

@@ -4,7 +4,7 @@
 
 namespace exitance {
 
-/// Lines of CSV, written as printf writes them.
+/// Lines of CSV, formatted by printf.
 class CsvText {
   public:
     [[gnu::format(printf, 2, 3)]] void print(const char* format, ...);

@@ -22,12 +22,12 @@ namespace {
 
 using Light = std::function<double(const Point&)>;
 
-/// How far within a triangle its border is looked at, as a share of the scene's size.
+/// Distance inside a triangle at which its border is evaluated, as a share of the scene's size.
 constexpr double nudge_share = 1e-6;
 
 struct RefinedMesh {
     BisectionMesh mesh;
-    std::vector<double> value;  ///< Of nodes; NaN: not looked at.
+    std::vector<double> value;  ///< Per node; NaN: not evaluated yet.
     double rms = 0, ratio = 0, area = 0;
 };
 
@@ -45,17 +45,17 @@ double quadratic(RefinedMesh& m, const BisectionMesh::Triangle& t, const std::ar
     return sum;
 }
 
-/// Bisects triangles while their quadratic polynomial is off by more than `allowed` at one of seven places.
+/// Bisects triangles while the error of their quadratic polynomial exceeds `allowed` at one of seven points.
 RefinedMesh refine(const LabelledTriangles& triangles, const PlaneFrame& frame, const Light& light, double allowed,
                    double nudge) {
-    constexpr std::uint8_t deepest = 14;
-    constexpr std::size_t most = 200'000;
+    constexpr std::uint8_t max_depth = 14;
+    constexpr std::size_t max_triangles = 200'000;
     RefinedMesh m{BisectionMesh(nudge), {}};
     m.mesh.add(triangles, frame);
     for (std::vector<std::uint32_t> changed = m.mesh.take_changed(); !changed.empty(); changed = m.mesh.take_changed())
         for (std::uint32_t number : changed) {
             const BisectionMesh::Triangle t = m.mesh.triangles()[number];
-            if (t.depth >= deepest || m.mesh.triangles().size() > most) continue;
+            if (t.depth >= max_depth || m.mesh.triangles().size() > max_triangles) continue;
             double misfit = 0;
             for (std::size_t k = 0; k < 3; ++k)
                 for (std::size_t end = 0; end < 2; ++end) {
@@ -86,10 +86,10 @@ RefinedMesh refine(const LabelledTriangles& triangles, const PlaneFrame& frame, 
 struct ChosenReceiver {
     RegionId region;
     std::optional<ReceiverCurves> curves;
-    double largest = 0;  ///< Of its light at random places, W/m^2.
+    double largest = 0;  ///< Largest light at random points, W/m^2.
 };
 
-/// The region of one convex loop with the most curves.
+/// Returns the region of one convex loop with the most curves.
 ChosenReceiver choose(const Stage& stage) {
     const BlockerEdges edges(stage.occluders);
     const CurveFinder finder(stage, edges, {});
@@ -132,7 +132,7 @@ LabelledTriangles triangles_of(const ReceiverCurves& receiver, TriangulationSche
     return triangulated(tree, scheme, labels);
 }
 
-/// Mean of the bands, W/m^2; none beneath other surfaces.
+/// Mean of the bands, W/m^2; 0 if covered by another surface.
 double light_at(const Stage& stage, const Point& p, const Normal& n, RegionId r, DirectLight::Workspace& workspace) {
     return stage.occluders.is_covered(p, n, r) ? 0 : mean(stage.direct.irradiance(p, n, r, workspace));
 }
@@ -178,7 +178,7 @@ LayerTriangles layer_of(RefinedMesh& m, const PlaneFrame& frame, const Light& li
     return out;
 }
 
-/// The largest difference at triangles' centres, over the largest light.
+/// The largest difference at triangles' centres, relative to the largest light.
 double worst(const LayerTriangles& exact, const LightLayer& layer, double largest) {
     double out = 0;
     std::size_t kept = 0;
@@ -237,8 +237,8 @@ void layers(const char* name, const Scene& scene, CsvText& out) {
 
 // ---------------------------------------------------------------------------------------------------- premesh
 
-/// Faces and construction edges of a DM-tree by the order in which curves come to it: as they are found; the longest
-/// first, a stand-in for the penumbra's outlines first; after a grid of cells.
+/// Faces and construction edges of a DM-tree by the insertion order of its curves: as found; the longest first, as an
+/// approximation of penumbra outlines first; after a grid of cells.
 void premesh(const char* name, const Scene& scene, CsvText& out) {
     const Stage stage(scene);
     const ChosenReceiver receiver = choose(stage);

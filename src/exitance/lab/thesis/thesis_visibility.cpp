@@ -30,7 +30,7 @@ struct Mean {
     double share(std::size_t of) const { return count > 0 ? sum / static_cast<double>(count * of) : 0; }
 };
 
-/// Lists of points in half-shadow: squares of a thousandth of the scene's size stand for them.
+/// Adds candidate lists of points in penumbra, approximated by squares of a thousandth of the scene's size.
 void add_points(const Occluders& occluders, std::span<const Point> outline, const ConvexPiece& piece,
                 const Facet& source, RandomStream& random, Mean& lists) {
     constexpr int places = 8;
@@ -59,9 +59,9 @@ void candidates(const char* name, const Scene& scene, CsvText& out) {
     RandomStream random(1, Stream::mesh);
     std::size_t split_near_root = 0;
     std::size_t emitters = 0;
-    constexpr std::size_t most_emitters = 8;
+    constexpr std::size_t max_emitters = 8;
     for (SurfaceId s : scene.emitters()) {
-        if (++emitters > most_emitters) break;
+        if (++emitters > max_emitters) break;
         const RegionId source_region = scene.surfaces()[s].region;
         const std::vector<Point> hull = convex_hull(scene.outline(s), scene.surfaces()[s].normal);
         if (hull.size() < 3 || hull.size() > 64) continue;
@@ -84,7 +84,7 @@ void candidates(const char* name, const Scene& scene, CsvText& out) {
                 shaft.set(occluders, {tree.outline(f), piece.plane.n, piece.region}, source);
                 const View view = shaft.classify(found);
                 is_penumbra |= view == View::mixed;
-                // Turned away is none, too, and is no shadow.
+                // Polygons that face away are classified as none as well, but are not in shadow.
                 is_umbra |= view == View::none && !shaft.blocker().is_none();
                 if (view == View::mixed) longest.add(found.size());
             }
@@ -111,19 +111,19 @@ void candidates(const char* name, const Scene& scene, CsvText& out) {
 
 // ---------------------------------------------------------------------------------------------- shadow volumes
 
-/// What the volumes of one kind tell of pairs, and what that takes.
+/// Results of one kind of volumes for pairs, and their cost.
 struct VolumeCounts {
     std::size_t survivors = 0, tests = 0, umbra = 0;
-    double making = 0, testing = 0;  ///< Seconds of processor.
+    double making = 0, testing = 0;  ///< Processor time, s.
 };
 
-/// Survivors among all polygons for every pair of a source and a polygon that light may reach: by the volumes one by
-/// one, merged into one tree a source, and by shafts.
+/// Counts the polygons that survive for every pair of a source and a polygon that light may reach: by separate volumes,
+/// by volumes merged into one tree per source, and by shafts.
 class VolumeStudy {
   public:
     explicit VolumeStudy(const Scene& scene) : scene_(scene), occluders_(scene) {
-        constexpr std::size_t most_emitters = 4;
-        for (std::size_t e = 0; e < std::min(most_emitters, scene.emitters().size()); ++e) look(scene.emitters()[e]);
+        constexpr std::size_t max_emitters = 4;
+        for (std::size_t e = 0; e < std::min(max_emitters, scene.emitters().size()); ++e) look(scene.emitters()[e]);
     }
 
     void print(const char* name, CsvText& out) const {
@@ -168,7 +168,7 @@ class VolumeStudy {
                       {hull, emitter.normal, emitter.region});
             const View view = shaft.classify(found);
             shaft_seconds_ += cpu_seconds() - begin;
-            if (view == View::none && shaft.blocker().is_none()) continue;  // turned away
+            if (view == View::none && shaft.blocker().is_none()) continue;  // facing away
             ++pairs_;
             of_shafts_ += view == View::mixed ? found.size() : view == View::none ? 1 : 0;
             hidden_ += view == View::none;

@@ -12,10 +12,10 @@
 namespace exitance {
 namespace {
 
-constexpr double near = 0.01;          ///< Faces of one group that are nearer to one another are one luminaire, metres.
-constexpr double largest_angle = 0.1;  ///< sr, beyond which UGR was not made.
+constexpr double near = 0.01;          ///< Metres; nearer faces of one group belong to one luminaire.
+constexpr double largest_angle = 0.1;  ///< sr; the largest solid angle for which UGR is defined.
 
-/// A part of a face that is small from the eye.
+/// A part of a face that is small as seen from the eye.
 struct Piece {
     Point middle;
     double area = 0, solid_angle = 0;
@@ -41,7 +41,7 @@ void cut(const Point& eye, const Point& a, const Point& b, const Point& c, int d
     cut(eye, ca, bc, c, depth + 1, out), cut(eye, ab, bc, ca, depth + 1, out);
 }
 
-/// Emitting faces by the luminaire that they belong to.
+/// Groups emitting faces into luminaires.
 std::vector<std::vector<SurfaceId>> luminaires(const Scene& scene) {
     struct Entry {
         SurfaceId surface;
@@ -80,7 +80,7 @@ std::vector<std::vector<SurfaceId>> luminaires(const Scene& scene) {
     return out;
 }
 
-/// Share of light that the panes between two places let through.
+/// Share of light that the panes between two points transmit.
 Spectrum through_panes(const Scene& scene, const Point& from, const Point& to) {
     Spectrum share(1);
     for (const Pane& pane : scene.panes()) {
@@ -97,7 +97,7 @@ class Eye {
     Eye(const RadiosityFunction& light, const Observer& observer, const LightUnit& lux)
         : stage_(light.stage()), scene_(light.solution().scene), observer_(observer), lux_(lux) {}
 
-    /// Of nothing where the luminaire is not in view.
+    /// Returns a luminaire as seen from the eye; without solid angle if it is not visible.
     GlareSource source(const std::vector<SurfaceId>& faces) const {
         GlareSource out;
         Vec3 middle;
@@ -129,13 +129,13 @@ class Eye {
     }
 
   private:
-    /// Is that the visible area of a cube that stands for a luminaire without extent?
+    /// True if an area is at most that of the visible faces of a cube that represents a luminaire without extent.
     static bool is_point(double area) {
         constexpr double rounding = 1e-6;
         return area <= 3 * point_opening_size * point_opening_size * (1 + rounding);  // three of its faces
     }
 
-    /// Do all corners of the faces lie above the height of the eye?
+    /// True if all corners of the faces are above the height of the eye.
     bool hangs_above(const std::vector<SurfaceId>& faces) const {
         return std::all_of(faces.begin(), faces.end(), [&](SurfaceId s) {
             const std::span<const Point> outline = scene_.outline(s);
@@ -177,8 +177,8 @@ class Eye {
     const LightUnit& lux_;
 };
 
-/// Indirect illuminance of the plane that the observer looks along, as the mean of several places at the eye, whose
-/// rays differ. The eye itself takes the place of those that a wall keeps from it.
+/// Indirect illuminance perpendicular to the line of sight: the mean over several points near the eye, each with its
+/// own rays. Points beyond a wall are replaced by the eye.
 double indirect_at_eye(const RadiosityFunction& light, const Observer& observer, const LightUnit& lux) {
     constexpr int places = 8;
     constexpr double step = 1e-3;  // metres
@@ -215,7 +215,7 @@ Glare find_glare(const RadiosityFunction& light, const Observer& at, const Light
     Observer observer = at;
     const MeasuredPlace place = light.places().find(at.eye, at.view);
     observer.eye = place.x;
-    // Rays of an eye on a wall that it looks away from would meet the wall at no distance.
+    // Moves an eye on a wall away from it: otherwise rays would hit the wall at distance zero.
     if (!place.region.is_none()) observer.eye += light.places().step() * scene.regions()[place.region].plane.n;
     const Eye eye(light, observer, lux);
     Glare out;

@@ -9,19 +9,19 @@
 
 namespace exitance {
 
-/// Somebody who is glared at.
+/// An observer at whose eye glare is computed.
 struct Observer {
     std::string name;  ///< Empty: none.
     Point eye;         ///< Metres.
-    Normal view;       ///< Line of sight, of length 1.
+    Normal view;       ///< Line of sight, unit vector.
 };
 
-/// A luminaire as an observer sees it.
+/// A luminaire as seen by an observer.
 struct GlareSource {
-    std::string name;        ///< Of its faces' group, or of a light without extent.
-    double luminance = 0;    ///< Mean of what is seen, cd/m^2; of lights without extent that of 0.005 m^2.
-    double solid_angle = 0;  ///< Of what is seen, sr.
-    double position = 0;     ///< p
+    std::string name;        ///< Name of its faces' group, or of a light without extent.
+    double luminance = 0;    ///< Mean over the visible part, cd/m^2; for lights without extent, over 0.005 m^2.
+    double solid_angle = 0;  ///< Solid angle of the visible part, sr.
+    double position = 0;     ///< Guth's position index p.
     GlareLimit limit = GlareLimit::none;
     double term() const { return luminance * luminance * solid_angle / (position * position); }
 };
@@ -31,19 +31,19 @@ struct GlareSource {
 ///     UGR = 8 log10(0.25 / L_b  sum L^2 omega / p^2),   L_b = E_indirect at the eye / pi.      [CIE117]
 struct Glare {
     double background = 0;              ///< L_b, cd/m^2
-    std::vector<GlareSource> sources;   ///< Those that count, the worst first.
-    std::vector<GlareSource> left_out;  ///< Those in front of the observer that a limit of CIE 117 leaves out.
-    /// Not finite where nothing counts, or all behind it is black.
+    std::vector<GlareSource> sources;   ///< Sources that count, in descending order of their term.
+    std::vector<GlareSource> left_out;  ///< Sources in front of the observer that a limit of CIE 117 excludes.
+    /// UGR. Not finite if no source counts or the background is black.
     double rating() const;
-    /// Does a source fill more than 0.1 sr, beyond what UGR was made for?
+    /// True if a source has more than 0.1 sr, which is outside the range of UGR.
     bool has_large_source() const;
 };
 
-/// Glare at an observer. A source is what of a group's emitting faces touches one another, in front of the observer and
-/// not hidden: its solid angle by exact pieces of at most 2e-4 sr each (as a rule), one ray a piece; p where its middle
-/// is, which also decides whether it counts (`glare_limit`); what panes let through. Lights without extent, and the
-/// cubes that stand for luminaires without extent, count as 0.005 m^2 wide [CIE147]; skies and suns do not count. About
-/// 1 ms a luminaire. `lux`: in lx.
+/// Computes glare at an observer. A source is a set of emitting faces of one group that touch each other, as far as
+/// they are in front of the observer and visible. Its solid angle is summed over pieces of usually at most 2e-4 sr,
+/// with one ray per piece, and attenuated by panes. Its position index p, and whether it counts (`glare_limit`), follow
+/// from its centre. Lights without extent, and the cubes that represent luminaires without extent, count as sources of
+/// 0.005 m^2 [CIE147]; skies and suns do not count. `lux`: converts to lx. About 1 ms per luminaire.
 Glare find_glare(const RadiosityFunction& light, const Observer& observer, const LightUnit& lux);
 
 }  // namespace exitance

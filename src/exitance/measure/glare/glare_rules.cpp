@@ -7,12 +7,12 @@ namespace exitance {
 namespace {
 
 constexpr double degree = pi / 180;
-constexpr double largest_aside = 3;            ///< T / R, the last row of Guth's table.
-constexpr double largest_angle = 85 * degree;  ///< From the nadir of a luminaire.
+constexpr double largest_aside = 3;            ///< T / R; last row of Guth's table.
+constexpr double largest_angle = 85 * degree;  ///< Angle from a luminaire's nadir.
 
-/// The largest H / R at T / R in Guth's table of position indices, whose rows are 0.1 apart: the table is empty beyond
-/// 1.7 up to T / R = 0.3, beyond 1.8 from 0.4 to 0.8, and it ends at 1.9. A place between two rows needs an entry in
-/// both. Source: [CIE117], table 4.1.
+/// Largest H / R in Guth's table of position indices for a given T / R. Rows are 0.1 apart: the table is empty beyond
+/// 1.7 up to T / R = 0.3 and beyond 1.8 from 0.4 to 0.8, and ends at 1.9. A place between two rows must have an entry
+/// in both. Source: [CIE117], table 4.1.
 double end_of_guth_table(double aside) {
     return aside < 0.4 ? 1.7 : aside < 0.9 ? 1.8 : 1.9;
 }
@@ -41,7 +41,7 @@ GlareLimit glare_limit(const Normal& view, const Vec3& d, bool hangs_above) {
     const auto [ahead, aside, above] = sight_offsets(view, d);
     if (aside > largest_aside * ahead) return GlareLimit::aside;
     if (above > end_of_guth_table(aside / ahead) * ahead) return GlareLimit::overhead;
-    // The luminaire sees the eye along -d.
+    // -d is the direction from the luminaire to the eye.
     if (hangs_above && std::hypot(d.x, d.y) > std::tan(largest_angle) * d.z) return GlareLimit::level;
     return GlareLimit::none;
 }

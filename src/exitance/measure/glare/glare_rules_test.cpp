@@ -7,26 +7,25 @@
 namespace exitance {
 namespace {
 
-TEST(Guth, PositionIndexIsThatOfTheTable) {
-    // CIE 117, table of position indices by T/R (aside) and H/R (above), which the formula follows within a few
-    // percent.
+TEST(Guth, PositionIndexAgreesWithTheTable) {
+    // CIE 117, table of position indices by T/R (aside) and H/R (above); the formula agrees within a few percent.
     const Normal view{1, 0, 0};
     EXPECT_NEAR(guth_position(view, {1, 0, 0}), 1, 1e-12);
     for (const auto& [h, p] : {std::pair{0.2, 1.53}, {0.5, 2.86}, {0.8, 5.00}, {1.0, 7.00}})
         EXPECT_NEAR(guth_position(view, {1, 0, h}), p, 0.1 * p) << h;
-    // By hand: tau 53.13, sigma 51.34 degrees.
+    // Computed by hand: tau 53.13, sigma 51.34 degrees.
     EXPECT_NEAR(guth_position(view, {2, 2, 1.5}), 5.17503, 1e-4);
     EXPECT_NEAR(guth_position(view, {2, -2, 1.5}), 5.17503, 1e-4);
     EXPECT_NEAR(guth_position(view, {1, 0, -0.5}), 1.4, 1e-12);
     EXPECT_NEAR(guth_position(view, {1, 0, -1}), 2.2, 1e-12);
 }
 
-/// A direction by its ratios to R, seen by somebody who looks along (cos a, sin a, 0), of any length.
+/// A direction given by T/R and H/R, for an observer looking along (cos a, sin a, 0); any length.
 Vec3 seen(double a, double t, double h, double length) {
     return length * Vec3{std::cos(a) + t * std::sin(a), std::sin(a) - t * std::cos(a), h};
 }
 
-TEST(GlareLimit, IsThatOfGuthsTableHoweverTheObserverTurnsAndFarAway) {
+TEST(GlareLimit, FollowsGuthsTableForAnyDirectionAndDistance) {
     struct Case {
         double t, h;
         GlareLimit limit;
@@ -53,9 +52,10 @@ TEST(GlareLimit, IsThatOfGuthsTableHoweverTheObserverTurnsAndFarAway) {
                 }
 }
 
-TEST(GlareLimit, LeavesOutLuminairesAboveTheEyeThatSeeItNearlyAlongTheCeiling) {
+TEST(GlareLimit, ExcludesLuminairesAboveTheEyeWithNearlyHorizontalLight) {
     const Normal view{0, 1, 0};
-    const double low = std::tan(4.9 * pi / 180), high = std::tan(5.1 * pi / 180);  // 85 degrees from the nadir between
+    // On either side of 85 degrees from the nadir.
+    const double low = std::tan(4.9 * pi / 180), high = std::tan(5.1 * pi / 180);
     EXPECT_EQ(glare_limit(view, {0, 1, high}, true), GlareLimit::none);
     EXPECT_EQ(glare_limit(view, {0, 1, low}, true), GlareLimit::level);
     EXPECT_EQ(glare_limit(view, {1, 1, std::sqrt(2) * high}, true), GlareLimit::none);
@@ -64,7 +64,7 @@ TEST(GlareLimit, LeavesOutLuminairesAboveTheEyeThatSeeItNearlyAlongTheCeiling) {
     EXPECT_EQ(glare_limit(view, {0, 1, -0.2}, false), GlareLimit::none);
 }
 
-TEST(GlareLimit, OfATiltedLineOfSightIsMeasuredFromIt) {
+TEST(GlareLimit, IsMeasuredFromATiltedLineOfSight) {
     const double up = 40 * pi / 180;
     const Normal view{0, std::cos(up), std::sin(up)};
     EXPECT_EQ(glare_limit(view, {0, 0.5, 2}, true), GlareLimit::none)

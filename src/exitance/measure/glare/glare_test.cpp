@@ -7,9 +7,9 @@
 namespace exitance {
 namespace {
 
-/// A room of 8 x 6 x 3 m, every surface reflecting half, with square lamps that look down from 2.7 m with 5000 cd/m^2,
-/// `half` of a side in metres. Its indirect illuminance is 200 lx on every surface, so that 100 lm/m^2 come from
-/// everywhere.
+/// A room of 8 x 6 x 3 m whose surfaces all reflect one half. Square lamps of half side `half`, metres, at 2.7 m face
+/// down and emit 5000 cd/m^2. The indirect illuminance is 200 lx on every surface, so that every surface sends 100
+/// lm/m^2.
 Solution lamp_room(const std::vector<Vec2>& lamps, double half = 0.1) {
     SceneDescription d;
     d.photometric = true;
@@ -37,8 +37,8 @@ Solution lamp_room(const std::vector<Vec2>& lamps, double half = 0.1) {
     return s;
 }
 
-TEST(Glare, OfARoomWorkedOutByHandIsThatToThePrintedDigits) {
-    // Eye at (1, 3, 1.2), looking along x. Per lamp omega = A h / r^3, A = 0.04 m^2, h = 1.5 m:
+TEST(Glare, AgreesWithAHandCalculationForARoom) {
+    // Eye at (1, 3, 1.2), looking along x. For each lamp omega = A h / r^3, A = 0.04 m^2, h = 1.5 m:
     //   offset       r^2    omega      p        L^2 omega / p^2
     //   (2, 0)       6.25   0.0038400  4.65672  4427.1
     //   (4, 0)       18.25  0.00076959 2.19730  3984.9
@@ -59,17 +59,17 @@ TEST(Glare, OfARoomWorkedOutByHandIsThatToThePrintedDigits) {
     EXPECT_FALSE(glare.has_large_source());
 }
 
-TEST(Glare, LuminairesBehindOrTurnedAwayDoNotCount) {
+TEST(Glare, LuminairesBehindOrFacingAwayDoNotCount) {
     const Solution s = lamp_room({{3, 3}, {5, 3}});
     const RadiosityFunction light(s);
     const LightUnit lux(UnitChoice::lux, true);
     EXPECT_EQ(find_glare(light, {"", {1, 3, 1.2}, {-1, 0, 0}}, lux).sources.size(), 0u);
     EXPECT_FALSE(std::isfinite(find_glare(light, {"", {1, 3, 1.2}, {-1, 0, 0}}, lux).rating()));
     EXPECT_EQ(find_glare(light, {"", {4, 3, 1.2}, {1, 0, 0}}, lux).sources.size(), 1u);
-    EXPECT_EQ(find_glare(light, {"", {1, 3, 2.8}, {1, 0, 0}}, lux).sources.size(), 0u);  // above the lamps
+    EXPECT_EQ(find_glare(light, {"", {1, 3, 2.8}, {1, 0, 0}}, lux).sources.size(), 0u);  // the eye is above the lamps
 }
 
-TEST(Glare, LeavesOutWhatCie117DoesNotCountAndSaysWhy) {
+TEST(Glare, ExcludesLuminairesBeyondTheLimitsOfCie117WithReason) {
     // Seen from (1, 3, 1.2) along x, R, T and H / R of the lamps at 2.7 m: 2, 0, 0.75; 0.7, 0, 2.1; 0.5, 2, 3 (T/R 4).
     const Solution s = lamp_room({{3, 3}, {1.7, 3}, {1.5, 5}});
     const RadiosityFunction light(s);
@@ -80,7 +80,7 @@ TEST(Glare, LeavesOutWhatCie117DoesNotCountAndSaysWhy) {
     EXPECT_EQ(glare.left_out[0].name, "lamp 2");
     EXPECT_EQ(glare.left_out[0].limit, GlareLimit::overhead);
     EXPECT_EQ(glare.left_out[1].limit, GlareLimit::aside);
-    // The rating is that of the lamp ahead alone.
+    // The rating is that of the first lamp alone.
     const Solution one = lamp_room({{3, 3}});
     const RadiosityFunction of_one(one);
     EXPECT_NEAR(glare.rating(),
@@ -92,7 +92,7 @@ TEST(Glare, ALuminaireJustAboveTheEyeCountsOnlyIfItReachesBelowIt) {
     const Solution s = lamp_room({{7, 3}});
     const RadiosityFunction light(s);
     const LightUnit lux(UnitChoice::lux, true);
-    // 6 m away: 85 degrees from the nadir are 0.525 m.
+    // At a distance of 6 m, 85 degrees from the nadir are 0.525 m.
     EXPECT_EQ(find_glare(light, {"", {1, 3, 2.7 - 0.55}, {1, 0, 0}}, lux).sources.size(), 1u);
     const Glare level = find_glare(light, {"", {1, 3, 2.7 - 0.5}, {1, 0, 0}}, lux);
     EXPECT_EQ(level.sources.size(), 0u);
@@ -100,8 +100,8 @@ TEST(Glare, ALuminaireJustAboveTheEyeCountsOnlyIfItReachesBelowIt) {
     EXPECT_EQ(level.left_out[0].limit, GlareLimit::level);
 }
 
-TEST(Glare, ALuminaireOfThePointsSizeCountsAsASmallSource) {
-    // 1 mm wide, as a luminaire is whose file gives no extent: L^2 omega = I^2 / (0.005 m^2 r^2), not I^2 / (A r^2).
+TEST(Glare, ALuminaireWithoutExtentCountsAsASmallSource) {
+    // 1 mm wide, like a luminaire whose file gives no extent: L^2 omega = I^2 / (0.005 m^2 r^2), not I^2 / (A r^2).
     const LightUnit lux(UnitChoice::lux, true);
     const auto source = [&](double half) {
         const Solution s = lamp_room({{3, 3}}, half);
@@ -130,16 +130,16 @@ TEST(Glare, ALightWithoutExtentCountsAsASmallSource) {
     EXPECT_NEAR(spot->term(), 200 * intensity * intensity / 0.64, 1e-9 * spot->term());
 }
 
-TEST(Glare, OfAnEyeOnAWallIsThatOfAnEyeBesideIt) {
+TEST(Glare, IsTheSameForAnEyeOnAWallAndBesideIt) {
     const Solution s = lamp_room({{3, 3}, {5, 3}});
     const RadiosityFunction light(s);
     const LightUnit lux(UnitChoice::lux, true);
     const Normal view{1, 0, 0};
     const auto rated = [&](const Point& eye) { return find_glare(light, {"", eye, view}, lux); };
     const Glare along = rated({1, 0, 1.2}), beside = rated({1, 1e-3, 1.2});
-    EXPECT_NEAR(along.background / beside.background, 1, 0.02);  // noise of 4096 rays at eight places
+    EXPECT_NEAR(along.background / beside.background, 1, 0.02);  // noise of 4096 rays at eight points
     EXPECT_NEAR(along.rating(), beside.rating(), 0.1);
-    // Looking away from the wall it sees both lamps.
+    // Looking away from the wall, both lamps are visible.
     const Glare away = rated({0, 3, 1.2}), before = rated({1e-3, 3, 1.2});
     ASSERT_EQ(before.sources.size(), 2u);
     ASSERT_EQ(away.sources.size(), 2u);

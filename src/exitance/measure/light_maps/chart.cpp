@@ -11,8 +11,8 @@
 namespace exitance {
 namespace {
 
-/// A plane with an orientation, as numbers that are equal for planes that differ by rounding (but for rare planes at
-/// the edge of rounding, whose regions get lattices of their own).
+/// Key of an oriented plane, equal for planes that differ by rounding. Rare planes at a rounding threshold get
+/// different keys, and their regions separate lattices.
 std::array<std::int64_t, 4> plane_key(const Plane& plane, double size) {
     constexpr double angle = 1e-6;
     const double offset = 1e-6 * size;
@@ -20,11 +20,11 @@ std::array<std::int64_t, 4> plane_key(const Plane& plane, double size) {
             std::llround(plane.offset / offset)};
 }
 
-/// A lattice that all regions of a plane share.
+/// The lattice of all regions of a plane.
 struct Lattice {
-    Vec3 right, down;  ///< Of length 1.
+    Vec3 right, down;  ///< Unit vectors.
     double longest = 0;
-    double left = HUGE_VAL, top = HUGE_VAL;  ///< Where texel 0 begins along each, metres.
+    double left = HUGE_VAL, top = HUGE_VAL;  ///< Coordinates at which texel 0 starts, metres.
 };
 
 using Lattices = std::map<std::array<std::int64_t, 4>, Lattice>;
@@ -40,7 +40,7 @@ Lattices find_lattices(const Scene& scene) {
     for (const Region& region : scene.regions()) {
         Lattice& lattice = lattices[plane_key(region.plane, scene.size())];
         for_each_edge(region, [&](const Point& a, const Point& b) {
-            // Rounding must not decide between edges of one length.
+            // Edges of equal length must not be chosen by rounding.
             if (const double length = norm(b - a); length > lattice.longest * (1 + 1e-6)) {
                 lattice.longest = length, lattice.right = (b - a) / length;
                 lattice.down = normalized(cross(lattice.right, region.plane.n));
@@ -57,14 +57,14 @@ Lattices find_lattices(const Scene& scene) {
     return lattices;
 }
 
-/// The texels along one axis that a stretch touches: the first one and how many; a touch within rounding is none.
+/// First texel and number of texels that an interval touches along one axis; touching within rounding does not count.
 std::pair<double, double> texels_along(double begin, double end, double density) {
     constexpr double rounding = 1e-6;
     const double first = std::floor(begin * density + rounding);
     return {first, std::max(1.0, std::ceil(end * density - rounding) - first)};
 }
 
-/// The outline of what is packed: heights over stretches of the map's width.
+/// Upper outline of the packed rectangles: heights over intervals of the map's width.
 class Skyline {
   public:
     Skyline(int width, int most) : width_(width), most_(most), steps_{{0, 0}} {}
@@ -74,7 +74,7 @@ class Skyline {
         bool is_none() const { return y < 0; }
     };
 
-    /// The highest place for a rectangle, the leftmost of these; none where it does not fit.
+    /// The highest position for a rectangle, the leftmost one of several; none if it does not fit.
     Place find(int width, int height) const {
         Place best;
         for (std::size_t i = 0; i < steps_.size(); ++i) {
@@ -107,7 +107,7 @@ class Skyline {
         int x, y;
     };
     int width_, most_, height_ = 0;
-    std::vector<Step> steps_;  ///< By x; each reaches to the next one.
+    std::vector<Step> steps_;  ///< Sorted by x; each extends to the next one.
 };
 
 int round_up(int value, int unit) {
@@ -169,11 +169,11 @@ std::vector<MapSize> pack_charts(std::vector<Chart>& charts, int padding, int mo
         return std::pair(p.height, p.width) > std::pair(q.height, q.width);
     });
 
-    constexpr double slack = 1.05;  // some of a map stays empty: the map comes out about square
+    constexpr double slack = 1.05;  // parts of a map stay empty: makes the map approximately square
     const int square = static_cast<int>(std::min(std::sqrt(slack * area), static_cast<double>(most)));
     const int width = std::max(widest, std::min(round_up(square, unit), most / unit * unit));
     std::vector<Skyline> maps;
-    std::size_t first_open = 0;  // maps that were full for long are not asked again
+    std::size_t first_open = 0;  // maps that have been full for a while are skipped
     for (const std::size_t i : order) {
         Chart& chart = charts[i];
         Skyline::Place place;

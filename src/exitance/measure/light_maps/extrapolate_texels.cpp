@@ -11,19 +11,19 @@ bool is_known(Source source) {
     return source == Source::computed || source == Source::extrapolated;
 }
 
-/// A texel, by its place in the map.
+/// Position of a texel in the map.
 struct Texel {
     int x, y;
 };
 
 constexpr std::array<Texel, 8> around{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
 
-/// The texels of one chart's room, while they are filled.
+/// Fills the texels of one chart's room.
 class Filler {
   public:
     Filler(const Chart::Rectangle& room, LightMap& map) : room_(room), map_(map) {}
 
-    /// Texels to be filled that touch a known one.
+    /// Texels without a value that touch a known one.
     std::vector<Texel> first_ring() const {
         std::vector<Texel> ring;
         for (int y = room_.y; y < room_.y + room_.height; ++y)
@@ -42,7 +42,7 @@ class Filler {
         }
     }
 
-    /// What is to be filled next to what has just been filled.
+    /// Texels without a value next to those that were just filled.
     std::vector<Texel> next_ring(const std::vector<Texel>& ring, bool with_buried) {
         std::vector<Texel> next;
         for (const Texel& t : ring)
@@ -71,7 +71,8 @@ class Filler {
         });
     }
 
-    /// Mean over the known neighbours, or of what the light does on the way to them: those at its sides if there are.
+    /// Mean over the known neighbours or, if `linear`, of linear extrapolations from them. Prefers the four nearest
+    /// ones.
     Spectrum value(const Texel& t, bool linear) const {
         Spectrum sum;
         int count = 0;

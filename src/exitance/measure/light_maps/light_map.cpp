@@ -13,13 +13,14 @@
 namespace exitance {
 namespace {
 
-constexpr int buried_reach = 1;            ///< Rings: as far as a bilinear lookup in the open reads.
-constexpr double most_texels = 134217728;  ///< 2^27, about 2.5 GB.
+/// Rings of buried texels that are filled: those read by bilinear lookups on uncovered parts.
+constexpr int buried_reach = 1;
+constexpr double most_texels = 134217728;  ///< 2^27 texels, about 2.5 GB.
 
-/// A part of a chart that is baked at once.
+/// A part of a chart that is baked as a unit.
 struct Tile {
     std::size_t chart = 0;
-    Chart::Rectangle rectangle;  ///< In the chart's texels.
+    Chart::Rectangle rectangle;  ///< In texels of the chart.
 };
 
 std::vector<Tile> cut_into_tiles(std::span<const Chart> charts) {
@@ -32,7 +33,7 @@ std::vector<Tile> cut_into_tiles(std::span<const Chart> charts) {
     return tiles;
 }
 
-/// Bakes one tile after the other. One a thread.
+/// Bakes tiles one after the other. One per thread.
 class TileBaker {
   public:
     TileBaker(const RadiosityFunction& light, std::span<const std::vector<TexelOutline>> outlines,
@@ -72,7 +73,7 @@ class TileBaker {
     }
 
   private:
-    /// Where the first four points agree, so do the others.
+    /// Adds the uncovered points of a texel. If the first four are all covered or all uncovered, so are the others.
     void add_open_points(const Chart& chart, const TexelCover& cover) {
         constexpr std::size_t few = 4;
         const Normal& n = stage_.scene.regions()[chart.region].plane.n;
@@ -97,7 +98,7 @@ class TileBaker {
     std::vector<Spot> spots_;
 };
 
-/// The triangles and parallelograms of every chart's region.
+/// Makes the triangles and parallelograms of every chart's region.
 std::vector<std::vector<TexelOutline>> make_outlines(const Stage& stage, std::span<const Chart> charts) {
     std::vector<std::vector<TexelOutline>> outlines(charts.size());
     for (const Piece& piece : stage.pieces)

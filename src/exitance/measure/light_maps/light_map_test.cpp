@@ -26,7 +26,7 @@ Scene made(SceneDescription d) {
     return std::move(*checked.scene);
 }
 
-/// The same irradiance everywhere, all of it in the elements.
+/// A solution with uniform irradiance, all of it in the elements.
 Solution even_light(Scene scene, float irradiance) {
     Solution s;
     s.scene = std::move(scene);
@@ -46,7 +46,7 @@ LightMaps bake(const Solution& s, double density, int padding = 4, int most = 81
     return std::move(*maps);
 }
 
-/// A wall of 3 x 2 m with a window in it, both in the plane y = 0, and a triangle beside them.
+/// A wall of 3 x 2 m with a window, both in the plane y = 0, and a triangle next to them.
 Scene wall_with_window() {
     SceneDescription d;
     d.points = {{0, 0, 0},       {3, 0, 0},      {3, 0, 2},      {0, 0, 2}, {1.03, 0, 0.71},
@@ -57,14 +57,14 @@ Scene wall_with_window() {
     return made(std::move(d));
 }
 
-TEST(LightMap, OfEvenLightIsEvenInEveryTexelOfEveryRoom) {
+TEST(LightMap, IsUniformInEveryTexelForUniformLight) {
     const Solution s = even_light(box_scene(1, 2, 1.1, 0.5, 1, 1), 2);
     for (const LightMap& map : bake(s, 13).maps)
         for (std::size_t i = 0; i < map.size.texels(); ++i)
             EXPECT_EQ(map.irradiance[i][0], map.source[i] == Source::nothing ? 0.f : 2.f);
 }
 
-TEST(LightMap, ATexelIsTheMeanOfTheFunctionOverIt) {
+TEST(LightMap, ATexelIsTheMeanOfTheFunction) {
     const Solution s = sample_solution();
     const LightMaps maps = bake(s, 16);
     const RadiosityFunction light(s);
@@ -85,7 +85,8 @@ TEST(LightMap, ATexelIsTheMeanOfTheFunctionOverIt) {
                 difference += std::pow(mean(maps.maps[chart.map].at(i)) - sum, 2), level += sum * sum, ++count;
             }
     EXPECT_GT(count, 50);
-    EXPECT_LT(std::sqrt(difference / level), 0.02);  // 1% that neighbours may differ by, jumps at elements' borders
+    // Neighbours may differ by 1%, plus jumps at the borders of elements.
+    EXPECT_LT(std::sqrt(difference / level), 0.02);
 }
 
 TEST(LightMap, ChartsOfOnePlaneShareTheirLattice) {
@@ -100,10 +101,10 @@ TEST(LightMap, ChartsOfOnePlaneShareTheirLattice) {
         EXPECT_NEAR(norm(chart.du), 0.1, 1e-12);
         EXPECT_NEAR(dot(cross(chart.dv, chart.du), scene.regions()[chart.region].plane.n), 0.01, 1e-12);
     }
-    EXPECT_FALSE(make_charts(scene, 10, 29));  // 3 m
+    EXPECT_FALSE(make_charts(scene, 10, 29));  // 3 m at 10 texels per metre
 }
 
-TEST(LightMap, RoomsAreApartAndBeginAtWholeTexelsOfTheMipLevelsTheyGuard) {
+TEST(LightMap, RoomsAreDisjointAndAlignedToMipTexels) {
     std::mt19937 random(7);
     std::vector<Chart> charts(300);
     for (Chart& chart : charts)
@@ -135,7 +136,7 @@ TEST(LightMap, BilinearLookupOnAPolygonReadsNoTexelWithoutLight) {
     for (const Piece& piece : stage.pieces) {
         const Chart& chart = maps.charts[piece.region.value];
         for (int k = 0; k < 500; ++k) {
-            // A third of them on the border.
+            // A third of the points are on the border.
             Vec2 uv = uniform_in_shape(piece.patch.shape, number(random), number(random));
             if (k % 3 == 0) uv.x = 0;
             const Vec2 place = chart.place(piece.patch.at(uv));
@@ -150,7 +151,7 @@ TEST(LightMap, BilinearLookupOnAPolygonReadsNoTexelWithoutLight) {
     }
 }
 
-TEST(LightMap, LinearLightGoesOnBeyondTheBorder) {
+TEST(LightMap, LinearLightIsContinuedBeyondTheBorder) {
     Chart chart;
     chart.x = chart.y = 2, chart.width = chart.height = 3, chart.room = {0, 0, 7, 7};
     LightMap map;
@@ -168,7 +169,7 @@ TEST(LightMap, LinearLightGoesOnBeyondTheBorder) {
     for (const Source source : map.source) EXPECT_NE(source, Source::nothing);
 }
 
-/// A floor that a body of five faces stands on, one that is open below; lamp above.
+/// A floor with a body of five faces, open at the bottom, and a lamp above.
 Scene floor_with_body() {
     SceneDescription d;
     d.materials = {{"grey", Spectrum(0.5), Spectrum()}, {"lamp", Spectrum(), Spectrum(10)}};
@@ -189,16 +190,16 @@ TEST(LightMap, NoDarknessLeaksFromBelowABody) {
     const LightMaps maps = bake(s, 10);
     const Chart& floor = maps.charts[0];
     const LightMap& map = maps.maps[floor.map];
-    // Texel 5 is from 0.5 to 0.6 m: the body begins in it.
+    // Texel 5 is from 0.5 to 0.6 m; the body starts within it.
     const auto at = [&](int x) { return static_cast<double>(map.irradiance[map.index(floor.x + x, floor.y + 10)][0]); };
-    EXPECT_GT(at(5), 0.5 * at(3));  // lit from more than half of the lamp
-    EXPECT_GT(at(6), 0.5 * at(3));  // extrapolated: read by lookups in texel 5
+    EXPECT_GT(at(5), 0.5 * at(3));  // more than half of the lamp is visible
+    EXPECT_GT(at(6), 0.5 * at(3));  // extrapolated; read by lookups in texel 5
     EXPECT_EQ(at(8), 0);
     EXPECT_EQ(map.source[map.index(floor.x + 8, floor.y + 10)], Source::buried);
 }
 
-/// A floor of 2 x 2 m that a body stands on, askew, a board over it, and a small lamp: half-shadows are narrower than
-/// texels of an eighth of a metre.
+/// A floor of 2 x 2 m with a rotated body on it, a board above, and a small lamp: penumbrae are narrower than texels of
+/// an eighth of a metre.
 Scene sharp_shadows() {
     SceneDescription d;
     d.materials = {{"grey", Spectrum(0.5), Spectrum()}, {"lamp", Spectrum(), Spectrum(1000)}};
@@ -220,7 +221,8 @@ Scene sharp_shadows() {
     return made(std::move(d));
 }
 
-/// Of the first chart's texels, the mean light at many points in the open; -1 where these are less than half of all.
+/// For the first chart's texels, the mean light at many uncovered points; -1 if less than half of the points are
+/// uncovered.
 std::vector<double> means_of_many(const Solution& s, const Chart& chart) {
     constexpr int side = 32;
     const RadiosityFunction light(s);
@@ -241,7 +243,7 @@ std::vector<double> means_of_many(const Solution& s, const Chart& chart) {
     return out;
 }
 
-/// RMS of what the first chart's texels are off, by their mean light.
+/// RMS error of the first chart's texels relative to their mean light.
 double error_of(const LightMaps& maps, const std::vector<double>& expected) {
     const Chart& chart = maps.charts[0];
     const LightMap& map = maps.maps[chart.map];
@@ -255,7 +257,7 @@ double error_of(const LightMaps& maps, const std::vector<double>& expected) {
     return std::sqrt(square / count) / (level / count);
 }
 
-TEST(LightMap, ShadowEdgesAreIntegratedWhereThereIsADiscontinuityMesh) {
+TEST(LightMap, ShadowEdgesAreIntegratedWithADiscontinuityMesh) {
     SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.01};
     std::vector<double> expected;
     for (int kind = 0; kind < 3; ++kind) {
@@ -266,8 +268,9 @@ TEST(LightMap, ShadowEdgesAreIntegratedWhereThereIsADiscontinuityMesh) {
         if (kind == 0) expected = means_of_many(s, integrated.charts[0]);
         s.discontinuity = {}, s.layers = {};
         const double of_points = error_of(bake(s, 8), expected);
-        EXPECT_LT(error_of(integrated, expected), 0.004) << kind;  // 1024 points of an edge miss its mean by as much
-        EXPECT_LT(error_of(integrated, expected), 0.3 * of_points) << kind;  // 16 points miss it by up to a sixteenth
+        EXPECT_LT(error_of(integrated, expected), 0.004) << kind;  // 1024 points have this error at a shadow edge
+        // 16 points have an error of up to a sixteenth.
+        EXPECT_LT(error_of(integrated, expected), 0.3 * of_points) << kind;
     }
 }
 
@@ -281,7 +284,7 @@ TEST(LightMap, HasTheSameBitsOnAnyNumberOfThreads) {
     for (std::size_t m = 0; m < one.maps.size(); ++m) EXPECT_EQ(one.maps[m].irradiance, all.maps[m].irradiance);
 }
 
-TEST(LightMap, IsRefusedWhereItWouldBeTooLarge) {
+TEST(LightMap, IsRefusedIfTooLarge) {
     const Solution s = even_light(box_scene(30, 30, 30, 0.5, 1), 1);
     const RadiosityFunction light(s);
     Progress progress;
@@ -296,7 +299,7 @@ TEST(LightMap, IsRefusedWhereItWouldBeTooLarge) {
     EXPECT_EQ(automatic_density(box_scene(0.1, 0.1, 0.1, 0.5, 1)), 2048);
 }
 
-TEST(TexelCutter, SharesSumToTheAreaAndPlacesLieInside) {
+TEST(TexelCutter, SharesSumToTheAreaAndPointsAreInside) {
     Chart chart;
     chart.du = {1, 0, 0}, chart.dv = {0, 1, 0}, chart.origin = {0.5, 0.5, 0};
     const Patch triangle{{0.3, 0.2, 0}, {6.1, 1.7, 0}, {1.2, 5.3, 0}, Patch::Shape::triangle};

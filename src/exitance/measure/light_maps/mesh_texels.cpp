@@ -14,7 +14,7 @@ namespace {
 
 using Triangle2 = std::array<Vec2, 3>;
 
-/// One triangle's polynomial as a function of places in a chart.
+/// A triangle's polynomial as a function of texel positions in a chart.
 class PlacedPolynomial {
   public:
     explicit PlacedPolynomial(const Triangle2& corner)
@@ -30,7 +30,7 @@ class PlacedPolynomial {
 
     Spectrum at(Vec2 place) const {
         const Vec2 w = place - origin_;
-        // Within the triangle, but for rounding, which would be large in slivers.
+        // Clamped to the triangle, since rounding errors are large in slivers.
         const Vec2 st{std::clamp(cross(w, b_) / area_, 0.0, 1.0), std::clamp(cross(a_, w) / area_, 0.0, 1.0)};
         Spectrum out;
         if (elements_.empty()) {
@@ -47,7 +47,7 @@ class PlacedPolynomial {
     Vec2 origin_, a_, b_;
     double area_;
     std::array<Spectrum, 6> values_;
-    std::vector<CloughTocher> elements_;  ///< One a band; none: quadratic.
+    std::vector<CloughTocher> elements_;  ///< One per band; empty: quadratic.
 };
 
 bool holds_texel(const Triangle2& t, int x, int y) {
@@ -59,7 +59,7 @@ bool holds_texel(const Triangle2& t, int x, int y) {
     return true;
 }
 
-/// Calls visit(x, y) for all texels of a rectangle that a triangle's box touches.
+/// Calls visit(x, y) for all texels of a rectangle that a triangle's bounding box touches.
 template <class Visit>
 void visit_texels(const Triangle2& t, const Chart::Rectangle& r, const Visit& visit) {
     const auto [x_lo, x_hi] = std::minmax({t[0].x, t[1].x, t[2].x});
@@ -70,13 +70,14 @@ void visit_texels(const Triangle2& t, const Chart::Rectangle& r, const Visit& vi
         for (int x = std::max(r.x, static_cast<int>(std::floor(x_lo))); x < x1; ++x) visit(x, y);
 }
 
-/// Adds the integral over triangles of the polynomial that each of them has in one piece, texel by texel.
+/// Adds integrals of polynomials over triangles to the texels.
 class PartIntegrator {
   public:
     PartIntegrator(const Chart::Rectangle& rectangle, std::vector<MeshTexels::Integral>& out)
         : rectangle_(rectangle), out_(out) {}
 
-    /// `piece` is counter-clockwise in the chart's places. Null `light`: its area alone. Areas count where `area` says.
+    /// Adds a triangle, counter-clockwise in texel positions, on which `light` is one polynomial. Null `light`: adds
+    /// only its area. `area`: the area to increase; null: none.
     void add(const Triangle2& piece, const PlacedPolynomial* light, double MeshTexels::Integral::*area) {
         visit_texels(piece, rectangle_, [&](int x, int y) {
             MeshTexels::Integral& sum =
@@ -122,7 +123,8 @@ int tiles_down(const Chart& chart) {
 }  // namespace
 
 std::optional<Spectrum> MeshTexels::Integral::mean(double share) const {
-    constexpr double least = 1e-3;  // of a texel: more than float coordinates of layers leave open at their borders
+    // Share of a texel: more than rounding of single-precision coordinates of layers leaves uncovered at borders.
+    constexpr double least = 1e-3;
     if (open + buried < (1 - least) * share - least * least || open < least * share) return std::nullopt;
     return light / open;
 }
@@ -134,7 +136,7 @@ MeshTexels::MeshTexels(const MeshLight& light, const Stage& stage, std::span<con
     for (std::size_t c = 0; c < charts.size(); ++c) chart_of[charts[c].region.value] = static_cast<std::uint32_t>(c);
     add_mesh_parts(stage, chart_of);
     add_layer_parts(chart_of);
-    // Places are counter-clockwise from here on: a chart may show its plane mirrored.
+    // Makes corners counter-clockwise: a chart may show its plane mirrored.
     for (Part& part : parts_)
         if (cross(part.corner[1] - part.corner[0], part.corner[2] - part.corner[0]) < 0)
             std::swap(part.corner[1], part.corner[2]), part.is_mirrored = true;

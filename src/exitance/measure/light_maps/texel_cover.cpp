@@ -6,10 +6,10 @@
 namespace exitance {
 namespace {
 
-constexpr double rounding = 1e-5;  ///< Of a texel: what is nearer to its border lies on it.
+constexpr double rounding = 1e-5;  ///< Share of a texel: positions nearer to a border are on it.
 
-/// A (0, 2)-net of 16 points that is its own mirror image, hence with its mean in the middle; its first four points
-/// stand in the four quarters and have their mean in the middle, too.
+/// A (0, 2)-net of 16 points that is symmetric about the centre, so that its mean is the centre. Its first four points
+/// are in the four quarters, and their mean is the centre, too.
 constexpr std::array<Vec2, texel_points> make_net() {
     constexpr std::array<unsigned, texel_points> order{4, 11, 3, 12, 1, 14, 6, 9, 0, 15, 5, 10, 2, 13, 7, 8};
     std::array<Vec2, texel_points> net{};
@@ -30,7 +30,7 @@ bool holds(const TexelOutline& outline, Vec2 p) {
     return true;
 }
 
-/// What of a convex polygon has normal . p <= offset.
+/// Clips a convex polygon to the half-plane normal . p <= offset.
 void clip(std::vector<Vec2>& polygon, Vec2 normal, double offset, std::vector<Vec2>& out) {
     out.clear();
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -60,7 +60,7 @@ TexelOutline::TexelOutline(const Chart& chart, const Patch& patch) : corners(pat
     }
 }
 
-/// The part of one outline in one texel, as triangles.
+/// Adds the part of one outline in one texel, as triangles.
 void TexelCutter::add_part(const TexelOutline& outline, int x, int y, std::size_t texel) {
     polygon_.assign(outline.corner.begin(), outline.corner.begin() + static_cast<std::ptrdiff_t>(outline.corners));
     clip_to_texel(polygon_, x, y, rest_);
@@ -83,13 +83,13 @@ void TexelCutter::add(const TexelOutline& outline, const Chart::Rectangle& recta
             const double u = x, v = y;
             if (holds(outline, {u, v}) && holds(outline, {u + 1, v}) && holds(outline, {u, v + 1}) &&
                 holds(outline, {u + 1, v + 1}))
-                area_[texel] = 2;  // all of it, whatever else there is
+                area_[texel] = 2;  // all of the texel, regardless of other outlines
             else
                 add_part(outline, x, y, texel);
         }
 }
 
-/// Points of some triangles: every one of equal shares of their area has one.
+/// Adds points in some triangles, one in each of equal shares of their area.
 void TexelCutter::add_places(std::span<const Triangle> parts, double area, std::vector<Vec2>& places) const {
     for (std::size_t k = 0; k < texel_points; ++k) {
         double left = net[k].x * area;

@@ -9,7 +9,7 @@
 
 namespace exitance {
 
-/// A triangle or parallelogram in a chart's places (Chart::place), its corners counter-clockwise about +x x +y.
+/// A triangle or parallelogram in texel positions of a chart (Chart::place), with corners counter-clockwise in (x, y).
 struct TexelOutline {
     TexelOutline(const Chart& chart, const Patch& patch);
 
@@ -18,25 +18,26 @@ struct TexelOutline {
     Vec2 lo, hi;
 };
 
-/// Points that one texel's light is the mean of.
+/// Number of points whose mean is a texel's light.
 constexpr std::uint32_t texel_points = 16;
 
-/// How much of a texel lies on its region, and points spread over that with uniform density, of which the first four
-/// are well spread by themselves.
+/// Part of a texel that is on its region, with points of uniform density on that part. The first four points alone are
+/// well distributed, too.
 struct TexelCover {
-    int x = 0, y = 0;       ///< In the chart.
-    double share = 0;       ///< In (0, 1].
-    std::size_t first = 0;  ///< Of its `texel_points` places.
+    int x = 0, y = 0;       ///< Texel in the chart.
+    double share = 0;       ///< Covered share, in (0, 1].
+    std::size_t first = 0;  ///< Index of its `texel_points` positions.
 };
 
-/// The part of a convex polygon in the texel whose corner nearest to (0, 0) is (x, y); `rest` is scratch memory.
+/// Clips a convex polygon to the texel whose corner nearest to (0, 0) is (x, y); `rest` is scratch memory.
 void clip_to_texel(std::vector<Vec2>& polygon, int x, int y, std::vector<Vec2>& rest);
 
-/// Cuts the texels of a chart along its region's border. One a thread; keeps its memory.
+/// Clips the texels of a chart to its region. One per thread; keeps its memory.
 class TexelCutter {
   public:
-    /// The texels of a rectangle of the chart that the region covers, row by row; what the outlines leave uncovered by
-    /// rounding counts as covered. `places` of all of them, in the chart's places. O(outlines + texels).
+    /// Computes the texels of a rectangle of the chart that the region covers, row by row. Parts that the outlines
+    /// leave uncovered due to rounding count as covered. `places`: the points of all texels, in texel positions of the
+    /// chart. O(outlines + texels).
     void cut(std::span<const TexelOutline> outlines, Chart::Rectangle rectangle, std::vector<TexelCover>& covers,
              std::vector<Vec2>& places);
 
@@ -50,7 +51,7 @@ class TexelCutter {
     void add_part(const TexelOutline& outline, int x, int y, std::size_t texel);
     void add_places(std::span<const Triangle> parts, double area, std::vector<Vec2>& places) const;
 
-    std::vector<double> area_;  ///< Of every texel.
+    std::vector<double> area_;  ///< Covered area of every texel.
     std::vector<Triangle> parts_;
     std::vector<Vec2> polygon_, rest_;
 };

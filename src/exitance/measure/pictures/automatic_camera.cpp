@@ -12,30 +12,31 @@ namespace {
 
 constexpr double degree = pi / 180;
 
-/// What a camera has in view, by a few hundred rays.
+/// Statistics of a camera's view, from a few hundred rays.
 struct View {
-    double fronts = 0, backs = 0;  ///< Shares of the rays that meet them.
-    double lit = 0;                ///< Share that meets a front that sends light worth seeing.
-    double breadth = 0;            ///< Distances to fronts, in sizes of the scene, added up and divided by all rays.
-    double variety = 0;  ///< Standard deviation of the logarithm of the light that they show, emitters left out.
-    double blocked = 0;  ///< Share that meets something much nearer than the target.
+    double fronts = 0, backs = 0;  ///< Shares of the rays that hit fronts and backs.
+    double lit = 0;                ///< Share of the rays that hit a front bright enough to be visible.
+    double breadth = 0;            ///< Sum of the distances to fronts, in sizes of the scene, over the number of rays.
+    double variety = 0;            ///< Standard deviation of the logarithm of the visible light, without emitters.
+    double blocked = 0;            ///< Share of the rays that hit surfaces much nearer than the target.
 
     double quality() const { return lit * breadth * (0.3 + std::min(variety, 1.0)) * (1 - blocked); }
-    /// Of a view from outside: fronts without light count little, and backs hide what is behind them.
+    /// Quality of a view from outside: dark fronts count little, and backs reduce it, as they hide surfaces behind
+    /// them.
     double quality_outside() const {
         constexpr double dark = 0.05;
         return (lit + dark * fronts) * (0.5 + std::min(variety, 1.0)) * fronts / std::max(fronts + backs, 1e-9);
     }
 };
 
-/// Looks around in a solution.
+/// Evaluates possible views of a solution.
 class Scout {
   public:
     Scout(const Solution& solution, const RayTracer& tracer)
         : solution_(solution), tracer_(tracer), locator_(solution.interpolant.tree, solution.scene.regions().size()) {
         double power = 0, area = 0;
         for (const ElementId leaf : leaves()) power += power_of(leaf), area += solution.interpolant.tree.area(leaf);
-        constexpr double worth_seeing = 0.03;  // of the mean radiosity: darker things are black in a picture
+        constexpr double worth_seeing = 0.03;  // share of the mean radiosity; darker surfaces appear black
         least_light_ = area > 0 ? worth_seeing * power / area : 0;
     }
 
@@ -73,15 +74,15 @@ class Scout {
         return view;
     }
 
-    /// True if hardly any light leaves from there: a room, with its windows and open doors.
+    /// True if few rays from a point leave the scene, as in a room with windows and open doors.
     bool is_enclosed(const Point& eye) const {
-        constexpr double closed = 0.85;  // of all directions
+        constexpr double closed = 0.85;  // share of all directions
         Camera around{eye, eye + Vec3{0, 1, 0}, 360};
         around.projection = Projection::panorama;
         return look(around, {24, 12}).fronts >= closed;
     }
 
-    /// Places at eye level before the surfaces that send most light, at most so many.
+    /// At most `count` points at eye level in front of the surfaces that send most light.
     std::vector<Point> places_in_light(std::size_t count) const {
         const ElementTree& tree = solution_.interpolant.tree;
         double all = 0;
@@ -113,7 +114,7 @@ class Scout {
     }
 
     std::vector<ElementId> leaves() const { return solution_.interpolant.tree.leaves(); }
-    /// Light that leaves an element, mean over the bands, W.
+    /// Power that leaves an element, mean over the bands, W.
     double power_of(ElementId leaf) const {
         const ElementTree& tree = solution_.interpolant.tree;
         const Material& material = solution_.scene.material(tree.region(leaf));
@@ -127,15 +128,15 @@ class Scout {
     double least_light_ = 0;  ///< W/m^2
 };
 
-/// The best camera in a closed room: from near the four upright edges of the scene's box, at the height of eyes or
-/// above, towards its middle; from places where light is; or from outside through a side that is open. None where no
-/// such camera sees fronts alone, and light on a third of them.
+/// Returns the best camera in a closed room: near the four vertical edges of the scene's box, at eye level or higher,
+/// looking towards its middle; at places with light; or outside an open side. None if no such camera sees almost only
+/// fronts, with light on a third of them.
 std::optional<Camera> camera_inside(const Scene& scene, const Scout& scout, PictureSize size) {
-    constexpr double closed = 0.95;  // share of fronts that makes a room: the rest may be windows and open doors
+    constexpr double closed = 0.95;  // share of fronts in a room: the rest may be windows and open doors
     constexpr double least_lit = 1.0 / 3;
     const Box& box = scene.box();
     const Vec3 extent = box.size();
-    const double height = std::min(extent.z, 3.0);  // metres; in a hall one looks as in a room
+    const double height = std::min(extent.z, 3.0);  // metres; in a high hall as in a room
     const double fov = size.width >= size.height ? 75 : 55;
     std::optional<Camera> best;
     double best_quality = 0;
@@ -144,7 +145,7 @@ std::optional<Camera> camera_inside(const Scene& scene, const Scout& scout, Pict
         if (view.fronts >= closed && view.lit >= least_lit && view.quality() > best_quality)
             best = camera, best_quality = view.quality();
     };
-    for (const double inset : {0.06, 0.15, 0.25, 0.35}) {  // a room need not reach into the corners of its box
+    for (const double inset : {0.06, 0.15, 0.25, 0.35}) {  // a room may not extend into the corners of its box
         for (int corner = 0; corner < 4; ++corner)
             for (const double level : {0.55, 0.68, 0.8}) {
                 const double s = corner & 1 ? 1 - inset : inset, t = corner & 2 ? 1 - inset : inset;
@@ -171,7 +172,8 @@ std::optional<Camera> camera_inside(const Scene& scene, const Scout& scout, Pict
     return best;
 }
 
-/// From so far that the scene's box fills the picture, towards its middle.
+/// Camera looking at the centre of a box from the distance at which the box fills the picture. `back`: unit vector from
+/// the centre to the camera.
 Camera camera_at(const Box& box, const Vec3& back, double fov, PictureSize size) {
     const double half_width = std::tan(0.5 * fov * degree), half_height = half_width * size.height / size.width;
     const Vec3 right = normalized(cross(back, {0, 0, -1})), up = cross(back, right);
@@ -185,8 +187,8 @@ Camera camera_at(const Box& box, const Vec3& back, double fov, PictureSize size)
     return {box.centre() + distance * back, box.centre(), fov};
 }
 
-/// The box of what stands on a scene's ground, with some of the ground around it, if the ground is much wider; else the
-/// scene's.
+/// Bounding box of the objects on a scene's ground, with some ground around them, if the ground is much wider; else
+/// that of the scene.
 Box worth_showing(const Scene& scene) {
     const Box& all = scene.box();
     const double low = all.lo.z + 0.01 * all.size().z;
@@ -205,7 +207,7 @@ Box worth_showing(const Scene& scene) {
     return all.diagonal() < much_wider * things.diagonal() ? all : things;
 }
 
-/// On the side of a scene that shows most light and fewest backs.
+/// Returns a camera on the side of a scene that shows most light and fewest backs.
 Camera camera_outside(const Scene& scene, const Scout& scout, PictureSize size) {
     Camera best;
     double most = -1;
@@ -222,10 +224,10 @@ Camera camera_outside(const Scene& scene, const Scout& scout, PictureSize size) 
     return best;
 }
 
-/// Where one can look around: from the middle of the scene, near it, or where light is, not from within something.
+/// Returns a panoramic camera at a place with a wide view: in the middle of the scene, near it, or where light is.
 Camera camera_amid(const Scene& scene, const Scout& scout) {
     const Box& box = scene.box();
-    const double height = std::min(0.55 * box.size().z, 1.6);  // metres: of eyes
+    const double height = std::min(0.55 * box.size().z, 1.6);  // eye level, metres
     Camera best;
     double most = -1;
     const auto consider = [&](const Point& eye, double off) {
@@ -240,12 +242,12 @@ Camera camera_amid(const Scene& scene, const Scout& scout) {
         for (const double t : {0.5, 0.35, 0.65, 0.2, 0.8})
             consider({box.lo.x + s * box.size().x, box.lo.y + t * box.size().y, box.lo.z + height},
                      std::hypot(s - 0.5, t - 0.5));
-    constexpr double corner = 0.7;  // as far off as the corners of the box
+    constexpr double corner = 0.7;  // as far from the middle as the corners of the box
     for (const Point& eye : scout.places_in_light(24)) consider(eye, corner);
     return best;
 }
 
-/// A plan of a room, seen from below its ceiling.
+/// Plan view of a room from just below its ceiling.
 Camera plan(const Scene& scene, PictureSize size) {
     const Vec3 extent = scene.box().size();
     Point eye = scene.box().centre();

@@ -27,7 +27,7 @@ CameraRays::CameraRays(const Camera& camera, PictureSize size)
     : projection_(camera.projection), size_(size), eye_(camera.eye), pixel_(pixel_width(camera, size)) {
     ahead_ = normalized(camera.target - camera.eye);
     Vec3 up = normalized(camera.up);
-    if (projection_ == Projection::panorama) {  // its middle row is the horizon
+    if (projection_ == Projection::panorama) {  // the middle row is the horizon
         const Vec3 level = ahead_ - dot(ahead_, up) * up;
         ahead_ = norm(level) > 1e-6 ? normalized(level) : Frame(up).u;
     }
@@ -53,7 +53,7 @@ bool CameraRays::ray(double x, double y, Point& origin, Vec3& direction) const {
             return angle <= disc;
         }
         case Projection::panorama: {
-            const double below = pi * (y / size_.height - 0.5);  // the horizon; the pixels need not be square
+            const double below = pi * (y / size_.height - 0.5);  // angle below the horizon; pixels need not be square
             direction = std::cos(below) * (std::cos(s) * ahead_ + std::sin(s) * right_) + std::sin(below) * down_;
             return std::abs(below) <= 0.5 * pi;
         }

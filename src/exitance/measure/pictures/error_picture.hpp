@@ -5,7 +5,7 @@
 
 namespace exitance {
 
-/// What a camera sees through the middles of its pixels: places on fronts, and the pixels that show them.
+/// Surfaces that a camera sees through the centres of its pixels: points on fronts, and the pixels that show them.
 struct SeenPlaces {
     PictureSize size;
     std::vector<ProbePoint> points;
@@ -14,11 +14,11 @@ struct SeenPlaces {
 };
 SeenPlaces seen_places(const Scene& scene, const RayTracer& tracer, const Camera& camera, PictureSize size);
 
-/// A reference's irradiance at the nearest of its points on the same region, W/m^2; NaN where there is none.
-/// O(places x points of a region).
+/// Irradiance of a reference at the nearest of its points on the same region, W/m^2; NaN if there is none. O(places x
+/// points of a region).
 std::vector<Spectrum> nearest_reference(const SeenPlaces& places, const ReferencePoints& reference, const Scene& scene);
 
-/// A picture whose irradiance is |E - E_ref|, W/m^2, at the places; where the reference is NaN nothing is seen.
+/// Returns a picture whose irradiance is |E - E_ref|, W/m^2, at the places. Pixels whose reference is NaN are empty.
 Picture error_picture(const SeenPlaces& places, const std::vector<Spectrum>& irradiance,
                       const std::vector<Spectrum>& reference);
 

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// Barycentric coordinates of a place, or of its foot; all 0 in triangles without area.
+/// Barycentric coordinates of a point, projected onto the triangle's plane; all 0 if the triangle has no area.
 std::array<double, 3> barycentric(const SixNodeMesh& mesh, std::uint32_t triangle, const Point& p) {
     const auto& n = mesh.nodes[triangle];
     const Point& o = mesh.points[n[0]];
@@ -20,7 +20,7 @@ std::array<double, 3> barycentric(const SixNodeMesh& mesh, std::uint32_t triangl
     return {1 - s - t, s, t};
 }
 
-/// The order of the edge by which the way from a place within a triangle to one outside leaves it.
+/// Order of the edge at which the line from a point within a triangle to one outside leaves it.
 CurveOrder order_at_exit(const SixNodeMesh& mesh, std::uint32_t triangle, const Point& within, const Point& outside) {
     const auto from = barycentric(mesh, triangle, within), to = barycentric(mesh, triangle, outside);
     double nearest = HUGE_VAL;
@@ -28,7 +28,8 @@ CurveOrder order_at_exit(const SixNodeMesh& mesh, std::uint32_t triangle, const 
     for (std::size_t k = 0; k < 3; ++k) {
         if (!(to[k] < 0)) continue;
         const double start = std::max(from[k], 0.0), crossing = start / (start - to[k]);
-        if (crossing < nearest) nearest = crossing, order = mesh.edge_order[triangle][(k + 1) % 3];  // across corner k
+        // Opposite corner k.
+        if (crossing < nearest) nearest = crossing, order = mesh.edge_order[triangle][(k + 1) % 3];
     }
     return order;
 }

@@ -5,7 +5,7 @@
 namespace exitance {
 namespace {
 
-/// The unit square as two triangles along the diagonal from (0, 0) to (1, 1), an edge of the order given.
+/// The unit square as two triangles along the diagonal from (0, 0) to (1, 1), which is an edge of the given order.
 SixNodeMesh square(CurveOrder diagonal) {
     SixNodeMesh mesh;
     mesh.points = {{0, 0, 0},   {1, 0, 0},     {1, 1, 0},   {0, 1, 0},  {0.5, 0, 0},
@@ -19,7 +19,7 @@ SixNodeMesh square(CurveOrder diagonal) {
     return mesh;
 }
 
-TEST(MeshView, TheEdgeBetweenTwoPlacesIsTheOneThatTheWayCrosses) {
+TEST(MeshView, TheEdgeBetweenTwoPointsIsTheOneThatTheirLineCrosses) {
     for (const CurveOrder order : {CurveOrder::d0, CurveOrder::d1, CurveOrder::d2, CurveOrder::none}) {
         const SixNodeMesh mesh = square(order);
         EXPECT_EQ(order_between(mesh, 0, {0.8, 0.2, 0}, 1, {0.2, 0.8, 0}), order);

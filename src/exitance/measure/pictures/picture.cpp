@@ -12,13 +12,12 @@
 namespace exitance {
 namespace {
 
-/// A number in [-1, 1] with the density of a tent, from one that is uniform in [0, 1).
+/// Maps a uniform number in [0, 1) to a number in [-1, 1] with the density of a tent.
 double tent(double u) {
     return u < 0.5 ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u);
 }
 
-/// Where a pixel's rays go, relative to its middle, in pixels; any power of two of them, from the first on, is
-/// stratified.
+/// Positions of a pixel's rays relative to its centre, in pixels. The first 2^k of them are stratified for every k.
 std::vector<Vec2> places_about_pixel(int samples, std::uint64_t seed) {
     if (samples == 1) return {{0, 0}};
     const ScrambledSobol sobol(hash(seed, static_cast<std::uint64_t>(Stream::mesh)));
@@ -39,17 +38,17 @@ std::size_t tile_count(PictureSize size) {
            static_cast<std::size_t>((size.height + tile_side - 1) / tile_side);
 }
 
-/// A pass over a whole picture: its pixels are squares of `block` x `block` pixels of the picture requested.
+/// A pass over a whole picture. Its pixels are squares of `block` x `block` pixels of the requested picture.
 struct Pass {
     int block = 1;
-    int samples = 1;  ///< Rays of a square.
+    int samples = 1;  ///< Rays per square.
 
     PictureSize size(PictureSize whole) const {
         return {(whole.width + block - 1) / block, (whole.height + block - 1) / block};
     }
 };
 
-/// Makes one tile of a pass after the other. One a thread.
+/// Renders tiles of a pass one after the other. One per thread.
 class TilePainter {
   public:
     TilePainter(const RadiosityFunction& light, const PictureOptions& options, const Pass& pass,
@@ -66,7 +65,7 @@ class TilePainter {
         light_.use(stop);
     }
 
-    /// Paints the tile whose upper left pixel is (x0, y0) into a picture of the pass's size.
+    /// Renders the tile whose upper left pixel is (x0, y0) into a picture of the pass's size.
     void paint(int x0, int y0, Picture& picture) {
         const int x1 = std::min(x0 + tile_side, size_.width);
         const int y1 = std::min(y0 + tile_side, size_.height);
@@ -89,13 +88,13 @@ class TilePainter {
         return static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(size_.width) + static_cast<std::uint32_t>(x);
     }
 
-    /// Place of a ray in the picture requested, in pixels: pixel `i` of the pass along one axis, `place` pixels from
-    /// its middle. Squares that reach over the border have their rays within it.
+    /// Position of a ray in the requested picture along one axis, in pixels: `place` pixels from the centre of pixel
+    /// `i` of the pass. Rays of squares that extend beyond the border are moved inside.
     double at_pixel(int i, double place, int pixels) const {
         return pass_.block == 1 ? i + 0.5 + place : std::min(pass_.block * (i + 0.5 + place), pixels - 0.5);
     }
 
-    /// Traces the rays of all pixels, one pixel after the other.
+    /// Traces the rays of all pixels of a tile, pixel by pixel.
     void trace(int x0, int x1, int y0, int y1) {
         origins_.clear(), directions_.clear(), ends_.clear();
         Point origin;
@@ -117,7 +116,7 @@ class TilePainter {
             tracer_.nearest(directions_, options_.camera.eye, RegionId(), hits_);
     }
 
-    /// What one pixel's rays have met: a spot for every region.
+    /// Makes one spot for every region that the pixel's rays hit.
     void sort_by_region(std::size_t pixel_in_tile, const Spot& pixel, Pixel& out) {
         const std::size_t first = pixel_in_tile == 0 ? 0 : ends_[pixel_in_tile - 1], last = ends_[pixel_in_tile];
         met_.clear();
@@ -143,7 +142,7 @@ class TilePainter {
         }
     }
 
-    /// Of an emitter, over that of a diffuse one: mean over a spot.
+    /// Radiance of an emitter towards the eye over that of a diffuse one: mean over a spot.
     double radiance_towards_eye(const Spot& spot) const {
         const RelativeRadiance radiance = scene_.relative_radiance(spot.region);
         if (!radiance.is_directed()) return 1;
@@ -177,21 +176,21 @@ class TilePainter {
     const RayTracer& tracer_;
     const PictureOptions& options_;
     const Pass pass_;
-    const PictureSize size_;  ///< Of the pass.
+    const PictureSize size_;  ///< Size of the pass.
     CameraRays rays_;
     std::span<const Vec2> places_;
     TileLight light_;
     std::vector<Point> origins_, points_;
     std::vector<Vec3> directions_;
     std::vector<RayHit> hits_;
-    std::vector<std::size_t> ends_;  ///< Of every pixel.
+    std::vector<std::size_t> ends_;  ///< End of every pixel's rays.
     std::vector<RegionId> met_;
     std::vector<Spot> spots_;
 };
 
-/// The median of irradiance, as the elements that `export` writes have it, over some pixels that show fronts.
+/// Median irradiance of the exported elements over some pixels that show fronts, W/m^2.
 double usual_brightness(const RadiosityFunction& light, const PictureOptions& options) {
-    constexpr int side = 24;  // pixels each way
+    constexpr int side = 24;  // pixels in each direction
     const Solution& solution = light.solution();
     const CameraRays rays(options.camera, options.size);
     std::vector<ProbePoint> places;
@@ -214,7 +213,7 @@ double usual_brightness(const RadiosityFunction& light, const PictureOptions& op
     return *middle;
 }
 
-/// Paints one pass. `finished`: 1 for each of its tiles, row by row, but 0 for those that a stop left unfinished.
+/// Renders one pass. `finished`: 1 for each completed tile, row by row; 0 for those that a stop left unfinished.
 Picture paint(const RadiosityFunction& light, const PictureOptions& options, const Pass& pass, double brightness,
               Progress& progress, const StopRequest& stop, std::vector<std::uint8_t>& finished) {
     Picture picture{pass.size(options.size), {}};
@@ -223,7 +222,7 @@ Picture paint(const RadiosityFunction& light, const PictureOptions& options, con
     const auto columns = static_cast<std::size_t>(tile_columns(picture.size));
     const std::size_t tiles = tile_count(picture.size);
     finished.assign(tiles, 0);
-    // A painter's memory serves several tiles; where a tile is long work, the threads are better off with one each.
+    // A painter's memory is reused for several tiles; if a tile takes long, tiles are distributed one by one.
     const std::size_t at_once = options.gather > 0 ? 16 : 256, grain = options.gather > 0 ? 1 : 8;
     for (std::size_t first = 0; first < tiles && !stop.requested(); first += at_once) {
         progress.advance(static_cast<double>(first) / static_cast<double>(tiles));
@@ -239,7 +238,7 @@ Picture paint(const RadiosityFunction& light, const PictureOptions& options, con
     return picture;
 }
 
-/// Copies the finished tiles of a pass into the whole picture, each pixel to its square.
+/// Copies the finished tiles of a pass into the whole picture, each pixel to all pixels of its square.
 void copy_finished(const Picture& from, const Pass& pass, std::span<const std::uint8_t> finished, Picture& to) {
     const auto columns = static_cast<std::size_t>(tile_columns(from.size));
     for (int y = 0; y < to.size.height; ++y)
@@ -254,7 +253,8 @@ void copy_finished(const Picture& from, const Pass& pass, std::span<const std::u
         }
 }
 
-/// From one ray for a square of 128 x 128 pixels to all samples in every pixel, each four times the rays of the last.
+/// Passes from one ray per square of 128 x 128 pixels to all samples in every pixel; each has about four times the rays
+/// of the previous one.
 std::vector<Pass> passes_to(int samples) {
     std::vector<Pass> passes;
     for (int block = 128; block > 1; block /= 2) passes.push_back({block, 1});
@@ -263,17 +263,17 @@ std::vector<Pass> passes_to(int samples) {
     return passes;
 }
 
-/// The finest pass after `last` that the time left allows, if a ray takes as long as in that one; at least the next.
+/// The finest pass after `last` that fits into the remaining time if rays take as long as in `last`; at least the next.
 std::size_t next_pass(std::span<const Pass> passes, std::size_t last, PictureSize whole, double seconds,
                       const StopRequest& stop) {
     const auto seconds_on = [&](const Pass& pass, std::size_t at_once) {
         return static_cast<double>(pass.size(whole).pixels()) * pass.samples / static_cast<double>(at_once);
     };
-    // A pass of few tiles keeps few threads busy.
+    // A pass of few tiles uses few threads.
     const auto busy = [&](const Pass& pass) {
         return std::min(tile_count(pass.size(whole)), static_cast<std::size_t>(threads()));
     };
-    // Without a deadline only a signal may end the picture: squares of 8 x 8 pixels are there for that.
+    // Without a deadline only a signal may end the picture; a pass with squares of 8 x 8 pixels is made for that case.
     if (std::isinf(stop.seconds_left()) && passes[last].block > 8)
         return static_cast<std::size_t>(
             std::find_if(passes.begin(), passes.end(), [](const Pass& pass) { return pass.block == 8; }) -

@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// What arrives in a furnace, E = M / (1 - rho), all of it in the elements.
+/// Solution of a furnace, E = M / (1 - rho), all of it in the elements.
 Solution furnace(double rho) {
     Solution s;
     s.scene = box_scene(1, 2, 1, rho, 1, 1);
@@ -36,18 +36,18 @@ Vec3 direction(const CameraRays& rays, double x, double y) {
     return normalized(along);
 }
 
-TEST(CameraRays, TheMiddleLooksAtTheTargetAndTheEdgesStandHalfTheAngleAway) {
+TEST(CameraRays, TheCentreIsTheTargetAndTheEdgesAreHalfTheAngleAway) {
     const Camera camera{{1, 2, 3}, {4, 6, 3}, 90};
     const CameraRays rays(camera, {200, 100});
     const Vec3 ahead = direction(rays, 100, 50), right = direction(rays, 200, 50);
     EXPECT_NEAR(norm(ahead - Vec3{0.6, 0.8, 0}), 0, 1e-14);
     EXPECT_NEAR(dot(ahead, right), std::sqrt(0.5), 1e-14);
-    EXPECT_GT(dot(right, Vec3{0.8, -0.6, 0}), 0);                       // right of (3, 4) is (4, -3)
-    EXPECT_GT(direction(rays, 100, 0).z, direction(rays, 100, 100).z);  // above is the picture's first row
+    EXPECT_GT(dot(right, Vec3{0.8, -0.6, 0}), 0);                       // (4, -3) is to the right of (3, 4)
+    EXPECT_GT(direction(rays, 100, 0).z, direction(rays, 100, 100).z);  // the first row is at the top
     EXPECT_TRUE(is_finite(direction(CameraRays({{0, 0, 1}, {0, 0, 0}}, {2, 2}), 0, 0)));
 }
 
-TEST(CameraRays, OfAnOrthographicCameraAreParallelAndAsFarApartAsItsWidthSays) {
+TEST(CameraRays, AreParallelForAnOrthographicCamera) {
     const Camera camera{{0, 0, 5}, {0, 0, 0}, 4, {0, 1, 0}, Projection::orthographic};
     const CameraRays rays(camera, {200, 100});
     Point left, right, top;
@@ -57,10 +57,10 @@ TEST(CameraRays, OfAnOrthographicCameraAreParallelAndAsFarApartAsItsWidthSays) {
     ASSERT_TRUE(rays.ray(100, 0, top, other));
     EXPECT_EQ(along, other);
     EXPECT_NEAR(norm(right - left - Vec3{4, 0, 0}), 0, 1e-14);
-    EXPECT_NEAR(norm(top - Point{0, 1, 5}), 0, 1e-14);  // up is up
+    EXPECT_NEAR(norm(top - Point{0, 1, 5}), 0, 1e-14);  // up is at the top
 }
 
-TEST(CameraRays, OfAFisheyeStandAtAnglesInProportionToTheirPlace) {
+TEST(CameraRays, HaveAnglesProportionalToTheirPositionInAFisheye) {
     const Camera camera{{0, 0, 0}, {0, 1, 0}, 240, {0, 0, 1}, Projection::fisheye};
     const CameraRays rays(camera, {200, 100});  // the disc is 100 pixels wide
     for (const double share : {0.0, 0.3, 0.9})
@@ -71,27 +71,27 @@ TEST(CameraRays, OfAFisheyeStandAtAnglesInProportionToTheirPlace) {
     EXPECT_FALSE(rays.ray(40, 50, origin, along));
 }
 
-TEST(CameraRays, OfAPanoramaGoAllAroundWithTheTargetInTheMiddle) {
+TEST(CameraRays, CoverAllDirectionsInAPanoramaWithTheTargetInTheMiddle) {
     const Camera camera{{0, 0, 0}, {0, 2, 1}, 60, {0, 0, 1}, Projection::panorama};
     const CameraRays rays(camera, {400, 200});
-    EXPECT_NEAR(norm(direction(rays, 200, 100) - Vec3{0, 1, 0}), 0, 1e-14);  // the horizon stays in the middle
+    EXPECT_NEAR(norm(direction(rays, 200, 100) - Vec3{0, 1, 0}), 0, 1e-14);  // the horizon is in the middle
     EXPECT_NEAR(norm(direction(rays, 300, 100) - Vec3{1, 0, 0}), 0, 1e-14);
     EXPECT_NEAR(norm(direction(rays, 0, 100) - Vec3{0, -1, 0}), 0, 1e-14);
     EXPECT_NEAR(norm(direction(rays, 37, 0) - Vec3{0, 0, 1}), 0, 1e-14);
 }
 
-TEST(Picture, OfAFurnaceIsUniform) {
+TEST(Picture, IsUniformInAFurnace) {
     const double rho = 0.6, expected = 1 / (1 - rho);
     const Picture picture = picture_of(furnace(rho), {{0.2, 0.3, 0.5}, {0.9, 1.9, 0.4}, 90}, {24, 16});
     ASSERT_EQ(picture.pixels.size(), 24u * 16u);
     for (const Pixel& pixel : picture.pixels) {
         EXPECT_EQ(pixel.front, 1);
-        EXPECT_NEAR(pixel.radiosity[0], expected, 1e-6);  // elements hold floats
+        EXPECT_NEAR(pixel.radiosity[0], expected, 1e-6);  // elements store floats
         EXPECT_NEAR(pixel.irradiance[0], expected, 1e-6);
     }
 }
 
-TEST(Picture, ShowsNoLightOnBacksAndWhereNothingIs) {
+TEST(Picture, ShowsNoLightOnBacksAndInEmptySpace) {
     const Solution s = furnace(0.5);
     const Picture picture = picture_of(s, {{0.5, -3, 0.5}, {0.5, 0, 0.5}, 90}, {21, 21});
     const Pixel& middle = picture.pixels[10 * 21 + 10];
@@ -100,7 +100,7 @@ TEST(Picture, ShowsNoLightOnBacksAndWhereNothingIs) {
     EXPECT_EQ(picture.pixels.front().back + picture.pixels.front().front, 0);
 }
 
-/// The light that probing finds where the ray through a pixel's middle ends.
+/// Light at the hit of the ray through a pixel's centre, as `probe` evaluates it.
 Light light_behind(const Solution& s, const RadiosityFunction& light, const CameraRays& rays, int x, int y) {
     Point origin;
     Vec3 along;
@@ -111,7 +111,7 @@ Light light_behind(const Solution& s, const RadiosityFunction& light, const Came
     return light.at(std::span(&there, 1))[0];
 }
 
-TEST(Picture, ShowsInEveryPixelWhatTheFunctionIsThere) {
+TEST(Picture, ShowsTheFunctionInEveryPixel) {
     const Solution s = sample_solution();
     const Camera camera{{1.9, 0.9, 0.9}, {0.2, 0.2, 0}, 80};
     const PictureSize size{48, 32};
@@ -123,13 +123,13 @@ TEST(Picture, ShowsInEveryPixelWhatTheFunctionIsThere) {
             const Pixel& pixel = picture.pixels[static_cast<std::size_t>(y * size.width + x)];
             if (pixel.front == 0) continue;
             const Light expected = light_behind(s, light, rays, x, y);
-            // Shadows are cut with the shaft's candidates in place of the tree's: the same up to rounding.
+            // Shadows are cut by the shaft's candidates instead of the tree's: equal up to rounding.
             for (std::size_t b = 0; b < bands; ++b)
                 EXPECT_NEAR(pixel.irradiance[b], expected.irradiance[b], 1e-9 * (1 + expected.irradiance[b]));
         }
 }
 
-TEST(Picture, OfManySamplesIsTheMeanOfWhatThePixelShows) {
+TEST(Picture, IsTheMeanOverThePixelForManySamples) {
     const Solution s = sample_solution();
     const Camera camera{{1.9, 0.9, 0.9}, {0.2, 0.2, 0}, 30};
     const Picture sixteen = picture_of(s, camera, {12, 8}, 16), many = picture_of(s, camera, {12, 8}, 1024);
@@ -138,19 +138,19 @@ TEST(Picture, OfManySamplesIsTheMeanOfWhatThePixelShows) {
         difference += std::abs(mean(sixteen.pixels[i].radiosity) - mean(many.pixels[i].radiosity));
         level += mean(many.pixels[i].radiosity);
     }
-    EXPECT_LT(difference, 0.05 * level);  // the sample's elements jump at every border, by random amounts
+    EXPECT_LT(difference, 0.05 * level);  // the elements of a sample jump at every border, by random amounts
 }
 
 TEST(Picture, AFinalGatherOfAFurnaceIsUniformToo) {
     const double rho = 0.5;
     Solution s = furnace(rho);
-    s.direct_in_elements = true;  // a gather brings the direct light by itself
+    s.direct_in_elements = true;  // a gather includes the direct light
     const Picture picture = picture_of(s, {{0.2, 0.3, 0.5}, {0.9, 1.9, 0.4}, 90}, {6, 4}, 2, 4);
-    for (const Pixel& pixel : picture.pixels)  // E_dir = M exactly, E_ind = rho E whatever the rays
+    for (const Pixel& pixel : picture.pixels)  // E_dir = M exactly, E_ind = rho E for any rays
         EXPECT_NEAR(pixel.irradiance[0], 1 / (1 - rho), 1e-6);
 }
 
-/// Two furnished rooms under 96 lamps, nothing reflected.
+/// Two furnished rooms with 96 lamps, without reflection.
 Solution many_shadows() {
     Solution s;
     s.scene = built_scene("carpet", {{"u", "12"}, {"v", "8"}, {"cuts", "1"}, {"books", "0"}});
@@ -165,7 +165,7 @@ Solution many_shadows() {
     return s;
 }
 
-TEST(Picture, OfManyShadowsIsWhatTheFunctionIsThereButForNoise) {
+TEST(Picture, ShowsTheFunctionUpToNoiseWithManyShadows) {
     const Solution s = many_shadows();
     const Camera camera{{6, 3, 1.5}, {4, 2, 0.8}, 80};
     const PictureSize size{96, 64};
@@ -182,7 +182,8 @@ TEST(Picture, OfManyShadowsIsWhatTheFunctionIsThereButForNoise) {
             all += expected, miss += std::pow((E - expected) / std::max(expected, 0.01), 2), ++count;
         }
     EXPECT_GT(all / count, 0.1);  // W/m^2
-    // 0.4% are asked for, and light is interpolated where its middle is within 1%; some pixels take all rays there are.
+    // The required accuracy is 0.4%, and light is interpolated if its centre agrees within 1%; some pixels use all
+    // rays.
     EXPECT_LT(std::sqrt(miss / count), 0.02);
 }
 
@@ -210,7 +211,7 @@ TEST(Picture, HasTheSameBitsOnAnyNumberOfThreads) {
     }
 }
 
-TEST(AutomaticCamera, StandsInsideAClosedRoomAndOutsideAnOpenScene) {
+TEST(AutomaticCamera, IsInsideAClosedRoomAndOutsideAnOpenScene) {
     const PictureSize size{64, 40};
     const auto is_inside = [&](const Solution& s) {
         const Point eye = automatic_camera(s, RayTracer(s.scene), Projection::perspective, size).eye;
@@ -248,7 +249,7 @@ TEST(AutomaticCamera, LooksIntoARoomThroughItsOpenSide) {
     EXPECT_GT(camera.target.y, camera.eye.y);
 }
 
-/// Requests a stop when a pass begins, counted from 1.
+/// Requests a stop when the given pass begins, counted from 1.
 class StopAtPass : public Progress {
   public:
     StopAtPass(StopRequest& stop, int pass) : stop_(stop), pass_(pass) {}
@@ -276,7 +277,7 @@ void expect_same_light(const Picture& a, const Picture& b) {
     }
 }
 
-TEST(TakePictureInTime, HasTheBitsOfTakePictureWhereTimeSuffices) {
+TEST(TakePictureInTime, HasTheBitsOfTakePictureIfTimeSuffices) {
     const Solution s = sample_solution();
     const Camera camera{{0.1, 0.1, 0.5}, {1.5, 0.5, 0.5}, 70};
     const PictureOptions options{camera, {150, 90}, 5};
@@ -293,7 +294,7 @@ TEST(TakePictureInTime, HasTheBitsOfTakePictureWhereTimeSuffices) {
     }
 }
 
-TEST(TakePictureInTime, IsWholeInSquaresWhereAStopCutsTheNextPassShort) {
+TEST(TakePictureInTime, IsCompleteInSquaresIfAStopEndsTheNextPass) {
     const Solution s = sample_solution();
     const TimedPicture taken = stopped_picture(s, {{{0.1, 0.1, 0.5}, {1.5, 0.5, 0.5}, 70}, {300, 200}, 16}, 2);
     EXPECT_FALSE(taken.is_complete);
@@ -308,7 +309,7 @@ TEST(TakePictureInTime, IsWholeInSquaresWhereAStopCutsTheNextPassShort) {
     EXPECT_NE(pixel(0, 0).irradiance, pixel(299, 199).irradiance);
 }
 
-TEST(TakePictureInTime, SaysThatNothingIsPaintedWhereTheFirstPassIsCutShort) {
+TEST(TakePictureInTime, ReportsThatNothingWasPaintedIfTheFirstPassIsStopped) {
     const TimedPicture taken =
         stopped_picture(sample_solution(), {{{0.1, 0.1, 0.5}, {1.5, 0.5, 0.5}, 70}, {300, 200}, 16}, 1);
     EXPECT_EQ(taken.block, 0);

@@ -8,22 +8,22 @@
 namespace exitance {
 namespace {
 
-/// What a pixel's light may miss, as part of it: less than anybody sees beside its neighbours.
+/// Allowed relative error of a pixel's light: invisible next to its neighbours.
 constexpr double pixel_error = 0.004;
-constexpr std::uint32_t cell_side = 4;  ///< Pixels; between the corners of a cell light may be interpolated.
-constexpr double even = 0.04;           ///< It is if they differ by less than this.
+constexpr std::uint32_t cell_side = 4;  ///< Pixels; light may be interpolated between the corners of a cell.
+constexpr double even = 0.04;           ///< Relative difference of the corners below which light is interpolated.
 
-/// Of the picture's brightness: a pixel that is darker is looked at as if it were as bright as this.
+/// Share of the picture's brightness: darker pixels have the absolute accuracy of a pixel with this light.
 constexpr double dim = 0.25;
 
 }  // namespace
 
-/// Do clusters of emitters pay on these spots of one region? Asked at three of them where there are too many emitters
-/// to look at each: else what is certainly hidden is better left out first (`share_rays`).
+/// True if clusters of emitters are faster for spots of one region, tested at three of them. Only if there are too many
+/// emitters to evaluate each; otherwise it is better to exclude certainly hidden emitters first (`share_rays`).
 bool TileLight::suits_clusters(std::span<const Spot> spots) {
-    constexpr std::size_t too_many = 1000;
+    constexpr std::size_t min_sources = 1000;
     const Stage& stage = light_.stage();
-    const bool possible = stage.clustered.is_possible() && stage.clustered.tree().sources().size() > too_many;
+    const bool possible = stage.clustered.is_possible() && stage.clustered.tree().sources().size() > min_sources;
     if (!possible || squared(direct_share_) == 0) return false;
     const RegionId region = spots.front().region;
     const Normal& n = stage.scene.regions()[region].plane.n;
@@ -33,11 +33,12 @@ bool TileLight::suits_clusters(std::span<const Spot> spots) {
     });
 }
 
-/// Finds blocks whose light is left to shared rays: those with more shadows of sources than are worth exact answers.
+/// Finds blocks that use shared rays: those with too many partly hidden sources for exact light. Returns true if there
+/// are any.
 bool TileLight::share_rays(std::span<const Spot> spots, const ReceiverLight* whole) {
-    constexpr std::ptrdiff_t many = 24;
+    constexpr std::ptrdiff_t max_exact = 24;
     const auto has_many_shadows = [&](const ReceiverLight* light) {
-        return light && std::ranges::count_if(light->sources, [](const auto& s) { return s.count > 0; }) > many;
+        return light && std::ranges::count_if(light->sources, [](const auto& s) { return s.count > 0; }) > max_exact;
     };
     if (squared(direct_share_) == 0 || !shared_.is_possible() || !has_many_shadows(whole)) return false;
     constexpr std::size_t places = 16;
@@ -55,7 +56,7 @@ bool TileLight::share_rays(std::span<const Spot> spots, const ReceiverLight* who
     return any;
 }
 
-/// Of direct light at a pixel that has other light, too, W/m^2.
+/// Required accuracy of direct light at a pixel that also has other light `rest`, W/m^2.
 LightAccuracy TileLight::accuracy(double rest) const {
     constexpr unsigned most_rays = 1024;
     return {pixel_error, pixel_error * (rest + dim * brightness_), most_rays};
@@ -66,21 +67,21 @@ const Spot* TileLight::spot_at(std::span<const Spot> spots, int x, int y) const 
     return found == 0 ? nullptr : &spots[found - 1];
 }
 
-/// Direct light at one place of a spot, by clusters of emitters or by shared rays; asked for once.
+/// Direct light at one point of a spot, by clusters of emitters or by shared rays; computed once per pixel.
 Spectrum TileLight::light_by_rays(const Spot& spot) {
     const std::size_t pixel = pixel_of(spot);
     if (is_stopped()) return {};
     if (is_found_[pixel]) return found_[pixel];
     const Stage& stage = light_.stage();
     Point at = points_[spot.first];
-    if (spot.count == samples_) {  // else its middle may be hidden behind what shows beside it
+    if (spot.count == samples_) {  // otherwise the centre may be hidden behind another surface in the pixel
         at = Point();
         for (std::uint32_t i = 0; i < spot.count; ++i) at += points_[spot.first + i] / spot.count;
     }
-    const LightAccuracy asked = accuracy(mean(spot.irradiance));  // what there is already
+    const LightAccuracy asked = accuracy(mean(spot.irradiance));  // light found so far
     const Normal& n = stage.scene.regions()[spot.region].plane.n;
     const auto block = static_cast<std::size_t>(block_of(spot));
-    constexpr int side = 4;  // a square of pixels that take sets of rays one after the other
+    constexpr int side = 4;  // pixels of such a square use different sets of rays
     const auto set = static_cast<std::uint32_t>(spot.y % side * side + spot.x % side);
     const ClusteredLight::Estimate found = by_rays_[block]
                                                ? shared_.at(shared_parts_[block], at, set, asked, visibility_)
@@ -89,7 +90,8 @@ Spectrum TileLight::light_by_rays(const Spot& spot) {
     return found_[pixel] = direct_share_ * found.irradiance;
 }
 
-/// Light between the corners of a cell of pixels, if it is even there and its middle is as the corners say.
+/// Interpolates light between the corners of a cell of pixels. Returns false if it is not uniform or differs at the
+/// centre.
 bool TileLight::interpolate(std::span<Spot> spots, int x0, int y0, int x1, int y1) {
     const std::array<const Spot*, 4> corners = {spot_at(spots, x0, y0), spot_at(spots, x1, y0), spot_at(spots, x0, y1),
                                                 spot_at(spots, x1, y1)};
@@ -102,16 +104,18 @@ bool TileLight::interpolate(std::span<Spot> spots, int x0, int y0, int x1, int y
         const double there = mean(E[i] + corners[i]->irradiance);
         least = std::min(least, there), most = std::max(most, there);
     }
-    constexpr double seldom = 3;  // standard deviations: what noise alone makes, no smaller cell would mend
+    constexpr double max_deviations =
+        3;  // standard deviations: a difference due to noise is no reason for a smaller cell
     const double all = most + dim * brightness_;
-    if (most - least > std::max(even * all, seldom * noise)) return false;
+    if (most - least > std::max(even * all, max_deviations * noise)) return false;
     const auto between = [&](int x, int y) {
         const double u = static_cast<double>(x - x0) / (x1 - x0), v = static_cast<double>(y - y0) / (y1 - y0);
         return (1 - v) * ((1 - u) * E[0] + u * E[1]) + v * ((1 - u) * E[2] + u * E[3]);
     };
     const int x = (x0 + x1) / 2, y = (y0 + y1) / 2;
     const Spot* middle = spot_at(spots, x, y);
-    if (!middle || std::abs(mean(light_by_rays(*middle) - between(x, y))) > std::max(alike * all, seldom * noise))
+    if (!middle ||
+        std::abs(mean(light_by_rays(*middle) - between(x, y))) > std::max(alike * all, max_deviations * noise))
         return false;
     for (int k = y0; k <= y1; ++k)
         for (int i = x0; i <= x1; ++i) {
@@ -123,7 +127,7 @@ bool TileLight::interpolate(std::span<Spot> spots, int x0, int y0, int x1, int y
     return true;
 }
 
-/// The pixels of a cell, corners included: interpolated, or those of its quarters.
+/// Computes the pixels of a cell, corners included: by interpolation, or by its quarters.
 void TileLight::fill(std::span<Spot> spots, int x0, int y0, int x1, int y1) {
     if (x1 - x0 <= 1 || y1 - y0 <= 1 || interpolate(spots, x0, y0, x1, y1)) return;
     const int x = (x0 + x1) / 2, y = (y0 + y1) / 2;
@@ -142,8 +146,8 @@ void TileLight::fill_all(std::span<Spot> spots) {
     }
 }
 
-/// All spots of one region where emitters are many and small: shadows are soft there as a rule, so that light is asked
-/// for at corners of cells, and between them where it is not even.
+/// Evaluates all spots of one region with many small emitters. Shadows are usually soft there, so that light is
+/// computed at the corners of cells, and in between only where it varies.
 void TileLight::evaluate_by_clusters(std::span<Spot> spots) {
     for (std::size_t i = 0; i < spots.size(); ++i) {
         spots[i].irradiance = elements(spots[i]);
@@ -152,7 +156,7 @@ void TileLight::evaluate_by_clusters(std::span<Spot> spots) {
     fill_all(spots);
 }
 
-/// The same for the spots of those blocks that `share_rays` has found.
+/// Like evaluate_by_clusters(), for the spots of the blocks found by `share_rays`.
 void TileLight::evaluate_by_shared_rays(std::span<Spot> spots) {
     visit_blocks(spots, [&](std::size_t block, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end && by_rays_[block]; ++i) {

@@ -10,8 +10,8 @@
 namespace exitance {
 namespace {
 
-/// The tightest octagon around points of a plane, its sides along a frame of the plane and half-way between: its
-/// corners counter-clockwise about n. Fewer than three where the points leave no area.
+/// The smallest octagon around points of a plane with sides along two axes of the plane and their bisectors. Corners
+/// are counter-clockwise about n; fewer than three if the points have no area.
 class Octagon {
   public:
     explicit Octagon(const Normal& n) : frame_(n) {}
@@ -49,13 +49,13 @@ class Octagon {
     Range u_, v_, sum_, difference_;
 };
 
-constexpr std::uint32_t probing = 4;  ///< Points of a spot that tell whether the others are wanted.
+constexpr std::uint32_t probing = 4;  ///< Points of a spot by which to decide whether the others are needed.
 
 bool agree(const Spectrum& a, const Spectrum& b) {
     return std::abs(mean(a) - mean(b)) <= TileLight::alike * std::max(mean(a), mean(b));
 }
 
-/// The mean of value(i) over [0, count): of the first few if these differ little beside `rest` and themselves.
+/// Mean of value(i) over [0, count): of the first few values if they, added to `rest`, differ little; else of all.
 template <class Value>
 Spectrum probed_mean(std::uint32_t count, const Spectrum& rest, const Value& value) {
     Spectrum values[probing], sum;
@@ -85,7 +85,7 @@ TileLight::TileLight(const RadiosityFunction& light, std::uint32_t samples, unsi
     spot_at_.fill(0), is_found_.fill(0);
 }
 
-/// What is known of the emitters from everywhere on these spots of one region; false where they are too slender to ask.
+/// Prepares direct light for spots of one region. Returns false if their area is too small for that.
 bool TileLight::prepare(std::span<const Spot> spots, const ReceiverLight* whole, ReceiverLight& out) {
     if (is_stopped()) return false;
     const Stage& stage = light_.stage();
@@ -109,23 +109,24 @@ const ReceiverLight* TileLight::look_at_block(std::span<const Spot> spots, const
     return worth && prepare(spots, whole, room) ? &room : whole;
 }
 
-/// Is a spot so small beside its distance from every emitter that direct light is linear over it? E ~ 1 / d^2 over
-/// r = d / 30 departs from its tangent by at most (r / d)^2 times a few: less than 1%, and its mean by a fraction.
+/// True if a spot is so small compared with its distance from every emitter that direct light is linear over it. E ~ 1
+/// / d^2 over r = d / 30 differs from its tangent by at most a few (r / d)^2, less than 1%, and its mean by a fraction
+/// of that.
 bool TileLight::looks_small(const Spot& spot, const ReceiverLight& known, const Point& middle) const {
     constexpr double small = 1.0 / 30, part_of_step = 1.0 / 8;
-    if (!known.behind.empty()) return false;  // a pane may stand close to a lamp behind it
+    if (!known.behind.empty()) return false;  // a pane may be close to a lamp behind it
     double radius_squared = 0;
     for (std::uint32_t i = 0; i < spot.count; ++i)
         radius_squared = std::max(radius_squared, squared_norm(points_[spot.first + i] - middle));
     for (const Beam& beam : known.beams) {
         const PunctualLight& lamp = light_.solution().scene.lights()[beam.light];
-        const double distance = small * norm(lamp.position - middle);
-        if (lamp.kind == PunctualLight::Kind::spot) return false;  // its cone may have a sharp edge
+        const double distance = small * norm(lamp.position - middle);  ///< its cone may have a sharp edge
+        if (lamp.kind == PunctualLight::Kind::spot) return false;      // its cone may have a sharp edge
         if (!lamp.is_directional() && radius_squared > distance * distance) return false;
     }
     for (const ReceiverLight::Source& source : known.sources) {
         const DirectLight::Emitter& emitter = light_.stage().direct.emitters()[source.emitter];
-        // Beams are as sharp as the steps of their tables.
+        // Directed emission has features as narrow as the steps of its table.
         const double angle =
             emitter.radiance.is_directed() ? std::min(small, part_of_step * emitter.radiance.smooth_width()) : small;
         const double distance = angle * (norm(emitter.centre - middle) - emitter.radius);
@@ -134,14 +135,14 @@ bool TileLight::looks_small(const Spot& spot, const ReceiverLight& known, const 
     return true;
 }
 
-/// What is not exact direct light, mean over a spot.
+/// All light except exact direct light, mean over a spot.
 Spectrum TileLight::elements(const Spot& spot) {
     if (is_stopped()) return {};
     if (gather_ == 0)
         return probed_mean(spot.count, Spectrum(),
                            [&](std::uint32_t i) { return light_.elements(spot.region, points_[spot.first + i]); });
     const Normal& n = light_.stage().scene.regions()[spot.region].plane.n;
-    Spectrum sum;  // every gather has noise of its own
+    Spectrum sum;  // every gather has its own noise
     for (std::uint32_t i = 0; i < spot.count; ++i) {
         const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::gather), spot.pixel, i);
         sum += light_.gathered({points_[spot.first + i], n}, spot.region, gather_, key, gathering_);
@@ -149,7 +150,7 @@ Spectrum TileLight::elements(const Spot& spot) {
     return sum / spot.count;
 }
 
-/// Direct light, less what the mesh has there where that is integrated.
+/// Direct light, minus that of the mesh where the mesh is integrated.
 Spectrum TileLight::direct(const Spot& spot, const ReceiverLight* known, const Point& x) {
     if (is_stopped()) return {};
     const Stage& stage = light_.stage();
@@ -159,7 +160,8 @@ Spectrum TileLight::direct(const Spot& spot, const ReceiverLight* known, const P
     return direct_share_ * stage.direct.irradiance(x, n, spot.region, visibility_) - meshed;
 }
 
-/// Direct light at one place of a spot; true if that is certainly the mean over all of it, which then needs no mesh.
+/// Direct light at one point of a spot. Returns true if it certainly equals the mean over the spot, which then needs no
+/// mesh.
 bool TileLight::first_guess(Spot& spot, const ReceiverLight* known, Spectrum& light) {
     if (squared(direct_share_) == 0 || (known && known->is_dark())) {
         spot.meshed.reset();
@@ -169,7 +171,7 @@ bool TileLight::first_guess(Spot& spot, const ReceiverLight* known, Spectrum& li
     for (std::uint32_t i = 0; i < spot.count; ++i) middle += points_[spot.first + i] / spot.count;
     const bool smooth = known && known->is_unshadowed() && looks_small(spot, *known, middle);
     if (smooth || spot.count == 1) spot.meshed.reset();
-    // The middle of what shows beside something else may be hidden behind that, and lie in another light.
+    // If the pixel also shows other surfaces, the centre may be hidden behind them and have different light.
     light = direct(spot, known, smooth || spot.count == samples_ ? middle : points_[spot.first]);
     return smooth || spot.count == 1;
 }
@@ -184,11 +186,11 @@ bool TileLight::differs_from_neighbours(std::span<const Spot> spots, std::size_t
             ++neighbours;
             if (!agree(spots[found - 1].irradiance, spots[i].irradiance)) return true;
         }
-    return neighbours < 3;  // too few to be told by
+    return neighbours < 3;  // too few to decide
 }
 
-/// Is light at a square other than half-way between its neighbours, to the left and right or above and below? Where one
-/// of them is missing: does it differ from one that there is?
+/// True if light at a square differs from the mean of its two neighbours, horizontally or vertically. If one of them is
+/// missing: true if it differs from an existing neighbour.
 bool TileLight::bends_between_neighbours(std::span<const Spot> spots, std::size_t i) const {
     const auto [x, y] = std::pair(spots[i].x, spots[i].y);
     const auto light_at = [&](int u, int v) -> const Spectrum* {
@@ -204,8 +206,8 @@ bool TileLight::bends_between_neighbours(std::span<const Spot> spots, std::size_
     return false;
 }
 
-/// Mean of direct light over a whole square, of which the middle is known: of five points where these tell that light
-/// is linear.
+/// Mean of direct light over a whole square with known light at the centre: from five points if these show that light
+/// is linear, else from all.
 Spectrum TileLight::mirrored_mean(const Spot& spot, const Spectrum& rest, const ReceiverLight* known) {
     const Spectrum middle = spot.irradiance - rest;
     Spectrum pair[2], sum;
@@ -217,7 +219,7 @@ Spectrum TileLight::mirrored_mean(const Spot& spot, const Spectrum& rest, const 
     return sum / spot.count;
 }
 
-/// All spots of one region, block by block.
+/// Evaluates all spots of one region, block by block.
 void TileLight::evaluate_region(std::span<Spot> spots) {
     by_rays_.fill(false);
     if (suits_clusters(spots)) return evaluate_by_clusters(spots);

@@ -13,44 +13,45 @@ namespace exitance {
 
 constexpr int tile_side = 32;  ///< Pixels.
 
-/// What one pixel shows of one region.
+/// The part of one region that one pixel shows.
 struct Spot {
     RegionId region;
-    int x = 0, y = 0;                    ///< The pixel's place in its tile, from 0 to tile_side - 1.
-    std::uint32_t pixel = 0;             ///< Names the random numbers of its gather.
-    std::uint32_t first = 0, count = 0;  ///< Of the points seen, in an order in which the first four are well spread.
+    int x = 0, y = 0;                    ///< The pixel's position in its tile, from 0 to tile_side - 1.
+    std::uint32_t pixel = 0;             ///< Selects the random numbers of its gather.
+    std::uint32_t first = 0, count = 0;  ///< Range of its points, of which the first four are well distributed.
     Spectrum irradiance = {};            ///< Mean over the points, W/m^2.
-    /// Where the solution's mesh is integrated over the spot: the mean of its MeshLight. Points then count
-    /// what the mesh is off by there, which has no edges.
+    /// If the solution's mesh is integrated over the spot: the mean of its MeshLight. Points then only give the
+    /// difference from the mesh, which has no edges.
     std::optional<Spectrum> meshed = {};
 };
 
-/// Whose points the spots are.
+/// Kind of points in the spots.
 enum class SpotPoints : std::uint8_t {
-    any,
-    /// Squares side by side in a plane, and in every whole one the points 0 and 1 are mirror images in its middle, and
-    /// so are 2 and 3: where light is linear, the mean of either pair is that of the square.
+    any,  ///< Arbitrary points.
+    /// Spots are adjacent squares in a plane. In every whole square, points 0 and 1 are mirror images about the centre,
+    /// and so are 2 and 3: if light is linear, the mean of either pair is that of the square.
     mirrored,
 };
 
-/// Light on the spots of a picture's tile, as take_picture describes it. One a thread; keeps its memory.
+/// Computes light on the spots of a picture's tile, as described at take_picture. One per thread; keeps its memory.
 class TileLight {
   public:
-    /// `samples` points a pixel; `gather` rays a point, 0 for none. Keeps a reference to `light`.
-    /// brightness  irradiance that is usual in the picture, W/m^2: how much noise is worth in dark pixels; 0: none
+    /// `samples`: points per pixel; `gather`: rays per point, 0 for none. Keeps a reference to `light`.
+    /// brightness  typical irradiance of the picture, W/m^2, which sets the noise allowed in dark pixels; 0: none
     TileLight(const RadiosityFunction& light, std::uint32_t samples, unsigned gather, std::uint64_t seed,
               SpotPoints kind = SpotPoints::any, double brightness = 0);
 
-    /// The mesh whose means spots may have; it must outlive this.
+    /// Sets the mesh whose means spots may have; it must outlive the object.
     void use(const MeshLight& mesh) { mesh_ = &mesh; }
-    /// A request to stop, which must outlive this: once it is made, evaluate() returns at once with unfinished spots.
+    /// Sets a stop request, which must outlive the object: after a stop, evaluate() returns at once with unfinished
+    /// spots.
     void use(const StopRequest& stop) { stop_ = &stop; }
 
-    /// Fills in the irradiance of every spot and brings the spots into an order of its own. `points` are places in the
-    /// open on the spots' regions, metres.
+    /// Sets the irradiance of every spot and reorders the spots. `points`: uncovered points on the spots' regions,
+    /// metres.
     void evaluate(std::span<const Point> points, std::vector<Spot>& spots);
 
-    static constexpr double alike = 0.01;  ///< Values that differ by less make no difference to their mean.
+    static constexpr double alike = 0.01;  ///< Relative difference below which values are considered equal.
 
   private:
     static constexpr int block_side = 8, blocks = (tile_side / block_side) * (tile_side / block_side);
@@ -59,7 +60,7 @@ class TileLight {
     }
 
     static std::size_t pixel_of(const Spot& spot) { return static_cast<std::size_t>(spot.y * tile_side + spot.x); }
-    /// Calls visit(block, its first spot, past its last one) for all blocks of one region.
+    /// Calls visit(block, first spot, last spot + 1) for all blocks of one region.
     template <class Visit>
     void visit_blocks(std::span<const Spot> spots, const Visit& visit) const {
         for (std::size_t begin = 0, end = 0; begin < spots.size(); begin = end) {
@@ -99,21 +100,22 @@ class TileLight {
     std::uint64_t seed_;
     SpotPoints kind_;
     double brightness_;      ///< W/m^2
-    Spectrum direct_share_;  ///< Of exact direct light, on top of the rest.
+    Spectrum direct_share_;  ///< Factor of exact direct light.
     std::span<const Point> points_;
     std::vector<Point> outline_;
     ReceiverLight whole_;
     std::array<ReceiverLight, blocks> parts_;
-    std::array<const ReceiverLight*, blocks> known_;            ///< Null where nothing could be prepared.
-    SharedRays shared_;                                         ///< Of the region at hand,
-    std::array<SharedRays::Part, blocks> shared_parts_;         ///< and of its blocks,
-    std::array<bool, blocks> by_rays_;                          ///< where these are left to rays.
-    std::array<std::uint32_t, tile_side * tile_side> spot_at_;  ///< Of the region at hand: one past the spot's number.
+    std::array<const ReceiverLight*, blocks> known_;  ///< Prepared light of each block; null if none could be prepared.
+    SharedRays shared_;                               ///< Shared rays of the current region.
+    std::array<SharedRays::Part, blocks> shared_parts_;  ///< Shared rays of its blocks.
+    std::array<bool, blocks> by_rays_;                   ///< True for blocks that use shared rays.
+    /// For each pixel of the current region, the spot's index plus one; 0: none.
+    std::array<std::uint32_t, tile_side * tile_side> spot_at_;
     std::vector<std::uint8_t> settled_;
-    std::vector<Spectrum> rest_;                                ///< Of every spot: all but exact direct light.
-    std::array<Spectrum, tile_side * tile_side> found_;         ///< By rays: direct light of a pixel
-    std::array<double, tile_side * tile_side> noise_;           ///< (standard deviation, W/m^2)
-    std::array<std::uint8_t, tile_side * tile_side> is_found_;  ///< that is known.
+    std::vector<Spectrum> rest_;                         ///< All light except exact direct light, for every spot.
+    std::array<Spectrum, tile_side * tile_side> found_;  ///< Direct light of each pixel by rays.
+    std::array<double, tile_side * tile_side> noise_;    ///< Its standard deviation, W/m^2.
+    std::array<std::uint8_t, tile_side * tile_side> is_found_;  ///< True where it is known.
     DirectLight::Workspace visibility_;
     ClusteredLight::Workspace clustered_;
     GatherWorkspace gathering_;

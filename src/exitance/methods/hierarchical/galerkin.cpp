@@ -15,7 +15,7 @@ GlobalLight solve_galerkin(const MethodInput& input, HierarchyBasis kind) {
     input.progress.phase("link");
     h.light.numbering = LeafNumbering(h.light.tree);
     const std::size_t leaves = h.light.numbering.leaves.size();
-    // As many links as there are at most, each of one error, come to the one asked for.
+    // Even if all links have the same error, their sum is within the requested one.
     const double demand = input.knobs.link_error * h.light_norm();
     LeafLinks found =
         link_leaves(h.sites, h.radiosity, link_tolerance(h, demand / static_cast<double>(leaves)), input.stop);

@@ -14,12 +14,12 @@ SolveOptions galerkin(BasisKind basis) {
     SolveOptions options;
     options.method = Method::matrix;
     options.basis = basis;
-    options.smoothing = false;  // what the elements hold
+    options.smoothing = false;  // compare the elements' own light
     options.residual = 1e-8;
     return options;
 }
 
-/// RMS over the first tree's leaves of the difference of two functions' mean bands, at nine places a leaf.
+/// RMS difference of two functions' band means over the leaves of the first, at nine points per leaf.
 double difference(const ElementFunction& f, const Solution& g) {
     double sum = 0, area = 0;
     const ElementLocator locator(g.indirect.tree, g.scene.regions().size());
@@ -45,7 +45,7 @@ std::map<RegionId, std::pair<double, double>> face_means(const Solution& solutio
     return out;
 }
 
-/// Two plates of 1 m x 1 m that face each other, 1 m apart; one of them glows: light is smooth all over.
+/// Two plates of 1 m x 1 m that face each other, 1 m apart. One of them emits: light is smooth everywhere.
 Scene glowing_plates() {
     return test::make(
         {{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, 1.0}, {{{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}}});
@@ -73,7 +73,7 @@ TEST(Galerkin, ConvergesWithTheOrderOfItsElements) {
     EXPECT_LT(coarse[1], 0.2 * coarse[0]);
 }
 
-TEST(Galerkin, HoldsTheLightOfAFurnace) {
+TEST(Galerkin, SolvesAFurnace) {
     const double rho = 0.8;
     const Scene furnace = box_scene(1, 2, 3, rho, 1, 1);
     for (const BasisKind basis : {BasisKind::galerkin1, BasisKind::galerkin2, BasisKind::galerkin3}) {
@@ -81,16 +81,16 @@ TEST(Galerkin, HoldsTheLightOfAFurnace) {
         options.mesh_size = 1.0;
         options.epsilon = 1e-4;
         const Solution solution = solved(furnace, options);
-        double most = 0;
+        double largest = 0;
         for (ElementId e : solution.indirect.tree.leaves())
-            most = std::max(most, std::abs(solution.indirect.at({e, {0.3, 0.4}})[0] - rho / (1 - rho)));
-        // Errors of rules, as small as the tolerance, come back from five reflections.
-        EXPECT_LT(most / 4, 1e-3) << name_in(basis_names, basis);
+            largest = std::max(largest, std::abs(solution.indirect.at({e, {0.3, 0.4}})[0] - rho / (1 - rho)));
+        // Errors of quadrature rules, as small as the tolerance, are multiplied by five through reflections.
+        EXPECT_LT(largest / 4, 1e-3) << name_in(basis_names, basis);
         EXPECT_EQ(solution.statistics.basis, name_in(basis_names, basis));
     }
 }
 
-TEST(Galerkin, OfOrderOneAgreesWithConstantRowsOfRays) {
+TEST(Galerkin, OrderOneAgreesWithConstantRowsOfRays) {
     const Scene scene = built_scene("cornell");
     SolveOptions options = galerkin(BasisKind::galerkin1);
     options.mesh_size = 0.25;
@@ -103,11 +103,11 @@ TEST(Galerkin, OfOrderOneAgreesWithConstantRowsOfRays) {
         const auto& [area, of_rays] = means_by_rays.at(region);
         difference += area * std::pow(of_blocks.second - of_rays, 2), light += area * of_rays * of_rays;
     }
-    // Constants of 0.25 m miss some 0.5% in corners, and rays leave as much noise in the mean of a face.
+    // Constant elements of 0.25 m are off by about 0.5% in corners, and noise of rays adds as much to a face's mean.
     EXPECT_LT(std::sqrt(difference / light), 0.015);
 }
 
-TEST(Galerkin, MeetsTheErrorAskedFor) {
+TEST(Galerkin, MeetsTheRequestedError) {
     for (const BasisKind basis : {BasisKind::galerkin1, BasisKind::galerkin2}) {
         SolveOptions options;
         options.method = Method::matrix;

@@ -8,29 +8,29 @@
 namespace exitance {
 namespace {
 
-/// Cuts leaves, for the sake of what is handed on, until linear functions hold what quadratic ones have found.
+/// Splits leaves for delivery until linear functions approximate the quadratic ones.
 void cut_for_delivery(Hierarchy& h, const NodalLight& E) {
     const double allowed =
         calibrated::delivery_share * h.input.knobs.link_error * h.light_norm() / std::sqrt(h.input.stage.area);
     ElementTree& tree = h.light.tree;
     std::vector<ElementId> active = tree.leaves();
-    constexpr int most_levels = 3;
-    for (int level = 0; level < most_levels && !active.empty(); ++level) {
-        const std::vector<ElementId> rough = rough_elements(h.sites, E, active, allowed);
-        for (ElementId e : rough) refine_element(tree, e);
+    constexpr int max_levels = 3;
+    for (int level = 0; level < max_levels && !active.empty(); ++level) {
+        const std::vector<ElementId> too_coarse = rough_elements(h.sites, E, active, allowed);
+        for (ElementId e : too_coarse) refine_element(tree, e);
         active.clear();
-        for (ElementId e : rough)
+        for (ElementId e : too_coarse)
             for (ElementId child : tree.children(e)) active.push_back(child);
     }
     h.light.numbering = LeafNumbering(tree);
-    h.light.kept.clear();  // was of other leaves
+    h.light.kept.clear();  // belonged to the leaves before the split
 }
 
 }  // namespace
 
 void hand_over(Hierarchy& h) {
     GlobalLight& light = h.light;
-    // The mesh below the elements that are held is that of direct light.
+    // The mesh below the elements with coefficients counts as direct light's.
     const std::size_t element_bytes = light.tree.memory_bytes() * h.sites.size() / light.tree.size() +
                                       h.sites.memory_bytes() + h.reflected_direct_below.memory_bytes() +
                                       h.refiner.field_bytes() + 2 * h.radiosity.memory_bytes();

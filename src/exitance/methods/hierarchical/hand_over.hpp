@@ -4,8 +4,8 @@
 
 namespace exitance {
 
-/// Writes light, links and what they took to `hierarchy.light`, as every method hands it on. Leaves are cut, where
-/// quadratic functions are delivered, until linear ones hold them.
+/// Writes light, links and work counts to `hierarchy.light`, in the form that every method returns. If quadratic
+/// functions are delivered, leaves are first split until linear functions approximate them.
 void hand_over(Hierarchy& hierarchy);
 
 }  // namespace exitance

@@ -14,22 +14,24 @@
 namespace exitance {
 namespace {
 
-/// Where nothing is said, so many pieces are worth clusters above them; which are judged by their error.
+/// True if clusters are requested, or by default if there are many pieces. Clusters require links judged by their
+/// error.
 bool wants_clusters(const MethodInput& input) {
-    constexpr std::size_t many_pieces = 500;
+    constexpr std::size_t max_unclustered_pieces = 500;
     const SolveOptions& o = input.options;
-    return o.clusters.value_or(input.direct.tree.roots().size() > many_pieces && o.oracle == LinkOracle::transport);
+    return o.clusters.value_or(input.direct.tree.roots().size() > max_unclustered_pieces &&
+                               o.oracle == LinkOracle::transport);
 }
 
-/// Clusters read elements before links come to them; and from the means of flatlets nothing below is read.
+/// Clusters read elements before these have links, and light below elements does not follow from the means of flatlets.
 LinkSites::Held held_by(const MethodInput& input, HierarchyBasis kind) {
     const bool has_means = kind == HierarchyBasis::flatlet2 || kind == HierarchyBasis::flatlet3;
     return wants_clusters(input) || has_means ? LinkSites::Held::all : LinkSites::Held::roots;
 }
 
-/// Are links alone asked for, or do polynomials give the light as exactly as it has to be? That the scene decides, not
-/// how far its links are refined: attempts of one solve do not take turns. Not where the plan says that sums over
-/// elements (ElementGather) take less work.
+/// True if only the links' light is requested, or if polynomials are as exact as required. This depends on the scene,
+/// not on the refinement of its links, so that all attempts of one solve agree. False if the plan expects sums over
+/// elements (ElementGather) to be cheaper.
 bool links_deliver(const Hierarchy& h) {
     const MethodInput& input = h.input;
     if (input.options.smoothing == false) return true;
@@ -42,7 +44,7 @@ bool links_deliver(const Hierarchy& h) {
     return is_mostly_open(input.stage, h.light.tree, numbering, locator, light, input.options.seed);
 }
 
-/// In a closed scene nothing of what is reflected may be lost.
+/// Scales the links' light in a closed scene so that no reflected light is lost.
 void conserve(Hierarchy& h) {
     const ElementLocator locator(h.light.tree, h.input.stage.scene.regions().size());
     if (!is_closed(h.input.stage, h.light.tree, h.light.numbering, locator, h.input.options.seed)) return;
@@ -51,13 +53,13 @@ void conserve(Hierarchy& h) {
     h.input.progress.note(fmt::format("links lose {:.4f}% of the light", 100 * (mean(h.system.scale()) - 1)));
 }
 
-/// Radiosity over the links of a hierarchy, whatever its basis: what the methods hierarchical and wavelet share.
+/// Radiosity over the links of a hierarchy with any basis; common to the methods hierarchical and wavelet.
 ///
-/// Where light is gathered from the elements afterwards, rays find the links (`solve_linked_by_rays`). Where the basis
-/// holds polynomials and most light passes in the open, or where something about links is asked for, they are judged
-/// one by one (`refine_links`); E_ind of polynomials is then delivered as the links give it, else rays correct the
-/// means. O(rays log rays); or O(k log k + links) for k pieces under clusters, O(k^2 + links) without. Source:
-/// [Hanrahan91], [Gortler93], [Smits94].
+/// If light is gathered from the elements afterwards, rays find the links (`solve_linked_by_rays`). Links are judged
+/// one by one (`refine_links`) if the basis has polynomials and most light is unoccluded, or if options about links are
+/// set. E_ind of polynomials is then delivered as computed by the links; otherwise rays correct the means. O(rays log
+/// rays), or O(k log k + links) for k pieces with clusters, O(k^2 + links) without. Source: [Hanrahan91], [Gortler93],
+/// [Smits94].
 GlobalLight solve_over_links(const MethodInput& input, HierarchyBasis kind) {
     if (!asks_for_judged_links(input.options)) {
         const bool is_polynomial = kind == HierarchyBasis::multiwavelet2 || kind == HierarchyBasis::multiwavelet3;
@@ -84,8 +86,8 @@ bool asks_for_judged_links(const SolveOptions& o) {
 }
 
 bool links_outgrow_memory(std::size_t pieces, const SolveOptions& options) {
-    constexpr double see_each_other = 0.5;
-    const double pairs = see_each_other * std::pow(static_cast<double>(pieces), 2);
+    constexpr double visible_share = 0.5;
+    const double pairs = visible_share * std::pow(static_cast<double>(pieces), 2);
     return options.memory_limit_bytes &&
            pairs * LinkRefiner::bytes_a_link > static_cast<double>(*options.memory_limit_bytes);
 }
@@ -95,7 +97,7 @@ GlobalLight solve_hierarchical(const MethodInput& input) {
     return solve_over_links(input, HierarchyBasis::haar);
 }
 
-/// Wavelet radiosity [Gortler93]: the same with the basis asked for, multiwavelets of order 2 when none is.
+/// Wavelet radiosity [Gortler93]: hierarchical radiosity with the requested basis, by default multiwavelets of order 2.
 GlobalLight solve_wavelet(const MethodInput& input) {
     switch (input.options.basis.value_or(BasisKind::multiwavelet2)) {
         case BasisKind::haar:

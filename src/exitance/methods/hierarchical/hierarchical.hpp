@@ -6,10 +6,10 @@
 
 namespace exitance {
 
-/// Would links between all pieces that see each other, about half of the pairs, take more than `--memory-limit`?
+/// True if links between all pieces that see each other (about half of the pairs) would exceed `--memory-limit`.
 bool links_outgrow_memory(std::size_t pieces, const SolveOptions& options);
 
-/// Does what was asked for say how links are to be found or judged, or deliver what they hold?
+/// True if an option determines how links are found or judged, or requires the links' own light.
 bool asks_for_judged_links(const SolveOptions& options);
 
 }  // namespace exitance

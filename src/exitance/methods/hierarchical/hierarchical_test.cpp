@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// RMS of the difference of indirect light, relative to its mean, at the middles of the leaves of `g`.
+/// RMS difference of indirect light, relative to its mean, at the centres of the leaves of `g`.
 double relative_difference(const Solution& f, const Solution& g) {
     const ElementTree& tree = g.indirect.tree;
     const ElementLocator locator(f.indirect.tree, f.scene.regions().size());
@@ -26,8 +26,8 @@ double relative_difference(const Solution& f, const Solution& g) {
     return std::sqrt(square / area) / (light / area);
 }
 
-/// No ray corrects links alone and no gather smooths them: what they miss shows, and falls with what they may miss.
-TEST(Hierarchy, OfLinksAloneErrsByWhatItsLinksMayMiss) {
+/// No rays correct the links and no gather smooths their light: their errors are visible, and fall with the tolerance.
+TEST(Hierarchy, ErrorOfLinksFallsWithTheirTolerance) {
     const Scene scene = built_scene("cornell");
     const Solution reference = solved(scene, {.method = Method::matrix, .error = 0.01});
     for (const BasisKind basis : {BasisKind::haar, BasisKind::multiwavelet2, BasisKind::multiwavelet3}) {
@@ -37,22 +37,22 @@ TEST(Hierarchy, OfLinksAloneErrsByWhatItsLinksMayMiss) {
         const double coarse = relative_difference(solved(scene, options), reference);
         options.epsilon = 0.025;
         const double fine = relative_difference(solved(scene, options), reference);
-        // Reflections bring back what links miss; and constants err within their leaves besides.
+        // Reflections multiply the links' errors, and constant elements have errors within their leaves as well.
         EXPECT_LT(fine, (basis == BasisKind::haar ? 4 : 2) * *options.epsilon) << static_cast<int>(basis);
         EXPECT_LT(fine, 0.6 * coarse) << static_cast<int>(basis);
     }
 }
 
-/// How often a solve looks at its error.
+/// Counts how often a solve estimates its error.
 class CountsAttempts final : public Progress {
   public:
     void phase(std::string_view name) override { count += name == "certify"; }
     int count = 0;
 };
 
-/// The floor below a floating box is lit by nothing but the box's underside, which is dark until the floor lights it:
-/// links are not content before they know. (Attempts whose links missed it were 1.0 and 1.2% off.)
-TEST(Hierarchy, FindsWhatOnlySeveralReflectionsLight) {
+/// The floor below a floating box is lit only by the box's underside, which is dark until the floor lights it. Links
+/// must not be accepted before that. (Attempts whose links missed it were off by 1.0 and 1.2%.)
+TEST(Hierarchy, FindsLightOfSeveralReflections) {
     const Scene scene = built_scene("boxes");
     const StopRequest never;
     for (const BasisKind basis : {BasisKind::multiwavelet2, BasisKind::multiwavelet3}) {
@@ -66,7 +66,7 @@ TEST(Hierarchy, FindsWhatOnlySeveralReflectionsLight) {
     }
 }
 
-TEST(Hierarchy, KnowsWhereLinksBetweenAllPairsOutgrowMemory) {
+TEST(Hierarchy, DetectsLinksThatExceedMemory) {
     SolveOptions options;
     EXPECT_FALSE(links_outgrow_memory(100'000, options)) << "no limit is given";
     options.memory_limit_bytes = 300'000'000;

@@ -30,7 +30,7 @@ void Hierarchy::make_clusters() {
     far.emplace(sites, *clusters);
 }
 
-/// rho E_dir, as projected on a leaf.
+/// rho E_dir as projected on a leaf.
 NodalValues Hierarchy::reflected_once(ElementId leaf) const {
     NodalValues E = projected_light(sites, input.direct, leaf);
     for (Spectrum& value : E) value = material(leaf).reflectance * value;
@@ -50,8 +50,7 @@ void Hierarchy::project_direct() {
     refiner.set_roughness(std::move(roughness));
 }
 
-/// Light on the children of elements, where links come to them: below what they were held by, it is E_dir as projected
-/// and E_ind as their parent has it.
+/// Computes light on the children of elements when these get links: E_dir as projected, and E_ind of the parent.
 void Hierarchy::find_light_below(const std::vector<ElementId>& parents, Field<ElementId, double>& roughness) {
     reflected_direct.resize(), radiosity.resize();
     parallel_for(parents.size(), 1, [&](std::size_t i) {
@@ -92,13 +91,13 @@ void Hierarchy::refine(const LinkTolerance& tolerance) {
     refine_panes_alike();
 }
 
-/// What comes to one side of a diffusing pane leaves by the other, too: where that is held on smaller elements, so it
-/// is there.
+/// Refines elements of diffusing panes so that both sides have elements of similar size: light that arrives on one side
+/// leaves from the other as well.
 void Hierarchy::refine_panes_alike() {
     const Scene& scene = input.stage.scene;
     if (!scene.has_diffusing_panes()) return;
     NodalField* const also[] = {&reflected_direct};
-    constexpr double as_small = 0.75;  // of the area behind; given by cuts, which leave half or less
+    constexpr double max_area_ratio = 0.75;  // of the area behind; cuts leave a half or less
     const double least = input.options.min_area.value_or(calibrated::least_link_area * input.stage.area);
     while (!input.stop.requested()) {
         const std::vector<ElementId> ends = sites.ends();
@@ -108,7 +107,7 @@ void Hierarchy::refine_panes_alike() {
             const double area = light.tree.area(ends[i]);
             bool finer = false;
             passed.visit_behind(
-                i, [&](std::uint32_t j, double) { finer = finer || light.tree.area(ends[j]) < as_small * area; });
+                i, [&](std::uint32_t j, double) { finer = finer || light.tree.area(ends[j]) < max_area_ratio * area; });
             if (finer && !light.tree.is_leaf(ends[i])) opened.push_back(ends[i]);
             if (finer && light.tree.is_leaf(ends[i]) && area > 2 * least) cut.push_back(ends[i]);
         }

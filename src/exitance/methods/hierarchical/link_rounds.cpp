@@ -13,50 +13,51 @@
 namespace exitance {
 namespace {
 
-/// Errors in the first round's tolerance, in shares of the demand. The fewer links there are in a sum, which is where
-/// little is asked for and where orders are high, the larger a single one's may be.
+/// Error tolerance of the first round, W/m^2 m. The fewer links a sum has (large requested errors, high orders), the
+/// larger the error of a single link may be.
 double first_error(const Hierarchy& h, double demand) {
-    const double few = std::clamp(std::sqrt(h.input.knobs.link_error / calibrated::first_round_fine), 1.0, 2.0);
+    const double factor_of_few =
+        std::clamp(std::sqrt(h.input.knobs.link_error / calibrated::first_round_fine), 1.0, 2.0);
     const double share = h.light.delivers       ? calibrated::first_round_delivering
                          : h.basis.order() == 3 ? calibrated::first_round_order_three
                                                 : 1;
-    return share * few * demand;
+    return share * factor_of_few * demand;
 }
 
-/// Where links are judged by their strength, what they may have in the first round; it falls with the error.
+/// If links are judged by their strength: limit on it in the first round, proportional to the error.
 double first_strength(const Hierarchy& h, double error) {
     return h.input.options.oracle == LinkOracle::form_factor
                ? calibrated::first_form_factor * error / h.light_norm()
                : calibrated::first_strength * error * std::sqrt(h.input.stage.area);
 }
 
-/// Weight of what a source's polynomial leaves out: bilinear sources miss most beside near receivers, all with one
-/// sign. Where rays correct it, that does not matter.
+/// Weight of the residual of a source's polynomial. Bilinear sources have large errors near receivers, all with one
+/// sign; that is irrelevant if rays correct the light.
 double residual_weight(const Hierarchy& h) {
-    constexpr double usual = 0.5;
-    return h.light.delivers && h.basis.order() == 2 ? calibrated::residual_weight_of_bilinear : usual;
+    constexpr double default_weight = 0.5;
+    return h.light.delivers && h.basis.order() == 2 ? calibrated::residual_weight_of_bilinear : default_weight;
 }
 
-/// Ratio of the links' error to what the method's is to be: where rays correct the means of leaves, links tell only how
-/// light varies within them, and it is gathered once more; where links deliver it, no gather takes a share of the error
-/// asked for.
+/// Ratio of the permitted error of links to that of the method. If rays correct the means of leaves, links determine
+/// only the variation within them, and light is gathered once more. If links deliver the light, no gather takes a share
+/// of the error.
 double share_of_links(const Hierarchy& h) {
     if (h.light.delivers) return h.input.options.epsilon ? 1 : calibrated::link_error_without_gather;
     return h.input.options.smoothing ? 1 : calibrated::link_error_under_rays;
 }
 
-/// As many links as there is room for.
+/// Number of links that fit into memory.
 std::size_t most_links(const Hierarchy& h) {
-    constexpr std::size_t unasked = 8'000'000'000;  // bytes
-    const std::size_t used = peak_memory_bytes(), limit = h.input.options.memory_limit_bytes.value_or(used + unasked);
-    constexpr std::size_t others_share = 2;  // meshes, gathers, files
-    constexpr std::size_t fields = 7;        // of light, and of what is solved for
+    constexpr std::size_t default_memory = 8'000'000'000;  // bytes; default limit
+    const std::size_t used = peak_memory_bytes(),
+                      limit = h.input.options.memory_limit_bytes.value_or(used + default_memory);
+    constexpr std::size_t others_share = 2;  // half of the memory is for meshes, gathers and files
+    constexpr std::size_t fields = 7;        // fields of light and of the solver's vectors
     const std::size_t taken = used + fields * h.radiosity.memory_bytes();
     return (limit - std::min(limit, taken)) / (others_share * LinkRefiner::bytes_a_link);
 }
 
-/// Weight of an error that is alike all over the receivers: it comes back from every reflection, if rays do not
-/// correct it.
+/// Weight of an error that is uniform over the receivers: every reflection multiplies it unless rays correct it.
 double systematic_weight(const Hierarchy& h) {
     if (!h.light.delivers) return 1;
     constexpr double within_a_sum = 2;
@@ -70,7 +71,8 @@ class Rounds {
   public:
     explicit Rounds(Hierarchy& h)
         : h_(h), of_links_(first_exponent(h.light.delivers)), of_receivers_(first_exponent(h.light.delivers)) {
-        // Light is reflected once, at first; then it is all of it, unless rays correct what links miss.
+        // If rays correct the links, every round judges links by light reflected once; otherwise by all light found so
+        // far.
         if (!h.light.delivers && !has_importance_) h.refiner.keep_light();
         const double first = (has_importance_ ? calibrated::first_round_before_importance : 1) *
                              first_error(h, h.input.knobs.link_error * h.light_norm());
@@ -82,19 +84,19 @@ class Rounds {
     }
 
     bool run() {
-        constexpr int most_rounds = 8;
+        constexpr int max_rounds = 8;
         const auto state = [&](auto& a) { archive_state(a); };
         SafePoints safe_points = h_.input.safe_points;
         safe_points.resume(state);
-        for (; round_ < most_rounds; ++round_) {
+        for (; round_ < max_rounds; ++round_) {
             safe_points.pass(state);
             h_.input.progress.phase("link");
             const double judged_by = h_.light_norm();
             h_.refine(tolerance_);
             if (tolerance_.gives_up && h_.input.stop.requested()) return false;
             relax();
-            // What links miss grows with the light, of which the first round knows but one reflection. Where rays
-            // correct it, that does not matter.
+            // Errors of links grow with the light, of which the first round has only one reflection. That is irrelevant
+            // if rays correct it.
             const double growth = h_.light.delivers ? h_.light_norm() / judged_by : 1;
             const double by_link = growth * h_.link_error(), by_receiver = growth * h_.refiner.interpolation_error();
             if (is_good_enough(by_link, by_receiver)) break;
@@ -105,7 +107,7 @@ class Rounds {
     }
 
   private:
-    /// Where links deliver light, what falls first is how much of it comes back from reflections.
+    /// If links deliver light, the part of it that comes from reflections converges first.
     static double first_exponent(bool delivers) {
         return delivers ? calibrated::first_exponent_delivering : calibrated::first_exponent_gathered;
     }
@@ -143,7 +145,8 @@ class Rounds {
         return knows_all_light && error <= (h_.light.delivers ? 1 : calibrated::accepted_link_excess) * demand_;
     }
 
-    /// Each of the two may have half of what is allowed, squared, and what the other leaves.
+    /// Lowers both tolerances. The square of each error may be half of the permitted one, plus the part that the other
+    /// does not use.
     void lower_tolerances(double by_link, double by_receiver) {
         const auto beside = [&](double other) {
             return std::sqrt(demand_ * demand_ - std::min(other * other, 0.5 * demand_ * demand_));
@@ -159,7 +162,7 @@ class Rounds {
     LinkTolerance tolerance_;
     ToleranceLaw of_links_, of_receivers_;
     int round_ = 0;
-    double demand_ = 0;  ///< On the error of all links together, W/m^2 m.
+    double demand_ = 0;  ///< Permitted error of all links together, W/m^2 m.
 };
 
 }  // namespace
@@ -174,7 +177,7 @@ LinkTolerance link_tolerance(const Hierarchy& h, double error) {
             .fractional = o.visibility == VisibilityKind::fractional,
             .quadrature = o.visibility == VisibilityKind::quadrature,
             .gives_up = h.input.may_give_up,
-            .triage = o.triage && h.input.stage.scene.panes().empty(),  // rays alone know glass
+            .triage = o.triage && h.input.stage.scene.panes().empty(),  // only rays take glass into account
             .seed = o.seed};
 }
 

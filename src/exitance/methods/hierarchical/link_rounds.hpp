@@ -4,14 +4,14 @@
 
 namespace exitance {
 
-/// Refines links and solves over them, in turn, until the links' own estimate meets the error asked for: with light
-/// from a coarser solution (multigridding), each round with tolerances lowered as the last ones have shown to be
-/// needed. Where links deliver the light, at least two rounds: the first sees one reflection. Keeps its state at safe
-/// points. Returns whether what it leaves is whole; false once a stop made it give up. Source: [Hanrahan91],
-/// [Gortler93].
+/// Alternately refines links and solves over them until their estimated error is at most the requested one. Each round
+/// starts with the light of the last, coarser solution (multigridding), with tolerances lowered according to the errors
+/// so far. If links deliver the light, there are at least two rounds, since the first only has one reflection. The
+/// state is saved at safe points. Returns false if a stop made it give up; the result is then incomplete. Source:
+/// [Hanrahan91], [Gortler93].
 bool refine_links(Hierarchy& hierarchy);
 
-/// The tolerance of single links and receivers, where each may have `error`, W/m^2 m.
+/// Returns the tolerance of single links and receivers if each may have `error`, W/m^2 m.
 LinkTolerance link_tolerance(const Hierarchy& hierarchy, double error);
 
 }  // namespace exitance

@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// Dealt out over the hierarchy, half of the rays that rows by themselves take do.
+/// Distributed over the hierarchy, half of the rays of independent rows suffice.
 RayBudget dealt_out(RayBudget rays) {
     constexpr double share = 0.5;
     constexpr unsigned least = 8;
@@ -21,14 +21,14 @@ RayBudget dealt_out(RayBudget rays) {
     return rays;
 }
 
-/// What leaves reflect of direct light.
+/// Reflected direct light of leaves, W/m^2.
 std::vector<Spectrum> reflect_once(const Scene& scene, const GlobalLight& light) {
     std::vector<Spectrum> b = leaf_reflectances(scene, light.tree, light.numbering);
     for (std::size_t i = 0; i < b.size(); ++i) b[i] = b[i] * light.direct[i];
     return b;
 }
 
-/// And what they reflect of that: enough to tell where light is even.
+/// Adds the light of a second reflection, enough to find where light is uniform.
 void reflect_again(const RayRows& rows, const Scene& scene, GlobalLight& light) {
     const std::vector<Spectrum> rho = leaf_reflectances(scene, light.tree, light.numbering);
     std::vector<Spectrum> E(rho.size());
@@ -36,14 +36,14 @@ void reflect_again(const RayRows& rows, const Scene& scene, GlobalLight& light) 
     for (std::size_t i = 0; i < rho.size(); ++i) light.reflected[i] += rho[i] * E[i];
 }
 
-/// The error that one of `count` links may have, W/m^2 m. What it misses by reading the whole of an element is alike
-/// for neighbours, and comes back from every reflection.
+/// Permitted error of one of `count` links, W/m^2 m. Errors from evaluating a whole element are equal for neighbours,
+/// and every reflection multiplies them.
 double allowed_error(const MethodInput& input, const GlobalLight& light, std::size_t count) {
     double reflected = 0;
     for (ElementId e : light.tree.roots())
         reflected += light.tree.area(e) * mean(input.stage.scene.material(light.tree.region(e)).reflectance);
-    constexpr double share = 0.5, within_reason = 10;
-    const double reflections = std::min(within_reason, 1 / (1 - reflected / input.stage.area));
+    constexpr double share = 0.5, max_reflections = 10;
+    const double reflections = std::min(max_reflections, 1 / (1 - reflected / input.stage.area));
     return share * input.knobs.link_error * light.mean_reflected(input.stage.area) / reflections *
            std::sqrt(input.stage.area / static_cast<double>(count));
 }
@@ -76,7 +76,7 @@ std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, bool u
     light.links = static_cast<std::size_t>(sum_of_all(static_cast<double>(links.size())));
     input.progress.note(fmt::format("{} links found by {} rays of {} leaves", light.links, rows.rays(), leaves.size()));
 
-    // Every leaf has links of its own: the part is all of the hierarchy.
+    // Every leaf has links of its own: the part is the whole hierarchy.
     const ElementPart part{sites.inner(), leaves};
     relax_constant_elements(input, LinkOperator(sites, links, nullptr, part, rows.dealt().block()), light);
     light.element_memory_bytes = light.tree.memory_bytes() + sites.memory_bytes() + b.memory_bytes();

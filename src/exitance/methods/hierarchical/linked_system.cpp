@@ -11,7 +11,7 @@ void LinkedSystem::set_links(Links near, std::optional<ClusterLinks> far) {
     far_ = std::move(far);
 }
 
-/// What such elements hold of the light of panes.
+/// Transmission of light through panes, between the given elements.
 PassedLight LinkedSystem::passed_between(std::span<const ElementId> ends) const {
     const NodalBasis& basis = sites_.basis();
     return {input_.stage.scene,
@@ -45,7 +45,8 @@ SolveReport LinkedSystem::solve(const NodalField& rhs, NodalField& x, bool close
         }
     });
     const Relaxation asked = input_.options.relaxation.value_or(Relaxation::gmres);
-    // Links are gathered all at once, and higher orders are not symmetric.
+    // Gauss-Seidel does not apply, since all links are gathered at once; nor does cg, since higher orders are not
+    // symmetric.
     const bool all_at_once = asked == Relaxation::jacobi || asked == Relaxation::chebyshev;
     const Relaxation method = all_at_once ? asked : Relaxation::gmres;
     ConservingTransport conserving(F, area);

@@ -9,29 +9,31 @@
 
 namespace exitance {
 
-/// The equation of light over the links of a hierarchy, and over those of clusters where there are any.
+/// The radiosity equation over the links of a hierarchy, and over cluster links if there are any.
 class LinkedSystem {
   public:
-    /// `sites`, which must outlive it, of the elements that are linked.
+    /// `sites`: the linked elements; must outlive this.
     LinkedSystem(const MethodInput& input, const LinkSites& sites) : input_(input), sites_(sites) {}
 
     void set_links(Links near, std::optional<ClusterLinks> far = {});
 
-    /// x = rhs + rho F x for what leaves the elements, W/m^2, from the x that there is; both as pulled.
+    /// Solves x = rhs + rho F x for the radiosity of the elements, W/m^2, starting from x. Both `rhs` and `x` are
+    /// pulled.
     ///
-    /// Solved on the part of the hierarchy that links touch. Below its ends, where the mesh follows direct light, all
-    /// elements receive what the ends do, and the ends send what rhs and that come to: the answer is the same.
+    /// The system is solved on the part of the hierarchy that has links. Elements below its ends, where the mesh
+    /// follows direct light, receive the light of these ends, and the ends send the mean of their light: the result is
+    /// the same.
     ///
-    /// `closed`: with all light that leaves made to arrive; then `scale` says by how much more than links bring.
+    /// `closed`: scales F so that no light is lost; `scale` returns the factor.
     SolveReport solve(const NodalField& rhs, NodalField& x, bool closed = false);
 
-    /// E = F b, W/m^2, of the ends of what is held; unscaled.
+    /// Computes E = F b, W/m^2, at the ends of the stored hierarchy, without scaling.
     void gather(const NodalField& b, NodalField& E) const;
 
-    const Spectrum& scale() const { return scale_; }  ///< Of what links bring, see ConservingTransport.
+    const Spectrum& scale() const { return scale_; }  ///< Factor of the links' light, see ConservingTransport.
     std::size_t size() const { return near_->size() + (far_ ? far_->size() : 0); }
     std::size_t memory_bytes() const { return near_->memory_bytes() + (far_ ? far_->memory_bytes() : 0); }
-    const Links& links() const { return *near_; }  ///< Those between elements.
+    const Links& links() const { return *near_; }  ///< Links between elements.
 
   private:
     PassedLight passed_between(std::span<const ElementId> ends) const;

@@ -4,9 +4,10 @@
 
 namespace exitance {
 
-/// b = rho (E_dir + F b) for the means of leaves by rays, which know no links, from the light that links give: those
-/// are up to some percent too dark in all places together, which no average over a hemisphere mends and which comes
-/// back from every reflection. Links still tell how light varies within leaves. Sets `missed`, what links leave out.
+/// Solves b = rho (E_dir + F b) for the means of leaves by rays, independently of links, starting from the light of
+/// links. Links may be some per cent too dark everywhere, which no average over a hemisphere corrects and which every
+/// reflection adds to. Links still determine the variation of light within leaves. Sets `missed`, the light that links
+/// miss.
 void correct_by_rays(Hierarchy& hierarchy);
 
 }  // namespace exitance

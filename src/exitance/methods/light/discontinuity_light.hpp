@@ -5,9 +5,9 @@
 
 namespace exitance {
 
-/// Gives a solution, whose reflected light is found, its discontinuity mesh: direct light on triangles that follow its
-/// shadows, with what is reflected on top of it. The interpolant follows the mesh, the statistics tell of both; but for
-/// the time, see the report. What is found on the way is kept at safe points, if there are any.
+/// Adds a discontinuity mesh to a solution whose reflected light is known: direct light on triangles that follow its
+/// shadows, plus the reflected light. Replaces the interpolant by the mesh and records statistics, except for times,
+/// which are in the report. If `safe_points` is given, intermediate results are saved there.
 DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOptions& options, Solution& solution,
                                            const StopRequest& stop, SafePoints* safe_points = nullptr);
 

@@ -7,12 +7,12 @@
 namespace exitance {
 
 LightBelow::Pulled LightBelow::pull(ElementId e, std::vector<Known>* large) const {
-    constexpr std::size_t many = 64;  // leaves
+    constexpr std::size_t min_cached_leaves = 64;  // leaves
     const ElementTree& tree = sites_.tree();
     if (tree.is_leaf(e)) return {{of_leaf_(e)}};
     const auto known = std::lower_bound(known_.begin(), known_.end(), e,
                                         [](const Known& k, ElementId element) { return k.first < element; });
-    if (known != known_.end() && known->first == e) return {known->second, many};
+    if (known != known_.end() && known->first == e) return {known->second, min_cached_leaves};
     Pulled out{{}, 0};
     std::vector<FromBelow> parts;
     for (ElementId child : tree.children(e)) {
@@ -21,7 +21,7 @@ LightBelow::Pulled LightBelow::pull(ElementId e, std::vector<Known>* large) cons
         out.leaves += part.leaves;
     }
     out.found = pull_from_parts(sites_, e, parts);
-    if (large && out.leaves >= many) large->push_back({e, out.found});
+    if (large && out.leaves >= min_cached_leaves) large->push_back({e, out.found});
     return out;
 }
 

@@ -9,17 +9,18 @@
 
 namespace exitance {
 
-/// What the leaves of a tree hold, as the elements above them see it. What large elements come to is kept, so that
-/// links which go down from level to level do not read all leaves at each of them.
+/// Light of a tree's leaves, pulled up to the elements above them. Results of large elements are cached, so that links
+/// which are refined level by level do not read all leaves at each level.
 class LightBelow {
   public:
-    /// `of_leaf`, on any thread: the values of a leaf; a leaf that is cut hands its function on.
+    /// `of_leaf`: returns the values of a leaf, also of one that has been split since. Called from any thread.
     LightBelow(const LinkSites& sites, std::function<NodalValues(ElementId)> of_leaf)
         : sites_(sites), of_leaf_(std::move(of_leaf)) {}
 
-    /// What some elements come to, none of them part of another. Keeps what is large below them. O(elements below).
+    /// Returns the light of elements, none of which is part of another. Caches the light of large elements below them.
+    /// O(elements below).
     std::vector<FromBelow> look_at(std::span<const ElementId> elements);
-    /// The same of any element: below those, some 64 leaves are read at most for each of its children.
+    /// Returns the light of any element. Below cached elements, this reads at most about 64 leaves per child.
     FromBelow at(ElementId e) const { return pull(e, nullptr).found; }
 
     std::size_t memory_bytes() const { return known_.size() * sizeof(Known); }
@@ -34,7 +35,7 @@ class LightBelow {
 
     const LinkSites& sites_;
     std::function<NodalValues(ElementId)> of_leaf_;
-    std::vector<Known> known_;  ///< By element.
+    std::vector<Known> known_;  ///< Sorted by element.
 };
 
 }  // namespace exitance

@@ -11,7 +11,7 @@
 namespace exitance {
 namespace {
 
-TEST(LightBelow, IsWhatAllLeavesComeTo) {
+TEST(LightBelow, EqualsTheLightOfAllLeaves) {
     const Scene scene = built_scene("cornell");
     const Stage stage(scene);
     const ElementTree tree = stage.make_elements({0.05, 0});

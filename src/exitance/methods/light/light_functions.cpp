@@ -19,7 +19,7 @@ ElementFunction dark(const Stage& stage) {
 
 namespace {
 
-/// Direct light as projected, on every leaf.
+/// Projected direct light as a function on every leaf.
 ElementFunction as_function(const DirectProjection& direct) {
     ElementFunction out;
     out.tree = direct.tree;
@@ -88,11 +88,11 @@ DeliveredLight::DeliveredLight(const Scene& scene, const ElementFunction& indire
       c_(c) {}
 
 void DeliveredLight::read(std::span<const HitPoint> hits, std::span<Spectrum> values) const {
-    constexpr std::size_t together = 64;
-    std::array<Spectrum, together> direct;
+    constexpr std::size_t batch_size = 64;
+    std::array<Spectrum, batch_size> direct;
     indirect_.read(hits, values);
-    for (std::size_t first = 0; first < hits.size(); first += together) {
-        const std::size_t count = std::min(together, hits.size() - first);
+    for (std::size_t first = 0; first < hits.size(); first += batch_size) {
+        const std::size_t count = std::min(batch_size, hits.size() - first);
         direct_.read(hits.subspan(first, count), std::span(direct).first(count));
         for (std::size_t i = 0; i < count; ++i) {
             const Material& material = scene_.material(hits[first + i].region);
@@ -123,7 +123,7 @@ std::vector<ElementFunction> delivered_functions(const Scene& scene, const Eleme
 
 namespace {
 
-/// Does all light arrive that leaves send, `radiosity(leaf)` of it per area?
+/// True if all light that leaves send arrives. `radiosity(leaf)`: W/m^2.
 template <class Radiosity>
 bool all_arrives(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
                  const Radiosity& radiosity, std::uint64_t seed) {
@@ -136,7 +136,7 @@ bool all_arrives(const Stage& stage, const ElementTree& tree, const LeafNumberin
 }  // namespace
 
 Spectrum keep_emitted_flux(DirectProjection& direct, const Stage& stage, std::uint64_t seed) {
-    // Whether all light arrives is found by diffuse rays.
+    // is_closed uses diffuse rays, so it does not apply to other lights
     if (stage.scene.has_light_apart() || stage.scene.has_directed_emission()) return Spectrum(1.0);
     const auto exitance = [&](ElementId e) { return stage.scene.material(direct.tree.region(e)).exitance; };
     if (!all_arrives(stage, direct.tree, LeafNumbering(direct.tree), exitance, seed)) return Spectrum(1.0);
@@ -161,7 +161,7 @@ bool keeps_reflected_light(const Stage& stage, const GlobalLight& light, std::ui
 
 namespace {
 
-/// k of every region: the mean over the method's leaves, by what they reflect.
+/// k of every region: mean over the method's leaves, weighted by their reflected power.
 Field<RegionId, double> kept_by_region(const Scene& scene, const GlobalLight& light) {
     EXI_CHECK(light.kept.empty() || light.kept.size() == light.numbering.leaves.size());
     Field<RegionId, double> sent(scene.regions().size(), 0.0), kept(scene.regions().size(), 0.0);
@@ -179,11 +179,11 @@ Field<RegionId, double> kept_by_region(const Scene& scene, const GlobalLight& li
 
 namespace {
 
-/// Power of indirect light as gathered, and of what should arrive, W, all of it by band.
+/// Power of the gathered indirect light and its expected value, W, per band.
 struct FluxSums {
-    Spectrum sent;          ///< What leaves surfaces.
-    Spectrum first, again;  ///< What of direct light arrives once it is reflected, and of the light gathered.
-    Spectrum gathered;      ///< The light gathered.
+    Spectrum sent;          ///< Power that leaves surfaces.
+    Spectrum first, again;  ///< Arriving power of reflected direct light, and of the reflected gathered light.
+    Spectrum gathered;      ///< Power of the gathered light.
 };
 
 FluxSums flux_sums(const ElementFunction& E, const Scene& scene, const DirectProjection& direct,
@@ -247,9 +247,9 @@ void scale(ElementFunction& f, const Spectrum& factor) {
 bool has_kept_flux(const ElementFunction& E, const Scene& scene, const DirectProjection& direct,
                    const GlobalLight& light, const Spectrum& c) {
     const FluxSums power = flux_sums(E, scene, direct, light, c);
-    constexpr double negligible = 0.01;  // of what is absorbed, given by what few rays tell of what escapes
+    constexpr double negligible = 0.01;  // of the absorbed power: few rays estimate the escaping light
     if (mean(power.sent - power.first - power.again) > negligible * mean(power.gathered - power.again)) return false;
-    const double roundings = 1e-5 * mean(power.gathered);  // given by the floats that values are
+    const double roundings = 1e-5 * mean(power.gathered);  // values are stored in single precision
     return std::sqrt(squared(power.gathered - power.again - power.first) / static_cast<double>(bands)) <= roundings;
 }
 
@@ -279,7 +279,8 @@ std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light) 
 
 std::vector<double> allowed_by_room(const Stage& stage, std::span<const double> light_in, double of_all) {
     std::vector<double> out(light_in.begin(), light_in.end());
-    double left = of_all, area = 1;  // what rooms that are not capped leave, and the share of those that are
+    // squared budget of the rooms that are not capped, and the area share of the others
+    double left = of_all, area = 1;
     std::vector<std::size_t> rising(out.size());
     for (std::size_t room = 0; room < out.size(); ++room) rising[room] = room;
     std::stable_sort(rising.begin(), rising.end(), [&](std::size_t a, std::size_t b) { return out[a] < out[b]; });

@@ -6,66 +6,68 @@
 
 namespace exitance {
 
-// What a method found, as functions that rays and files can read.
+// Conversion of a method's light to functions for rays and files.
 
-/// An indirect light of nothing: every piece one element, dark.
+/// Indirect light of zero: one dark element per piece.
 ElementFunction dark(const Stage& stage);
 
-/// Light as a method left it on its elements: constant on every leaf.
+/// A method's indirect light, constant on every leaf.
 ElementFunction constant_on_leaves(const GlobalLight& light);
 
-/// Light as a method's polynomials have it.
+/// A method's indirect light as its polynomials.
 ElementFunction polynomials_on_leaves(const GlobalLight& light);
 
-/// What rays read in the local pass, b + c M: on every leaf the direct light that was projected there, and the indirect
-/// light that the method found, times the reflectance, and the share c of what it emits (`find_direct_share`). Where
-/// the method's own elements agree with that share, E_dir + E_ind is alike all over a leaf but for (1 - c) E_dir.
+/// Radiosity b + c M that rays read in the local pass: on every leaf the reflectance times projected direct light plus
+/// indirect light, plus the share c of the exitance (`find_direct_share`). If the method's own elements used that
+/// share, E_dir + E_ind is uniform over a leaf except for (1 - c) E_dir.
 ElementFunction gathered_light(const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
                                const Spectrum& c);
 
-/// Scales direct light, as projected, to be what surfaces emit, band by band, where all of that arrives (`is_closed`)
-/// and nothing else shines. Means at the places of a rule are off where shadows cross elements: by up to 3e-3 of all
-/// light where those are as coarse as 5% asks for. Returns the scale.
+/// Scales projected direct light so that its flux equals the emitted flux in each band, if all emitted light arrives
+/// (`is_closed`) and there are no other light sources. Means from sample points are off where shadows cross elements:
+/// by up to 3e-3 of all light for elements of a 5% error. Returns the scale.
 Spectrum keep_emitted_flux(DirectProjection& direct, const Stage& stage, std::uint64_t seed);
 
-/// Does all light that the method's elements reflect arrive?
+/// True if all light that the method's elements reflect arrives.
 bool keeps_reflected_light(const Stage& stage, const GlobalLight& light, std::uint64_t seed);
 
-/// Scales indirect light E, as gathered, to be what of it and of direct light arrives, band by band:
+/// Scales gathered indirect light E in each band so that it equals the part of E and of direct light that arrives:
 ///
 ///     int E dA = int k (rho ((1 - c) E_dir + E) + c M) dA,
 ///
-/// k from the leaves that the method solved on, 1 where it does not say. In a closed scene this is the balance of what
-/// is emitted and absorbed. What rays and places of a local pass miss in the mean, a share of about 1e-3, is light
-/// dealt out otherwise than the method had it, among surfaces that reflect more and less of it. Nothing happens where
-/// much escapes (`is_kept`). Returns the scale.
+/// where k is taken from the leaves of the method, or is 1 if the method has none. In a closed scene this is the
+/// balance of emitted and absorbed light. The mean error of a local pass, a share of about 1e-3, is light that it
+/// distributes differently from the method among surfaces of different reflectance. Does nothing if much light escapes
+/// (`is_kept`). Returns the scale.
 Spectrum keep_flux(ElementFunction& E, const Scene& scene, const DirectProjection& direct, const GlobalLight& light,
                    const Spectrum& c);
 
-/// W, by band: all that arrives, where E is the function.
+/// Total arriving power of irradiance E, W, per band.
 Spectrum power(const ElementFunction& E);
 
-/// The same of what functions together send, as far as the method kept it (`GlobalLight::kept`); 0 where much escapes.
+/// Total arriving power of the light that functions `b` together send, W, per band, reduced by the method's losses
+/// (`GlobalLight::kept`). 0 if much light escapes.
 Spectrum arriving_power(const Scene& scene, const GlobalLight& light, std::span<const ElementFunction> b);
 
-/// Multiplies all values, by band.
+/// Multiplies all values, per band.
 void scale(ElementFunction& f, const Spectrum& factor);
 
-/// Does E have that balance, as `keep_flux` left it, and does hardly anything escape?
+/// True if E is balanced, as after `keep_flux`, and almost no light escapes.
 bool has_kept_flux(const ElementFunction& E, const Scene& scene, const DirectProjection& direct,
                    const GlobalLight& light, const Spectrum& c);
 
-/// Reflected light of what a solution delivers, plus the share c of what is emitted: rho (E_ind + (1 - c) E_dir) + c M,
-/// where `indirect` holds E_ind + c E_dir and direct light is read as projected.
+/// Reflected light of a solution, plus the share c of the exitance: rho (E_ind + (1 - c) E_dir) + c M, where `indirect`
+/// is E_ind + c E_dir and direct light is read from the projection.
 class DeliveredLight final : public ReflectedLight {
   public:
-    /// `direct_weight` of the projection: 1 - c, or 0 where `indirect` holds all light. The scene must outlive it.
+    /// `direct_weight`: weight of projected light, 1 - c, or 0 if `indirect` contains all light. `scene` must outlive
+    /// this.
     DeliveredLight(const Scene& scene, const ElementFunction& indirect, const DirectProjection& direct,
                    const Spectrum& direct_weight, const Spectrum& c);
 
     void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const override;
 
-    /// Reads E_dir as projected, W/m^2; its leaves are those of the projection.
+    /// Projected E_dir, W/m^2; its leaves are those of the projection.
     const QuickFunction& projected() const { return direct_; }
 
   private:
@@ -74,21 +76,24 @@ class DeliveredLight final : public ReflectedLight {
     Spectrum direct_weight_, c_;
 };
 
-/// The same as functions to be summed over elements; what they hold adds up.
+/// The light of `DeliveredLight` as functions to be summed over elements. Their sum is that light.
 std::vector<ElementFunction> delivered_functions(const Scene& scene, const ElementFunction& indirect,
                                                  const DirectProjection& direct, const Spectrum& direct_weight,
                                                  const Spectrum& c);
 
-/// The light that every room reflects, by the mean light; at least a millionth, since nothing can be relative to none.
-/// Empty where all is one room.
+/// Reflected light of every room relative to the mean, at least a millionth of the brightest, since errors are relative
+/// to it. Empty if there is only one room.
 std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light);
 
-/// What errors rooms may have, in proportion: their light l, but where few hold most of it less, since the error of all
-/// together is held to the demand, too. Capped at c:  sum of (area share) min(l, c)^2 <= `of_all`, by which the square
-/// of the whole's error may come to that many times the demand's. Empty where `light_in` is.
+/// Permitted errors of rooms, in proportion to their light l but capped at c:
+///
+///     sum of (area share) min(l, c)^2 <= `of_all`.
+///
+/// The cap keeps the squared error of all rooms together within `of_all` times the requested one if few rooms have most
+/// of the light. Empty if `light_in` is.
 std::vector<double> allowed_by_room(const Stage& stage, std::span<const double> light_in, double of_all);
 
-/// RMS over the surfaces of the standard error of rho E_ind, where a method is a random one, W/m^2.
+/// RMS over the surfaces of the standard error of rho E_ind, W/m^2. 0 unless the method is a random one.
 double rms_standard_error(const Stage& stage, const GlobalLight& light);
 
 }  // namespace exitance

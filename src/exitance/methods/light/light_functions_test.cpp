@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// A furnace, B = M / (1 - rho), as direct light, a method's light and gathered light on the same elements.
+/// A furnace, B = M / (1 - rho): direct light, a method's light and gathered light on the same elements.
 struct Furnace {
     static constexpr double rho = 0.5;
     Scene scene = box_scene(2, 1, 1.5, rho, 1, 1);
@@ -16,7 +16,7 @@ struct Furnace {
     GlobalLight light;
     ElementFunction gathered;
 
-    /// `kept`: how much of its light arrives; `wrong`: what the gathered light is off by.
+    /// `kept`: arriving share of its light; `wrong`: factor by which the gathered light is off.
     Furnace(double kept, double wrong) {
         light.tree = direct.tree, light.numbering = LeafNumbering(light.tree);
         const std::size_t n = light.numbering.leaves.size();
@@ -25,7 +25,7 @@ struct Furnace {
         direct.fit.resize(direct.tree.size());
         gathered.tree = direct.tree, gathered.first_value.resize(gathered.tree.size(), 0);
         for (ElementId e : direct.tree.leaves()) {
-            direct.fit[e].mean = Spectrum(kept);  // of M = 1
+            direct.fit[e].mean = Spectrum(kept);  // for M = 1
             gathered.first_value[e] = static_cast<std::uint32_t>(gathered.values.size());
             for (int i = 0; i < 4; ++i) gathered.add_value(Spectrum(wrong * exact(kept)));
         }
@@ -39,13 +39,13 @@ struct Furnace {
     }
 };
 
-TEST(KeepEmittedFlux, MakesProjectedLightWhatIsEmittedWhereAllArrives) {
+TEST(KeepEmittedFlux, ScalesProjectedLightToTheEmittedFluxInClosedScenes) {
     Furnace furnace(0.99, 1);
     EXPECT_NEAR(keep_emitted_flux(furnace.direct, furnace.stage, 1)[0], 1 / 0.99, 1e-12);
     for (ElementId e : furnace.direct.tree.leaves()) EXPECT_NEAR(furnace.direct.fit[e].mean[0], 1, 1e-12);
 }
 
-TEST(KeepEmittedFlux, LeavesAloneWhatShinesIntoTheOpen) {
+TEST(KeepEmittedFlux, DoesNothingInOpenScenes) {
     const Scene scene = built_scene("spiral");
     const Stage stage(scene);
     DirectProjection direct{stage.make_elements({.edge = 1, .grading_levels = 0}), {}};
@@ -54,21 +54,21 @@ TEST(KeepEmittedFlux, LeavesAloneWhatShinesIntoTheOpen) {
     EXPECT_EQ(keep_emitted_flux(direct, stage, 1)[0], 1);
 }
 
-TEST(KeepFlux, MakesGatheredLightWhatArrivesOfItAndOfDirectLight) {
+TEST(KeepFlux, ScalesGatheredLightToTheArrivingFlux) {
     for (const double kept : {1.0, 0.99})
         for (const double wrong : {0.99, 1.0, 1.02})
             EXPECT_NEAR(Furnace(kept, wrong).after_keeping(), Furnace::exact(kept), 1e-6) << kept << " " << wrong;
 }
 
-TEST(KeepFlux, CountsTheShareOfDirectLightThatElementsGatherAsSent) {
+TEST(KeepFlux, IncludesTheGatheredShareOfDirectLight) {
     Furnace furnace(1, 1.01);
-    // All of M is gathered in place of direct light: E = rho E + M.
+    // All of M is gathered instead of direct light: E = rho E + M.
     for (std::array<float, bands>& value : furnace.gathered.values) value.fill(2.02f);
     keep_flux(furnace.gathered, furnace.scene, furnace.direct, furnace.light, Spectrum(1.0));
     EXPECT_NEAR(furnace.gathered.values[0][0], 2, 1e-6);
 }
 
-TEST(ArrivingPower, IsWhatIsKeptOfAllThatFunctionsSend) {
+TEST(ArrivingPower, IsTheKeptPartOfTheSentPower) {
     const Furnace furnace(0.99, 1);
     const ElementFunction two[] = {furnace.gathered, furnace.gathered};
     const double each = furnace.stage.area * Furnace::exact(0.99);
@@ -78,12 +78,12 @@ TEST(ArrivingPower, IsWhatIsKeptOfAllThatFunctionsSend) {
     EXPECT_EQ(arriving_power(open.scene, open.light, two)[0], 0) << "of what escapes few rays tell";
 }
 
-TEST(KeepFlux, LeavesAloneWhatMuchEscapesFromOrIsFarOff) {
+TEST(KeepFlux, DoesNothingIfMuchEscapesOrTheErrorIsLarge) {
     EXPECT_NEAR(Furnace(0.9, 1.02).after_keeping(), 1.02 * Furnace::exact(0.9), 1e-6);
     EXPECT_NEAR(Furnace(1, 1.2).after_keeping(), 1.2 * Furnace::exact(1), 1e-6);
 }
 
-TEST(DeliveredFunctions, AddUpToWhatRaysRead) {
+TEST(DeliveredFunctions, SumToTheLightThatRaysRead) {
     Furnace furnace(1, 1);
     for (ElementId e : furnace.direct.tree.leaves()) furnace.direct.fit[e].corners.fill(Spectrum(0.7));
     const Spectrum weight(0.75), c(0.25);
@@ -100,7 +100,7 @@ TEST(DeliveredFunctions, AddUpToWhatRaysRead) {
     }
 }
 
-TEST(AllowedByRoom, IsTheLightOfARoomUnlessTheErrorOfAllWouldBeTooLarge) {
+TEST(AllowedByRoom, IsTheLightOfARoomUpToACap) {
     const Scene scene = built_scene("keyhole");
     Stage stage(scene);
     const StopRequest stop;
@@ -108,13 +108,13 @@ TEST(AllowedByRoom, IsTheLightOfARoomUnlessTheErrorOfAllWouldBeTooLarge) {
     ASSERT_EQ(stage.rooms.count(), 2u);
     const double small = stage.rooms.area(1) / stage.area;
     const auto of_all = [&](const std::vector<double>& e) { return (1 - small) * e[0] * e[0] + small * e[1] * e[1]; };
-    // Nearly all light is in the small room: an error in proportion to it would be four times that of the whole.
+    // The small room has almost all light: an error in proportion to it would be four times that of the whole.
     const std::vector<double> uneven = {0.02, (1 - 0.02 * (1 - small)) / small};
     const std::vector<double> capped = allowed_by_room(stage, uneven, 1.5);
     EXPECT_DOUBLE_EQ(capped[0], uneven[0]);
     EXPECT_LT(capped[1], 0.5 * uneven[1]);
     EXPECT_NEAR(of_all(capped), 1.5, 1e-12);
-    // Rooms alike may each have as much as they have light.
+    // If rooms are similar, errors may be in proportion to their light.
     const std::vector<double> even = {1.01, 0.9};
     EXPECT_EQ(allowed_by_room(stage, even, 1.5), even);
     EXPECT_TRUE(allowed_by_room(stage, {}, 1.5).empty());

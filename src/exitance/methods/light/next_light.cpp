@@ -11,8 +11,8 @@
 namespace exitance {
 namespace {
 
-/// Mean of b1 - b over every leaf of the method, by leaf number, W/m^2. `delivered`: b1, without its direct light where
-/// `before` has the same.
+/// Mean of b1 - b over every leaf of the method, by leaf number, W/m^2. `delivered`: b1, without its direct light if
+/// `before` lacks the same direct light.
 std::vector<Spectrum> mean_change(const Stage& stage, const GlobalLight& light,
                                   std::span<const ElementFunction> delivered, const ElementFunction& before) {
     const std::size_t regions = stage.scene.regions().size();
@@ -36,7 +36,7 @@ std::vector<Spectrum> mean_change(const Stage& stage, const GlobalLight& light,
     return out;
 }
 
-/// ((I - rho F)^-1 - I) r, on the leaves of the method.
+/// Solves for ((I - rho F)^-1 - I) r on the leaves of the method.
 std::vector<Spectrum> late_response(const Stage& stage, const GlobalLight& light, const std::vector<Spectrum>& r,
                                     RayBudget rays, std::uint64_t seed) {
     const ElementLocator locator(light.tree, stage.scene.regions().size());
@@ -49,7 +49,7 @@ std::vector<Spectrum> late_response(const Stage& stage, const GlobalLight& light
     return out;
 }
 
-/// Adds constants on the method's leaves to a function, as they are at the centres of its own.
+/// Adds constants on the method's leaves to a function, evaluated at the centres of the function's own leaves.
 void add_constants(ElementFunction& f, const GlobalLight& light, const std::vector<Spectrum>& constants,
                    std::size_t regions) {
     const ElementLocator locator(light.tree, regions);
@@ -61,7 +61,7 @@ void add_constants(ElementFunction& f, const GlobalLight& light, const std::vect
     }
 }
 
-/// `a` - b of two functions on the same leaves, or -b.
+/// Returns `a` - b for two functions on the same leaves, or -b if `a` is null.
 ElementFunction less(const ElementFunction* a, ElementFunction b) {
     if (a) EXI_CHECK(a->values.size() == b.values.size());
     for (std::size_t i = 0; i < b.values.size(); ++i)
@@ -76,7 +76,7 @@ NextLight next_light(const Stage& stage, const GlobalLight& light, const Element
                      std::uint64_t seed) {
     EXI_CHECK(light.on_projection);
     NextLight out{delivered_functions(stage.scene, indirect, direct, Spectrum(1.0) - c, c)};
-    // What the method found has direct light on the same leaves; what follows it has the same direct light apart.
+    // The method's light includes direct light; later steps have the same direct light in a separate part.
     const bool is_first = before.parts.size() == 1;
     const std::vector<Spectrum> r =
         mean_change(stage, light, std::span(out.parts).first(is_first ? 2 : 1), before.parts[0]);
@@ -98,12 +98,12 @@ bool ReadNextLight::stands_alone() const {
 }
 
 void ReadNextLight::Sum::read(std::span<const HitPoint> hits, std::span<Spectrum> values) const {
-    constexpr std::size_t together = 64;
-    std::array<Spectrum, together> more;
+    constexpr std::size_t batch_size = 64;
+    std::array<Spectrum, batch_size> more;
     parts_[0]->read(hits, values);
     for (std::size_t p = 1; p < parts_.size(); ++p)
-        for (std::size_t first = 0; first < hits.size(); first += together) {
-            const std::size_t count = std::min(together, hits.size() - first);
+        for (std::size_t first = 0; first < hits.size(); first += batch_size) {
+            const std::size_t count = std::min(batch_size, hits.size() - first);
             parts_[p]->read(hits.subspan(first, count), std::span(more).first(count));
             for (std::size_t i = 0; i < count; ++i) values[first + i] += more[i];
         }

@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// A furnace, B = M / (1 - rho) everywhere, M = 1: the emitters' light is M, and all other light rho / (1 - rho).
+/// A furnace, B = M / (1 - rho) everywhere, M = 1: direct light is M, indirect light rho / (1 - rho).
 class Furnace : public testing::Test {
   protected:
     static constexpr double rho = 0.8, exact = rho / (1 - rho);
@@ -45,20 +45,20 @@ class Furnace : public testing::Test {
     }
 };
 
-TEST_F(Furnace, LightThatIsWrongAlikeEverywhereIsMendedByOneStep) {
+TEST_F(Furnace, OneStepCorrectsAUniformError) {
     constexpr double wrong = 1.03;
-    // What is gathered of b is b, in a closed room.
+    // In a closed room, gathering b yields b.
     const NextLight next = step({{constant(wrong * exact)}}, wrong * exact);
     const ReadNextLight b(next, scene.regions().size());
     ASSERT_TRUE(b.change());
     for (ElementId e : direct.tree.leaves()) {
-        // What the system's residual leaves of 3%, a fiftieth of it, times what reflection makes of that.
+        // The solver's residual leaves a fiftieth of the 3%, multiplied by reflections.
         EXPECT_NEAR(read(b.whole(), e), exact, 3e-3 * exact);
         EXPECT_NEAR(read(*b.change(), e), read(b.whole(), e) - wrong * exact, 1e-5 * exact);  // single precision
     }
 }
 
-TEST_F(Furnace, AnotherStepChangesWhatTheLastOneLeft) {
+TEST_F(Furnace, ASecondStepStartsFromTheFirst) {
     NextLight first = step({{constant(1.03 * exact)}}, 1.03 * exact);
     std::vector<double> before;
     for (ElementId e : direct.tree.leaves())
@@ -72,7 +72,7 @@ TEST_F(Furnace, AnotherStepChangesWhatTheLastOneLeft) {
         EXPECT_NEAR(read(*b.change(), e), read(b.whole(), e) - before[i++], 1e-5 * exact);
         EXPECT_NEAR(read(b.whole(), e),
                     rho * (1 + 0.98 * exact) + (rho / (1 - rho)) * (rho * 0.98 * exact + rho - exact),
-                    5e-3 * exact);  // of b1 and what comes of b1 - b, b being right; tolerance as above
+                    5e-3 * exact);  // b1 plus the response to b1 - b, where b is exact; tolerance as above
     }
 }
 

@@ -9,7 +9,7 @@ const Material& material(const LinkSites& sites, ElementId e) {
     return sites.stage().scene.material(sites.tree().region(e));
 }
 
-/// The leaf of the direct projection that `e` is part of, or is.
+/// Returns the leaf of the direct projection that is or contains `e`.
 ElementId projected(const DirectProjection& projection, const ElementTree& tree, ElementId e) {
     while (e.value >= projection.tree.size()) e = tree.parent(e);
     return e;
@@ -38,7 +38,7 @@ ElementFit fit_polynomial(const LinkSites& sites, const NodalValues& values, Ele
 
 std::vector<ElementId> rough_elements(const LinkSites& sites, const NodalLight& E,
                                       const std::vector<ElementId>& elements, double allowed) {
-    std::vector<std::uint8_t> is_rough(elements.size());
+    std::vector<std::uint8_t> is_too_coarse(elements.size());
     parallel_for(elements.size(), 64, [&](std::size_t i) {
         const ElementId e = elements[i];
         const NodalValues values = E(e);
@@ -50,12 +50,12 @@ std::vector<ElementId> rough_elements(const LinkSites& sites, const NodalLight& 
             const Spectrum off = values[k] - bilinear.at(sites.tree().patch(e).coordinates(sites.node(frame, k)));
             sum += sites.weight(e, k) * squared(weight * off) / static_cast<double>(bands);
         }
-        is_rough[i] = sum > allowed * allowed;
+        is_too_coarse[i] = sum > allowed * allowed;
     });
-    std::vector<ElementId> rough;
+    std::vector<ElementId> too_coarse;
     for (std::size_t i = 0; i < elements.size(); ++i)
-        if (is_rough[i]) rough.push_back(elements[i]);
-    return rough;
+        if (is_too_coarse[i]) too_coarse.push_back(elements[i]);
+    return too_coarse;
 }
 
 NodalValues projected_light(const LinkSites& sites, const DirectProjection& projection, ElementId leaf) {

@@ -8,25 +8,25 @@
 
 namespace exitance {
 
-// Light at the nodes of a hierarchy's elements, as a method hands it on.
+// Light at the nodes of a hierarchy's elements, in the form that methods return.
 
-/// The mean of a function over an element.
+/// Mean of a function over an element.
 Spectrum mean_over(const LinkSites& sites, const NodalValues& values, ElementId e);
 
-/// The polynomial of an element as files and rays hold it: linear or bilinear, nearest in the mean square.
+/// Least-squares fit of the linear or bilinear polynomial that files and rays use for an element.
 ElementFit fit_polynomial(const LinkSites& sites, const NodalValues& values, ElementId e);
 
-/// A function on elements, be they held or below those that are.
+/// A function on elements, including those below elements with coefficients.
 using NodalLight = std::function<NodalValues(ElementId)>;
 
-/// Those of `elements` whose function is further than `allowed` from that polynomial, RMS of rho E, W/m^2.
+/// Returns those of `elements` whose function differs from that polynomial by more than `allowed`, RMS of rho E, W/m^2.
 std::vector<ElementId> rough_elements(const LinkSites& sites, const NodalLight& E,
                                       const std::vector<ElementId>& elements, double allowed);
 
-/// Direct light as it was projected, at the nodes of a leaf, which the projection's leaves are or hold.
+/// Projected direct light at the nodes of a leaf, which is a leaf of the projection or part of one.
 NodalValues projected_light(const LinkSites& sites, const DirectProjection& projection, ElementId leaf);
 
-/// Writes direct and indirect light of every leaf, means and corners, and what it reflects of them, to `light`.
+/// Writes direct and indirect light of every leaf (means and corners) and the reflected light to `light`.
 void write_nodal_light(const LinkSites& sites, const NodalLight& indirect, const DirectProjection& projection,
                        GlobalLight& light);
 

@@ -10,7 +10,8 @@
 namespace exitance {
 namespace {
 
-/// Mean of rho (E_dir + H b) - b over every leaf of the method, by leaf number, W/m^2; `parts` add up to b + c M.
+/// Mean of rho (E_dir + H b) - b over every leaf of the method, by leaf number, W/m^2. `parts`: functions whose sum is
+/// b + c M.
 std::vector<Spectrum> mean_residual(const Stage& stage, const GlobalLight& light, const ElementFunction& indirect,
                                     const std::vector<ElementFunction>& parts, double share) {
     std::vector<ElementGather> sums;

@@ -9,8 +9,8 @@
 namespace exitance {
 namespace {
 
-TEST(RefinedLight, MendsWhatWasGatheredInAFurnace) {
-    // B = M / (1 - rho) everywhere; what was gathered is 3% too bright.
+TEST(RefinedLight, CorrectsGatheredLightInAFurnace) {
+    // B = M / (1 - rho) everywhere; the gathered light is 3% too bright.
     constexpr double rho = 0.8, wrong = 1.03;
     const Scene scene = box_scene(2, 1, 1.5, rho, 1, 1);
     const Stage stage(scene);
@@ -21,7 +21,7 @@ TEST(RefinedLight, MendsWhatWasGatheredInAFurnace) {
     ElementFunction gathered;
     gathered.tree = direct.tree, gathered.first_value.resize(gathered.tree.size(), 0);
     for (ElementId e : direct.tree.leaves()) {
-        direct.fit[e].mean = Spectrum(1.0), direct.fit[e].corners.fill(Spectrum(1.0));  // of M = 1
+        direct.fit[e].mean = Spectrum(1.0), direct.fit[e].corners.fill(Spectrum(1.0));  // for M = 1
         gathered.first_value[e] = static_cast<std::uint32_t>(gathered.values.size());
         for (int i = 0; i < 4; ++i) gathered.add_value(Spectrum(wrong * rho / (1 - rho)));
     }
@@ -31,14 +31,14 @@ TEST(RefinedLight, MendsWhatWasGatheredInAFurnace) {
     for (ElementId e : direct.tree.leaves()) {
         double b = 0;
         for (const ElementFunction& part : parts) b += part.at({e, direct.tree.centre(e)})[0];
-        // What the system's residual leaves of 3%, a fiftieth of it, times what reflection makes of that; and the sums.
+        // The solver's residual leaves a fiftieth of the 3%, multiplied by reflections; plus the error of sums.
         EXPECT_NEAR(b, rho / (1 - rho), 4e-3 * rho / (1 - rho));
     }
 }
 
 TEST(RefinedLight, LeavesNoBiasInABrightTube) {
-    // Elements of a method deal light out evenly, and so carry too much of it down the tube: without the step the mean
-    // was off by up to 0.36%, by seed.
+    // A method's constant elements spread light evenly and thus transport too much of it along the tube: without the
+    // step, the mean would be off by up to 0.36%, depending on the seed.
     const Scene scene = built_scene("tube", {{"rho", "0.9"}});
     const auto mean_light = [&](const SolveOptions& options) {
         const Solution solution = solved(scene, options);

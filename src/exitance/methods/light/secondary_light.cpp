@@ -13,7 +13,7 @@
 namespace exitance {
 namespace {
 
-/// Calls visit(s, t) for the middles of three by three squares.
+/// Calls visit(s, t) for the centres of 3 x 3 squares.
 template <class Visit>
 void visit_places(const Visit& visit) {
     for (int i = 0; i < 3; ++i)
@@ -21,7 +21,7 @@ void visit_places(const Visit& visit) {
 }
 constexpr std::size_t places = 9;
 
-/// What surfaces reflect, W/m^2.
+/// Reflected radiosity of surfaces, W/m^2.
 class Reflected {
   public:
     Reflected(const Stage& stage, const Solution& solution, const ElementLocator& locator)
@@ -41,7 +41,7 @@ class Reflected {
     const ElementLocator& locator_;
 };
 
-/// Regions and the power that they reflect, W in the mean of the bands, the most first.
+/// Returns regions in descending order of their reflected power (W, mean of the bands).
 std::vector<RegionId> brightest_regions(const Stage& stage, const Reflected& reflected, const SecondarySources& asked,
                                         const StopRequest& stop) {
     const std::size_t pieces = stage.pieces.size();
@@ -67,15 +67,15 @@ std::vector<RegionId> brightest_regions(const Stage& stage, const Reflected& ref
     return {order.begin(), order.end()};
 }
 
-/// An element that may be cut further.
+/// An element that may be divided further.
 struct Cuttable {
     ElementId element;
     Spectrum radiosity;
-    double difference = 0;  ///< Of power, W; 0 where light is even.
+    double difference = 0;  ///< Difference of power, W; 0 if radiosity is uniform enough.
 };
 
 Cuttable look_at(const ElementTree& tree, ElementId e, const Reflected& reflected, DirectLight::Workspace& workspace) {
-    constexpr double even = 0.5;
+    constexpr double min_variation = 0.5;
     Cuttable out{e, {}, 0};
     double lowest = HUGE_VAL, highest = 0;
     visit_places([&](double s, double t) {
@@ -84,18 +84,18 @@ Cuttable look_at(const ElementTree& tree, ElementId e, const Reflected& reflecte
         lowest = std::min(lowest, mean(b)), highest = std::max(highest, mean(b));
     });
     const bool can_be_cut = !tree.is_leaf(e) || !tree.is_cell(e);
-    if (can_be_cut && highest - lowest > even * highest) out.difference = tree.area(e) * (highest - lowest);
+    if (can_be_cut && highest - lowest > min_variation * highest) out.difference = tree.area(e) * (highest - lowest);
     return out;
 }
 
-/// `tree`: of the elements, to which quarters of leaves are added.
+/// Divides a region into parts. `tree`: the elements, to which quarters of leaves are added.
 std::vector<SecondarySource::Part> parts_of(ElementTree& tree, std::span<const ElementId> roots, const Normal& n,
                                             const Reflected& reflected, const StopRequest& stop) {
-    constexpr std::size_t most = 64;
+    constexpr std::size_t max_parts = 64;
     DirectLight::Workspace workspace;
     std::vector<Cuttable> elements;
     for (const ElementId e : roots) elements.push_back(look_at(tree, e, reflected, workspace));
-    while (elements.size() < most && !stop.requested()) {
+    while (elements.size() < max_parts && !stop.requested()) {
         const auto next = std::max_element(elements.begin(), elements.end(), [](const Cuttable& a, const Cuttable& b) {
             return a.difference < b.difference;
         });
@@ -139,8 +139,8 @@ SecondaryLight::SecondaryLight(const Stage& stage, const ElementFunction& elemen
     if (!sources_.empty() && stage.scene.panes().empty()) fit_elements(stop);
 }
 
-/// H_e: polynomials of the elements that E_e was made of, made continuous as these were. What is a fan of triangles by
-/// now was one element.
+/// Computes H_e: polynomials of the elements of E_e, made continuous like these. A fan of triangles replaces the single
+/// element that it was made from.
 void SecondaryLight::fit_elements(const StopRequest& stop) {
     ElementFunction fit;
     fit.tree = elements_.tree;
@@ -167,7 +167,7 @@ void SecondaryLight::fit_elements(const StopRequest& stop) {
     if (!stop.requested()) fit_locator_.emplace(fit_.tree, stage_.scene.regions().size());
 }
 
-/// By the places at which the local pass gathers.
+/// Fits the polynomial at the points at which the local pass gathers.
 void SecondaryLight::fit_element(ElementFunction& fit, ElementId e, Workspace& scratch) const {
     const std::vector<WeightedPlace> rule = element_rule(fit.tree, e, RuleOrder::fine);
     std::vector<Spectrum> values;
@@ -180,7 +180,7 @@ void SecondaryLight::fit_element(ElementFunction& fit, ElementId e, Workspace& s
                 static_cast<float>(polynomial.corner(k)[b]);
 }
 
-/// B F of the parts that a polygon in the source's plane, relative to x, is cut into by them.
+/// Returns the sum of B F over the source's parts, clipped to a polygon in its plane (corners relative to x).
 Spectrum SecondaryLight::light_of(const SecondarySource& source, std::span<const Vec3> polygon, const Receiver& at,
                                   Workspace& scratch) const {
     const Normal& m = stage_.scene.regions()[source.region].plane.n;
@@ -199,7 +199,7 @@ Spectrum SecondaryLight::light_of(const SecondarySource& source, std::span<const
 }
 
 Spectrum SecondaryLight::hidden(RegionId region, const Point& x, Workspace& scratch) const {
-    constexpr double nothing = 1e-12;  // given by rounding of form factors
+    constexpr double negligible = 1e-12;  // rounding of form factors
     const Receiver at = stage_.direct.receiver(x, stage_.scene.regions()[region].plane.n, region);
     Spectrum out;
     for (const SecondarySource& source : sources_) {
@@ -209,12 +209,12 @@ Spectrum SecondaryLight::hidden(RegionId region, const Point& x, Workspace& scra
             scratch.whole.clear();
             for (const Point& p : stage_.occluders.corners(piece)) scratch.whole.push_back(p - at.x);
             const double all = contour_sum(at.n, scratch.whole);
-            if (all <= nothing) continue;
+            if (all <= negligible) continue;
             visible_fragments(stage_.occluders, at, piece, {}, scratch.visibility, scratch.fragments);
             double seen = 0;
             for (const std::vector<Vec3>& fragment : scratch.fragments)
                 seen += std::max(0.0, contour_sum(at.n, fragment));
-            if (all - seen <= nothing) continue;
+            if (all - seen <= negligible) continue;
             out += light_of(source, scratch.whole, at, scratch);
             for (const std::vector<Vec3>& fragment : scratch.fragments) out -= light_of(source, fragment, at, scratch);
         }

@@ -12,29 +12,29 @@
 
 namespace exitance {
 
-/// Regions by the power that they reflect, the most first: as many as are asked for. Each is cut along its own
-/// elements, and quarters of these, where what it reflects varies by more than half of the most, the part with the
-/// largest difference of power first, until none does or there are 64 parts. Light is looked at at nine places a piece
-/// or element. Empty, or of fewer sources, where `stop` is requested.
+/// Returns the regions that reflect the most power, in descending order, up to the requested number. Each is divided
+/// along its elements, and quarters of these, where its radiosity varies by more than half of the maximum. The part
+/// with the largest difference of power is divided first, until none is left or there are 64 parts. Light is evaluated
+/// at nine points per piece or element. Returns fewer sources, or none, if `stop` is requested.
 std::vector<SecondarySource> secondary_sources(const Stage& stage, const Solution& solution,
                                                const ElementLocator& locator, const SecondarySources& asked,
                                                const StopRequest& stop);
 
-/// Shadows that the light of some surfaces throws, for places where reflected light is known from elements alone:
+/// Reflected light that is known on elements only, with sharp shadows of the light of some surfaces:
 ///
 ///     E(x) = E_e(x) - (H(x) - H_e(x)),    H(x) = sum over sources and their parts of  B_part F(x, hidden part),
 ///
-/// E_e the light of the elements, H_e what such elements make of H: a polynomial each, made continuous as E_e was.
-/// Where nothing stands before a source it changes nothing. H is exact for parts of even light. Where there are panes,
-/// which H does not see through, nothing changes either; nothing falls below 0.
+/// where E_e is the light of the elements, and H_e approximates H by polynomials on such elements, made continuous as
+/// E_e was. Unblocked sources change nothing. H is exact for parts of uniform radiosity. E is E_e if the scene has
+/// panes, which H does not see through. Results are clamped at 0.
 class SecondaryLight {
   public:
-    /// All but `sources` must outlive it. Where `stop` is requested before it is made it has no effect. O(leaves x
-    /// sources).
+    /// All arguments except `sources` must outlive this. If `stop` is requested during construction, it has no effect.
+    /// O(leaves x sources).
     SecondaryLight(const Stage& stage, const ElementFunction& elements, const ElementLocator& locator,
                    std::vector<SecondarySource> sources, const StopRequest& stop);
 
-    /// E, W/m^2, at a place of a region.
+    /// E at a point of a region, W/m^2.
     Spectrum at(RegionId region, const Point& x) const;
 
     struct Workspace {
@@ -42,7 +42,7 @@ class SecondaryLight {
         Fragments fragments;
         std::vector<Vec3> whole, part, next;
     };
-    /// H alone.
+    /// H only.
     Spectrum hidden(RegionId region, const Point& x, Workspace& scratch) const;
 
   private:
@@ -56,7 +56,7 @@ class SecondaryLight {
     const ElementLocator& locator_;
     std::vector<SecondarySource> sources_;
     ElementFunction fit_;                        ///< H_e.
-    std::optional<ElementLocator> fit_locator_;  ///< None: of no effect.
+    std::optional<ElementLocator> fit_locator_;  ///< None if this has no effect.
 };
 
 }  // namespace exitance

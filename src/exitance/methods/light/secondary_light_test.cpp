@@ -13,7 +13,7 @@
 namespace exitance {
 namespace {
 
-/// A floor, a wall that shines by itself, and boards before it.
+/// A floor, a wall that emits light, and boards in front of it.
 Scene wall_before_boards() {
     return test::make({{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}}},
                        {{{-0.4, 2, 0.5}, {0.4, 2, 0.5}, {0.4, 2, 2}, {-0.4, 2, 2}}, 1},
@@ -21,7 +21,7 @@ Scene wall_before_boards() {
                        {{{0.1, 0.2, 0.2}, {0.6, 1.3, 0.3}, {0.2, 1.2, 1.5}}}});
 }
 
-/// No light, on the pieces of a scene.
+/// Zero light on the pieces of a scene.
 ElementFunction dark_pieces(const Stage& stage) {
     ElementFunction out;
     for (const Piece& piece : stage.pieces) out.tree.add_root(piece.region, piece.patch);
@@ -33,7 +33,7 @@ ElementFunction dark_pieces(const Stage& stage) {
     return out;
 }
 
-TEST(SecondaryLight, HidesFromPartsOfEvenLightWhatIsHiddenOfAnEmitter) {
+TEST(SecondaryLight, HidesTheSameLightOfUniformPartsAsOfAnEmitter) {
     const Scene scene = wall_before_boards();
     const Stage stage(scene);
     const ElementFunction dark = dark_pieces(stage);
@@ -63,8 +63,8 @@ TEST(SecondaryLight, HidesFromPartsOfEvenLightWhatIsHiddenOfAnEmitter) {
     EXPECT_GT(hidden, 1);
 }
 
-TEST(SecondarySources, AreCutWhereTheyAreNoLongerConstantAndTheBrightestComesFirst) {
-    // A lamp close to the middle of a wall, another far from a second one.
+TEST(SecondarySources, AreDividedWhereLightVariesAndSortedByPower) {
+    // A lamp close to the centre of one wall, another far from a second wall.
     const Scene scene = test::make({{{{-1, 0, 0}, {1, 0, 0}, {1, 0, 2}, {-1, 0, 2}}},
                                     {{{5, 0, 0}, {5.5, 0, 0}, {5.5, 0, 0.5}, {5, 0, 0.5}}},
                                     {{{-0.1, -0.2, 1.1}, {0.1, -0.2, 1.1}, {0.1, -0.2, 0.9}, {-0.1, -0.2, 0.9}}, 100},
@@ -77,7 +77,7 @@ TEST(SecondarySources, AreCutWhereTheyAreNoLongerConstantAndTheBrightestComesFir
     const ElementLocator locator(solution.indirect.tree, scene.regions().size());
     const StopRequest stop;
     const auto all = secondary_sources(stage, solution, locator, {.count = 10}, stop);
-    ASSERT_EQ(all.size(), 2u);  // lamps have their backs to each other
+    ASSERT_EQ(all.size(), 2u);  // the lamps face away from each other
     EXPECT_EQ(all[0].region, RegionId(0));
     EXPECT_EQ(all[1].parts.size(), 1u);
     EXPECT_GT(all[0].parts.size(), 8u);
@@ -90,14 +90,14 @@ TEST(SecondarySources, AreCutWhereTheyAreNoLongerConstantAndTheBrightestComesFir
         }
         EXPECT_NEAR(area, scene.regions()[source.region].area, 1e-12);
     }
-    // The parts are smallest where light changes most.
+    // The smallest part is where light varies most.
     const auto smallest = std::min_element(all[0].parts.begin(), all[0].parts.end(),
                                            [](const auto& a, const auto& b) { return a.area < b.area; });
     EXPECT_LT(norm(centroid(smallest->outline) - Point{0, 0, 1}), 0.6);
     EXPECT_EQ(secondary_sources(stage, solution, locator, {.count = 1}, stop).size(), 1u);
 }
 
-TEST(SecondaryLight, TakesThePlaceOfTheShadowsThatElementsHold) {
+TEST(SecondaryLight, ReplacesTheShadowsOfElements) {
     const Scene scene = wall_before_boards();
     const Stage stage(scene);
     ElementFunction held = dark_pieces(stage);
@@ -106,7 +106,7 @@ TEST(SecondaryLight, TakesThePlaceOfTheShadowsThatElementsHold) {
     const StopRequest stop;
     SecondaryLight::Workspace scratch;
     const SecondaryLight alone(stage, held, pieces, {source}, stop);
-    // Elements with even light less the wall's shadows, by the rule of the local pass.
+    // Elements with uniform light minus the wall's shadows, fitted by the rule of the local pass.
     const Spectrum even(0.5);
     for (const ElementId e : held.tree.leaves()) {
         const std::vector<WeightedPlace> rule = element_rule(held.tree, e, RuleOrder::fine);
@@ -132,7 +132,7 @@ TEST(SecondaryLight, TakesThePlaceOfTheShadowsThatElementsHold) {
         EXPECT_NEAR(mean(light.at(RegionId(0), x)), truth, 1e-6);  // floats
     }
     EXPECT_GT(before, 0.01);  // a floor of one element has no shadows
-    // A stop leaves the light as it was.
+    // After a stop, light is unchanged.
     StopRequest now;
     now.interrupt();
     const SecondaryLight stopped(stage, held, locator, {source}, now);

@@ -6,7 +6,7 @@
 namespace exitance {
 namespace {
 
-/// A slope in the plane of a leaf: the value at x is that at the middle plus s (x - middle) . a + t (x - middle) . b.
+/// A slope in the plane of a leaf: the value at x is that at the centre plus s (x - centre) . a + t (x - centre) . b.
 struct Slope {
     Spectrum s, t;
 
@@ -14,7 +14,7 @@ struct Slope {
     double steepness() const { return squared(s) + squared(t); }
 };
 
-/// A leaf as its surroundings see it.
+/// A leaf and its neighbours.
 class Surroundings {
   public:
     Surroundings(const GlobalLight& light, const ElementLocator& locator, std::size_t leaf)
@@ -38,7 +38,7 @@ class Surroundings {
         for (std::size_t i = 0; i < n; ++i) {
             const Neighbour &p = neighbours_[i], &q = neighbours_[(i + 1) % n];
             const double det = cross(p.offset, q.offset);
-            // Given by geometry: neighbours in nearly one direction tell no slope.
+            // neighbours in nearly the same direction do not determine a slope
             if (det * det < 0.01 * dot(p.offset, p.offset) * dot(q.offset, q.offset)) continue;
             const Spectrum dp = p.value - value_, dq = q.value - value_;
             const Slope plane{(q.offset.y / det) * dp - (p.offset.y / det) * dq,
@@ -58,10 +58,10 @@ class Surroundings {
     };
 
     void add_neighbour(const ElementLocator& locator, const Point& border) {
-        const Point across = middle_ + 1.25 * (border - middle_);  // given by geometry: within any neighbour
+        const Point across = middle_ + 1.25 * (border - middle_);  // a point inside any neighbour
         const ElementTree::Place place = locator.find(tree_.region(element_), across);
-        const double near = 1e-6 * norm(border - middle_);  // given by rounding
-        if (place.element == element_ || norm(tree_.patch(place.element).at(place.uv) - across) > near) {
+        const double tolerance = 1e-6 * norm(border - middle_);  // rounding
+        if (place.element == element_ || norm(tree_.patch(place.element).at(place.uv) - across) > tolerance) {
             walls_.push_back(2.0 * offset(border));
             return;
         }
@@ -74,12 +74,13 @@ class Surroundings {
         return {n.offset.x * step, n.offset.y * step};
     }
 
-    /// Beyond a wall the slope goes on; elsewhere the corners stay between the neighbours' values.
+    /// Limits a slope so that values at the corners stay between those of the neighbours. Beyond a wall, the slope's
+    /// own extrapolation counts as a neighbour.
     Slope limited(Slope slope) const {
-        Spectrum least = value_, most = value_;
+        Spectrum least = value_, largest = value_;
         const auto include = [&](const Spectrum& v) {
             for (std::size_t k = 0; k < bands; ++k)
-                least[k] = std::min(least[k], std::max(0.0, v[k])), most[k] = std::max(most[k], v[k]);
+                least[k] = std::min(least[k], std::max(0.0, v[k])), largest[k] = std::max(largest[k], v[k]);
         };
         for (const Neighbour& n : neighbours_) include(n.value);
         for (const Vec2 wall : walls_) include(value_ + slope.at(wall));
@@ -87,7 +88,7 @@ class Surroundings {
         for (const Point& corner : outline_) {
             const Spectrum step = slope.at(offset(corner));
             for (std::size_t k = 0; k < bands; ++k) {
-                const double room = step[k] > 0 ? most[k] - value_[k] : least[k] - value_[k];
+                const double room = step[k] > 0 ? largest[k] - value_[k] : least[k] - value_[k];
                 if (std::abs(step[k]) > std::abs(room)) share[k] = std::min(share[k], room / step[k]);
             }
         }
@@ -101,8 +102,8 @@ class Surroundings {
     Point middle_;
     Vec3 a_, b_;
     std::vector<Point> outline_;
-    std::vector<Neighbour> neighbours_;  ///< In the order of the borders.
-    std::vector<Vec2> walls_;            ///< Where a neighbour's middle would be, if there were one.
+    std::vector<Neighbour> neighbours_;  ///< In the order of the edges.
+    std::vector<Vec2> walls_;            ///< For edges without a neighbour: the place where its centre would be.
 };
 
 }  // namespace

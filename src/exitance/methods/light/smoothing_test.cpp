@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// A wall of 1 m x 1 m in region 0 and another of its size beside it, in one plane, in region 1; cut at random.
+/// Two coplanar, adjacent walls of 1 m x 1 m in regions 0 and 1, split `cuts` times.
 GlobalLight two_walls(int cuts, bool triangles) {
     GlobalLight light;
     const auto shape = triangles ? Patch::Shape::triangle : Patch::Shape::parallelogram;
@@ -22,7 +22,7 @@ GlobalLight two_walls(int cuts, bool triangles) {
     return light;
 }
 
-/// Means of a function that is known at any place, by leaf.
+/// Sets the mean of a function on every leaf.
 template <class Function>
 void set_light(GlobalLight& light, const Function& f) {
     light.indirect.clear();
@@ -53,14 +53,14 @@ double rms_error(const ElementFunction& smooth, const Function& f) {
 
 }  // namespace
 
-TEST(Smoothing, IsExactWhereLightIsLinearAndPassesNoWall) {
-    // Each wall has its own slope: a neighbour across the seam would spoil both.
+TEST(Smoothing, IsExactForLinearLightAndStopsAtWalls) {
+    // Each wall has its own slope: using neighbours across the seam would affect both.
     const auto f = [](const Point& p) { return p.x < 1 ? 1 + 2 * p.x + 3 * p.y : 9 - 4 * (p.x - 1) + p.y; };
     for (bool triangles : {false, true}) {
         GlobalLight light = two_walls(3, triangles);
         set_light(light, f);
-        // Single precision of the values. A triangle in a corner has one neighbour, and so a slope in one direction
-        // only; without slopes the error is 0.15.
+        // Single precision of the values. A triangle in a corner has one neighbour, and thus a slope in one direction
+        // only; without slopes the error would be 0.15.
         const double tolerance = triangles ? 0.05 : 1e-5;
         EXPECT_LT(rms_error(smoothed_on_leaves(light, 2), f), tolerance) << triangles;
     }
@@ -73,13 +73,13 @@ TEST(Smoothing, ErrorFallsWithTheSquareOfTheSize) {
         GlobalLight light = two_walls(cuts, false);
         set_light(light, f);
         const double error = rms_error(smoothed_on_leaves(light, 2), f);
-        // Half the size: a quarter of the error, but where the slope is cut at tops and valleys.
+        // Half the size gives a quarter of the error, except where the slope is limited at maxima and minima.
         EXPECT_TRUE(before == 0 || error < 0.32 * before) << error << " after " << before;
         before = error;
     }
 }
 
-TEST(Smoothing, AShadowsEdgeStaysAsSharpAsTheElements) {
+TEST(Smoothing, ShadowEdgesAreNotBlurred) {
     // A step of 10 between elements, on top of a gentle slope.
     const auto f = [](const Point& p) { return (p.x < 0.5 ? 10.0 : 0.0) + 0.1 + 0.4 * p.y; };
     GlobalLight light = two_walls(4, false);
@@ -87,7 +87,7 @@ TEST(Smoothing, AShadowsEdgeStaysAsSharpAsTheElements) {
     EXPECT_LT(rms_error(smoothed_on_leaves(light, 2), f), 1e-5);
 }
 
-TEST(Smoothing, KeepsMeansAndStaysWithinItsNeighbours) {
+TEST(Smoothing, KeepsMeansAndTheRangeOfTheNeighbours) {
     RandomStream random(3, Stream::mesh);
     GlobalLight light = two_walls(2, false);
     for (ElementId e : light.tree.leaves())

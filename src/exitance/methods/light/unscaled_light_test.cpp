@@ -33,22 +33,22 @@ struct Furnace {
     }
 };
 
-TEST(UnscaledLight, IsAsFarFromBalanceAsWhatScalingMadeGood) {
+TEST(UnscaledLight, DefectEqualsTheCorrectionByScaling) {
     const Furnace furnace;
     const EnergyBalance energy = energy_balance(furnace.solution, furnace.direct, furnace.stage);
     ASSERT_NEAR(energy.defect, 0, 1e-12);
     const auto before = [&](double direct, double indirect) {
         return energy_defect_before(energy, furnace.solution, furnace.direct, {Spectrum(direct), Spectrum(indirect)});
     };
-    // Direct and indirect light are absorbed alike here: half of what is emitted each.
+    // Direct and indirect light are absorbed equally: half of the emitted light each.
     EXPECT_NEAR(before(1, 1), 0, 1e-12);
     EXPECT_NEAR(before(0.99, 1), 0.005, 1e-12);
     EXPECT_NEAR(before(1, 1.02), 0.01, 1e-12);
     EXPECT_NEAR(before(0.99, 1.02), 0.005, 1e-12) << "they make up for each other";
 }
 
-TEST(UnscaledLight, IsJudgedInTheUnitOfTheBalance) {
-    // Too much indirect light in one band counts by that band's weight: a third in watts.
+TEST(UnscaledLight, UsesTheUnitOfTheBalance) {
+    // Excess light in one band counts by that band's weight: a third in watts.
     if constexpr (bands != 3) GTEST_SKIP() << "the bands of this build weigh alike";
     const Furnace furnace;
     const EnergyBalance energy = energy_balance(furnace.solution, furnace.direct, furnace.stage);
@@ -58,18 +58,18 @@ TEST(UnscaledLight, IsJudgedInTheUnitOfTheBalance) {
     EXPECT_NEAR(energy_defect_before(energy, furnace.solution, furnace.direct, share), 0.01 / 3, 1e-12);
 }
 
-TEST(UnscaledLight, SendsLessByWhatDirectLightAndReturnsAreLess) {
+TEST(UnscaledLight, SentPowerFollowsTheScalesOfDirectAndReturnedLight) {
     const Furnace furnace;
     const auto sent = [&](double direct, double returned, double c) {
         return unscaled_sent(furnace.scene, furnace.light, Spectrum(direct), Spectrum(returned), Spectrum(c))[0];
     };
-    // rho E_dir and rho E_ind are alike here.
+    // rho E_dir and rho E_ind are equal here.
     EXPECT_NEAR(sent(0.99, 1, 0), 0.99, 1e-12);
     EXPECT_NEAR(sent(1, 0.98, 0), 0.99, 1e-12);
     EXPECT_NEAR(sent(0.99, 1, 1), (0.99 + 1) / 2, 1e-12) << "what is emitted is gathered as it is";
 }
 
-TEST(UnscaledLight, IsToldOfAClosedSceneWhereItIsMadeGood) {
+TEST(UnscaledLight, IsReportedForAClosedScene) {
     Progress progress;
     const StopRequest stop;
     const Result<Solution> solution = solve_scene(built_scene("gaps"), {.error = 0.05}, progress, stop);

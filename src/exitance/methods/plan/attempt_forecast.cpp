@@ -9,19 +9,19 @@ namespace exitance {
 
 AttemptForecast forecast_attempt(const AttemptFacts& facts) {
     AttemptForecast out;
-    // Each way takes as many attempts as bring the part below what is wanted: a power of what one leaves.
+    // Returns the number of attempts that reduce the part to the required value, if each multiplies it by `left`.
     const auto attempts = [&](double left) {
         if (facts.method <= facts.wanted || left <= 0) return 1.0;
         if (left >= 1) return HUGE_VAL;
         return std::max(1.0, std::ceil(std::log(facts.wanted / facts.method) / std::log(left)));
     };
     out.steps = attempts(facts.left);
-    constexpr double share_of_change = 0x1p-3;  // that LocalPass begins with
+    constexpr double share_of_change = 0x1p-3;  // initial share of the rays with which LocalPass gathers a change
     out.step_rays = out.steps * (share_of_change * facts.gather_rays + facts.certificate_rays);
     double rows = facts.row_rays;
     const double finer = attempts(facts.finer);
-    constexpr int most = 16;  // beyond these nothing would be gained by knowing more
-    for (int k = 0; k < most && k < finer; ++k) {
+    constexpr int max_attempts = 16;  // forecasts beyond this many attempts would not change the decision
+    for (int k = 0; k < max_attempts && k < finer; ++k) {
         rows /= facts.finer * facts.finer;
         out.finer_rays += rows + facts.gather_rays + facts.certificate_rays;
     }
@@ -30,8 +30,8 @@ AttemptForecast forecast_attempt(const AttemptFacts& facts) {
 
 std::vector<double> attempt_aims(double asked, double error) {
     std::vector<double> out = {asked};
-    const double most = calibrated::part_aim * error;
-    for (double aim = asked / calibrated::least_step; aim <= most; aim /= calibrated::least_step) out.push_back(aim);
+    const double max_aim = calibrated::part_aim * error;
+    for (double aim = asked / calibrated::least_step; aim <= max_aim; aim /= calibrated::least_step) out.push_back(aim);
     return out;
 }
 

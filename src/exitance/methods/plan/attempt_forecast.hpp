@@ -5,30 +5,32 @@
 
 namespace exitance {
 
-/// What a forecast of another attempt rests on: what the last one took and found, where the method is to blame.
+/// Data of the last attempt, from which another one is forecast if the method's part of the error is too large.
 struct AttemptFacts {
-    double row_rays = 0;          ///< Of the method,
-    double gather_rays = 0;       ///< of all elements that light is gathered on, together,
-    double certificate_rays = 0;  ///< and of the estimate.
-    double method = 0;            ///< What of the error is not of the local pass,
-    double wanted = 0;            ///< and what is wanted of it.
-    double left = 0;              ///< Share of that part that one step of refinement leaves, as far as is known.
-    double finer = 1;             ///< Share of it that finer elements of the method leave.
+    double row_rays = 0;          ///< Rays of the method.
+    double gather_rays = 0;       ///< Rays of the local pass for all its elements.
+    double certificate_rays = 0;  ///< Rays of the certificate.
+    double method = 0;            ///< Part of the error that is not due to the local pass.
+    double wanted = 0;            ///< Required value of that part.
+    double left = 0;              ///< Expected share of that part that remains after one refinement step.
+    double finer = 1;             ///< Expected share of it that remains with finer elements of the method.
 };
 
-/// Rays of the two ways to the same error: steps of refinement on from what is delivered (`next_light`), each of which
-/// gathers what changes, by an eighth of the rays, and is estimated; or finer elements, as many more of them as they
-/// err less, with as many more rays each, and everything gathered anew.
+/// Rays of two ways to the same error. The first takes refinement steps on the delivered light (`next_light`); each of
+/// them gathers the change of the light with an eighth of the rays, and runs the certificate. The second uses finer
+/// elements: their number and the rays per element grow in inverse proportion to the error, and everything is gathered
+/// again.
 struct AttemptForecast {
-    double steps = 1;  ///< How many steps are to be taken; infinite where they do not lead there.
+    double steps = 1;  ///< Number of steps; infinite if steps do not reach the error.
     double step_rays = 0, finer_rays = 0;
     bool takes_steps() const { return step_rays <= finer_rays; }
 };
 
 AttemptForecast forecast_attempt(const AttemptFacts& facts);
 
-/// What an attempt may aim at, where the last one has left an error and another is asked for: that one, and where there
-/// is no time for it, a little more, up to what is hardly better than what there is.
+/// Returns the errors at which another attempt may aim, given the error of the last one and the requested one. The
+/// first is the requested error. Larger ones follow, for when time is short, up to the largest that is still a useful
+/// improvement on `error`.
 std::vector<double> attempt_aims(double asked, double error);
 
 }  // namespace exitance

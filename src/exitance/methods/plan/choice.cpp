@@ -13,7 +13,7 @@ namespace exitance {
 
 namespace {
 
-/// May links be the way, or deliver the light of the polynomials that were asked for?
+/// True if links may be chosen, or may deliver the light for the requested basis.
 bool may_deliver(const SolveOptions& options) {
     const bool is_polynomial =
         !options.basis || options.basis == BasisKind::multiwavelet2 || options.basis == BasisKind::multiwavelet3;
@@ -27,7 +27,7 @@ MethodChoice choose_alone(const Stage& stage, const SolveOptions& options) {
         out.options.method = method, out.why = std::move(why);
         return out;
     };
-    // Reflections are counted by `matrix` alone, whose iterations are reflections.
+    // Only `matrix` can limit the number of reflections, since its iterations are reflections.
     if (options.bounces > 0 && options.method != Method::discontinuity)
         return choose(Method::matrix, "counts reflections");
     if (options.method == Method::wavelet && !options.basis) out.options.basis = BasisKind::multiwavelet2;
@@ -71,7 +71,7 @@ MethodChoice choose_method(const Stage& stage, const SolveOptions& options) {
     }
     const bool by_rays = runs_over_processes(choice.options.method, choice.options) &&
                          !(choice.options.method == Method::hierarchical &&
-                           links_outgrow_memory(stage.pieces.size(), choice.options));  // clusters are, then
+                           links_outgrow_memory(stage.pieces.size(), choice.options));  // clusters are used then
     if (processes() == 1 || by_rays) return choice;
     choice.why = fmt::format("{} would be the choice ({}), but does not run over processes",
                              name_in(method_names, choice.options.method), choice.why);

@@ -8,23 +8,23 @@
 
 namespace exitance {
 
-/// The options with the method that solves in place of `auto`, its basis, and why that.
+/// Options with the chosen method and basis in place of `auto`, and the reason for the choice.
 struct MethodChoice {
     SolveOptions options;
-    std::string why = {};       ///< Empty where the user chose.
-    WayForecast forecast = {};  ///< Where there is a choice of transport, whoever chose the method.
-    bool is_second = false;     ///< What would have been chosen does not run over the processes that there are.
+    std::string why = {};       ///< Reason; empty if the user chose.
+    WayForecast forecast = {};  ///< Forecast of the work; infinite values if there is no choice.
+    bool is_second = false;     ///< True if the preferred method does not run on several processes.
 };
 
-/// Are its steps those of all unknowns at once, so that several processes can share them?
+/// True if the relaxation updates all unknowns at once, so that several processes can share its steps.
 bool runs_over_processes(Relaxation relaxation);
-/// Can several processes share the method's work? That of `matrix` on rows of rays, and of `hierarchical` where rays
-/// find the links, too: not where something asked for has them judged one by one.
+/// True if several processes can share the work of the method. This holds for `matrix` with rows sampled by rays, and
+/// for `hierarchical` if rays find the links and no option requires links to be evaluated one by one.
 bool runs_over_processes(Method method, const SolveOptions& options);
 
-/// By what is asked for and what stands in the scene; where nothing stands between any two places, by a forecast of the
-/// work that each way takes to the error. Where several processes work together and the choice
-/// does not run over them, the next that does, which is `matrix` on rows of rays.
+/// Chooses a method by the requested options and the scene. Without occlusion in the scene, it compares forecasts of
+/// the work that each method needs to reach the requested error. If several processes solve together and the preferred
+/// method does not support that, it chooses `matrix` with rows sampled by rays.
 MethodChoice choose_method(const Stage& stage, const SolveOptions& options);
 
 }  // namespace exitance

@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-TEST(MethodChoice, LeavesWhatTheUserChose) {
+TEST(MethodChoice, KeepsTheUsersChoice) {
     const Scene scene = built_scene("tube");
     const Stage stage(scene);
     const MethodChoice choice = choose_method(stage, {.method = Method::progressive, .error = 0.001});
@@ -15,7 +15,7 @@ TEST(MethodChoice, LeavesWhatTheUserChose) {
     EXPECT_TRUE(choice.why.empty());
 }
 
-TEST(MethodChoice, DependsOnWhatStandsInTheSceneAndOnTheError) {
+TEST(MethodChoice, DependsOnOcclusionAndError) {
     const Scene tube = built_scene("tube"), room = built_scene("cornell");
     const Stage open(tube), cluttered(room);
     const auto chosen = [](const Stage& stage, double error) {
@@ -28,7 +28,7 @@ TEST(MethodChoice, DependsOnWhatStandsInTheSceneAndOnTheError) {
     EXPECT_EQ(chosen(cluttered, 0.001), Method::matrix);
 }
 
-TEST(MethodChoice, GivesLinksToWhoLooksAtPointsAndCountsReflectionsByMatrix) {
+TEST(MethodChoice, UsesLinksForImportanceAndMatrixForLimitedReflections) {
     const Scene scene = built_scene("cornell");
     const Stage stage(scene);
     SolveOptions options;
@@ -37,7 +37,7 @@ TEST(MethodChoice, GivesLinksToWhoLooksAtPointsAndCountsReflectionsByMatrix) {
     EXPECT_EQ(choose_method(stage, {.method = Method::wavelet, .bounces = 2}).options.method, Method::matrix);
 }
 
-TEST(MethodChoice, KnowsWhatSeveralProcessesCanShare) {
+TEST(MethodChoice, IsAwareOfSeveralProcesses) {
     EXPECT_TRUE(runs_over_processes(Method::matrix, {}));
     EXPECT_TRUE(runs_over_processes(Method::hierarchical, {.keep_links = true}));
     EXPECT_FALSE(runs_over_processes(Method::hierarchical, {.clusters = true}));

@@ -22,30 +22,32 @@
 namespace exitance {
 namespace {
 
-// Ratios measured by `solve --dry-run` and `solve` on tube, cornell, complex, office, clutter and chair
-// at 3%.
-constexpr double gathered_by_solved = 1.2;  ///< Elements that are gathered on, by leaves that are solved on.
-constexpr double straight_by_curved = 1.7;  ///< Leaves delivered by elements of second degree.
-constexpr double element_rays = 2.6;     ///< Rays of an element, by those of a place: the rule's sums have less noise.
-constexpr double shooting_share = 0.48;  ///< Of all pairs of elements: those whose form factor shooting asks for.
-constexpr double gathered_by_patches = 3;  ///< Elements that are gathered on, by patches of substructuring.
-constexpr double random_sweeps = 1.9;      ///< Light sent in random directions by light reflected first.
+// Ratios measured by `solve --dry-run` and `solve` on tube, cornell, complex, office, clutter and chair at
+// 3%.
+constexpr double gathered_by_solved = 1.2;  ///< Gather elements per leaf of the method's mesh.
+constexpr double straight_by_curved = 1.7;  ///< Delivered leaves per element of second degree.
+constexpr double element_rays = 2.6;     ///< Rays of an element over those of a place; sums of the rule are less noisy.
+constexpr double shooting_share = 0.48;  ///< Share of the pairs of elements whose form factors shooting needs.
+constexpr double gathered_by_patches = 3;  ///< Gather elements per patch of substructuring.
+constexpr double random_sweeps = 1.9;      ///< Light sent in random directions over the light of the first reflection.
 constexpr unsigned shooting_samples = 16;
-constexpr double lights_an_element = 20;  ///< Nodes of the projection and of the exported mesh, and cuts.
+/// Evaluations of direct light per element: nodes of the projection and of the exported mesh, and splits.
+constexpr double lights_an_element = 20;
 constexpr unsigned pilot_rays = 64;
 constexpr std::size_t pilot_points = 512;
 
-/// What a few gathers over the light that is reflected first tell.
+/// Results of a few gathers of the light of the first reflection.
 struct Pilot {
-    double rays = 0;            ///< Of a place, until their noise is what is allowed.
-    double gather_seconds = 0;  ///< Wall time of a ray, all threads at work,
-    double light_seconds = 0;   ///< and of direct light at a point.
-    double mean_light = 0;      ///< Reflected, W/m^2: first, and what follows if every reflection leaves as much.
-    double facing = 0;          ///< Share of pairs of points that face each other;
-    bool blocked = false;       ///< is anything between any of these?
+    double rays = 0;            ///< Rays per place that reduce the noise to the allowed value.
+    double gather_seconds = 0;  ///< Wall time per ray, with all threads busy.
+    double light_seconds = 0;   ///< Wall time of direct light per point.
+    /// Mean reflected light, W/m^2, extrapolated from the first reflection as a geometric series.
+    double mean_light = 0;
+    double facing = 0;     ///< Share of the pairs of points that face each other.
+    bool blocked = false;  ///< True if any of these pairs is occluded.
 };
 
-/// Pairs of points: which face each other, and which of these see each other.
+/// Finds the share of pairs of points that face each other, and whether any of these is occluded.
 void look_across(const Stage& stage, std::span<const ProbePoint> points, std::span<const RegionId> region, Pilot& out) {
     constexpr std::size_t partners = 8;
     std::vector<SurfacePoint> from, to;
@@ -63,7 +65,7 @@ void look_across(const Stage& stage, std::span<const ProbePoint> points, std::sp
     out.blocked = std::any_of(blocked.get(), blocked.get() + from.size(), [](bool b) { return b; });
 }
 
-/// Wall seconds of one call, all threads at work.
+/// Returns the wall time per item, in seconds, with all threads busy.
 template <class Work>
 double seconds_each(std::size_t count, const Work& work) {
     const Stopwatch watch;
@@ -109,11 +111,11 @@ Pilot look(const Stage& stage, const Plan& plan, const DirectProjection& direct)
     for (const double l : light) mean_light += l / static_cast<double>(points.size());
     double mean_first = 0;
     for (const double l : first_light) mean_first += l / static_cast<double>(points.size());
-    // As a geometric series, of at most twenty times its first term.
+    // Geometric series; its sum is at most twenty times the first term.
     if (mean_first > 0) out.mean_light = mean_first / std::max(0.05, 1 - (mean_light - mean_first) / mean_first);
     const Knobs& k = plan.knobs;
     for (const double n : noise) {
-        // The error of scrambled points falls like n^-3/4; four freedoms are fitted to nine places.
+        // The error of scrambled points falls like n^-3/4. Four degrees of freedom are fitted to nine places.
         const double wanted =
             mean_light > 0 ? pilot_rays * std::pow(2.0 / 3 * n / (k.gather_noise * mean_light), 4.0 / 3) : 0;
         out.rays +=
@@ -123,8 +125,8 @@ Pilot look(const Stage& stage, const Plan& plan, const DirectProjection& direct)
     return out;
 }
 
-/// Elements that substructuring cuts patches into: light reflected first steps from patch to patch, and steps of smooth
-/// light halve with every cut.
+/// Returns the number of elements into which substructuring splits patches. Light of the first reflection has steps
+/// between patches; the steps of smooth light halve with every split.
 double cut_patches(const Stage& stage, const Plan& plan, const DirectProjection& direct, double mean_light) {
     const ElementLocator locator(direct.tree, stage.scene.regions().size());
     const auto light = [&](ElementId leaf) {
@@ -143,7 +145,7 @@ double cut_patches(const Stage& stage, const Plan& plan, const DirectProjection&
     return elements;
 }
 
-/// Rays of the method itself, on so many elements.
+/// Returns the rays of the method itself on this many elements.
 double method_rays(const Plan& plan, const Pilot& pilot, double patches, double elements) {
     const SolveOptions& o = plan.options;
     if (entry_of(o.method).forecast) return 0;  // added by the method's own formula
@@ -152,7 +154,7 @@ double method_rays(const Plan& plan, const Pilot& pilot, double patches, double 
     switch (o.method) {
         case Method::progressive:
             return shooting_share * elements * elements * samples;
-        case Method::substructuring:  // of patches, and of all that are cut, those cut again with them
+        case Method::substructuring:  // rows of all patches, and of all split elements including those split again
             return pilot.facing * patches * (patches + 4.0 / 3 * elements) * samples;
         case Method::monte_carlo:
             return 8 * random_sweeps * rows;
@@ -164,11 +166,11 @@ double method_rays(const Plan& plan, const Pilot& pilot, double patches, double 
     }
 }
 
-/// Two gathers at every point of the certificate, and rows of few rays.
+/// Returns the rays of the certificate: two gathers at every point, and matrix rows of few rays.
 double certificate_rays(const Plan& plan, double elements, double gathered, double rays_an_element) {
     const double rows = 12 * elements;
     const double points = static_cast<double>(CertificateOptions::points_for(static_cast<std::size_t>(gathered)));
-    // Sums are measured at half as many points, where rays check the direct light that they hold.
+    // Sums are checked at half as many points, where rays check the direct light in them.
     if (plan.sums) return rows + points * ResidualSampler::rays_beside_sums;
     return rows + 2 * points * std::max(16.0, 0.2 * rays_an_element);
 }
@@ -208,11 +210,11 @@ Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& options)
     if (indirect)
         out.rays = method_rays(plan, pilot, projected, solved) + gathered * rays_an_element +
                    certificate_rays(plan, solved, gathered, rays_an_element);
+    if (const auto own = entry_of(plan.options.method).forecast)
+        out.rays += own(stage, plan.options, plan.knobs, pilot.facing, pilot.blocked).rays;
     out.seconds = out.rays * pilot.gather_seconds + solved * lights_an_element * pilot.light_seconds;
     out.memory_bytes = static_cast<double>(peak_memory_bytes()) +
                        method_bytes(stage, plan.options, plan.knobs, solved) + bytes_a_leaf * (solved + leaves);
-    if (const auto own = entry_of(plan.options.method).forecast)
-        out.rays += own(stage, plan.options, plan.knobs, pilot.facing, pilot.blocked).rays;
     return out;
 }
 

@@ -12,17 +12,17 @@
 namespace exitance {
 namespace {
 
-/// Leaves that a piece becomes where it is no larger than elements are to be, and one of the elements that larger ones
-/// are cut into: grading and light cut these again. Given by rooms of 20 to 54,005 polygons at 2% and 5%.
+/// Leaves per piece that is smaller than the target element size, and per element of larger pieces; grading and light
+/// split these further. Given by rooms of 20 to 54,005 polygons at 2% and 5%.
 constexpr double leaves_a_piece = 2.5, leaves_an_element = 20;
 
-/// What a process needs of what those of its node hold together, by what one would hold alone.
+/// Returns the memory of a process on its node over that of a single process.
 double share_of_process() {
     const auto count = static_cast<double>(processes_on_node());
     return largest_of_all((1 + own_memory * (count - 1)) / count);
 }
 
-/// What a process holds now: what those of a node have in common counts for each by its share.
+/// Returns the memory in use per process; shared memory of a node is divided by the number of its processes.
 double bytes_in_use() {
     const std::size_t proportional = processes() > 1 ? proportional_memory_bytes() : 0;
     const double own = static_cast<double>(proportional > 0 ? proportional : peak_memory_bytes());

@@ -6,17 +6,17 @@
 
 namespace exitance {
 
-/// Bytes of a leaf, of direct light or of the gather, in every vector and tree that it stands in: 460 to 1,350 in rooms
-/// of 20 to 54,005 polygons at 2% and 5%, 820 where they are most.
+/// Memory per leaf of direct light or of the gather in all vectors and trees, bytes. Measured 460 to 1,350 in rooms of
+/// 20 to 54,005 polygons at 2% and 5%, 820 for the largest numbers of leaves.
 constexpr double bytes_a_leaf = 1000;
 
-/// What each of several processes on a node has of these for itself; the rest they have in common. Given by `generate
-/// complex` of 54,005 polygons in two processes, 0.14.
+/// Share of this memory that each of several processes on a node needs for itself; the rest is shared. Rounded up from
+/// 0.14, measured in two processes with `generate complex` of 54,005 polygons.
 constexpr double own_memory = 0.15;
 
-/// Coarsens the knobs until what they will need, on top of what is in use, fits into the options' memory limit. True
-/// when nothing had to be changed; an error when even the coarsest mesh does not fit. The limit is that of a process,
-/// and pages that those of a node have in common count for each by its share: n of them need n limits of the node. All.
+/// Coarsens the settings until the predicted memory, in addition to that in use, is within the options' memory limit.
+/// Returns true if nothing was changed. Error if even the coarsest mesh is too large. The limit applies per process,
+/// where shared memory counts for each of n processes on a node with a share of 1 / n. Collective.
 Result<bool> fit_into_memory(Knobs& knobs, const Stage& stage, const SolveOptions& options);
 
 }  // namespace exitance

@@ -12,9 +12,9 @@
 namespace exitance {
 namespace {
 
-/// A pair of leaves with galerkin1 to 3, of which two thirds are links in a room: their blocks while they are found,
-/// the links in order, and the copy that is sorted. Measured in the Cornell box at 1% (2,679 leaves): 36, 50 and 55;
-/// with chairs in a room, where a third of the pairs are links: 20.
+/// Memory per pair of leaves with galerkin1 to 3, bytes, if two thirds of the pairs are links: their blocks while links
+/// are created, the sorted links, and the copy that is sorted. Measured in the Cornell box at 1% (2,679 leaves): 36, 50
+/// and 55; in a room with chairs, where a third of the pairs are links: 20.
 constexpr double bytes_a_galerkin_pair = 60;
 
 }  // namespace
@@ -43,7 +43,7 @@ double method_bytes(const Stage& stage, const SolveOptions& options, const Knobs
 }
 
 Result<void> check_method_memory(const Stage& stage, const SolveOptions& options, const Knobs& knobs, double leaves) {
-    // Processes share a node's memory, and the links of methods that run over them are dealt out.
+    // Processes share the memory of a node, and methods that run on several processes distribute their links.
     if (processes() > 1) return {};
     const double used = static_cast<double>(resident_memory_bytes());
     const double limit = options.memory_limit_bytes ? static_cast<double>(*options.memory_limit_bytes)

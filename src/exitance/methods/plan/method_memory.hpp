@@ -6,12 +6,13 @@
 
 namespace exitance {
 
-/// Bytes that a method takes for its entries, links, columns or networks when it solves on so many leaves; at its peak,
-/// and an upper estimate. Trees and light of the leaves are not among them (bytes_a_leaf).
+/// Returns an upper estimate of the peak memory of a method for its entries, links, columns or networks on this many
+/// leaves, bytes. Excludes trees and light of the leaves (`bytes_a_leaf`).
 double method_bytes(const Stage& stage, const SolveOptions& options, const Knobs& knobs, double leaves);
 
-/// Checks, before the method starts, that this fits beside what the process holds: into --memory-limit or, without one,
-/// into the memory that the machine has available. The error is of code `limit` and names what is needed. All.
+/// Checks before the method starts that this memory is available in addition to that in use: within --memory-limit, or
+/// without a limit, within the available memory of the machine. The error has code `limit` and states the memory
+/// needed. Collective.
 Result<void> check_method_memory(const Stage& stage, const SolveOptions& options, const Knobs& knobs, double leaves);
 
 }  // namespace exitance

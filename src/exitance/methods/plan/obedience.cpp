@@ -11,16 +11,16 @@
 namespace exitance {
 namespace {
 
-/// In the order in which `auto` tries them.
+/// Methods in the order in which `auto` tries them.
 constexpr std::array<Method, 8> all_methods{Method::matrix,        Method::hierarchical,   Method::wavelet,
                                             Method::progressive,   Method::substructuring, Method::monte_carlo,
                                             Method::discontinuity, Method::growing_cells};
 
-/// What the options set aside say of `matrix` and of links.
+/// Collects the set options and the methods that support them.
 class Obedience {
   public:
     explicit Obedience(const SolveOptions& options) : o_(options) {
-        if (o_.bounces <= 0) linked_.push_back(Method::discontinuity);  // whose reflections `matrix` counts
+        if (o_.bounces <= 0) linked_.push_back(Method::discontinuity);  // limited reflections need `matrix`
     }
 
     std::vector<AskedOption> asked() {
@@ -46,7 +46,7 @@ class Obedience {
         if (is_set) asked_.push_back({name, std::move(methods), hint});
     }
 
-    /// Galerkin's matrix has blocks between leaves that are found as links are.
+    /// Adds `matrix` if its basis is Galerkin's: its blocks between leaves are then computed like links.
     std::vector<Method> with_galerkin(std::vector<Method> methods) const {
         if (is_galerkin_matrix()) methods.insert(methods.begin(), Method::matrix);
         return methods;
@@ -60,8 +60,8 @@ class Obedience {
         add(true, "--basis", methods);
     }
 
-    /// Shooting is Southwell's relaxation, and the random walk Jacobi's. Links that are judged are gathered all at
-    /// once, and what is collocated or of higher order is not symmetric.
+    /// Shooting is Southwell's relaxation, and the random walk Jacobi's. Links that are evaluated one by one are
+    /// gathered all at once. Collocated systems and those of higher order are not symmetric, as cg requires.
     void add_relaxation() {
         if (!o_.relaxation) return;
         const Relaxation r = *o_.relaxation;
@@ -102,7 +102,7 @@ class Obedience {
         computed.insert(computed.end(), {Method::progressive, Method::substructuring});
         add(o_.form_factors == FormFactorKind::analytic, "--form-factors analytic", computed, hint);
         add(o_.form_factors == FormFactorKind::hemicube, "--form-factors hemicube", methods, hint);
-        if (o_.basis == BasisKind::linear) methods.push_back(Method::matrix);  // whose rows are cast
+        if (o_.basis == BasisKind::linear) methods.push_back(Method::matrix);  // rows of `linear` are sampled by rays
         add(o_.form_factors == FormFactorKind::ray_cast, "--form-factors ray-cast", methods, hint);
         std::vector<Method> cells;
         if (is_constant() && o_.form_factors == FormFactorKind::hemicube) cells.push_back(Method::matrix);
@@ -114,7 +114,7 @@ class Obedience {
     std::vector<AskedOption> asked_;
 };
 
-/// Reflections are counted by `matrix`, which takes the place of others then.
+/// Returns the method that runs: `matrix` if the number of reflections is limited and the method does not support it.
 Method in_force(Method method, const SolveOptions& options) {
     return options.bounces > 0 && method != Method::discontinuity ? Method::matrix : method;
 }

@@ -13,7 +13,7 @@ SolveOptions by(Method method, SolveOptions options) {
     return options;
 }
 
-TEST(Obedience, RefusesWhatAMethodDoesNotObeyAndNamesThoseThatDo) {
+TEST(Obedience, RejectsUnsupportedOptionsAndListsSupportingMethods) {
     const std::pair<SolveOptions, Method> refused[] = {
         {{.epsilon = 0.01}, Method::progressive},
         {{.epsilon = 0.01}, Method::matrix},
@@ -44,7 +44,7 @@ TEST(Obedience, RefusesWhatAMethodDoesNotObeyAndNamesThoseThatDo) {
     }
 }
 
-TEST(Obedience, TakesWhatAMethodObeys) {
+TEST(Obedience, AcceptsSupportedOptions) {
     const std::pair<SolveOptions, Method> taken[] = {
         {{}, Method::growing_cells},
         {{.epsilon = 0.01, .relaxation = Relaxation::chebyshev}, Method::wavelet},
@@ -53,14 +53,14 @@ TEST(Obedience, TakesWhatAMethodObeys) {
         {{.relaxation = Relaxation::jacobi}, Method::monte_carlo},
         {{.visibility_samples = 4, .form_factors = FormFactorKind::analytic}, Method::matrix},
         {{.basis = BasisKind::galerkin2, .epsilon = 0.01, .triage = false}, Method::matrix},
-        {{.bounces = 2, .relaxation = Relaxation::cg}, Method::wavelet},  // which matrix stands in for
+        {{.bounces = 2, .relaxation = Relaxation::cg}, Method::wavelet},  // matrix replaces wavelet
         {{.keep_links = true}, Method::discontinuity},
     };
     for (const auto& [options, method] : taken)
         EXPECT_TRUE(check_obedience(by(method, options))) << name_in(method_names, method);
 }
 
-TEST(Obedience, AutomaticIsTheFirstMethodThatObeysAll) {
+TEST(Obedience, AutomaticIsTheFirstMethodThatSupportsAllOptions) {
     const Scene tube = built_scene("tube"), cornell = built_scene("cornell");
     const Stage open(tube), cluttered(cornell);
     const auto chosen = [](const Stage& stage, const SolveOptions& options) {

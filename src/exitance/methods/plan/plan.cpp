@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// What is asked of links by options that a method without them does not obey.
+/// Adds notices for link options that have no effect because the method uses no links.
 void notice_unused_links(Plan& plan) {
     const std::string_view method = name_in(method_names, plan.options.method);
     if (!plan.options.importance.empty())
@@ -24,7 +24,7 @@ void notice_unused_links(Plan& plan) {
         plan.notices.push_back(fmt::format("--oracle judges links, of which the method {} has none", method));
 }
 
-/// Clusters in place of links between all pairs, where those would not fit.
+/// Uses clusters if links between all pairs would exceed the memory limit.
 void fit_links(Plan& plan, const Stage& stage) {
     if (plan.options.clusters != false || !links_outgrow_memory(stage.pieces.size(), plan.options)) return;
     plan.notices.push_back(fmt::format(

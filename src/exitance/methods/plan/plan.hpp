@@ -8,26 +8,27 @@
 
 namespace exitance {
 
-/// What a solve is going to do, made once: the solve, the forecast of `--dry-run` and the memory limit read it.
+/// All decisions about a solve, made once. Read by the solve, by the forecast of `--dry-run` and by the memory limit.
 struct Plan {
-    SolveOptions options;                   ///< As asked for, with the method, its basis and its clusters as chosen.
-    std::string why = {};                   ///< Why this method; empty where the user chose.
-    std::vector<std::string> notices = {};  ///< What the user should be told of the choices.
-    Knobs knobs = {};                       ///< Of the first attempt.
-    bool has_links = false;                 ///< Is the method one over links?
-    bool sums = false;                      ///< Is light summed over elements rather than found by rays?
-    /// May another attempt refine what is delivered (`next_light`), where the method is to blame?
+    SolveOptions options;                   ///< Requested options, with the chosen method, basis and clusters.
+    std::string why = {};                   ///< Reason for the choice of the method; empty if the user chose.
+    std::vector<std::string> notices = {};  ///< Notices about the choices, for the user.
+    Knobs knobs = {};                       ///< Settings of the first attempt.
+    bool has_links = false;                 ///< True if the method uses links.
+    bool sums = false;                      ///< True if light is summed over elements instead of sampled by rays.
+    /// True if another attempt may refine the delivered light (`next_light`) if the method's part of the error is too
+    /// large.
     bool may_refine_delivered = false;
 };
 
-/// Looks for the sides of the stage that get no light and for its rooms; what a plan rests on.
+/// Finds the unlit sides and the rooms of the stage, on which a plan depends.
 void survey(Stage& stage, const SolveOptions& options, const StopRequest& stop);
 
-/// The plan for a stage that is surveyed. The first attempt aims at `first_error` where that is above the error
-/// requested: a coarse answer comes first.
+/// Makes the plan for a stage after `survey`. The first attempt aims at `first_error` if that is larger than the
+/// requested error, so that a coarse solution comes first.
 Plan make_plan(const Stage& stage, const SolveOptions& asked, double first_error = 0);
 
-/// The knobs that the plan would have for an attempt that aims at another error.
+/// Returns the plan's settings for an attempt that aims at another error.
 Knobs first_knobs(const Plan& plan, const Stage& stage, double error);
 
 }  // namespace exitance

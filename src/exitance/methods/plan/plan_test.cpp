@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-TEST(Plan, TellsWhereLightIsSummedAndWhatAMethodDoesNotObey) {
+TEST(Plan, ChoosesSumsAndReportsUnusedLinkOptions) {
     const Scene tube = built_scene("tube"), room = built_scene("cornell");
     const Stage open(tube), cluttered(room);
     EXPECT_TRUE(make_plan(open, {.error = 0.02}).sums);
@@ -24,15 +24,15 @@ TEST(Plan, TellsWhereLightIsSummedAndWhatAMethodDoesNotObey) {
     EXPECT_TRUE(links.has_links && links.notices.empty());
 }
 
-TEST(Plan, ACoarseAnswerComesFirstInAHurry) {
+TEST(Plan, AimsAtALargerErrorFirstIfRequested) {
     const Scene room = built_scene("cornell");
     const Stage stage(room);
     EXPECT_GT(make_plan(stage, {.error = 0.01}, 0.08).knobs.gather_noise,
               4 * make_plan(stage, {.error = 0.01}).knobs.gather_noise);
 }
 
-/// Within a factor of two of what the solve takes.
-TEST(Forecast, IsThatOfTheMethodThatSolves) {
+/// The forecast must be within a factor of two of the actual work.
+TEST(Forecast, MatchesTheSolve) {
     for (const auto& [family, method] :
          {std::pair{"tube", Method::automatic}, std::pair{"cornell", Method::automatic},
           std::pair{"cornell", Method::progressive}, std::pair{"tube", Method::substructuring}}) {

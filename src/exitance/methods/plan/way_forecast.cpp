@@ -18,22 +18,23 @@ namespace exitance {
 namespace {
 
 // Measured by `solve --threads 1 --verbose` on tubes, boxes and prisms at 2 to 0.1% (bench/results/empty_rooms.csv).
-constexpr double terms_a_ray = 10;           ///< Elements summed over, 25 ns each, in the time of a ray that is read.
-constexpr double terms_beside_pieces = 300;  ///< Of a place: elements that pieces near it are opened to.
-constexpr double light_rays = 64;            ///< Direct light on an element, in rays.
-constexpr double certificate_rays = 12;      ///< Of an element of the method's mesh, for late light.
-constexpr double pair_form_factors = 100;    ///< Of a pair of pieces: what may stand between is looked up for each.
-constexpr double element_form_factors = 24;  ///< Of links an element of the method's mesh, by 1 - mean reflectance.
+constexpr double terms_a_ray = 10;           ///< Elements summed in the time of one gather ray, at 25 ns each.
+constexpr double terms_beside_pieces = 300;  ///< Elements per place into which pieces near it are split.
+constexpr double light_rays = 64;            ///< Cost of direct light per element, in rays.
+constexpr double certificate_rays = 12;      ///< Rays per element of the method's mesh, for late light.
+constexpr double pair_form_factors = 100;  ///< Form factors per pair of pieces; each pair needs a search for occluders.
+/// Form factors of links per element of the method's mesh, times 1 - mean reflectance.
+constexpr double element_form_factors = 24;
 constexpr std::size_t pilot_points = 256;
 constexpr unsigned pilot_rays = 64;
-/// Rays that a solve is to take at least for a look at its light, which takes about twice those of the pilot: three
-/// percent.
-constexpr double worth_a_look = 64 * pilot_points * pilot_rays;
+/// Smallest number of rays of a solve for which the pilot is worthwhile. The pilot takes about twice its own number of
+/// rays: three percent.
+constexpr double min_rays_for_pilot = 64 * pilot_points * pilot_rays;
 
-/// Counts of a first attempt.
+/// Numbers of elements and rays of a first attempt.
 struct Counts {
     double elements = 0, row_rays = 0;
-    double gathered = 0;  ///< Elements that light is gathered on to begin with.
+    double gathered = 0;  ///< Elements of the initial gather mesh.
     double light() const { return light_rays * elements; }
 };
 
@@ -51,14 +52,16 @@ double gather_by_rays(const Counts& counts, const Knobs& knobs) {
     return counts.gathered * (knobs.gather_curved ? curved_places : straight_places) * knobs.gather_rays.average;
 }
 
-/// Each place begins at all pieces, for a first estimate of its light and for the sum.
+/// Returns the work of sums, in rays. Each place visits all pieces twice, for a first estimate of its light and for the
+/// sum.
 double gather_by_sums(const Stage& stage, const Counts& counts, const Knobs& knobs) {
     constexpr double places = 9;
     const double terms = 2 * static_cast<double>(stage.pieces.size()) + terms_beside_pieces;
     return (knobs.refined ? 2 : 1) * counts.gathered * places * terms / terms_a_ray;
 }
 
-/// What a link misses comes back from every reflection, so that links grow with their number; source: link_rounds.
+/// Returns the work of links, in rays. Every reflection repeats the error of a link, so that the number of links grows
+/// with the number of reflections. Source: link_rounds.
 double links_work(const Stage& stage, const Counts& counts) {
     double reflected = 0;
     for (const Piece& piece : stage.lit_pieces())
@@ -69,8 +72,8 @@ double links_work(const Stage& stage, const Counts& counts) {
                                 (pair_form_factors * pairs + element_form_factors * reflections * counts.elements);
 }
 
-/// Spread of what 64 rays gather of direct light reflected once, by the mean of that: how uneven light is as surfaces
-/// see it.
+/// Returns the standard deviation of a gather with 64 rays of the first reflection of direct light, relative to its
+/// mean. It measures how uneven the light is, as seen from the surfaces.
 double pilot_spread(const Stage& stage, const SolveOptions& options) {
     const Knobs coarse = knobs_for_error(calibrated::hurried_error, stage.lit_pieces(), options);
     const StopRequest never;
@@ -101,8 +104,8 @@ double pilot_spread(const Stage& stage, const SolveOptions& options) {
     return sum.light > 0 ? std::sqrt(sum.variance * static_cast<double>(points.size())) / sum.light : 0;
 }
 
-/// Attempts after the first, where constant elements err by more than their half of what is asked for: they err like
-/// independent rows of so many rays.
+/// Returns the rays of further attempts if the error of constant elements exceeds their share of the target, one half.
+/// The error is predicted as that of independent matrix rows of 64 rays, averaged over the elements.
 double further_attempts(double spread, double error, const Counts& counts, double gather) {
     namespace c = calibrated;
     constexpr double methods_share = 0.5;
@@ -132,9 +135,9 @@ WayForecast forecast_ways(const Stage& stage, const SolveOptions& options, bool 
     const double gather = gather_by_sums(stage, by_sums, for_sums);
     out.rays = by_rays.light() + by_rays.row_rays + gather_by_rays(by_rays, knobs);
     out.sums = by_sums.light() + by_sums.row_rays + gather;
-    if (!may_deliver || std::min(out.rays, out.sums) < worth_a_look) return out;
+    if (!may_deliver || std::min(out.rays, out.sums) < min_rays_for_pilot) return out;
     out.links = links_work(stage, by_sums);
-    // What rays gather is noise enough to hide the elements' own error, and is refined step by step.
+    // Added only for sums: with rays, noise hides the error of constant elements, and refinement steps reduce it.
     out.sums += further_attempts(pilot_spread(stage, options), error, by_sums, gather);
     return out;
 }

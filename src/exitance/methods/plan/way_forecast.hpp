@@ -8,24 +8,24 @@
 
 namespace exitance {
 
-/// Work of the ways to the error asked for in this scene, before anything is solved, in rays: counts of elements,
-/// places and pairs times what one of them takes. Infinite where a way does not suit the scene or was not counted.
+/// Predicted work of the ways to reach the requested error in a scene, in rays: numbers of elements, places and pairs
+/// times the cost of one. Infinite if a way does not suit the scene or was not evaluated.
 struct WayForecast {
-    double rays = HUGE_VAL;   ///< `matrix`, whose light is gathered by rays,
-    double sums = HUGE_VAL;   ///< or summed over elements (`ElementGather`);
-    double links = HUGE_VAL;  ///< `wavelet` of order 3, whose links deliver the light.
+    double rays = HUGE_VAL;   ///< `matrix`, with light gathered by rays.
+    double sums = HUGE_VAL;   ///< `matrix`, with light summed over elements (`ElementGather`).
+    double links = HUGE_VAL;  ///< `wavelet` of order 3, with light delivered by the links.
     bool takes_sums() const { return sums < rays; }
     bool takes_links() const { return links < rays && links < sums; }
 };
 
-/// Where nothing stands between any two places, there is a choice: elements of the first meshes, which are made for
-/// that, and rays of their rows are counted. Links are counted, if they `may_deliver`, where so much is to be done that
-/// a look at the light takes at most three percent of it. That is direct light on a coarse mesh, gathered at 256 points
-/// by 64 rays: the spread of these tells how far constant elements will err, and so whether one attempt will do.
-/// Elsewhere nothing is counted, for links do not deliver there, and sums would miss what hides. O(elements).
+/// Forecasts the work in scenes without occlusion. Elsewhere, all results are infinite: links do not deliver light
+/// there, and sums would ignore occluders. Elements are counted by creating the initial meshes, rays by the matrix
+/// rows. Links are evaluated only if they `may_deliver` and the solve is long enough for a pilot to take at most three
+/// percent of it. The pilot gathers direct light on a coarse mesh at 256 points with 64 rays each. Its spread predicts
+/// the error of constant elements, and thus whether one attempt will suffice. O(elements).
 WayForecast forecast_ways(const Stage& stage, const SolveOptions& options, bool may_deliver);
 
-/// For people.
+/// Returns a message for the user.
 std::string describe(const WayForecast& forecast);
 
 }  // namespace exitance

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// A room over a regular polygon, 2.5 m high and white, whose ceiling shines.
+/// A white room, 2.5 m high, with a regular polygon as floor and a luminous ceiling.
 Scene round_room(int corners) {
     SceneDescription d;
     d.file = "round.obj";
@@ -36,16 +36,16 @@ Plan plan_at(const Scene& scene, double error) {
     return make_plan(Stage(scene), {.error = error});
 }
 
-// What is expected below was measured with each way forced, `solve --threads 1`, user time; none of these scenes is
-// among those that the forecast's numbers are from.
+// The expected choices were measured by solving with each way (`solve --threads 1`, user time). The constants of the
+// forecast were derived from other scenes.
 
-TEST(WayForecast, SumsWhereManySidesStandRoundAnEmptyRoom) {
+TEST(WayForecast, SumsInAnEmptyRoomOfManySides) {
     const Scene room = round_room(40);  // 116 pieces
     EXPECT_TRUE(plan_at(room, 0.02).sums);
     EXPECT_TRUE(plan_at(room, 0.005).sums);
 }
 
-TEST(WayForecast, TakesLinksWhereConstantElementsWouldNotReachTheErrorAtOnce) {
+TEST(WayForecast, UsesLinksIfConstantElementsNeedSeveralAttempts) {
     const Scene shaft = box_scene(1, 1, 10, 0.8, 10);
     EXPECT_EQ(plan_at(shaft, 0.02).options.method, Method::matrix);
     const Plan fine = plan_at(shaft, 0.002);
@@ -53,13 +53,13 @@ TEST(WayForecast, TakesLinksWhereConstantElementsWouldNotReachTheErrorAtOnce) {
     EXPECT_TRUE(fine.knobs.links_deliver);
 }
 
-TEST(WayForecast, TakesSumsInALowRoomWhoseLightIsEven) {
+TEST(WayForecast, SumsInALowRoomWithUniformLight) {
     const Scene low = box_scene(12, 9, 1.5, 0.8, 10);
     EXPECT_EQ(plan_at(low, 0.002).options.method, Method::matrix);
     EXPECT_TRUE(plan_at(low, 0.002).sums);
 }
 
-TEST(WayForecast, PairsOfManyPolygonsOutgrowSums) {
+TEST(WayForecast, PrefersSumsToLinksForManyPolygons) {
     const Scene room = round_room(100);
     const Stage stage(room);
     const WayForecast forecast = forecast_ways(stage, {.error = 0.005}, true);
@@ -67,13 +67,13 @@ TEST(WayForecast, PairsOfManyPolygonsOutgrowSums) {
     EXPECT_LT(2 * forecast.sums, forecast.links);
 }
 
-TEST(WayForecast, CountsNothingWhereThingsStandInBetween) {
+TEST(WayForecast, EvaluatesNothingWithOcclusion) {
     const Scene room = built_scene("cornell");
     const WayForecast forecast = forecast_ways(Stage(room), {.error = 0.001}, true);
     EXPECT_FALSE(forecast.takes_sums() || forecast.takes_links());
 }
 
-TEST(WayForecast, DeliversByTheLinksThatWereAskedForWhereTheyTakeLessThanSums) {
+TEST(WayForecast, DeliversRequestedLinksIfTheyAreCheaperThanSums) {
     const Scene shaft = box_scene(1, 1, 10, 0.8, 10);
     const Stage stage(shaft);
     const auto delivers = [&](double error) {

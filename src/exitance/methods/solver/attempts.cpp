@@ -43,7 +43,8 @@ void Solver::solve_indirect_light() {
         if (attempt_ == most_attempts + shown_) return stop_early("iterations");
         if (show_) show_light();
         std::optional<NextAttempt> next = next_in_time(*demand, watch.seconds());
-        // Far from the error, the plan for it takes less time than steps of refinement that each leave a half.
+        // Far from the target error, a new plan for it is faster than refinement steps, each of which leaves about half
+        // of the error.
         if (is_lowered) next = NextAttempt{.finer = {.knobs = first_knobs(plan_, stage_, *demand), .method = true}};
         if (!next) return stop_early("time limit");
         if (!next->forecast.empty()) progress_.note(next->forecast);
@@ -62,8 +63,10 @@ void Solver::solve_indirect_light() {
 }
 
 bool Solver::lower_error() {
-    constexpr double step = 0.4;  // given by work ~ error^-2.5 to -1, of the error; light that is less different is not
-                                  // worth an attempt of its own
+    // Factor on the error between intermediate solutions, given by work ~ error^-2.5 to error^-1. Solutions that differ
+    // less are not worth an attempt.
+    constexpr double step = 0.4;
+    // worth an attempt of its own
     const double before = *options_.error;
     while (*options_.error > requested_error_ && has_reached(*options_.error)) {
         const double next = step * std::min(*options_.error, certificate_.largest());
@@ -87,7 +90,7 @@ void Solver::show_light() {
 }
 
 std::optional<Solver::NextAttempt> Solver::next_in_time(double demand, double last_seconds) const {
-    // One that cannot end in time would only be thrown away. All processes go by the first one's clock.
+    // An attempt that cannot finish in time would be discarded. All processes use the first one's clock.
     const double most_work = seconds_left(stop_) / as_first(last_seconds);
     for (const double aim : attempt_aims(demand, certificate_.largest())) {
         NextAttempt next = next_attempt(aim);
@@ -102,7 +105,8 @@ Solver::NextAttempt Solver::next_attempt(double demand) const {
     NextAttempt out{.finer = tightened(knobs_, parts, target, options_)};
     const Tightened& finer = out.finer;
     if (!finer.method || !plan_.may_refine_delivered || !gathers() || !light_->on_projection) return out;
-    // A step leaves a third of what is rough, more where light is reflected often; the first one shows it.
+    // A refinement step leaves about a third of the error at first, more if light is reflected often. The first step
+    // measures it.
     const double left = steps_.not_local > 0 ? not_local(parts) / steps_.not_local : 0.5;
     const AttemptForecast forecast = forecast_attempt({.row_rays = static_cast<double>(light_->rays),
                                                        .gather_rays = static_cast<double>(steps_.gather_rays),
@@ -139,7 +143,7 @@ void Solver::project_direct() {
         progress_.note(fmt::format("direct light scaled by {:.5f} to what is emitted", mean(scale)));
         direct_ = std::move(fresh);
         unscaled_.direct = inverse(scale);
-        share_on_node(direct_.fit.span());  // nobody writes to it any more
+        share_on_node(direct_.fit.span());  // not modified from here on
     }
     statistics().seconds["mesh"] += watch.seconds();
 }
@@ -165,7 +169,7 @@ void Solver::attempt() {
         if (fresh_) project_direct();
         if (fresh_ && !has_memory()) return;
         if (takes_step_) take_step();
-        if (stop_.requested()) return;  // where there is no light of another attempt, direct light is all there is
+        if (stop_.requested()) return;  // without light of an earlier attempt, the result is direct light only
         reach(Step::solve);
     }
     if (step_ == Step::solve) {
@@ -188,7 +192,7 @@ void Solver::attempt() {
         const bool whole = deliver(parts_to_sum(found.parts), b, fresh_);
         statistics().seconds["reconstruct"] += watch.restart();
         if (!whole) return;
-        next_.rest.clear();  // it is gathered
+        next_.rest.clear();  // has been gathered
         steps_.gather_rays = std::max(steps_.gather_rays, gathered_.rays);
         reach(Step::refine);
     }
@@ -203,7 +207,7 @@ void Solver::attempt() {
     progress_.phase("certify");
     CertificateOptions look{.error = options_.error_target(),
                             .points = CertificateOptions::points_for(elements_of_continuous(solution_.indirect.tree))};
-    if (sums_) look.points /= 2;  // without noise
+    if (sums_) look.points /= 2;  // sums have no noise
     if (gathers()) look.leaves = &gathered_.leaves, look.gathered = &b.whole();
     look.coarse = &b.method_mesh();
     certify_solution(look, options_.error_demand(), elements);
@@ -214,8 +218,9 @@ void Solver::attempt() {
 void Solver::take_step() {
     const Stopwatch watch;
     if (next_.parts.empty()) next_.parts.push_back(gathered_light(stage_.scene, direct_, *light_, share_));
-    // What is delivered has the balance of light that has come to rest. A step solves for that, and would mend it
-    // twice: it begins with what arrives of the light that was gathered, but for rays' noise.
+    // The delivered light is scaled such that the flux of the converged solution is conserved. A refinement step would
+    // apply that correction twice. Its input is therefore scaled to the power that arrives of the light that was
+    // gathered, so that only the rays' noise is corrected.
     ElementFunction gathered = solution_.indirect;
     if (mean(steps_.sent) > 0) scale(gathered, conserving_scale(steps_.sent, power(gathered)));
     next_ = next_light(stage_, *light_, gathered, direct_, share_, std::move(next_), knobs_.solve_rays, options_.seed);
@@ -227,15 +232,16 @@ void Solver::take_step() {
     statistics().seconds["solve"] += watch.seconds();
 }
 
-/// Where much of the light is in gaps, elements there see few others from nearby: what constants lack is not evened out
-/// by the gather, and comes back from every reflection.
+/// Chooses linear elements if much of the light is in gaps. There, elements receive light from few others, which are
+/// near. The gather does not smooth the error of constant elements, and every reflection repeats it.
 void Solver::choose_basis() {
     if (!plan_.may_refine_delivered) return;
     const double in_gaps = share_of_light_in_gaps(stage_, direct_);
     progress_.note(fmt::format("{:.1f}% of the light is in gaps", 100 * in_gaps));
-    // One part of so many: under chairs there is a twelfth, between 60 slats more than a quarter.
-    constexpr int much = 7;
-    if (in_gaps * much < 1) return;
+    // The basis is linear if at least 1 / `gap_divisor` of the light is in gaps (under chairs: 1/12; between 60 slats:
+    // > 1/4).
+    constexpr int gap_divisor = 7;
+    if (in_gaps * gap_divisor < 1) return;
     options_.basis = BasisKind::linear;
     statistics().basis = name_in(basis_names, BasisKind::linear);
 }
@@ -278,8 +284,8 @@ bool Solver::deliver(std::span<const ElementGather> elements, const ReadNextLigh
     share_on_node(std::span(indirect.values)), share_on_node(indirect.first_value.span());
     share_on_node(gathered_.leaves.span());
     if (stop_.requested()) {
-        // Half a local pass is worth less than the last whole one; where there is none, more than what the method
-        // found.
+        // Keeps the last complete local pass in place of an interrupted one. Without one, an interrupted pass is still
+        // better than the method's solution.
         if (step_ != Step::refine && has_light()) return false;
         if (step_ != Step::refine) {
             if (gathers() && !gathered_.interrupted)
@@ -316,7 +322,7 @@ void Solver::adopt_method_light() {
 
 Spectrum Solver::unscaled_indirect(const Spectrum& kept) const {
     if (!gathers()) return unscaled_.direct * light_->report.unscaled;
-    // What refining ends at hardly depends on where it began.
+    // The result of refinement hardly depends on its input.
     const bool refined = step_ == Step::refine || !next_.parts.empty();
     const Spectrum returned = refined ? Spectrum(1.0) : light_->report.unscaled;
     return unscaled_sent(stage_.scene, *light_, unscaled_.direct, returned, share_) * inverse(kept);

@@ -30,7 +30,7 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
     if (!bodies_) bodies_ = find_bodies(stage_.scene);
     options.bodies = &*bodies_;
     if (has_links_) options.places = places_of(stage_, solution_.indirect.tree, options_.importance);
-    // Where reflections are counted, the light to be gathered is one reflection older than what is delivered.
+    // With a limited number of reflections, the gathered light has one reflection less than the delivered light.
     std::optional<ElementFunction> older;
     if (options_.bounces > 0) older = constant_on_leaves(*light_);
     const ElementFunction& indirect = older ? *older : solution_.indirect;
@@ -41,7 +41,7 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
         return std::sqrt(direct_.fit[delivered.projected().locator().find(hit.region, hit.y).element].misfit_squared);
     };
     if (!light_->holds_direct) options.projected = {&delivered.projected(), direct_weight, misfit};
-    options.check_rays = statistics().rays / 10;  // a tenth of the work so far
+    options.check_rays = statistics().rays / 10;  // a tenth of the rays so far
     SummedLight summed{.delivered = {}, .gathered = gathered, .share = calibrated::certified_share * options.error};
     if (sums_) {
         for (const ElementFunction& part : delivered_functions(stage_.scene, indirect, direct_, direct_weight, c))
@@ -50,10 +50,11 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
     }
     Certifier certifier(stage_, *light_, solution_.indirect, delivered, options);
     certificate_ = certifier.look();
-    // Few points tell an estimate to a tenth or so, or to a third where a few of them hold most of it. One that is
-    // not surely too large is looked at again, which is cheaper than another attempt for nothing.
-    constexpr std::size_t most_looks = 4;
-    for (std::size_t looks = 1; demand && looks < most_looks && !stop_.requested(); ++looks) {
+    // The estimate from few points has an error of about a tenth, or a third if a few of them have most of the
+    // error. While it is within two standard errors of the limit, measure at more points: that is cheaper than another
+    // attempt.
+    constexpr std::size_t max_looks = 4;
+    for (std::size_t looks = 1; demand && looks < max_looks && !stop_.requested(); ++looks) {
         const double limit = margin(certificate_.points) * *demand;
         const double estimate = certificate_.largest();
         if (estimate <= limit || estimate - 2 * certificate_.largest_uncertainty() > limit) break;
@@ -69,7 +70,7 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
 }
 
 bool Solver::may_be_last(double demand) const {
-    if (options_.error && *options_.error > requested_error_) return false;  // light that is shown on the way
+    if (options_.error && *options_.error > requested_error_) return false;  // an intermediate solution
     return has_reached(demand) || attempt_ == most_attempts || options_.memory_limit_bytes ||
            seconds_left(stop_) < HUGE_VAL;
 }
@@ -92,11 +93,11 @@ void Solver::tell_clustering_error() {
 }
 
 void Solver::warn_of_bodies() {
-    constexpr double most = 3;  // times the error requested: what a small part of a scene may have
+    constexpr double max_ratio = 3;  // times the requested error: limit for a small part of a scene
     const BodyError* worst = nullptr;
     std::size_t wrong = 0;
     for (const BodyError& body : statistics().bodies) {
-        if (!body.error || *body.error <= most * options_.error_target()) continue;
+        if (!body.error || *body.error <= max_ratio * options_.error_target()) continue;
         ++wrong;
         if (!worst || *body.error > *worst->error) worst = &body;
     }
@@ -114,24 +115,26 @@ void Solver::warn_of_bodies() {
 
 ErrorParts Solver::error_parts() const {
     if (!gathers()) return {.method = certificate_.largest()};
-    // Of the worst room, as if its parts were made like those of all.
+    // Scales the mean parts to the error of the worst room, assuming that its parts have the same ratio.
     const bool has_rooms = stage_.rooms.count() > 0 && certificate_.of_rooms > 0;
     const double worse = has_rooms ? certificate_.largest() / certificate_.of_rooms : 1;
     const ErrorParts parts = mean_error_parts();
     return {worse * parts.method, worse * parts.noise, worse * parts.interpolation};
 }
 
-/// Parts that are together larger than the whole cancel in part, as where light was refined a few times: they are made
-/// as large as that. Elements are not cut for what their rays' noise hides: a smaller tolerance would cut none of them.
+/// Returns the parts of the error, averaged over the rooms. If their sum exceeds the whole error, they cancel in part,
+/// as after several refinement steps; they are then scaled down to the whole. Misfit that is hidden by the
+/// rays' noise counts as noise, since a smaller tolerance would not split any elements.
 ErrorParts Solver::mean_error_parts() const {
     const double parts = std::hypot(certificate_.local, certificate_.method);
     const double cancels = parts > certificate_.of_rooms ? certificate_.of_rooms / parts : 1;
     const double local = cancels * certificate_.local, noise = gathered_.noise / certificate_.mean_reflected;
     const double misfit = std::sqrt(std::max(0.0, local * local - noise * noise));
     const double seen = gathered_.interpolation / certificate_.mean_reflected;
-    constexpr double hidden = 3;  // times what the elements see of it
+    // If the misfit exceeds the detected interpolation error by this factor, the rays' noise hides it.
+    constexpr double min_hidden_ratio = 3;
     return {.method = cancels * certificate_.method,
-            .noise = misfit > hidden * seen ? std::max(noise, misfit) : noise,
+            .noise = misfit > min_hidden_ratio * seen ? std::max(noise, misfit) : noise,
             .interpolation = std::max(misfit, seen)};
 }
 

@@ -19,7 +19,7 @@ bool Solver::makes_discontinuity_mesh() const {
 bool Solver::make_discontinuity() {
     progress_.phase("discontinuities");
     reach(Step::output);
-    // Under a limit, coarse elements come first, so that there is light whenever time runs out.
+    // With a time limit, coarse elements are computed first, so that there is a result when time runs out.
     const bool has_none = direct_.tree.size() == 0;
     if (has_none && std::isfinite(stop_.seconds_left())) {
         project_coarsely();
@@ -32,7 +32,7 @@ bool Solver::make_discontinuity() {
     mesh_seconds_ = report.mesh_seconds + report.direct_seconds;
     if (report.interrupted) stop_early(stop_.interrupted() ? "interrupt" : "time limit");
     const bool follows_shadows = !solution_.discontinuity.empty();
-    // What is told of the mesh is not to depend on whether there was a limit.
+    // The reported mesh must not depend on whether there was a time limit.
     if (follows_shadows && options_.bounces == 0 && !solution_.scene.has_light_from_outside()) direct_ = {};
     if (!follows_shadows && direct_.tree.size() == 0) project_coarsely();
     return follows_shadows;
@@ -58,7 +58,7 @@ void Solver::make_output_mesh() {
     progress_.phase("reconstruct");
     const bool follows_shadows = makes_discontinuity_mesh() && make_discontinuity();
     if (follows_shadows) {
-        // The mesh is what is exported.
+        // The discontinuity mesh is exported.
     } else if (solution_.direct_in_elements) {
         solution_.interpolant = solution_.indirect;
         statistics().relative_error_estimate_interpolant = statistics().relative_error_estimate;

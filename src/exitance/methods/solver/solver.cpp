@@ -28,10 +28,10 @@ Solver::Solver(Scene scene, const SolveOptions& asked, Progress& progress, const
     share_on_node(stage_.occluders), share_on_node(stage_.contacts), share_on_node(std::span(stage_.pieces));
     survey(stage_, asked, stop);
     release_freed_memory();
-    // Under a near deadline a coarse answer comes first, so that there is one whenever time runs out. Not where
-    // another run may go on: its light is not to depend on how long this one had.
+    // Before a near deadline, a coarse solution is computed first, so that there is a result when time runs out. With
+    // checkpoints, another run may continue; its result must not depend on the time limit of this run.
     const bool hurries = seconds_left(stop) < calibrated::near_deadline && !checkpoints_;
-    constexpr double first_shown_error = 0.32;  // given by what still looks like the scene
+    constexpr double first_shown_error = 0.32;  // given by the error at which a scene is recognizable
     plan_ = make_plan(stage_, asked, show ? first_shown_error : hurries ? calibrated::hurried_error : 0);
     requested_error_ = options_.error_target();
     if (show && options_.error_demand()) options_.error = std::max(first_shown_error, requested_error_);
@@ -64,7 +64,7 @@ Result<Solution> Solver::run() {
     }
     if (light_ && !light_->kept_links.empty())
         solution_.links = {constant_on_leaves(*light_), std::move(light_->kept_links)};
-    // What only attempts need makes room for the mesh that is written.
+    // Frees the data that only attempts need before the output mesh is created.
     light_.reset();
     local_pass_.reset();
     gathered_ = {};
@@ -105,12 +105,12 @@ void Solver::resume() {
     const SolveStatistics own = solution_.statistics;
     ArchiveReader reader(state);
     archive_state(reader, resumed_phase_);
-    EXI_CHECK(reader.good() && reader.left() == 0);  // the store has checked every byte
+    EXI_CHECK(reader.good() && reader.left() == 0);  // the store has verified the checksum
     statistics().threads = own.threads, statistics().schedule = own.schedule;
 }
 
 void Solver::keep(std::string phase) {
-    // All processes hold the same state but for what they tell of themselves.
+    // All processes have the same state except for their own statistics; those of the first process are saved.
     ArchiveWriter told;
     told(statistics());
     const std::string of_first = as_first(told.take(), "checkpoint");

@@ -12,9 +12,9 @@
 
 namespace exitance {
 
-/// One run of `solve_scene`: the state that its steps share and that checkpoints keep. `solver.cpp` takes the steps and
-/// keeps the state, `attempts.cpp` finds and delivers light, `estimate.cpp` says how wrong it is, `output.cpp` makes
-/// what is exported.
+/// State and steps of one run of `solve_scene`. `solver.cpp` runs the steps and saves and restores the state,
+/// `attempts.cpp` computes and delivers the light, `estimate.cpp` estimates its error, and `output.cpp` creates the
+/// exported mesh.
 class Solver {
   public:
     Solver(Scene scene, const SolveOptions& asked, Progress& progress, const StopRequest& stop,
@@ -22,157 +22,161 @@ class Solver {
     Result<Solution> run();
 
   private:
-    /// What comes next within an attempt.
+    /// Next step of an attempt.
     enum class Step : std::uint8_t { project, solve, gather, refine, certify, decide, output };
 
-    // The state, and what is told of it.
+    // State, checkpoints and messages.
     SolveStatistics& statistics() { return solution_.statistics; }
     void record_plan();
-    /// All that the steps to come depend on; `phase` is the state within a step, or empty.
+    /// Archives everything on which the remaining steps depend. `phase`: the state within the present step, or empty.
     template <class Archive>
     void archive_state(Archive& a, std::string& phase);
     void resume();
     void keep(std::string phase);
-    /// Everything before this step is done.
+    /// Sets the next step; saves a checkpoint if one is due.
     void reach(Step step);
-    /// For the step that is running.
+    /// Returns the safe points of the present step.
     SafePoints safe_points();
     void warn(std::string message);
-    /// Nothing reflects any light, and direct light is exact.
+    /// Records an error of zero: nothing reflects, and direct light is exact.
     void tell_exact();
     void stop_early(const char* why);
 
     static constexpr int most_attempts = 9;
 
-    // Light that is shown while it improves.
-    /// Lowers the error that attempts aim at, where that is reached. Where it is certified anew at the error requested,
-    /// by as many rays as that takes, no attempt is needed for nothing.
-    /// Returns whether it has to be reached by another attempt.
+    // Interactive display of intermediate solutions.
+    /// Lowers the target error of the attempts if it has been reached. Certifies the present solution again with the
+    /// number of rays that the new target needs, since it may already satisfy it. Returns true if another attempt is
+    /// needed.
     bool lower_error();
-    /// Passes on what is delivered, as plain elements.
+    /// Passes the delivered light to the `show` callback, on the elements of the export.
     void show_light();
 
-    // Attempts: method, local pass, certificate, until the certificate is content.
+    // Attempts: method, local pass and certificate, until the estimated error is small enough.
     void solve_indirect_light();
-    /// One attempt: what the last one found is kept as far as it is good enough.
+    /// Makes one attempt. Keeps the results of the previous one as far as they are accurate enough.
     void attempt();
     void project_direct();
-    /// Is there memory for the method on what was projected? Else `refusal_` is set.
+    /// Returns true if there is enough memory for the method on the projected elements. Otherwise sets `refusal_`.
     bool has_memory();
-    /// Plain elements for when no time is left for a mesh that follows shadows.
+    /// Projects direct light on a coarse mesh, for when no time is left for a discontinuity mesh.
     void project_coarsely();
     void find_light();
     void choose_basis();
-    /// Another attempt: its knobs, and how it is made. One step of refinement on from what is delivered (`next_light`)
-    /// takes neither finer elements nor rows of the method, and of the gather what changes: it is taken where the
-    /// method is to blame and a forecast says that less work leads there so.
+    /// Settings and kind of another attempt. A refinement step on the delivered light (`next_light`) needs no finer
+    /// elements and no new matrix rows; it gathers only the change of the light. It is chosen if the method's part of
+    /// the error is too large and a forecast finds the step cheaper.
     struct NextAttempt {
         Tightened finer;
         bool is_step = false;
-        std::string forecast = {};  ///< In words, where there was a choice.
+        std::string forecast = {};  ///< Message about the forecast; empty if there was no choice.
     };
     NextAttempt next_attempt(double demand) const;
-    /// The same, aimed at what is asked for or at as little above it as there is time for, where the last one took so
-    /// many seconds. None where there is time for none that is worth it.
+    /// Like `next_attempt`, but aims at the smallest error that is at least `demand` and for which there is enough
+    /// time. `last_seconds`: duration of the last attempt. Empty if there is no time for a useful attempt.
     std::optional<NextAttempt> next_in_time(double demand, double last_seconds) const;
-    /// What of the error is not of the local pass.
+    /// Returns the part of the error that is not due to the local pass.
     double not_local(const ErrorParts& parts) const;
     void take_step();
-    /// Of an attempt, with its estimate.
+    /// Returns true if an attempt has delivered light with an error estimate.
     bool has_light() const { return certificate_.points > 0; }
-    /// Once a stop is asked for, what another attempt has found stands.
+    /// True if a stop was requested and an earlier attempt has a result to keep.
     bool gives_up() const { return stop_.requested() && has_light(); }
 
-    // The function that is delivered.
-    /// Light everywhere, from what there is to gather: `b`, as elements where those are summed. `fresh`: it is not what
-    /// was gathered last, nor changed by little from that. False when a request to stop cut that short.
+    // The delivered function.
+    /// Computes indirect light on all surfaces by gathering `b` and delivers it. `elements`: `b` as element gathers, if
+    /// light is summed. `fresh`: `b` is neither the light gathered last nor a small change of it. Returns false if a
+    /// stop request interrupted the gather.
     bool deliver(std::span<const ElementGather> elements, const ReadNextLight& b, bool fresh);
-    /// A function becomes what is delivered; `kept`: what it was scaled by.
+    /// Makes a function the delivered one. `kept`: factor by which it was scaled.
     void adopt(ElementFunction indirect, const Spectrum& kept);
-    /// The same of what the method found, on its own elements.
+    /// Delivers the method's solution on its own elements.
     void adopt_method_light();
     ElementFunction gather(const ReadNextLight& b, std::span<const ElementGather> elements, bool fresh);
     ElementFunction on_leaves() const;
-    /// Functions as elements to be summed over; none where light is found by rays.
+    /// Returns functions as element gathers; empty if light is sampled by rays.
     std::vector<ElementGather> parts_to_sum(std::span<const ElementFunction> functions) const;
-    /// One step on from what is delivered.
+    /// Returns the light to gather after one refinement step on the delivered light, in parts (`refined_light`).
     std::vector<ElementFunction> refine() const;
     Spectrum direct_share() const;
-    /// Is the method's light gathered once more, or are its elements what is delivered?
+    /// True if the method's light is gathered; false if its elements are delivered.
     bool gathers() const { return !light_->holds_direct && !light_->delivers && !options_.smoothing; }
     bool refines() const { return gathers() && sums_ && knobs_.refined; }
-    /// Is it known how much light is to arrive? As the method tells, or because the scene is closed.
+    /// True if the amount of arriving light is known: because the method conserves light or the scene is closed.
     bool keeps_flux() const;
-    /// Of `solution_.indirect`, where it was scaled by `kept` after it was gathered.
+    /// Returns the unscaled share (`UnscaledShare::indirect`) of `solution_.indirect`, which was scaled by `kept` after
+    /// the gather.
     Spectrum unscaled_indirect(const Spectrum& kept) const;
 
-    // How wrong it is.
-    /// The estimate by so many points is itself uncertain, by a fifth where they are as few as at first: it has to be
-    /// below this share of the demand.
+    // Error estimate.
+    /// Returns the share of the demand below which an estimate from this many points must be. The estimate is itself
+    /// uncertain: by a fifth with the initial number of points, by less with more.
     static double margin(std::size_t points);
     void certify_solution(CertificateOptions options, std::optional<double> demand = {},
                           std::span<const ElementGather> gathered = {});
     bool has_reached(double demand) const { return certificate_.largest() <= margin(certificate_.points) * demand; }
-    /// Is this attempt surely the last, or may a limit make it the last?
+    /// True if this attempt is the last one, or may become the last one due to a limit.
     bool may_be_last(double demand) const;
-    /// Direct light at points is exact, or within this where emitters are many.
+    /// Adds the error of clusters of emitters to the estimate. Without clusters, direct light is exact.
     void add_clustering_error();
-    /// Where direct light is all there is.
+    /// Like `add_clustering_error`, for solutions without indirect light.
     void tell_clustering_error();
-    /// Warns of the body whose light is more than three times as wrong as requested.
+    /// Warns of the worst body if its error is more than three times the requested one.
     void warn_of_bodies();
-    /// What the estimate is made of, relative to the mean reflected light.
+    /// Returns the parts of the estimated error, relative to the mean reflected light.
     ErrorParts error_parts() const;
     ErrorParts mean_error_parts() const;
 
-    // What is exported.
+    // Exported mesh.
     bool makes_discontinuity_mesh() const;
-    /// Direct light on triangles that follow its shadows, with what is reflected on top of it. False where a request to
-    /// stop left no time for any: then plain elements are made.
+    /// Computes direct light on triangles that follow its shadows, and adds the reflected light. Returns false if a
+    /// stop request left no time for any triangles; plain elements are then exported.
     bool make_discontinuity();
     void make_output_mesh();
-    /// What the error of exported elements is relative to, W/m^2.
+    /// Returns the light to which the error of exported elements is relative, W/m^2.
     double interpolant_scale() const;
-    /// Direct and reflected light together as plain elements that meet the error that attempts aim at.
+    /// Returns direct plus reflected light as plain elements, with an error that suits the target error of the
+    /// attempts.
     ElementFunction plain_elements(InterpolantReport& report) const;
 
     Plan plan_;
-    SolveOptions& options_ = plan_.options;  ///< As asked for, with the method that was chosen.
-    Knobs& knobs_ = plan_.knobs;             ///< Of this attempt.
+    SolveOptions& options_ = plan_.options;  ///< Requested options, with the chosen method.
+    Knobs& knobs_ = plan_.knobs;             ///< Settings of the present attempt.
     const bool &has_links_ = plan_.has_links, &sums_ = plan_.sums;
     Progress& progress_;
     const StopRequest& stop_;
     CheckpointStore* checkpoints_;
     const ShowLight& show_;
-    std::optional<Error> refusal_;  ///< The method was not started, since it needs more memory than there is.
-    double requested_error_ = 0;    ///< options_.error is above it while light is shown and improves.
-    int shown_ = 0;                 ///< Attempts that aimed at a larger error.
+    std::optional<Error> refusal_;  ///< Set if the method needs more memory than available.
+    double requested_error_ = 0;  ///< Requested error; options_.error is larger while intermediate solutions are shown.
+    int shown_ = 0;               ///< Number of attempts with a larger target error.
     Solution solution_;
     Stage stage_;
     DirectProjection direct_;
-    UnscaledShare unscaled_;            ///< Of the light that is delivered.
-    std::optional<GlobalLight> light_;  ///< What the method found; none when it is to be found anew.
+    UnscaledShare unscaled_;            ///< Unscaled share of the delivered light.
+    std::optional<GlobalLight> light_;  ///< Solution of the method; empty: the method must solve (again).
     std::optional<LocalPass> local_pass_;
-    std::vector<ElementFunction> refined_;  ///< What is gathered in the end where light is summed, in parts.
-    NextLight next_;           ///< What is gathered where that is a step on from what was delivered; else no parts.
-    bool takes_step_ = false;  ///< Does this attempt begin with such a step?
-    /// What forecasts of another step rest on.
+    /// Parts of the refined light, which is gathered last if light is summed.
+    std::vector<ElementFunction> refined_;
+    NextLight next_;           ///< Light to gather after a refinement step; has no parts in other attempts.
+    bool takes_step_ = false;  ///< True if this attempt starts with a refinement step.
+    /// Data for forecasting another refinement step.
     struct {
-        double not_local = 0;         ///< What `not_local` was before the last one; 0: none was taken.
-        std::size_t gather_rays = 0;  ///< The most that one attempt has gathered by.
-        Spectrum sent;  ///< W, what arrives of the light that was gathered last; 0 where that is not known.
+        double not_local = 0;         ///< `not_local` before the last refinement step; 0: there was none.
+        std::size_t gather_rays = 0;  ///< Largest number of rays of the gathers of one attempt.
+        Spectrum sent;                ///< Arriving power of the light gathered last, W; 0: unknown.
     } steps_;
     LocalPassReport gathered_;
     Certificate certificate_;
     int attempt_ = 1;
     Step step_ = Step::project;
-    bool fresh_ = true;                  ///< Does the method find new light in this attempt?
-    Spectrum share_;                     ///< c of that light, see find_direct_share.
-    std::optional<SceneBodies> bodies_;  ///< By which errors are told; found when they are first needed.
-    std::vector<double> light_in_;       ///< Of every room by the mean light; empty where all is one room.
-    std::vector<double> allowed_in_;     ///< What errors rooms may have, in proportion (`allowed_by_room`).
+    bool fresh_ = true;                  ///< True if the method solves in this attempt.
+    Spectrum share_;                     ///< c of the method's light, see find_direct_share.
+    std::optional<SceneBodies> bodies_;  ///< Bodies whose errors are reported; set before the first use.
+    std::vector<double> light_in_;       ///< Light of every room over the mean light; empty if the scene is one room.
+    std::vector<double> allowed_in_;     ///< Allowed errors of the rooms (`allowed_by_room`).
     std::string resumed_phase_;
-    double mesh_seconds_ = 0;  ///< Of the discontinuity mesh and its light.
+    double mesh_seconds_ = 0;  ///< Time for the discontinuity mesh and its light.
 };
 
 }  // namespace exitance

@@ -12,7 +12,7 @@ bool before(const Point& a, const Point& b) {
     return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
-/// Takes out pairs of edges that run against each other. False when an edge is left twice.
+/// Removes pairs of opposite edges. Returns false if an edge remains twice.
 bool cancel_opposites(std::vector<BorderEdge>& edges) {
     const auto key = [](const BorderEdge& e) { return std::minmax(e.from, e.to); };
     std::sort(edges.begin(), edges.end(), [&](const BorderEdge& a, const BorderEdge& b) {
@@ -31,14 +31,14 @@ bool cancel_opposites(std::vector<BorderEdge>& edges) {
     return true;
 }
 
-/// How far one turns clockwise from the way back (-arriving) to `leaving`, in (0, 2 pi]: the inside's angle.
+/// Clockwise angle from the reversed arriving edge to `leaving`, in (0, 2 pi]: the interior angle.
 double inside_angle(const Vec3& arriving, const Vec3& leaving, const Normal& n) {
     const Vec3 back = -arriving;
     const double angle = std::atan2(dot(n, cross(leaving, back)), dot(leaving, back));
     return angle > 0 ? angle : angle + 2 * pi;
 }
 
-/// Leaves out corners that the border passes straight on, seen along n, and spikes that rounding left.
+/// Removes corners at which the border is straight, seen along n, and spikes due to rounding.
 void drop_straight_corners(std::span<const Point> points, Loop& loop, const Normal& n, double tolerance) {
     Loop out;
     const auto straight = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -51,7 +51,7 @@ void drop_straight_corners(std::span<const Point> points, Loop& loop, const Norm
         while (out.size() >= 2 && straight(out[out.size() - 2], out.back(), p)) out.pop_back();
         if (out.empty() || out.back() != p) out.push_back(p);
     }
-    while (out.size() >= 3) {  // around the seam
+    while (out.size() >= 3) {  // across the end of the loop
         if (straight(out[out.size() - 2], out.back(), out.front()))
             out.pop_back();
         else if (straight(out.back(), out.front(), out[1]))
@@ -69,6 +69,8 @@ Vec3 loop_area(std::span<const Point> points, const Loop& loop) {
     return 0.5 * sum;
 }
 
+// Follows edges to closed loops; empty if some do not close. At each point the edge with the smallest interior angle
+// continues.
 std::vector<Loop> walk(std::span<const Point> points, std::vector<BorderEdge>& edges, const Normal& n) {
     std::sort(edges.begin(), edges.end(), [](const BorderEdge& a, const BorderEdge& b) {
         return a.from != b.from ? a.from < b.from : a.to < b.to;
@@ -98,7 +100,7 @@ std::vector<Loop> walk(std::span<const Point> points, std::vector<BorderEdge>& e
             if (next == edges.size()) return {};
             e = next;
         }
-        // A walk that does not come back to its start has run into another one: the edges are no border.
+        // A loop that does not return to its start has met another loop: the edges are not a border.
         if (e != start) return {};
         loops.push_back(std::move(loop));
     }

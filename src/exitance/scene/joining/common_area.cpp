@@ -5,7 +5,7 @@
 namespace exitance {
 namespace {
 
-/// Overlaps below this share of the smaller outline are rounding.
+/// Overlaps below this share of the smaller outline's area are rounding errors.
 constexpr double negligible = 1e-6;
 
 double perimeter(std::span<const Point> outline) {

@@ -10,11 +10,11 @@
 
 namespace exitance {
 
-/// The area that two outlines of one plane have in common, m^2; 0 when it is no more than corners that are off by
-/// `tolerance` (metres) can make it. Convex pieces are clipped by each other: O(corners) for convex outlines.
+/// Area of the intersection of two outlines in one plane, m^2. Returns 0 if it is so small that corners displaced by
+/// `tolerance` (metres) can explain it. Convex pieces are clipped by each other: O(corners) for convex outlines.
 double common_area(std::span<const Point> a, std::span<const Point> b, const Normal& n, double tolerance);
 
-/// The extent of an outline in a plane's own coordinates.
+/// Bounding box of an outline in coordinates of its plane.
 struct FlatBox {
     Vec2 lo{HUGE_VAL, HUGE_VAL}, hi{-HUGE_VAL, -HUGE_VAL};
 
@@ -28,9 +28,9 @@ struct FlatBox {
     }
 };
 
-/// Calls meet(i, j) for boxes i and j < i that overlap by more than `tolerance` both ways, in a fixed order, until it
-/// returns true: then enough is known of i. Heaps of boxes of which most overlap most others are given up, which is
-/// what it returns: after about eight calls or 256 steps a box. O(n log n).
+/// Calls meet(i, j) for boxes i and j < i that overlap by more than `tolerance` in both directions, in a fixed order.
+/// If meet returns true, continues with the next i. Returns true if it gave up because most boxes overlap most others:
+/// after about eight calls or 256 steps per box. O(n log n).
 template <class Meet>
 bool each_overlap(std::span<const FlatBox> boxes, double tolerance, const Meet& meet) {
     std::vector<Box> solid(boxes.size());

@@ -12,17 +12,18 @@
 namespace exitance {
 namespace {
 
-/// Cells that lines are told by: of the coordinates of their direction, and of their place in sizes of the scene
+/// Cell sizes for lines: of the coordinates of their direction, and of their position as a share of the scene's size
 /// (find_extent).
 constexpr double direction_cell = 1e-3, place_cell = 1e-4;
-constexpr double vague = 1.0 / 16;  ///< Radians: an edge whose direction is less certain tells no line.
-constexpr unsigned grades = 8;      ///< Of coarseness, see EdgePairs::grade.
-/// Tells the two ways along a line, and the two sides of a plane: none of a practical scene is at a right angle to
-/// this.
+constexpr double max_direction_error =
+    1.0 / 16;                   ///< Radians: edges with a larger error of direction are not matched by line.
+constexpr unsigned grades = 8;  ///< Number of cell sizes, see EdgePairs::grade.
+/// Direction that distinguishes the two directions of a line and the two sides of a plane. No line of a practical scene
+/// is perpendicular to it.
 constexpr Vec3 forward{0.5377, 0.7323, 0.4181};
-/// Edges of one line that overlap at one place, and those across from an edge that it is joined to. Only heaps of faces
-/// that overlap one another in one plane have more, and which of those are joined is nothing to the light.
-constexpr std::size_t most_open = 128, most_partners = 8;
+/// Limits on overlapping edges at one position of a line, and on the edges joined to one edge. Only stacks of
+/// overlapping faces in one plane exceed them, and which of these faces are joined does not affect the light.
+constexpr std::size_t max_open = 128, max_partners = 8;
 
 }  // namespace
 
@@ -49,8 +50,8 @@ std::span<const EdgePairs::Split> EdgePairs::splits(std::uint32_t e) const {
     return {first, last};
 }
 
-/// Same orientation, and the smaller face lies in the larger one's plane. Slivers have no normal worth the name, so
-/// that their distance decides alone.
+/// True if two faces have the same orientation and the smaller one lies in the larger one's plane. Slivers have no
+/// accurate normal, so that within `tol_.place` only the distance counts.
 bool EdgePairs::coplanar(std::uint32_t f, std::uint32_t g) const {
     if (f == g) return true;
     Vec3 a = mesh_.area_vector[faces_[f]], b = mesh_.area_vector[faces_[g]];
@@ -88,8 +89,8 @@ void EdgePairs::pair_whole_edges() {
     }
 }
 
-/// The middle of the edges, and about how far they reach to either side: of fifteen in sixteen, axis by axis, so that
-/// few far points do not make all others look alike.
+/// Sets centre_ and size_ to the centre and the extent of the edges, without the outer 1/32 at either end of each axis.
+/// Otherwise a few distant points would make all other lines fall into few cells.
 void EdgePairs::find_extent() {
     constexpr std::size_t samples = 4096;
     const std::size_t step = edges_.size() / samples + 1;
@@ -99,9 +100,9 @@ void EdgePairs::find_extent() {
         at.clear();
         for (std::size_t e = 0; e < edges_.size(); e += step) at.push_back(point(edges_[e].from)[a]);
         std::sort(at.begin(), at.end());
-        const std::size_t few = at.size() / 32;
-        centre_[a] = 0.5 * (at[few] + at[at.size() - 1 - few]);
-        reach[a] = at[at.size() - 1 - few] - at[few];
+        const std::size_t skipped = at.size() / 32;
+        centre_[a] = 0.5 * (at[skipped] + at[at.size() - 1 - skipped]);
+        reach[a] = at[at.size() - 1 - skipped] - at[skipped];
     }
     size_ = norm(reach);
     if (size_ > 0) return;
@@ -116,8 +117,8 @@ EdgePairs::LineErrors EdgePairs::line_errors(std::uint32_t edge) const {
     return {direction, tol_.place + std::max(norm(p - centre_), norm(q - centre_)) * direction};
 }
 
-/// How coarse the cells must be for the line through an edge to be told within an eighth of one: each grade is eight
-/// times as coarse as the one before it. Nearly all edges are of grade 0; those above are short beside the scene.
+/// Index of the smallest cell size for which the error of an edge's line is at most an eighth of a cell. Each grade is
+/// eight times as coarse as the previous one. Nearly all edges have grade 0; others are short compared with the scene.
 unsigned EdgePairs::grade(std::uint32_t edge) const {
     const auto [direction, foot] = line_errors(edge);
     unsigned grade = 0;
@@ -126,8 +127,9 @@ unsigned EdgePairs::grade(std::uint32_t edge) const {
     return grade;
 }
 
-/// Calls take(key) for the line through an edge: by cells of its direction and of its point nearest to the centre.
-/// Near a cell's wall the neighbour's key is given as well, so that edges of one line always have a key in common.
+/// Calls take(key) for the line through an edge, keyed by cells of its direction and of its point nearest to the
+/// centre. Near the wall of a cell the neighbour's key is passed as well, so that edges on one line always have a key
+/// in common.
 template <class Take>
 void EdgePairs::each_line_key(std::uint32_t edge, unsigned grade, const Take& take) const {
     const Point& p = point(edges_[edge].from);
@@ -142,7 +144,7 @@ void EdgePairs::each_line_key(std::uint32_t edge, unsigned grade, const Take& ta
         grade, {direction(d.x), direction(d.y), direction(d.z), place(foot.x), place(foot.y), place(foot.z)}, take);
 }
 
-/// Marks where the ends of `other` lie inside edge e, whose unit direction is d.
+/// Records the ends of `other` that are in the interior of edge e, whose unit direction is d.
 void EdgePairs::split_at_ends(std::uint32_t e, std::uint32_t other, const Vec3& d, double length) {
     for (std::uint32_t corner : {edges_[other].from, edges_[other].to}) {
         const double at = dot(point(corner) - point(edges_[e].from), d);
@@ -150,7 +152,8 @@ void EdgePairs::split_at_ends(std::uint32_t e, std::uint32_t other, const Vec3& 
     }
 }
 
-/// Pairs two edges of one line if they run against each other and overlap, and their faces lie in one plane.
+/// Pairs two edges of one line if they have opposite directions and overlap, and their faces are coplanar. Returns
+/// whether it did.
 bool EdgePairs::pair_parts(std::uint32_t e, std::uint32_t f) {
     if (material(edges_[e].face) != material(edges_[f].face)) return false;
     const Point &p = point(edges_[e].from), &r = point(edges_[f].from);
@@ -169,7 +172,7 @@ bool EdgePairs::pair_parts(std::uint32_t e, std::uint32_t f) {
     return true;
 }
 
-/// How many of these intervals cover a place, in the mean.
+/// Mean number of intervals that cover a point.
 double EdgePairs::crowding(const std::vector<Interval>& intervals) {
     double lo = HUGE_VAL, hi = -HUGE_VAL, covered = 0;
     for (const Interval& i : intervals) {
@@ -191,27 +194,29 @@ std::vector<EdgePairs::Interval> EdgePairs::intervals_along(const Vec3& d, std::
     return out;
 }
 
-/// Sweeps along a line over the edges on it and those that only share its cell. Edges that are short for the size of
-/// the scene tell their lines so badly that a cell may hold whole rows of them: those are swept along an axis that
-/// tells them apart.
+/// Pairs the edges on one line, and those that only share its cell, by a sweep along the line. For edges that are short
+/// compared with the scene the line is so uncertain that a cell may contain whole rows of them; those are swept along a
+/// coordinate axis that separates them better.
 void EdgePairs::pair_on_line(std::span<const std::uint32_t> group) {
-    constexpr std::size_t few = 8;  // most lines carry the two edges of a box's corner: not worth sorting
-    if (group.size() <= few) {
+    constexpr std::size_t max_direct = 8;  // most lines have only the two edges of a box's corner: not worth sorting
+    if (group.size() <= max_direct) {
         for (std::size_t i = 0; i < group.size(); ++i)
             for (std::size_t j = 0; j < i; ++j) pair_parts(group[j], group[i]);
         return;
     }
     const Edge& first = edges_[group[0]];
     std::vector<Interval> intervals = intervals_along(normalized(point(first.to) - point(first.from)), group);
-    constexpr double crowded = 32;
-    if (double least = crowding(intervals); least > crowded)
+    constexpr double max_crowding = 32;
+    if (double least = crowding(intervals); least > max_crowding)
         for (const Vec3& axis : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
             std::vector<Interval> other = intervals_along(axis, group);
             if (const double here = crowding(other); here < least) least = here, intervals = std::move(other);
         }
     std::sort(intervals.begin(), intervals.end(),
               [](const Interval& a, const Interval& b) { return a.lo != b.lo ? a.lo < b.lo : a.edge < b.edge; });
-    std::array<std::array<std::vector<Interval>, 2>, 2> open;  // only those of one side run across from one another
+    // Open intervals by side of the face and direction of the edge: edges are only paired on one side and with opposite
+    // directions.
+    std::array<std::array<std::vector<Interval>, 2>, 2> open;
     for (const Interval& i : intervals) {
         const auto drop_ended = [&](std::vector<Interval>& some) {
             std::erase_if(some, [&](const Interval& o) { return o.hi <= i.lo; });
@@ -219,23 +224,23 @@ void EdgePairs::pair_on_line(std::span<const std::uint32_t> group) {
         std::vector<Interval>&own = open[i.behind][i.against], &across = open[i.behind][!i.against];
         drop_ended(across);
         std::size_t partners = 0;
-        for (std::size_t k = across.size(); k > 0 && partners < most_partners; --k)
+        for (std::size_t k = across.size(); k > 0 && partners < max_partners; --k)
             partners += pair_parts(across[k - 1].edge, i.edge);
-        if (own.size() == most_open) drop_ended(own);
-        if (own.size() < most_open) own.push_back(i);
+        if (own.size() == max_open) drop_ended(own);
+        if (own.size() < max_open) own.push_back(i);
     }
 }
 
-/// The unpaired edges between the two points of one, that one included.
+/// Appends the unpaired edges between the end points of `edge`, including itself.
 void EdgePairs::add_unpaired_twins(std::uint32_t edge, std::vector<std::uint32_t>& out) const {
     for (std::uint32_t e = edge; e != none; e = edges_[e].twin)
         if (edges_[e].partner == none) out.push_back(e);
 }
 
-/// Unpaired edges by their lines; of those between the same two points, which pair_whole_edges has compared, the last
-/// stands for all. Edges with a line to themselves, as nearly all are that curved surfaces leave unpaired, are not
-/// among them: a table of counts tells, before anything is kept or sorted. Nor are those so short that their lines
-/// might be any.
+/// Unpaired edges with the keys of their lines. Of edges between the same two points, which pair_whole_edges has
+/// compared, only the last is included. Edges that share no key with another edge are excluded by a table of counts
+/// before anything is stored or sorted; most unpaired edges of curved surfaces are of this kind. Very short edges,
+/// whose direction is too uncertain, are excluded too.
 std::vector<EdgePairs::LineEntry> EdgePairs::line_entries() const {
     std::vector<char> stands(edges_.size(), true);
     for (const Edge& e : edges_)
@@ -248,7 +253,7 @@ std::vector<EdgePairs::LineEntry> EdgePairs::line_entries() const {
     std::array<bool, grades> is_there{};
     std::vector<std::uint32_t> twins;
     for (std::uint32_t e = 0; e < edges_.size(); ++e) {
-        if (!stands[e] || line_errors(e).direction > vague) continue;
+        if (!stands[e] || line_errors(e).direction > max_direction_error) continue;
         twins.clear();
         add_unpaired_twins(e, twins);
         if (twins.empty()) continue;
@@ -257,7 +262,7 @@ std::vector<EdgePairs::LineEntry> EdgePairs::line_entries() const {
     }
     const auto each_entry = [&](const auto& take) {
         for (const auto [e, finest] : entrants)
-            // An edge meets the shorter ones among their cells.
+            // Edges also get keys of coarser grades, to be compared with the shorter edges there.
             for (unsigned g = finest; g < grades; ++g)
                 if (is_there[g])
                     each_line_key(e, g, [&, e = e](std::uint64_t key) {
@@ -266,7 +271,7 @@ std::vector<EdgePairs::LineEntry> EdgePairs::line_entries() const {
     };
     std::vector<std::uint8_t> held(std::bit_ceil(4 * entrants.size() + 1));
     const auto slot = [&](const LineEntry& entry) -> std::uint8_t& { return held[entry.key & (held.size() - 1)]; };
-    std::size_t met = 0;  // entries under keys that others have too
+    std::size_t met = 0;  // number of entries whose key is shared
     each_entry([&](const LineEntry& entry) {
         std::uint8_t& n = slot(entry);
         met += n == 0 ? 0 : n == 1 ? 2 : 1;

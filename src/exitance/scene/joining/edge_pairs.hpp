@@ -11,18 +11,18 @@
 
 namespace exitance {
 
-/// Which of a set of faces lie in one plane side by side: those of one material and one orientation that share an edge,
-/// or a part of one. Edges are numbered over the corners of these faces, faces by their place among them. Expected
-/// O(n log n) in edges.
+/// Finds which faces of a set can be joined: those in one plane, of one material and one orientation, that share an
+/// edge or a part of one. Edges are numbered over the corners of these faces, and faces by their index in the set.
+/// Expected O(n log n) in edges.
 class EdgePairs {
   public:
     static constexpr std::uint32_t none = 0xffffffffu;
     struct Edge {
         std::uint32_t from, to, face;
-        std::uint32_t partner;  ///< The edge that runs against it between the same points, of a face it is joined to.
-        std::uint32_t twin;     ///< The edge before this one between the same two points, either way round, or none.
+        std::uint32_t partner;  ///< The edge in the opposite direction between the same points, of a joined face.
+        std::uint32_t twin;     ///< The previous edge between the same two points, in either direction, or none.
     };
-    /// A corner of another face that lies inside an edge, `at` metres from where that begins.
+    /// A corner of another face in the interior of an edge, `at` metres from the start of the edge.
     struct Split {
         std::uint32_t edge;
         double at;
@@ -30,31 +30,33 @@ class EdgePairs {
         auto operator<=>(const Split&) const = default;
     };
 
-    /// `faces` of the mesh. All must outlive it.
+    /// `faces` are indices into the mesh. All arguments must outlive the object.
     EdgePairs(const FaceMesh& mesh, const Tolerances& tolerances, std::span<const std::uint32_t> faces);
 
-    /// The edges of face f, from the first to before the second.
+    /// Range [first, second) of the edges of face f.
     std::pair<std::uint32_t, std::uint32_t> edges_of(std::uint32_t f) const {
         return {first_edge_[f], first_edge_[f + 1]};
     }
     const Edge& edge(std::uint32_t e) const { return edges_[e]; }
-    /// Those of edge e, in the order in which it meets them.
+    /// Splits of edge e, in order along the edge.
     std::span<const Split> splits(std::uint32_t e) const;
-    /// The least face of those that are joined to f.
+    /// Smallest index of the faces that are joined to f.
     std::uint32_t root(std::uint32_t f) { return sets_.root(f); }
 
   private:
-    /// The first unpaired edge between two points under one of the keys of its line.
+    /// An unpaired edge under one of the keys of its line. One edge represents all between the same two points.
     struct LineEntry {
         std::uint32_t key;
         std::uint32_t edge;
         auto operator<=>(const LineEntry&) const = default;
     };
-    /// How far off the line through an edge may be: its direction, and its point nearest to the centre, metres.
+    /// Error bounds for the line through an edge: of its direction, radians, and of its point nearest to the centre,
+    /// metres.
     struct LineErrors {
         double direction, foot;
     };
-    /// How far an edge reaches along a direction; whether it runs against `forward`, whether its face looks so.
+    /// Projection of an edge onto a direction. `against`: the edge points against `forward`; `behind`: so does its
+    /// face's normal.
     struct Interval {
         double lo, hi;
         std::uint32_t edge;
@@ -82,8 +84,8 @@ class EdgePairs {
     const FaceMesh& mesh_;
     const Tolerances& tol_;
     std::span<const std::uint32_t> faces_;
-    Point centre_{0, 0, 0};  ///< That lines are told by, and
-    double size_ = 0;        ///< how far most edges reach, metres.
+    Point centre_{0, 0, 0};  ///< Centre of most edges, origin for the position of lines.
+    double size_ = 0;        ///< Extent of most edges, metres.
     DisjointSets sets_;
     std::vector<Edge> edges_;
     std::vector<std::uint32_t> first_edge_;

@@ -8,21 +8,21 @@
 
 namespace exitance {
 
-/// Lengths and angles below which things count as the same.
+/// Lengths and angles below which points, planes and normals count as equal.
 struct Tolerances {
-    double place = 0;    ///< Metres: points nearer than this are one point.
-    double plane = 0;    ///< Metres: how far a face's corners may stand off its plane.
-    double tilt = 1e-3;  ///< Radians: how far normals of faces that are meant to be coplanar may differ.
+    double place = 0;    ///< Points nearer than this are one point, metres.
+    double plane = 0;    ///< Distance of a face's corners from its plane, at most, metres.
+    double tilt = 1e-3;  ///< Angle between normals of faces that are meant to be coplanar, at most, radians.
 };
 
-/// Tolerances of a scene whose points lie in `box`. Places: 1e-9 of the scene's size, which exceeds the rounding of
-/// decimal files; less where edges are short beside that (a chair on a plain of a thousand kilometres), but never below
-/// the spacing of doubles at the coordinates. Planes: 1e-5 of the size, within which scene-file conventions count a
-/// point as lying on a face.
-/// short_edge  a length that few edges are shorter than, metres
+/// Tolerances of a scene whose points are in `box`. Places: 1e-9 of the scene's size, which exceeds the rounding of
+/// decimal files. It is smaller if edges are short compared with the scene (a chair on a plain of a thousand
+/// kilometres), but at least the spacing of doubles at the coordinates. Planes: 1e-5 of the size, the distance within
+/// which scene-file conventions consider a point to be on a face.
+/// short_edge  length that few edges are shorter than, metres
 Tolerances tolerances(const Box& box, double short_edge);
 
-/// Checked faces as the joining of regions sees them: corners are numbers of welded points.
+/// Checked faces in the form needed for joining: corners are numbers of welded points.
 struct FaceMesh {
     std::span<const Point> points;
     std::vector<std::uint32_t> first;  ///< First corner of every face, then the number of all corners.

@@ -7,8 +7,8 @@
 
 namespace exitance {
 
-/// A hash table of consecutive numbers that leaves comparing to its user: entries of equal hash, and some of others,
-/// form a chain. Eight bytes an entry and no allocation after the first.
+/// A hash table of consecutive numbers in which the caller compares entries. Entries of equal hash, and some others,
+/// form a chain. Eight bytes per entry; allocates only at the start.
 class HashChains {
   public:
     static constexpr std::uint32_t end = 0xffffffffu;
@@ -20,7 +20,8 @@ class HashChains {
     std::uint32_t first(std::uint64_t hash) const { return head_[hash & mask_]; }
     std::uint32_t next(std::uint32_t entry) const { return next_[entry]; }
 
-    /// Fetches the place of a hash that is looked for soon, best `ahead` rounds before: big tables are not in caches.
+    /// Prefetches the table entry of a hash that is needed soon, ideally `ahead` iterations later: large tables exceed
+    /// the caches.
     static constexpr std::uint32_t ahead = 12;
     void prefetch(std::uint64_t hash) const { __builtin_prefetch(&head_[hash & mask_]); }
 

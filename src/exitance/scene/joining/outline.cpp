@@ -9,11 +9,11 @@ namespace {
 /// An edge in the plane's coordinates.
 struct FlatEdge {
     Vec2 p, q;
-    double lo, hi;  ///< Along x.
+    double lo, hi;  ///< Extent along x.
     std::size_t number;
 };
 
-/// On which side of the line p -> q does r lie: -1, 1, or 0 within the tolerance.
+/// Side of the line p -> q on which r lies: -1, 1, or 0 within the tolerance.
 int side(const Vec2& p, const Vec2& q, const Vec2& r, double tolerance) {
     const Vec2 d = q - p;
     const double distance = cross(d, r - p), limit = tolerance * std::hypot(d.x, d.y);
@@ -39,7 +39,7 @@ std::size_t drop_repeated_corners(std::vector<std::uint32_t>& outline) {
         else
             out.push_back(p);
     }
-    while (out.size() >= 2) {  // around the seam
+    while (out.size() >= 2) {  // across the end of the outline
         const bool spike = out.size() >= 3 && out[out.size() - 2] == out.front();
         if (out.back() == out.front() || spike)
             out.pop_back();

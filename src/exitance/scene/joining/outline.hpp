@@ -8,11 +8,12 @@
 
 namespace exitance {
 
-/// Takes out corners equal to their predecessor, and spikes (a corner between two equal ones). Numbers of points.
-/// returns how many were taken out.
+/// Removes corners equal to their predecessor, and spikes (a corner between two equal ones). `outline`: numbers of
+/// points.
+/// Returns the number of removed corners.
 std::size_t drop_repeated_corners(std::vector<std::uint32_t>& outline);
 
-/// Are all corners within `tolerance` (metres) of one line?
+/// True if all corners are within `tolerance` (metres) of one line.
 bool is_collinear(std::span<const Point> outline, double tolerance);
 
 /// The largest distance of a corner from the plane through the corners' mean, metres.
@@ -23,9 +24,9 @@ struct EdgePair {
     std::size_t first, second;
 };
 
-/// Finds two edges of a planar outline that cross by more than `tolerance` (metres). Edges may touch and may run to and
-/// fro (bridges to holes). False when there are none.
-/// O(m log m) when few edges lie side by side along x, O(m^2) at worst; O(m) for convex outlines.
+/// Finds two edges of a planar outline that cross by more than `tolerance` (metres). Edges may touch, and may coincide
+/// in opposite directions (bridges to holes). Returns false if there are none.
+/// O(m log m) if few edges overlap along x, O(m^2) at worst; O(m) for convex outlines.
 bool crosses_itself(std::span<const Point> outline, const Normal& n, double tolerance, EdgePair& where);
 
 }  // namespace exitance

@@ -13,14 +13,14 @@
 namespace exitance {
 namespace {
 
-/// One attempt at joining a set of faces, numbered by their place in it.
+/// One attempt to join a set of faces, numbered by their index in it.
 class Joiner {
   public:
     Joiner(const FaceMesh& mesh, const Tolerances& tolerances, std::vector<std::uint32_t> faces)
         : mesh_(mesh), tol_(tolerances), faces_(std::move(faces)), pairs_(mesh, tolerances, faces_) {}
 
-    /// Appends the sets whose union is a proper polygon to `out`. Of the others, faces that cover an earlier one go to
-    /// `covering`, the rest to `failed`.
+    /// Appends the sets whose union is a valid polygon to `out`. Of the other sets, faces that cover an earlier one are
+    /// appended to `covering`, the rest to `failed`.
     void collect(std::vector<JoinedFaces>& out, std::vector<std::uint32_t>& covering,
                  std::vector<std::uint32_t>& failed);
 
@@ -43,7 +43,7 @@ class Joiner {
     EdgePairs pairs_;
 };
 
-/// The edges of a set of faces, split at T-vertices, those taken out that have a partner within the set.
+/// Edges of a set of faces, split at T-vertices, without edges that have a partner within the set.
 std::vector<BorderEdge> Joiner::border(std::span<const std::uint32_t> set) const {
     std::vector<BorderEdge> out;
     for (std::uint32_t f : set) {
@@ -72,7 +72,8 @@ bool Joiner::is_flat(std::span<const std::uint32_t> set, const Vec3& area_vector
     return hi - lo <= 2 * std::max(tol_.plane, tol_.place);
 }
 
-/// Faces of a set that cover a part of an earlier one, ascending; all but the first of a heap that is too deep to tell.
+/// Faces of a set that cover a part of an earlier one, ascending. All but the first if too many faces overlap to
+/// decide.
 std::vector<std::uint32_t> Joiner::covering_faces(std::span<const std::uint32_t> set, const Normal& n) const {
     const Frame frame(n);
     std::vector<FlatBox> boxes(set.size());
@@ -94,8 +95,9 @@ std::vector<std::uint32_t> Joiner::covering_faces(std::span<const std::uint32_t>
     return out;
 }
 
-/// How often a union of faces covers a point is how often its border winds around it. Hence faces whose border is one
-/// convex loop cover nothing twice, and need not be compared with each other.
+/// True if a union of faces has one convex loop as its border. The number of faces that cover a point equals the
+/// winding number of the border; with a convex loop no point is covered twice, and faces need not be compared with each
+/// other.
 bool Joiner::is_one_convex_loop(const std::vector<std::vector<std::uint32_t>>& loops, const Vec3& area_vector) const {
     if (loops.size() != 1) return false;
     std::vector<Point> corners;
@@ -103,7 +105,8 @@ bool Joiner::is_one_convex_loop(const std::vector<std::vector<std::uint32_t>>& l
     return is_convex(corners, normalized(area_vector));
 }
 
-/// Most faces of curved surfaces stay alone, and three corners that are not in line are their own border.
+/// True for a triangle without splits whose corners are not collinear: its outline is its border. Most single faces are
+/// triangles of curved surfaces.
 bool Joiner::is_plain_triangle(std::uint32_t f) const {
     const auto [first, last] = pairs_.edges_of(f);
     if (last - first != 3) return false;
@@ -115,7 +118,8 @@ bool Joiner::is_plain_triangle(std::uint32_t f) const {
     return 0.5 * norm(mesh_.area_vector[faces_[f]]) > tol_.place * std::sqrt(longest);
 }
 
-/// The union of a set; no loops when it is no proper polygon, with the faces that cover earlier ones if that is why.
+/// Union of a set. Without loops if it is not a valid polygon; `covering` then lists faces that cover earlier ones, if
+/// that is the reason.
 Joiner::Union Joiner::unite(std::span<const std::uint32_t> set) const {
     Union out;
     for (std::uint32_t f : set) out.joined.faces.push_back(faces_[f]);
@@ -143,7 +147,7 @@ void Joiner::collect(std::vector<JoinedFaces>& out, std::vector<std::uint32_t>& 
         root_of[f] = pairs_.root(f);
         if (root_of[f] == f) roots.push_back(f);
     }
-    const Groups sets(root_of, n);  // known by their roots
+    const Groups sets(root_of, n);  // indexed by their roots
     std::vector<Union> unions(roots.size());
     parallel_for(roots.size(), 256, [&](std::size_t i) { unions[i] = unite(sets[roots[i]]); });
     for (std::size_t i = 0; i < roots.size(); ++i) {
@@ -165,8 +169,9 @@ std::vector<JoinedFaces> join_coplanar(const FaceMesh& mesh, const Tolerances& t
     std::vector<JoinedFaces> out;
     std::vector<std::uint32_t> faces(mesh.size()), lone;
     std::iota(faces.begin(), faces.end(), 0u);
-    // Finely cut curved surfaces bend little from one face to the next, but much over a whole set: such a set is joined
-    // again where it is flat to rounding alone. Each way is tried again for sets from which covering faces were taken.
+    // Finely tessellated curved surfaces bend little between neighbouring faces but much over a whole set. Such a set
+    // is tried again with faces that are coplanar up to rounding. Each attempt is repeated for sets from which covering
+    // faces were removed.
     Tolerances strict = tolerances;
     strict.plane = strict.place;
     for (const Tolerances& attempt : {tolerances, tolerances, strict, strict}) {

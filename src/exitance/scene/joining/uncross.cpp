@@ -10,18 +10,18 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t max_cuts_per_corner = 16;  ///< Limits the work for outlines whose edges all cross one another.
+constexpr std::size_t max_cuts_per_corner = 16;  ///< Limits the work for outlines whose edges all cross each other.
 
-/// A place on an edge, by its parameter in [0, 1].
+/// A point on an edge, by its parameter in [0, 1].
 struct Cut {
     double t;
     std::uint32_t node;
 };
 
-/// A directed piece of the arrangement's border; its twin has number `e ^ 1`.
+/// A directed edge of the arrangement; the opposite one has number `e ^ 1`.
 struct HalfEdge {
     std::uint32_t from, to;
-    int net = 0;  ///< How often the outline runs along it, minus how often it runs against it.
+    int net = 0;  ///< Number of times the outline follows it, minus the number in the opposite direction.
     double angle = 0;
     std::uint32_t next = 0, face = 0;
 };
@@ -52,16 +52,16 @@ class Arrangement {
     double tolerance_;
     std::vector<Vec2> flat_;  ///< Corners, then crossings.
     std::vector<std::vector<Cut>> cuts_;
-    std::vector<std::uint32_t> place_;  ///< Of a corner or crossing: the first one at its place.
+    std::vector<std::uint32_t> place_;  ///< For a corner or crossing, the first one at its position.
     UncrossedOutline out_;
     std::vector<HalfEdge> half_edges_;
-    std::uint32_t first_half_edge_ = 0;  ///< Along the outline's first edge.
+    std::uint32_t first_half_edge_ = 0;  ///< Half-edge on the outline's first edge.
     std::vector<std::vector<std::uint32_t>> faces_;
     std::vector<double> area_;
     std::vector<int> winding_;
 };
 
-/// Cuts an edge at a corner that lies inside it.
+/// Cuts an edge at a corner in its interior.
 void Arrangement::touch(std::size_t edge, std::size_t corner) {
     const Vec2 p = flat_[edge], d = flat_[after(edge)] - p, r = flat_[corner] - p;
     const double length = std::hypot(d.x, d.y), along = (r.x * d.x + r.y * d.y) / length;
@@ -130,7 +130,7 @@ void Arrangement::make_half_edges() {
     }
 }
 
-/// Lets every half-edge be followed by the one that turns left most, so that its face stays on the left.
+/// Sets the successor of every half-edge to the one that turns left most, so that its face stays on the left.
 void Arrangement::link_half_edges() {
     std::map<std::uint32_t, std::vector<std::uint32_t>> leaving;
     for (std::uint32_t e = 0; e < half_edges_.size(); ++e) {
@@ -162,7 +162,8 @@ void Arrangement::trace_faces() {
     }
 }
 
-/// From the outer face, which has the smallest area, over edges.
+/// Computes winding numbers of faces, starting from the outer face, which has the smallest signed area, and crossing
+/// edges.
 void Arrangement::find_windings() {
     winding_.assign(faces_.size(), 0);
     if (faces_.empty()) return;
@@ -185,7 +186,7 @@ bool Arrangement::looks_along_normal() const {
     double net = 0, all = 0;
     for (std::size_t f = 0; f < faces_.size(); ++f)
         net += winding_[f] * area_[f], all += std::abs(winding_[f] * area_[f]);
-    constexpr double equal = 1e-6;  // of the area: symmetric outlines cancel out up to the rounding of their file
+    constexpr double equal = 1e-6;  // share of the area: symmetric outlines cancel up to the rounding of their file
     if (std::abs(net) > equal * all) return net > 0;
     const int left = winding_[half_edges_[first_half_edge_].face],
               right = winding_[half_edges_[first_half_edge_ ^ 1].face];

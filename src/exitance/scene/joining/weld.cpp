@@ -18,16 +18,16 @@ std::uint64_t cell_hash(double i, double j, double k) {
 }  // namespace
 
 std::vector<std::uint32_t> weld(std::span<const Point> points, double tolerance) {
-    // Cells wider than the tolerance: few points lie so close to a wall that a neighbour has to be asked too; but not
-    // so wide that many places that differ have room in one. They are numbered in doubles: where these have no digits
-    // left for cells, neither have points for the tolerance.
+    // Cells are wider than the tolerance, so that few points are near a wall and need a search in neighbouring cells,
+    // but narrow enough to contain few distinct points. Cell numbers are doubles: where they have no digits left, the
+    // points have none for the tolerance either.
     const double width = std::max(16 * tolerance, 1e-300);
 
     HashChains chains(points.size());
-    std::vector<std::uint32_t> placed;  // entry of the chains -> point
+    std::vector<std::uint32_t> placed;  // point of each entry of the chains
     std::vector<std::uint32_t> out(points.size());
     const double to_cell = 1 / width, margin = tolerance * to_cell;
-    // Half a cell aside, since walls lie at round numbers.
+    // Shifted by half a cell, since scenes have many round coordinates.
     const auto number = [&](double coordinate, double aside) {
         const double cells = std::floor(coordinate * to_cell + 0.5 + aside);
         return std::isfinite(cells) ? cells : coordinate;
@@ -39,7 +39,7 @@ std::vector<std::uint32_t> weld(std::span<const Point> points, double tolerance)
         if (soon < points.size() && is_finite(points[soon])) chains.prefetch(hash_of(points[soon]));
         const Point& p = points[i];
         if (!is_finite(p)) continue;
-        // Within reach lies one cell an axis, or two.
+        // Along each axis one or two cells are within the tolerance.
         double reached[3][2];
         int count[3];
         for (std::size_t a = 0; a < 3; ++a) {

@@ -7,7 +7,7 @@
 namespace exitance {
 namespace {
 
-/// All pairs.
+/// Reference implementation that compares all pairs.
 std::vector<std::uint32_t> weld_slowly(const std::vector<Point>& points, double tolerance) {
     std::vector<std::uint32_t> out(points.size());
     for (std::uint32_t i = 0; i < points.size(); ++i) {

@@ -6,14 +6,14 @@
 namespace exitance {
 namespace {
 
-/// Sides of the polygon that stands for a disc: of equal area it departs from the circle by 0.14% of the radius at
-/// most, so that penumbras are right to 3e-4 of the full light.
+/// Number of sides of the polygon that represents a disc. A polygon of equal area deviates from the circle by at most
+/// 0.14% of the radius, so that penumbras have an error of at most 3e-4 of the full light.
 constexpr int disc_sides = 48;
 
-/// Facets along an edge of the cube where light depends on direction: small enough for shadows to be cut quickly.
-constexpr int across = 2;
+/// Facets along an edge of the cube if light depends on direction: small enough for fast clipping of shadows.
+constexpr int facets_per_edge = 2;
 
-/// Adds a part of a face of the cube: from `corner` along u and v, which turn counter-clockwise seen from within.
+/// Adds a part of a face of the cube: from `corner` along u and v, which are counter-clockwise seen from inside.
 void add_face(const DistantLight::Dome& dome, const Vec3& corner, const Vec3& u, const Vec3& v, int nu, int nv,
               std::vector<DistantFacet>& out) {
     for (int i = 0; i < nu; ++i)
@@ -39,14 +39,14 @@ void add_face(const DistantLight::Dome& dome, const Vec3& corner, const Vec3& u,
 
 void add_dome(const DistantLight::Dome& dome, std::vector<DistantFacet>& out) {
     const bool coarse = dome.model.is_uniform() && dome.model.below;
-    const int n = coarse ? 1 : across, half = coarse ? 1 : across / 2;
+    const int n = coarse ? 1 : facets_per_edge, half = coarse ? 1 : facets_per_edge / 2;
     if (dome.model.below)
         add_face(dome, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, n, n, out);
     else
         add_face(dome, {-1, -1, 1}, {0, 2, 0}, {2, 0, 0}, n, n, out);
     const double z = dome.model.below ? -1 : 0;
     const Vec3 up{0, 0, 1};
-    add_face(dome, {1, 1, z}, {0, -2, 0}, up, n, half, out);   // x = 1, seen from within
+    add_face(dome, {1, 1, z}, {0, -2, 0}, up, n, half, out);   // x = 1, seen from inside
     add_face(dome, {-1, -1, z}, {0, 2, 0}, up, n, half, out);  // x = -1
     add_face(dome, {-1, 1, z}, {2, 0, 0}, up, n, half, out);   // y = 1
     add_face(dome, {1, -1, z}, {-2, 0, 0}, up, n, half, out);  // y = -1
@@ -58,12 +58,12 @@ DistantFacet facet_of(const DistantLight::Disc& disc) {
     constexpr double step = 2 * pi / disc_sides;
     const double radius = std::tan(disc.half_angle) * std::sqrt(step / std::sin(step));
     for (int i = 0; i < disc_sides; ++i) {
-        const double angle = -i * step;  // clockwise about the direction is counter-clockwise seen from within
+        const double angle = -i * step;  // clockwise about the direction is counter-clockwise seen from inside
         facet.corners.push_back(disc.towards + (radius * std::cos(angle)) * frame.u +
                                 (radius * std::sin(angle)) * frame.v);
     }
     facet.n = -disc.towards;
-    // The form factor of the polygon from a plane that faces it: E = M F, by the sum over its edges.
+    // Form factor of the polygon from a plane that faces it, by the sum over its edges: E = M F.
     double factor = 0;
     for (int i = 0; i < disc_sides; ++i) {
         const Vec3 &a = facet.corners[static_cast<std::size_t>(i)],

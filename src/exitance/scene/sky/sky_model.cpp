@@ -9,18 +9,18 @@
 namespace exitance {
 namespace {
 
-constexpr double lowest_cosine = 0.01;  ///< Of Z, as common programs have it.
-constexpr double smoothest = 30 * pi / 180;
+constexpr double min_cosine = 0.01;  ///< Lower limit of cos Z, as in common programs.
+constexpr double max_smooth_width = 30 * pi / 180;
 
-/// The CIE's intermediate sky (Matsuura) as Radiance's skybright.cal has it.
+/// The CIE intermediate sky (Matsuura), as in Radiance's skybright.cal.
 double intermediate_value(double cos_z, double gamma, double cos_sun) {
     const double eta = std::acos(std::clamp(cos_z, -1.0, 1.0)), zt = std::acos(std::clamp(cos_sun, -1.0, 1.0));
     return ((1.35 * std::sin(5.631 - 3.59 * eta) + 3.12) * std::sin(4.396 - 2.6 * zt) + 6.37 - eta) / 2.326 *
            std::exp(gamma * -0.563 * ((2.629 - eta) * (1.562 - zt) + 0.812));
 }
 
-/// Mean over a half of the directions by the cosine, in Z and the azimuth's share v: adaptive, by Gauss' rule of three
-/// points.
+/// Cosine-weighted mean over a half of the directions, in Z and the normalized azimuth v: adaptive three-point Gauss
+/// rule.
 class CosineMean {
   public:
     explicit CosineMean(const SkyModel& sky) : sky_(sky), azimuth_(std::atan2(sky.sun.y, sky.sun.x)) {}
@@ -37,7 +37,8 @@ class CosineMean {
 
   private:
     static constexpr double high = 0.5 * pi / 6, wide = 1.0 / 8;
-    static constexpr double accepted = 1e-6;  ///< Of a cell by its quarters, whose error is far less.
+    /// Difference between a cell and its quarters; the error of the quarters is far less.
+    static constexpr double accepted = 1e-6;
     struct Cell {
         double z, v, dz, dv;
     };
@@ -71,7 +72,7 @@ class CosineMean {
     double azimuth_, allowed_ = 0;
 };
 
-/// x1 to x4 of a, b, c, d, e in each bin of clearness [Perez93].
+/// Coefficients x1 to x4 of a, b, c, d, e in each bin of clearness [Perez93].
 constexpr double perez_table[8][5][4] = {
     {{1.3525, -0.2576, -0.2690, -1.4366},
      {-0.7670, 0.0007, 1.2734, -0.1233},
@@ -118,7 +119,7 @@ constexpr double perez_table[8][5][4] = {
 }  // namespace
 
 double SkyModel::value(const Vec3& w) const {
-    const double z = std::max(w.z, lowest_cosine), cos_gamma = std::clamp(dot(w, sun), -1.0, 1.0);
+    const double z = std::max(w.z, min_cosine), cos_gamma = std::clamp(dot(w, sun), -1.0, 1.0);
     double out = 0;
     if (intermediate) {
         out = f0 * intermediate_value(w.z, std::acos(cos_gamma), sun.z);
@@ -138,9 +139,9 @@ double SkyModel::value(const Vec3& w) const {
 
 double SkyModel::smooth_width(const Vec3& w) const {
     constexpr double near = 50 * pi / 180, share = 1.5;
-    double width = smoothest;
+    double width = max_smooth_width;
     if (c != 0 && dot(w, sun) > std::cos(near) && d < 0) width = std::min(width, share / -d);
-    // Towards the horizon phi changes over an angle of |b| or so.
+    // Towards the horizon, phi varies over an angle of about |b|.
     if (a != 0 && b < 0 && std::abs(w.z) < 0.5) width = std::min(width, std::max(0.1, share * -b));
     if (blends_ground && std::abs(w.z) < 0.6) width = std::min(width, 0.15);
     return width;

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// Mean of relative() over the upper half by the cosine: midpoints in Z and azimuth.
+/// Cosine-weighted mean of relative() over the upper half: midpoint rule in Z and azimuth.
 double crude_mean(const SkyModel& sky) {
     constexpr int rows = 240, columns = 480;
     double sum = 0;
@@ -29,7 +29,7 @@ double crude_mean(const SkyModel& sky) {
 TEST(SkyModel, EveryTypeOfTheGeneralSkyIsNormalizedByItsIntegral) {
     for (int type = 1; type <= 15; ++type) {
         const SkyModel sky = cie_sky(type, sky_direction(35, 200));
-        EXPECT_NEAR(crude_mean(sky), 1, 1e-4) << type;  // what midpoints miss
+        EXPECT_NEAR(crude_mean(sky), 1, 1e-4) << type;  // the error of the midpoint rule
     }
     EXPECT_NEAR(crude_mean(overcast_sky()), 1, 1e-4);
     EXPECT_NEAR(crude_mean(uniform_sky()), 1, 1e-4);
@@ -41,8 +41,9 @@ TEST(SkyModel, TheOvercastSkyIsThreeTimesAsBrightAtTheZenithAsAtTheHorizon) {
     EXPECT_NEAR(sky.relative({0, 0, 1}), 9.0 / 7, 1e-6);  // L_z = 9 E / (7 pi)
 }
 
-TEST(SkyModel, ItsFormulaIsThatOfTheStandard) {
-    // Type 12 with the sun at 60 degrees of altitude, by hand at Z = 45 degrees in the sun's azimuth: gamma = 15.
+TEST(SkyModel, AgreesWithTheFormulaOfTheStandard) {
+    // Type 12 with the sun at an altitude of 60 degrees, by hand at Z = 45 degrees in the sun's azimuth: gamma = 15
+    // degrees.
     const SkyModel sky = cie_sky(12, sky_direction(60, 90));
     const double phi = 1 - std::exp(-0.32 / std::cos(pi / 4)), phi_zenith = 1 - std::exp(-0.32);
     const auto f = [](double gamma) {
@@ -52,12 +53,13 @@ TEST(SkyModel, ItsFormulaIsThatOfTheStandard) {
                 phi * f(15 * pi / 180) / (phi_zenith * f(30 * pi / 180)), 1e-12);
 }
 
-TEST(PerezSky, GoesByClearnessAndBrightness) {
+TEST(PerezSky, ComputesClearnessAndBrightness) {
     const Normal sun = sky_direction(60, 180);
     const double zenith = 30 * pi / 180, cubed = 1.041 * std::pow(zenith, 3);
     const PerezState clear = perez_state({100, 800, 3}, sun);
     EXPECT_NEAR(clear.clearness, (9 + cubed) / (1 + cubed), 1e-12);
-    EXPECT_NEAR(clear.brightness, 100 / (1367 * 1.0351) * 1 / std::sin(pi / 3), 2e-4);  // mass 1.1547 but for 1e-3
+    // The air mass is 1.1547 to 1e-3.
+    EXPECT_NEAR(clear.brightness, 100 / (1367 * 1.0351) * 1 / std::sin(pi / 3), 2e-4);
     EXPECT_EQ(perez_state({100, 0, 3}, sun).clearness, 1);
     EXPECT_EQ(perez_state({0, 0, 3}, sun).clearness, 1);
     EXPECT_EQ(perez_state({10, 900, 3}, sun).clearness, 12.01);
@@ -76,7 +78,7 @@ TEST(PerezSky, IsNormalizedInEveryBinAndBrighterTowardsTheSunWhereItIsClear) {
     }
 }
 
-TEST(PerezSky, ASunBelowTheHorizonCountsAsOnIt) {
+TEST(PerezSky, ASunBelowTheHorizonIsMovedToIt) {
     const SkyModel sky = perez_sky({5, 0, 172}, sky_direction(-3, 300));
     EXPECT_NEAR(norm(sky.sun), 1, 1e-12);
     EXPECT_EQ(sky.sun.z, 0);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::array<std::size_t, 7> tregenza{30, 30, 24, 24, 18, 12, 6};
 
-/// Azimuth clockwise from y.
+/// Returns a direction; the azimuth is clockwise from y.
 Normal direction(double altitude, double azimuth) {
     return {std::cos(altitude) * std::sin(azimuth), std::cos(altitude) * std::cos(azimuth), std::sin(altitude)};
 }
@@ -50,7 +50,7 @@ std::size_t SkyPatches::of(const Vec3& w) const {
     return first_[row] + static_cast<std::size_t>(at) % in_row_[row];
 }
 
-/// All rows are cut at the borders of all rows, so that neighbours share their corners.
+/// All rows are split at the borders of all rows, so that neighbouring facets share their corners.
 void SkyPatches::make_facets() {
     DistantLight ground;
     SkyModel below = uniform_sky();

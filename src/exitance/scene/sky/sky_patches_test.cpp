@@ -8,10 +8,10 @@
 
 namespace exitance {
 
-TEST(SkyPatches, AreAsManyAsTheirAuthorsSayAndFillTheSky) {
+TEST(SkyPatches, HaveThePublishedNumberAndCoverTheSky) {
     for (const auto& [m, count] : {std::pair{1, 145u}, {2, 577u}, {4, 2305u}}) {
         const SkyPatches patches(m);
-        EXPECT_EQ(patches.size(), count + 1);  // the ground
+        EXPECT_EQ(patches.size(), count + 1);  // plus the ground
         double solid_angle = 0;
         for (std::size_t p = 1; p < patches.size(); ++p) {
             solid_angle += patches.solid_angle(p);
@@ -37,20 +37,22 @@ TEST(SkyPatches, EveryDirectionMeetsOneFacetOfItsPatch) {
                 inside = dot(cross(facet.corners[(k + 1) % facet.corners.size()], facet.corners[k]), w) > 0;
             if (!inside) continue;
             ++met;
-            beside += patches.patch_of_facet()[f] != patches.of(w);  // rows are cut by great circles
+            // Edges of facets are great circles, borders of rows are not.
+            beside += patches.patch_of_facet()[f] != patches.of(w);
         }
         EXPECT_EQ(met, 1) << i;
     }
     EXPECT_LT(beside, 40);
 }
 
-TEST(SkyPatches, MeansOfASkyBringItsIrradiance) {
+TEST(SkyPatches, MeansOfASkyGiveItsIrradiance) {
     const SkyPatches patches(2);
     const SkyModel sky = cie_sky(12, Normal{0.6, 0, 0.8});
     const std::vector<double> means = patches.mean_values(sky);
     double horizontal = 0;
     for (std::size_t p = 1; p < patches.size(); ++p) horizontal += means[p] * patches.horizontal(p);
-    EXPECT_NEAR(horizontal * sky.scale / pi, 1, 2e-3);  // the cosine does not vary with the sky within a patch
+    // The mean ignores that cosine and sky vary together within a patch.
+    EXPECT_NEAR(horizontal * sky.scale / pi, 1, 2e-3);
 }
 
 }  // namespace exitance

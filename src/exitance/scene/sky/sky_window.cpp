@@ -8,8 +8,9 @@
 namespace exitance {
 namespace {
 
-constexpr double glass_is_smooth = 0.8;  ///< Radians: rules of degree 4 leave 1e-4 of a pane's transmission.
-constexpr int across = 9;                ///< Directions that are looked at, out of the window, by a half plane's row.
+/// Radians: a rule of degree 4 has an error of 1e-4 of a pane's transmission at this width.
+constexpr double glass_smooth_width = 0.8;
+constexpr int directions_per_row = 9;  ///< Number of sampled directions out of the window, per row of a half plane.
 
 }  // namespace
 
@@ -27,7 +28,7 @@ SkyWindow::Half::Half(const SkyModel& model, double irradiance)
       is_uniform(model.is_uniform()),
       has_tables(!model.intermediate && !model.blends_ground) {
     if (is_uniform || !has_tables) return;
-    // As `SkyModel::value`, of which each factor is asked for where the other is known.
+    // The factors of `SkyModel::value`, each evaluated with the other one constant.
     SkyModel height = model, sun = model;
     height.c = height.e = 0, height.f0 = 1;
     sun.a = sun.g = 0;
@@ -38,13 +39,13 @@ SkyWindow::Half::Half(const SkyModel& model, double irradiance)
         by_sun[static_cast<std::size_t>(i)] =
             static_cast<float>(sun.value((1 - 2 * x * x) * model.sun + (2 * x * y) * frame.u));
     }
-    // Below 0 values count as 0, which the product of two such would not.
+    // Negative values are replaced by 0, but the product of two negative factors would be positive: use no tables then.
     for (const Table* table : {&by_height, &by_sun})
         has_tables = has_tables && std::all_of(table->begin(), table->end(), [](float v) { return v > 0; });
 }
 
 SkyWindow::SkyWindow(const Pane& pane, const DistantLight& light, std::size_t band)
-    : n_(pane.n), width_(glass_is_smooth) {
+    : n_(pane.n), width_(glass_smooth_width) {
     for (int i = 0; i <= steps + 1; ++i)
         through_[static_cast<std::size_t>(i)] =
             static_cast<float>(pane.transmission(std::min(1.0, static_cast<double>(i) / steps))[band]);
@@ -52,12 +53,12 @@ SkyWindow::SkyWindow(const Pane& pane, const DistantLight& light, std::size_t ba
         if (dome.irradiance[band] > 0) halves_.emplace_back(dome.model, dome.irradiance[band]);
     const Frame frame(-n_);
     double sum = 0;
-    for (int i = 0; i < across; ++i)
-        for (int k = 0; k < across; ++k) {
-            const double x = (2.0 * i + 1) / across - 1, y = (2.0 * k + 1) / across - 1;
+    for (int i = 0; i < directions_per_row; ++i)
+        for (int k = 0; k < directions_per_row; ++k) {
+            const double x = (2.0 * i + 1) / directions_per_row - 1, y = (2.0 * k + 1) / directions_per_row - 1;
             const double out = std::sqrt(std::max(0.04, 1 - x * x - y * y));
             const Vec3 w = normalized(frame.to_world(x, y, out));
-            sum += relative(w) / (across * across);
+            sum += relative(w) / (directions_per_row * directions_per_row);
             for (const Half& half : halves_)
                 if (half.sky->below == (w.z < 0)) width_ = std::min(width_, half.sky->smooth_width(w));
         }

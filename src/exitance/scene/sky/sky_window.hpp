@@ -8,29 +8,30 @@
 
 namespace exitance {
 
-/// The sky as it is seen through a pane, in one band: radiance by direction times what the pane lets through.
+/// The sky seen through a pane, in one band: directional radiance times the transmission of the pane.
 class SkyWindow {
   public:
-    /// The pane's normal leads inwards. `light` must outlive it.
+    /// The pane's normal must point inwards. `light` must outlive it.
     SkyWindow(const Pane& pane, const DistantLight& light, std::size_t band);
 
-    /// Seen in a direction w of length 1, out of the window, over `reference`. Tables are right to 1e-5.
+    /// Returns the radiance seen in direction w (unit vector, out of the window), relative to `reference`. The tables
+    /// have an error of 1e-5.
     double relative(const Vec3& w) const {
         double sum = 0;
         for (const Half& half : halves_)
             if (half.sky->below == (w.z < 0)) sum += half.scale * half.value(w);
         return sum > 0 ? sum * at(through_, -dot(n_, w)) : 0;
     }
-    /// pi times radiance in the mean over directions, W/m^2.
+    /// Returns pi times the mean radiance over directions, W/m^2.
     double reference() const { return reference_; }
     bool is_dark() const { return !(reference_ > 0); }
-    /// Over how wide an angle it is smooth but at the horizon, radians.
+    /// Returns the angle over which it is smooth except at the horizon, radians.
     double smooth_width() const { return width_; }
 
   private:
     static constexpr int steps = 1024;
     using Table = std::array<float, steps + 2>;
-    /// Linear between entries, x from 0 to 1.
+    /// Linear interpolation between entries, x from 0 to 1.
     static double at(const Table& table, double x) {
         const double place = std::clamp(x, 0.0, 1.0) * steps;
         const int i = static_cast<int>(place);
@@ -41,7 +42,7 @@ class SkyWindow {
         const SkyModel* sky;
         double scale;
         bool is_uniform, has_tables;
-        Table by_height, by_sun;  ///< The model's two factors: by w.z, by the sine of half the angle to the sun.
+        Table by_height, by_sun;  ///< The model's two factors: by w.z, and by the sine of half the angle to the sun.
 
         Half(const SkyModel& model, double irradiance);
         double value(const Vec3& w) const {

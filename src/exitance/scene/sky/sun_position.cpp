@@ -12,14 +12,14 @@ struct Term {
     double a, b, c;
 };
 
-/// Sum of A cos(B + C t), t in millennia from 2000.
+/// Returns the sum of A cos(B + C t), t in millennia from 2000.
 double series(std::span<const Term> terms, double t) {
     double sum = 0;
     for (const auto& [a, b, c] : terms) sum += a * std::cos(b + c * t);
     return sum;
 }
 
-// Terms of VSOP87 for the Earth, 1e-8 rad and 1e-8 AU [Reda04].
+// Terms of VSOP87 for the Earth, in 1e-8 rad and 1e-8 AU [Reda04].
 constexpr Term longitude_0[] = {{175347046, 0, 0},           {3341656, 4.6692568, 6283.07585},
                                 {34894, 4.6261, 12566.1517}, {3497, 2.7441, 5753.3849},
                                 {3418, 2.8289, 3.5231},      {3136, 3.6277, 77713.7715},
@@ -61,14 +61,14 @@ double julian_day(const LocalTime& time) {
 }
 
 SunPosition sun_position(const LocalTime& time, const Place& place) {
-    constexpr double delta_t = 69;  // seconds from universal to terrestrial time, of this century's first decades
+    constexpr double delta_t = 69;  // seconds from universal to terrestrial time, in the first decades of this century
     const double universal = julian_day(time), terrestrial = universal + delta_t / 86400;
     const double century = (terrestrial - 2451545) / 36525, t = century / 10;
     const double earth =
         (series(longitude_0, t) + t * series(longitude_1, t) + t * t * series(longitude_2, t)) / 1e8;  // rad
     const double distance = (series(distance_0, t) + t * series(distance_1, t)) / 1e8;                 // AU
 
-    // Nutation by its four largest terms, seconds of arc.
+    // The four largest terms of the nutation, arc seconds.
     const double node = (125.04452 - 1934.136261 * century) * degree, sun = (280.4665 + 36000.7698 * century) * degree,
                  moon = (218.3165 + 481267.8813 * century) * degree;
     const double in_longitude =
@@ -83,7 +83,7 @@ SunPosition sun_position(const LocalTime& time, const Place& place) {
     const double declination = std::asin(std::sin(obliquity) * std::sin(lambda));
     const double since = universal - 2451545, turned = since / 36525;
     const double sidereal = 280.46061837 + 360.98564736629 * since + 0.000387933 * turned * turned +
-                            in_longitude / 3600 * std::cos(obliquity);  // of Greenwich, degrees
+                            in_longitude / 3600 * std::cos(obliquity);  // sidereal time of Greenwich, degrees
     const double hour_angle = (std::fmod(sidereal, 360.0) + place.longitude) * degree - ascension;
 
     const double phi = place.latitude * degree;
@@ -94,7 +94,8 @@ SunPosition sun_position(const LocalTime& time, const Place& place) {
     double altitude = std::asin(std::fmin(1.0, std::fmax(-1.0, sine)));
     altitude -= 8.794 / 3600 * degree / distance * std::cos(altitude);  // parallax
     double shown = altitude / degree;
-    constexpr double lowest = -0.5667 - 0.26667;  // where the disc is gone no refraction counts
+    // Degrees; below it the disc is not visible and there is no refraction.
+    constexpr double lowest = -0.5667 - 0.26667;
     if (shown > lowest)
         shown += place.pressure / 1010 * 283 / (273 + place.temperature) * 1.02 /
                  (60 * std::tan((shown + 10.3 / (shown + 5.11)) * degree));

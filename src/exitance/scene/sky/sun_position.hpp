@@ -4,41 +4,41 @@
 
 namespace exitance {
 
-/// A moment in the Gregorian calendar, in local standard time.
+/// A time in the Gregorian calendar, in local standard time.
 struct LocalTime {
     int year = 2021, month = 1, day = 1;
-    double hour = 12;  ///< 0 to 24, with its fraction.
-    double zone = 0;   ///< Hours by which it is ahead of universal time.
+    double hour = 12;  ///< 0 to 24, including the fraction.
+    double zone = 0;   ///< Hours ahead of universal time.
 };
 bool is_date(int year, int month, int day);
-int day_of_year(int year, int month, int day);  ///< From 1.
-/// Days from noon of 1 January 4713 BC, universal time.
+int day_of_year(int year, int month, int day);  ///< 1 for 1 January.
+/// Returns the days since noon of 1 January 4713 BC, universal time.
 double julian_day(const LocalTime& time);
 
-/// Where an observer stands. Degrees, north and east positive.
+/// Position of an observer. Degrees, north and east positive.
 struct Place {
     double latitude = 0, longitude = 0;
-    double elevation = 0;     ///< m above the sea.
-    double pressure = 1013;   ///< mbar, of the year's mean: for refraction;
-    double temperature = 12;  ///< degrees C.
+    double elevation = 0;     ///< Metres above sea level.
+    double pressure = 1013;   ///< Annual mean in mbar, for refraction.
+    double temperature = 12;  ///< Annual mean in degrees C, for refraction.
 };
 
-/// Where the sun stands in the sky, degrees.
+/// Position of the sun in the sky, degrees.
 struct SunPosition {
-    double altitude = 0;  ///< Above the horizon, as refraction shows it;
+    double altitude = 0;  ///< Above the horizon, including refraction;
     double azimuth = 0;   ///< from north towards east, 0 to 360.
 };
 
-/// Apparent place of the sun's centre: the Earth's heliocentric longitude, latitude and distance by the largest terms
-/// of VSOP87, nutation, aberration, parallax and refraction. Within 0.003 degrees from 1950 to 2050. Source:
-/// [Reda04], [Meeus98].
+/// Returns the apparent position of the sun's centre: heliocentric longitude, latitude and distance of the Earth by the
+/// largest terms of VSOP87, nutation, aberration, parallax and refraction. Error at most 0.003 degrees from 1950 to
+/// 2050. Source: [Reda04], [Meeus98].
 SunPosition sun_position(const LocalTime& time, const Place& place);
 
-/// The unit vector towards a place in the sky, in a scene whose y axis points `north` degrees west of north: turning y
-/// by `north` clockwise, seen from above, gives north. x is to the right of y.
+/// Returns the unit vector to a position in the sky, in a scene whose y axis points `north` degrees west of north:
+/// rotating y by `north` clockwise, seen from above, gives north. x is to the right of y.
 Normal sky_direction(double altitude, double azimuth, double north = 0);
 
-/// Half the angle under which the sun is seen, radians (0.533 degrees across).
+/// Half of the sun's angular diameter, radians (0.533 degrees across).
 constexpr double sun_half_angle = 0.2665 * pi / 180;
 
 }  // namespace exitance

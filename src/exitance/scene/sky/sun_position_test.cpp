@@ -12,8 +12,9 @@ TEST(SunPosition, IsThatOfThePublishedCase) {
     EXPECT_NEAR(sun.azimuth, 194.34024, 0.001);
 }
 
-TEST(SunPosition, StandsOverTheTropicAtTheSolstice) {
-    // June solstice 2020: 20 June, 21:44 universal time; declination 23.4365 degrees. At 0 N, over its meridian.
+TEST(SunPosition, IsAboveTheTropicAtTheSolstice) {
+    // June solstice 2020: 20 June, 21:44 universal time; declination 23.4365 degrees. At latitude 0, on the meridian of
+    // the sun.
     double highest = -90;
     for (int i = 0; i < 4000; ++i) {
         const LocalTime time{2020, 6, 20, 21.4 + i * 2e-4, 0};
@@ -32,10 +33,10 @@ TEST(SunPosition, JulianDaysAndDates) {
     EXPECT_FALSE(is_date(2023, 13, 1));
 }
 
-TEST(SunPosition, NorthTurnsWithTheScene) {
+TEST(SunPosition, NorthRotatesWithTheScene) {
     const Normal south = sky_direction(0, 180), turned = sky_direction(0, 180, 90);
     EXPECT_NEAR(south.y, -1, 1e-12);
-    EXPECT_NEAR(turned.x, -1, 1e-12);  // north lies towards +x, south towards -x
+    EXPECT_NEAR(turned.x, -1, 1e-12);  // north is towards +x, south towards -x
 }
 
 }  // namespace exitance

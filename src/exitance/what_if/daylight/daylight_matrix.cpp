@@ -14,10 +14,10 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_sweeps = 200;
-constexpr double converged = 2e-4;  ///< Change of a sweep, relative RMS.
+constexpr std::size_t max_sweeps = 200;
+constexpr double max_change = 2e-4;  ///< Relative RMS change of a sweep.
 
-/// Where rays of one element end: a leaf or a patch of the sky, and how many of them.
+/// Ends of an element's rays: leaves or patches of the sky, with their share of the rays.
 struct Row {
     std::vector<std::pair<std::uint32_t, float>> leaves, patches;
 };
@@ -54,7 +54,7 @@ class MatrixMaker {
         });
     }
 
-    /// rho E of every leaf by every patch.
+    /// Solves for rho E of every leaf and every patch. Returns the number of sweeps.
     std::size_t solve() {
         const std::size_t n = rows_.size(), m = patches_.size();
         std::vector<float> rho(n), fresh(n * m);
@@ -62,7 +62,7 @@ class MatrixMaker {
             rho[i] =
                 static_cast<float>(luminous_sum(stage_.scene.material(tree_.region(numbering_.leaves[i])).reflectance));
         reflected_.assign(n * m, 0);
-        for (std::size_t sweep = 1; sweep <= most_sweeps; ++sweep) {
+        for (std::size_t sweep = 1; sweep <= max_sweeps; ++sweep) {
             parallel_for(n, 16, [&](std::size_t i) {
                 const std::span<float> out(&fresh[i * m], m);
                 std::fill(out.begin(), out.end(), 0.0f);
@@ -80,12 +80,12 @@ class MatrixMaker {
                 return Norms{change * change, double(fresh[k]) * double(fresh[k])};
             });
             reflected_.swap(fresh);
-            if (norms.change <= converged * converged * norms.size) return sweep;
+            if (norms.change <= max_change * max_change * norms.size) return sweep;
         }
-        return most_sweeps;
+        return max_sweeps;
     }
 
-    /// Reflected light at a sensor.
+    /// Gathers reflected light at a sensor.
     void gather(const Receiver& sensor, std::size_t number, std::span<float> out) const {
         Ends ends;
         std::vector<std::pair<std::uint32_t, float>> leaves;
@@ -104,7 +104,7 @@ class MatrixMaker {
         std::vector<std::uint32_t> leaves, patches;
     };
 
-    /// `sides`: the region where rays are to leave a diffusing pane by both, else none.
+    /// `sides`: the region if rays leave a diffusing pane from both sides, otherwise none.
     template <class Place>
     void cast(unsigned rays, std::uint64_t key, RegionId own, RegionId sides, const Normal& n, Ends& ends,
               const Place& place) const {
@@ -154,10 +154,10 @@ class MatrixMaker {
     LeafNumbering numbering_;
     ElementLocator locator_;
     std::vector<Row> rows_;
-    std::vector<float> reflected_;  ///< rho E, a row a leaf.
+    std::vector<float> reflected_;  ///< rho E, one row per leaf.
 };
 
-/// The directions of a patch's facet: within planes through the sensor.
+/// Directions of a patch's facet, bounded by planes through the sensor.
 struct Cone {
     std::vector<Vec3> inward;
     std::uint32_t patch = 0;
@@ -176,7 +176,7 @@ std::vector<Cone> cones_of(const SkyPatches& patches) {
     return out;
 }
 
-/// The part of a convex polygon within a cone, in place; empty where there is none.
+/// Clips a convex polygon to a cone, in place; empty if they do not overlap.
 void clip_to(const Cone& cone, std::vector<Vec3>& polygon, std::vector<Vec3>& room) {
     for (const Vec3& n : cone.inward)
         if (std::all_of(polygon.begin(), polygon.end(), [&](const Vec3& r) { return dot(n, r) <= 0; }))
@@ -194,7 +194,8 @@ void clip_to(const Cone& cone, std::vector<Vec3>& polygon, std::vector<Vec3>& ro
     }
 }
 
-/// The exact visible part of every patch at a sensor: that of the sky's two halves, cut along the patches.
+/// Exact visible part of every patch at a sensor: visible parts of the upper and lower half of the sky, clipped to the
+/// patches.
 class PatchView {
   public:
     PatchView(const Stage& stage, const std::vector<Cone>& cones) : stage_(stage), cones_(cones) {}

@@ -8,20 +8,20 @@
 
 namespace exitance {
 
-/// How a daylight matrix is made.
+/// Settings of a daylight matrix.
 struct DaylightOptions {
-    double elements = 6000;         ///< About how many, that interreflection goes between.
-    double rays_an_element = 256;   ///< On average.
-    unsigned rays_a_sensor = 2048;  ///< For reflected light; a power of two.
+    double elements = 6000;         ///< Approximate number of elements for interreflection.
+    double rays_an_element = 256;   ///< Average number of rays per element.
+    unsigned rays_a_sensor = 2048;  ///< Rays per sensor for reflected light; a power of two.
     std::uint64_t seed = 1;
 };
 
-/// Light of every patch of the sky at every sensor, lx of 1 cd/m^2 (or W/m^2 of 1 W/(m^2 sr)), bands weighted by
+/// Light of every patch of the sky at every sensor: lx per cd/m^2 (or W/m^2 per W/(m^2 sr)), bands weighted by
 /// `luminous_weights()`.
 struct DaylightMatrix {
     std::size_t patches = 0;
-    std::vector<float> direct;     ///< Row by sensor: from the sky itself, and through glass.
-    std::vector<float> reflected;  ///< After at least one reflection.
+    std::vector<float> direct;     ///< Row by row, one per sensor: light that arrives from the sky, also through glass.
+    std::vector<float> reflected;  ///< Light after at least one reflection.
 
     std::size_t sensors() const { return patches > 0 ? direct.size() / patches : 0; }
     double total(std::size_t sensor, std::size_t patch) const {
@@ -29,13 +29,13 @@ struct DaylightMatrix {
     }
 };
 
-/// One transport with as many right-hand sides as there are patches:
+/// Computes a daylight matrix with one transport and one right-hand side per patch:
 ///
-///     E = S + F rho E,     S what elements see of the patches, F what they see of each other, both by the same rays,
+///     E = S + F rho E,     S: light of patches on elements, F: transport between elements, both by the same rays,
 ///
-/// by Jacobi's iteration over all columns at once; then at the sensors the exact visible part of every patch, and a
-/// gather of rho E by rays. The scene's own emitters are off. O(rays + iterations x rays x patches).
-/// scene    its light from outside is replaced
+/// by Jacobi iteration over all columns at once. Then computes the exact visible part of every patch at the sensors,
+/// and a gather of rho E by rays. The scene's own emitters are off; its light from outside is replaced by the patches.
+/// O(rays + iterations x rays x patches).
 DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
                                     const DaylightOptions& options, Progress& progress);
 

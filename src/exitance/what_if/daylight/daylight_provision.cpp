@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// The half of all hours with most diffuse light.
+/// Indices of the half of all hours with the most diffuse light.
 std::vector<std::size_t> daylight_hours(std::span<const DaylightHour> hours) {
     std::vector<std::size_t> order(hours.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -23,7 +23,7 @@ std::vector<std::size_t> daylight_hours(std::span<const DaylightHour> hours) {
     return order;
 }
 
-/// What at least half of some values reach.
+/// Largest value that at least half of the values reach.
 double reached_by_half(std::vector<double> values) {
     if (values.empty()) return 0;
     const auto wanted =
@@ -77,10 +77,10 @@ DaylightProvision daylight_provision(const DaylightYear& year, std::span<const D
 
 std::vector<double> sunlight_hours(const Scene& scene, std::span<const ProbePoint> sensors, const DaylightSite& site,
                                    double zone, const SunDay& day) {
-    constexpr int steps_an_hour = 30, year = 2021;
+    constexpr int steps_per_hour = 30, year = 2021;
     std::vector<Normal> suns;
-    for (int step = 0; step < 24 * steps_an_hour; ++step) {
-        const double hour = (step + 0.5) / steps_an_hour;
+    for (int step = 0; step < 24 * steps_per_hour; ++step) {
+        const double hour = (step + 0.5) / steps_per_hour;
         const SunPosition at = sun_position({year, day.month, day.day, hour, zone}, site.place);
         if (at.altitude > std::max(0.0, day.least_altitude))
             suns.push_back(sky_direction(at.altitude, at.azimuth, site.north));
@@ -96,7 +96,7 @@ std::vector<double> sunlight_hours(const Scene& scene, std::span<const ProbePoin
             std::vector<PunctualLight> light(1);
             light[0].kind = PunctualLight::Kind::directional, light[0].direction = -sun;
             light[0].intensity = Spectrum(1);
-            if (max(Beams(light, occluders).irradiance(at)) > 0) out[i] += 1.0 / steps_an_hour;
+            if (max(Beams(light, occluders).irradiance(at)) > 0) out[i] += 1.0 / steps_per_hour;
         }
     });
     return out;

@@ -8,15 +8,15 @@
 namespace exitance {
 namespace {
 
-/// Eight hours, of which the four with diffuse light are daylight.
+/// Eight hours; the four with diffuse light are the daylight hours.
 std::vector<DaylightHour> hours() {
     std::vector<DaylightHour> out(8);
     for (std::size_t h = 0; h < 4; ++h) out[2 + h].diffuse_horizontal = 100 + 10 * static_cast<double>(h);
     return out;
 }
 
-TEST(DaylightProvision, LevelsAreThoseOfTheStandard) {
-    // Twenty sensors: half of the daylight hours bring 400 lx to eleven, 120 lx to eight and 90 lx to one of them.
+TEST(DaylightProvision, LevelsAgreeWithTheStandard) {
+    // Twenty sensors. In half of the daylight hours, eleven reach 400 lx, eight 120 lx and one 90 lx.
     DaylightYear year;
     year.sensors = 20;
     year.illuminance.assign(8 * 20, 0), year.sun = year.illuminance;
@@ -40,7 +40,7 @@ TEST(DaylightProvision, LevelsAreThoseOfTheStandard) {
     EXPECT_EQ(p.by_factor.level(), 2);
 }
 
-/// A floor under a canopy at 3 m that leaves the south open, and a house 10 m away with a window in between or not.
+/// A room that is open to the south, optionally with a window in the opening, and a wall 10 m away.
 Scene porch(bool pane) {
     SceneDescription d;
     d.groups = {"all"}, d.materials = {{"grey", Spectrum(0.5), Spectrum()}};
@@ -52,7 +52,7 @@ Scene porch(bool pane) {
         }
         d.faces.push_back(f);
     };
-    // A room of 4 x 4 x 3 m without its wall at y = 0, but for two pieces that leave 2 m open.
+    // A room of 4 x 4 x 3 m. Its wall at y = 0 has an opening 2 m wide.
     face({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});
     face({{0, 0, 3}, {0, 4, 3}, {4, 4, 3}, {4, 0, 3}});
     face({{0, 4, 0}, {4, 4, 0}, {4, 4, 3}, {0, 4, 3}});
@@ -67,26 +67,25 @@ Scene porch(bool pane) {
     return std::move(*made.scene);
 }
 
-TEST(ViewOut, AnglesDistancesAndLayersAreThoseOfTheWindow) {
+TEST(ViewOut, AnglesDistancesAndLayersAgreeWithTheWindow) {
     const std::vector<Point> eyes{{2, 3, 1.2}, {2, 1, 1.2}};
     const std::vector<ViewOut> views = views_out(porch(true), eyes);
     // The window is 2 m wide: 2 atan(1/3) and 2 atan(1/1).
     EXPECT_NEAR(views[0].sight_angle, 36.87, 0.26);
     EXPECT_NEAR(views[1].sight_angle, 90, 0.26);
-    // 13 m straight on, and 1 / cos of the angle farther at the sides; the median is half-way to the edge.
+    // 13 m straight ahead, 1 / cos of the angle at the sides; the median is half-way to the edge.
     EXPECT_NEAR(views[0].distance, 13 / std::cos(0.5 * std::atan(1.0 / 3)), 0.05);
     EXPECT_TRUE(views[0].landscape);
     EXPECT_TRUE(views[0].sky);
     EXPECT_EQ(views[0].level(), 1);
     EXPECT_EQ(ViewOut().level(), 0);
     EXPECT_EQ((ViewOut{60, HUGE_VAL, true, true, true}.level()), 3);
-    // Without a pane nothing tells the street's wall from one of the room.
+    // Without a pane, the wall along the street counts as one of the room.
     EXPECT_FALSE(views_out(porch(false), eyes)[0].landscape);
 }
 
-TEST(SunlightHours, AreThoseOfTheSunThroughAWindow) {
-    // The window looks south: in front of it the sun is seen all day, and the farther into
-    // the room the shorter.
+TEST(SunlightHours, AgreeWithTheSunThroughAWindow) {
+    // The window faces south: in front of it the sun is visible all day, deeper in the room for shorter times.
     const DaylightSite site{.place = {47.4, 8.5, 400}};
     const std::vector<ProbePoint> sensors{{{2, -1, 1}, {0, 0, 1}}, {{2, 3.9, 0.1}, {0, 0, 1}}, {{2, 1, 0}, {0, 0, 1}}};
     const std::vector<double> hours = sunlight_hours(porch(true), sensors, site, 1, {});
@@ -94,8 +93,8 @@ TEST(SunlightHours, AreThoseOfTheSunThroughAWindow) {
     EXPECT_GT(hours[2], 1);
     EXPECT_LT(hours[1], hours[2]);
     const std::vector<double> high = sunlight_hours(porch(true), sensors, site, 1, {3, 21, 40});
-    // cos H = (sin 39.98 - sin 47.4 sin 0.43) / (cos 47.4 cos 0.43): H = 19.8 degrees on either side of noon; 0.43 is
-    // the declination, and refraction lifts by 0.02.
+    // cos H = (sin 39.98 - sin 47.4 sin 0.43) / (cos 47.4 cos 0.43): H = 19.8 degrees on either side of noon, where
+    // 0.43 is the declination, and refraction raises the sun by 0.02.
     EXPECT_NEAR(high[0], 2 * 19.8 / 15, 0.05);
 }
 

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// Ground, or a room of 3 x 4 x 2.5 m whose wall at y = 0 is open from z = 1 to 2.
+/// Ground, or a room of 3 x 4 x 2.5 m whose wall at y = 0 has an opening from z = 1 to 2.
 Scene scene(bool room, const DistantLight& light = {}) {
     SceneDescription d;
     d.file = "day.obj";
@@ -49,7 +49,7 @@ std::vector<DaylightHour> day() {
 
 }  // namespace
 
-TEST(Daylight, InTheOpenItIsThatOfTheWeather) {
+TEST(Daylight, InTheOpenAgreesWithTheWeather) {
     const Scene open = scene(false);
     const SkyPatches patches(1);
     const std::vector<ProbePoint> sensors{{{1, 1, 0}, {0, 0, 1}}, {{1, 1, 1}, {0, 0, 1}}};
@@ -71,10 +71,10 @@ TEST(Daylight, InTheOpenItIsThatOfTheWeather) {
     const DaylightSummary summary = summarize(metrics, hours);
     EXPECT_EQ(summary.occupied_hours, 10u);
     EXPECT_EQ(summary.spatial_autonomy, 1);
-    EXPECT_EQ(summary.sunlight_exposure, 0);  // a day has no 250 hours
+    EXPECT_EQ(summary.sunlight_exposure, 0);  // a day has less than 250 hours
 }
 
-TEST(Daylight, OfARoomItIsThatOfASolveUnderTheSameSky) {
+TEST(Daylight, InARoomAgreesWithASolveUnderTheSameSky) {
     SkyModel below = uniform_sky();
     below.below = true;
     const Scene lit = scene(true, {{{overcast_sky(), Spectrum(100.0)}, {below, Spectrum(20.0)}}, {}});
@@ -92,9 +92,9 @@ TEST(Daylight, OfARoomItIsThatOfASolveUnderTheSameSky) {
         EXPECT_NEAR(metrics[i].daylight_factor, light[i].irradiance[0], 0.04 * light[i].irradiance[0]) << i;
 }
 
-TEST(Daylight, OfASensorOnTheLineOfAWallIsThatFromInside) {
-    // The limits from inside of the walls' lines, and in free space in the plane of a wall. Light changes by some
-    // tenths of a percent from there to the places beside them, and some of the rays of reflected light meet another
+TEST(Daylight, OnTheEdgeOfAWallIsThatInside) {
+    // Sensors on the edges of walls and in free space in the plane of a wall have the light inside the room. At
+    // neighbouring points it differs by a few tenths of a per cent, and some rays of reflected light hit another
     // element.
     const Scene dark = scene(true);
     const std::vector<ProbePoint> on{{{0, 2, 0}, {0, 0, 1}},

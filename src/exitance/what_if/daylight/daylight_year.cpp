@@ -11,8 +11,8 @@
 namespace exitance {
 namespace {
 
-/// A sky's patches as luminances, cd/m^2, which bring `diffuse` lx to the ground; the ground's own is left to the
-/// caller.
+/// Luminances of a sky's patches, cd/m^2, scaled to `diffuse` lx on the ground. The ground's own luminance must be set
+/// by the caller.
 std::vector<double> luminances(const SkyModel& sky, const SkyPatches& patches, double diffuse) {
     std::vector<double> out = patches.mean_values(sky);
     double horizontal = 0;
@@ -21,8 +21,8 @@ std::vector<double> luminances(const SkyModel& sky, const SkyPatches& patches, d
     return out;
 }
 
-/// The sun's light as luminances of the four patches nearest to it, by how near they are: what is reflected does not
-/// tell the two apart.
+/// Distributes the sun's light to the four nearest patches as luminances, weighted by inverse distance; for reflected
+/// light, the difference is negligible.
 std::vector<std::pair<std::size_t, double>> sun_in_patches(const Normal& sun, const SkyPatches& patches,
                                                            double normal) {
     constexpr std::size_t count = 4;
@@ -42,10 +42,10 @@ std::vector<std::pair<std::size_t, double>> sun_in_patches(const Normal& sun, co
     return out;
 }
 
-/// What one hour's sky and sun are.
+/// Sky and sun of one hour.
 struct HourLight {
     std::vector<double> patches;                         ///< cd/m^2
-    std::vector<std::pair<std::size_t, double>> of_sun;  ///< cd/m^2, for reflected light alone.
+    std::vector<std::pair<std::size_t, double>> of_sun;  ///< cd/m^2, for reflected light only.
     Normal sun;
     double direct = 0;  ///< lx
     bool is_dark = true;
@@ -95,7 +95,7 @@ DaylightYear daylight_year(const Scene& scene, std::span<const ProbePoint> senso
             float sum = 0;
             for (std::size_t p = 0; p < m; ++p) sum += row[p] * luminance[p];
             double straight = 0, reflected = 0;
-            // Of patches that a sensor sees nothing of it sees no sun.
+            // A sensor that sees none of the sun's patches does not see the sun.
             const auto is_seen = [&](const auto& part) { return matrix.direct[i * m + part.first] > 0; };
             if (light.direct > 0 && dot(light.sun, at[i].n) > 0 &&
                 std::any_of(light.of_sun.begin(), light.of_sun.end(), is_seen)) {
@@ -112,7 +112,7 @@ DaylightYear daylight_year(const Scene& scene, std::span<const ProbePoint> senso
 std::vector<DaylightMetrics> daylight_metrics(const DaylightYear& year, const SkyPatches& patches,
                                               const DaylightMatrix& matrix, std::span<const DaylightHour> hours,
                                               const DaylightSite& site) {
-    constexpr double target = 300, glaring = 1000;  // lx
+    constexpr double target = 300, sunny = 1000;  // lx
     constexpr std::array<double, 3> limits{100, 300, 3000};
     const std::size_t n = year.sensors, m = patches.size();
     std::vector<double> overcast = luminances(overcast_sky(), patches, 1);
@@ -126,7 +126,7 @@ std::vector<DaylightMetrics> daylight_metrics(const DaylightYear& year, const Sk
             const double E = double(year.illuminance[h * n + i]);
             if (!is_occupied(hours[h].hour)) continue;
             ++occupied;
-            metrics.sunny_hours += double(year.sun[h * n + i]) > glaring;
+            metrics.sunny_hours += double(year.sun[h * n + i]) > sunny;
             metrics.autonomy += E >= target;
             std::size_t k = 0;
             while (k < limits.size() && E >= limits[k]) ++k;
@@ -140,13 +140,13 @@ std::vector<DaylightMetrics> daylight_metrics(const DaylightYear& year, const Sk
 }
 
 DaylightSummary summarize(std::span<const DaylightMetrics> metrics, std::span<const DaylightHour> hours) {
-    constexpr double half = 0.5, most_sunny_hours = 250;
+    constexpr double half = 0.5, max_sunny_hours = 250;
     DaylightSummary out;
     for (const DaylightHour& hour : hours) out.occupied_hours += is_occupied(hour.hour);
     for (const DaylightMetrics& m : metrics) {
         out.mean_daylight_factor += m.daylight_factor;
         out.spatial_autonomy += m.autonomy >= half;
-        out.sunlight_exposure += m.sunny_hours > most_sunny_hours;
+        out.sunlight_exposure += m.sunny_hours > max_sunny_hours;
     }
     const double n = std::max<double>(1, static_cast<double>(metrics.size()));
     out.mean_daylight_factor /= n, out.spatial_autonomy /= n, out.sunlight_exposure /= n;

@@ -9,7 +9,8 @@
 
 namespace exitance {
 
-/// Sensors as receivers of light, at the places that a PlaceFinder finds: those on a surface are moved into its plane.
+/// Returns sensors as receivers of light, at the places found by a PlaceFinder. Sensors on a surface are moved into its
+/// plane.
 std::vector<Receiver> sensor_places(const Scene& scene, const Occluders& occluders,
                                     std::span<const ProbePoint> sensors);
 

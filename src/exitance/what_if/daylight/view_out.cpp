@@ -12,13 +12,13 @@ namespace {
 
 constexpr int azimuths = 1440, heights = 37;
 constexpr double step_of_height = 2.5, degree = pi / 180;
-constexpr double looks_up = 0.7;  ///< Cosine to the vertical of faces that are ground.
+constexpr double min_upward_cosine = 0.7;  ///< Minimum cosine to the vertical of faces that count as ground.
 
 double elevation(int k) {
     return step_of_height * (k - heights / 2);
 }
 
-/// Is a pane met before something is, at `distance` along d?
+/// True if a ray along d meets a pane before `distance`.
 bool meets_pane(const Scene& scene, const Point& eye, const Vec3& d, double distance) {
     return std::any_of(scene.panes().begin(), scene.panes().end(), [&](const Pane& pane) {
         const double towards = dot(pane.n, d);
@@ -39,7 +39,7 @@ void note_layer(const Scene& scene, const RayHit& hit, int height, ViewOut& out)
     if (hit.surface.is_none()) {
         bool& layer = height > heights / 2 ? out.sky : height < heights / 2 ? out.ground : out.landscape;
         layer = true;
-    } else if (scene.surfaces()[hit.surface].normal.z * (hit.front ? 1 : -1) > looks_up)
+    } else if (scene.surfaces()[hit.surface].normal.z * (hit.front ? 1 : -1) > min_upward_cosine)
         out.ground = true;
     else
         out.landscape = true;

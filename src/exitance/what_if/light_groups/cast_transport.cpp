@@ -12,12 +12,12 @@
 namespace exitance {
 namespace {
 
-/// Rays met on one element, and what their light brings to the corners of the receiver.
+/// Rays that hit one element, and the contribution of its light to the corners of the receiver.
 struct Met {
     std::uint32_t element = 0;
     std::uint32_t rays = 0;
     std::array<double, 4> weight{};
-    bool is_parted = false;  ///< Something below it stands in the row by itself.
+    bool is_parted = false;  ///< True if some descendant has a separate entry in the row.
 
     void add(const Met& other) {
         rays += other.rays;
@@ -25,7 +25,7 @@ struct Met {
     }
 };
 
-/// One row of kept transport after the other; one object serves one thread.
+/// Computes rows of stored transport, one after the other. Each thread has its own object.
 class RowMaker {
   public:
     RowMaker(const Stage& stage, const Solution& solution, const TransportLayout& layout, const ElementLocator& locator,
@@ -37,7 +37,7 @@ class RowMaker {
           locator_(locator),
           demand_(demand) {}
 
-    /// `rays`: from every place. Returns how many that were.
+    /// `rays`: number from every sample point. Returns the total number of rays.
     std::size_t make(ElementId receiver, unsigned rays, std::vector<Met>& row) {
         const std::vector<WeightedPlace> places = element_rule(tree_, receiver, RuleOrder::fine);
         cast(receiver, places, rays);
@@ -49,7 +49,7 @@ class RowMaker {
     }
 
   private:
-    /// Leaves what the rays of all places met in the workspace.
+    /// Casts the rays of all sample points; their hits are left in the workspace.
     void cast(ElementId e, const std::vector<WeightedPlace>& places, unsigned rays) {
         static const PointwiseLight unread([](RegionId, const Point&) { return Spectrum(); });
         const RegionId region = tree_.region(e);
@@ -65,9 +65,9 @@ class RowMaker {
                       workspace_);
     }
 
-    /// What the rays met, by element, in descending order.
+    /// Counts hits per element, in descending order of elements.
     void count(ElementId e, const std::vector<WeightedPlace>& places, unsigned rays) {
-        // What a value at a place brings to the corners, by the nearest polynomial.
+        // contribution of a value at a sample point to the corners, by the nearest polynomial
         const ElementPolynomials polynomials(tree_, e, places, false);
         std::array<ElementPolynomials::Values, 4> at_corner{};
         const auto corners = static_cast<std::size_t>(tree_.patch(e).corner_count());
@@ -99,8 +99,9 @@ class RowMaker {
         if (!met_.empty()) met_.resize(last + 1);
     }
 
-    /// From the highest number on, so children before their parents: siblings become their parent, or stay in the row.
-    void merge(std::uint32_t most) {
+    /// Merges siblings into their parent, or keeps them in the row. Works from the highest element number, so that
+    /// children come before their parents.
+    void merge(std::uint32_t max_rays) {
         row_.clear(), above_.clear();
         std::size_t next = 0;
         const auto by_element = [](const Met& a, const Met& b) { return a.element < b.element; };
@@ -119,7 +120,7 @@ class RowMaker {
             }
             Met whole{parent.value, 0, {}, false};
             for (const Met& m : siblings_) whole.add(m), whole.is_parted |= m.is_parted;
-            if (!parent.is_none() && !whole.is_parted && whole.rays <= most && all_are_met(parent, whole.rays)) {
+            if (!parent.is_none() && !whole.is_parted && whole.rays <= max_rays && all_are_met(parent, whole.rays)) {
                 above_.push_back(whole);
             } else {
                 for (const Met& m : siblings_)
@@ -132,13 +133,13 @@ class RowMaker {
         std::reverse(row_.begin(), row_.end());
     }
 
-    /// Is every child met, or so small that so few rays may miss it?
+    /// True if every child is hit, or is so small that it may be missed by this number of rays.
     bool all_are_met(ElementId parent, std::uint32_t rays) const {
-        constexpr double expected = 3;  // by chance one in twenty is missed
+        constexpr double min_expected_rays = 3;  // expected number of hits: the probability of none is one in twenty
         for (const ElementId child : sources_.children(parent)) {
             const bool is_met =
                 std::any_of(siblings_.begin(), siblings_.end(), [&](const Met& m) { return m.element == child.value; });
-            if (!is_met && rays * sources_.area(child) > expected * sources_.area(parent)) return false;
+            if (!is_met && rays * sources_.area(child) > min_expected_rays * sources_.area(parent)) return false;
         }
         return true;
     }
@@ -151,10 +152,10 @@ class RowMaker {
     GatherWorkspace workspace_;
     std::vector<GatherPlace> gather_places_;
     std::vector<Met> met_, siblings_, row_;
-    std::vector<Met> above_;  ///< A heap: elements that stand for those below.
+    std::vector<Met> above_;  ///< A heap: elements that replace their children.
 };
 
-/// Mean square of rho (f - polynomial) on an element, the polynomial nearest to f at the places of a rule.
+/// Mean square of rho (f - polynomial) on an element, with the polynomial nearest to f at the points of a rule.
 double misfit_squared(const Solution& solution, ElementId e) {
     const ElementFunction& f = solution.indirect;
     const std::vector<WeightedPlace> places = element_rule(f.tree, e, RuleOrder::finer);

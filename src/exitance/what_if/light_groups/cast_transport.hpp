@@ -6,21 +6,21 @@
 
 namespace exitance {
 
-/// How finely transport is kept.
+/// Accuracy of the stored transport.
 struct CastDemand {
-    RayBudget rays;          ///< Of one place of a receiver.
-    double form_factor = 0;  ///< Below it what lies on one element together is that element's.
+    RayBudget rays;          ///< Rays from one sample point of a receiver.
+    double form_factor = 0;  ///< Sources of one parent element are merged if their total form factor is below this.
     std::uint64_t seed = 1;
 };
 
-/// The largest elements of `indirect` on which it is bilinear (linear) but for an RMS of rho E of at most `straight`,
-/// W/m^2.
+/// Returns the largest elements of `indirect` on which it is bilinear (linear on triangles) up to an RMS of rho E of at
+/// most `straight`, W/m^2.
 std::vector<std::uint32_t> choose_receivers(const Solution& solution, double straight);
 
-/// Transport to these receivers, by rays: as many from each place of a rule on the receiver, so that what they meet is
-/// gathered by the polynomial nearest to it. Rays that meet elements side by side count on the one above them while
-/// all of them are met, as far as so few rays can tell, and their form factor together is below the demand. `layout`:
-/// of the solution and the receivers. O(rays log rays). Rows stay empty once a stop is asked for.
+/// Computes transport to receivers by rays. Equal numbers of rays start from each point of a rule on the receiver, and
+/// the light that they meet is fitted by the nearest polynomial. Rays that hit sibling elements are attributed to the
+/// parent if all siblings are hit, as far as few rays can show, and their total form factor is below the demand.
+/// `layout`: of the solution and the receivers. Rows stay empty after a request to stop. O(rays log rays).
 KeptTransport cast_transport(const Stage& stage, const Solution& solution, std::vector<std::uint32_t> receivers,
                              const TransportLayout& layout, const CastDemand& demand, const StopRequest& stop);
 

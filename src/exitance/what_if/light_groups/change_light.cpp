@@ -50,7 +50,7 @@ Spectrum spectrum_of(const std::array<float, bands>& v) {
     return out;
 }
 
-/// The groups' sum, dimmed.
+/// Sums the groups' light, each multiplied by its factor.
 void add_up(const std::vector<LightGroup>& groups, CornerValues LightGroup::*values, CornerValues& out) {
     parallel_for(out.size(), 4096, [&](std::size_t i) {
         Spectrum sum;
@@ -60,14 +60,14 @@ void add_up(const std::vector<LightGroup>& groups, CornerValues LightGroup::*val
     });
 }
 
-/// What surfaces reflect more (or less) than they did, on the sources: d of `LightGroups`, W/m^2. `E`: the light that
-/// there is, `was` and `is` the reflectances. Where reflections are counted, as many are followed under both.
+/// Change of the sources' reflected radiosity: d of `LightGroups`, W/m^2. `E`: present light; `was` and `is`: old and
+/// new reflectances. If the number of bounces is limited, that number is followed with both.
 std::vector<Spectrum> change_of_reflected(const KeptOperator& F, const TransportLayout& layout, int bounces,
                                           const Solution& solution, const std::vector<Spectrum>& E,
                                           const std::vector<Spectrum>& was, const std::vector<Spectrum>& is) {
     std::vector<Spectrum> change(E.size());
     if (bounces < 0) {
-        // (rho' - rho) E as light that comes from outside: b = rho' (D + F b) with rho' D in its place.
+        // (rho' - rho) E acts as emitted light in b = rho' (D + F b), in place of rho' D.
         for (std::size_t i = 0; i < E.size(); ++i) change[i] = (is[i] - was[i]) * E[i];
         const std::vector<Spectrum> rhs = change;
         solve_radiosity({F, is, rhs, layout.area}, Relaxation::gmres, change,
@@ -87,25 +87,27 @@ std::vector<Spectrum> change_of_reflected(const KeptOperator& F, const Transport
     return change;
 }
 
-/// What arrives of a change, at the values of `indirect`. Where transport has more or less of the light that there is
-/// than the solution, by the noise of its rays or by what its receivers are too large for, it has as much more or less
-/// of the change: `b`, what the sources send now, tells.
+/// Light that arrives from a change, at the values of `indirect`. If the stored transport yields more or less of the
+/// present light than the solution, due to noise of its rays or too large receivers, the result is corrected by the
+/// same ratio. `b`: present radiosity of the sources.
 std::vector<Spectrum> arriving_change(const KeptOperator& F, const Solution& solution,
                                       const std::vector<Spectrum>& change, const std::vector<Spectrum>& b) {
-    constexpr double most = 2;  // beyond, it is no small correction
+    constexpr double max_ratio = 2;  // larger ratios are not small corrections
     std::vector<Spectrum> out = F.at_corners(F.at_receivers(change));
     const std::vector<Spectrum> held = F.at_corners(F.at_receivers(b));
     parallel_for(out.size(), 4096, [&](std::size_t i) {
         for (std::size_t band = 0; band < bands; ++band) {
             const double there = static_cast<double>(solution.indirect.values[i][band]);
-            if (there > 0 && held[i][band] > 0) out[i][band] *= std::clamp(there / held[i][band], 1 / most, most);
+            if (there > 0 && held[i][band] > 0)
+                out[i][band] *= std::clamp(there / held[i][band], 1 / max_ratio, max_ratio);
         }
     });
     return out;
 }
 
-/// Adds what arrives of a change of what surfaces reflect to both functions of a solution, which is lit as it is to be.
-/// Returns the RMS of what surfaces reflect of it by the mean of what they reflect of all, under the new reflectances.
+/// Adds the light that arrives from a change of reflectances to both functions of a solution, whose lights have been
+/// dimmed already. Returns the RMS of the change of reflected light relative to the mean reflected light, with the new
+/// reflectances.
 double repaint(Solution& solution, LightGroups& groups, const std::vector<Spectrum>& reflectance,
                const std::vector<double>& factor) {
     if (groups.transport.empty()) return 0;
@@ -142,7 +144,7 @@ double repaint(Solution& solution, LightGroups& groups, const std::vector<Spectr
     return light > 0 ? std::sqrt(squares * area) / light : 0;
 }
 
-/// By how much every material that emits is dimmed; 1 for others.
+/// Dimming factor of every material that emits; 1 for others.
 std::vector<double> factors_of_materials(const LightGroups& groups) {
     std::vector<double> factor(groups.exitance.size(), 1);
     for (const LightGroup& g : groups.groups)
@@ -150,7 +152,7 @@ std::vector<double> factors_of_materials(const LightGroups& groups) {
     return factor;
 }
 
-/// Emission of the scene, by the factors; `reflectance` a material.
+/// Sets the emission of the scene according to the factors, and the reflectance of every material.
 void relight(Scene& scene, const LightGroups& groups, const std::vector<Spectrum>& reflectance) {
     const std::vector<double> factor = factors_of_materials(groups);
     std::vector<PunctualLight> lights = scene.lights();

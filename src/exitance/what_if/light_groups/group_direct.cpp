@@ -22,13 +22,13 @@ class PartOfLight {
 
     const DirectLight& direct() const { return direct_; }
 
-    /// All its emitters; `allowed`: mean square of w (E - polynomial) that noise may leave, (W/m^2)^2.
+    /// Fits the light of all emitters. `allowed`: permitted mean square of w (E - polynomial) by noise, (W/m^2)^2.
     DirectFit fit(ElementId e, double allowed, DirectFitRoom& room) const {
         const RegionId region = tree_.region(e);
         const Normal& n = stage_.scene.regions()[region].plane.n;
         const double off = std::sqrt(allowed) / weight(e);
         const Point middle = tree_.patch(e).at(tree_.centre(e));
-        constexpr double of_its_own = 0.05;  // given by project_direct_light: no place has to be better
+        constexpr double of_its_own = 0.05;  // as in project_direct_light: no point has to be more accurate
         const LightAccuracy accuracy{of_its_own, 0.5 * off};
         if (clustered_.is_possible() && clustered_.pays(middle, n, region, accuracy, room.clustered))
             return fit_values(e, [&](const Point& x) {
@@ -37,7 +37,7 @@ class PartOfLight {
         return fit_prepared(e, allowed, room);
     }
 
-    /// Those that count there, and what the others bring by rays.
+    /// Fits the strong emitters exactly and the others by rays.
     DirectFit fit_strong(ElementId e, double allowed, SampledLight& sampled, DirectFitRoom& room) const {
         const RegionId region = tree_.region(e);
         if (!stage_.scene.behind(region).is_none()) return fit(e, allowed, room);
@@ -53,7 +53,7 @@ class PartOfLight {
     double weight(ElementId e) const { return mean(light_weight(stage_.scene.material(tree_.region(e)))); }
 
   private:
-    /// `named`: the sources to look at; none: all.
+    /// `named`: the sources to evaluate; null: all.
     DirectFit fit_prepared(ElementId e, double allowed, DirectFitRoom& room,
                            const std::vector<DirectLight::SourceName>* named = nullptr) const {
         const RegionId region = tree_.region(e);
@@ -96,17 +96,17 @@ class PartOfLight {
     CrowdedLight crowded_;
 };
 
-/// Mean of w E_dir over the elements, from some of them that all is good enough for.
+/// Mean of w E_dir over the elements, estimated from a subset with loose accuracy.
 double estimated_mean(const PartOfLight& part, const ElementTree& tree, std::span<const ElementId> elements,
                       const StopRequest& stop) {
     constexpr std::size_t samples = 512;
-    constexpr double anything = 1e300;  // given by the range of doubles: its root is finite
+    constexpr double any_error = 1e300;  // its square root is finite
     const std::size_t step = std::max<std::size_t>(1, elements.size() / samples);
     DirectFitRoom room;
     double flux = 0, area = 0;
     for (std::size_t i = step / 2; i < elements.size() && !stop.requested(); i += step) {
         const ElementId e = elements[i];
-        flux += tree.area(e) * part.weight(e) * mean(part.fit(e, anything, room).mean);
+        flux += tree.area(e) * part.weight(e) * mean(part.fit(e, any_error, room).mean);
         area += tree.area(e);
     }
     return area > 0 ? flux / area : 0;
@@ -132,11 +132,12 @@ std::vector<DirectFit> fit_direct_of(const Scene& lit, const Stage& stage, const
                                      const StopRequest& stop) {
     const PartOfLight part(lit, stage, tree);
     std::vector<DirectFit> out(elements.size());
-    // Sources that hardly count are many where emitters and elements are.
-    constexpr std::size_t few_elements = 2000, few_emitters = 8;
-    const bool many = elements.size() > few_elements && part.direct().emitters().size() > few_emitters &&
-                      !stage.scene.has_light_apart();
-    const bool is_noisy = many || !stage.occluders.has_nothing_inside();
+    // With many emitters and elements, most sources contribute little to an element.
+    constexpr std::size_t max_exact_elements = 2000, max_exact_emitters = 8;
+    const bool has_weak_sources = elements.size() > max_exact_elements &&
+                                  part.direct().emitters().size() > max_exact_emitters &&
+                                  !stage.scene.has_light_apart();
+    const bool is_noisy = has_weak_sources || !stage.occluders.has_nothing_inside();
     const double allowed = is_noisy ? std::pow(tolerance * estimated_mean(part, tree, elements, stop), 2) : 0;
     const double mean_area = stage.area / static_cast<double>(elements.size());
     parallel_ranges(elements.size(), 8, [&](std::size_t begin, std::size_t end) {
@@ -145,7 +146,7 @@ std::vector<DirectFit> fit_direct_of(const Scene& lit, const Stage& stage, const
         for (std::size_t i = begin; i < end && !stop.requested(); ++i) {
             const ElementId e = elements[i];
             const double share = allowed * mean_area / tree.area(e);
-            out[i] = many ? part.fit_strong(e, share, sampled, room) : part.fit(e, share, room);
+            out[i] = has_weak_sources ? part.fit_strong(e, share, sampled, room) : part.fit(e, share, room);
         }
     });
     return out;

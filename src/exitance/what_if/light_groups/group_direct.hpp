@@ -5,12 +5,12 @@
 
 namespace exitance {
 
-/// The scene with nothing but a group's light.
+/// Returns the scene with the group's light only.
 Scene alone(const Scene& scene, const EmitterGroup& group);
 
-/// Direct light of a scene that is that of the stage under other light, on elements that are there: exact, but where
-/// clusters and rays find it for less. `tolerance`: RMS error of rho E_dir that these may leave, relative to its mean.
-/// Some fits stay dark once a stop is asked for. O(elements x places x visible emitters).
+/// Computes direct light on elements for a scene that equals the stage's except for its lights. It is exact unless
+/// clusters or rays are cheaper. `tolerance`: permitted RMS error of rho E_dir by these, relative to its mean. Some
+/// fits stay dark after a request to stop. O(elements x points x visible emitters).
 std::vector<DirectFit> fit_direct_of(const Scene& lit, const Stage& stage, const ElementTree& tree,
                                      std::span<const ElementId> elements, double tolerance, std::uint64_t seed,
                                      const StopRequest& stop);

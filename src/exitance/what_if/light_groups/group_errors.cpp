@@ -15,16 +15,16 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t points = 1280;  ///< As many as a certificate takes at first.
+constexpr std::size_t points = 1280;  ///< Number of points; as many as a certificate starts with.
 
 /// A point, and two estimates of every group's residual there.
 struct Residual {
     ElementTree::Place place;
-    std::uint32_t source = 0;  ///< That holds it.
+    std::uint32_t source = 0;  ///< The source that contains it.
     std::vector<Spectrum> r1, r2;
 };
 
-/// Light of all groups where rays hit.
+/// Light of all groups at ray hits.
 class GroupsLight {
   public:
     GroupsLight(const Solution& solution, const LightGroups& groups, const std::vector<std::vector<DirectFit>>& direct,
@@ -48,13 +48,13 @@ class GroupsLight {
                                                : groups_.layout.number[solution_.interpolant.tree.parent(leaf)];
     }
 
-    /// Direct light as projected.
+    /// Projected direct light.
     Spectrum direct_at(std::size_t g, std::uint32_t source, const Point& y) const {
         const Patch& patch = solution_.interpolant.tree.patch(groups_.layout.sources[source]);
         return Between{0, corner_weights(patch, patch.coordinates(y))}.of(direct_[g][source].corners);
     }
 
-    /// Adds what a front reflects, and the share of what it emits that elements hold.
+    /// Adds the reflected light of a front, and the share of its exitance that elements contain.
     void add(const HitPoint& hit, std::vector<Spectrum>& sums) const {
         const std::uint32_t source = source_at(hit.region, hit.y);
         const ElementTree::Place place = indirect_.find(hit.region, hit.y);
@@ -83,10 +83,10 @@ class GroupsLight {
     const std::vector<std::vector<DirectFit>>& direct_;
     const std::vector<std::vector<Spectrum>>& older_;
     ElementLocator indirect_, sources_;
-    std::vector<std::uint32_t> group_of_;  ///< Of materials that emit.
+    std::vector<std::uint32_t> group_of_;  ///< Per emitting material.
 };
 
-/// One place in each of so many strata of equal area.
+/// Returns one point in each of `points` strata of equal area.
 std::vector<Residual> stratified(const Stage& stage, const ElementTree& tree, std::uint64_t seed) {
     std::vector<ElementId> leaves;
     double area = 0;
@@ -137,7 +137,7 @@ void measure(const Stage& stage, const Solution& solution, const LightGroups& gr
     });
 }
 
-/// What the regions' mean residuals of a group bring after reflection, on the sources.
+/// Light on the sources that results from a group's mean residuals per region after reflection.
 std::vector<Spectrum> late_response(const Solution& solution, const LightGroups& groups, const KeptOperator& F,
                                     std::span<const Spectrum> rho, const std::vector<Residual>& all, std::size_t g) {
     std::vector<Spectrum> of_region(solution.scene.regions().size());
@@ -150,7 +150,7 @@ std::vector<Spectrum> late_response(const Solution& solution, const LightGroups&
     std::vector<Spectrum> rhs(layout.sources.size());
     for (std::size_t i = 0; i < rhs.size(); ++i) {
         const std::uint32_t region = solution.interpolant.tree.region(layout.sources[i]).value;
-        rhs[i] = of_region[region] / (count[region] + 4);  // a mean of few is mostly noise
+        rhs[i] = of_region[region] / (count[region] + 4);  // means of few points are mostly noise
     }
     std::vector<Spectrum> out = rhs;
     solve_radiosity({F, rho, rhs, layout.area}, Relaxation::gmres, out,
@@ -159,7 +159,7 @@ std::vector<Spectrum> late_response(const Solution& solution, const LightGroups&
     return out;
 }
 
-/// The mean square of a group's error, (W/m^2)^2.
+/// Mean square of a group's error, (W/m^2)^2.
 BatchMean squared_error(const std::vector<Residual>& all, const std::vector<Spectrum>& late, std::size_t g) {
     std::array<double, batches> squares{};
     for (std::size_t k = 0; k < all.size(); ++k) {
@@ -170,17 +170,18 @@ BatchMean squared_error(const std::vector<Residual>& all, const std::vector<Spec
     return BatchMean(squares);
 }
 
-/// How many times the rays it takes until no group's estimate is noise: the noise of a square falls with the power of
-/// 3/2 of the rays.
+/// Factor by which rays have to be increased so that no group's estimate is noise. The noise of a square falls with the
+/// power 3/2 of the number of rays.
 double missing_rays(const std::vector<BatchMean>& squares, const std::vector<LightGroup>& groups, double error) {
-    constexpr double uncertain = 1.0 / 3;  // of an error: its square is told to a ninth
-    double most = 1;
+    constexpr double max_uncertainty = 1.0 / 3;  // of an error; its square is known to a ninth
+    double factor = 1;
     for (std::size_t g = 0; g < squares.size(); ++g) {
         const double square = std::max(squares[g].mean, std::pow(error * groups[g].reflected, 2));
         if (square > 0)
-            most = std::max(most, std::pow(squares[g].standard_error / (uncertain * uncertain * square), 2.0 / 3));
+            factor = std::max(
+                factor, std::pow(squares[g].standard_error / (max_uncertainty * max_uncertainty * square), 2.0 / 3));
     }
-    return most;
+    return factor;
 }
 
 }  // namespace
@@ -193,9 +194,9 @@ void estimate_group_errors(const Stage& stage, const Solution& solution,
     const KeptOperator F(groups.transport, groups.layout, solution.interpolant.tree.size());
     std::vector<Spectrum> rho;
     for (const MaterialId m : groups.layout.material) rho.push_back(groups.reflectance[m.value]);
-    // Rays as a certificate takes them; then as many as the noisiest group needs, within reason.
+    // Start with the number of rays of a certificate; then use as many as the noisiest group needs, up to a limit.
     unsigned rays = certificate_rays(rays_to_tell(error, points));
-    constexpr double most_more = 8;
+    constexpr double max_increase = 8;
     std::vector<BatchMean> squares;
     for (int look = 0; look < 2; ++look) {
         std::vector<Residual> all = stratified(stage, solution.indirect.tree, seed);
@@ -205,12 +206,12 @@ void estimate_group_errors(const Stage& stage, const Solution& solution,
         squares.clear();
         for (std::size_t g = 0; g < groups.groups.size(); ++g)
             squares.push_back(squared_error(all, late_response(solution, groups, F, rho, all, g), g));
-        const double more = std::min(most_more, missing_rays(squares, groups.groups, error));
+        const double more = std::min(max_increase, missing_rays(squares, groups.groups, error));
         if (more < 2) break;
         rays = certificate_rays(more * rays);
     }
     for (std::size_t g = 0; g < squares.size(); ++g)
-        // Less than its own uncertainty cannot be claimed.
+        // an error below its own uncertainty cannot be claimed
         if (groups.groups[g].reflected > 0)
             groups.groups[g].error =
                 std::sqrt(std::max(squares[g].mean, squares[g].standard_error)) / groups.groups[g].reflected;

@@ -10,10 +10,10 @@
 namespace exitance {
 namespace {
 
-/// How far from its corner a leaf is looked at where light may jump at its border, in leaves.
-constexpr double inwards = 1e-3;  // Given by the tolerance of places: a thousandth of an element is above it.
+/// Distance from a corner at which a leaf is evaluated, since light may jump at its border; in units of the leaf.
+constexpr double inwards = 1e-3;  // a thousandth of an element is above the tolerance of points
 
-/// The row of every element of `indirect` that is a receiver or lies below one.
+/// Row of every element of `indirect` that is a receiver or below one.
 Field<ElementId, std::uint32_t> rows_of(const ElementTree& tree, std::span<const std::uint32_t> receivers) {
     Field<ElementId, std::uint32_t> row(tree.size(), TransportLayout::none);
     for (std::uint32_t i = 0; i < receivers.size(); ++i) row[ElementId(receivers[i])] = i;
@@ -22,7 +22,7 @@ Field<ElementId, std::uint32_t> rows_of(const ElementTree& tree, std::span<const
     return row;
 }
 
-/// A place of a receiver's plane among the corners of all of them.
+/// A point of a receiver's plane, interpolated from the receiver's corners among those of all receivers.
 Between on_receiver(const ElementTree& tree, std::span<const std::uint32_t> receivers, std::uint32_t row,
                     const Point& x) {
     if (row == TransportLayout::none) return {};
@@ -30,7 +30,7 @@ Between on_receiver(const ElementTree& tree, std::span<const std::uint32_t> rece
     return {4 * row, corner_weights(patch, patch.coordinates(x))};
 }
 
-/// Sources, and how the interpolant's leaves and the elements above add up to them.
+/// Finds the sources, and how the interpolant's leaves and the elements above sources are computed from them.
 void find_sources(const Solution& solution, TransportLayout& out) {
     const ElementTree& tree = solution.interpolant.tree;
     out.number.resize(tree.size(), TransportLayout::none);
@@ -106,7 +106,7 @@ TransportLayout make_layout(const Solution& solution, std::span<const std::uint3
 }
 
 std::vector<std::uint32_t> number_nodes(const ElementFunction& f, double scene_size, std::size_t& count) {
-    const double grid = 1e-6 * scene_size;  // Given by single precision, in which other programs hold corners.
+    const double grid = 1e-6 * scene_size;  // other programs store corners in single precision
     struct Corner {
         std::array<std::int64_t, 4> place;
         std::array<std::uint32_t, bands> value;
@@ -138,7 +138,7 @@ std::vector<std::uint32_t> number_nodes(const ElementFunction& f, double scene_s
         if (is_new) ++count;
         out[corners[i].number] = static_cast<std::uint32_t>(count - 1);
     }
-    // Values of no corner, as constant functions have them, are one node.
+    // values that belong to no corner, as in constant functions, share one node
     if (std::find(out.begin(), out.end(), unused) != out.end())
         std::replace(out.begin(), out.end(), unused, static_cast<std::uint32_t>(count++));
     return out;

@@ -9,19 +9,20 @@
 
 namespace exitance {
 
-/// Diffuse transport between the elements of a solution, kept for changes of its light: E = G b.
+/// Diffuse transport between the elements of a solution, stored for changes of its light: E = G b.
 ///
-/// Sources are the elements of `Solution::interpolant` and those above them, b the mean of what each reflects; where a
-/// receiver sees several small ones under one form factor, the element above stands for them. Receivers are elements of
-/// `Solution::indirect` that cover all of it, leaves or larger; their E is bilinear, linear on triangles and cells. A
-/// weight is what a source's light brings to a corner of the receiver's patch. 20 bytes an entry.
+/// Sources are the elements of `Solution::interpolant` and their ancestors; b is the mean reflected radiosity of each.
+/// If a receiver sees several small elements under a small form factor, their ancestor replaces them. Receivers are
+/// elements of `Solution::indirect`, leaves or larger, that cover all of it; their E is bilinear, or linear on
+/// triangles and cells. A weight is the contribution of a source to a corner of the receiver's patch. 20 bytes per
+/// entry.
 struct KeptTransport {
-    std::vector<std::uint32_t> receiver;  ///< Elements of `indirect`, in order of their ids.
-    std::vector<std::uint32_t> first;     ///< Row i stands in [first[i], first[i + 1]).
-    std::vector<std::uint32_t> source;    ///< Elements of `interpolant`,
+    std::vector<std::uint32_t> receiver;  ///< Elements of `indirect`, in the order of their ids.
+    std::vector<std::uint32_t> first;     ///< Entries of row i are in [first[i], first[i + 1]).
+    std::vector<std::uint32_t> source;    ///< Elements of `interpolant`.
     std::vector<std::array<float, 4>> weight;
-    std::size_t rays = 0;  ///< That the rows were found by.
-    /// RMS of rho (G b - E) over RMS of rho E, for the light of all groups.
+    std::size_t rays = 0;  ///< Number of rays that the rows were computed from.
+    /// RMS of rho (G b - E) relative to the RMS of rho E, for the light of all groups.
     double error = 0;
 
     bool empty() const { return source.empty(); }
@@ -30,7 +31,7 @@ struct KeptTransport {
     }
 };
 
-/// A value between up to four others that stand side by side.
+/// A value interpolated between up to four consecutive values.
 struct Between {
     std::uint32_t first = 0;
     std::array<float, 4> weight{};
@@ -48,29 +49,31 @@ struct Between {
     }
 };
 
-/// Weights of a patch's corners at a place of its plane.
+/// Weights of a patch's corners at a point of its plane.
 std::array<float, 4> corner_weights(const Patch& patch, Vec2 uv);
 
-/// How receivers, sources and values of a solution lie on one another. It follows from the solution and the receivers.
+/// Geometric relations between the receivers, sources and values of a solution. Determined by the solution and the
+/// receivers.
 struct TransportLayout {
-    /// Elements of `interpolant` that are leaves, or are cut into fans of them.
+    /// Elements of `interpolant` that are leaves, or are split into fans of leaves.
     std::vector<ElementId> sources;
     std::vector<double> area;  ///< m^2
     std::vector<MaterialId> material;
-    Field<ElementId, std::uint32_t> number;  ///< Of sources among them; of others: none.
-    std::vector<Between> source_at;          ///< Where their centres lie on the receivers' corners, four a receiver.
-    /// Means of the interpolant: of a source, this share of the value there, for each of its leaves.
+    Field<ElementId, std::uint32_t> number;  ///< Per element: its number among the sources, or none.
+    /// Per source: its centre, interpolated from the receivers' corners (four per receiver).
+    std::vector<Between> source_at;
+    /// Contribution of one leaf of the interpolant to the mean of its source: `share` of the value at `at`.
     struct LeafShare {
         std::uint32_t source;
         double share;
         Between at;
     };
     std::vector<LeafShare> source_mean;
-    std::vector<Between> corner_at;       ///< Of every value of `indirect`: on the receivers' corners.
-    std::vector<Between> interpolant_at;  ///< Of every value of `interpolant`: among values of `indirect`.
-    std::vector<std::uint32_t> node;      ///< Of every value of `indirect`: values at one node are one.
+    std::vector<Between> corner_at;       ///< Per value of `indirect`: interpolation from the receivers' corners.
+    std::vector<Between> interpolant_at;  ///< Per value of `interpolant`: interpolation from values of `indirect`.
+    std::vector<std::uint32_t> node;      ///< Per value of `indirect`: its node. Values of one node are equal.
     std::size_t node_count = 0;
-    /// From leaves up: what an element's mean has of the one below.
+    /// Contribution of a child to its parent's mean; in order from the leaves up.
     struct Pull {
         std::uint32_t parent, child;
         double share;
@@ -82,20 +85,20 @@ struct TransportLayout {
 };
 TransportLayout make_layout(const Solution& solution, std::span<const std::uint32_t> receivers);
 
-/// Is an element one by itself, cut into a fan or not?
+/// True if an element is a source: a leaf, or the parent of a fan of leaves.
 bool is_base(const ElementTree& tree, ElementId e);
 
-/// Of every value of a function, the node that it stands at: where the corners of leaves of one region meet, they share
-/// one if they have one value, as continuous functions do but where light jumps.
+/// Returns the node of every value of a function. Corners of leaves of one region that coincide are one node if they
+/// have the same value, as in continuous functions except at jumps. `count`: receives the number of nodes.
 std::vector<std::uint32_t> number_nodes(const ElementFunction& f, double scene_size, std::size_t& count);
-/// Every value becomes the mean of those at its node.
+/// Replaces every value by the mean of those at its node.
 void average_at_nodes(std::span<const std::uint32_t> node, std::size_t count, std::vector<Spectrum>& values);
 
-/// Kept transport between the sources, as relaxations take it: rows, then values of receivers at sources. O(entries) a
-/// gather.
+/// The stored transport as an operator between sources, for relaxation: rows, then interpolation at the sources.
+/// O(entries) per gather.
 class KeptOperator final : public TransportOperator {
   public:
-    /// All must outlive it.
+    /// All arguments must outlive this.
     KeptOperator(const KeptTransport& transport, const TransportLayout& layout, std::size_t interpolant_elements)
         : transport_(transport), layout_(layout), elements_(interpolant_elements) {}
 
@@ -104,9 +107,9 @@ class KeptOperator final : public TransportOperator {
     Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const override;
     std::size_t memory_bytes() const override { return transport_.bytes(); }
 
-    /// E at the corners of the receivers, four each.
+    /// E at the corners of the receivers, four per receiver, W/m^2.
     std::vector<Spectrum> at_receivers(std::span<const Spectrum> radiosity) const;
-    /// E at the values of `indirect`, from that at the receivers' corners; one value a node.
+    /// E at the values of `indirect`, W/m^2, interpolated from the receivers' corners and averaged at nodes.
     std::vector<Spectrum> at_corners(const std::vector<Spectrum>& receivers) const;
 
   private:

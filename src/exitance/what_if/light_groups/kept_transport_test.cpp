@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// A closed cube of edge 1, all of one grey.
+/// A closed grey cube of edge 1.
 Scene cube() {
     SceneDescription d;
     d.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
@@ -21,7 +21,7 @@ Scene cube() {
     return std::move(*make_scene(std::move(d)).scene);
 }
 
-/// E = 1 on elements that were cut so often.
+/// E = 1 on elements that were split `cuts` times.
 ElementFunction ones(const Stage& stage, int cuts) {
     ElementFunction out;
     for (const auto& [region, patch] : stage.pieces) out.tree.add_root(region, patch);
@@ -57,7 +57,7 @@ class KeptTransportOfACube : public testing::Test {
 
 }  // namespace
 
-TEST_F(KeptTransportOfACube, LosesNoLightOfAClosedScene) {
+TEST_F(KeptTransportOfACube, ConservesLightInAClosedScene) {
     for (const double form_factor : {0.0, 0.01, 1.0}) {
         const KeptTransport kept = cast(leaves(), form_factor);
         const KeptOperator F(kept, layout, solution.interpolant.tree.size());
@@ -67,10 +67,10 @@ TEST_F(KeptTransportOfACube, LosesNoLightOfAClosedScene) {
     }
 }
 
-TEST_F(KeptTransportOfACube, BringsWhatTheFormFactorOfOppositeFacesSays) {
+TEST_F(KeptTransportOfACube, AgreesWithTheFormFactorOfOppositeFaces) {
     const KeptTransport kept = cast(leaves(), 1.0 / 256);
     const KeptOperator F(kept, layout, solution.interpolant.tree.size());
-    // The face opposite to the first: z = 1.
+    // The face opposite to the first one: z = 1.
     std::vector<Spectrum> b(F.size()), E(F.size());
     const auto on = [&](std::size_t i, double z) {
         const ElementId e = layout.sources[i];
@@ -82,15 +82,15 @@ TEST_F(KeptTransportOfACube, BringsWhatTheFormFactorOfOppositeFacesSays) {
     double arrives = 0;
     for (std::size_t i = 0; i < b.size(); ++i)
         if (on(i, 0)) arrives += layout.area[i] * E[i][0];
-    // 0.19982 [Howell, C-11]; 37,000 stratified rays from the face leave less than a hundredth of that.
+    // 0.19982 [Howell, C-11]; the noise of 37,000 stratified rays is less than a hundredth of that.
     EXPECT_NEAR(arrives, 0.19982, 0.002);
 }
 
-TEST_F(KeptTransportOfACube, MergesWhatIsSmallAndKeepsItsLight) {
+TEST_F(KeptTransportOfACube, MergesSmallElementsAccurately) {
     const KeptTransport fine = cast(leaves(), 0), merged = cast(leaves(), 1.0 / 64);
     EXPECT_EQ(fine.rays, merged.rays);
     EXPECT_LT(merged.source.size(), fine.source.size() / 4);
-    // A source that varies: E by its rays, and by means over elements of one form factor of 1/64 at most.
+    // A source that varies: E by individual rays, and by means over elements with form factors of at most 1/64.
     std::vector<Spectrum> b(layout.sources.size());
     for (std::size_t i = 0; i < b.size(); ++i) {
         const Point c = solution.interpolant.tree.patch(layout.sources[i]).centre();
@@ -102,12 +102,13 @@ TEST_F(KeptTransportOfACube, MergesWhatIsSmallAndKeepsItsLight) {
     double off = 0, all = 0;
     for (std::size_t i = 0; i < b.size(); ++i)
         off += std::pow(by_fine[i][0] - by_merged[i][0], 2), all += by_fine[i][0] * by_fine[i][0];
-    // Each of some 64 entries is off by at most half of an element's variation, an eighth of the mean, without order.
+    // The errors of about 64 entries are independent, each at most half of an element's variation, an eighth of the
+    // mean.
     EXPECT_LT(std::sqrt(off / all), 1.0 / 64);
     EXPECT_GT(off, 0);
 }
 
-TEST_F(KeptTransportOfACube, GathersOnLargeReceiversWhereLightIsEven) {
+TEST_F(KeptTransportOfACube, ChoosesLargeReceiversForUniformLight) {
     const std::vector<std::uint32_t> receivers = choose_receivers(solution, 1e-6);
     EXPECT_EQ(receivers.size(), 6u) << "light is 1 everywhere: faces as they are";
     solution.indirect.values[0][0] = 2;
@@ -119,7 +120,7 @@ TEST_F(KeptTransportOfACube, SolvesTheClosedFormOfAGreyEnclosure) {
     const KeptTransport kept = cast(leaves(), 1.0 / 256);
     const KeptOperator F(kept, layout, solution.interpolant.tree.size());
     const std::vector<Spectrum> rho(F.size(), Spectrum(0.5)), direct(F.size(), Spectrum(1));
-    // b = rho (D + b): all places are alike.
+    // b = rho (D + b): all points are equal.
     for (const Spectrum& b : reflected_light(F, rho, layout.area, direct, -1)) EXPECT_NEAR(b[0], 1, 1e-3);
     // Two reflections: rho D + rho^2 D.
     for (const Spectrum& b : reflected_light(F, rho, layout.area, direct, 2)) EXPECT_NEAR(b[0], 0.75, 1e-5);

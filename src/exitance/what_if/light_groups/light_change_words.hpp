@@ -7,11 +7,11 @@
 
 namespace exitance {
 
-// Changes of light in words, as people and pages write them. Error: usage, for words that are not understood.
+// Parses changes of light as typed by users or sent by web pages. Malformed words are usage errors.
 
-/// "GROUP=FACTOR"; the last '=' parts them.
+/// Parses "GROUP=FACTOR"; the last '=' is the separator.
 Result<void> read_dim(std::string_view word, LightChange& change, char parted_by = '=');
-/// "MATERIAL=r,g,b", or one number for all bands.
+/// Parses "MATERIAL=r,g,b", or one number for all bands.
 Result<void> read_reflectance(std::string_view word, LightChange& change, char parted_by = '=',
                               char between_bands = ',');
 

@@ -48,8 +48,8 @@ Lit lit(double error) {
     return {std::move(*solution), std::move(*groups)};
 }
 
-/// Against a solve of the changed scene, over 400 points of the surfaces.
-double off_a_fresh_solve(const Solution& changed) {
+/// Error against a new solve of the changed scene, at 400 points of the surfaces.
+double error_against_new_solve(const Solution& changed) {
     Progress silent;
     const StopRequest stop;
     const Result<Solution> fresh = solve_scene(changed.scene, {.error = 0.005}, silent, stop);
@@ -60,7 +60,7 @@ double off_a_fresh_solve(const Solution& changed) {
 }
 
 constexpr double fine = 0.01;
-constexpr double coarse = 0.1;  ///< For what holds at any error.
+constexpr double coarse = 0.1;  ///< for tests that hold at any error
 
 }  // namespace
 
@@ -77,7 +77,7 @@ TEST(LightGroupsOfTwoLamps, AddUpToTheSolution) {
     EXPECT_EQ(same.solution.statistics.relative_error_estimate, whole.solution.statistics.relative_error_estimate);
 }
 
-TEST(LightGroupsOfTwoLamps, DimmedAreASumOfGroupsToRounding) {
+TEST(LightGroupsOfTwoLamps, DimmedLightIsTheSumOfGroups) {
     const Lit whole = lit(coarse);
     Lit dim = whole;
     ASSERT_TRUE(change_light(dim.solution, dim.groups, {.dim = {{"left", 0.25}, {"right", 3}}}));
@@ -87,22 +87,22 @@ TEST(LightGroupsOfTwoLamps, DimmedAreASumOfGroupsToRounding) {
                 const double left = static_cast<double>((whole.groups.groups[0].*of)[i][band]),
                              right = static_cast<double>((whole.groups.groups[1].*of)[i][band]);
                 const double sum = 0.25 * left + 3 * right;
-                EXPECT_NEAR(static_cast<double>(values[i][band]), sum, 1.2e-7 * std::abs(sum));  // of single precision
+                EXPECT_NEAR(static_cast<double>(values[i][band]), sum, 1.2e-7 * std::abs(sum));  // single precision
             }
     };
     expect_sum(dim.solution.indirect.values, &LightGroup::indirect);
     expect_sum(dim.solution.interpolant.values, &LightGroup::interpolant);
 }
 
-TEST(LightGroupsOfTwoLamps, DimmedAreLikeAFreshSolve) {
+TEST(LightGroupsOfTwoLamps, DimmedLightAgreesWithANewSolve) {
     const Lit whole = lit(fine);
     Lit dim = whole;
     ASSERT_TRUE(change_light(dim.solution, dim.groups, {.dim = {{"left", 0}, {"right", 0.5}}}));
     EXPECT_EQ(dim.solution.scene.emitters().size(), 1u);
-    const double off = off_a_fresh_solve(dim.solution);
-    EXPECT_LT(off, 0.012);  // 1% was asked, 0.5% of what it is held against
+    const double off = error_against_new_solve(dim.solution);
+    EXPECT_LT(off, 0.012);  // a requested error of 1%, and 0.5% of the reference
     ASSERT_TRUE(dim.solution.statistics.relative_error_estimate);
-    // The estimate is of some hundred points; the error that it is held against has 0.5% of the reference's own.
+    // The estimate is from some hundred points; the measured error includes 0.5% of the reference.
     EXPECT_LT(off, 1.5 * *dim.solution.statistics.relative_error_estimate + 0.005);
     EXPECT_LT(*dim.solution.statistics.relative_error_estimate, 3 * off + 0.005);
     ASSERT_TRUE(change_light(dim.solution, dim.groups, {.dim = {{"left", 1}, {"right", 1}}}));
@@ -110,24 +110,24 @@ TEST(LightGroupsOfTwoLamps, DimmedAreLikeAFreshSolve) {
     EXPECT_NEAR(dim.solution.indirect.values[0][0], whole.solution.indirect.values[0][0], 1e-4F);
 }
 
-TEST(LightGroupsOfTwoLamps, RepaintedAreLikeAFreshSolve) {
+TEST(LightGroupsOfTwoLamps, RepaintedLightAgreesWithANewSolve) {
     const Lit whole = lit(fine);
     Lit painted = whole;
     ASSERT_TRUE(change_light(painted.solution, painted.groups, {.reflectance = {{"side", Spectrum(0.8)}}}));
-    const double off = off_a_fresh_solve(painted.solution);
+    const double off = error_against_new_solve(painted.solution);
     EXPECT_LT(off, 0.012);  // as for dimming
     ASSERT_TRUE(painted.solution.statistics.relative_error_estimate);
     EXPECT_LT(off, 1.5 * *painted.solution.statistics.relative_error_estimate + 0.005);
-    // Not changed at all it is some 8% off.
+    // Without the change, the error would be about 8%.
     Lit left = whole;
     left.solution.scene = painted.solution.scene;
-    EXPECT_GT(off_a_fresh_solve(left.solution), 0.03);
-    // And back again: paint is no history.
+    EXPECT_GT(error_against_new_solve(left.solution), 0.03);
+    // Restoring the reflectance restores the light: the result does not depend on earlier changes.
     ASSERT_TRUE(change_light(painted.solution, painted.groups, {.reflectance = {{"side", Spectrum(0.3)}}}));
     EXPECT_NEAR(painted.solution.indirect.values[0][0], whole.solution.indirect.values[0][0], 1e-4F);
 }
 
-TEST(LightGroupsOfTwoLamps, RepaintDimmedLightInAnyOrder) {
+TEST(LightGroupsOfTwoLamps, DimmingAndRepaintingCommute) {
     const Lit whole = lit(coarse);
     Lit once = whole, twice = whole;
     ASSERT_TRUE(
@@ -138,7 +138,7 @@ TEST(LightGroupsOfTwoLamps, RepaintDimmedLightInAnyOrder) {
     EXPECT_EQ(once.solution.interpolant.values, twice.solution.interpolant.values);
 }
 
-TEST(LightGroupsOfTwoLamps, HaveLightMapsThatAddUp) {
+TEST(LightGroupsOfTwoLamps, LightMapsAreAdditive) {
     const Lit whole = lit(coarse);
     const auto baked = [](const Solution& solution) {
         Progress silent;
@@ -162,12 +162,12 @@ TEST(LightGroupsOfTwoLamps, HaveLightMapsThatAddUp) {
             off = std::max(off, apart), squares += apart * apart, ++count;
         }
     }
-    // Where a shadow of one lamp ends, the other's light alone needs fewer points in a texel than both.
+    // At a shadow edge of one lamp, a texel needs fewer points for the other lamp's light than for both.
     EXPECT_LT(off, 1e-2 * largest);
     EXPECT_LT(std::sqrt(squares / count), 5e-4 * largest);
 }
 
-TEST(LightGroupsOfTwoLamps, RefuseWhatIsNotThere) {
+TEST(LightGroupsOfTwoLamps, UnknownNamesAreRejected) {
     Lit same = lit(coarse);
     const auto refused = change_light(same.solution, same.groups, {.dim = {{"middle", 1}}});
     ASSERT_FALSE(refused);
@@ -177,7 +177,7 @@ TEST(LightGroupsOfTwoLamps, RefuseWhatIsNotThere) {
     EXPECT_FALSE(change_light(same.solution, same.groups, {.reflectance = {{"roof", Spectrum(0.5)}}}));
 }
 
-TEST(LightGroupsOfTwoLamps, ComeBackFromAFile) {
+TEST(LightGroupsOfTwoLamps, AreRestoredFromAFile) {
     const Lit whole = lit(coarse);
     const TemporaryFolder folder;
     ASSERT_TRUE(write_solution(folder / "s.h5", whole.solution, &whole.groups));
@@ -193,7 +193,7 @@ TEST(LightGroupsOfTwoLamps, ComeBackFromAFile) {
     EXPECT_TRUE(load_solution(folder / "s.h5")) << "who does not ask for them";
 }
 
-TEST(LightChangeWords, AreReadAsPeopleWriteThem) {
+TEST(LightChangeWords, AreParsed) {
     LightChange change;
     EXPECT_TRUE(read_dim("desk=left=0.5", change));
     EXPECT_EQ(change.dim[0], (std::pair<std::string, double>("desk=left", 0.5)));

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// RMS of rho E over the leaves of `indirect` and the bands, E by `value(corner)` in their middles.
+/// RMS of rho E over the leaves of `indirect` and the bands, where E is evaluated at the leaves' centres from `values`.
 template <class Values>
 double rms(const Solution& solution, const Values& values) {
     const ElementFunction& f = solution.indirect;

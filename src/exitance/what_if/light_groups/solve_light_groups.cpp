@@ -20,8 +20,8 @@ CornerValues as_floats(const std::vector<Spectrum>& values) {
     return out;
 }
 
-/// Deals the whole out over the groups, by how much light each has there. Where none has any, each gets its share of
-/// all light.
+/// Distributes the whole light over the groups in proportion to their light at each value. If no group has light there,
+/// each gets its share of all light.
 void deal_out(const CornerValues& whole, std::vector<LightGroup>& groups, CornerValues LightGroup::*values) {
     std::vector<double> of_all(groups.size(), 0);
     double all = 0;
@@ -44,7 +44,7 @@ void deal_out(const CornerValues& whole, std::vector<LightGroup>& groups, Corner
     });
 }
 
-/// Parts the light of one solution.
+/// Separates the light of one solution.
 class GroupSolver {
   public:
     GroupSolver(const Solution& solution, const SolveOptions& options, Progress& progress, const StopRequest& stop)
@@ -85,7 +85,7 @@ class GroupSolver {
     void find_transport() {
         progress_.phase("rays between elements");
         const double error = options_.error_target();
-        // RMS of what surfaces reflect of the light that arrives by reflection.
+        // RMS of reflected indirect light.
         const double light = rms_reflected(solution_);
         std::vector<std::uint32_t> receivers =
             reflects() ? choose_receivers(solution_, error * light) : std::vector<std::uint32_t>();
@@ -93,8 +93,7 @@ class GroupSolver {
         node_ = number_nodes(solution_.interpolant, solution_.scene.size(), nodes_);
         for (const MaterialId m : out_.layout.material) rho_.push_back(out_.reflectance[m.value]);
         if (!reflects()) return;
-        // In proportion to the rays that the solution took for its own error; where it took none, to what another
-        // would.
+        // In proportion to the rays of the solution, which suit its own error; at least those of a gather.
         constexpr double places = 9;
         const double as_before =
             static_cast<double>(solution_.statistics.rays) / (places * static_cast<double>(receivers.size()));
@@ -104,7 +103,7 @@ class GroupSolver {
                                         {rays, calibrated::kept_form_factor, options_.seed}, stop_);
     }
 
-    /// Direct light, what is reflected of it, and both as values of the solution's functions.
+    /// Computes a group's direct light and its reflections, as values of the solution's functions.
     void find_light(LightGroup& group) {
         const TransportLayout& layout = out_.layout;
         const Scene lit = alone(solution_.scene, group.emitters);
@@ -126,13 +125,13 @@ class GroupSolver {
         parallel_for(all.size(), 4096, [&](std::size_t i) { all[i] = layout.interpolant_at[i].of(indirect); });
         add_direct(direct, all);
         if (solution_.direct_in_elements) {
-            // What is exported is `indirect` itself.
+            // the exported function is `indirect` itself
             indirect = all;
         }
         group.indirect = as_floats(indirect), group.interpolant = as_floats(all);
     }
 
-    /// Direct light as projected, at the corners of the interpolant's leaves.
+    /// Adds projected direct light at the corners of the interpolant's leaves.
     void add_direct(const std::vector<DirectFit>& direct, std::vector<Spectrum>& all) const {
         const ElementFunction& f = solution_.interpolant;
         const Spectrum apart = solution_.direct_in_elements ? Spectrum(1) : Spectrum(1) - solution_.direct_share;
@@ -167,7 +166,7 @@ class GroupSolver {
             for (LightGroup& group : out_.groups) group.error = solution_.statistics.relative_error_estimate;
     }
 
-    /// How far the groups' sum is from the solution before it is made that.
+    /// Measures the difference between the groups' sum and the solution before it is corrected.
     void measure_transport() {
         if (!reflects()) return;
         CornerValues sum(solution_.indirect.values.size());
@@ -184,10 +183,11 @@ class GroupSolver {
     Progress& progress_;
     const StopRequest& stop_;
     LightGroups out_;
-    std::vector<Spectrum> rho_;                   ///< Of the sources.
-    std::vector<std::vector<DirectFit>> direct_;  ///< Of every group, on the sources,
-    std::vector<std::vector<Spectrum>> older_;    ///< and what they reflect, where reflections are counted.
-    std::vector<std::uint32_t> node_;             ///< Of every value of the interpolant.
+    std::vector<Spectrum> rho_;                   ///< Per source.
+    std::vector<std::vector<DirectFit>> direct_;  ///< Per group: direct light on the sources.
+    /// Per group: radiosity of the sources, if the number of bounces is limited.
+    std::vector<std::vector<Spectrum>> older_;
+    std::vector<std::uint32_t> node_;  ///< Per value of the interpolant.
     std::size_t nodes_ = 0;
 };
 

@@ -139,7 +139,7 @@ TEST(RadSkyCommand, GendaylitHasPerezSky) {
     const double delta = 150 * mass / (1367 * orbit(0));  // without a date, the program uses day 0
     EXPECT_NEAR(sky[2], -1.0156 - 0.3670 * Z + delta * (1.0078 + 1.4051 * Z), 1e-7);
     EXPECT_NEAR(sky[5], -3.4 - 0.1078 * Z + delta * (-1.0750 + 1.5702 * Z), 1e-7);
-    // The same state, given by its parameters.
+    // Specifies the same state of the sky by its parameters.
     const std::vector<double> by_state = numbers_after(
         output("gendaylit -ang 40 30 -O 1 -P " + std::to_string(clearness) + " " + std::to_string(delta)), "skyfunc");
     EXPECT_NEAR(by_state[0], sky[0], 1e-3 * sky[0]);

@@ -60,7 +60,7 @@ class TexturedFaces {
     struct Steepest {
         double ratio = 0, lowest = 0, highest = 0;
         std::string material;
-        std::size_t faces = 0;  ///< Number of faces on which it varies.
+        std::size_t faces = 0;  ///< Number of faces of the material on which the quantity varies.
     };
     void note(Steepest& steepest, const Spectrum& whole, const ShownPart& part, const std::string& material) const;
     void set_deviation(std::size_t material, const Sum& sum, const Spectrum& mean);

@@ -1,0 +1,225 @@
+#include "exitance/view_factors/gray_exchange.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace exitance {
+namespace {
+
+constexpr double tolerance = 1e-12;  ///< Of the residual: below the error of any view factors.
+constexpr std::size_t max_iterations = 10'000;
+
+/// Black-body exitance, W/m^2.
+double black(double temperature) {
+    return stefan_boltzmann * std::pow(temperature, 4);
+}
+
+Error wrong(std::string message, std::string hint) {
+    return {ErrorCode::bad_input, std::move(message), "", std::move(hint)};
+}
+
+/// The symmetric system (D - S) J = b for the radiosities of surfaces, S_ij = A_i F_ij. Those of black surfaces with a
+/// temperature are known.
+class GraySystem {
+  public:
+    GraySystem(const SparseFactors& factors, std::span<const ThermalSurface> surfaces, bool is_enclosure)
+        : surfaces_(surfaces), size_(factors.size()), row_(size_), leak_(size_), known_(size_), diagonal_(size_) {
+        for (std::size_t i = 0; i < size_; ++i) {
+            const auto columns = factors.row_columns(i);
+            const auto values = factors.row_values(i);
+            for (std::size_t k = 0; k < columns.size(); ++k) {
+                // The mean of both directions, which agree where the table combines them.
+                const double half = 0.5 * factors.areas[i] * values[k];
+                row_[i].push_back({columns[k], half}),
+                    row_[columns[k]].push_back({static_cast<std::uint32_t>(i), half});
+            }
+        }
+        for (std::size_t i = 0; i < size_; ++i) {
+            double sum = 0;
+            for (const auto& [j, s] : row_[i]) sum += s;
+            area_.push_back(is_enclosure ? sum : factors.areas[i]);
+            leak_[i] = is_enclosure ? 0 : std::max(0.0, factors.areas[i] - sum);
+            if (!is_enclosure) area_[i] = sum + leak_[i];
+            known_[i] = surfaces[i].temperature && surfaces[i].emissivity == 1;
+            diagonal_[i] = surfaces[i].temperature && !known_[i] ? area_[i] / (1 - surfaces[i].emissivity) : area_[i];
+        }
+    }
+
+    std::size_t size() const { return size_; }
+    double area(std::size_t i) const { return area_[i]; }
+    double leak(std::size_t i) const { return leak_[i]; }
+    bool is_known(std::size_t i) const { return known_[i]; }
+
+    /// sum_j S_ij x_j
+    double incoming(std::size_t i, const std::vector<double>& x) const {
+        double sum = 0;
+        for (const auto& [j, s] : row_[i]) sum += s * x[j];
+        return sum;
+    }
+
+    struct Solution {
+        std::vector<double> radiosity;
+        double residual = 0;
+        std::size_t iterations = 0;
+        bool is_stopped = false;
+    };
+
+    /// Radiosities for black-body exitances `emitted` of the surfaces with a temperature, given heats of the others,
+    /// and the exitance of the surroundings.
+    Solution solve(const std::vector<double>& emitted, const std::vector<double>& heat, double surroundings,
+                   const StopRequest& stop) const {
+        Solution out;
+        std::vector<double>& x = out.radiosity;
+        x.assign(size_, 0);
+        for (std::size_t i = 0; i < size_; ++i)
+            if (known_[i]) x[i] = emitted[i];
+        std::vector<double> r(size_), p(size_), q(size_);
+        double scale = 0;
+        for (std::size_t i = 0; i < size_; ++i) {
+            if (known_[i]) continue;
+            const ThermalSurface& s = surfaces_[i];
+            const double own = s.temperature ? area_[i] * s.emissivity / (1 - s.emissivity) * emitted[i] : heat[i];
+            r[i] = own + leak_[i] * surroundings + incoming(i, x);  // the unknown ones are 0 so far
+            scale += r[i] * r[i] / diagonal_[i];
+            p[i] = r[i] / diagonal_[i];
+        }
+        double rho = scale;
+        for (; rho > tolerance * tolerance * scale && out.iterations < max_iterations; ++out.iterations) {
+            if ((out.is_stopped = stop.requested())) break;
+            double pq = 0;
+            for (std::size_t i = 0; i < size_; ++i) {
+                if (known_[i]) continue;
+                q[i] = diagonal_[i] * p[i] - incoming(i, p);
+                pq += p[i] * q[i];
+            }
+            const double alpha = rho / pq;
+            double next = 0;
+            for (std::size_t i = 0; i < size_; ++i) {
+                if (known_[i]) continue;
+                x[i] += alpha * p[i], r[i] -= alpha * q[i];
+                next += r[i] * r[i] / diagonal_[i];
+            }
+            for (std::size_t i = 0; i < size_; ++i)
+                if (!known_[i]) p[i] = r[i] / diagonal_[i] + next / rho * p[i];
+            rho = next;
+        }
+        out.residual = scale > 0 ? std::sqrt(rho / scale) : 0;
+        return out;
+    }
+
+  private:
+    std::span<const ThermalSurface> surfaces_;
+    std::size_t size_;
+    std::vector<std::vector<std::pair<std::uint32_t, double>>> row_;
+    std::vector<double> area_, leak_;
+    std::vector<std::uint8_t> known_;
+    std::vector<double> diagonal_;
+};
+
+/// True if every surface exchanges heat, over any number of others, with one of given temperature or the surroundings.
+bool is_determined(const GraySystem& system, std::span<const ThermalSurface> surfaces, bool has_surroundings) {
+    std::vector<double> reached(system.size());
+    for (std::size_t i = 0; i < system.size(); ++i)
+        reached[i] = surfaces[i].temperature || (has_surroundings && system.leak(i) > 0) || !(system.area(i) > 0);
+    for (bool grows = true; grows;) {
+        grows = false;
+        for (std::size_t i = 0; i < system.size(); ++i)
+            if (reached[i] == 0 && system.incoming(i, reached) > 0) reached[i] = 1, grows = true;
+    }
+    return std::all_of(reached.begin(), reached.end(), [](double r) { return r > 0; });
+}
+
+Result<void> check(const SparseFactors& factors, std::span<const ThermalSurface> surfaces,
+                   std::optional<double> surroundings) {
+    if (surfaces.size() != factors.size())
+        return wrong(fmt::format("{} surfaces for {} rows of view factors", surfaces.size(), factors.size()),
+                     "give one row for each surface of the table of view factors");
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        const ThermalSurface& s = surfaces[i];
+        if (!(s.emissivity > 0 && s.emissivity <= 1))
+            return wrong(fmt::format("surface {}: emissivity {} is not in (0, 1]", i + 1, s.emissivity),
+                         "a mirror-like surface has an emissivity of 0.02 or more");
+        if (s.temperature ? !(*s.temperature >= 0 && *s.temperature < 1e5) : !std::isfinite(s.heat))
+            return wrong(fmt::format("surface {}: temperature or heat is out of range", i + 1),
+                         "temperatures are in kelvins, heat in watts");
+    }
+    if (surroundings && !(*surroundings >= 0 && *surroundings < 1e5))
+        return wrong("the temperature of the surroundings is out of range", "temperatures are in kelvins");
+    return {};
+}
+
+Error undetermined() {
+    return wrong(
+        "nothing determines the temperatures of some surfaces: they exchange heat with no surface of given "
+        "temperature",
+        "give a temperature for one of them, or that of the surroundings");
+}
+
+Error stopped() {
+    return {ErrorCode::limit, "stopped before the heat balance was solved", "", "allow more time"};
+}
+
+}  // namespace
+
+Result<GrayExchange> solve_gray_exchange(const SparseFactors& factors, std::span<const ThermalSurface> surfaces,
+                                         std::optional<double> surroundings, const StopRequest& stop) {
+    if (const Result<void> checked = check(factors, surfaces, surroundings); !checked) return checked.error();
+    const GraySystem system(factors, surfaces, !surroundings);
+    if (!is_determined(system, surfaces, surroundings.has_value())) return undetermined();
+    std::vector<double> emitted, heat;
+    for (const ThermalSurface& s : surfaces)
+        emitted.push_back(black(s.temperature.value_or(0))), heat.push_back(s.temperature ? 0 : s.heat);
+    const double sky = black(surroundings.value_or(0));
+    GraySystem::Solution solved = system.solve(emitted, heat, sky, stop);
+    if (solved.is_stopped) return stopped();
+    GrayExchange out{.temperature = {},
+                     .radiosity = std::move(solved.radiosity),
+                     .heat = {},
+                     .residual = solved.residual,
+                     .iterations = solved.iterations};
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        const double J = out.radiosity[i], e = surfaces[i].emissivity;
+        const double Q = system.area(i) * J - system.incoming(i, out.radiosity) - system.leak(i) * sky;
+        out.heat.push_back(Q);
+        out.surroundings += system.leak(i) * (J - sky);
+        if (surfaces[i].temperature) {
+            out.temperature.push_back(*surfaces[i].temperature);
+            continue;
+        }
+        const double exitance = J + (system.area(i) > 0 ? (1 - e) / e * Q / system.area(i) : 0);
+        if (exitance < 0)
+            return wrong(fmt::format("surface {} would lose {:g} W at absolute zero", i + 1, Q),
+                         "give it a smaller heat, or a temperature");
+        out.temperature.push_back(std::pow(exitance / stefan_boltzmann, 0.25));
+    }
+    return out;
+}
+
+Result<std::vector<std::vector<double>>> exchange_factors(const SparseFactors& factors,
+                                                          std::span<const ThermalSurface> surfaces,
+                                                          std::optional<double> surroundings, const StopRequest& stop) {
+    if (const Result<void> checked = check(factors, surfaces, surroundings); !checked) return checked.error();
+    const GraySystem system(factors, surfaces, !surroundings);
+    if (!is_determined(system, surfaces, surroundings.has_value())) return undetermined();
+    const std::size_t n = surfaces.size();
+    const std::vector<double> no_heat(n);
+    std::vector<std::vector<double>> out(n, std::vector<double>(n));
+    for (std::size_t j = 0; j < n; ++j) {
+        if (!surfaces[j].temperature) continue;
+        // With surface j alone emitting, the others absorb e_i H_i; the factors are symmetric: A_i f_ij = A_j f_ji.
+        std::vector<double> emitted(n);
+        emitted[j] = 1;
+        const GraySystem::Solution solved = system.solve(emitted, no_heat, 0, stop);
+        if (solved.is_stopped) return stopped();
+        for (std::size_t i = 0; i < n; ++i) {
+            if (!surfaces[i].temperature || !(system.area(i) > 0)) continue;
+            const double arriving = system.incoming(i, solved.radiosity) / system.area(i);
+            out[j][i] = surfaces[i].emissivity * arriving * system.area(i) / system.area(j);
+        }
+    }
+    return out;
+}
+
+}  // namespace exitance
