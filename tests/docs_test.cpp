@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -24,7 +25,8 @@ std::string content(const fs::path& path) {
 
 std::vector<fs::path> documents() {
     const fs::path root = test::source_folder();
-    std::vector<fs::path> out{root / "README.md", root / "CONTRIBUTING.md"};
+    std::vector<fs::path> out{root / "README.md", root / "CONTRIBUTING.md", root / "CHANGELOG.md",
+                              root / "bench/results/README.md"};
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / "docs"))
         if (entry.path().extension() == ".md") out.push_back(entry.path());
     return out;
@@ -72,6 +74,26 @@ std::vector<std::string> fixed_parts(const std::string& message) {
     return out;
 }
 
+/// The anchors of a page's headings, as the site's generator makes them.
+std::set<std::string> anchors(const std::string& text) {
+    std::set<std::string> out;
+    std::istringstream lines(text);
+    bool fenced = false;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("```")) fenced = !fenced;
+        if (fenced || !line.starts_with("#")) continue;
+        std::string anchor;
+        for (const char c : line.substr(line.find_first_not_of("# "))) {
+            if (std::isalnum(static_cast<unsigned char>(c)) || c == '_')
+                anchor += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+            else if ((c == ' ' || c == '-') && !anchor.ends_with('-'))
+                anchor += '-';
+        }
+        out.insert(anchor);
+    }
+    return out;
+}
+
 /// Paths in backquotes that begin with a folder of `src/exitance`, of which only the last part may lack its suffix.
 std::vector<std::string> code_paths(const std::string& text, const std::set<std::string>& folders) {
     static const std::regex quoted(R"(`(src/exitance/)?(([a-z_0-9]+)/[a-z_0-9/]*[a-z_0-9](\.(cpp|hpp|inc))?)`)");
@@ -114,6 +136,21 @@ TEST(Documentation, LinksLeadToFilesThatExist) {
         }
     }
     EXPECT_GT(found, 10u);
+}
+
+TEST(Documentation, AnchorsLeadToHeadings) {
+    static const std::regex link(R"(\]\(([^)#:\s]*)#([^)\s]+)\))");
+    std::size_t found = 0;
+    for (const fs::path& document : documents()) {
+        const std::string text = content(document);
+        for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at) {
+            const std::string file = (*at)[1];
+            const std::string target = file.empty() ? text : content(document.parent_path() / file);
+            ++found;
+            EXPECT_TRUE(anchors(target).contains((*at)[2])) << document << " links to " << (*at)[0];
+        }
+    }
+    EXPECT_GT(found, 20u);
 }
 
 TEST(Documentation, ArchitectureListsEveryFolder) {
