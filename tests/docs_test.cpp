@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -24,9 +25,72 @@ std::string content(const fs::path& path) {
 
 std::vector<fs::path> documents() {
     const fs::path root = test::source_folder();
-    std::vector<fs::path> out{root / "README.md", root / "CONTRIBUTING.md"};
+    std::vector<fs::path> out{root / "README.md", root / "CONTRIBUTING.md", root / "CHANGELOG.md",
+                              root / "bench/results/README.md"};
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / "docs"))
         if (entry.path().extension() == ".md") out.push_back(entry.path());
+    return out;
+}
+
+/// Lines of indented and fenced code.
+std::vector<std::string> code_lines(const std::string& text) {
+    std::vector<std::string> out;
+    std::istringstream lines(text);
+    bool fenced = false;
+    for (std::string line; std::getline(lines, line);) {
+        const std::size_t first = line.find_first_not_of(' ');
+        if (first != std::string::npos && line.compare(first, 3, "```") == 0)
+            fenced = !fenced;
+        else if (fenced || line.starts_with("    "))
+            out.push_back(line);
+    }
+    return out;
+}
+
+/// The text of all sources except tests, with adjacent string literals joined and quotes unescaped.
+std::string source_text(const fs::path& root) {
+    static const std::regex joint(R"("\s*\n\s*")"), escaped(R"(\\")");
+    std::string out;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root)) {
+        const std::string name = entry.path().filename();
+        if ((!name.ends_with(".cpp") && !name.ends_with(".hpp")) || name.ends_with("_test.cpp")) continue;
+        out += std::regex_replace(std::regex_replace(content(entry.path()), joint, ""), escaped, "\"");
+    }
+    return out;
+}
+
+/// Fixed parts, of at least six characters, of a message whose variable parts are written as "...".
+std::vector<std::string> fixed_parts(const std::string& message) {
+    std::vector<std::string> out;
+    for (std::size_t at = 0; at <= message.size();) {
+        const std::size_t end = std::min(message.find("...", at), message.size());
+        std::string part = message.substr(at, end - at);
+        const std::string edge = " ',:()%";
+        const std::size_t first = part.find_first_not_of(edge);
+        part = first == std::string::npos ? "" : part.substr(first, part.find_last_not_of(edge) - first + 1);
+        if (part.size() >= 6) out.push_back(part);
+        at = end + 3;
+    }
+    return out;
+}
+
+/// The anchors of a page's headings, as the site's generator makes them.
+std::set<std::string> anchors(const std::string& text) {
+    std::set<std::string> out;
+    std::istringstream lines(text);
+    bool fenced = false;
+    for (std::string line; std::getline(lines, line);) {
+        if (line.starts_with("```")) fenced = !fenced;
+        if (fenced || !line.starts_with("#")) continue;
+        std::string anchor;
+        for (const char c : line.substr(line.find_first_not_of("# "))) {
+            if (std::isalnum(static_cast<unsigned char>(c)) || c == '_')
+                anchor += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+            else if ((c == ' ' || c == '-') && !anchor.ends_with('-'))
+                anchor += '-';
+        }
+        out.insert(anchor);
+    }
     return out;
 }
 
@@ -74,6 +138,21 @@ TEST(Documentation, LinksLeadToFilesThatExist) {
     EXPECT_GT(found, 10u);
 }
 
+TEST(Documentation, AnchorsLeadToHeadings) {
+    static const std::regex link(R"(\]\(([^)#:\s]*)#([^)\s]+)\))");
+    std::size_t found = 0;
+    for (const fs::path& document : documents()) {
+        const std::string text = content(document);
+        for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at) {
+            const std::string file = (*at)[1];
+            const std::string target = file.empty() ? text : content(document.parent_path() / file);
+            ++found;
+            EXPECT_TRUE(anchors(target).contains((*at)[2])) << document << " links to " << (*at)[0];
+        }
+    }
+    EXPECT_GT(found, 20u);
+}
+
 TEST(Documentation, ArchitectureListsEveryFolder) {
     const fs::path root = fs::path(test::source_folder()) / "src/exitance";
     const std::string text = content(fs::path(test::source_folder()) / "docs/architecture.md");
@@ -81,6 +160,51 @@ TEST(Documentation, ArchitectureListsEveryFolder) {
         if (entry.is_directory()) {
             EXPECT_NE(text.find("| `" + entry.path().filename().string() + "/`"), std::string::npos) << entry.path();
         }
+}
+
+TEST(Documentation, UsesOnlyVerbsThatExist) {
+    const fs::path root = test::source_folder();
+    const std::string arguments = content(root / "src/exitance/cli/arguments.cpp");
+    static const std::regex command(R"((^|[\s;&|])exitance ([a-z]+)\b)");
+    std::size_t found = 0;
+    for (const fs::path& document : documents())
+        for (const std::string& line : code_lines(content(document)))
+            for (std::sregex_iterator at(line.begin(), line.end(), command), end; at != end; ++at) {
+                ++found;
+                EXPECT_NE(arguments.find("{\"" + (*at)[2].str() + "\","), std::string::npos)
+                    << document << ": " << line;
+            }
+    EXPECT_GT(found, 50u);
+}
+
+TEST(Documentation, NavigationListsEveryPageOnce) {
+    const fs::path root = test::source_folder();
+    const std::string site = content(root / "mkdocs.yml");
+    static const std::regex page(R"(([a-z0-9_/]+\.md)\n)");
+    std::multiset<std::string> listed;
+    for (std::sregex_iterator at(site.begin(), site.end(), page), end; at != end; ++at) listed.insert((*at)[1]);
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / "docs"))
+        if (entry.path().extension() == ".md") {
+            EXPECT_EQ(listed.count(fs::relative(entry.path(), root / "docs").string()), 1u) << entry.path();
+        }
+}
+
+TEST(Documentation, TroubleshootingQuotesMessagesOfTheProgram) {
+    const fs::path root = test::source_folder();
+    const std::string sources = source_text(root / "src/exitance");
+    static const std::regex quoted("`([^`]+)`");
+    std::istringstream lines(content(root / "docs/troubleshooting.md"));
+    std::size_t found = 0;
+    for (std::string line; std::getline(lines, line);) {
+        if (!line.starts_with("| `")) continue;
+        const std::string cell = line.substr(1, line.find('|', 1) - 1);
+        for (std::sregex_iterator at(cell.begin(), cell.end(), quoted), end; at != end; ++at)
+            for (const std::string& part : fixed_parts((*at)[1])) {
+                ++found;
+                EXPECT_NE(sources.find(part), std::string::npos) << "no message contains: " << part;
+            }
+    }
+    EXPECT_GT(found, 150u);
 }
 
 }  // namespace exitance

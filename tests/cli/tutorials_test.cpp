@@ -54,7 +54,7 @@ TEST_P(Tutorials, ShowsExistingPictures) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Pages, Tutorials, testing::Values("designer", "baker", "researcher", "thermal"));
+INSTANTIATE_TEST_SUITE_P(Pages, Tutorials, testing::Values("designer", "daylight", "baker", "researcher", "thermal"));
 
 }  // namespace
 }  // namespace exitance::test

@@ -11,7 +11,7 @@ namespace exitance {
 /// ancestors, which together carry all of its reflected light
 /// path   `.csv`: one row per link; `.obj`: outlines of the elements as polygons, and a line from the centre of each
 /// source to that of the receiver
-/// Format: docs/formats.md.
+/// Format: docs/formats/exports.md.
 Result<void> export_links(const Solution& solution, const std::string& which, const std::string& path);
 
 }  // namespace exitance

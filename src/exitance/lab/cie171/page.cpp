@@ -73,23 +73,24 @@ std::string away_from_edges(const std::vector<Cie171Row>& rows) {
             largest = std::max(largest, row.relative_error);
     if (largest < 0) return "";
     return fmt::format(
-        "\n5.8 is solved to an RMS error of 1e-4. Its largest errors stand 4 mm from an edge, where reflected light "
-        "has "
-        "a bend that\nelements follow last; 0.1 m and farther from edges the largest is {}.\n",
+        "\n5.8 is solved to an RMS error of 1e-4. Its largest errors are 4 mm from an edge, where reflected light "
+        "bends most;\n0.1 m and farther from edges the largest error is {}.\n",
         percent(largest));
 }
 
 constexpr const char* opening = R"(# Validation: CIE 171
 
 CIE 171:2006 tests single parts of light transport against values that can be computed. `exitance-cie171 FOLDER` (built with the benches) builds the
-scenes, solves them as `solve` does, evaluates them as `probe` does, and writes `results.csv` (a row a value), `summary.csv`, and this page.
+scenes, solves them like `solve`, evaluates them like `probe`, and writes `results.csv` (a row per value), `summary.csv`, and this page.
 
-Exact values are closed forms (5.2 to 5.7), Gauss quadrature of the skies' formulas over the opening (5.9 to 5.14), and the solution of the integral equation for
-5.8: the report's formula for it is the mean over the room, not the value at a point. Where the report's own tables contradict their formulas (5.7's table 19, points beside
-openings in 5.9 and 5.11, 5.13 and 5.14 with reflecting masks), what counts here is the formula. 5.5, 5.10 and 5.12 are cases of glass that have no exact values.
+Exact values are closed forms (5.2 to 5.7), Gauss quadrature of the skies' formulas over the opening (5.9 to 5.14), and the solution of the integral
+equation (5.8; the report's formula for it is the mean over the room, not the value at a point). Some tables of the report contradict their formulas:
+table 19 of 5.7, points close to openings in 5.9 and 5.11, and reflecting masks in 5.13 and 5.14. The formula counts there. Cases 5.5, 5.10 and 5.12 are
+about glass and have no exact values.
 
-An error is relative to the exact value at that very point; where that is 0, to the scene's largest. What others have published is the largest error of a point,
-unless said otherwise; much of it is against the report's tables, whose own error is up to some percent beside openings.
+An error is relative to the exact value at the same point, or to the scene's largest value where the exact value is 0. The last column is the largest
+error of a point that others have published, unless it says otherwise; much of it is relative to the report's tables, whose own error is up to some
+percent close to openings.
 
 ## Cases
 )";
@@ -98,13 +99,14 @@ unless said otherwise; much of it is against the report's tables, whose own erro
 
 std::string cie171_page(const std::vector<Cie171Row>& rows) {
     std::string page = opening;
-    page += "| case | what | values | mean error | largest error | best published |\n|---|---|---|---|---|---|\n";
+    page += "| case | subject | values | mean error | largest error | best published |\n|---|---|---|---|---|---|\n";
     for (const Cie171Summary& s : summarize(rows))
         page += fmt::format("| {} | {} | {} | {} | {} | {} |\n", s.study, what_is(s.study), s.points, percent(s.mean),
                             percent(s.largest), published(s.study));
     page += away_from_edges(rows);
     page +=
-        "\n## The worst value of every scene\nlx; of fluxes lm.\n\n| case | scene | at | exact | exitance | error "
+        "\n## The worst value of every scene\nValues are in lx; fluxes are in lm.\n\n| case | scene | at | exact | "
+        "exitance | error "
         "|\n|---|---|---|---|---|---|\n";
     for (const Cie171Row* row : worst_of_scenes(rows))
         page += fmt::format("| {} | {} | {}{}{} | {} | {} | {} |\n", row->study, row->scene, row->parameter,

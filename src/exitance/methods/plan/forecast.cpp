@@ -22,8 +22,8 @@
 namespace exitance {
 namespace {
 
-// Ratios measured by `solve --dry-run` and `solve` on tube, cornell, complex, office, clutter and chair at 3%
-// (docs/figures.md, E.3).
+// Ratios measured by `solve --dry-run` and `solve` on tube, cornell, complex, office, clutter and chair at
+// 3%.
 constexpr double gathered_by_solved = 1.2;  ///< Gather elements per leaf of the method's mesh.
 constexpr double straight_by_curved = 1.7;  ///< Delivered leaves per element of second degree.
 constexpr double element_rays = 2.6;     ///< Rays of an element over those of a place; sums of the rule are less noisy.

@@ -17,7 +17,7 @@
 namespace exitance {
 namespace {
 
-// Measured by `solve --threads 1 --verbose` on tubes, boxes and prisms at 2 to 0.1% (docs/figures.md, section G).
+// Measured by `solve --threads 1 --verbose` on tubes, boxes and prisms at 2 to 0.1% (bench/results/empty_rooms.csv).
 constexpr double terms_a_ray = 10;           ///< Elements summed in the time of one gather ray, at 25 ns each.
 constexpr double terms_beside_pieces = 300;  ///< Elements per place into which pieces near it are split.
 constexpr double light_rays = 64;            ///< Cost of direct light per element, in rays.
