@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 const std::vector<std::string> deciding{"accuracy", "links", "methods", "reconstruct"};
 
 /// Parts of these that no solve goes through: what a picture, a light map, a standard or a study asks for stands with
-/// it; methods whose numbers are those of their papers; and forecasts.
+/// it; methods whose numbers are those of their papers; limits of what users may give; and forecasts.
 const std::vector<std::string> apart{"reconstruct/pictures/",
                                      "reconstruct/light_maps/",
                                      "reconstruct/glare/",
@@ -30,6 +30,7 @@ const std::vector<std::string> apart{"reconstruct/pictures/",
                                      "methods/daylight/",
                                      "methods/classical/",
                                      "methods/growing_cells/",
+                                     "methods/options/",
                                      "methods/tasks/",
                                      "methods/plan/forecast.cpp"};
 

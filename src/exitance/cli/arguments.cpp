@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "exitance/cli/nearest.hpp"
 #include "exitance/cli/option_kinds.hpp"
+#include "exitance/core/nearest.hpp"
 
 namespace exitance {
 namespace {

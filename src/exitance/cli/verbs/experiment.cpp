@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "exitance/cli/nearest.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
+#include "exitance/core/nearest.hpp"
 #include "exitance/core/parallel.hpp"
 #include "exitance/experiments/study/conduct_study.hpp"
 

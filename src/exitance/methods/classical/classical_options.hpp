@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "exitance/core/result.hpp"
 #include "exitance/solve/solve_options.hpp"
 
 namespace exitance {
@@ -63,9 +62,5 @@ struct ClassicalOptions {
     }
     bool carried() const { return direct == ClassicalDirect::carried; }
 };
-
-/// The method in force: as asked for, or of `auto` the first that obeys all that is asked for. A usage error names the
-/// option that the method does not obey, and the methods that do.
-Result<Method> classical_method(const SolveOptions& options, const ClassicalOptions& classical);
 
 }  // namespace exitance
