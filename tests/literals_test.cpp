@@ -21,7 +21,7 @@ const std::vector<std::string> deciding{"links",     "solution",      "gather",
                                         "reference", "methods",       "what_if/light_groups"};
 
 /// Exceptions, which no solve uses.
-const std::vector<std::string> apart{"evaluate/surface_levels.cpp", "reference/compare.cpp",
+const std::vector<std::string> apart{"evaluate/surface_levels.cpp", "reference/compare.cpp", "methods/options/",
                                      "methods/plan/forecast.cpp"};
 
 bool is_below(const std::vector<std::string>& places, const std::string& file) {

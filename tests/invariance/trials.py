@@ -442,7 +442,7 @@ class Findings:
 
 
 ASKED = ["--error", "{error}"]
-PUBLISHED = ["--direct", "carried", "--mesh", "uniform", "--gather", "off", "--mesh-size", "{h}"]
+PUBLISHED = ["--direct", "carried", "--mesh", "uniform", "--output-light", "elements", "--mesh-size", "{h}"]
 
 
 def published(name, *options):

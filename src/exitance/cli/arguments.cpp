@@ -4,8 +4,11 @@
 
 #include <algorithm>
 
-#include "exitance/cli/nearest.hpp"
+#include "exitance/base/nearest.hpp"
 #include "exitance/cli/option_kinds.hpp"
+#include "exitance/cli/reference/pages.hpp"
+#include "exitance/methods/options/solve_option_table.hpp"
+#include "exitance/methods/options/support.hpp"
 
 namespace exitance {
 namespace {
@@ -48,19 +51,76 @@ std::vector<std::string> with_flag_values(const std::vector<std::string>& words)
     return out;
 }
 
+Audience audience_of(const std::string& group) {
+    const auto* const known = std::find_if(std::begin(option_groups::all), std::end(option_groups::all),
+                                           [&](const OptionGroup& g) { return g.title == group; });
+    return known == std::end(option_groups::all) ? Audience::users : known->audience;
+}
+
+/// Methods that support an option of `solve`, with those whose published forms do.
+std::string supported_by(const std::string& option) {
+    const OptionRow* const row = find_option(option);
+    if (!row || row->support.empty()) return "";
+    const auto methods = [&](Form form) { return supporting_methods(*row, form); };
+    const auto all = [&](Form form) { return supporting_methods({}, form) == methods(form); };
+    std::string out;
+    const auto add = [&](const std::string& words) { out += (out.empty() ? "" : "; ") + words; };
+    if (const std::string found = methods(Form::standard); !found.empty())
+        add(all(Form::standard) ? "all methods" : found);
+    if (const std::string found = methods(Form::published); !found.empty())
+        add(all(Form::published) ? "all published forms" : "published: " + found);
+    if (option == "--task-engine") return methods(Form::tasks);
+    if (!methods(Form::tasks).empty()) add("--task-engine");
+    if (option != "--local-pass" && !methods(Form::local_passes).empty()) add("--local-pass a to d");
+    return out;
+}
+
+/// An option as it was declared. The type of inputs is their name; what CLI11 adds to types is left out.
+OptionFacts facts_of(const CLI::Option& option) {
+    OptionFacts out;
+    if (!option.get_snames().empty()) out.short_name = "-" + option.get_snames().front();
+    if (!option.get_lnames().empty()) out.long_name = "--" + option.get_lnames().front();
+    const std::string type = option.get_items_expected_max() == 0 ? "" : option.get_type_name();
+    out.type = out.is_input() ? option.get_name(true) : type.substr(0, type.find(':'));
+    if (out.is_input() && option.get_items_expected_max() > 1) out.type += "...";
+    out.help = option.get_description(), out.group = option.get_group();
+    out.audience = audience_of(out.group), out.is_required = option.get_required();
+    if (out.help.find_last_of('.') + 1 != out.help.size()) out.help += '.';
+    return out;
+}
+
 template <class Arguments>
-Result<Parsed> parse_verb(CLI::App& app, const std::vector<std::string>& words, const std::string& at_limit) {
-    Arguments arguments;
+void declare_all(CLI::App& app, Arguments& arguments, const std::string& at_limit) {
     declare(app, arguments);
     declare_limits(app, arguments.limits, at_limit);
     declare_common(app, arguments);
+    app.set_help_flag("-h,--help", "Show the options for users")->group("Run");
+    app.set_help_all_flag("--help-all", "Show all options")->group("Run");
+}
+
+template <class Arguments>
+VerbFacts facts_of_verb(const std::string& name, const std::string& does, const std::string& example,
+                        const std::string& at_limit) {
+    CLI::App app(does, "exitance " + name);
+    Arguments arguments;
+    declare_all(app, arguments, at_limit);
+    VerbFacts out{name, does, example, {}};
+    for (const CLI::Option* option : app.get_options()) out.options.push_back(facts_of(*option));
+    std::stable_partition(out.options.begin(), out.options.end(), [](const OptionFacts& o) { return o.is_input(); });
+    if constexpr (std::is_same_v<Arguments, SolveArguments>)
+        for (OptionFacts& option : out.options) option.supported_by = supported_by(option.long_name);
+    return out;
+}
+
+template <class Arguments>
+Result<Parsed> parse_verb(CLI::App& app, const std::vector<std::string>& words, const std::string& at_limit) {
+    Arguments arguments;
+    declare_all(app, arguments, at_limit);
     app.allow_extras();
     try {
         std::vector<std::string> backwards = with_flag_values(words);
         std::reverse(backwards.begin(), backwards.end());
         app.parse(std::move(backwards));
-    } catch (const CLI::CallForHelp&) {
-        return Parsed(Information{app.help()});
     } catch (const CLI::ParseError& error) {
         if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) return unexpected(app, extras);
         return usage_error(app, error.what());
@@ -72,52 +132,57 @@ Result<Parsed> parse_verb(CLI::App& app, const std::vector<std::string>& words, 
 struct Verb {
     std::string name, does, example;
     Result<Parsed> (*read)(CLI::App&, const std::vector<std::string>&, const std::string& at_limit);
+    VerbFacts (*describe)(const std::string& name, const std::string& does, const std::string& example,
+                          const std::string& at_limit);
     /// What happens when a limit of time or memory is passed.
     std::string at_limit = "the run ends without a result, with status 5";
 
-    Result<Parsed> parse(CLI::App& app, const std::vector<std::string>& words) const {
-        return read(app, words, at_limit);
-    }
+    VerbFacts facts() const { return describe(name, does, example, at_limit); }
 };
 
 const std::vector<Verb>& verbs() {
     static const std::vector<Verb> all{
         {"solve", "Computes the light in a scene.", "exitance solve room.obj -o room.h5", parse_verb<SolveArguments>,
-         "the light found so far is written, with status 4"},
+         facts_of_verb<SolveArguments>, "the light found so far is written, with status 4"},
         {"probe", "Evaluates irradiance and radiosity at points.",
          "exitance probe room.h5 --points desks.csv -o light.csv", parse_verb<ProbeArguments>,
-         "the rows finished so far are written, with status 4"},
-        {"compare", "Tells how far a solution is from a reference.", "exitance compare room.h5 reference.csv",
-         parse_verb<CompareArguments>},
-        {"stats", "Tells what a solution took: counts, times, memory, error, energy balance.", "exitance stats room.h5",
-         parse_verb<StatsArguments>},
-        {"mix", "Dims groups of lamps and repaints materials of a solution, without solving it again.",
-         "exitance mix room.h5 lamp=0.5 --reflectance wall=0.8,0.8,0.7 -o dimmed.h5", parse_verb<MixArguments>},
+         facts_of_verb<ProbeArguments>, "the rows finished so far are written, with status 4"},
+        {"compare", "Measures the error of a solution against a reference.", "exitance compare room.h5 reference.csv",
+         parse_verb<CompareArguments>, facts_of_verb<CompareArguments>},
+        {"stats", "Prints counts, times, memory, error and energy balance of a solution.", "exitance stats room.h5",
+         parse_verb<StatsArguments>, facts_of_verb<StatsArguments>},
+        {"mix", "Dims light groups and changes reflectances of a solution, without solving again.",
+         "exitance mix room.h5 lamp=0.5 --reflectance wall=0.8,0.8,0.7 -o dimmed.h5", parse_verb<MixArguments>,
+         facts_of_verb<MixArguments>},
         {"export", "Writes a solution for other programs.", "exitance export room.h5 -o room.glb",
-         parse_verb<ExportArguments>},
+         parse_verb<ExportArguments>, facts_of_verb<ExportArguments>},
         {"render", "Makes a picture of a solution.", "exitance render room.h5 -o room.png", parse_verb<RenderArguments>,
-         "the whole picture is written with fewer samples, with status 4"},
-        {"bake", "Writes light maps: pictures of the light on every surface, and a model that shows them.",
-         "exitance bake room.h5 -o lightmaps", parse_verb<BakeArguments>,
+         facts_of_verb<RenderArguments>, "the whole picture is written with fewer samples, with status 4"},
+        {"bake", "Writes light maps, and a model that shows them.", "exitance bake room.h5 -o lightmaps",
+         parse_verb<BakeArguments>, facts_of_verb<BakeArguments>,
          "the maps of finished light groups are written, with status 4 (5 before all light is done)"},
         {"report", "Writes a page with pictures, tables, measuring planes, energy balance and error.",
-         "exitance report room.h5 -o room.html", parse_verb<ReportArguments>,
+         "exitance report room.h5 -o room.html", parse_verb<ReportArguments>, facts_of_verb<ReportArguments>,
          "the page is written with the parts that are finished, with status 4"},
-        {"daylight", "Writes the daylight of a year at sensors: illuminances, autonomy, daylight factors.",
-         "exitance daylight room.h5 --epw city.epw --points desks.pts -o year", parse_verb<DaylightArguments>},
-        {"check", "Tells what is wrong with a scene and what was repaired.", "exitance check room.obj",
-         parse_verb<CheckArguments>},
+        {"daylight", "Writes a year of daylight at sensors: illuminances, autonomy, daylight factors.",
+         "exitance daylight room.h5 --epw city.epw --points desks.pts -o year", parse_verb<DaylightArguments>,
+         facts_of_verb<DaylightArguments>},
+        {"check", "Reports faults of a scene, and repairs.", "exitance check room.obj", parse_verb<CheckArguments>,
+         facts_of_verb<CheckArguments>},
         {"generate", "Writes a scene of a built-in family.", "exitance generate complex m=6 -o complex.obj",
-         parse_verb<GenerateArguments>},
-        {"luminaire", "Tells the facts of a photometric file; draws its polar diagram and its opening.",
-         "exitance luminaire downlight.ies -o downlight.svg", parse_verb<LuminaireArguments>},
+         parse_verb<GenerateArguments>, facts_of_verb<GenerateArguments>},
+        {"luminaire", "Prints facts of a photometric file; draws its polar diagram and its opening.",
+         "exitance luminaire downlight.ies -o downlight.svg", parse_verb<LuminaireArguments>,
+         facts_of_verb<LuminaireArguments>},
         {"experiment", "Runs a study of methods: tables, plots, and a page of conclusions.",
          "exitance experiment blocker --quick -o blocker", parse_verb<ExperimentArguments>,
-         "the page is written with the runs that are finished, with status 4"},
+         facts_of_verb<ExperimentArguments>, "the page is written with the runs that are finished, with status 4"},
         {"viewfactors", "Writes the matrix of view factors between a scene's polygons.",
-         "exitance viewfactors room.obj -o room.csv", parse_verb<ViewFactorArguments>},
+         "exitance viewfactors room.obj -o room.csv", parse_verb<ViewFactorArguments>,
+         facts_of_verb<ViewFactorArguments>},
         {"view", "Shows a solution in a browser, or a scene while it is solved.", "exitance view room.h5",
-         parse_verb<ViewArguments>, "solving stops, and the light found so far stays on show"},
+         parse_verb<ViewArguments>, facts_of_verb<ViewArguments>,
+         "solving stops, and the light found so far remains visible"},
     };
     return all;
 }
@@ -130,67 +195,21 @@ std::string help() {
     for (const Verb& verb : verbs()) text += fmt::format("  {:<12} {}\n", verb.name, verb.does);
     return text +
            "\nexitance VERB --help describes a verb; exitance --version names the libraries built in.\n"
-           "exitance --man is a manual page, exitance --completion bash a completion for the shell.\n";
+           "exitance reference --format man|bash|zsh prints a manual page or a completion for the shell.\n";
 }
 
-/// Every option of a verb: the parser declares them before it meets --help.
-std::vector<std::string> option_names(const Verb& verb) {
-    CLI::App app(verb.does, "exitance " + verb.name);
-    (void)verb.parse(app, {"--help"});
-    std::vector<std::string> names;
-    for (const CLI::Option* option : app.get_options())
-        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    return names;
-}
-
-/// For bash: source <(exitance --completion bash)
-std::string bash_completion() {
-    std::vector<std::string> names;
-    std::string cases;
-    for (const Verb& verb : verbs()) {
-        names.push_back(verb.name);
-        cases += fmt::format("        {}) words='{}' ;;\n", verb.name, fmt::join(option_names(verb), " "));
-    }
-    return fmt::format(
-        "_exitance() {{\n"
-        "    local word=${{COMP_WORDS[COMP_CWORD]}} words=\n"
-        "    if [[ $COMP_CWORD -eq 1 ]]; then\n"
-        "        COMPREPLY=($(compgen -W '{} --help --version' -- \"$word\"))\n"
-        "        return\n"
-        "    fi\n"
-        "    case ${{COMP_WORDS[1]}} in\n{}    esac\n"
-        "    COMPREPLY=()\n"
-        "    [[ $word == -* ]] && COMPREPLY=($(compgen -W \"$words\" -- \"$word\"))\n"
-        "}}\n"
-        "complete -o default -F _exitance exitance\n",
-        fmt::join(names, " "), cases);
-}
-
-/// Lines as they are, for roff.
-std::string verbatim(const std::string& text) {
-    std::string out = ".nf\n";
-    bool begins = true;
-    for (const char c : text) {
-        if (begins && (c == '.' || c == '\'')) out += "\\&";
-        if (c == '\\') out += '\\';
-        if (c == '-') out += '\\';
-        out += c, begins = c == '\n';
-    }
-    return out + (begins ? "" : "\n") + ".fi\n";
-}
-
-/// exitance --man | man -l -
-std::string man_page() {
-    std::string text = fmt::format(
-        ".TH EXITANCE 1 \"\" \"exitance {}\"\n.SH NAME\nexitance \\- light in rooms of diffuse surfaces\n"
-        ".SH SYNOPSIS\n.B exitance\n.I VERB\n[options]\n.I INPUT...\n",
-        EXITANCE_VERSION);
-    for (const Verb& verb : verbs()) {
-        CLI::App app(fmt::format("{}\n\nExample: {}", verb.does, verb.example), "exitance " + verb.name);
-        const Result<Parsed> parsed = verb.parse(app, {"--help"});
-        text += fmt::format(".SH {}\n", verb.name) + verbatim(std::get<Information>(*parsed).text);
-    }
-    return text;
+/// exitance reference --format FORMAT
+Result<Parsed> reference(const std::vector<std::string>& words) {
+    std::vector<VerbFacts> facts;
+    for (const Verb& verb : verbs()) facts.push_back(verb.facts());
+    const std::string format = words.size() == 2 && words[0] == "--format" ? words[1] : "";
+    if (format == "man") return Parsed(Information{man_page(facts, EXITANCE_VERSION)});
+    if (format == "markdown") return Parsed(Information{markdown_page(facts)});
+    if (format == "bash") return Parsed(Information{bash_completion(facts)});
+    if (format == "zsh") return Parsed(Information{zsh_completion(facts)});
+    if (format == "list") return Parsed(Information{option_list(facts)});
+    return Error{ErrorCode::usage, "must be man, markdown, bash, zsh or list", "--format",
+                 "exitance reference --format man | man -l -"};
 }
 
 Error unknown_verb(const std::string& word) {
@@ -210,15 +229,19 @@ Result<Parsed> parse_arguments(const std::vector<std::string>& arguments) {
     if (first == "--help" || first == "-h" || first == "help") return Parsed(Information{help()});
     if (first == "--version")
         return Parsed(Information{fmt::format("exitance {}\n{}\n", EXITANCE_VERSION, EXITANCE_LIBRARIES)});
-    if (first == "--man") return Parsed(Information{man_page()});
-    if (first == "--completion") {
-        if (arguments.size() == 2 && arguments[1] == "bash") return Parsed(Information{bash_completion()});
-        return Error{ErrorCode::usage, "is there for bash", "--completion", "source <(exitance --completion bash)"};
-    }
+    const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
+    if (first == "reference") return reference(rest);
+    if (first == "--man") return reference({"--format", "man"});
+    if (first == "--completion") return reference({"--format", rest.empty() ? "" : rest.front()});
     const auto verb = std::find_if(verbs().begin(), verbs().end(), [&](const Verb& v) { return v.name == first; });
     if (verb == verbs().end()) return unknown_verb(first);
-    CLI::App app(fmt::format("Example:\n  {}\n\n{}", verb->example, verb->does), "exitance " + verb->name);
-    return verb->parse(app, {arguments.begin() + 1, arguments.end()});
+    for (const std::string& word : rest) {
+        if (word == "--") break;
+        if (word == "--help" || word == "-h" || word == "--help-all")
+            return Parsed(Information{help_page(verb->facts(), word == "--help-all")});
+    }
+    CLI::App app(verb->does, "exitance " + verb->name);
+    return verb->read(app, rest, verb->at_limit);
 }
 
 }  // namespace exitance

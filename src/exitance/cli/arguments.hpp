@@ -15,8 +15,8 @@
 #include "exitance/io/pictures/tone_map.hpp"
 #include "exitance/io/report/report.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
-#include "exitance/lab/classical/classical_options.hpp"
 #include "exitance/measure/working_plane.hpp"
+#include "exitance/methods/options/solve_request.hpp"
 #include "exitance/scene/photometric_units.hpp"
 #include "exitance/solve/solve_options.hpp"
 #include "exitance/what_if/daylight/daylight_provision.hpp"
@@ -40,19 +40,9 @@ struct SceneArguments {
     LoadOptions load;
 };
 
-struct SolveArguments : CommonArguments {
+struct SolveArguments : CommonArguments, SolveRequest {
     SceneArguments scene;
     std::string output;
-    SolveOptions options;
-    ClassicalOptions classical;
-    std::string importance;                  ///< Points that light is looked at; empty: everywhere.
-    std::string trace;                       ///< Where to write what parallel loops did; empty: nowhere.
-    std::optional<double> checkpoint_every;  ///< Seconds.
-    bool resume = false;                     ///< Go on from the checkpoint beside the output.
-    bool dry_run = false;
-    bool light_groups = false;        ///< Solve every group of emitters by itself, too, and keep that.
-    std::optional<bool> photometric;  ///< None: as the file has it.
-    std::string sky, epw;             ///< A sky in words, and a weather file for it; empty: none.
 };
 
 /// In what unit a verb tells light.

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <bit>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "exitance/base/random.hpp"
+#include "exitance/methods/options/solve_option_table.hpp"
 
 namespace exitance {
 namespace {
@@ -22,20 +21,6 @@ std::string dump(const Json& json, int indent) {
 template <class T>
 Json value_or_null(const std::optional<T>& value) {
     return value ? Json(*value) : Json(nullptr);
-}
-
-template <class Choice, std::size_t N>
-Json name_or_null(const std::array<std::pair<Choice, std::string_view>, N>& table, const std::optional<Choice>& value) {
-    return value ? Json(name_in(table, *value)) : Json(nullptr);
-}
-
-/// How many points, and which: "12 points c0ffee".
-std::string fingerprint(const std::vector<ImportantPoint>& points) {
-    std::uint64_t all = 0;
-    for (const ImportantPoint& p : points)
-        for (double v : {p.at.x, p.at.y, p.at.z, p.normal.x, p.normal.y, p.normal.z})
-            all = hash(all, std::bit_cast<std::uint64_t>(v));
-    return fmt::format("{} points {:016x}", points.size(), all);
 }
 
 Json to_json(const std::vector<Finding>& findings, Finding::Kind kind) {
@@ -169,57 +154,8 @@ std::string forecast_json(const Forecast& f) {
     return dump(json, 2);
 }
 
-namespace {
-
-/// Only where something was asked for, so that the options of other solutions stay as they are.
-Json discontinuity_json(const DiscontinuityChoice& c) {
-    Json json{{"eee", name_or_null(three_edge_names, c.three_edges)},
-              {"triangulation", name_or_null(triangulation_choices, c.triangulation)},
-              {"premesh", name_or_null(premesh_names, c.premesh)},
-              {"dm_quality", name_or_null(mesh_quality_names, c.quality)},
-              {"dm_structure", name_or_null(structure_names, c.structure)}};
-    if (c.element) json["dm_element"] = name_in(mesh_element_names, *c.element);
-    if (c.layers) json["layers"] = *c.layers;
-    if (c.sources)
-        json["dm_sources"] = {{"count", value_or_null(c.sources->count)}, {"power", value_or_null(c.sources->power)}};
-    return json;
-}
-
-}  // namespace
-
-std::string options_json(const SolveOptions& o) {
-    Json json{
-        {"method", name_in(method_names, o.method)},
-        {"basis", name_or_null(basis_names, o.basis)},
-        {"epsilon", value_or_null(o.epsilon)},
-        {"triage", o.triage},
-        {"bounces", o.bounces == all_bounces ? Json("all") : Json(o.bounces)},
-        {"error", value_or_null(o.error_demand())},
-        {"error_interpolant", value_or_null(o.error_interpolant)},
-        {"mesh_size", value_or_null(o.mesh_size)},
-        {"min_area", value_or_null(o.min_area)},
-        {"residual", value_or_null(o.residual)},
-        {"max_iterations", value_or_null(o.max_iterations)},
-        {"relaxation", name_or_null(relaxation_names, o.relaxation)},
-        {"overshooting", o.overshooting},
-        {"visibility", name_in(visibility_names, o.visibility)},
-        {"visibility_samples", value_or_null(o.visibility_samples)},
-        {"threshold", value_or_null(o.threshold)},
-        {"task_engine", o.task_engine},
-        {"clusters", value_or_null(o.clusters)},
-        {"smoothing", value_or_null(o.smoothing)},
-        {"importance", o.importance.empty() ? Json(nullptr) : Json(fingerprint(o.importance))},
-        {"form_factors", name_or_null(form_factor_names, o.form_factors)},
-        {"oracle", name_in(oracle_names, o.oracle)},
-        {"gcs", name_or_null(cells_names, o.gcs)},
-        {"max_units", value_or_null(o.max_units)},
-        {"local_pass", name_or_null(local_pass_names, o.local_pass)},
-        {"hemicube_cells", value_or_null(o.hemicube_cells)},
-        {"keep_links", o.keep_links},
-        {"seed", o.seed},
-    };
-    if (o.discontinuity.any()) json["discontinuity"] = discontinuity_json(o.discontinuity);
-    return dump(json, -1);
+std::string options_json(const SolveRequest& request) {
+    return dump(Json::parse(recorded_options(request)), -1);
 }
 
 std::string with_scene_options(const std::string& options, const LoadOptions& load) {
@@ -230,23 +166,8 @@ std::string with_scene_options(const std::string& options, const LoadOptions& lo
     return dump(json, -1);
 }
 
-std::string options_json(const SolveOptions& options, const ClassicalOptions& c, const ClassicalFacts& facts) {
-    Json json = Json::parse(options_json(options));
-    json["classical"] = {
-        {"direct", name_or_null(classical_direct_names, c.direct)},
-        {"mesh", name_or_null(mesh_kind_names, c.mesh)},
-        {"gather", value_or_null(c.gather)},
-        {"certify", value_or_null(c.certify)},
-        {"threshold", value_or_null(c.threshold)},
-        {"multigrid", value_or_null(c.multigrid)},
-        {"kernel", name_or_null(transfer_kernel_names, c.kernel)},
-        {"refine_gradient", value_or_null(c.refine_gradient)},
-        {"refine", name_or_null(refine_when_names, c.refine)},
-        {"relaxation", name_or_null(classical_relaxation_names, c.relaxation)},
-        {"sor_factor", value_or_null(c.sor_factor)},
-        {"form_factors", name_or_null(shooting_receiver_names, c.receivers)},
-        {"ambient", c.ambient},
-    };
+std::string options_json(const SolveRequest& request, const ClassicalFacts& facts) {
+    Json json = Json::parse(recorded_options(request));
     if (!facts.direct.empty())
         json["classical"]["facts"] = {
             {"direct", facts.direct},
@@ -258,11 +179,13 @@ std::string options_json(const SolveOptions& options, const ClassicalOptions& c,
     return dump(json, -1);
 }
 
-std::vector<std::pair<std::string, std::string>> option_facts(const SolveOptions& options) {
+std::vector<std::pair<std::string, std::string>> option_facts(const SolveRequest& request) {
     std::vector<std::pair<std::string, std::string>> facts;
-    const Json json = Json::parse(options_json(options));
-    for (const auto& [name, value] : json.items()) facts.emplace_back(name, dump(value, -1));
-    facts.emplace_back("memory_limit", dump(value_or_null(options.memory_limit_bytes), -1));
+    const Json json = Json::parse(recorded_options(request));
+    for (const auto& [name, value] : json.items())
+        if (name != "recipe" && name != "output_light")
+            facts.emplace_back(name, dump(value, -1));  // others hold what they set
+    facts.emplace_back("memory_limit", dump(value_or_null(request.options.memory_limit_bytes), -1));
     return facts;
 }
 

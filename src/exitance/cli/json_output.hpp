@@ -7,11 +7,11 @@
 
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/lab/classical/classical.hpp"
+#include "exitance/methods/options/solve_request.hpp"
 #include "exitance/methods/plan/forecast.hpp"
 #include "exitance/reference/compare.hpp"
 #include "exitance/scene/photometric_units.hpp"
 #include "exitance/solution/solution.hpp"
-#include "exitance/solve/solve_options.hpp"
 #include "exitance/view_factors/ray_check.hpp"
 #include "exitance/view_factors/row_check.hpp"
 #include "exitance/what_if/light_groups/light_groups.hpp"
@@ -34,17 +34,17 @@ std::string statistics_json(const Solution& solution);
 /// `solve --dry-run --json`.
 std::string forecast_json(const Forecast& forecast);
 
-/// The options in force, as the solution records them: what the light depends on, and hence neither threads nor limits.
-std::string options_json(const SolveOptions& options);
+/// The options that the light depends on, as a solution records them: neither threads nor limits.
+std::string options_json(const SolveRequest& request);
 
 /// Adds the options by which a scene was read, where they were given: length_unit (metres), up, turn_bodies.
 std::string with_scene_options(const std::string& options, const LoadOptions& load);
 
-/// The same of a classical form, with what it took (`ClassicalFacts`).
-std::string options_json(const SolveOptions& options, const ClassicalOptions& classical, const ClassicalFacts& facts);
+/// Options of a published form, with what it reports.
+std::string options_json(const SolveRequest& request, const ClassicalFacts& facts);
 
-/// The same one by one, with the memory limit: what a checkpoint is of. Values as JSON.
-std::vector<std::pair<std::string, std::string>> option_facts(const SolveOptions& options);
+/// Names and JSON values of the options that a checkpoint depends on: the recorded ones and the memory limit.
+std::vector<std::pair<std::string, std::string>> option_facts(const SolveRequest& request);
 
 /// `check --json`.
 std::string check_json(const CheckedScene& checked);

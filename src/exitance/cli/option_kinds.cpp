@@ -58,36 +58,42 @@ bool read_switch(const char* option, const std::string& word) {
 }
 
 void declare_common(CLI::App& app, CommonArguments& arguments) {
-    app.add_flag("-q,--quiet", arguments.quiet, "Nothing but errors on the error stream");
-    app.add_flag("-v,--verbose", arguments.verbose, "Say more on the error stream");
+    app.add_flag("-q,--quiet", arguments.quiet, "Write nothing but errors to the error stream")->group("Run");
+    app.add_flag("-v,--verbose", arguments.verbose, "Write more to the error stream")->group("Run");
 }
 
 void declare_limits(CLI::App& app, LimitArguments& limits, const std::string& at_limit) {
     add_positive(app, "--time-limit", limits.time_limit, "SECONDS", "Wall time of the whole run; then " + at_limit)
         ->group("Limits");
+    if (app.get_option_no_throw("--memory-limit")) return;
     app.add_option_function<std::string>(
            "--memory-limit", [&limits](const std::string& w) { limits.memory_limit = read_bytes("--memory-limit", w); },
-           "Resident memory of the process, such as 4G; beyond it the same")
+           "Resident memory of the process, such as 4G; if it is exceeded, the run ends as at the time limit")
         ->type_name("SIZE")
         ->group("Limits");
 }
 
 void declare_json(CLI::App& app, CommonArguments& arguments) {
-    app.add_flag("--json", arguments.json, "Facts as JSON on standard output");
+    app.add_flag("--json", arguments.json, "Print facts as JSON to standard output")->group("Run");
 }
 
 void declare_work(CLI::App& app, CommonArguments& arguments, int& threads) {
-    add_count(app, "--threads", threads, 1, "Threads to use; default all. The result does not depend on it");
+    add_count(app, "--threads", threads, 1, "Number of threads; the result does not depend on it. Default all cores")
+        ->group("Run");
+    declare_progress(app, arguments);
+}
+
+void declare_progress(CLI::App& app, CommonArguments& arguments) {
     add_choice(app, "--progress", progress_names, arguments.progress,
-               "auto: a bar on a terminal, a line every ten seconds otherwise");
+               "How progress is shown. Default auto: a bar on a terminal, else a line every ten seconds")
+        ->group("Run");
 }
 
 void declare_unit(CLI::App& app, UnitArguments& unit) {
-    CLI::Option* named =
-        add_choice(app, "--unit", unit_names, unit.choice,
-                   "Light in lx (of W/m^2 by 179 lm/W and weights 0.265, 0.670, 0.065 of R, G, B) or in W/m^2 (mean of "
-                   "the bands); default: what the scene's light is in, which is never converted twice");
-    add_positive(app, "--efficacy", unit.efficacy, "LM/W", "In place of 179 lm/W")->needs(named);
+    CLI::Option* named = add_choice(app, "--unit", unit_names, unit.choice,
+                                    "Unit of the light: lx (from W/m^2 by 179 lm/W and weights 0.265, 0.670, 0.065 of "
+                                    "R, G, B) or W/m^2 (mean of the bands). Default: the unit of the scene's light");
+    add_positive(app, "--efficacy", unit.efficacy, "LM/W", "Luminous efficacy, instead of 179 lm/W")->needs(named);
 }
 
 constexpr std::array<std::pair<double, std::string_view>, 5> length_unit_names{{
@@ -100,26 +106,36 @@ constexpr std::array<std::pair<double, std::string_view>, 5> length_unit_names{{
 constexpr std::array<std::pair<bool, std::string_view>, 2> up_names{{{true, "y"}, {false, "z"}}};
 
 void declare_scene(CLI::App& app, SceneArguments& scene) {
-    app.add_option("SCENE", scene.files, "Scene (.obj with its .mtl, .gltf, .glb, .rad); several files make one")
+    app.add_option("SCENE", scene.files,
+                   "Scene (.obj with its .mtl, .gltf, .glb, .rad, .vs3, .stl); several files make one scene")
         ->required();
     app.add_flag_callback(
-        "--strict", [&scene] { scene.load.faults = Faults::refuse; },
-        "Faults of the scene are errors; else they are repaired");
-    app.add_option("--luminaires", scene.load.luminaires,
-                   "Table of luminaires in the scene (.csv): file,x,y,z and, where wanted, aim_x,aim_y,aim_z,rotation,"
-                   "dimming,lumens,maintenance_factor,group")
-        ->type_name("FILE");
-    add_choice(app, "--length-unit", length_unit_names, scene.load.metres_per_unit,
-               "Length unit of .obj, .stl, .ply, .rad and .vs3 files; default m. Points, cameras and tables are in metres");
+           "--strict", [&scene] { scene.load.faults = Faults::refuse; },
+           "Report faults of the scene as errors. Default: they are repaired where possible")
+        ->group("Scene");
+    app.add_option(
+           "--luminaires", scene.load.luminaires,
+           "Table of luminaires in the scene (.csv) with the columns file,x,y,z and optionally aim_x,aim_y,aim_z,"
+           "rotation,dimming,lumens,maintenance_factor,group")
+        ->type_name("FILE")
+        ->group("Scene");
+    add_choice(
+        app, "--length-unit", length_unit_names, scene.load.metres_per_unit,
+        "Length unit of .obj, .stl, .ply, .rad and .vs3 files. Default m. Points, cameras and tables are in metres")
+        ->group("Scene");
     add_choice(app, "--up", up_names, scene.load.y_is_up,
-               "Upright axis of .obj, .stl, .ply and .vs3 files; default z. Points, cameras and tables have Z up");
+               "Upright axis of .obj, .stl, .ply and .vs3 files. Default z. Points, cameras and tables have Z up")
+        ->group("Scene");
     app.add_flag("--turn-bodies", scene.load.turn_bodies,
-                 "Turn the faces of closed bodies that are inside out; check reports such bodies");
+                 "Turn the faces of closed bodies that are inside out. Use it where check reports such bodies")
+        ->group("Scene");
     app.add_flag("--run-commands", scene.load.run_commands,
-                 "Run '!' lines of .rad files with the installed Radiance programs");
+                 "Run '!' lines of .rad files with the installed Radiance programs")
+        ->group("Scene");
     app.add_flag("--older-gensky", scene.load.older_sky_programs,
                  "Evaluate '!gensky' and '!gendaylit' lines of .rad files as Radiance's programs did before November "
-                 "2019; default: as today's do. For comparison with results of that time");
+                 "2019. Use it to compare with results of that time")
+        ->group("Scene details");
 }
 
 }  // namespace exitance

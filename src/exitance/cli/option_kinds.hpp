@@ -86,9 +86,12 @@ CLI::Option* add_switch(CLI::App& app, const std::string& name, Switch& value, c
 
 // Options that several verbs have.
 void declare_common(CLI::App& app, CommonArguments& arguments);
-/// --time-limit and --memory-limit. at_limit: what the verb does when one is passed.
+/// --time-limit and, unless the verb has declared it, --memory-limit. at_limit: what the verb does when one is passed.
 void declare_limits(CLI::App& app, LimitArguments& limits, const std::string& at_limit);
 void declare_json(CLI::App& app, CommonArguments& arguments);
+/// --progress
+void declare_progress(CLI::App& app, CommonArguments& arguments);
+/// --threads and --progress
 void declare_work(CLI::App& app, CommonArguments& arguments, int& threads);
 void declare_scene(CLI::App& app, SceneArguments& scene);
 /// --unit and --efficacy

@@ -115,13 +115,14 @@ void read_exposure(const std::string& word, RenderArguments& arguments) {
 void declare_display(CLI::App& app, RenderArguments& arguments) {
     app.add_option_function<std::string>(
            "--exposure", [&arguments](const std::string& w) { read_exposure(w, arguments); },
-           "Stops above the automatic exposure: 1 is twice as bright; or 0.02x: radiosity "
-           "times 0.02, the same in every picture; default auto")
+           "Stops above the automatic exposure (1 is twice as bright), or 0.02x: radiosity times 0.02, the same in "
+           "every picture. Default auto")
         ->type_name("STOPS|FACTORx|auto")
         ->group("PNG");
-    add_choice(app, "--tone-map", tone_names, arguments.tone_map, "Default filmic")->group("PNG");
+    add_choice(app, "--tone-map", tone_names, arguments.tone_map, "Curve from radiance to pixel values. Default filmic")
+        ->group("PNG");
     add_choice(app, "--false-colour", quantity_names, arguments.false_colour,
-               "Values as colours, with a legend; the last two as the eye weighs the bands")
+               "Show values as colours with a legend; luminance and illuminance weight the bands as the eye does")
         ->group("PNG");
     const auto of_scale = [&app, &arguments](const char* name, const char* help, const char* type, auto read) {
         app.add_option_function<std::string>(
@@ -130,13 +131,14 @@ void declare_display(CLI::App& app, RenderArguments& arguments) {
             ->type_name(type)
             ->group("PNG");
     };
-    of_scale("--scale", "Range of the colours and lines: 0,500, or 1,1000,log for equal ratios; log: those alone",
+    of_scale("--scale",
+             "Range of colours and isolux lines: 0,500, or 1,1000,log for equal ratios. Default: by the light",
              "LO,HI[,log]|log", read_scale);
-    of_scale("--bands", "So many colours of equal width, or smooth; default round steps", "N|smooth", read_bands);
-    add_choice(app, "--palette", palette_names, arguments.scale.palette, "Default viridis")
+    of_scale("--bands", "Number of colours of equal width, or smooth. Default: round steps", "N|smooth", read_bands);
+    add_choice(app, "--palette", palette_names, arguments.scale.palette, "Colours of values. Default viridis")
         ->group("PNG")
         ->each([&arguments](const std::string&) { arguments.has_scale = true; });
-    app.add_flag("--isolux", arguments.isolux, "Draw lines of equal illuminance, with their values")->group("PNG");
+    app.add_flag("--isolux", arguments.isolux, "Draw lines of equal illuminance with their values")->group("PNG");
 }
 
 }  // namespace
@@ -144,19 +146,17 @@ void declare_display(CLI::App& app, RenderArguments& arguments) {
 void declare(CLI::App& app, CompareArguments& arguments) {
     app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
     app.add_option("REFERENCE", arguments.reference, "Probe CSV with E_*, or another solution")->required();
-    app.add_flag("--interpolant", arguments.interpolant, "Measure what export writes, not the full function");
-    app.add_option(
-           "--map", arguments.map,
-           "Picture (.png) of where the error lies: |E - E_ref| in false colours; of a CSV at its nearest point "
-           "on the surface")
+    app.add_flag("--interpolant", arguments.interpolant, "Measure the exported mesh instead of the full function");
+    app.add_option("--map", arguments.map,
+                   "Picture (.png) of |E - E_ref| in false colours; for a CSV, at its nearest point on the surface")
         ->type_name("FILE");
     app.add_option_function<std::string>(
            "--camera", [&arguments](const std::string& w) { read_camera(w, arguments.view); },
-           "Of the map; as of render")
+           "Camera of the map, as for render")
         ->type_name("CAMERA");
     app.add_option_function<std::string>(
            "--size", [&arguments](const std::string& w) { arguments.view.size = read_size(w); },
-           "Pixels of the map; default 640x400")
+           "Pixels of the map. Default 640x400")
         ->type_name("WxH");
     app.add_option_function<std::string>(
            "--scale", [&arguments](const std::string& w) { read_scale(w, arguments.view.scale); },
@@ -169,38 +169,41 @@ void declare(CLI::App& app, CompareArguments& arguments) {
 void declare(CLI::App& app, RenderArguments& arguments) {
     app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
     app.add_option("-o,--output", arguments.output,
-                   "Picture to write: .png, linear radiance as .exr or .hdr; with --path a video by ffmpeg: .mp4, "
+                   "Picture to write: .png, linear radiance as .exr or .hdr; with --path also a video by ffmpeg: .mp4, "
                    ".mkv, .webm, .gif")
         ->type_name("FILE")
         ->required();
     app.add_option_function<std::string>(
            "--camera", [&arguments](const std::string& w) { read_camera(w, arguments); },
-           "auto (default): one that shows much; 'ex,ey,ez tx,ty,tz fov': eye and target in metres, horizontal "
-           "angle in degrees (orthographic: width in metres); or a camera of the scene, by name or by number from 1")
+           "Camera 'ex,ey,ez tx,ty,tz fov': eye and target in metres, horizontal angle in degrees (orthographic: width "
+           "in metres); or a camera of the scene, by its name or its number from 1. Default auto: a view that shows "
+           "much of the scene")
         ->type_name("CAMERA");
-    app.add_option("--path", arguments.path,
-                   "Cameras to take numbered pictures from (P.0001.png, ...): CSV time,ex,ey,ez,tx,ty,tz,fov, as the "
-                   "viewer records them; one exposure for all. A video has 25 pictures a second, between the rows, too")
+    app.add_option(
+           "--path", arguments.path,
+           "Cameras of numbered pictures (P.0001.png, ...): CSV time,ex,ey,ez,tx,ty,tz,fov, as the viewer records "
+           "them; all pictures have one exposure. A video has 25 pictures per second and interpolates between rows")
         ->type_name("FILE");
-    add_choice(app, "--projection", projection_names, arguments.projection,
-               "Default perspective; fisheye: equidistant; panorama: 360 x 180 degrees");
+    add_choice(
+        app, "--projection", projection_names, arguments.projection,
+        "Projection of the camera; fisheye is equidistant, panorama shows 360 x 180 degrees. Default perspective");
     app.add_option_function<std::string>(
-           "--size", [&arguments](const std::string& w) { arguments.size = read_size(w); }, "Pixels; default 640x400")
+           "--size", [&arguments](const std::string& w) { arguments.size = read_size(w); },
+           "Pixels of the picture. Default 640x400")
         ->type_name("WxH");
-    add_count(app, "--samples", arguments.samples, 1, "Rays a pixel, at most 1024; default 16")
+    add_count(app, "--samples", arguments.samples, 1, "Rays per pixel, at most 1024. Default 16")
         ->check(CLI::Range(1, 1024));
     add_count(app, "--gather", arguments.gather, 4,
-              "Final gather by so many rays at every sample, in place of the elements' indirect light; a power of two");
+              "Rays of a final gather at every sample, instead of the elements' indirect light; a power of two");
     declare_display(app, arguments);
     declare_unit(app, arguments.unit);
-    app.add_flag(
-           "--mesh", arguments.mesh,
-           "Draw the edges of the method's own elements, those of a discontinuity mesh coloured by order; '--mesh "
-           "export': of those that export writes")
+    app.add_flag("--mesh", arguments.mesh,
+                 "Draw the edges of the method's own elements; a discontinuity mesh is coloured by order. '--mesh "
+                 "export' draws the exported elements")
         ->check(CLI::IsMember({"true", "export"}).description(""))
         ->group("PNG");
     app.add_flag("--shadow-classes", arguments.shadow_classes,
-                 "Faces of a discontinuity mesh as lit, penumbra and umbra, with a legend")
+                 "Show faces of a discontinuity mesh as lit, penumbra and umbra, with a legend")
         ->group("PNG");
     declare_work(app, arguments, arguments.threads);
 }
@@ -208,16 +211,16 @@ void declare(CLI::App& app, RenderArguments& arguments) {
 void declare(CLI::App& app, ReportArguments& arguments) {
     app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
     app.add_option("-o,--output", arguments.output,
-                   "Page to write (.html), its numbers beside it (.json); may be left out with --tables")
+                   "Page to write (.html), with its numbers beside it (.json); optional with --tables")
         ->type_name("FILE");
     app.add_option_function<std::vector<std::string>>(
            "--grid",
            [&arguments](const std::vector<std::string>& all) {
                for (const std::string& words : all) arguments.planes.push_back(read_plane(words));
            },
-           "Plane to measure on, 'ox,oy,oz ux,uy,uz vx,vy,vz spacing [margin]': a corner, two edges, the distance of "
-           "points (auto: that of EN 12464-1) and a strip to leave out, metres; light from where u x v points. May be "
-           "given again")
+           "Measuring plane 'ox,oy,oz ux,uy,uz vx,vy,vz spacing [margin]', metres: a corner, two edges, distance of "
+           "points (auto: that of EN 12464-1), strip to leave out; it receives light from the side of u x v. May be "
+           "given several times")
         ->type_name("PLANE")
         ->expected(1)
         ->take_all();
@@ -226,12 +229,14 @@ void declare(CLI::App& app, ReportArguments& arguments) {
            [&arguments](const std::vector<std::string>& all) {
                for (const std::string& words : all) read_camera(words, arguments.views.emplace_back());
            },
-           "As of render; may be given again. Default: one that shows much, and up to three of the scene's")
+           "Camera of a picture, as for render. May be given several times. Default: a view that shows much, and up to "
+           "three cameras of the scene")
         ->type_name("CAMERA")
         ->expected(1)
         ->take_all();
     app.add_option_function<std::string>(
-           "--size", [&arguments](const std::string& w) { arguments.size = read_size(w); }, "Pixels; default 960x600")
+           "--size", [&arguments](const std::string& w) { arguments.size = read_size(w); },
+           "Pixels of the pictures. Default 960x600")
         ->type_name("WxH");
     declare_unit(app, arguments.unit);
     declare_standards(app, arguments);

@@ -1,13 +1,13 @@
 #include "exitance/cli/processes.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "exitance/base/archive.hpp"
 #include "exitance/base/memory.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/solution/solution_groups.hpp"
+#include "exitance/methods/options/support.hpp"
 #include "exitance/methods/plan/choice.hpp"
 #include "exitance/processes/distributed.hpp"
 
@@ -18,30 +18,16 @@ Result<void> check_processes(const SolveArguments& arguments) {
     const SolveOptions& o = arguments.options;
     const bool own_choice = o.method == Method::automatic;
     if (o.method == Method::hierarchical && !runs_over_processes(o.method, o))
-        return Error{ErrorCode::usage,
-                     "hierarchical does not run over several processes where links are judged one by one", "--method",
-                     "links that rays find do, without --basis, --epsilon, --oracle, --importance, --smoothing, "
-                     "--triage, --visibility, --clusters and --min-area; so does matrix"};
+        return Error{
+            ErrorCode::usage, "hierarchical does not run over several processes where links are judged one by one",
+            "--method",
+            "leave out --basis, --epsilon, --oracle, --importance, --output-light, --triage, --visibility, --clusters "
+            "and --min-area, or use --method matrix"};
     if (!own_choice && !runs_over_processes(o.method, o))
         return Error{ErrorCode::usage,
                      std::string(name_in(method_names, o.method)) + " does not run over several processes", "--method",
                      "matrix does (and auto, which takes it), and hierarchical where rays find the links"};
-    const std::array<std::pair<const char*, bool>, 8> alone{{
-        {"--form-factors", o.form_factors && *o.form_factors != FormFactorKind::ray_cast},
-        {"--basis", o.basis && is_galerkin(*o.basis)},
-        {"--relaxation", o.relaxation && !runs_over_processes(*o.relaxation)},
-        {"--importance", !arguments.importance.empty()},
-        {"--task-engine", o.task_engine},
-        {"--trace", !arguments.trace.empty()},
-        {"--dry-run", arguments.dry_run},
-        {"a classical form", arguments.classical.any()},
-    }};
-    for (const auto& [name, is_given] : alone)
-        if (is_given)
-            return Error{ErrorCode::usage, "does not run over several processes as asked for", name,
-                         "rows of rays do: --form-factors ray-cast, --basis constant or linear, --relaxation jacobi, "
-                         "cg, gmres or chebyshev; everything else by one process"};
-    return {};
+    return check_one_process(arguments);
 }
 
 LoadedScene load_for_all(const SceneArguments& scene) {

@@ -104,7 +104,7 @@ class KeptFromFirstPhase : public Progress {
 /// What a solution depends on.
 CheckpointFacts facts_of(const SolveArguments& arguments, const Scene& scene) {
     CheckpointFacts facts{{"bands", std::to_string(bands)}, {"the scene", scene_fingerprint(scene)}};
-    for (auto& [name, value] : option_facts(arguments.options)) facts.emplace_back("--" + name, value);
+    for (auto& [name, value] : option_facts(arguments)) facts.emplace_back("--" + name, value);
     for (auto& fact : facts) std::replace(fact.first.begin(), fact.first.end(), '_', '-');
     return facts;
 }
@@ -203,7 +203,7 @@ Result<Solution> find_light(const SolveArguments& arguments, Scene scene, std::o
 void record_run(Solution& solution, const SolveArguments& arguments, const std::vector<Finding>& findings,
                 double read_seconds, const Stopwatch& run_time) {
     SolveStatistics& statistics = solution.statistics;
-    if (!arguments.classical.any()) solution.options = options_json(arguments.options);
+    if (!arguments.classical.any()) solution.options = options_json(arguments);
     solution.options = with_scene_options(solution.options, arguments.scene.load);
     add_findings(statistics.warnings, findings, solution.scene.file());
     statistics.seconds["read"] = read_seconds;
@@ -246,7 +246,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     const Stopwatch run_time;
     RunLimits& limits = terminal.limits();
     SolveArguments arguments = given;
-    arguments.options.memory_limit_bytes = arguments.limits.memory_limit;
+    for (const std::string& warning : arguments.warnings) terminal.progress().warn(warning);
     if (const Result<void> settled = settle_options(arguments); !settled) return terminal.fail(settled.error());
     if (arguments.scene.load.sky)
         for (const std::string& warning : arguments.scene.load.sky->warnings) terminal.progress().warn(warning);

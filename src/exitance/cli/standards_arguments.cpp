@@ -49,31 +49,30 @@ CLI::Option* add_planes(CLI::App& app, const std::string& name, std::vector<Plan
 
 void declare_standards(CLI::App& app, ReportArguments& arguments) {
     add_planes(app, "--plane", arguments.working_planes, false,
-               "Working plane of EN 12464-1: '0.75' (metres above the floor) or faces by name, 'desk' (on them) or "
-               "'hall,height=0.75'; and border=B (default 0.5 m above floors), spacing=S (default the standard's). May "
-               "be given again");
+               "Working plane of EN 12464-1: '0.75' (metres above the floor), or named faces: 'desk' (on them) or "
+               "'hall,height=0.75'; further border=B (default 0.5 m above floors) and spacing=S (default: the "
+               "standard's). May be given several times");
     add_planes(app, "--cylindrical", arguments.working_planes, true,
-               "The same for cylindrical illuminance, '1.2' or 'hall,height=1.6'");
+               "Plane for cylindrical illuminance, '1.2' or 'hall,height=1.6'. May be given several times");
     add_positive(app, "--maintenance", arguments.maintenance, "FACTOR",
-                 "What light on planes is multiplied by, for age and dirt; at most 1, default 1")
+                 "Maintenance factor of light on planes, at most 1. Default 1")
         ->check(CLI::Range(0.0, 1.0));
     app.add_option("--observers", arguments.observers,
-                   "Glare (UGR) for observers: 'x,y,z dx,dy,dz' (eye and line of sight), a table (CSV x,y,z,dx,dy,dz), "
-                   "or auto: at 1.2 m in the middle of each wall. May be given again")
+                   "Observers for glare (UGR): 'x,y,z dx,dy,dz' (eye and line of sight), a table (CSV x,y,z,dx,dy,dz), "
+                   "or auto: at 1.2 m in the middle of each wall. May be given several times")
         ->type_name("OBSERVERS")
         ->expected(1)
         ->take_all();
-    app.add_option("--tables", arguments.tables,
-                   "Folder for planes.csv, plane_1.csv, plans with lines of equal light (plane_1.svg, .pdf), ..., "
-                   "observers.csv")
+    app.add_option(
+           "--tables", arguments.tables,
+           "Folder for planes.csv, plane_1.csv, plans with isolux lines (plane_1.svg, .pdf), ..., observers.csv")
         ->type_name("FOLDER");
 }
 
 void declare_standards(CLI::App& app, DaylightArguments& arguments) {
-    app.add_option(
-           "--eyes", arguments.eyes,
-           "Places that views out are judged from by EN 17037 (points as --points has them; their directions do "
-           "not count): view.csv")
+    app.add_option("--eyes", arguments.eyes,
+                   "Places from which views out are assessed by EN 17037 (points as for --points, directions ignored); "
+                   "written to view.csv")
         ->type_name("FILE");
     app.add_option_function<std::string>(
            "--sun-day",
@@ -86,7 +85,7 @@ void declare_standards(CLI::App& app, DaylightArguments& arguments) {
                    throw CLI::ValidationError("--sun-day", fmt::format("'{}' is not a day such as 03-21", w));
                arguments.sun_day.month = month, arguments.sun_day.day = day;
            },
-           "Cloudless day whose hours of sunlight are counted, MM-DD; default 03-21")
+           "Cloudless day whose hours of sunlight are counted, MM-DD. Default 03-21")
         ->type_name("DAY");
     app.add_option_function<std::string>(
            "--sun-altitude",
@@ -95,7 +94,7 @@ void declare_standards(CLI::App& app, DaylightArguments& arguments) {
                if (!(arguments.sun_day.least_altitude >= 0 && arguments.sun_day.least_altitude < 90))
                    throw CLI::ValidationError("--sun-altitude", fmt::format("must be from 0 to 90, not {}", w));
            },
-           "Lower suns do not count for these hours, degrees; default 0")
+           "Lowest altitude of the sun that counts for these hours, degrees. Default 0")
         ->type_name("DEGREES");
 }
 

@@ -15,18 +15,20 @@ constexpr std::array<std::pair<int, std::string_view>, 3> patch_counts{{{1, "146
 
 void declare(CLI::App& app, ProbeArguments& arguments) {
     app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
-    app.add_option("--points", arguments.points, "CSV x,y,z,nx,ny,nz or .pts x y z dx dy dz; - for standard input")
+    app.add_option("--points", arguments.points,
+                   "Points: CSV x,y,z,nx,ny,nz or .pts x y z dx dy dz; - for standard input")
         ->type_name("FILE")
         ->required();
-    app.add_option("-o,--output", arguments.output, "CSV with E_* and B_*; default - for standard output")
+    app.add_option("-o,--output", arguments.output, "CSV with the columns E_* and B_*. Default -: standard output")
         ->type_name("FILE");
-    app.add_flag("--interpolant", arguments.interpolant, "Evaluate what export writes, not the full function");
-    add_choice(app, "--component", component_names, arguments.component, "Of the full function; default total");
+    app.add_flag("--interpolant", arguments.interpolant, "Evaluate the exported mesh instead of the full function");
+    add_choice(app, "--component", component_names, arguments.component,
+               "Part of the light to evaluate. Default total");
     declare_unit(app, arguments.unit);
     CLI::Option* const reference =
         add_count(app, "--reference", arguments.reference_paths, 1,
-                  "N unbiased paths a point in place of the solution, with their standard errors");
-    add_count(app, "--seed", arguments.seed, 0, "Of the paths; default 1")->needs(reference);
+                  "Trace N unbiased paths per point instead of evaluating the solution; adds standard errors se_*");
+    add_count(app, "--seed", arguments.seed, 0, "Seed of the paths. Default 1")->needs(reference);
     declare_work(app, arguments, arguments.threads);
 }
 
@@ -37,11 +39,11 @@ void declare(CLI::App& app, StatsArguments& arguments) {
 
 void declare(CLI::App& app, MixArguments& arguments) {
     app.add_option("SOLUTION", arguments.solution, "Solution (.h5) of solve --light-groups")->required();
-    app.add_option("CHANGES", arguments.dim, "GROUP=FACTOR: light of a group, over what it was in the scene")
+    app.add_option("CHANGES", arguments.dim, "GROUP=FACTOR: light of a group relative to the scene")
         ->type_name("GROUP=FACTOR");
-    app.add_option("--reflectance", arguments.reflectance, "MATERIAL=r,g,b: repaint it; may be given several times")
+    app.add_option("--reflectance", arguments.reflectance, "New reflectance of a material. May be given several times")
         ->type_name("MATERIAL=r,g,b");
-    app.add_option("-o,--output", arguments.output, "The new solution (.h5)")->type_name("FILE")->required();
+    app.add_option("-o,--output", arguments.output, "Solution to write (.h5)")->type_name("FILE")->required();
     declare_json(app, arguments);
     declare_work(app, arguments, arguments.threads);
 }
@@ -49,13 +51,13 @@ void declare(CLI::App& app, MixArguments& arguments) {
 void declare(CLI::App& app, ExportArguments& arguments) {
     app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
     app.add_option("-o,--output", arguments.output,
-                   "By ending: .glb, .hdf or .vtkhdf, .vtu, .obj, .csv; .curves.csv: curves of a discontinuity mesh")
+                   "File to write; its ending is the format: .glb, .hdf or .vtkhdf, .vtu, .obj, .csv; .curves.csv "
+                   "holds the curves of a discontinuity mesh")
         ->type_name("FILE")
         ->required();
-    app.add_option(
-           "--links", arguments.links,
-           "Of a solution with --keep-links: the links to an element, by its number, or, with those to all that "
-           "it is part of, to the one at x,y,z; as .csv, .obj or .glb")
+    app.add_option("--links", arguments.links,
+                   "Export the links of a solution made with --keep-links (.csv, .obj or .glb): to the element of a "
+                   "number, or to the elements of all levels at x,y,z")
         ->type_name("ELEMENT");
 }
 
@@ -67,39 +69,41 @@ void declare(CLI::App& app, BakeArguments& arguments) {
         ->type_name("FOLDER")
         ->required();
     add_positive(app, "--density", arguments.density, "T",
-                 "Texels per metre; default: 64 (in small scenes more), with at most a million texels on surfaces");
+                 "Texels per metre. Default 64 (more in small scenes), at most a million texels in total");
     add_count(app, "--padding", arguments.padding, 1,
-              "Texels around every chart; 2^m keep charts apart down to mip level m; default 4")
+              "Texels around every chart. Default 4. 2^m texels keep charts apart down to mip level m")
         ->check(CLI::Range(1, 256));
-    add_choice(app, "--quantity", light_map_quantity_names, format.quantity, "In W/m^2; default irradiance");
+    add_choice(app, "--quantity", light_map_quantity_names, format.quantity,
+               "Quantity in the maps, W/m^2. Default irradiance");
     app.add_flag_callback(
-        "--half", [&format] { format.precision = Precision::half; }, "EXR of 16-bit numbers in place of 32-bit ones");
+        "--half", [&format] { format.precision = Precision::half; },
+        "Write EXR files of 16-bit instead of 32-bit numbers");
     CLI::Option* unlit = app.add_flag_callback(
         "--unlit", [&format] { format.material = LightMapMaterial::unlit; },
-        "The .glb shows a toned picture of the light as base colour; default: linear light as emission");
+        "Write tone-mapped light as base colour of the .glb. Default: linear light as emission");
     app.add_flag_callback(
            "--moz-lightmap", [&format] { format.material = LightMapMaterial::moz_lightmap; },
-           "The .glb has base colours, and its light in the extension MOZ_lightmap")
+           "Write base colours into the .glb, and the light in its extension MOZ_lightmap")
         ->excludes(unlit);
-    app.add_flag("--light-groups", arguments.light_groups,
-                 "Maps of every light group by itself too, undimmed, on the same charts (solve --light-groups)");
+    app.add_flag(
+        "--light-groups", arguments.light_groups,
+        "Also write maps of each light group, undimmed, on the same charts. Needs a solution of solve --light-groups");
     declare_work(app, arguments, arguments.threads);
 }
 
 void declare(CLI::App& app, DaylightArguments& arguments) {
-    app.add_option("SOLUTION", arguments.solution, "Solution (.h5) of the scene; its own light does not count")
-        ->required();
-    app.add_option("--epw", arguments.epw, "Weather of a year (EnergyPlus)")->type_name("FILE")->required();
+    app.add_option("SOLUTION", arguments.solution, "Solution (.h5) of the scene; its own light is ignored")->required();
+    app.add_option("--epw", arguments.epw, "Weather of a year (EnergyPlus .epw)")->type_name("FILE")->required();
     app.add_option("--points", arguments.points, "Sensors: CSV x,y,z,nx,ny,nz or .pts x y z dx dy dz")
         ->type_name("FILE")
         ->required();
     app.add_option("-o,--output", arguments.output, "Folder for illuminance.csv, metrics.csv, matrix.csv, summary.csv")
         ->type_name("FOLDER")
         ->required();
-    add_choice(app, "--sky-patches", patch_counts, arguments.division, "Patches of the sky; default 146");
+    add_choice(app, "--sky-patches", patch_counts, arguments.division, "Number of patches of the sky. Default 146");
     app.add_option_function<std::string>(
            "--north", [&arguments](const std::string& w) { arguments.north = read_number("--north", w); },
-           "Degrees clockwise from y to north, seen from above; default 0")
+           "Direction of north, degrees clockwise from the y axis as seen from above. Default 0")
         ->type_name("DEGREES");
     app.add_option_function<std::string>(
            "--ground",
@@ -108,7 +112,7 @@ void declare(CLI::App& app, DaylightArguments& arguments) {
                if (!(arguments.ground >= 0 && arguments.ground <= 1))
                    throw CLI::ValidationError("--ground", fmt::format("must be from 0 to 1, not {}", w));
            },
-           "Reflectance of the ground beneath the scene; default 0.2")
+           "Reflectance of the ground beneath the scene. Default 0.2")
         ->type_name("R");
     declare_standards(app, arguments);
     declare_json(app, arguments);
@@ -117,22 +121,22 @@ void declare(CLI::App& app, DaylightArguments& arguments) {
 
 void declare(CLI::App& app, CheckArguments& arguments) {
     declare_scene(app, arguments.scene);
-    app.add_option("--picture", arguments.picture, "Picture of the scene that marks what was found (.png)")
+    app.add_option("--picture", arguments.picture, "Picture of the scene with the findings marked (.png)")
         ->type_name("FILE");
     declare_json(app, arguments);
 }
 
 void declare(CLI::App& app, GenerateArguments& arguments) {
     app.add_option("FAMILY", arguments.family, "Family of scenes, or 'list'")->required();
-    app.add_option("PARAMETERS", arguments.parameters, "Of the family, name=value");
+    app.add_option("PARAMETERS", arguments.parameters, "Parameters of the family, name=value");
     app.add_option("-o,--output", arguments.output, "Scene to write (.obj, its .mtl beside it)")->type_name("FILE");
 }
 
 void declare(CLI::App& app, LuminaireArguments& arguments) {
     app.add_option("FILE", arguments.file, "Photometric file: IES LM-63 (.ies) or EULUMDAT (.ldt)")->required();
-    app.add_option(
-           "-o,--output", arguments.outputs,
-           "Polar diagram (.svg), luminous opening (.obj) or standard table of UGR (.csv) to write; may be given again")
+    app.add_option("-o,--output", arguments.outputs,
+                   "Polar diagram (.svg), luminous opening (.obj) or standard table of UGR (.csv) to write; may be "
+                   "given several times")
         ->type_name("FILE")
         ->expected(1)
         ->take_all();
@@ -146,18 +150,19 @@ void declare(CLI::App& app, ExperimentArguments& arguments) {
                    "Folder for index.html, results.csv, plots and pictures; runs that are finished there are not "
                    "repeated")
         ->type_name("FOLDER");
-    app.add_option("--methods", arguments.methods, "Only rows with these labels, methods or bases, between commas")
+    app.add_option("--methods", arguments.methods,
+                   "Run only rows with these labels, methods or bases, separated by commas")
         ->delimiter(',')
         ->type_name("NAMES");
-    app.add_flag("--quick", arguments.quick, "Fewer and smaller runs: under two minutes");
-    app.add_flag("--print", arguments.print, "Print the study's description, to begin one's own with");
+    app.add_flag("--quick", arguments.quick, "Run fewer and smaller solves, under two minutes in total");
+    app.add_flag("--print", arguments.print, "Print the description of the study, as a template for new studies");
     declare_work(app, arguments, arguments.threads);
 }
 
 void declare(CLI::App& app, ViewFactorArguments& arguments) {
     declare_scene(app, arguments.scene);
     app.add_option("-o,--output", arguments.output,
-                   "Matrix to write: .csv, .vf as View3D does, or sparse: .mtx (Matrix Market), .h5")
+                   "Matrix to write: .csv, .vf (View3D), or sparse: .mtx (Matrix Market), .h5")
         ->type_name("FILE")
         ->required();
     const auto add_range = [&app](const char* name, std::optional<double>& value, double least, double most,
@@ -171,30 +176,35 @@ void declare(CLI::App& app, ViewFactorArguments& arguments) {
     };
     CLI::Option* const error = add_range("--error", arguments.error, 1e-7, 0.5,
                                          "Error of every row: standard deviation of its sampled entries plus bounds of "
-                                         "the others; default 1e-3. For heat balances");
-    add_range("--tolerance", arguments.tolerance, 1e-12, 0.1,
-              "Relative error of every entry above 1e-6, in place of --error. Slower; for single entries")
+                                         "the others. Default 1e-3. Use it for heat balances");
+    add_range(
+        "--tolerance", arguments.tolerance, 1e-12, 0.1,
+        "Relative error of every entry above 1e-6, instead of --error. It is slower; use it if single entries matter")
         ->excludes(error);
-    add_positive(app, "--smallest", arguments.smallest, "F", "Leave out entries below F; default: none");
+    add_positive(app, "--smallest", arguments.smallest, "F", "Leave out entries below F. Default: none");
     add_count(app, "--check", arguments.check, 0,
-              "Random rows that rays check, default 4; with --tolerance random entries, default 100");
+              "Number of random rows that are checked by ray casting. Default 4. With --tolerance: random entries, "
+              "default 100");
     add_count(app, "--check-rays", arguments.check_rays, 64,
-              "Rays per checked row, by default 0.2 / R^2 from 8192 to 524288; per checked entry, default 16384");
-    add_count(app, "--seed", arguments.seed, 0, "Seed of all random numbers; default 1");
-    app.add_flag("--resume", arguments.resume, "Go on from the rows in FILE.rows, which a stopped run leaves");
+              "Rays per checked row. Default 0.2 / R^2, from 8192 to 524288. With --tolerance: rays per checked entry, "
+              "default 16384");
+    add_count(app, "--seed", arguments.seed, 0, "Seed of all random numbers. Default 1");
+    app.add_flag("--resume", arguments.resume, "Continue from the rows in FILE.rows, which a stopped run leaves");
     declare_json(app, arguments);
     declare_work(app, arguments, arguments.threads);
 }
 
 void declare(CLI::App& app, ViewArguments& arguments) {
     declare_scene(app, arguments.scene);
-    app.get_option("SCENE")->description("Solution (.h5), or a scene, which is then solved while one looks on");
-    add_count(app, "--port", arguments.port, 0, "Port on 127.0.0.1; default: any that is free")
+    app.get_option("SCENE")->description("Solution (.h5), or a scene, whose light is shown while it is solved");
+    add_count(app, "--port", arguments.port, 0, "Port on 127.0.0.1. Default: any free port")
         ->check(CLI::Range(0, 65535));
-    add_positive(app, "--error", arguments.error, "R", "Of a scene: the relative RMS error asked for; default 0.02")
+    add_positive(app, "--error", arguments.error, "R", "Requested relative RMS error of a scene. Default 0.02")
         ->check(CLI::Range(1e-5, 1.0));
-    add_choice(app, "--method", method_names, arguments.options.method, "Of a scene: as of solve");
-    app.add_option("--save", arguments.save, "Of a scene: where the page's button saves its light; default viewed.h5")
+    add_choice(app, "--method", method_names, arguments.options.method,
+               "Method for a scene, as for solve. Default auto");
+    app.add_option("--save", arguments.save,
+                   "File into which the page's button saves the light of a scene. Default viewed.h5")
         ->type_name("FILE");
     declare_work(app, arguments, arguments.options.threads);
 }

@@ -8,18 +8,6 @@
 
 namespace exitance {
 
-Result<void> check_classical(const SolveArguments& arguments) {
-    if (!arguments.classical.any()) return {};
-    const auto refuse = [](const char* option) {
-        return Error{ErrorCode::usage, "is not there in classical forms", option, ""};
-    };
-    if (arguments.checkpoint_every) return refuse("--checkpoint-every");
-    if (arguments.resume) return refuse("--resume");
-    if (arguments.dry_run) return refuse("--dry-run");
-    const Result<Method> method = classical_method(arguments.options, arguments.classical);
-    return method ? Result<void>() : Result<void>(method.error());
-}
-
 Result<Solution> run_classical(const SolveArguments& arguments, const Scene& scene, Progress& progress,
                                const StopRequest& stop) {
     const std::string& output = arguments.output;
@@ -27,12 +15,12 @@ Result<Solution> run_classical(const SolveArguments& arguments, const Scene& sce
     ClassicalFacts facts;
     const auto write = [&](const Solution& on_the_way, std::size_t number) {
         Solution snapshot = on_the_way;
-        snapshot.options = options_json(arguments.options, arguments.classical, {});
+        snapshot.options = options_json(arguments, {});
         return write_solution(fmt::format("{}.{:04}.h5", stem, number), snapshot);
     };
     Result<Solution> solution =
         solve_classical(scene, arguments.options, arguments.classical, progress, stop, facts, write);
-    if (solution) solution->options = options_json(arguments.options, arguments.classical, facts);
+    if (solution) solution->options = options_json(arguments, facts);
     return solution;
 }
 

@@ -1,29 +1,6 @@
 #include "exitance/cli/solve/kept_groups.hpp"
 
-#include <array>
-
-#include "exitance/processes/distributed.hpp"
-
 namespace exitance {
-
-Result<void> check_light_groups(const SolveArguments& arguments) {
-    if (!arguments.light_groups) return {};
-    const SolveOptions& o = arguments.options;
-    const std::array<std::pair<const char*, bool>, 8> disobeyed{{
-        {"--method discontinuity", o.method == Method::discontinuity},
-        {"--method growing-cells", o.method == Method::growing_cells},
-        {"--task-engine", o.task_engine},
-        {"--keep-links", o.keep_links},
-        {"--checkpoint-every", arguments.checkpoint_every.has_value()},
-        {"--resume", arguments.resume},
-        {"a classical form", arguments.classical.any()},
-        {"several processes", processes() > 1},
-    }};
-    for (const auto& [name, is_given] : disobeyed)
-        if (is_given)
-            return Error{ErrorCode::usage, "does not go together with --light-groups", name, "leave one of them out"};
-    return {};
-}
 
 Result<void> check_light_groups(const SolveArguments& arguments, const Scene& scene) {
     const std::size_t count = arguments.light_groups ? find_emitter_groups(scene).size() : 0;

@@ -5,9 +5,7 @@
 
 namespace exitance {
 
-/// Can --light-groups be obeyed together with what else is asked for?
-Result<void> check_light_groups(const SolveArguments& arguments);
-/// Found out before the work: has the scene no more groups than are solved one by one?
+/// An error if the scene has more groups than are solved one by one. Called before the work.
 Result<void> check_light_groups(const SolveArguments& arguments, const Scene& scene);
 
 /// What is wrong with a solution that has none.

@@ -4,16 +4,11 @@
 
 #include <utility>
 
-#include "exitance/cli/discontinuity_arguments.hpp"
 #include "exitance/cli/processes.hpp"
-#include "exitance/cli/solve/classical_solve.hpp"
-#include "exitance/cli/solve/kept_groups.hpp"
-#include "exitance/cli/solve/local_pass_check.hpp"
-#include "exitance/cli/solve/task_engine_check.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
-#include "exitance/methods/plan/obedience.hpp"
+#include "exitance/methods/options/support.hpp"
 #include "exitance/processes/distributed.hpp"
 
 namespace exitance {
@@ -56,10 +51,7 @@ Result<void> read_importance(SolveArguments& arguments) {
 
 /// The sky that is asked for becomes a part of the scene that is read.
 Result<void> read_sky(SolveArguments& arguments) {
-    if (arguments.sky.empty() && arguments.epw.empty()) return {};
-    if (arguments.sky.empty())
-        return Error{ErrorCode::usage, "a weather file needs a kind of sky and a time", "--epw",
-                     "--sky perez,time=06-21T12:00"};
+    if (arguments.sky.empty()) return {};
     std::optional<Weather> weather;
     if (!arguments.epw.empty()) {
         Result<Weather> read = load_epw(arguments.epw);
@@ -75,45 +67,21 @@ Result<void> read_sky(SolveArguments& arguments) {
     return {};
 }
 
-/// Options that say something for another one.
-void share_options(SolveArguments& arguments) {
-    // The engine of tasks reads the threshold that classical forms read.
-    if (arguments.options.task_engine)
-        arguments.options.threshold = std::exchange(arguments.classical.threshold, std::nullopt);
-    // Growing cells are delivered as they are where nothing is gathered; their learning has no classical form.
-    if (arguments.options.method == Method::growing_cells && arguments.classical.gather) {
-        if (!*arguments.classical.gather) arguments.options.smoothing = false;
-        arguments.classical.gather.reset();
-    }
-    // Exact visible parts within links are a classical form, whether or not another of its options is given.
-    const SolveOptions& o = arguments.options;
-    if (o.visibility == VisibilityKind::exact && !o.task_engine && !o.local_pass && !arguments.classical.any())
-        arguments.classical.direct = ClassicalDirect::apart;
-}
-
-/// Forms with a path of their own have checks of their own. Over several processes `auto` is `matrix`.
-Result<void> check_methods(const SolveArguments& arguments) {
-    const bool of_its_own = arguments.classical.any() || arguments.options.task_engine ||
-                            arguments.options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e;
-    if (of_its_own) return {};
-    SolveOptions options = arguments.options;
-    if (processes() > 1 && options.method == Method::automatic) options.method = Method::matrix;
-    return check_obedience(options);
+/// Does a method support all options? Over several processes `auto` is `matrix`.
+Result<void> check_support(const SolveArguments& arguments) {
+    SolveRequest request = arguments;
+    if (processes() > 1 && request.options.method == Method::automatic) request.options.method = Method::matrix;
+    const Result<Way> way = find_way(request);
+    return way ? Result<void>() : Result<void>(way.error());
 }
 
 }  // namespace
 
 Result<void> settle_options(SolveArguments& arguments) {
-    share_options(arguments);
-    Result<void> settled = check_task_engine(arguments);
-    if (settled) settled = check_local_pass(arguments);
-    if (settled) settled = check_discontinuity(arguments.options);
+    Result<void> settled = check_support(arguments);
+    if (settled) settled = check_processes(arguments);
     if (settled) settled = read_importance(arguments);
     if (settled) settled = read_sky(arguments);
-    if (settled) settled = check_classical(arguments);
-    if (settled) settled = check_methods(arguments);
-    if (settled) settled = check_processes(arguments);
-    if (settled) settled = check_light_groups(arguments);
     if (settled) settled = check_ending(arguments.output);
     if (!settled) return settled;
     // All processes come here, whatever is done with what the first one finds.

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "exitance/base/nearest.hpp"
 #include "exitance/base/parallel.hpp"
-#include "exitance/cli/nearest.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/lab/study/conduct_study.hpp"

@@ -155,7 +155,7 @@ class RunningSolve {
         options.error = arguments_.error;
         options.memory_limit_bytes = arguments_.limits.memory_limit;
         const auto show = [&](Solution solution) {
-            solution.options = with_scene_options(options_json(options), arguments_.scene.load);
+            solution.options = with_scene_options(options_json({.options = options}), arguments_.scene.load);
             const std::size_t count = gallery_.add(std::move(solution));
             events_.tell("light", fmt::format(R"({{"count": {}}})", count));
         };

@@ -8,6 +8,7 @@
 #include "exitance/lab/classical/classical_input.hpp"
 #include "exitance/lab/classical/vertex_averages.hpp"
 #include "exitance/methods/light/light_functions.hpp"
+#include "exitance/methods/options/support.hpp"
 #include "exitance/methods/solve_report.hpp"
 #include "exitance/solve/growth_watch.hpp"
 
@@ -215,8 +216,9 @@ Result<void> check_emission(const Scene& scene, const ClassicalOptions& classica
 Result<Solution> solve_classical(const Scene& scene, const SolveOptions& options, const ClassicalOptions& classical,
                                  Progress& progress, const StopRequest& stop, ClassicalFacts& facts,
                                  const SnapshotSink& sink) {
-    const Result<Method> method = classical_method(options, classical);
-    if (!method) return method.error();
+    const Result<Way> way = find_way({.options = options, .classical = classical}, Form::published);
+    if (!way) return way.error();
+    const Method method = way->method;
     if (const Result<void> fits = check_emission(scene, classical); !fits) return fits.error();
     if (options.threads > 0) set_threads(options.threads);
     set_schedule(options.schedule);
@@ -226,7 +228,7 @@ Result<Solution> solve_classical(const Scene& scene, const SolveOptions& options
     const Knobs knobs = knobs_for_error(options.error_target(), stage.pieces, options);
     const ClassicalInput* watched = nullptr;
     Snapshots snapshots(classical.snapshots, [&](const Snapshots::Moment& moment) {
-        return sink ? sink(unfinished(*watched, *method, moment), moment.number) : Result<void>();
+        return sink ? sink(unfinished(*watched, method, moment), moment.number) : Result<void>();
     });
     PhaseTimes phases(progress);
     const ClassicalInput input{stage, options, classical, knobs, phases, stop, snapshots};
@@ -234,14 +236,14 @@ Result<Solution> solve_classical(const Scene& scene, const SolveOptions& options
     Solution solution{.scene = scene};
     SolveStatistics& statistics = solution.statistics;
     statistics.seconds["mesh"] = watch.restart();
-    Result<ClassicalLight> found = find_light(*method, input);
+    Result<ClassicalLight> found = find_light(method, input);
     phases.close();
     if (!found) return found.error();
     ClassicalLight& light = *found;
     if (!snapshots.written()) return snapshots.written().error();
     statistics.seconds["link"] = phases.seconds({"link"});
     statistics.seconds["solve"] = std::max(0.0, watch.restart() - snapshots.writing() - statistics.seconds["link"]);
-    record(input, *method, light, statistics, facts);
+    record(input, method, light, statistics, facts);
     solution.direct_in_elements = classical.carried();
     solution.indirect = std::move(light.irradiance);
     if (classical.gather.value_or(true) && stage.has_indirect_light() && !stop.requested())

@@ -2,9 +2,9 @@
 
 #include <functional>
 
-#include "exitance/lab/classical/classical_options.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/solution/solution.hpp"
+#include "exitance/solve/classical_options.hpp"
 
 namespace exitance {
 

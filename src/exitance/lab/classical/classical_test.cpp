@@ -284,17 +284,5 @@ TEST(Classical, AMatrixThatExceedsMemoryIsRejected) {
     EXPECT_EQ(none.error().code, ErrorCode::limit);
 }
 
-TEST(Classical, UnsupportedOptionsNameTheMethodsThatSupportThem) {
-    ClassicalOptions c = raw;
-    c.ambient = true;
-    const Result<Method> wrong = classical_method({.method = Method::matrix}, c);
-    ASSERT_FALSE(wrong);
-    EXPECT_EQ(wrong.error().where, "--ambient");
-    EXPECT_NE(wrong.error().message.find("progressive, substructuring"), std::string::npos);
-    EXPECT_EQ(*classical_method({}, c), Method::progressive);
-    EXPECT_FALSE(classical_method({.method = Method::monte_carlo}, raw));
-    EXPECT_FALSE(classical_method({.method = Method::wavelet, .oracle = LinkOracle::power}, raw));
-}
-
 }  // namespace
 }  // namespace exitance

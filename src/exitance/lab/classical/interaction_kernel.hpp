@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "exitance/basis/nodal_basis.hpp"
-#include "exitance/lab/classical/classical_options.hpp"
+#include "exitance/solve/classical_options.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {

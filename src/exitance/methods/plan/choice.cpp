@@ -5,7 +5,7 @@
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/gather/element_gather.hpp"
 #include "exitance/methods/hierarchical/hierarchical.hpp"
-#include "exitance/methods/plan/obedience.hpp"
+#include "exitance/methods/options/support.hpp"
 #include "exitance/methods/plan/way_forecast.hpp"
 #include "exitance/processes/distributed.hpp"
 
@@ -57,17 +57,17 @@ bool runs_over_processes(Method method, const SolveOptions& options) {
 
 MethodChoice choose_method(const Stage& stage, const SolveOptions& options) {
     const bool is_free = options.method == Method::automatic;
-    if (is_free && stage.scene.has_diffusing_panes() && obeys_all(Method::matrix, options)) {
+    if (is_free && stage.scene.has_diffusing_panes() && supports_all(Method::matrix, options)) {
         MethodChoice choice{.options = options, .why = "counts both sides of diffusing panes"};
         choice.options.method = Method::matrix;
         return choice;
     }
     MethodChoice choice = choose_alone(stage, options);
-    const Method other = first_that_obeys(options);
-    if (is_free && other != Method::automatic && !obeys_all(choice.options.method, options)) {
+    const Method other = first_supporting(options);
+    if (is_free && other != Method::automatic && !supports_all(choice.options.method, options)) {
         choice.options = options;
         choice.options.method = other;
-        choice.why = "obeys all options that were given";
+        choice.why = "supports all options that were given";
     }
     const bool by_rays = runs_over_processes(choice.options.method, choice.options) &&
                          !(choice.options.method == Method::hierarchical &&

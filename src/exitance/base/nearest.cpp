@@ -1,4 +1,4 @@
-#include "exitance/cli/nearest.hpp"
+#include "exitance/base/nearest.hpp"
 
 #include <algorithm>
 #include <utility>

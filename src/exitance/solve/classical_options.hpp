@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "exitance/base/result.hpp"
 #include "exitance/solve/solve_options.hpp"
 
 namespace exitance {
@@ -65,9 +64,5 @@ struct ClassicalOptions {
     }
     bool carried() const { return direct == ClassicalDirect::carried; }
 };
-
-/// Returns the requested method, or for `auto` the first method that supports all options that are set. Returns a usage
-/// error that names an unsupported option and the methods that support it.
-Result<Method> classical_method(const SolveOptions& options, const ClassicalOptions& classical);
 
 }  // namespace exitance

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "exitance/methods/options/solve_request.hpp"
+#include "exitance/methods/options/ways.hpp"
+
+namespace exitance {
+
+/// Who needs an option: --help lists those of users, --help-all those of everybody.
+enum class Audience : std::uint8_t { users, experts, laboratory, old_names };
+
+/// A heading under which help and reference list options.
+struct OptionGroup {
+    std::string_view title = {};
+    Audience audience = Audience::users;
+};
+
+namespace option_groups {
+
+inline constexpr OptionGroup light{"Light", Audience::users}, scene{"Scene", Audience::users},
+    limits{"Limits", Audience::users}, run{"Run", Audience::users}, scene_details{"Scene details", Audience::experts},
+    accuracy{"Accuracy", Audience::experts}, method{"Method", Audience::experts},
+    visibility{"Visibility and form factors", Audience::experts}, shadows{"Discontinuity meshing", Audience::experts},
+    published{"Published forms", Audience::laboratory}, structures{"Published structures", Audience::laboratory},
+    old_names{"Old names", Audience::old_names};
+
+/// All groups, in the order of the help.
+inline constexpr OptionGroup all[] = {light,  scene,      limits,  run,       scene_details, accuracy,
+                                      method, visibility, shadows, published, structures,    old_names};
+
+}  // namespace option_groups
+
+/// How the word after an option is read.
+struct OptionValue {
+    std::string type = {};  ///< "R", "N|off", "jacobi|cg"; empty: the option is a flag.
+    /// Stores a word. Returns what is wrong with it, or nothing.
+    std::function<std::string(const std::string& word, SolveRequest& request)> read = {};
+    /// The word in force; none while the option has its default.
+    std::function<std::optional<std::string>(const SolveRequest& request)> word = {};
+    /// JSON with which a solution file records the option; "null" if it is not set.
+    std::function<std::string(const SolveRequest& request)> json = {};
+};
+
+/// A statement of an option's support: these ways support these values.
+struct OptionSupport {
+    Ways ways = {};
+    std::string values = {};                         ///< "a|b"; empty: all values.
+    bool (*only_if)(const SolveRequest&) = nullptr;  ///< Further condition.
+    std::string condition = {};                      ///< `only_if` in words: "with --basis constant".
+};
+
+/// Another option that an option needs or cannot be combined with.
+struct OptionRule {
+    std::string other = {};         ///< "--oracle ff|bf"; without values: the option with any value.
+    std::string values = {};        ///< The rule holds for these values of the option; empty: for all.
+    std::optional<Form> form = {};  ///< The rule holds in this form; empty: in all.
+};
+
+/// A row of the table of options.
+struct OptionRow {
+    std::string name = {};  ///< "--epsilon"
+    OptionValue value = {};
+    std::string does = {};     ///< What it does: one sentence.
+    std::string initial = {};  ///< Its default in words; empty: nothing is set.
+    std::string when = {};     ///< When to use it, or what its values mean; may be empty.
+    OptionGroup group = {};
+    std::vector<OptionSupport> support = {};  ///< Empty: every way supports it.
+    bool needs_method = false;                ///< --method must be given: `auto` is not decided by this option.
+    std::vector<OptionRule> needs = {}, excludes = {};
+    std::string one_process = {};  ///< Values that do not work over several processes; "*": all.
+    std::string section = {};      ///< Object of the recorded options that holds it; "-": it is not recorded.
+};
+
+/// "What it does. Default D. When to use it."
+std::string help_of(const OptionRow& row);
+
+/// Does "a|b|c" contain the word?
+bool is_among(std::string_view word, std::string_view values);
+
+}  // namespace exitance

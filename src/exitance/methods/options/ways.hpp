@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+
+#include "exitance/solve/solve_options.hpp"
+
+namespace exitance {
+
+/// The pipeline that a solve runs through.
+enum class Form : std::uint8_t {
+    standard,     ///< Exact direct light, a method, a final gather, an error estimate.
+    published,    ///< The method as its paper describes it (docs/classical.md).
+    tasks,        ///< Hierarchical radiosity as tasks that create tasks (docs/tasks.md).
+    local_passes  ///< Discontinuity meshing with local pass a to d (docs/local_passes.md).
+};
+
+/// A method in one of its forms.
+struct Way {
+    Form form;
+    Method method;
+};
+
+/// A set of ways.
+class Ways {
+  public:
+    constexpr Ways() = default;
+    constexpr Ways(Form form, std::initializer_list<Method> methods) {
+        for (const Method method : methods) bits_ |= bit({form, method});
+    }
+
+    constexpr bool contains(Way way) const { return (bits_ & bit(way)) != 0; }
+    constexpr bool empty() const { return bits_ == 0; }
+    friend constexpr Ways operator|(Ways a, Ways b) {
+        a.bits_ |= b.bits_;
+        return a;
+    }
+
+  private:
+    static constexpr std::uint64_t bit(Way way) {
+        return std::uint64_t(1) << (16 * static_cast<unsigned>(way.form) + static_cast<unsigned>(way.method));
+    }
+
+    std::uint64_t bits_ = 0;
+};
+
+}  // namespace exitance
