@@ -177,6 +177,13 @@ struct ViewFactorArguments : CommonArguments {
     int threads = 0;
 };
 
+struct HeatArguments : CommonArguments {
+    std::string factors, table;          ///< View factors (.h5), and the thermal state of their surfaces (.csv).
+    std::string output, exchange;        ///< Tables to write; empty: none.
+    std::optional<double> surroundings;  ///< Temperature of the surroundings, K; none: an enclosure.
+    int threads = 0;
+};
+
 struct ViewArguments : CommonArguments {
     SceneArguments scene;  ///< Or a solution (.h5).
     int port = 0;          ///< 0: any that is free.
@@ -189,7 +196,7 @@ struct ViewArguments : CommonArguments {
 using Command =
     std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, MixArguments, ExportArguments,
                  RenderArguments, BakeArguments, ReportArguments, DaylightArguments, CheckArguments, GenerateArguments,
-                 LuminaireArguments, ExperimentArguments, ViewFactorArguments, ViewArguments>;
+                 LuminaireArguments, ExperimentArguments, ViewFactorArguments, HeatArguments, ViewArguments>;
 
 /// Text asked for by --help or --version.
 struct Information {

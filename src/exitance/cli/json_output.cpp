@@ -235,6 +235,16 @@ Json json_of(const RowCheck& check) {
 
 }  // namespace
 
+std::string heat_json(const GrayExchange& exchange) {
+    return dump({{"surfaces", exchange.heat.size()},
+                 {"temperature", exchange.temperature},
+                 {"heat", exchange.heat},
+                 {"surroundings", exchange.surroundings},
+                 {"residual", exchange.residual},
+                 {"iterations", exchange.iterations}},
+                2);
+}
+
 std::string view_factors_json(const ViewFactorFacts& facts) {
     Json json{
         {"surfaces", facts.surfaces},

@@ -12,6 +12,7 @@
 #include "exitance/reference/compare.hpp"
 #include "exitance/scene/photometric_units.hpp"
 #include "exitance/solution/solution.hpp"
+#include "exitance/view_factors/gray_exchange.hpp"
 #include "exitance/view_factors/ray_check.hpp"
 #include "exitance/view_factors/row_check.hpp"
 #include "exitance/what_if/light_groups/light_groups.hpp"
@@ -69,6 +70,9 @@ struct ViewFactorFacts {
     RayCheck check;      ///< Of entries, with a tolerance.
     RowCheck row_check;  ///< Of rows, without.
 };
+
+/// `heat --json`.
+std::string heat_json(const GrayExchange& exchange);
 
 /// `viewfactors --json`.
 std::string view_factors_json(const ViewFactorFacts& facts);

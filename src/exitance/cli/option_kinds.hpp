@@ -118,6 +118,7 @@ void declare(CLI::App& app, GenerateArguments& arguments);
 void declare(CLI::App& app, LuminaireArguments& arguments);
 void declare(CLI::App& app, ExperimentArguments& arguments);
 void declare(CLI::App& app, ViewFactorArguments& arguments);
+void declare(CLI::App& app, HeatArguments& arguments);
 void declare(CLI::App& app, ViewArguments& arguments);
 
 }  // namespace exitance

@@ -159,6 +159,35 @@ void declare(CLI::App& app, ExperimentArguments& arguments) {
     declare_work(app, arguments, arguments.threads);
 }
 
+void declare(CLI::App& app, HeatArguments& arguments) {
+    app.add_option("factors", arguments.factors, "View factors, written by viewfactors as .h5")
+        ->type_name("FACTORS")
+        ->required();
+    app.add_option(
+           "--table", arguments.table,
+           "CSV file with columns surface (its number, 0: all), and any of emissivity, temperature (K) and heat "
+           "(net heat that leaves the surface, W)")
+        ->type_name("FILE")
+        ->required();
+    app.add_option("-o,--output", arguments.output,
+                   "CSV file to write: temperature, radiosity and net heat of every surface")
+        ->type_name("FILE");
+    app.add_option("--exchange", arguments.exchange,
+                   "CSV file to write: exchange factors (script F) between all surfaces of given temperature")
+        ->type_name("FILE");
+    app.add_option_function<std::string>(
+           "--surroundings",
+           [&arguments](const std::string& word) {
+               arguments.surroundings = read_number("--surroundings", word);
+               if (!(*arguments.surroundings >= 0))
+                   throw CLI::ValidationError("--surroundings", fmt::format("must be at least 0, not {}", word));
+           },
+           "Temperature that is seen through openings, K. Default: none, the surfaces are an enclosure")
+        ->type_name("K");
+    declare_json(app, arguments);
+    declare_work(app, arguments, arguments.threads);
+}
+
 void declare(CLI::App& app, ViewFactorArguments& arguments) {
     declare_scene(app, arguments.scene);
     app.add_option("-o,--output", arguments.output,

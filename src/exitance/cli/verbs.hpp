@@ -22,6 +22,7 @@ ExitCode run(const GenerateArguments& arguments, Terminal& terminal);
 ExitCode run(const LuminaireArguments& arguments, Terminal& terminal);
 ExitCode run(const ExperimentArguments& arguments, Terminal& terminal);
 ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal);
+ExitCode run(const HeatArguments& arguments, Terminal& terminal);
 ExitCode run(const ViewArguments& arguments, Terminal& terminal);
 
 }  // namespace exitance

@@ -76,7 +76,7 @@ std::string words_of_entries(const ViewFactorFacts& facts) {
     const RayCheck& check = facts.check;
     if (check.entries > 0)
         text += fmt::format(
-            "rays: {} entries drawn by lot, {} off by more than the tolerance and six standard errors of {} "
+            "rays: {} random entries, {} off by more than the tolerance and six standard errors of {} "
             "rays each; farthest off by {:.2g} of the entry, where rays may err by {:.2g} (usually {:.2g})\n",
             check.entries, check.wrong, check.rays / check.entries, check.largest_relative, check.relative_error_there,
             check.usual_relative_error);

@@ -1,0 +1,67 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "exitance/cli/json_output.hpp"
+#include "exitance/cli/verbs.hpp"
+#include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/view_factors/thermal_table.hpp"
+#include "exitance/io/view_factors/view_factor_file.hpp"
+
+namespace exitance {
+namespace {
+
+Result<void> write_text(const std::string& path, const std::string& text) {
+    Result<AtomicFile> file = AtomicFile::create(path);
+    if (!file) return file.error();
+    file->write(text);
+    return file->commit();
+}
+
+/// Error of tables in which rows are missing.
+Result<void> check_rows(const SparseFactors& factors, const std::string& path) {
+    const auto missing = std::count(factors.finished.begin(), factors.finished.end(), 0);
+    if (missing == 0) return {};
+    return Error{ErrorCode::bad_input, fmt::format("{} of its {} rows are missing", missing, factors.size()), path,
+                 "finish it with `exitance viewfactors ... --resume`"};
+}
+
+std::string words_of(const GrayExchange& exchange, const std::vector<ThermalSurface>& surfaces, bool is_open) {
+    const auto [coldest, hottest] = std::minmax_element(exchange.temperature.begin(), exchange.temperature.end());
+    double emitted = 0;
+    for (const double heat : exchange.heat) emitted += std::max(0.0, heat);
+    std::string text = fmt::format("{} surfaces, {:.2f} K to {:.2f} K; {:.6g} W leave the surfaces that lose heat\n",
+                                   surfaces.size(), *coldest, *hottest, emitted);
+    if (is_open) text += fmt::format("surroundings receive {:.6g} W\n", exchange.surroundings);
+    return text;
+}
+
+}  // namespace
+
+/// exitance heat FACTORS --table TABLE
+ExitCode run(const HeatArguments& arguments, Terminal& terminal) {
+    const StopRequest& stop = terminal.limits().stop();
+    const Result<SparseFactors> factors = read_view_factors(arguments.factors);
+    if (!factors) return terminal.fail(factors.error());
+    if (const Result<void> whole = check_rows(*factors, arguments.factors); !whole) return terminal.fail(whole.error());
+    const auto surfaces = read_thermal_table(arguments.table, *factors);
+    if (!surfaces) return terminal.fail(surfaces.error());
+    const Result<GrayExchange> exchange = solve_gray_exchange(*factors, *surfaces, arguments.surroundings, stop);
+    if (!exchange) return terminal.fail(exchange.error());
+    if (!arguments.output.empty())
+        if (const auto written = write_text(arguments.output, heat_csv(*factors, *surfaces, *exchange)); !written)
+            return terminal.fail(written.error());
+    if (!arguments.exchange.empty()) {
+        const auto f = exchange_factors(*factors, *surfaces, arguments.surroundings, stop);
+        if (!f) return terminal.fail(f.error());
+        if (const auto written = write_text(arguments.exchange, exchange_csv(*factors, *surfaces, *f)); !written)
+            return terminal.fail(written.error());
+    }
+    if (arguments.json)
+        terminal.print(heat_json(*exchange));
+    else if (!arguments.quiet)
+        terminal.print(words_of(*exchange, *surfaces, arguments.surroundings.has_value()));
+    return ExitCode::done;
+}
+
+}  // namespace exitance
