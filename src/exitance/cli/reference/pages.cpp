@@ -292,8 +292,9 @@ std::string zsh_completion(std::span<const VerbFacts> verbs) {
         out += fmt::format("        {})\n            _arguments \\\n", verb.name);
         for (const OptionFacts& option : verb.options) {
             if (option.long_name.empty() || option.audience == Audience::old_names) continue;
-            out += fmt::format("                '{}[{}]{}' \\\n", option.long_name, zsh_text(option.help),
-                               option.type.empty() ? "" : ":" + zsh_text(option.type) + ":" + zsh_action(option));
+            out += fmt::format(
+                "                '{}[{}]{}' \\\n", option.long_name, zsh_text(option.help),
+                option.type.empty() ? "" : fmt::format(":{}:{}", zsh_text(option.type), zsh_action(option)));
         }
         out += "                '*:input:_files' ;;\n";
     }
