@@ -85,7 +85,7 @@ TEST(ProgramOptions, OldNamesGiveTheSameLightAsNewOnesWithAWarning) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder);
     const auto light = [&](const std::vector<std::string>& more, std::string& messages) {
-        std::vector<std::string> words{"solve", scene, "-o", folder / "s.h5", "--mesh-size", "0.7"};
+        std::vector<std::string> words{"solve", scene, "-o", folder / "s.h5", "--mesh-size", "1.5"};
         words.insert(words.end(), more.begin(), more.end());
         const Finished run = run_program(words);
         EXPECT_EQ(run.status, 0) << run.err;
@@ -119,15 +119,18 @@ TEST(ProgramOptions, RecipesSolveASmallRoom) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder);
     for (const Recipe& recipe : recipes()) {
-        std::vector<std::string> words{"solve", scene, "-o", folder / "s.h5", "--recipe", std::string(recipe.name),
-                                       "-q"};
-        const std::string presets(recipe.presets);
-        if (presets.find("--local-pass") == std::string::npos && presets.find("--task-engine") == std::string::npos &&
-            presets.find("--threshold") == std::string::npos && presets.find("growing-cells") == std::string::npos)
-            words.insert(words.end(), {"--mesh-size", "0.8"});
-        if (presets.find("--threshold") != std::string::npos)
-            words.insert(words.end(), {"--threshold", "5", "--min-area", "0.1"});
-        if (presets.find("growing-cells") != std::string::npos) words.insert(words.end(), {"--max-units", "16"});
+        const auto presets = [&](const char* option) { return recipe.presets.find(option) != std::string::npos; };
+        std::vector<std::string> words{"solve", scene, "-o", folder / "s.h5", "-q"};
+        words.insert(words.end(), {"--recipe", std::string(recipe.name)});
+        // Coarse settings, which replace presets.
+        if (presets("--threshold") || presets("--task-engine"))
+            words.insert(words.end(), {"--threshold", "5", "--min-area", "0.2"});
+        else if (presets("--local-pass"))
+            words.insert(words.end(), {"--error", "0.5"});
+        else if (presets("growing-cells"))
+            words.insert(words.end(), {"--max-units", "8"});
+        else
+            words.insert(words.end(), {"--mesh-size", "2"});
         const Finished run = run_program(words);
         EXPECT_TRUE(run.status == 0 || run.status == 4) << recipe.name << ": " << run.err;
     }
