@@ -36,10 +36,13 @@ std::vector<std::string> lines_of(const std::string& path) {
 std::string without_times(const std::string& path) {
     std::string out;
     for (const std::string& line : lines_of(path)) {
-        std::istringstream fields(line);
-        int i = 0;
-        for (std::string field; std::getline(fields, field, ','); ++i)
-            if (i != 7 && i != 17) out += field + ",";
+        int field = 0;
+        bool is_quoted = false;
+        for (const char c : line) {
+            is_quoted ^= c == '"';
+            field += c == ',' && !is_quoted;
+            if (field != 7 && field != 17) out += c;
+        }
         out += "\n";
     }
     return out;

@@ -154,16 +154,15 @@ TEST_F(ProgramOfProcesses, CountTheirShareOfSharedMemoryForTheirLimit) {
         return solve("several", {"--error", "0.1", "--memory-limit", std::to_string(mib) + "M"});
     };
     // The smallest limit with which the scene can be read is too low for the coarsest mesh.
-    const std::string before = "--memory-limit: ";
+    const std::regex in_use(R"((\d+) MiB (are )?in use)");
     int limit = 1;
     for (bool is_planned = false; !is_planned;) {
         const Finished tight = run_program(under(limit));
         ASSERT_EQ(tight.status, 5) << tight.err;
-        const std::size_t at = tight.err.find(before);
-        ASSERT_NE(at, std::string::npos) << tight.err;
-        const int in_use = std::stoi(tight.err.substr(at + before.size()));
-        is_planned = tight.err.find("coarsest mesh") != std::string::npos;
-        limit = is_planned ? in_use - 2 : std::max(limit + 1, in_use);
+        std::smatch found;
+        ASSERT_TRUE(std::regex_search(tight.err, found, in_use)) << tight.err;
+        is_planned = tight.err.find("needs about") != std::string::npos;
+        limit = is_planned ? std::stoi(found[1]) - 2 : std::max(limit + 1, std::stoi(found[1]));
     }
     EXPECT_EQ(run_program(under(limit)).status, 5);
     const Finished two = run_on(2, under(limit));
