@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds everything in Release and runs the whole test suite. With CI set in the environment
-# it also checks the layout of the code, runs the suite once more under the address and undefined-behaviour sanitizers,
+# it also checks the layout of the code, builds the documentation, runs the suite once more under the address and undefined-behaviour sanitizers,
 # and what runs on several threads under the thread sanitizer, both compiled by Clang.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -26,6 +26,8 @@ run_suite() {  # PRESET FOLDER
 scripts/install_dependencies.sh
 if [[ -n ${CI:-} ]]; then
     check_layout
+    echo "== documentation"
+    scripts/build_docs
 fi
 run_suite release build
 if [[ -n ${CI:-} ]]; then
