@@ -2,7 +2,9 @@
 
 namespace exitance {
 
-template <>
-const char LibraryOfBands<bands>::linked = 0;
+template <std::size_t n>
+const char LibraryOfBands<n>::linked = 0;
+
+template struct LibraryOfBands<bands>;
 
 }  // namespace exitance
