@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// In the middle of each wall of the largest floor, looking across it, as CIE 117 has them.
+/// Observers of CIE 117: in the middle of each side of the largest floor, looking across it.
 Result<std::vector<Observer>> standard_observers(const Scene& scene) {
     constexpr double seated = 1.2, off_wall = 0.1;  // metres
     PlaneRequest request;

@@ -5,7 +5,7 @@
 namespace exitance {
 namespace {
 
-/// "0.75", "desk", "desk,height=0.1,border=0.2,spacing=0.5"
+/// Reads a plane, such as "0.75", "desk" or "desk,height=0.1,border=0.2,spacing=0.5", in metres.
 PlaneRequest read_request(const std::string& option, const std::string& words) {
     PlaneRequest out;
     std::istringstream in(words);

@@ -23,7 +23,7 @@ std::string seconds_line(const std::map<std::string, double>& seconds) {
                        parts.empty() ? "" : " (" + parts + ")");
 }
 
-/// The largest rooms.
+/// Area, mean radiosity and error of the four largest rooms.
 std::string rooms_line(const std::vector<RoomError>& rooms, const LightUnit& unit) {
     constexpr std::size_t most = 4;
     std::string text;
@@ -33,9 +33,9 @@ std::string rooms_line(const std::vector<RoomError>& rooms, const LightUnit& uni
     return rooms.size() > most ? text + fmt::format("; and {} more", rooms.size() - most) : text;
 }
 
-/// The upper bound, and which of the two figures to use where they are far apart.
+/// The upper bound of the error, with the advice to use the estimate if the bound is more than twice as large.
 std::string bound_line(const SolveStatistics& s) {
-    constexpr double far_apart = 2;  // a factor that users ask about
+    constexpr double far_apart = 2;  // ratio of bound and estimate that needs an explanation
     const std::string bound = percent(*s.relative_error_bound) + " at most, with 95% confidence";
     if (*s.relative_error_bound <= far_apart * *s.relative_error_estimate) return bound;
     return bound +

@@ -21,7 +21,7 @@ Result<LightGroups> keep_light_groups(const SolveArguments& arguments, Solution&
     };
     if (stop.requested()) return not_kept("there was no time for them");
     const Stopwatch watch;
-    // A mesh along the shadows of all lamps together has no place for one of them.
+    // The discontinuity mesh holds the light of all lamps together. It cannot hold that of a single group.
     solution.discontinuity = {}, solution.layers = {}, solution.own_form = {}, solution.delivers_own_form = false;
     Result<LightGroups> groups = solve_light_groups(solution, arguments.options, progress, stop);
     if (!groups && stop.requested()) return not_kept(groups.error().message);

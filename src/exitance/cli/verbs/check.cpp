@@ -16,7 +16,7 @@ std::string place(const Finding& finding) {
     return finding.line > 0 ? fmt::format("{}:{}", finding.file, finding.line) : finding.file;
 }
 
-/// One kind of finding under its heading; nothing when there is none.
+/// Findings of one kind under a heading; empty if there are none.
 std::string group(const std::vector<Finding>& findings, Finding::Kind kind, std::string_view singular,
                   std::string_view plural) {
     std::string lines;
@@ -30,7 +30,7 @@ std::string group(const std::vector<Finding>& findings, Finding::Kind kind, std:
     return count == 0 ? "" : fmt::format("{} {}\n{}", count, count == 1 ? singular : plural, lines);
 }
 
-/// What is not an error: those go to the error stream.
+/// Warnings, repairs and size of a scene as text. Errors are printed to stderr instead.
 std::string report(const CheckedScene& checked, const Shell& shell) {
     using Kind = Finding::Kind;
     std::string text = group(checked.findings, Kind::warning, "warning", "warnings") +
@@ -54,7 +54,7 @@ std::string report(const CheckedScene& checked, const Shell& shell) {
 
 }  // namespace
 
-/// exitance check SCENE
+/// Runs `exitance check SCENE`.
 ExitCode run(const CheckArguments& arguments, Terminal& terminal) {
     if (!arguments.picture.empty() && ending(arguments.picture) != ".png")
         return terminal.fail(

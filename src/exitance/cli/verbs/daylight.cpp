@@ -40,7 +40,7 @@ std::string as_text(const DaylightResults& results, const std::string& folder) {
 
 }  // namespace
 
-/// exitance daylight SOLUTION --epw WEATHER --points SENSORS -o FOLDER
+/// Runs `exitance daylight SOLUTION --epw WEATHER --points SENSORS -o FOLDER`.
 ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     const Result<Weather> weather = load_epw(arguments.epw);

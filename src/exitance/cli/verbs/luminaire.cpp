@@ -115,7 +115,7 @@ std::string facts_text(const Photometry& p) {
     return out;
 }
 
-/// The opening as a scene: its own light, as that of a diffuse one of the same flux.
+/// The luminous opening as a scene of diffuse emitters with the flux of the luminaire.
 SceneDescription opening_scene(const Photometry& p) {
     SceneDescription scene;
     scene.file = p.file;
@@ -140,7 +140,7 @@ SceneDescription opening_scene(const Photometry& p) {
 
 }  // namespace
 
-/// exitance luminaire FILE [-o DIAGRAM.svg] [-o OPENING.obj] [-o UGR.csv]
+/// Runs `exitance luminaire FILE [-o DIAGRAM.svg] [-o OPENING.obj] [-o UGR.csv]`.
 ExitCode run(const LuminaireArguments& arguments, Terminal& terminal) {
     for (const std::string& output : arguments.outputs)
         if (ending(output) != ".svg" && ending(output) != ".obj" && ending(output) != ".csv")

@@ -24,7 +24,7 @@
 namespace exitance {
 namespace {
 
-/// What cannot be done, before the work begins.
+/// The error of options that cannot be combined or of values out of range; none if there is no error.
 std::optional<Error> find_misuse(const RenderArguments& a) {
     const std::string end = ending(a.output);
     const auto usage = [](const std::string& message, const std::string& where, const std::string& hint) {
@@ -66,7 +66,7 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
     return std::nullopt;
 }
 
-/// The picture for people, and the words that go with it.
+/// The picture in display colours (false colours or tone-mapped). Adds the exposure to `texts`.
 Image develop(const RenderArguments& arguments, const Picture& picture, const LightUnit& own, ImageTexts& texts,
               Terminal& terminal) {
     if (arguments.false_colour) {
@@ -85,7 +85,7 @@ Image develop(const RenderArguments& arguments, const Picture& picture, const Li
     return display_image(picture, tones);
 }
 
-/// Elements of the method, or those that `export` writes; where direct light is all, there are no others.
+/// The method's elements or, for --mesh export, the exported elements. A solution with direct light only has no others.
 const ElementTree& shown_elements(const RenderArguments& arguments, const Solution& solution) {
     const bool of_export = arguments.mesh == "export" || solution.bounces == 0;
     return of_export ? solution.interpolant.tree : solution.indirect.tree;
@@ -97,7 +97,7 @@ Result<void> write_display(const RenderArguments& arguments, const RadiosityFunc
     const SixNodeMesh& mesh = light.solution().discontinuity;
     const Scene& scene = light.solution().scene;
     const LightUnit unit = unit_of(arguments.unit, scene, terminal);
-    // Watts as the scene has them keep their bands: a false colour may show their mean or what the eye makes of them.
+    // Without --unit, light in watts keeps its bands: false colours show their mean or their weighted sum (luminance).
     const bool is_one_number = arguments.unit.choice != UnitChoice::scene || unit.is_lux();
     const Picture shown = is_one_number ? in_unit(picture, unit) : picture;
     MeshView view;
@@ -142,17 +142,17 @@ Result<void> write_picture(const RenderArguments& arguments, const RadiosityFunc
                : write_linear(arguments, own_unit(light.solution().scene.is_photometric()), camera, picture);
 }
 
-/// "walk.png" as "walk.0012.png".
+/// Inserts a number before the file name extension: "walk.0012.png" from "walk.png" and 12.
 std::string numbered(const std::string& output, std::size_t number) {
     const std::string end = ending(output);
     return fmt::format("{}.{:04}{}", output.substr(0, output.size() - end.size()), number, end);
 }
 
-/// Seconds that a pixel takes to be toned, drawn upon, compressed and written: 0.2 to 0.5 us in pictures of 640 x 400
-/// to 8192 x 8192 pixels, as .png and .exr.
+/// Seconds per pixel for tone mapping, drawing, compression and writing. Measured 0.2 to 0.5 us in pictures of 640 x
+/// 400 to 8192 x 8192 pixels, as .png and .exr.
 constexpr double write_seconds_a_pixel = 0.5e-6;
 
-/// A request to stop that leaves time to write the picture.
+/// The run's stop request, with a deadline that leaves time to write the picture before the time limit.
 const StopRequest& keep_picture(const RenderArguments& arguments, RunLimits& limits) {
     StopRequest& stop = limits.keep();
     const double write_seconds = write_seconds_a_pixel * static_cast<double>(arguments.size.pixels());
@@ -162,7 +162,7 @@ const StopRequest& keep_picture(const RenderArguments& arguments, RunLimits& lim
     return stop;
 }
 
-/// What the user is told of a picture that a stop has left coarser than requested.
+/// Note about a picture that is coarser than requested because of a stop.
 std::string describe_stop(const TimedPicture& taken, const RenderArguments& arguments, const std::string& reason) {
     if (taken.samples > 0)
         return fmt::format("stopped by the {}: the picture has {} of {} samples a pixel", reason, taken.samples,
@@ -173,7 +173,8 @@ std::string describe_stop(const TimedPicture& taken, const RenderArguments& argu
         reason, taken.block, taken.block);
 }
 
-/// Numbered pictures, one for each camera, all with the exposure of the first. `done`: those that were finished.
+/// Renders numbered pictures, one per camera, all with the exposure of the first. Sets `done` to the number of finished
+/// pictures.
 ExitCode render_path(const RenderArguments& arguments, const std::vector<Camera>& cameras,
                      const RadiosityFunction& light, Terminal& terminal, std::size_t& done) {
     RunLimits& limits = terminal.limits();
@@ -199,10 +200,10 @@ ExitCode render_path(const RenderArguments& arguments, const std::vector<Camera>
     return limits.stopped_code();
 }
 
-/// A video: pictures at equal times along the path, in a folder that is gone afterwards.
+/// Renders a video from pictures at equal intervals along the path. The pictures are in a temporary folder.
 ExitCode render_film(const RenderArguments& arguments, const std::vector<CameraStation>& stations,
                      const RadiosityFunction& light, Terminal& terminal) {
-    constexpr double rate = 25;  // pictures a second
+    constexpr double rate = 25;  // pictures per second
     constexpr std::size_t most = 9999;
     if (const Result<void> found = find_film_program(arguments.output); !found) return terminal.fail(found.error());
     const auto falls = [](const CameraStation& a, const CameraStation& b) { return b.time < a.time; };
@@ -223,7 +224,7 @@ ExitCode render_film(const RenderArguments& arguments, const std::vector<CameraS
     return written ? code : terminal.fail(written.error());
 }
 
-/// One picture, as fine as the limits allow.
+/// Renders one picture, with all samples or as many as the limits allow.
 ExitCode render_picture(const RenderArguments& arguments, const RadiosityFunction& light, Terminal& terminal) {
     const Result<Camera> camera = choose_camera(arguments, light);
     if (!camera) return terminal.fail(camera.error());
@@ -246,7 +247,7 @@ ExitCode render_picture(const RenderArguments& arguments, const RadiosityFunctio
 
 }  // namespace
 
-/// exitance render SOLUTION -o PICTURE
+/// Runs `exitance render SOLUTION -o PICTURE`.
 ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
     if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
     set_threads(arguments.threads);

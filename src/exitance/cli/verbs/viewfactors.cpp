@@ -26,8 +26,8 @@ namespace {
 constexpr double default_error = 1e-3;
 constexpr std::size_t default_checked_rows = 4, default_checked_entries = 100, default_rays_an_entry = 1u << 14;
 
-/// Rays of a checked row. The noise of its squared error is 2 sqrt(sum F^2) / n: at n = 0.2 / R^2 and sum F^2 = 0.1 it
-/// is 3 R^2, so that four rows together tell an error of 2 R from one of R.
+/// Rays per checked row. The noise of the squared error of a row is 2 sqrt(sum F^2) / n. With n = 0.2 / R^2 and sum F^2
+/// = 0.1 it is 3 R^2, so that four rows together distinguish an error of 2 R from one of R.
 std::size_t default_rays_a_row(double error) {
     return static_cast<std::size_t>(std::clamp(0.2 / (error * error), 8192.0, 524288.0));
 }
@@ -89,7 +89,7 @@ std::string words_of(const ViewFactorFacts& facts) {
            (facts.tolerance ? words_of_entries(facts) : words_of_rows(facts));
 }
 
-/// What a file of View3D calls surfaces: groups of faces, and some that only block.
+/// Merges the rows of faces into the surfaces of View3D, which are groups of faces. Faces that only block have no row.
 SparseFactors rows_of_view3d(const Scene& scene, const SparseFactors& table) {
     std::vector<std::uint32_t> rows;
     std::size_t count = scene.groups().size();
@@ -100,7 +100,7 @@ SparseFactors rows_of_view3d(const Scene& scene, const SparseFactors& table) {
     return merge_rows(table, rows, count);
 }
 
-/// Scenes of view factors need no light.
+/// Prints warnings and repairs, except the one about missing light, which view factors do not need.
 void show_findings(const CheckedScene& checked, Terminal& terminal) {
     std::vector<Finding> findings = checked.findings;
     std::erase_if(findings, [](const Finding& f) {
@@ -109,7 +109,7 @@ void show_findings(const CheckedScene& checked, Terminal& terminal) {
     terminal.show(findings);
 }
 
-/// Names the work that rows in a work file belong to.
+/// Identifies the computation to which the rows in a work file belong: scene, accuracy and seed.
 std::string work_of(const ViewFactorArguments& arguments, const Scene& scene) {
     return fmt::format("{} error {} tolerance {} seed {}", scene_fingerprint(scene),
                        arguments.error.value_or(default_error), arguments.tolerance.value_or(0), arguments.seed);
@@ -132,7 +132,7 @@ class ViewFactorRun {
         const bool is_finished = facts.finished_rows == table.size() && table.is_settled;
         if (is_finished) check(table, facts);
         if (ending(arguments_.scene.files.front()) == ".vs3") table = rows_of_view3d(scene_, table);
-        // Finished rows are written after a stop, too.
+        // Finished rows are written even after a stop, hence the new StopRequest.
         if (const Result<void> written = write_view_factors(arguments_.output, table, StopRequest()); !written)
             return terminal_.fail(written.error());
         if (is_finished && rows_) rows_->remove();
@@ -143,7 +143,7 @@ class ViewFactorRun {
   private:
     double error() const { return arguments_.error.value_or(default_error); }
 
-    /// Rows are kept beside an output that is, or will be, a plain file.
+    /// Opens OUTPUT.rows for finished rows, unless the output exists and is not a regular file.
     Result<void> open_work_file() {
         std::error_code ignored;
         const std::filesystem::file_status status = std::filesystem::status(arguments_.output, ignored);
@@ -241,7 +241,7 @@ class ViewFactorRun {
 
 }  // namespace
 
-/// exitance viewfactors SCENE -o MATRIX
+/// Runs `exitance viewfactors SCENE -o MATRIX`.
 ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal) {
     RunLimits& limits = terminal.limits();
     const StopRequest& stop = limits.keep();
