@@ -43,7 +43,9 @@ Result<std::vector<Observer>> load_observers(const std::string& path) {
         if (!(norm(view) > 0)) return table->lines().error("looks in no direction", "dx, dy, dz must not all be 0");
         out.push_back({fmt::format("{}", out.size() + 1), {row[0], row[1], row[2]}, normalized(view)});
     }
-    if (out.empty()) return Error{ErrorCode::bad_input, "holds no observers", path, "x,y,z,dx,dy,dz and a row each"};
+    if (out.empty())
+        return Error{ErrorCode::bad_input, "holds no observers", path,
+                     "give the header x,y,z,dx,dy,dz and one row per observer"};
     return out;
 }
 

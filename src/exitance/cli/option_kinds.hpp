@@ -71,7 +71,7 @@ CLI::Option* add_count(CLI::App& app, const std::string& name, Target& target, l
         const double value = read_number(name, word);
         if (value != std::floor(value) || value < static_cast<double>(least))
             throw CLI::ValidationError(name, fmt::format("must be a whole number from {}, not {}", least, word));
-        if (value > most) throw CLI::ValidationError(name, fmt::format("{} is too much", word));
+        if (value > most) throw CLI::ValidationError(name, fmt::format("{} is too large", word));
         target = static_cast<std::size_t>(value);
     };
     return app.add_option_function<std::string>(name, read, help)->type_name("N");

@@ -46,7 +46,7 @@ void read_camera(const std::string& words, RenderArguments& arguments) {
         throw CLI::ValidationError("--camera", fmt::format("'{}' is not 'ex,ey,ez tx,ty,tz fov'", words));
     const Camera camera{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
     if (n.size() == 7) arguments.fov = n[6];
-    if (camera.eye == camera.target) throw CLI::ValidationError("--camera", "looks at where it stands");
+    if (camera.eye == camera.target) throw CLI::ValidationError("--camera", "eye and target are the same point");
     arguments.camera = camera;
 }
 
@@ -83,7 +83,7 @@ void read_scale(std::string words, ScaleChoice& scale) {
     const std::vector<double> n = read_numbers("--scale", words);
     if (n.size() != 2 || !(n[0] < n[1]))
         throw CLI::ValidationError("--scale", fmt::format("'{}' is not 'LO,HI' with LO below HI", words));
-    if (scale.by_ratio && !(n[0] > 0)) throw CLI::ValidationError("--scale", "by ratios begins above 0");
+    if (scale.by_ratio && !(n[0] > 0)) throw CLI::ValidationError("--scale", "a logarithmic scale must begin above 0");
     scale.range = std::pair(n[0], n[1]);
 }
 
@@ -103,7 +103,7 @@ void read_exposure(const std::string& word, RenderArguments& arguments) {
     if (word.ends_with('x')) {
         arguments.exposure_scale = read_number("--exposure", word.substr(0, word.size() - 1));
         if (!(*arguments.exposure_scale > 0))
-            throw CLI::ValidationError("--exposure", fmt::format("must multiply by more than 0, not {}", word));
+            throw CLI::ValidationError("--exposure", fmt::format("the factor must be above 0, not {}", word));
         return;
     }
     arguments.exposure = word == "auto" ? 0 : read_number("--exposure", word);

@@ -121,7 +121,7 @@ Result<void> open_checkpoint(const SolveArguments& arguments, const Scene& scene
     if (!arguments.resume) return {};
     const Result<bool> loaded = file->load();
     if (!loaded) return loaded.error();
-    terminal.note(*loaded ? "going on from " + path : "there is no " + path + ": beginning at the beginning");
+    terminal.note(*loaded ? "continuing from " + path : "there is no " + path + ": starting from the beginning");
     return {};
 }
 
@@ -147,7 +147,7 @@ Result<void> write_checked(const std::string& path, Solution& solution, const Li
     LightGroups groups_again;
     if (const Result<Solution> read_back = load_solution(path, Rehearsed::already, &groups_again); !read_back)
         return Error{ErrorCode::failure, "was written, but cannot be read: " + read_back.error().message, path,
-                     "please report the scene that it is of"};
+                     "please report the scene"};
     return {};
 }
 
@@ -169,8 +169,7 @@ std::optional<Error> no_estimate(const SolveArguments& arguments, const SolveSta
     if (statistics.relative_error_estimate || statistics.stopped_by.empty()) return {};
     if (arguments.classical.any() || arguments.options.task_engine) return {};
     return Error{ErrorCode::limit,
-                 fmt::format("the {} ended the run before there was light with an estimate of its error; nothing is "
-                             "written",
+                 fmt::format("the {} ended the run before the first estimate of the error; nothing is written",
                              statistics.stopped_by),
                  arguments.output, "allow more time or memory, or request a larger --error"};
 }
@@ -189,7 +188,7 @@ LoadedScene read_scene(SolveArguments& arguments, const StopRequest& stop) {
 /// Error for a scene whose solution could not be read back.
 Result<void> check_scene(const SolveArguments& arguments, const Scene& scene) {
     if (const auto nonsense = find_nonsense(scene))
-        return Error{ErrorCode::failure, "makes a scene that its solution could not be read with: " + *nonsense,
+        return Error{ErrorCode::failure, "makes a scene whose solution could not be read: " + *nonsense,
                      arguments.scene.files[0], "please report this file"};
     return {};
 }

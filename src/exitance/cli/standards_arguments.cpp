@@ -15,7 +15,8 @@ PlaneRequest read_request(const std::string& option, const std::string& words) {
         out.height = read_number(option, word);
     else
         out.group = word;
-    if (word.empty()) throw CLI::ValidationError(option, "begins with a height in metres or with a name of faces");
+    if (word.empty())
+        throw CLI::ValidationError(option, "must begin with a height in metres or the name of a group of faces");
     while (std::getline(in, word, ',')) {
         const std::size_t at = word.find('=');
         const std::string key = word.substr(0, at);

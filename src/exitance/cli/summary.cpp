@@ -86,14 +86,14 @@ std::string summary(const Solution& solution) {
     if (!s.elements_by_level.empty()) {
         std::size_t all = 0;
         for (std::size_t count : s.elements_by_level) all += count;
-        line("hierarchy", fmt::format("{} elements by level; {:.3g} bytes a link, {:.3g} an element",
+        line("hierarchy", fmt::format("{} elements by level; {:.3g} bytes per link, {:.3g} per element",
                                       fmt::join(s.elements_by_level, " "),
                                       static_cast<double>(s.link_memory_bytes) / std::max<std::size_t>(1, s.links),
                                       static_cast<double>(s.element_memory_bytes) / all));
     }
     line("solution", fmt::format("{} iterations, residual {:.2g}", s.iterations, s.residual));
     if (s.standard_error > 0)
-        line("noise", fmt::format("standard error {} of the light that the method found", percent(s.standard_error)));
+        line("noise", fmt::format("standard error {} of the method's light", percent(s.standard_error)));
     const std::string apart = percent(s.energy.defect);
     const auto found = s.figures.find("energy_defect_before");
     const std::string before = found != s.figures.end() ? percent(found->second) : apart;

@@ -80,7 +80,7 @@ ExitCode Terminal::finish(ExitCode code) {
     const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
     if (written || code != ExitCode::done) return code;
     return fail(Error{ErrorCode::cannot_write, "the result could not be written", "standard output",
-                      "is the disk full, or the reader gone?"});
+                      "check the space on the disk, and whether the reading program still runs"});
 }
 
 }  // namespace exitance

@@ -43,7 +43,8 @@ Result<void> read_importance(SolveArguments& arguments) {
     const Result<ProbePoints> points = load_probe_points(arguments.importance);
     if (!points) return points.error();
     if (points->size() == 0)
-        return Error{ErrorCode::bad_input, "holds no points", arguments.importance, "without --importance all counts"};
+        return Error{ErrorCode::bad_input, "holds no points", arguments.importance,
+                     "leave out --importance for equal accuracy everywhere"};
     for (std::size_t i = 0; i < points->size(); ++i)
         arguments.options.importance.push_back({points->points[i], points->normals[i]});
     return {};

@@ -65,7 +65,7 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     const std::string scene_file = solution->scene.file();
     format.scene_file = find_scene_file(solution->scene, arguments.solution);
     if (format.scene_file.empty() && (ending(scene_file) == ".glb" || ending(scene_file) == ".gltf"))
-        terminal.note(fmt::format("{} is not there: scene.glb goes without its textures", scene_file));
+        terminal.note(fmt::format("{} is missing: scene.glb has no textures", scene_file));
     const Result<void> written = write_light_maps(*solution, *maps, format, *names, arguments.output);
     if (!written) return terminal.fail(written.error());
     std::string sizes;

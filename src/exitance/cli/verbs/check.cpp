@@ -41,9 +41,8 @@ std::string report(const CheckedScene& checked, const Shell& shell) {
     for (const Surface& surface : scene.surfaces()) area += surface.area;
     const Vec3 size = scene.box().size();
     if (shell.open_edges > 0)
-        text += fmt::format(
-            "{} edges of {:.4g} m have a face on one side only: what is meant to be closed is open there.\n",
-            shell.open_edges, shell.open_length);
+        text += fmt::format("{} edges ({:.4g} m in total) belong to only one face: the model is open there.\n",
+                            shell.open_edges, shell.open_length);
     return text + fmt::format(
                       "The scene can be used: {} surfaces of {:.4g} m^2 ({} after joining coplanar neighbours), "
                       "{} emitters, {}{} materials, {:.4g} x {:.4g} x {:.4g} m.\n",

@@ -77,8 +77,7 @@ ExitCode run(const ExperimentArguments& arguments, Terminal& terminal) {
     if (!arguments.quiet) terminal.print(as_text(*report));
     if (limits.signal()) return *limits.signal();
     if (!stop.requested()) return ExitCode::done;
-    terminal.note(
-        fmt::format("stopped by the {}: the same command goes on from the runs that are finished", limits.reason()));
+    terminal.note(fmt::format("stopped by the {}: the same command continues from the finished runs", limits.reason()));
     return ExitCode::demand_not_reached;
 }
 

@@ -102,7 +102,7 @@ std::string facts_text(const Photometry& p) {
         out += fact("lamps", fmt::format("{}, {:.1f} lm together", p.lamps, *p.lamp_lumens)) +
                fact("efficiency", fmt::format("{:.1f}%", 100 * flux / *p.lamp_lumens));
     else
-        out += fact("lamps", "absolute photometry: their flux is not told");
+        out += fact("lamps", "absolute photometry: their flux is not given");
     if (p.type == Photometry::Type::c)
         out += fact("upward", fmt::format("{:.1f} lm, {:.1f}%", p.flux(90, 180), 100 * p.flux(90, 180) / flux));
     if (p.watts > 0) out += fact("power", fmt::format("{:g} W, {:.1f} lm/W", p.watts, p.efficacy()));

@@ -32,9 +32,8 @@ void warn_of_mirrored_light(const Scene& scene, std::span<const ProbePoint> poin
     const MirroredAtPoints found = mirrored_at_points(scene, points, light, limit, seed);
     if (found.above > 0)
         terminal.progress().warn(
-            fmt::format("panes mirror light of the sky, the sun or lamps onto {} of {} points looked at, up to {:.3g}% "
-                        "of the light "
-                        "there, which is left out",
+            fmt::format("panes mirror light of the sky, the sun or lamps onto {} of {} examined points, up to {:.3g}% "
+                        "of the light there; it is left out",
                         found.above, found.points, 100 * found.largest));
 }
 
@@ -103,9 +102,12 @@ std::optional<Error> find_misuse(const ProbeArguments& a) {
     const auto usage = [](const char* where, const char* message) {
         return Error{ErrorCode::usage, message, where, "leave one of them out"};
     };
-    if (a.reference_paths > 0 && a.interpolant) return usage("--interpolant", "is of the solution, --reference is not");
-    if (a.reference_paths > 0 && is_part) return usage("--component", "is of the solution; paths bring all light");
-    if (a.interpolant && is_part) return usage("--component", "is of the full function; export writes all light");
+    if (a.reference_paths > 0 && a.interpolant)
+        return usage("--interpolant", "cannot be combined with --reference, which does not evaluate the solution");
+    if (a.reference_paths > 0 && is_part)
+        return usage("--component", "cannot be combined with --reference, which computes all light");
+    if (a.interpolant && is_part)
+        return usage("--component", "cannot be combined with --interpolant, which evaluates all light");
     return std::nullopt;
 }
 

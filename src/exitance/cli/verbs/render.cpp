@@ -39,21 +39,24 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
                                  end),
                      a.output, "name the output something.png");
     if (a.has_scale && !a.false_colour && !a.isolux)
-        return usage("has nothing to colour", "--scale, --bands, --palette", "they go with --false-colour or --isolux");
+        return usage("has no effect without --false-colour or --isolux", "--scale, --bands, --palette",
+                     "add one of them, or leave the option out");
     if (a.unit.choice != UnitChoice::scene && !a.false_colour && !a.isolux)
-        return usage("has no numbers to tell", "--unit", "it goes with --false-colour or --isolux");
+        return usage("has no effect without --false-colour or --isolux", "--unit",
+                     "add one of them, or leave the option out");
     const bool is_drawn = a.false_colour || a.isolux || !a.mesh.empty() || a.shadow_classes;
     const bool is_toned = a.exposure != 0 || a.exposure_scale || a.tone_map != ToneCurve::filmic;
     if (end != ".png" && !films && (is_drawn || is_toned))
-        return usage(fmt::format("{} holds radiance, and nothing is drawn into it or toned", end), a.output,
-                     "--false-colour, --isolux, --mesh, --shadow-classes, --exposure and --tone-map go with .png");
+        return usage(
+            fmt::format("{} holds radiance, without drawings or tone mapping", end), a.output,
+            "--false-colour, --isolux, --mesh, --shadow-classes, --exposure and --tone-map apply to .png only");
     if (is_toned && (a.false_colour || a.shadow_classes))
-        return usage("have no part in false colours and classes", "--exposure, --tone-map", "leave them out");
+        return usage("have no effect on false colours and shadow classes", "--exposure, --tone-map", "leave them out");
     if (a.false_colour && a.shadow_classes)
-        return usage("shows classes, --false-colour values, and a pixel has one colour", "--shadow-classes",
+        return usage("cannot be combined with --false-colour: both colour the pixels", "--shadow-classes",
                      "make a picture of each");
     if (!a.path.empty() && (a.camera || !a.camera_name.empty() || a.projection != Projection::perspective))
-        return usage("has cameras of its own, in perspective", "--path", "leave --camera and --projection out");
+        return usage("has its own cameras, in perspective", "--path", "leave --camera and --projection out");
     if (!a.path.empty() && (a.false_colour || a.isolux) && !a.scale.range)
         return usage("needs one scale for all pictures", "--path", "add --scale LO,HI");
     if (a.gather > 0 && (!std::has_single_bit(a.gather) || a.gather > 1 << 20))
@@ -165,11 +168,11 @@ const StopRequest& keep_picture(const RenderArguments& arguments, RunLimits& lim
 /// Note about a picture that is coarser than requested because of a stop.
 std::string describe_stop(const TimedPicture& taken, const RenderArguments& arguments, const std::string& reason) {
     if (taken.samples > 0)
-        return fmt::format("stopped by the {}: the picture has {} of {} samples a pixel", reason, taken.samples,
+        return fmt::format("stopped by the {}: the picture has {} of {} samples per pixel", reason, taken.samples,
                            arguments.samples);
     return fmt::format(
-        "stopped by the {}: there was no time for one sample a pixel, so the picture is made of squares of {} x {} "
-        "pixels or less",
+        "stopped by the {}: there was no time for one sample per pixel, so the picture consists of squares of at most "
+        "{} x {} pixels",
         reason, taken.block, taken.block);
 }
 
@@ -211,7 +214,7 @@ ExitCode render_film(const RenderArguments& arguments, const std::vector<CameraS
                                             ? at_equal_times(stations, rate, most)
                                             : std::vector<Camera>();
     if (cameras.empty())
-        return terminal.fail(Error{ErrorCode::bad_input, "times of a video must rise, over 400 s at most",
+        return terminal.fail(Error{ErrorCode::bad_input, "times of a video must increase and span at most 400 s",
                                    arguments.path, "the first number of a row is its time in seconds"});
     const Result<ScratchFolder> folder = ScratchFolder::make("exitance-film");
     if (!folder) return terminal.fail(folder.error());

@@ -40,9 +40,10 @@ void add_pictures(const ReportArguments& arguments, const RadiosityFunction& lig
     PictureOptions options{camera, arguments.size, 8};
     const TimedPicture taken = take_picture_in_time(light, options, terminal.progress(), stop);
     if (taken.block == 0) return content.unfinished.push_back("pictures from " + describe(camera));
-    const std::string note = taken.is_complete   ? ""
-                             : taken.samples > 0 ? fmt::format("; stopped after {} of 8 samples a pixel", taken.samples)
-                                                 : fmt::format("; stopped at squares of {} pixels", taken.block);
+    const std::string note = taken.is_complete ? ""
+                             : taken.samples > 0
+                                 ? fmt::format("; stopped after {} of 8 samples per pixel", taken.samples)
+                                 : fmt::format("; stopped at squares of {} pixels", taken.block);
     const Picture& picture = taken.picture;
     ToneMap tones;
     tones.curve = ToneCurve::filmic, tones.scale = automatic_exposure(picture);
@@ -114,16 +115,16 @@ Result<std::vector<Observer>> all_observers(const ReportArguments& arguments, co
 
 std::optional<Error> find_misuse(const ReportArguments& arguments) {
     if (arguments.output.empty() && arguments.tables.empty())
-        return Error{ErrorCode::usage, "nothing is to be written", "report",
-                     "name a page, -o room.html, or --tables FOLDER"};
+        return Error{ErrorCode::usage, "no output is given", "report", "name a page, -o room.html, or --tables FOLDER"};
     const bool measures = !arguments.planes.empty() || !arguments.working_planes.empty();
     if (arguments.maintenance < 1 && !measures)
-        return Error{ErrorCode::usage, "has no planes to be applied to", "--maintenance", "add --plane 0.75"};
+        return Error{ErrorCode::usage, "has no effect without measuring planes", "--maintenance", "add --plane 0.75"};
     if (arguments.output.empty() && !measures && arguments.observers.empty())
-        return Error{ErrorCode::usage, "there is nothing to tell in tables", "--tables",
+        return Error{ErrorCode::usage, "there are no planes or observers for tables", "--tables",
                      "add --plane 0.75 or --observers auto, or a page, -o room.html"};
     if (arguments.output.empty() && !arguments.views.empty())
-        return Error{ErrorCode::usage, "tables hold no pictures", "--camera", "add a page, -o room.html"};
+        return Error{ErrorCode::usage, "has no effect without a page, since tables hold no pictures", "--camera",
+                     "add a page, -o room.html"};
     if (arguments.output.empty()) return std::nullopt;
     const bool page = arguments.output.ends_with(".html") || arguments.output.ends_with(".htm");
     if (page) return std::nullopt;

@@ -77,7 +77,8 @@ std::string words_of_entries(const ViewFactorFacts& facts) {
     if (check.entries > 0)
         text += fmt::format(
             "rays: {} random entries, {} off by more than the tolerance and six standard errors of {} "
-            "rays each; farthest off by {:.2g} of the entry, where rays may err by {:.2g} (usually {:.2g})\n",
+            "rays each; largest deviation {:.2g} of the entry, where the standard error of the rays is {:.2g} (median "
+            "{:.2g})\n",
             check.entries, check.wrong, check.rays / check.entries, check.largest_relative, check.relative_error_there,
             check.usual_relative_error);
     return text;
@@ -200,10 +201,10 @@ class ViewFactorRun {
 
     ExitCode stopped(const ViewFactorFacts& facts) {
         terminal_.note(
-            fmt::format("stopped after {} of {} rows, which are written as they were computed; --resume goes on",
+            fmt::format("stopped after {} of {} rows, which are written without adjustment; --resume continues",
                         facts.finished_rows, facts.surfaces));
         if (rows_ && !rows_->is_whole())
-            terminal_.note(fmt::format("warning: {} could not be written to its end", rows_->path()));
+            terminal_.note(fmt::format("warning: {} could not be written completely", rows_->path()));
         return limits_.signal() == ExitCode::interrupted ? ExitCode::interrupted : ExitCode::demand_not_reached;
     }
 
@@ -226,7 +227,7 @@ class ViewFactorRun {
         if (facts.unclosed > 0)
             terminal_.note(
                 fmt::format("warning: {} rows do not add up to 1 with the sky and backs of faces, by more than "
-                            "3.5 standard deviations; they are left as they are",
+                            "3.5 standard deviations; they are not adjusted",
                             facts.unclosed));
         return reached ? ExitCode::done : ExitCode::demand_not_reached;
     }

@@ -162,7 +162,7 @@ OptionValue count(Member member, long long least, double most = 9e15) {
         if (!value) return not_a_number(word);
         if (*value != std::floor(*value) || *value < static_cast<double>(least))
             return "must be a whole number from " + std::to_string(least) + ", not " + word;
-        if (*value > most) return word + " is too much";
+        if (*value > most) return word + " is too large";
         using Target = std::remove_reference_t<decltype(member(request))>;
         if constexpr (std::is_same_v<Target, int>)
             member(request) = static_cast<int>(*value);
