@@ -68,7 +68,7 @@ void trace_occluded(const int* valid, RTCScene scene, QueryArguments& arguments,
 
 #endif
 
-/// The same triangles in an Embree scene of its own, in the coordinates of RayEnds.
+/// The triangles of a scene in a separate Embree scene, in the coordinates of RayEnds.
 class RawScene {
   public:
     explicit RawScene(const Scene& scene) {

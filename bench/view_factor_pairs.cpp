@@ -21,7 +21,7 @@ namespace {
 
 using namespace exitance;
 
-/// The same faces with separate materials, so that none are merged.
+/// The faces of a scene with separate materials, so that none are merged.
 Scene with_faces_apart(const Scene& scene) {
     SceneDescription out;
     out.groups = {"all"};

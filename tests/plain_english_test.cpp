@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Folders and files of src/exitance whose comments are not yet in plain English. The list may only get shorter.
-const std::vector<std::string> unfinished{"cli/"};
+const std::vector<std::string> unfinished{};
 
 struct Comment {
     int line = 0;
@@ -86,7 +86,7 @@ TEST(PlainEnglish, CommentsAreSentencesOrNounPhrases) {
 }
 
 TEST(PlainEnglish, FaultsAreFound) {
-    EXPECT_EQ(fault_of_source("int a;  ///< Of the whole, m^2.\n"), "begins with 'Of'");
+    EXPECT_EQ(fault_of_source("int a;\t///< Of the whole, m^2.\n"), "begins with 'Of'");
     EXPECT_EQ(fault_of_source("/// What is gathered,\n/// in the end.\nint a;\n"), "begins with 'What'");
     EXPECT_EQ(fault_of_source("/// Methods that obey it.\nint a;\n"), "says 'obey'");
     EXPECT_EQ(fault_of_source("/// Area of a leaf, of which\n/// Of all leaves is the sum.\nint a;\n"), "");

@@ -49,7 +49,7 @@ TEST(ProgramHeat, BalancesABoxFromItsViewFactors) {
     EXPECT_GT(heat[0], 0);
     for (std::size_t i = 2; i < 6; ++i) {
         EXPECT_NEAR(heat[i], 0, 1e-6 * heat[0]);
-        // By symmetry their exitance is the mean of floor's and ceiling's.
+        // Symmetry: the exitance of the walls is the mean of the floor's and the ceiling's.
         EXPECT_NEAR(std::pow(temperature[i], 4), 0.5 * (std::pow(400, 4) + std::pow(300, 4)), 1e-3 * std::pow(400, 4));
     }
     EXPECT_TRUE(std::ifstream(folder / "x.csv").good());

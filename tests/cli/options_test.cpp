@@ -60,7 +60,7 @@ TEST(ProgramOptions, HelpShowsThirtyOptionsAtMostAndHelpAllShowsAll) {
     EXPECT_EQ(help.find("willmott97"), std::string::npos);
 }
 
-/// By one method each; OptionSupport has all of them.
+/// Runs one unsupported method per option; OptionSupport tests all methods.
 TEST(ProgramOptions, EveryOptionIsRefusedByAMethodThatDoesNotSupportIt) {
     for (const OptionRow& row : solve_option_table()) {
         const std::string word = words_for(row).back();

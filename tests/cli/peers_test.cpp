@@ -53,7 +53,7 @@ TEST_F(Peers, AreMeasuredAtThePointsOfTheReference) {
 
 TEST_F(Peers, FailuresAndMissingOutputAreReportedInTheirRows) {
     make("rtrace", "echo 1 1 1\n");
-    EXPECT_NE(results("-ab 1").find("failed: it told light of 1 points in place of 20"), std::string::npos);
+    EXPECT_NE(results("-ab 1").find("failed: it printed light at 1 points instead of 20"), std::string::npos);
     make("rtrace", "echo 'fatal: no octree' >&2; exit 1\n");
     EXPECT_NE(results("-ab 2").find("failed: fatal: no octree"), std::string::npos);
 }

@@ -179,7 +179,7 @@ TEST_F(ProgramOfProcesses, RejectWhatOnlyASingleProcessSupports) {
     EXPECT_NE(method.err.find("matrix does"), std::string::npos) << method.err;
     const Finished judged = run_on(2, solve("none", {"--method", "hierarchical", "--clusters", "on"}));
     EXPECT_EQ(judged.status, 2);
-    EXPECT_NE(judged.err.find("links are judged one by one"), std::string::npos) << judged.err;
+    EXPECT_NE(judged.err.find("links that are refined pair by pair"), std::string::npos) << judged.err;
     const Finished verb = run_on(2, {"check", scene});
     EXPECT_EQ(verb.status, 2);
     EXPECT_NE(verb.err.find("only `solve`"), std::string::npos) << verb.err;
@@ -229,7 +229,7 @@ TEST_F(ProgramOfProcesses, ResumeFromACheckpointOfAnotherNumberOfProcesses) {
     }
     const Finished resumed = run_on(4, solve("several", {"--error", error, "--resume"}));
     EXPECT_EQ(resumed.status, 0) << resumed.err;
-    EXPECT_EQ(times(resumed.err, "going on from"), 1u) << resumed.err;
+    EXPECT_EQ(times(resumed.err, "continuing from"), 1u) << resumed.err;
     EXPECT_TRUE(kept_files().empty());
     EXPECT_TRUE(light_in(folder, "several") == light_in(folder, "one"));
 }
@@ -250,7 +250,7 @@ TEST_F(ProgramOfProcesses, WritePartsThatAnyNumberOfProcessesCanResume) {
         EXPECT_LE(most - least, 2 * DealtBytes::block) << "dealt out by blocks; the first one says what it is of";
         const Finished resumed = run_on(after, solve("several", {"--error", error, "--resume"}));
         EXPECT_EQ(resumed.status, 0) << resumed.err;
-        EXPECT_EQ(times(resumed.err, "going on from"), 1u) << resumed.err;
+        EXPECT_EQ(times(resumed.err, "continuing from"), 1u) << resumed.err;
         EXPECT_TRUE(kept_files().empty());
         std::filesystem::remove(folder / "one.plain"), std::filesystem::remove(folder / "several.plain");
         EXPECT_TRUE(light_in(folder, "several") == light_in(folder, "one"));

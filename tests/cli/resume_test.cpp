@@ -40,7 +40,7 @@ TEST(ProgramResume, AStoppedKilledOrLimitedSolveResumesToTheSameBits) {
 
         const Finished resumed = run_program(solve(scene, folder, name, {"--resume", "--threads", "1"}));
         EXPECT_EQ(resumed.status, 0) << resumed.err;
-        EXPECT_NE(resumed.err.find("going on from " + kept), std::string::npos) << resumed.err;
+        EXPECT_NE(resumed.err.find("continuing from " + kept), std::string::npos) << resumed.err;
         EXPECT_FALSE(std::filesystem::exists(kept)) << "nothing is left to go on with";
         EXPECT_EQ(light_of(folder, name), light_of(folder, "whole"));
     }

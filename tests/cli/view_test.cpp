@@ -193,7 +193,7 @@ TEST(ProgramView, AnswersItsOwnPageAndNobodyElse) {
     EXPECT_EQ(get("/data/scene", "Host: example.org\r\nConnection: close\r\n"), "HTTP/1.1 403");
     const Finished second = run_program({"view", folder / "s.h5", "--port", std::to_string(port)});
     EXPECT_EQ(second.status, 1);
-    EXPECT_NE(second.err.find("is taken"), std::string::npos) << second.err;
+    EXPECT_NE(second.err.find("is in use"), std::string::npos) << second.err;
     run.send(SIGINT);
     EXPECT_EQ(run.finish().status, 130);
 }

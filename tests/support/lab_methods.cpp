@@ -2,7 +2,7 @@
 
 namespace exitance::test {
 
-/// The same for tests that are linked without the reading and writing of files.
+/// Installs the methods of the laboratory, for tests that are linked without code for files.
 const bool are_lab_methods_there = (install_lab_methods(), true);
 
 }  // namespace exitance::test

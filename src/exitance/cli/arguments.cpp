@@ -17,7 +17,7 @@ using Parsed = std::variant<Command, Information>;
 
 // -------------------------------------------------------------------------------------------------- parsing
 
-/// The word in quotation marks or after a colon that CLI11 did not expect.
+/// Error for the first of `words`, which CLI11 did not recognize. The hint names the most similar option.
 Error unexpected(const CLI::App& app, const std::vector<std::string>& words) {
     const std::string word = words.empty() ? "" : words.front();
     std::vector<std::string> known;
@@ -28,7 +28,8 @@ Error unexpected(const CLI::App& app, const std::vector<std::string>& words) {
             near.empty() ? app.get_name() + " --help lists the options" : fmt::format("did you mean {}?", near)};
 }
 
-/// CLI11's messages begin with the option's name where there is one; two of them need clearer words.
+/// Error from a message of CLI11, which begins with the name of an option and a colon if it concerns one. Two messages
+/// are replaced by clearer ones.
 Error usage_error(const CLI::App& app, const std::string& what) {
     Error error{ErrorCode::usage, what, "", app.get_name() + " --help shows how it is used"};
     if (const std::size_t colon = what.find(": "); what.starts_with("-") && colon != std::string::npos) {
@@ -40,7 +41,7 @@ Error usage_error(const CLI::App& app, const std::string& what) {
     return error;
 }
 
-/// "--mesh export" as one word: what follows a flag is its value only where it says so.
+/// Joins "--mesh" and "export" to "--mesh=export". CLI11 accepts an optional value of a flag only after "=".
 std::vector<std::string> with_flag_values(const std::vector<std::string>& words) {
     std::vector<std::string> out;
     for (const std::string& word : words)
@@ -57,7 +58,7 @@ Audience audience_of(const std::string& group) {
     return known == std::end(option_groups::all) ? Audience::users : known->audience;
 }
 
-/// Methods that support an option of `solve`, with those whose published forms do.
+/// Names of the methods, and of the methods' published forms, that support an option of `solve`; empty: no limitation.
 std::string supported_by(const std::string& option) {
     const OptionRow* const row = find_option(option);
     if (!row || row->support.empty()) return "";
@@ -75,7 +76,7 @@ std::string supported_by(const std::string& option) {
     return out;
 }
 
-/// An option as it was declared. The type of inputs is their name; what CLI11 adds to types is left out.
+/// Facts about a declared option. The type of an input is its name. Additions of CLI11 to types are omitted.
 OptionFacts facts_of(const CLI::Option& option) {
     OptionFacts out;
     if (!option.get_snames().empty()) out.short_name = "-" + option.get_snames().front();
@@ -134,7 +135,7 @@ struct Verb {
     Result<Parsed> (*read)(CLI::App&, const std::vector<std::string>&, const std::string& at_limit);
     VerbFacts (*describe)(const std::string& name, const std::string& does, const std::string& example,
                           const std::string& at_limit);
-    /// What happens when a limit of time or memory is passed.
+    /// Effect of an exceeded limit of time or memory, as a clause of the help.
     std::string at_limit = "the run ends without a result, with status 5";
 
     VerbFacts facts() const { return describe(name, does, example, at_limit); }
@@ -201,7 +202,7 @@ std::string help() {
            "exitance reference --format man|bash|zsh prints a manual page or a completion for the shell.\n";
 }
 
-/// exitance reference --format FORMAT
+/// The text of `exitance reference --format FORMAT`.
 Result<Parsed> reference(const std::vector<std::string>& words) {
     std::vector<VerbFacts> facts;
     for (const Verb& verb : verbs()) facts.push_back(verb.facts());

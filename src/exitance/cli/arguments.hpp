@@ -25,18 +25,18 @@ namespace exitance {
 
 enum class ProgressStyle { automatic, bar, plain, json, none };
 
-/// What every verb understands.
+/// Options that every verb has.
 struct CommonArguments {
     LimitArguments limits;
-    bool json = false;   ///< Facts as JSON on stdout.
-    bool quiet = false;  ///< Nothing but errors on stderr.
+    bool json = false;   ///< Print facts as JSON to stdout.
+    bool quiet = false;  ///< Print only errors to stderr.
     bool verbose = false;
     ProgressStyle progress = ProgressStyle::automatic;
 };
 
-/// Of verbs that read a scene.
+/// Options of verbs that read a scene.
 struct SceneArguments {
-    std::vector<std::string> files;  ///< That make it, in their order.
+    std::vector<std::string> files;  ///< Files that make one scene, in the order given.
     LoadOptions load;
 };
 
@@ -45,10 +45,10 @@ struct SolveArguments : CommonArguments, SolveRequest {
     std::string output;
 };
 
-/// In what unit a verb tells light.
+/// Unit of light in a verb's results.
 struct UnitArguments {
     UnitChoice choice = UnitChoice::scene;
-    std::optional<double> efficacy;  ///< lm/W of light in watts; none: Radiance's 179.
+    std::optional<double> efficacy;  ///< Luminous efficacy of light given in watts, lm/W; none: 179, as in Radiance.
 };
 
 struct ProbeArguments : CommonArguments {
@@ -57,7 +57,7 @@ struct ProbeArguments : CommonArguments {
     bool interpolant = false;
     Component component = Component::total;
     UnitArguments unit;
-    std::size_t reference_paths = 0;  ///< 0: evaluate the solution; N: N unbiased paths a point instead.
+    std::size_t reference_paths = 0;  ///< Unbiased paths per point, traced instead of evaluating the solution; 0: none.
     std::uint64_t seed = 1;
     int threads = 0;
 };
@@ -68,65 +68,66 @@ struct StatsArguments : CommonArguments {
 
 struct MixArguments : CommonArguments {
     std::string solution, output;
-    std::vector<std::string> dim;          ///< GROUP=FACTOR
-    std::vector<std::string> reflectance;  ///< MATERIAL=r,g,b
+    std::vector<std::string> dim;          ///< Words GROUP=FACTOR.
+    std::vector<std::string> reflectance;  ///< Words MATERIAL=r,g,b.
     int threads = 0;
 };
 
 struct ExportArguments : CommonArguments {
     std::string solution, output;
-    std::string links;  ///< An element's number, or a place x,y,z; empty: export the light.
+    std::string links;  ///< Number of an element, or a point x,y,z, whose links are exported; empty: export the light.
 };
 
 struct RenderArguments : CommonArguments {
     std::string solution, output;
-    std::optional<Camera> camera;  ///< None: the scene's of the name below, or else one that shows the scene well.
-    std::string camera_name;       ///< Of a camera that came with the scene, or its number, counted from 1.
-    std::optional<double> fov;     ///< Where a camera was given with one.
+    std::optional<Camera> camera;  ///< None: the scene's camera `camera_name` or, without a name, an automatic camera.
+    std::string camera_name;       ///< Name of a camera of the scene, or its number from 1; empty: none.
+    std::optional<double>
+        fov;  ///< Angle (degrees) or orthographic width (metres) given with `camera`; none: the default.
     Projection projection = Projection::perspective;
     PictureSize size;
-    double exposure = 0;                   ///< Stops above what is chosen automatically.
-    std::optional<double> exposure_scale;  ///< Or what radiosity is multiplied by.
+    double exposure = 0;                   ///< Stops above the automatic exposure.
+    std::optional<double> exposure_scale;  ///< Factor of radiosity, replaces `exposure`; none: use `exposure`.
     ToneCurve tone_map = ToneCurve::filmic;
     std::optional<Quantity> false_colour;
-    ScaleChoice scale;       ///< Of false colours and of isolux lines.
-    bool has_scale = false;  ///< Was any of it asked for?
+    ScaleChoice scale;       ///< Scale of false colours and isolux lines.
+    bool has_scale = false;  ///< True if an option has set some part of `scale`.
     UnitArguments unit;
     bool isolux = false;
-    std::size_t samples = 16;  ///< Rays a pixel.
-    std::size_t gather = 0;    ///< Rays of a final gather at each of them.
-    /// Elements whose edges are drawn: "export": those that export writes; "true": the method's own; empty: none.
+    std::size_t samples = 16;  ///< Rays per pixel.
+    std::size_t gather = 0;    ///< Rays of a final gather per sample; 0: no final gather.
+    /// Elements whose edges are drawn: "export": the exported elements; "true": the method's own; empty: none.
     std::string mesh;
     bool shadow_classes = false;
-    std::string path;  ///< A camera a row, for numbered pictures; empty: one picture.
+    std::string path;  ///< File with one camera per row, for numbered pictures; empty: one picture.
     int threads = 0;
 };
 
 struct CompareArguments : CommonArguments {
     std::string solution, reference;
     bool interpolant = false;
-    std::string map;       ///< Picture to write of where the error lies; empty: none.
-    RenderArguments view;  ///< Of which camera, size and scale count.
+    std::string map;       ///< File for a picture of the error in false colours; empty: none.
+    RenderArguments view;  ///< Camera, size and scale of the map; other members are ignored.
     int threads = 0;
 };
 
 struct BakeArguments : CommonArguments {
     std::string solution, output;
-    double density = 0;       ///< Texels per metre; 0: what suits the scene.
-    std::size_t padding = 4;  ///< Texels.
+    double density = 0;       ///< Texels per metre; 0: chosen for the scene.
+    std::size_t padding = 4;  ///< Texels around every chart.
     LightMapFormat format;
-    bool light_groups = false;  ///< Maps of every light group by itself, too.
+    bool light_groups = false;  ///< Also bake separate maps for every light group.
     int threads = 0;
 };
 
 struct ReportArguments : CommonArguments {
     std::string solution, output;
-    std::vector<RenderArguments> views;  ///< Of which the camera counts; empty: automatic ones.
+    std::vector<RenderArguments> views;  ///< Cameras of pictures; other members are ignored. Empty: automatic cameras.
     std::vector<MeasuringPlane> planes;
     std::vector<PlaneRequest> working_planes;
     double maintenance = 1;
-    std::vector<std::string> observers;  ///< In words.
-    std::string tables;                  ///< Folder for them; empty: none.
+    std::vector<std::string> observers;  ///< Descriptions for find_observers().
+    std::string tables;                  ///< Folder for tables; empty: none.
     PictureSize size{960, 600};
     UnitArguments unit;
     int threads = 0;
@@ -134,10 +135,10 @@ struct ReportArguments : CommonArguments {
 
 struct DaylightArguments : CommonArguments {
     std::string solution, epw, points, output;
-    int division = 1;  ///< Of Tregenza's patches, in either direction.
+    int division = 1;  ///< Parts into which Tregenza's sky patches are divided in each direction: 1, 2 or 4.
     double north = 0, ground = 0.2;
-    SunDay sun_day;    ///< On which hours of sunlight are counted.
-    std::string eyes;  ///< Points for views out; empty: none.
+    SunDay sun_day;    ///< Day for which hours of sunlight are counted.
+    std::string eyes;  ///< File with points for views out; empty: none.
     int threads = 0;
 };
 
@@ -148,7 +149,7 @@ struct CheckArguments : CommonArguments {
 
 struct GenerateArguments : CommonArguments {
     std::string family, output;
-    std::vector<std::string> parameters;  ///< "name=value"
+    std::vector<std::string> parameters;  ///< Words "name=value".
 };
 
 struct LuminaireArguments : CommonArguments {
@@ -157,8 +158,8 @@ struct LuminaireArguments : CommonArguments {
 };
 
 struct ExperimentArguments : CommonArguments {
-    std::string study;   ///< A built-in one, a file (.toml), or "list".
-    std::string output;  ///< A folder.
+    std::string study;   ///< Name of a built-in study, a file (.toml), or "list".
+    std::string output;  ///< Folder to write.
     std::vector<std::string> methods;
     bool quick = false, print = false;
     int threads = 0;
@@ -167,44 +168,44 @@ struct ExperimentArguments : CommonArguments {
 struct ViewFactorArguments : CommonArguments {
     SceneArguments scene;
     std::string output;
-    std::optional<double> error;            ///< Error of every row; 1e-3 if neither this nor a tolerance is given.
-    std::optional<double> tolerance;        ///< Relative error of every entry above 1e-6, in place of an error of rows.
-    double smallest = 0;                    ///< Entries below are dropped.
-    std::optional<std::size_t> check;       ///< Rows that rays check, or entries if there is a tolerance.
-    std::optional<std::size_t> check_rays;  ///< Per row or entry.
+    std::optional<double> error;      ///< Limit on the error of every row; 1e-3 if neither this nor `tolerance` is set.
+    std::optional<double> tolerance;  ///< Relative error of every entry above 1e-6; replaces `error`.
+    double smallest = 0;              ///< Smaller entries are dropped.
+    std::optional<std::size_t> check;       ///< Rows checked by rays, or entries if `tolerance` is set.
+    std::optional<std::size_t> check_rays;  ///< Rays per checked row or entry.
     std::uint64_t seed = 1;
-    bool resume = false;  ///< Go on from the rows that an earlier run kept.
+    bool resume = false;  ///< Continue from the rows that a stopped run kept.
     int threads = 0;
 };
 
 struct HeatArguments : CommonArguments {
-    std::string factors, table;          ///< View factors (.h5), and the thermal state of their surfaces (.csv).
+    std::string factors, table;  ///< Files with view factors (.h5) and with the thermal state of their surfaces (.csv).
     std::string output, exchange;        ///< Tables to write; empty: none.
     std::optional<double> surroundings;  ///< Temperature of the surroundings, K; none: an enclosure.
     int threads = 0;
 };
 
 struct ViewArguments : CommonArguments {
-    SceneArguments scene;  ///< Or a solution (.h5).
-    int port = 0;          ///< 0: any that is free.
-    double error = 0.02;   ///< Asked for, of a scene.
-    SolveOptions options;  ///< Method and threads.
+    SceneArguments scene;  ///< A scene to solve, or one solution (.h5).
+    int port = 0;          ///< Port on 127.0.0.1; 0: any free port.
+    double error = 0.02;   ///< Requested relative RMS error if a scene is solved.
+    SolveOptions options;  ///< Only the method and the number of threads are set.
     std::string save = "viewed.h5";
 };
 
-/// What the program is to do.
+/// A verb with its options.
 using Command =
     std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, MixArguments, ExportArguments,
                  RenderArguments, BakeArguments, ReportArguments, DaylightArguments, CheckArguments, GenerateArguments,
                  LuminaireArguments, ExperimentArguments, ViewFactorArguments, HeatArguments, ViewArguments>;
 
-/// Text asked for by --help or --version.
+/// Text to print instead of running a verb, for --help, --version and `reference`.
 struct Information {
     std::string text;
 };
 
-/// Reads the command line, the program's name left out. Errors are of code `usage` and name the nearest known verb or
-/// option in their hint.
+/// Parses the command line without the program's name. Error (usage): an unknown verb or option, with the most similar
+/// known one in the hint; a missing, wrong or repeated value.
 Result<std::variant<Command, Information>> parse_arguments(const std::vector<std::string>& arguments);
 
 }  // namespace exitance

@@ -6,11 +6,11 @@
 
 namespace exitance {
 
-/// Counts measuring points on borders, where the light is that of one of several sides (see PlaceFinder).
+/// Counts measuring points on borders of several sides, whose light is that of one of the sides (see PlaceFinder).
 class BorderPoints {
   public:
     void add(bool is_between_sides) { ++all_, count_ += is_between_sides; }
-    /// Prints a warning if there are any.
+    /// Prints a warning if points on borders were counted.
     void tell(Terminal& terminal) const;
 
   private:

@@ -11,7 +11,7 @@
 namespace exitance {
 namespace {
 
-/// A camera that came with the scene.
+/// The camera of the scene with the requested name or number (from 1). Error (usage): there is none.
 Result<Camera> find_camera(const RenderArguments& arguments, const Scene& scene) {
     const std::vector<SceneCamera>& all = scene.cameras();
     const std::string& name = arguments.camera_name;

@@ -6,11 +6,11 @@
 
 namespace exitance {
 
-/// The camera asked for, with what was left open: one of the scene's by name or number, the one given, or one that
-/// shows the scene well. An error of code `usage` where the scene has none of that name.
+/// Returns the requested camera with default values filled in: a camera of the scene by its name or number, the given
+/// camera, or an automatic camera. Error (usage): the scene has no camera with that name or number.
 Result<Camera> choose_camera(const RenderArguments& arguments, const RadiosityFunction& light);
 
-/// A camera as --camera takes it.
+/// Text of a camera as a value of --camera.
 std::string describe(const Camera& camera);
 
 }  // namespace exitance

@@ -31,7 +31,7 @@ Result<std::vector<CameraStation>> load_camera_path(const std::string& file) {
         }
         const Camera camera{{n[1], n[2], n[3]}, {n[4], n[5], n[6]}, n[7]};
         if (count != 8 || at != end || !(n[7] >= 1 && n[7] <= 170) || camera.eye == camera.target)
-            return Error{ErrorCode::bad_input, fmt::format("'{:.60}' is no camera", line),
+            return Error{ErrorCode::bad_input, fmt::format("'{:.60}' is not a camera", line),
                          fmt::format("{}:{}", file, number), "a row is time,ex,ey,ez,tx,ty,tz,fov"};
         stations.push_back({n[0], camera});
     }

@@ -8,17 +8,18 @@
 
 namespace exitance {
 
-/// A camera at a time, seconds.
+/// A camera and its time in seconds.
 struct CameraStation {
     double time = 0;
     Camera camera;
 };
 
-/// The rows `time,ex,ey,ez,tx,ty,tz,fov` of a file; a first row that begins with "time" is a heading.
+/// Reads the rows `time,ex,ey,ez,tx,ty,tz,fov` of a file. A first row that begins with "time" is a heading. Error
+/// (bad_input): no row, or a row that is not a camera with an angle from 1 to 170 degrees.
 Result<std::vector<CameraStation>> load_camera_path(const std::string& file);
 
-/// Cameras at equal intervals of 1 / rate seconds, from the first station to the last, in straight lines between them.
-/// Times must not fall. At most `most` cameras; none where there would be more.
+/// Interpolates linearly between stations: one camera every 1 / rate seconds from the first station to the last. Times
+/// must not decrease. Returns no camera if there would be more than `most`.
 std::vector<Camera> at_equal_times(const std::vector<CameraStation>& stations, double rate, std::size_t most);
 
 }  // namespace exitance

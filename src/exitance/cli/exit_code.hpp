@@ -4,16 +4,16 @@
 
 namespace exitance {
 
-/// How the program ends: part of its interface.
+/// Exit status of the program; part of its interface.
 enum class ExitCode {
     done = 0,
     failure = 1,
     usage = 2,
     bad_input = 3,
-    demand_not_reached = 4,  ///< A result is written, but the error asked for was not reached.
-    no_result = 5,           ///< Cannot write, or a limit is too small for any result.
-    interrupted = 130,       ///< After SIGINT, the state so far written.
-    terminated = 143,        ///< After SIGTERM, the state so far written.
+    demand_not_reached = 4,  ///< A result is written, but the requested error was not reached.
+    no_result = 5,           ///< No result: it cannot be written, or a limit is too small.
+    interrupted = 130,       ///< Stopped by SIGINT; the state so far is written.
+    terminated = 143,        ///< Stopped by SIGTERM; the state so far is written.
 };
 
 inline ExitCode exit_code(ErrorCode code) {

@@ -12,12 +12,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Text from files may hold bytes that are not UTF-8; they are replaced, not refused.
+/// Text of a JSON value. Bytes that are not UTF-8, which text from files may contain, are replaced.
 std::string dump(const Json& json, int indent) {
     return json.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-/// null where nothing was chosen.
+/// The value as JSON; null without a value.
 template <class T>
 Json value_or_null(const std::optional<T>& value) {
     return value ? Json(*value) : Json(nullptr);
@@ -31,7 +31,7 @@ Json to_json(const std::vector<Finding>& findings, Finding::Kind kind) {
     return list;
 }
 
-/// What every phase took; null for parts of phases that were not told apart.
+/// Seconds of every phase; null for the parts `visibility` and `form_factors` if they were not measured separately.
 Json seconds_of(const SolveStatistics& s) {
     Json seconds;
     for (const char* phase : {"total", "read", "mesh", "direct", "link", "visibility", "form_factors", "solve",
@@ -184,7 +184,7 @@ std::vector<std::pair<std::string, std::string>> option_facts(const SolveRequest
     const Json json = Json::parse(recorded_options(request));
     for (const auto& [name, value] : json.items())
         if (name != "recipe" && name != "output_light")
-            facts.emplace_back(name, dump(value, -1));  // others hold what they set
+            facts.emplace_back(name, dump(value, -1));  // other options record their effect
     facts.emplace_back("memory_limit", dump(value_or_null(request.options.memory_limit_bytes), -1));
     return facts;
 }

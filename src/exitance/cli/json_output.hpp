@@ -19,32 +19,33 @@
 
 namespace exitance {
 
-/// The one place where the program writes JSON. Every function returns text without a line end; the names and the
-/// order of the keys are part of the program's interface.
+// JSON of the command line. Every function returns text without a line end. The names and the order of the keys are
+// part of the program's interface.
 
-/// What a report page holds of `stats --json`.
+/// The statistics in a report page: `stats --json` without the keys that describe mesh, links and direct light. `own`:
+/// unit of the scene's light.
 std::string statistics_json(const SolveStatistics& statistics, const LightUnit& own);
 
-/// What the viewer's page can change: `groups [{name, factor}]`, `materials [{name, reflectance}]`; empty lists where
-/// no groups are kept.
+/// Light groups and materials that the viewer's page can change: `groups [{name, factor}]`, `materials [{name,
+/// reflectance}]`. Both lists are empty if the solution keeps no groups.
 std::string light_groups_json(const LightGroups& groups, const Scene& scene);
 
-/// `solve --json` and `stats --json`: the same, with what kind of mesh, links and direct light the solution has.
+/// `solve --json` and `stats --json`: statistics, and the kinds of mesh, links and direct light.
 std::string statistics_json(const Solution& solution);
 
 /// `solve --dry-run --json`.
 std::string forecast_json(const Forecast& forecast);
 
-/// The options that the light depends on, as a solution records them: neither threads nor limits.
+/// Options that affect the light, as a solution file records them. Threads and limits are not among them.
 std::string options_json(const SolveRequest& request);
 
-/// Adds the options by which a scene was read, where they were given: length_unit (metres), up, turn_bodies.
+/// Adds to `options` (JSON) those options for reading the scene that were given: length_unit (metres), up, turn_bodies.
 std::string with_scene_options(const std::string& options, const LoadOptions& load);
 
-/// Options of a published form, with what it reports.
+/// Options of a published form, with the facts about its solve.
 std::string options_json(const SolveRequest& request, const ClassicalFacts& facts);
 
-/// Names and JSON values of the options that a checkpoint depends on: the recorded ones and the memory limit.
+/// Names and JSON values of the options that a checkpoint depends on: the recorded options and the memory limit.
 std::vector<std::pair<std::string, std::string>> option_facts(const SolveRequest& request);
 
 /// `check --json`.
@@ -53,7 +54,7 @@ std::string check_json(const CheckedScene& checked);
 /// `compare --json`.
 std::string error_json(const ErrorMeasure& error);
 
-/// What `viewfactors` found out besides the matrix.
+/// Facts about a matrix of view factors, for `viewfactors --json` and its summary.
 struct ViewFactorFacts {
     std::size_t surfaces = 0;
     double seconds = 0;
@@ -61,14 +62,14 @@ struct ViewFactorFacts {
     double closure_defect = 0;
     double least_row_sum = HUGE_VAL, most_row_sum = 0;
     std::size_t entries = 0, finished_rows = 0;
-    double error = 0, smallest = 0;     ///< As requested.
-    std::optional<double> tolerance;    ///< As requested, in place of the error of rows.
-    double row_error = 0, dropped = 0;  ///< The largest of all finished rows.
-    std::size_t unclosed = 0;           ///< Rows whose closure defect is not explained by their variance.
+    double error = 0, smallest = 0;     ///< Options --error and --smallest.
+    std::optional<double> tolerance;    ///< Option --tolerance; replaces `error`.
+    double row_error = 0, dropped = 0;  ///< Largest value of all finished rows.
+    std::size_t unclosed = 0;  ///< Number of rows whose closure defect exceeds the one that their variance explains.
     double entry_defect = 0;
     std::size_t mended = 0, unsettled = 0;
-    RayCheck check;      ///< Of entries, with a tolerance.
-    RowCheck row_check;  ///< Of rows, without.
+    RayCheck check;      ///< Check of entries, used with --tolerance.
+    RowCheck row_check;  ///< Check of rows, used without --tolerance.
 };
 
 /// `heat --json`.
@@ -77,7 +78,7 @@ std::string heat_json(const GrayExchange& exchange);
 /// `viewfactors --json`.
 std::string view_factors_json(const ViewFactorFacts& facts);
 
-/// Named numbers, such as `daylight --json` prints.
+/// JSON object of named numbers, for `daylight --json`.
 std::string values_json(const std::vector<std::pair<std::string, double>>& values);
 
 /// One line of `--progress json`; times in seconds.

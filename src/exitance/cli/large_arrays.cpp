@@ -5,14 +5,14 @@
 #include <cstdlib>
 #include <new>
 
-// Large arrays begin where a page does. So they stand alike in all processes of a node, which can have their pages in
-// common (`share_on_node`), wherever each one's heap has found room for them.
+// Replaces operator new, so that large arrays begin at a page boundary. Equal arrays of all processes on a node then
+// have the same layout in pages, at any address, and the processes can share these pages (`share_on_node`).
 
 namespace {
 
 void* allocate(std::size_t size, std::size_t alignment) {
     static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-    constexpr std::size_t large = std::size_t(1) << 20;  // below it they are not shared
+    constexpr std::size_t large = std::size_t(1) << 20;  // bytes; smaller arrays are not shared
     if (size >= large) alignment = std::max(alignment, page);
     for (;;) {
         void* const found = alignment > alignof(std::max_align_t)

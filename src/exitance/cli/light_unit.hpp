@@ -5,7 +5,7 @@
 
 namespace exitance {
 
-/// The unit that a user wants a scene's light in; notes where an efficacy given has no part in it.
+/// Returns the unit in which a verb reports the scene's light. Prints a note if a given efficacy has no effect.
 LightUnit unit_of(const UnitArguments& arguments, const Scene& scene, Terminal& terminal);
 
 }  // namespace exitance

@@ -28,8 +28,8 @@ int run_program(const std::vector<std::string>& arguments) {
         []<class Arguments>(const Arguments& command) {
             Terminal terminal(command);
             if (processes() > 1 && !std::is_same_v<Arguments, SolveArguments>)
-                return terminal.fail({ErrorCode::usage, "starts several processes, which only `solve` works with",
-                                      "mpirun", "run the other verbs by themselves"});
+                return terminal.fail({ErrorCode::usage, "starts several processes, which only `solve` supports",
+                                      "mpirun", "run the other verbs without mpirun"});
             return terminal.finish(run(command, terminal));
         },
         std::get<Command>(*parsed));

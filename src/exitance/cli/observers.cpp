@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// In the middle of each wall of the largest floor, looking across it, as CIE 117 has them.
+/// Observers of CIE 117: in the middle of each side of the largest floor, looking across it.
 Result<std::vector<Observer>> standard_observers(const Scene& scene) {
     constexpr double seated = 1.2, off_wall = 0.1;  // metres
     PlaneRequest request;
@@ -43,7 +43,9 @@ Result<std::vector<Observer>> load_observers(const std::string& path) {
         if (!(norm(view) > 0)) return table->lines().error("looks in no direction", "dx, dy, dz must not all be 0");
         out.push_back({fmt::format("{}", out.size() + 1), {row[0], row[1], row[2]}, normalized(view)});
     }
-    if (out.empty()) return Error{ErrorCode::bad_input, "holds no observers", path, "x,y,z,dx,dy,dz and a row each"};
+    if (out.empty())
+        return Error{ErrorCode::bad_input, "holds no observers", path,
+                     "give the header x,y,z,dx,dy,dz and one row per observer"};
     return out;
 }
 

@@ -8,7 +8,8 @@
 
 namespace exitance {
 
-/// Who observers named by words are: "auto", "x,y,z dx,dy,dz", or a table (CSV x,y,z,dx,dy,dz).
+/// Observers for glare. `words`: "auto" for one in the middle of each wall, "x,y,z dx,dy,dz" for eye and line of sight,
+/// or the name of a table (CSV x,y,z,dx,dy,dz), in metres. Error: words or rows that describe no observer.
 Result<std::vector<Observer>> find_observers(const std::string& words, const Scene& scene);
 
 }  // namespace exitance

@@ -14,15 +14,17 @@
 
 namespace exitance {
 
-// How options of each kind are declared: their values are checked as they are read, and what is wrong with them is
-// thrown as CLI11 wants it, which `parse_arguments` catches.
+// Functions that declare options for CLI11, by kind of value. They check values while reading them and throw a
+// CLI::ValidationError for a wrong value; parse_arguments() catches it.
 
+/// The finite number in a word; throws for anything else. `option` is named in errors.
 double read_number(const std::string& option, const std::string& word);
-/// "4G", "500M", "1048576": bytes, with K, M, G and T as powers of 1024.
+/// Number of bytes in words such as "4G", "500M" or "1048576". K, M, G and T are powers of 1024. Throws outside 1 to
+/// 1e18.
 std::size_t read_bytes(const std::string& option, const std::string& word);
-/// Numbers between commas and blanks.
+/// Numbers separated by commas or blanks.
 std::vector<double> read_numbers(const std::string& option, std::string words);
-/// on or off
+/// True for "on", false for "off"; throws for other words.
 bool read_switch(const char* option, const std::string& word);
 
 std::vector<std::string> names_of(const auto& table) {
@@ -31,7 +33,7 @@ std::vector<std::string> names_of(const auto& table) {
     return names;
 }
 
-/// An option whose values are the names of a table.
+/// Declares an option whose values are the names in `table`.
 template <class Choice, std::size_t N, class Target>
 CLI::Option* add_choice(CLI::App& app, const std::string& name,
                         const std::array<std::pair<Choice, std::string_view>, N>& table, Target& target,
@@ -48,7 +50,7 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name,
         ->type_name(fmt::format("{}", fmt::join(names_of(table), "|")));
 }
 
-/// A number above 0.
+/// Declares an option whose value is a number above 0. `unit`: its type in the help.
 template <class Target>
 CLI::Option* add_positive(CLI::App& app, const std::string& name, Target& target, const std::string& unit,
                           const std::string& help) {
@@ -60,7 +62,7 @@ CLI::Option* add_positive(CLI::App& app, const std::string& name, Target& target
     return app.add_option_function<std::string>(name, read, help)->type_name(unit);
 }
 
-/// A whole number of at least `least`.
+/// Declares an option whose value is a whole number of at least `least`.
 template <class Target>
 CLI::Option* add_count(CLI::App& app, const std::string& name, Target& target, long long least,
                        const std::string& help) {
@@ -69,13 +71,13 @@ CLI::Option* add_count(CLI::App& app, const std::string& name, Target& target, l
         const double value = read_number(name, word);
         if (value != std::floor(value) || value < static_cast<double>(least))
             throw CLI::ValidationError(name, fmt::format("must be a whole number from {}, not {}", least, word));
-        if (value > most) throw CLI::ValidationError(name, fmt::format("{} is too much", word));
+        if (value > most) throw CLI::ValidationError(name, fmt::format("{} is too large", word));
         target = static_cast<std::size_t>(value);
     };
     return app.add_option_function<std::string>(name, read, help)->type_name("N");
 }
 
-/// on or off, into a bool or an optional one.
+/// Declares an option with the values on and off, stored as bool or std::optional<bool>.
 template <class Switch>
 CLI::Option* add_switch(CLI::App& app, const std::string& name, Switch& value, const std::string& help) {
     return app
@@ -84,25 +86,30 @@ CLI::Option* add_switch(CLI::App& app, const std::string& name, Switch& value, c
         ->type_name("on|off");
 }
 
-// Options that several verbs have.
+// The functions below declare options that several verbs have.
+
+/// --quiet and --verbose
 void declare_common(CLI::App& app, CommonArguments& arguments);
-/// --time-limit and, unless the verb has declared it, --memory-limit. at_limit: what the verb does when one is passed.
+/// --time-limit and, unless the verb has declared it, --memory-limit. `at_limit`: clause of the help that describes the
+/// verb's action when a limit is exceeded.
 void declare_limits(CLI::App& app, LimitArguments& limits, const std::string& at_limit);
+/// --json
 void declare_json(CLI::App& app, CommonArguments& arguments);
 /// --progress
 void declare_progress(CLI::App& app, CommonArguments& arguments);
 /// --threads and --progress
 void declare_work(CLI::App& app, CommonArguments& arguments, int& threads);
+/// Scene files and the options for reading them.
 void declare_scene(CLI::App& app, SceneArguments& scene);
 /// --unit and --efficacy
 void declare_unit(CLI::App& app, UnitArguments& unit);
 
-// Options for what lighting standards ask for: --plane, --cylindrical, --maintenance, --observers, --tables; --eyes,
-// --sun-day, --sun-altitude.
+// Declare the options for quantities of lighting standards: --plane, --cylindrical, --maintenance, --observers and
+// --tables of `report`; --eyes, --sun-day and --sun-altitude of `daylight`.
 void declare_standards(CLI::App& app, ReportArguments& arguments);
 void declare_standards(CLI::App& app, DaylightArguments& arguments);
 
-// All options of a verb.
+// Declare all options of a verb, except those of declare_common() and declare_limits().
 void declare(CLI::App& app, SolveArguments& arguments);
 void declare(CLI::App& app, ProbeArguments& arguments);
 void declare(CLI::App& app, CompareArguments& arguments);

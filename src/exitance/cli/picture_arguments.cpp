@@ -31,8 +31,8 @@ constexpr std::array<std::pair<ToneCurve, std::string_view>, 2> tone_names{{
     {ToneCurve::linear, "linear"},
 }};
 
-/// "auto", "ex,ey,ez tx,ty,tz fov" (metres and degrees; the last may be left out), or what the scene's cameras are
-/// called.
+/// Reads a camera: "auto", "ex,ey,ez tx,ty,tz fov" (metres and degrees; fov is optional), or the name or number of a
+/// camera of the scene.
 void read_camera(const std::string& words, RenderArguments& arguments) {
     arguments.camera.reset(), arguments.fov.reset(), arguments.camera_name.clear();
     if (words == "auto") return;
@@ -46,11 +46,11 @@ void read_camera(const std::string& words, RenderArguments& arguments) {
         throw CLI::ValidationError("--camera", fmt::format("'{}' is not 'ex,ey,ez tx,ty,tz fov'", words));
     const Camera camera{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
     if (n.size() == 7) arguments.fov = n[6];
-    if (camera.eye == camera.target) throw CLI::ValidationError("--camera", "looks at where it stands");
+    if (camera.eye == camera.target) throw CLI::ValidationError("--camera", "eye and target are the same point");
     arguments.camera = camera;
 }
 
-/// "ox,oy,oz ux,uy,uz vx,vy,vz spacing [margin]", metres; spacing may be "auto".
+/// Reads a measuring plane "ox,oy,oz ux,uy,uz vx,vy,vz spacing [margin]", metres; spacing may be "auto".
 MeasuringPlane read_plane(std::string words) {
     const std::string given = words;
     if (const std::size_t at = words.find("auto"); at != std::string::npos) words.replace(at, 4, "0");
@@ -62,7 +62,7 @@ MeasuringPlane read_plane(std::string words) {
     return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}, n[9], n.size() == 11 ? n[10] : 0};
 }
 
-/// "640x400"
+/// Reads a size such as "640x400", pixels.
 PictureSize read_size(const std::string& words) {
     std::string blank = words;
     std::replace(blank.begin(), blank.end(), 'x', ' ');
@@ -73,7 +73,7 @@ PictureSize read_size(const std::string& words) {
     return {static_cast<int>(n[0]), static_cast<int>(n[1])};
 }
 
-/// "0,500", "log", "1,1000,log"
+/// Reads a range or a kind of scale, such as "0,500", "log" or "1,1000,log".
 void read_scale(std::string words, ScaleChoice& scale) {
     if (words == "log" || words.ends_with(",log")) {
         scale.by_ratio = true;
@@ -83,11 +83,11 @@ void read_scale(std::string words, ScaleChoice& scale) {
     const std::vector<double> n = read_numbers("--scale", words);
     if (n.size() != 2 || !(n[0] < n[1]))
         throw CLI::ValidationError("--scale", fmt::format("'{}' is not 'LO,HI' with LO below HI", words));
-    if (scale.by_ratio && !(n[0] > 0)) throw CLI::ValidationError("--scale", "by ratios begins above 0");
+    if (scale.by_ratio && !(n[0] > 0)) throw CLI::ValidationError("--scale", "a logarithmic scale must begin above 0");
     scale.range = std::pair(n[0], n[1]);
 }
 
-/// "10" or "smooth"
+/// Reads a number of colours, such as "10", or "smooth".
 void read_bands(const std::string& word, ScaleChoice& scale) {
     scale.smooth = word == "smooth";
     if (scale.smooth) return;
@@ -98,12 +98,12 @@ void read_bands(const std::string& word, ScaleChoice& scale) {
     scale.bands = static_cast<std::size_t>(value);
 }
 
-/// "auto", stops above it, or "0.02x"
+/// Reads an exposure: "auto", stops above the automatic exposure, or a factor such as "0.02x".
 void read_exposure(const std::string& word, RenderArguments& arguments) {
     if (word.ends_with('x')) {
         arguments.exposure_scale = read_number("--exposure", word.substr(0, word.size() - 1));
         if (!(*arguments.exposure_scale > 0))
-            throw CLI::ValidationError("--exposure", fmt::format("must multiply by more than 0, not {}", word));
+            throw CLI::ValidationError("--exposure", fmt::format("the factor must be above 0, not {}", word));
         return;
     }
     arguments.exposure = word == "auto" ? 0 : read_number("--exposure", word);
@@ -111,7 +111,7 @@ void read_exposure(const std::string& word, RenderArguments& arguments) {
         throw CLI::ValidationError("--exposure", fmt::format("must be between -60 and 60 stops, not {}", word));
 }
 
-/// How light becomes colours of a picture.
+/// Declares the options for exposure, false colours and isolux lines.
 void declare_display(CLI::App& app, RenderArguments& arguments) {
     app.add_option_function<std::string>(
            "--exposure", [&arguments](const std::string& w) { read_exposure(w, arguments); },

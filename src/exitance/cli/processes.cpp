@@ -19,14 +19,14 @@ Result<void> check_processes(const SolveArguments& arguments) {
     const bool own_choice = o.method == Method::automatic;
     if (o.method == Method::hierarchical && !runs_over_processes(o.method, o))
         return Error{
-            ErrorCode::usage, "hierarchical does not run over several processes where links are judged one by one",
-            "--method",
+            ErrorCode::usage,
+            "hierarchical does not run over several processes with links that are refined pair by pair", "--method",
             "leave out --basis, --epsilon, --oracle, --importance, --output-light, --triage, --visibility, --clusters "
             "and --min-area, or use --method matrix"};
     if (!own_choice && !runs_over_processes(o.method, o))
         return Error{ErrorCode::usage,
                      std::string(name_in(method_names, o.method)) + " does not run over several processes", "--method",
-                     "matrix does (and auto, which takes it), and hierarchical where rays find the links"};
+                     "use matrix (auto selects it), or hierarchical with links found by rays"};
     return check_one_process(arguments);
 }
 

@@ -9,20 +9,23 @@
 
 namespace exitance {
 
-/// Where several processes work together, what does not run over them is an error that names what does.
+/// Error (usage) if there are several processes and the method or an option does not run over them. The hint names
+/// methods that do.
 Result<void> check_processes(const SolveArguments& arguments);
 
-/// The scene, which the first process reads and checks, for all.
+/// The scene, read and checked by the first process and sent to all others. Collective.
 LoadedScene load_for_all(const SceneArguments& scene);
 
-/// The exit status for a signal that any of the processes has received.
+/// The exit status for a signal that any of the processes has received, `own` being that of this process; none if there
+/// was no signal. Collective.
 std::optional<ExitCode> signal_of_any(std::optional<ExitCode> own);
 
-/// How many processes there were, what they sent, and what memory they took: all of them, and the one with the most.
+/// Records the number of processes, their messages and times, and their peak memory: the sum, and the largest of a
+/// process. Collective; does nothing with one process.
 void record_processes(SolveStatistics& statistics);
 
-/// Processor time so far: of all processes on what was dealt out, and of the first one on everything else, which all
-/// repeat or wait for.
+/// Records processor time so far: that of all processes on distributed work, and that of the first process on all other
+/// work, which the others repeat or wait for. Collective.
 void record_processor_time(SolveStatistics& statistics);
 
 }  // namespace exitance

@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-/// Seconds that the rest of a phase takes if it goes on as it began; empty while that is a guess.
+/// Remaining seconds of a phase, extrapolated from its speed so far; none before 1% or half a second.
 std::optional<double> remaining(double fraction, double elapsed) {
     if (fraction < 0.01 || elapsed < 0.5) return std::nullopt;
     return elapsed * (1 - fraction) / fraction;

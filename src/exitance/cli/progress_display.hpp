@@ -9,10 +9,10 @@
 
 namespace exitance {
 
-/// Shows on the error stream how far the work is and about how long its present phase will still take.
+/// Prints progress to stderr: the fraction of the current phase that is done, and an estimate of its remaining time.
 class ProgressDisplay : public Progress {
   public:
-    /// `style` must not be automatic. Verbose: every finished phase leaves a line with its time.
+    /// `style` must not be automatic. `verbose`: also prints notes, and a line with the time of every finished phase.
     ProgressDisplay(ProgressStyle style, bool quiet, bool verbose);
 
     void phase(std::string_view name) override;
@@ -20,9 +20,9 @@ class ProgressDisplay : public Progress {
     void note(std::string_view message) override;
     void warn(std::string_view message) override;
 
-    /// Takes the bar off the screen, so that lines may follow.
+    /// Erases the bar, so that lines can be printed.
     void clear();
-    /// The last phase is over.
+    /// Ends the current phase.
     void finish();
 
   private:
@@ -36,7 +36,7 @@ class ProgressDisplay : public Progress {
     bool bar_is_up_ = false;
 };
 
-/// The style that `automatic` stands for: a bar if the error stream is a terminal, else plain lines.
+/// Replaces `automatic` by a bar if stderr is a terminal, else by plain lines. Other styles are returned unchanged.
 ProgressStyle resolve(ProgressStyle style);
 
 }  // namespace exitance

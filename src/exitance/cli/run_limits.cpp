@@ -16,16 +16,16 @@ namespace {
 
 using Clock = StopRequest::Clock;
 
-/// Time for code that checks the StopRequest to end by itself, with a message of its own and without its child
-/// programs.
+/// Time between the time limit and the end of the program. In it, code that checks the StopRequest can print its own
+/// error and end its child processes.
 constexpr std::chrono::milliseconds grace{200};
-/// Time between two looks at the memory. Pages are first written at about 1 GB/s a core: 10 MB a core in this time.
+/// Interval of checks of the memory. Pages are first written at about 1 GB/s per core: 10 MB per core and interval.
 constexpr std::chrono::milliseconds memory_interval{10};
 
 }  // namespace
 
 Clock::time_point seconds_from_now(double seconds) {
-    const std::chrono::duration<double> limit(std::min(seconds, 1e9));  // what a clock can hold
+    const std::chrono::duration<double> limit(std::min(seconds, 1e9));  // representable by the clock
     return Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
 }
 
@@ -77,7 +77,7 @@ Error RunLimits::error(const std::string& message) const {
 }
 
 bool RunLimits::is_over_memory() const {
-    // Of several processes, pages in common count by shares that only the plan of a solve knows (fit_into_memory).
+    // Not checked with several processes: only fit_into_memory() knows by which share a shared page counts for each.
     return limits_.memory_limit && processes() == 1 && resident_memory_bytes() > *limits_.memory_limit;
 }
 

@@ -15,7 +15,7 @@
 
 namespace exitance {
 
-/// Limits of a whole run.
+/// Limits on a whole run.
 struct LimitArguments {
     std::optional<double> time_limit;         ///< Seconds; none: no limit.
     std::optional<std::size_t> memory_limit;  ///< Resident memory of the process, bytes; none: no limit.
@@ -23,10 +23,10 @@ struct LimitArguments {
 
 /// Enforces the limits of a run, and handles its signals.
 ///
-/// A run begins with nothing to keep. A passed limit then ends the program with status 5, and a signal with 130 or 143;
-/// both remove unfinished files. After keep(), limits and signals request a stop instead, and the verb writes what it
-/// has. A thread watches the limits, so that they hold in code that checks no StopRequest. Without limits there is no
-/// thread. Of several processes, only the first one ends the program.
+/// Before keep() is called, there is no result: an exceeded limit ends the program with status 5, and a signal with 130
+/// or 143; both remove unfinished files. After keep(), limits and signals request a stop instead, and the verb writes
+/// its result so far. A thread watches the limits, so that they hold in code that checks no StopRequest. Without limits
+/// there is no thread. With several processes, only the first one ends the program.
 class RunLimits {
   public:
     explicit RunLimits(const LimitArguments& limits);
@@ -34,21 +34,22 @@ class RunLimits {
     RunLimits(const RunLimits&) = delete;
     RunLimits& operator=(const RunLimits&) = delete;
 
-    /// Requested once a limit is passed or, after keep(), a signal was received.
+    /// The stop request of the run. It is made when a limit is exceeded or, after keep(), a signal is received.
     StopRequest& stop() { return stop_; }
+    /// Effect of signals after keep().
     enum class Signals { request_stop, end_program };
-    /// From now on there is a result to keep. Returns stop().
+    /// Declares that from now on there is a result to keep. Returns stop().
     StopRequest& keep(Signals signals = Signals::request_stop);
 
-    /// Seconds until the time limit; infinite without one, negative when it has passed.
+    /// Seconds until the time limit; infinite without a limit, negative after it.
     double seconds_left() const;
     /// The signal received since keep(); empty if none was.
     std::optional<ExitCode> signal() const { return signals_ ? signals_->received() : std::nullopt; }
-    /// "interrupt", "memory limit" or "time limit": why stop() was requested.
+    /// The reason why stop() was requested: "interrupt", "memory limit" or "time limit".
     std::string reason() const;
-    /// The error of a run that was stopped with no result.
+    /// The error of a run that a limit stopped without a result. `message` ends its sentence.
     Error error(const std::string& message) const;
-    /// Status of a run that was stopped and has written a result: the signal's, else 4.
+    /// Exit status of a run that was stopped and has written a result: that of the signal, else 4.
     ExitCode stopped_code() const { return signal().value_or(ExitCode::demand_not_reached); }
 
   private:
@@ -57,7 +58,8 @@ class RunLimits {
     [[noreturn]] void end_without_result() const;
 
     LimitArguments limits_;
-    StopRequest::Clock::time_point end_ = StopRequest::Clock::time_point::max();  ///< Shortly after the time limit.
+    StopRequest::Clock::time_point end_ =
+        StopRequest::Clock::time_point::max();  ///< Time limit plus a grace period of 0.2 s.
     StopRequest stop_;
     std::optional<SignalGuard> signals_;
     std::mutex mutex_;  ///< Guards the flags below.
@@ -67,7 +69,7 @@ class RunLimits {
     std::jthread watcher_;
 };
 
-/// The time point so many seconds from now, at most what the clock can hold.
+/// The time point `seconds` from now. Seconds are limited to 1e9, which the clock can represent.
 StopRequest::Clock::time_point seconds_from_now(double seconds);
 
 }  // namespace exitance

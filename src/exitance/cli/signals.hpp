@@ -7,12 +7,12 @@
 
 namespace exitance {
 
-/// From now on SIGINT and SIGTERM end the program at once, with the exit status for them; files that are not whole yet
-/// are removed. For all work that leaves nothing unless it is done.
+/// Makes SIGINT and SIGTERM end the program at once with status 130 or 143, after removing unfinished files. Used while
+/// an unfinished run has no result to keep.
 void leave_at_signals();
 
-/// While it lives, SIGINT and SIGTERM ask the work to stop at its next safe point; a second one ends the program at
-/// once, and so does the first one when it is gone. One at a time.
+/// During its lifetime SIGINT and SIGTERM request a stop, so that the work ends at its next safe point. A second signal
+/// ends the program at once, as every signal does after its lifetime. Only one object may exist at a time.
 class SignalGuard {
   public:
     explicit SignalGuard(StopRequest& stop);
@@ -20,7 +20,7 @@ class SignalGuard {
     SignalGuard(const SignalGuard&) = delete;
     SignalGuard& operator=(const SignalGuard&) = delete;
 
-    /// The exit status that the signal received so far asks for; empty when there was none.
+    /// The exit status for the signal received so far; none if there was no signal.
     std::optional<ExitCode> received() const;
 };
 

@@ -28,14 +28,15 @@
 namespace exitance {
 namespace {
 
-/// Seconds that are left for the solve itself: the scene that was read has to be written, too, together with its light.
+/// Seconds left for the solve: the time left, minus the time to write the solution, estimated from `read_seconds`.
 double time_to_solve(const SolveArguments& arguments, const RunLimits& limits, double read_seconds) {
-    // Estimate, exported mesh and file, by the time to read the scene: 8.5 with 54,005 polygons.
+    // Time for error estimate, exported mesh and file, divided by the time to read the scene; measured 8.5 with 54,005
+    // polygons.
     constexpr double written_against_read = 8;
     return limits.seconds_left() - std::min(0.5 * *arguments.limits.time_limit, written_against_read * read_seconds);
 }
 
-/// Whoever reads the solution later learns what was repaired.
+/// Prepends the warnings among the findings, with their places, so that the solution file records them.
 void add_findings(std::vector<std::string>& warnings, const std::vector<Finding>& findings, const std::string& file) {
     std::vector<std::string> all;
     for (const Finding& finding : findings)
@@ -46,7 +47,7 @@ void add_findings(std::vector<std::string>& warnings, const std::vector<Finding>
     warnings.insert(warnings.begin(), all.begin(), all.end());
 }
 
-/// exitance solve SCENE --dry-run
+/// Runs `exitance solve SCENE --dry-run`.
 ExitCode show_forecast(const SolveArguments& arguments, const Scene& scene, Terminal& terminal) {
     const Result<Forecast> forecast = forecast_solve(scene, arguments.options);
     if (!forecast) return terminal.fail(forecast.error());
@@ -54,7 +55,7 @@ ExitCode show_forecast(const SolveArguments& arguments, const Scene& scene, Term
     return ExitCode::done;
 }
 
-/// The trace of a run, where one is asked for: recorded while it lives.
+/// Records the trace of a run during its lifetime, if a file for it was given.
 class Tracing {
   public:
     Tracing(const std::string& path, Progress& inner) : path_(path), inner_(inner) {
@@ -82,8 +83,8 @@ class Tracing {
     std::optional<TracedProgress> progress_;
 };
 
-/// Until the first phase of a solve begins, only structures for rays and contacts are made: there is nothing to keep,
-/// and limits and signals end the program.
+/// Calls RunLimits::keep() when the first phase of a solve begins. Before it, only the structures for rays and contacts
+/// are built: there is nothing to keep, and limits and signals end the program.
 class KeptFromFirstPhase : public Progress {
   public:
     KeptFromFirstPhase(RunLimits& limits, Progress& inner) : limits_(limits), inner_(inner) {}
@@ -101,7 +102,7 @@ class KeptFromFirstPhase : public Progress {
     Progress& inner_;
 };
 
-/// What a solution depends on.
+/// Everything that a solution depends on: bands, scene and options, as names and values.
 CheckpointFacts facts_of(const SolveArguments& arguments, const Scene& scene) {
     CheckpointFacts facts{{"bands", std::to_string(bands)}, {"the scene", scene_fingerprint(scene)}};
     for (auto& [name, value] : option_facts(arguments)) facts.emplace_back("--" + name, value);
@@ -109,7 +110,8 @@ CheckpointFacts facts_of(const SolveArguments& arguments, const Scene& scene) {
     return facts;
 }
 
-/// The checkpoint beside the output, where it is to be written or read; `file` stays empty otherwise.
+/// Opens OUTPUT.checkpoint as `file` if checkpoints are written or resumed from, and loads it for --resume. Otherwise
+/// `file` stays empty.
 Result<void> open_checkpoint(const SolveArguments& arguments, const Scene& scene, Terminal& terminal,
                              std::optional<CheckpointFile>& file) {
     if (!arguments.checkpoint_every && !arguments.resume) return {};
@@ -119,12 +121,12 @@ Result<void> open_checkpoint(const SolveArguments& arguments, const Scene& scene
     if (!arguments.resume) return {};
     const Result<bool> loaded = file->load();
     if (!loaded) return loaded.error();
-    terminal.note(*loaded ? "going on from " + path : "there is no " + path + ": beginning at the beginning");
+    terminal.note(*loaded ? "continuing from " + path : "there is no " + path + ": starting from the beginning");
     return {};
 }
 
-/// Frees the memory of a solution that has been written, except for what is printed of it: statistics, their unit,
-/// options and the like.
+/// Frees most memory of a solution that has been written. Keeps the members that are printed, such as statistics, their
+/// unit and options.
 void drop_light(Solution& solution) {
     const bool photometric = solution.scene.is_photometric();
     solution.scene = {};
@@ -135,8 +137,8 @@ void drop_light(Solution& solution) {
     release_freed_memory();
 }
 
-/// Reads what it has written, too, if asked for and if it is a file (/dev/null is none); the light itself is in the
-/// file alone from then on.
+/// Writes the solution. If `reads_back` is set and the output is a regular file (unlike /dev/null), frees the light in
+/// memory and reads the file back to verify it.
 Result<void> write_checked(const std::string& path, Solution& solution, const LightGroups& groups, bool reads_back) {
     if (const Result<void> written = write_solution(path, solution, &groups);
         !written || !reads_back || !std::filesystem::is_regular_file(path))
@@ -145,11 +147,11 @@ Result<void> write_checked(const std::string& path, Solution& solution, const Li
     LightGroups groups_again;
     if (const Result<Solution> read_back = load_solution(path, Rehearsed::already, &groups_again); !read_back)
         return Error{ErrorCode::failure, "was written, but cannot be read: " + read_back.error().message, path,
-                     "please report the scene that it is of"};
+                     "please report the scene"};
     return {};
 }
 
-/// Once a solve has come to its own end, the checkpoint goes.
+/// Removes the checkpoint unless the solve was stopped. Prints a note if the checkpoint could not be written.
 void close_checkpoint(const std::optional<CheckpointFile>& file, bool stopped, Terminal& terminal) {
     if (!file) return;
     if (!file->written()) terminal.note("no checkpoint: " + file->written().error().message);
@@ -167,13 +169,12 @@ std::optional<Error> no_estimate(const SolveArguments& arguments, const SolveSta
     if (statistics.relative_error_estimate || statistics.stopped_by.empty()) return {};
     if (arguments.classical.any() || arguments.options.task_engine) return {};
     return Error{ErrorCode::limit,
-                 fmt::format("the {} ended the run before there was light with an estimate of its error; nothing is "
-                             "written",
+                 fmt::format("the {} ended the run before the first estimate of the error; nothing is written",
                              statistics.stopped_by),
                  arguments.output, "allow more time or memory, or request a larger --error"};
 }
 
-/// The scene as it is solved; programs that make parts of it end by the time limit.
+/// Reads the scene with the options of the solve. Programs that generate parts of it are ended at the time limit.
 LoadedScene read_scene(SolveArguments& arguments, const StopRequest& stop) {
     LoadOptions& load = arguments.scene.load;
     load.stop = &stop;
@@ -184,22 +185,22 @@ LoadedScene read_scene(SolveArguments& arguments, const StopRequest& stop) {
     return checked;
 }
 
-/// What no solve is begun with.
+/// Error for a scene whose solution could not be read back.
 Result<void> check_scene(const SolveArguments& arguments, const Scene& scene) {
     if (const auto nonsense = find_nonsense(scene))
-        return Error{ErrorCode::failure, "makes a scene that its solution could not be read with: " + *nonsense,
+        return Error{ErrorCode::failure, "makes a scene whose solution could not be read: " + *nonsense,
                      arguments.scene.files[0], "please report this file"};
     return {};
 }
 
-/// The light that is asked for.
+/// Computes the light by a published form or by a method.
 Result<Solution> find_light(const SolveArguments& arguments, Scene scene, std::optional<CheckpointFile>& checkpoint,
                             Progress& progress, const StopRequest& stop) {
     if (arguments.classical.any()) return run_classical(arguments, scene, progress, stop);
     return solve_scene(std::move(scene), arguments.options, progress, stop, checkpoint ? &*checkpoint : nullptr);
 }
 
-/// What the solution says of the run so far.
+/// Records options, findings, times and memory of the run so far in the solution.
 void record_run(Solution& solution, const SolveArguments& arguments, const std::vector<Finding>& findings,
                 double read_seconds, const Stopwatch& run_time) {
     SolveStatistics& statistics = solution.statistics;
@@ -212,7 +213,7 @@ void record_run(Solution& solution, const SolveArguments& arguments, const std::
     record_processes(statistics);
 }
 
-/// Writes the solution and what stands beside it. `stop`: a solution of a solve that was stopped is not read again.
+/// Writes the solution and records the time for it. The file is read back unless `stop` was requested. Collective.
 Result<void> save(const SolveArguments& arguments, Solution& solution, const LightGroups& groups, Tracing& tracing,
                   const StopRequest& stop, const Stopwatch& run_time) {
     tracing.progress().phase("write");
@@ -241,7 +242,7 @@ void tell(const SolveArguments& arguments, const Solution& solution, Terminal& t
 
 }  // namespace
 
-/// exitance solve SCENE -o SOLUTION
+/// Runs `exitance solve SCENE -o SOLUTION`.
 ExitCode run(const SolveArguments& given, Terminal& terminal) {
     const Stopwatch run_time;
     RunLimits& limits = terminal.limits();
@@ -292,7 +293,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (!groups) return terminal.fail(groups.error());
     record_run(*solution, arguments, checked.findings, read_seconds, run_time);
     SolveStatistics& statistics = solution->statistics;
-    // The solver sees a request to stop, of which the first process knows the reason.
+    // The solver records any stop request as an interrupt; `limits` has the reason.
     if (statistics.stopped_by == "interrupt" && !signal) statistics.stopped_by = limits.reason();
     if (const Result<void> saved = save(arguments, *solution, *groups, tracing, stop, run_time); !saved)
         return terminal.fail(saved.error());

@@ -5,7 +5,7 @@
 namespace exitance {
 namespace {
 
-/// "0.75", "desk", "desk,height=0.1,border=0.2,spacing=0.5"
+/// Reads a plane, such as "0.75", "desk" or "desk,height=0.1,border=0.2,spacing=0.5", in metres.
 PlaneRequest read_request(const std::string& option, const std::string& words) {
     PlaneRequest out;
     std::istringstream in(words);
@@ -15,7 +15,8 @@ PlaneRequest read_request(const std::string& option, const std::string& words) {
         out.height = read_number(option, word);
     else
         out.group = word;
-    if (word.empty()) throw CLI::ValidationError(option, "begins with a height in metres or with a name of faces");
+    if (word.empty())
+        throw CLI::ValidationError(option, "must begin with a height in metres or the name of a group of faces");
     while (std::getline(in, word, ',')) {
         const std::size_t at = word.find('=');
         const std::string key = word.substr(0, at);

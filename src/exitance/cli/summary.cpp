@@ -23,7 +23,7 @@ std::string seconds_line(const std::map<std::string, double>& seconds) {
                        parts.empty() ? "" : " (" + parts + ")");
 }
 
-/// The largest rooms.
+/// Area, mean radiosity and error of the four largest rooms.
 std::string rooms_line(const std::vector<RoomError>& rooms, const LightUnit& unit) {
     constexpr std::size_t most = 4;
     std::string text;
@@ -33,9 +33,9 @@ std::string rooms_line(const std::vector<RoomError>& rooms, const LightUnit& uni
     return rooms.size() > most ? text + fmt::format("; and {} more", rooms.size() - most) : text;
 }
 
-/// The upper bound, and which of the two figures to use where they are far apart.
+/// The upper bound of the error, with the advice to use the estimate if the bound is more than twice as large.
 std::string bound_line(const SolveStatistics& s) {
-    constexpr double far_apart = 2;  // a factor that users ask about
+    constexpr double far_apart = 2;  // ratio of bound and estimate that needs an explanation
     const std::string bound = percent(*s.relative_error_bound) + " at most, with 95% confidence";
     if (*s.relative_error_bound <= far_apart * *s.relative_error_estimate) return bound;
     return bound +
@@ -86,14 +86,14 @@ std::string summary(const Solution& solution) {
     if (!s.elements_by_level.empty()) {
         std::size_t all = 0;
         for (std::size_t count : s.elements_by_level) all += count;
-        line("hierarchy", fmt::format("{} elements by level; {:.3g} bytes a link, {:.3g} an element",
+        line("hierarchy", fmt::format("{} elements by level; {:.3g} bytes per link, {:.3g} per element",
                                       fmt::join(s.elements_by_level, " "),
                                       static_cast<double>(s.link_memory_bytes) / std::max<std::size_t>(1, s.links),
                                       static_cast<double>(s.element_memory_bytes) / all));
     }
     line("solution", fmt::format("{} iterations, residual {:.2g}", s.iterations, s.residual));
     if (s.standard_error > 0)
-        line("noise", fmt::format("standard error {} of the light that the method found", percent(s.standard_error)));
+        line("noise", fmt::format("standard error {} of the method's light", percent(s.standard_error)));
     const std::string apart = percent(s.energy.defect);
     const auto found = s.figures.find("energy_defect_before");
     const std::string before = found != s.figures.end() ? percent(found->second) : apart;

@@ -7,16 +7,16 @@
 
 namespace exitance {
 
-/// What a solve took and what it reached, for people: what `solve` and `stats` print.
+/// Summary of a solution as text: error, counts, energies, times and memory. `solve` and `stats` print it.
 std::string summary(const Solution& solution);
 
-/// What `solve --dry-run` prints.
+/// Forecast of a solve as text, for `solve --dry-run`.
 std::string summary(const Forecast& forecast);
 
-/// "6.25%", "0.038%".
+/// Text of a share in percent, such as "6.25%" or "0.038%".
 std::string percent(double share);
 
-/// "1.2 GB", "830 kB".
+/// Text of a number of bytes, such as "1.2 GB" or "830 kB". Prefixes are powers of 1000.
 std::string bytes(std::size_t count);
 
 }  // namespace exitance

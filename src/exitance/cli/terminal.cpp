@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_findings = 20;  ///< Shown in passing; `exitance check` shows all.
+constexpr std::size_t most_findings = 20;  ///< Limit on the findings that show() prints.
 
 std::string place(const Finding& finding) {
     return finding.line > 0 ? fmt::format("{}:{}", finding.file, finding.line) : finding.file;
@@ -60,7 +60,7 @@ void Terminal::show(const std::vector<Finding>& findings) {
 }
 
 ExitCode Terminal::fail(const CheckedScene& checked) {
-    // Its message says how many more there are.
+    // The message of the first error gives the number of further errors.
     const ExitCode code = fail(checked.scene.error());
     std::size_t errors = 0;
     for (const Finding& finding : checked.findings) errors += finding.kind == Finding::Kind::error;
@@ -80,7 +80,7 @@ ExitCode Terminal::finish(ExitCode code) {
     const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
     if (written || code != ExitCode::done) return code;
     return fail(Error{ErrorCode::cannot_write, "the result could not be written", "standard output",
-                      "is the disk full, or the reader gone?"});
+                      "check the space on the disk, and whether the reading program still runs"});
 }
 
 }  // namespace exitance

@@ -10,31 +10,33 @@
 
 namespace exitance {
 
-/// The program's way to its user: results go to standard output, everything else to the error stream; limits and
-/// signals come in.
+/// Output of a verb: results to standard output, everything else to stderr. Also holds its progress display and its
+/// limits. With several processes only the first one prints.
 class Terminal {
   public:
     explicit Terminal(const CommonArguments& arguments);
 
-    /// A result, to standard output; ends its last line if it does not end by itself.
+    /// Prints a result to standard output and adds a missing line end.
     void print(std::string_view text);
-    /// A remark, to the error stream; not with --quiet.
+    /// Prints a line to stderr, except with --quiet.
     void note(std::string_view text);
-    /// "error: room.obj:41: face is 0.02 m out of plane", and a line with a hint.
+    /// Prints an error, such as "error: room.obj:41: face is 0.02 m out of plane", and a line with its hint. Returns
+    /// its exit code.
     ExitCode fail(const Error& error);
-    /// A run that a limit or a signal has stopped with no result: "error: --time-limit: 5 s have passed, and MESSAGE".
+    /// Ends a run that was stopped without a result. Returns the signal's exit code, or prints for a limit "error:
+    /// --time-limit: 5 s have passed, and MESSAGE" and returns that of the error.
     ExitCode fail_stopped(const std::string& message);
-    /// Warnings and repairs of a scene that can be used.
+    /// Prints the warnings and repairs of a scene, at most 20 of them.
     void show(const std::vector<Finding>& findings);
-    /// Why a scene cannot be used.
+    /// Prints the first error of a scene that cannot be used. Returns its exit code.
     ExitCode fail(const CheckedScene& checked);
-    /// The same, with every error.
+    /// Like fail(checked), with every error of the scene.
     ExitCode fail_with_all(const CheckedScene& checked);
 
     ProgressDisplay& progress() { return progress_; }
     RunLimits& limits() { return limits_; }
 
-    /// Writes out what is buffered. A result that could not be written turns success into `no_result`.
+    /// Flushes standard output. Returns `code`, or `no_result` if it is `done` and the output could not be written.
     ExitCode finish(ExitCode code);
 
   private:

@@ -6,7 +6,8 @@
 
 namespace exitance {
 
-/// What each verb does; one file a verb.
+// Runs a verb. Each verb has a file of its own: verbs/NAME.cpp, for `solve` solve.cpp.
+
 ExitCode run(const SolveArguments& arguments, Terminal& terminal);
 ExitCode run(const ProbeArguments& arguments, Terminal& terminal);
 ExitCode run(const CompareArguments& arguments, Terminal& terminal);

@@ -67,10 +67,10 @@ void add_texture_error(Solution& solution, std::span<const Spectrum> deviation, 
     // Share of the estimate above which a warning is shown, given by the digits that people read.
     constexpr double reported_share = 0.1;
     if (missed || error > reported_share * before)
-        s.warnings.push_back(fmt::format(
-            "reflectance varies within faces by their pictures, and a face reflects its mean: {:.3g}% of the error "
-            "estimate; the light of faces as they are is known to {:.3g}%",
-            100 * error, 100 * before));
+        s.warnings.push_back(
+            fmt::format("textures vary within faces, but a face reflects its mean: this causes an error of {:.3g}%, "
+                        "which the estimate includes; without it the estimate is {:.3g}%",
+                        100 * error, 100 * before));
     if (missed) s.converged = false;
 }
 

@@ -11,12 +11,12 @@ Result<void> check_diffusing_panes(const Scene& scene, const SolveOptions& optio
                                : classic_cells       ? "--gcs"
                                                      : nullptr;
     if (option)
-        return Error{ErrorCode::usage, "takes light to one side of a surface; the scene has diffusing panes", option,
-                     "without it light comes to both, by any method; auto chooses matrix"};
+        return Error{ErrorCode::usage, "carries light to one side of a surface, but the scene has diffusing panes",
+                     option, "leave the option out: all methods then support both sides, and auto chooses matrix"};
     const Relaxation relaxation = options.relaxation.value_or(Relaxation::gmres);
     if (relaxation == Relaxation::cg || relaxation == Relaxation::chebyshev)
-        return Error{ErrorCode::usage, "asks for symmetry, which diffusing panes leave the system without",
-                     "--relaxation", "gmres, jacobi and gauss-seidel do without"};
+        return Error{ErrorCode::usage, "needs a symmetric system, which diffusing panes make asymmetric",
+                     "--relaxation", "use gmres, jacobi or gauss-seidel"};
     return {};
 }
 

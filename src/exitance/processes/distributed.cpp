@@ -101,7 +101,7 @@ Result<void> join_processes() {
     int provided = 0, size = 1, rank = 0;
     if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided) != MPI_SUCCESS ||
         provided < MPI_THREAD_FUNNELED)
-        return Error{ErrorCode::failure, "MPI does not let programs with threads begin", "", ""};
+        return Error{ErrorCode::failure, "MPI does not support programs with threads", "", ""};
     MPI_Comm_size(MPI_COMM_WORLD, &size);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     team.joined = true;
@@ -295,7 +295,7 @@ int file_of_node(std::size_t size) {
 void map_pages(std::span<char> pages, int file, std::size_t place, int kind) {
     if (mmap(pages.data(), pages.size(), PROT_READ | PROT_WRITE, kind | MAP_FIXED, file, static_cast<off_t>(place)) ==
         MAP_FAILED)
-        end_job("the system does not let processes have memory in common any more");
+        end_job("the system does not allow more shared memory");
     // Populates all pages at once where the system supports it: page faults one by one cost several times as much.
     madvise(pages.data(), pages.size(), kind == MAP_SHARED ? MADV_POPULATE_WRITE : MADV_POPULATE_READ);
 }

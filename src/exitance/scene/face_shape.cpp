@@ -67,8 +67,8 @@ void SceneBuilder::check_shape(std::uint32_t f, std::vector<std::uint32_t> outli
     if (const std::size_t turned = turn_holes(in_.points, normalized(shape.area), outline); turned > 0) {
         shape = OutlineShape(in_.points, outline);
         repair(face,
-               fmt::format("{} of the face turn{} like its rim: it is cut out all the same",
-                           turned == 1 ? "a hole" : "holes", turned == 1 ? "s" : ""),
+               fmt::format("{} of the face turn{} like its rim and is cut out anyway", turned == 1 ? "a hole" : "holes",
+                           turned == 1 ? "s" : ""),
                "faces with such holes", "let holes turn the other way");
     }
     const Normal n = normalized(shape.area);

@@ -71,7 +71,7 @@ void SceneBuilder::check_materials() {
             if (!(m.reflectance[b] >= 0 && m.reflectance[b] < 1))
                 error(0,
                       fmt::format("material '{}' has reflectance {:g} in band {}", m.name, m.reflectance[b], band(b)),
-                      "reflectances lie in [0, 1): at 1 light would never die out");
+                      "reflectances lie in [0, 1): at 1 reflections would never fade");
             if (!(m.exitance[b] >= 0 && m.exitance[b] <= max_exitance))
                 error(0, fmt::format("material '{}' has exitance {:g} in band {}", m.name, m.exitance[b], band(b)),
                       fmt::format("emission is not negative, and at most {:g} W/m^2", max_exitance));
@@ -79,7 +79,7 @@ void SceneBuilder::check_materials() {
     }
     if (white_ones > 0)
         find(Finding::Kind::repair, 0,
-             fmt::format("material '{}'{} reflects all light: {} takes the place of 1", first,
+             fmt::format("material '{}'{} reflects all light: {} is used instead of 1", first,
                          white_ones > 1 ? fmt::format(" (and {} more)", white_ones - 1) : "", mended_reflectance));
 }
 
@@ -177,13 +177,13 @@ void SceneBuilder::check_face(std::uint32_t f) {
     }
     const std::size_t given = outline.size(), dropped = drop_repeated_corners(outline);
     if (outline.size() < 3)
-        return repair(face, fmt::format("face of {} corners goes to and fro and has no area: it is left out", given),
+        return repair(face,
+                      fmt::format("face of {} corners doubles back on itself and has no area: it is left out", given),
                       "faces without area", "remove it, or give it three corners that are not in line");
     if (dropped > 0)
-        repair(
-            face,
-            fmt::format("{} of the face's {} corners stand where a neighbour stands: they are merged", dropped, given),
-            "faces with such corners");
+        repair(face,
+               fmt::format("{} of the face's {} corners coincide with a neighbour: they are merged", dropped, given),
+               "faces with such corners");
     check_shape(f, std::move(outline));
 }
 

@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-constexpr double tolerance = 1e-12;  ///< Of the residual: below the error of any view factors.
+constexpr double tolerance = 1e-12;  ///< Limit on the relative residual; below the error of any view factors.
 constexpr std::size_t max_iterations = 10'000;
 
 /// Black-body exitance, W/m^2.

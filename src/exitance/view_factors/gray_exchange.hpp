@@ -26,7 +26,7 @@ struct GrayExchange {
     std::vector<double> radiosity;    ///< W/m^2
     std::vector<double> heat;         ///< Net radiative heat that leaves each surface, W.
     double surroundings = 0;          ///< Net heat that the surroundings receive, W; 0 without surroundings.
-    double residual = 0;              ///< Of the linear system, relative to its right-hand side.
+    double residual = 0;              ///< Residual of the linear system, relative to its right-hand side.
     std::size_t iterations = 0;
 };
 

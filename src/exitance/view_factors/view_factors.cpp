@@ -148,7 +148,7 @@ class TableMaker {
                     }
                 });
                 if (stop_.requested())
-                    return stopped(fmt::format("while {} pairs of faces were looked at again", pairs.size()));
+                    return stopped(fmt::format("while {} pairs of faces were computed again", pairs.size()));
                 progress_.advance(static_cast<double>(first + count) / static_cast<double>(pairs.size()));
             }
         }

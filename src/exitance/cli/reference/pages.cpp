@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t line_width = 100, help_column = 30;
 
-/// "-o, --output FILE"
+/// Names and type of an option, such as "-o, --output FILE".
 std::string spelling(const OptionFacts& option) {
     if (option.is_input()) return option.type;
     std::string out = option.short_name;
@@ -36,7 +36,8 @@ std::string wrapped(const std::string& text, std::size_t width, std::size_t inde
     return out;
 }
 
-/// Headings in order: inputs, then the groups in the order of option_groups, others where they first occur.
+/// Groups of a verb's options in the order of the pages: first those that option_groups does not list, in order of
+/// occurrence, then those of option_groups. Inputs belong to no group.
 std::vector<std::string> groups_of(const VerbFacts& verb) {
     std::vector<std::string> out;
     const auto add = [&](const std::string& group) {
@@ -85,7 +86,7 @@ std::string recipe_list() {
 
 // -------------------------------------------------------------------------------------------------- Markdown
 
-/// In a table's cell.
+/// Text escaped for a cell of a Markdown table.
 std::string cell(const std::string& text) {
     std::string out;
     for (const char c : text) {
@@ -150,7 +151,7 @@ std::vector<std::string> values_of(const OptionFacts& option) {
     return names;
 }
 
-/// Text inside '[...]' of a specification of zsh's _arguments.
+/// Text escaped for '[...]' in a specification of zsh's _arguments.
 std::string zsh_text(const std::string& text) {
     std::string out;
     for (const char c : text) {

@@ -10,16 +10,16 @@ namespace exitance {
 /// Text of `exitance VERB --help` or, with the options of all audiences, of `--help-all`.
 std::string help_page(const VerbFacts& verb, bool all);
 
-/// Page in Markdown: all options of all verbs.
+/// Markdown page with all options of all verbs (docs/options.md).
 std::string markdown_page(std::span<const VerbFacts> verbs);
 
-/// Manual page for `man`, of a program of this version.
+/// Manual page for `man`. `version`: version of the program.
 std::string man_page(std::span<const VerbFacts> verbs, const std::string& version);
 
-/// Completion for bash: verbs, options and their values.
+/// Script for bash that completes verbs, options and their values.
 std::string bash_completion(std::span<const VerbFacts> verbs);
 
-/// Completion for zsh.
+/// Script for zsh that completes verbs, options and their values.
 std::string zsh_completion(std::span<const VerbFacts> verbs);
 
 /// A line per option: verb, option, type, group and audience, separated by tabs.

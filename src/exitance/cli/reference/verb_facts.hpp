@@ -10,7 +10,7 @@ namespace exitance {
 /// An option of a verb, as help and reference describe it.
 struct OptionFacts {
     std::string short_name, long_name;  ///< "-o", "--output"; both empty for an input.
-    std::string type;                   ///< "FILE", "on|off"; empty for a flag. Of an input: its name.
+    std::string type;                   ///< "FILE", "on|off"; empty for a flag; for an input, its name.
     std::string help, group;
     Audience audience = Audience::users;
     bool is_required = false;

@@ -6,7 +6,8 @@
 
 namespace exitance {
 
-/// Solves by a classical form, writes the snapshots asked for beside the output, and records the options in force.
+/// Solves by a published form. Writes the requested snapshots as STEM.0001.h5, ... for an output STEM.h5, and records
+/// the options in the solution.
 Result<Solution> run_classical(const SolveArguments& arguments, const Scene& scene, Progress& progress,
                                const StopRequest& stop);
 

@@ -8,7 +8,7 @@ Result<void> check_light_groups(const SolveArguments& arguments, const Scene& sc
     return Error{ErrorCode::usage,
                  "there are " + std::to_string(count) + " groups that emit, at most " +
                      std::to_string(most_light_groups) + " are solved one by one",
-                 "--light-groups", "name lamps that are switched together alike"};
+                 "--light-groups", "give lamps that are switched together the same group name"};
 }
 
 Result<LightGroups> keep_light_groups(const SolveArguments& arguments, Solution& solution, Progress& progress,
@@ -19,9 +19,9 @@ Result<LightGroups> keep_light_groups(const SolveArguments& arguments, Solution&
         s.warnings.push_back("light groups are not kept: " + why), s.converged = false;
         return LightGroups();
     };
-    if (stop.requested()) return not_kept("there was no time for them");
+    if (stop.requested()) return not_kept("the run was stopped before they were solved");
     const Stopwatch watch;
-    // A mesh along the shadows of all lamps together has no place for one of them.
+    // The discontinuity mesh holds the light of all lamps together. It cannot hold that of a single group.
     solution.discontinuity = {}, solution.layers = {}, solution.own_form = {}, solution.delivers_own_form = false;
     Result<LightGroups> groups = solve_light_groups(solution, arguments.options, progress, stop);
     if (!groups && stop.requested()) return not_kept(groups.error().message);
@@ -38,7 +38,7 @@ Result<LightGroups> keep_light_groups(const SolveArguments& arguments, Solution&
 
 Error no_light_groups(const std::string& solution_file) {
     return {ErrorCode::usage, "keeps no light groups", solution_file,
-            "exitance solve SCENE --light-groups -o S.h5 keeps those of a scene that has lamps"};
+            "solve a scene with emitters: exitance solve SCENE --light-groups -o S.h5"};
 }
 
 }  // namespace exitance

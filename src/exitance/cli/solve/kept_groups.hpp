@@ -5,14 +5,14 @@
 
 namespace exitance {
 
-/// An error if the scene has more groups than are solved one by one. Called before the work.
+/// Error (usage) if --light-groups is set and the scene has more than `most_light_groups` groups that emit.
 Result<void> check_light_groups(const SolveArguments& arguments, const Scene& scene);
 
-/// What is wrong with a solution that has none.
+/// The error for a solution without light groups, of a verb that needs them.
 Error no_light_groups(const std::string& solution_file);
 
-/// The light groups of a solution, where they are to be kept; its statistics tell their size and time. None, and a
-/// warning, where a stop came first.
+/// Solves the light groups for --light-groups and records their size and time in the statistics of the solution.
+/// Returns no groups without --light-groups, or if a stop was requested first; a warning is then recorded.
 Result<LightGroups> keep_light_groups(const SolveArguments& arguments, Solution& solution, Progress& progress,
                                       const StopRequest& stop);
 

@@ -14,14 +14,14 @@
 namespace exitance {
 namespace {
 
-/// Found out before the work, not after it: can the result be written?
+/// Error if `path` is missing or cannot be written. Checked before the work, so that no result is lost.
 Result<void> check_output(const std::string& path) {
     if (path.empty()) return Error{ErrorCode::usage, "is missing", "-o", "exitance solve room.obj -o room.h5"};
     const Result<AtomicFile> file = AtomicFile::create(path);
     return file ? Result<void>() : Result<void>(file.error());
 }
 
-/// A solution is no mesh and no picture.
+/// Error (usage) if the output has the file name extension of a mesh or a picture, which other verbs write.
 Result<void> check_ending(const std::string& path) {
     for (const char* end : {".vtu", ".vtkhdf", ".hdf", ".glb", ".gltf", ".obj", ".csv", ".png", ".exr", ".hdr"})
         if (path.ends_with(end)) {
@@ -37,19 +37,20 @@ Result<void> check_ending(const std::string& path) {
     return {};
 }
 
-/// The points that light is looked at become options.
+/// Reads the file of --importance into the options.
 Result<void> read_importance(SolveArguments& arguments) {
     if (arguments.importance.empty()) return {};
     const Result<ProbePoints> points = load_probe_points(arguments.importance);
     if (!points) return points.error();
     if (points->size() == 0)
-        return Error{ErrorCode::bad_input, "holds no points", arguments.importance, "without --importance all counts"};
+        return Error{ErrorCode::bad_input, "holds no points", arguments.importance,
+                     "leave out --importance for equal accuracy everywhere"};
     for (std::size_t i = 0; i < points->size(); ++i)
         arguments.options.importance.push_back({points->points[i], points->normals[i]});
     return {};
 }
 
-/// The sky that is asked for becomes a part of the scene that is read.
+/// Reads the sky of --sky, and the weather of --epw for it, into the options for loading the scene.
 Result<void> read_sky(SolveArguments& arguments) {
     if (arguments.sky.empty()) return {};
     std::optional<Weather> weather;
@@ -67,7 +68,7 @@ Result<void> read_sky(SolveArguments& arguments) {
     return {};
 }
 
-/// Does a method support all options? Over several processes `auto` is `matrix`.
+/// Error (usage) if no method supports all options. With several processes, `auto` is `matrix`.
 Result<void> check_support(const SolveArguments& arguments) {
     SolveRequest request = arguments;
     if (processes() > 1 && request.options.method == Method::automatic) request.options.method = Method::matrix;
@@ -84,7 +85,7 @@ Result<void> settle_options(SolveArguments& arguments) {
     if (settled) settled = read_sky(arguments);
     if (settled) settled = check_ending(arguments.output);
     if (!settled) return settled;
-    // All processes come here, whatever is done with what the first one finds.
+    // by_first() is collective: it must run before the condition on `dry_run`.
     if (const Result<void> output = by_first([&] { return check_output(arguments.output); });
         !arguments.dry_run && !output)
         return output;

@@ -5,8 +5,8 @@
 
 namespace exitance {
 
-/// Makes options of what `solve` was given before any work: what one option says for another, points and skies that are
-/// read from files. Error: options that do not go together, files that are wrong, or outputs that cannot be written.
+/// Checks the options of `solve` and reads the points of --importance and the sky of --sky from files, before any other
+/// work. Error: options that cannot be combined, files that cannot be used, or outputs that cannot be written.
 Result<void> settle_options(SolveArguments& arguments);
 
 }  // namespace exitance

@@ -11,8 +11,8 @@
 namespace exitance {
 namespace {
 
-/// Bakes and writes maps of every light group by itself. Returns the names of the groups that were finished before a
-/// stop.
+/// Bakes and writes separate maps for every light group. Returns the names of the groups that were finished before a
+/// stop was requested.
 Result<std::vector<std::string>> bake_groups(const BakeArguments& arguments, const Solution& whole,
                                              const LightGroups& groups, const BakeOptions& options, Progress& progress,
                                              const StopRequest& stop) {
@@ -39,7 +39,7 @@ Result<std::vector<std::string>> bake_groups(const BakeArguments& arguments, con
 
 }  // namespace
 
-/// exitance bake SOLUTION -o FOLDER
+/// Runs `exitance bake SOLUTION -o FOLDER`.
 ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     LightGroups groups;
@@ -56,7 +56,7 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     const Result<LightMaps> maps = bake_light_maps(light, options, terminal.progress(), stop);
     if (!maps) return terminal.fail(maps.error());
     if (stop.requested()) return terminal.fail_stopped("the light maps are not finished");
-    options.density = maps->density;  // all groups have the same charts
+    options.density = maps->density;  // so that all groups have the same charts
     const Result<std::vector<std::string>> names =
         bake_groups(arguments, *solution, groups, options, terminal.progress(), stop);
     terminal.progress().finish();
@@ -65,7 +65,7 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     const std::string scene_file = solution->scene.file();
     format.scene_file = find_scene_file(solution->scene, arguments.solution);
     if (format.scene_file.empty() && (ending(scene_file) == ".glb" || ending(scene_file) == ".gltf"))
-        terminal.note(fmt::format("{} is not there: scene.glb goes without its textures", scene_file));
+        terminal.note(fmt::format("{} is missing: scene.glb has no textures", scene_file));
     const Result<void> written = write_light_maps(*solution, *maps, format, *names, arguments.output);
     if (!written) return terminal.fail(written.error());
     std::string sizes;

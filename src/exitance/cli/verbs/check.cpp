@@ -16,7 +16,7 @@ std::string place(const Finding& finding) {
     return finding.line > 0 ? fmt::format("{}:{}", finding.file, finding.line) : finding.file;
 }
 
-/// One kind of finding under its heading; nothing when there is none.
+/// Findings of one kind under a heading; empty if there are none.
 std::string group(const std::vector<Finding>& findings, Finding::Kind kind, std::string_view singular,
                   std::string_view plural) {
     std::string lines;
@@ -30,7 +30,7 @@ std::string group(const std::vector<Finding>& findings, Finding::Kind kind, std:
     return count == 0 ? "" : fmt::format("{} {}\n{}", count, count == 1 ? singular : plural, lines);
 }
 
-/// What is not an error: those go to the error stream.
+/// Warnings, repairs and size of a scene as text. Errors are printed to stderr instead.
 std::string report(const CheckedScene& checked, const Shell& shell) {
     using Kind = Finding::Kind;
     std::string text = group(checked.findings, Kind::warning, "warning", "warnings") +
@@ -41,9 +41,8 @@ std::string report(const CheckedScene& checked, const Shell& shell) {
     for (const Surface& surface : scene.surfaces()) area += surface.area;
     const Vec3 size = scene.box().size();
     if (shell.open_edges > 0)
-        text += fmt::format(
-            "{} edges of {:.4g} m have a face on one side only: what is meant to be closed is open there.\n",
-            shell.open_edges, shell.open_length);
+        text += fmt::format("{} edges ({:.4g} m in total) belong to only one face: the model is open there.\n",
+                            shell.open_edges, shell.open_length);
     return text + fmt::format(
                       "The scene can be used: {} surfaces of {:.4g} m^2 ({} after joining coplanar neighbours), "
                       "{} emitters, {}{} materials, {:.4g} x {:.4g} x {:.4g} m.\n",
@@ -54,7 +53,7 @@ std::string report(const CheckedScene& checked, const Shell& shell) {
 
 }  // namespace
 
-/// exitance check SCENE
+/// Runs `exitance check SCENE`.
 ExitCode run(const CheckArguments& arguments, Terminal& terminal) {
     if (!arguments.picture.empty() && ending(arguments.picture) != ".png")
         return terminal.fail(

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t points_between_solutions = 20'000;
 
-/// Another solution, at points that are uniform in area over the scene of the first.
+/// Irradiance of the solution in file `path` at points that are uniform in area over `scene`.
 Result<ReferencePoints> reference_of_solution(const std::string& path, const Scene& scene) {
     const Result<Solution> solution = load_solution(path);
     if (!solution) return solution.error();
@@ -37,7 +37,7 @@ std::string report(const ErrorMeasure& error) {
         percent(error.median_relative_error), percent(error.p95_relative_error));
 }
 
-/// The picture of where the error lies.
+/// Writes the picture of the error in false colours.
 Result<void> write_map(const CompareArguments& arguments, const Solution& solution, const ReferencePoints& reference) {
     const RadiosityFunction light(solution);
     const Result<Camera> camera = choose_camera(arguments.view, light);
@@ -62,7 +62,7 @@ Result<void> write_map(const CompareArguments& arguments, const Solution& soluti
 
 }  // namespace
 
-/// exitance compare SOLUTION REFERENCE
+/// Runs `exitance compare SOLUTION REFERENCE`.
 ExitCode run(const CompareArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     if (!arguments.map.empty() && ending(arguments.map) != ".png")

@@ -40,7 +40,7 @@ std::string as_text(const DaylightResults& results, const std::string& folder) {
 
 }  // namespace
 
-/// exitance daylight SOLUTION --epw WEATHER --points SENSORS -o FOLDER
+/// Runs `exitance daylight SOLUTION --epw WEATHER --points SENSORS -o FOLDER`.
 ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     const Result<Weather> weather = load_epw(arguments.epw);
@@ -53,7 +53,8 @@ ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     const Result<ProbePoints> points = load_probe_points(arguments.points);
     if (!points) return terminal.fail(points.error());
     if (points->size() == 0)
-        return terminal.fail({ErrorCode::bad_input, "holds no points", arguments.points, "x y z dx dy dz a line"});
+        return terminal.fail(
+            {ErrorCode::bad_input, "holds no points", arguments.points, "give one sensor per line: x y z dx dy dz"});
     std::optional<ProbePoints> eyes;
     if (!arguments.eyes.empty()) {
         Result<ProbePoints> read = load_probe_points(arguments.eyes);

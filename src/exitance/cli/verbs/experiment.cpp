@@ -13,7 +13,7 @@
 namespace exitance {
 namespace {
 
-/// A built-in study by its name, or one from a file.
+/// The study in a file that ends in .toml, or the built-in study of that name.
 Result<Study> find_study(const std::string& name) {
     if (name.ends_with(".toml")) return load_study(name);
     std::vector<std::string> names;
@@ -51,7 +51,7 @@ std::string as_text(const StudyReport& report) {
 
 }  // namespace
 
-/// exitance experiment STUDY -o FOLDER
+/// Runs `exitance experiment STUDY -o FOLDER`.
 ExitCode run(const ExperimentArguments& arguments, Terminal& terminal) {
     if (arguments.study == "list") return list_studies(terminal);
     const Result<Study> study = find_study(arguments.study);
@@ -77,8 +77,7 @@ ExitCode run(const ExperimentArguments& arguments, Terminal& terminal) {
     if (!arguments.quiet) terminal.print(as_text(*report));
     if (limits.signal()) return *limits.signal();
     if (!stop.requested()) return ExitCode::done;
-    terminal.note(
-        fmt::format("stopped by the {}: the same command goes on from the runs that are finished", limits.reason()));
+    terminal.note(fmt::format("stopped by the {}: the same command continues from the finished runs", limits.reason()));
     return ExitCode::demand_not_reached;
 }
 

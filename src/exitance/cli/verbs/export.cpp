@@ -5,7 +5,7 @@
 
 namespace exitance {
 
-/// exitance export SOLUTION -o FILE
+/// Runs `exitance export SOLUTION -o FILE`.
 ExitCode run(const ExportArguments& arguments, Terminal& terminal) {
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());

@@ -36,7 +36,7 @@ Result<std::map<std::string, std::string>> split(const std::vector<std::string>&
 
 }  // namespace
 
-/// exitance generate FAMILY name=value ... -o SCENE
+/// Runs `exitance generate FAMILY name=value ... -o SCENE`.
 ExitCode run(const GenerateArguments& arguments, Terminal& terminal) {
     if (arguments.family == "list") {
         terminal.print(list_families());

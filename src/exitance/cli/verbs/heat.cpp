@@ -18,7 +18,7 @@ Result<void> write_text(const std::string& path, const std::string& text) {
     return file->commit();
 }
 
-/// Error of tables in which rows are missing.
+/// Error (bad_input) if rows of the view factors are missing.
 Result<void> check_rows(const SparseFactors& factors, const std::string& path) {
     const auto missing = std::count(factors.finished.begin(), factors.finished.end(), 0);
     if (missing == 0) return {};
@@ -38,7 +38,7 @@ std::string words_of(const GrayExchange& exchange, const std::vector<ThermalSurf
 
 }  // namespace
 
-/// exitance heat FACTORS --table TABLE
+/// Runs `exitance heat FACTORS --table TABLE`.
 ExitCode run(const HeatArguments& arguments, Terminal& terminal) {
     const StopRequest& stop = terminal.limits().stop();
     const Result<SparseFactors> factors = read_view_factors(arguments.factors);

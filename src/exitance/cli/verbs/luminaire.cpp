@@ -102,7 +102,7 @@ std::string facts_text(const Photometry& p) {
         out += fact("lamps", fmt::format("{}, {:.1f} lm together", p.lamps, *p.lamp_lumens)) +
                fact("efficiency", fmt::format("{:.1f}%", 100 * flux / *p.lamp_lumens));
     else
-        out += fact("lamps", "absolute photometry: their flux is not told");
+        out += fact("lamps", "absolute photometry: their flux is not given");
     if (p.type == Photometry::Type::c)
         out += fact("upward", fmt::format("{:.1f} lm, {:.1f}%", p.flux(90, 180), 100 * p.flux(90, 180) / flux));
     if (p.watts > 0) out += fact("power", fmt::format("{:g} W, {:.1f} lm/W", p.watts, p.efficacy()));
@@ -115,7 +115,7 @@ std::string facts_text(const Photometry& p) {
     return out;
 }
 
-/// The opening as a scene: its own light, as that of a diffuse one of the same flux.
+/// The luminous opening as a scene of diffuse emitters with the flux of the luminaire.
 SceneDescription opening_scene(const Photometry& p) {
     SceneDescription scene;
     scene.file = p.file;
@@ -140,7 +140,7 @@ SceneDescription opening_scene(const Photometry& p) {
 
 }  // namespace
 
-/// exitance luminaire FILE [-o DIAGRAM.svg] [-o OPENING.obj] [-o UGR.csv]
+/// Runs `exitance luminaire FILE [-o DIAGRAM.svg] [-o OPENING.obj] [-o UGR.csv]`.
 ExitCode run(const LuminaireArguments& arguments, Terminal& terminal) {
     for (const std::string& output : arguments.outputs)
         if (ending(output) != ".svg" && ending(output) != ".obj" && ending(output) != ".csv")

@@ -12,7 +12,7 @@
 
 namespace exitance {
 
-/// exitance mix SOLUTION GROUP=FACTOR ... -o SOLUTION
+/// Runs `exitance mix SOLUTION GROUP=FACTOR ... -o SOLUTION`.
 ExitCode run(const MixArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     const Stopwatch watch;

@@ -16,7 +16,7 @@
 namespace exitance {
 namespace {
 
-/// Points taken at a time: memory stays small however many there are.
+/// Number of points that are evaluated together. It bounds the memory for long files.
 constexpr std::size_t batch = 1 << 13;
 
 std::vector<ProbePoint> zip(const ProbePoints& probes) {
@@ -26,19 +26,18 @@ std::vector<ProbePoint> zip(const ProbePoints& probes) {
     return out;
 }
 
-/// Warns if panes mirror light onto some of the points that makes up more than `limit` of the light there.
+/// Warns if mirrored light of panes exceeds the share `limit` of the light at some of the points.
 void warn_of_mirrored_light(const Scene& scene, std::span<const ProbePoint> points, std::span<const Spectrum> light,
                             double limit, std::uint64_t seed, Terminal& terminal) {
     const MirroredAtPoints found = mirrored_at_points(scene, points, light, limit, seed);
     if (found.above > 0)
         terminal.progress().warn(
-            fmt::format("panes mirror light of the sky, the sun or lamps onto {} of {} points looked at, up to {:.3g}% "
-                        "of the light "
-                        "there, which is left out",
+            fmt::format("panes mirror light of the sky, the sun or lamps onto {} of {} examined points, up to {:.3g}% "
+                        "of the light there; it is left out",
                         found.above, found.points, 100 * found.largest));
 }
 
-/// What was written before the end of the points or a stop.
+/// Number of written rows, and whether they are those of all points.
 struct WrittenRows {
     std::size_t count = 0;
     bool are_all = false;
@@ -70,7 +69,8 @@ Result<WrittenRows> write_light(const ProbeArguments& arguments, const Scene& sc
     }
 }
 
-/// Paths in place of the solution. All points together, since a point's random numbers go by its place.
+/// Traces paths instead of evaluating the solution. Reads all points first, since the random numbers of a point depend
+/// on its index.
 Result<WrittenRows> write_reference(const ProbeArguments& arguments, const Scene& scene, ProbeReader& reader,
                                     ProbeWriter& writer, BorderPoints& borders, Terminal& terminal,
                                     const StopRequest& stop) {
@@ -80,7 +80,7 @@ Result<WrittenRows> write_reference(const ProbeArguments& arguments, const Scene
     const std::vector<ProbePoint> points = zip(probes);
     const std::vector<ReferenceLight> values =
         reference_light(scene, points, arguments.reference_paths, arguments.seed, terminal.progress(), stop);
-    constexpr double exactness = 1e-3;  // of direct light through panes, which errors of paths are beside
+    constexpr double exactness = 1e-3;  // share of mirrored light that is reported: the accuracy of panes
     std::vector<Spectrum> irradiance;
     for (const ReferenceLight& value : values) irradiance.push_back(value.irradiance);
     warn_of_mirrored_light(scene, std::span(points).first(values.size()), irradiance, exactness, arguments.seed,
@@ -96,21 +96,24 @@ Result<WrittenRows> write_reference(const ProbeArguments& arguments, const Scene
     return WrittenRows{values.size(), values.size() == points.size()};
 }
 
-/// Options that would be read by nothing.
+/// The error of options that would have no effect together; none if there is no error.
 std::optional<Error> find_misuse(const ProbeArguments& a) {
     const bool is_part = a.component != Component::total;
     const auto usage = [](const char* where, const char* message) {
         return Error{ErrorCode::usage, message, where, "leave one of them out"};
     };
-    if (a.reference_paths > 0 && a.interpolant) return usage("--interpolant", "is of the solution, --reference is not");
-    if (a.reference_paths > 0 && is_part) return usage("--component", "is of the solution; paths bring all light");
-    if (a.interpolant && is_part) return usage("--component", "is of the full function; export writes all light");
+    if (a.reference_paths > 0 && a.interpolant)
+        return usage("--interpolant", "cannot be combined with --reference, which does not evaluate the solution");
+    if (a.reference_paths > 0 && is_part)
+        return usage("--component", "cannot be combined with --reference, which computes all light");
+    if (a.interpolant && is_part)
+        return usage("--component", "cannot be combined with --interpolant, which evaluates all light");
     return std::nullopt;
 }
 
 }  // namespace
 
-/// exitance probe SOLUTION --points POINTS -o LIGHT
+/// Runs `exitance probe SOLUTION --points POINTS -o LIGHT`.
 ExitCode run(const ProbeArguments& arguments, Terminal& terminal) {
     if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
     set_threads(arguments.threads);

@@ -24,7 +24,7 @@
 namespace exitance {
 namespace {
 
-/// What cannot be done, before the work begins.
+/// The error of options that cannot be combined or of values out of range; none if there is no error.
 std::optional<Error> find_misuse(const RenderArguments& a) {
     const std::string end = ending(a.output);
     const auto usage = [](const std::string& message, const std::string& where, const std::string& hint) {
@@ -39,21 +39,24 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
                                  end),
                      a.output, "name the output something.png");
     if (a.has_scale && !a.false_colour && !a.isolux)
-        return usage("has nothing to colour", "--scale, --bands, --palette", "they go with --false-colour or --isolux");
+        return usage("has no effect without --false-colour or --isolux", "--scale, --bands, --palette",
+                     "add one of them, or leave the option out");
     if (a.unit.choice != UnitChoice::scene && !a.false_colour && !a.isolux)
-        return usage("has no numbers to tell", "--unit", "it goes with --false-colour or --isolux");
+        return usage("has no effect without --false-colour or --isolux", "--unit",
+                     "add one of them, or leave the option out");
     const bool is_drawn = a.false_colour || a.isolux || !a.mesh.empty() || a.shadow_classes;
     const bool is_toned = a.exposure != 0 || a.exposure_scale || a.tone_map != ToneCurve::filmic;
     if (end != ".png" && !films && (is_drawn || is_toned))
-        return usage(fmt::format("{} holds radiance, and nothing is drawn into it or toned", end), a.output,
-                     "--false-colour, --isolux, --mesh, --shadow-classes, --exposure and --tone-map go with .png");
+        return usage(
+            fmt::format("{} holds radiance, without drawings or tone mapping", end), a.output,
+            "--false-colour, --isolux, --mesh, --shadow-classes, --exposure and --tone-map apply to .png only");
     if (is_toned && (a.false_colour || a.shadow_classes))
-        return usage("have no part in false colours and classes", "--exposure, --tone-map", "leave them out");
+        return usage("have no effect on false colours and shadow classes", "--exposure, --tone-map", "leave them out");
     if (a.false_colour && a.shadow_classes)
-        return usage("shows classes, --false-colour values, and a pixel has one colour", "--shadow-classes",
+        return usage("cannot be combined with --false-colour: both colour the pixels", "--shadow-classes",
                      "make a picture of each");
     if (!a.path.empty() && (a.camera || !a.camera_name.empty() || a.projection != Projection::perspective))
-        return usage("has cameras of its own, in perspective", "--path", "leave --camera and --projection out");
+        return usage("has its own cameras, in perspective", "--path", "leave --camera and --projection out");
     if (!a.path.empty() && (a.false_colour || a.isolux) && !a.scale.range)
         return usage("needs one scale for all pictures", "--path", "add --scale LO,HI");
     if (a.gather > 0 && (!std::has_single_bit(a.gather) || a.gather > 1 << 20))
@@ -66,7 +69,7 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
     return std::nullopt;
 }
 
-/// The picture for people, and the words that go with it.
+/// The picture in display colours (false colours or tone-mapped). Adds the exposure to `texts`.
 Image develop(const RenderArguments& arguments, const Picture& picture, const LightUnit& own, ImageTexts& texts,
               Terminal& terminal) {
     if (arguments.false_colour) {
@@ -85,7 +88,7 @@ Image develop(const RenderArguments& arguments, const Picture& picture, const Li
     return display_image(picture, tones);
 }
 
-/// Elements of the method, or those that `export` writes; where direct light is all, there are no others.
+/// The method's elements or, for --mesh export, the exported elements. A solution with direct light only has no others.
 const ElementTree& shown_elements(const RenderArguments& arguments, const Solution& solution) {
     const bool of_export = arguments.mesh == "export" || solution.bounces == 0;
     return of_export ? solution.interpolant.tree : solution.indirect.tree;
@@ -97,7 +100,7 @@ Result<void> write_display(const RenderArguments& arguments, const RadiosityFunc
     const SixNodeMesh& mesh = light.solution().discontinuity;
     const Scene& scene = light.solution().scene;
     const LightUnit unit = unit_of(arguments.unit, scene, terminal);
-    // Watts as the scene has them keep their bands: a false colour may show their mean or what the eye makes of them.
+    // Without --unit, light in watts keeps its bands: false colours show their mean or their weighted sum (luminance).
     const bool is_one_number = arguments.unit.choice != UnitChoice::scene || unit.is_lux();
     const Picture shown = is_one_number ? in_unit(picture, unit) : picture;
     MeshView view;
@@ -142,17 +145,17 @@ Result<void> write_picture(const RenderArguments& arguments, const RadiosityFunc
                : write_linear(arguments, own_unit(light.solution().scene.is_photometric()), camera, picture);
 }
 
-/// "walk.png" as "walk.0012.png".
+/// Inserts a number before the file name extension: "walk.0012.png" from "walk.png" and 12.
 std::string numbered(const std::string& output, std::size_t number) {
     const std::string end = ending(output);
     return fmt::format("{}.{:04}{}", output.substr(0, output.size() - end.size()), number, end);
 }
 
-/// Seconds that a pixel takes to be toned, drawn upon, compressed and written: 0.2 to 0.5 us in pictures of 640 x 400
-/// to 8192 x 8192 pixels, as .png and .exr.
+/// Seconds per pixel for tone mapping, drawing, compression and writing. Measured 0.2 to 0.5 us in pictures of 640 x
+/// 400 to 8192 x 8192 pixels, as .png and .exr.
 constexpr double write_seconds_a_pixel = 0.5e-6;
 
-/// A request to stop that leaves time to write the picture.
+/// The run's stop request, with a deadline that leaves time to write the picture before the time limit.
 const StopRequest& keep_picture(const RenderArguments& arguments, RunLimits& limits) {
     StopRequest& stop = limits.keep();
     const double write_seconds = write_seconds_a_pixel * static_cast<double>(arguments.size.pixels());
@@ -162,18 +165,19 @@ const StopRequest& keep_picture(const RenderArguments& arguments, RunLimits& lim
     return stop;
 }
 
-/// What the user is told of a picture that a stop has left coarser than requested.
+/// Note about a picture that is coarser than requested because of a stop.
 std::string describe_stop(const TimedPicture& taken, const RenderArguments& arguments, const std::string& reason) {
     if (taken.samples > 0)
-        return fmt::format("stopped by the {}: the picture has {} of {} samples a pixel", reason, taken.samples,
+        return fmt::format("stopped by the {}: the picture has {} of {} samples per pixel", reason, taken.samples,
                            arguments.samples);
     return fmt::format(
-        "stopped by the {}: there was no time for one sample a pixel, so the picture is made of squares of {} x {} "
-        "pixels or less",
+        "stopped by the {}: there was no time for one sample per pixel, so the picture consists of squares of at most "
+        "{} x {} pixels",
         reason, taken.block, taken.block);
 }
 
-/// Numbered pictures, one for each camera, all with the exposure of the first. `done`: those that were finished.
+/// Renders numbered pictures, one per camera, all with the exposure of the first. Sets `done` to the number of finished
+/// pictures.
 ExitCode render_path(const RenderArguments& arguments, const std::vector<Camera>& cameras,
                      const RadiosityFunction& light, Terminal& terminal, std::size_t& done) {
     RunLimits& limits = terminal.limits();
@@ -199,10 +203,10 @@ ExitCode render_path(const RenderArguments& arguments, const std::vector<Camera>
     return limits.stopped_code();
 }
 
-/// A video: pictures at equal times along the path, in a folder that is gone afterwards.
+/// Renders a video from pictures at equal intervals along the path. The pictures are in a temporary folder.
 ExitCode render_film(const RenderArguments& arguments, const std::vector<CameraStation>& stations,
                      const RadiosityFunction& light, Terminal& terminal) {
-    constexpr double rate = 25;  // pictures a second
+    constexpr double rate = 25;  // pictures per second
     constexpr std::size_t most = 9999;
     if (const Result<void> found = find_film_program(arguments.output); !found) return terminal.fail(found.error());
     const auto falls = [](const CameraStation& a, const CameraStation& b) { return b.time < a.time; };
@@ -210,7 +214,7 @@ ExitCode render_film(const RenderArguments& arguments, const std::vector<CameraS
                                             ? at_equal_times(stations, rate, most)
                                             : std::vector<Camera>();
     if (cameras.empty())
-        return terminal.fail(Error{ErrorCode::bad_input, "times of a video must rise, over 400 s at most",
+        return terminal.fail(Error{ErrorCode::bad_input, "times of a video must increase and span at most 400 s",
                                    arguments.path, "the first number of a row is its time in seconds"});
     const Result<ScratchFolder> folder = ScratchFolder::make("exitance-film");
     if (!folder) return terminal.fail(folder.error());
@@ -223,7 +227,7 @@ ExitCode render_film(const RenderArguments& arguments, const std::vector<CameraS
     return written ? code : terminal.fail(written.error());
 }
 
-/// One picture, as fine as the limits allow.
+/// Renders one picture, with all samples or as many as the limits allow.
 ExitCode render_picture(const RenderArguments& arguments, const RadiosityFunction& light, Terminal& terminal) {
     const Result<Camera> camera = choose_camera(arguments, light);
     if (!camera) return terminal.fail(camera.error());
@@ -246,7 +250,7 @@ ExitCode render_picture(const RenderArguments& arguments, const RadiosityFunctio
 
 }  // namespace
 
-/// exitance render SOLUTION -o PICTURE
+/// Runs `exitance render SOLUTION -o PICTURE`.
 ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
     if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
     set_threads(arguments.threads);

@@ -21,7 +21,7 @@
 namespace exitance {
 namespace {
 
-/// Default views: one that shows much, and what came with the scene.
+/// The requested views; by default an automatic one and up to three cameras of the scene.
 std::vector<RenderArguments> views(const ReportArguments& arguments, const Scene& scene) {
     constexpr std::size_t most_cameras = 3;
     std::vector<RenderArguments> out = arguments.views;
@@ -34,16 +34,16 @@ std::vector<RenderArguments> views(const ReportArguments& arguments, const Scene
     return out;
 }
 
-/// What a camera sees, as an eye would and in false colours. Of a picture that a stop has left coarse the caption says
-/// so.
+/// Adds a camera's view in display colours and in false colours. The captions say if a stop has left them coarse.
 void add_pictures(const ReportArguments& arguments, const RadiosityFunction& light, const Camera& camera,
                   ReportContent& content, Terminal& terminal, const StopRequest& stop) {
     PictureOptions options{camera, arguments.size, 8};
     const TimedPicture taken = take_picture_in_time(light, options, terminal.progress(), stop);
     if (taken.block == 0) return content.unfinished.push_back("pictures from " + describe(camera));
-    const std::string note = taken.is_complete   ? ""
-                             : taken.samples > 0 ? fmt::format("; stopped after {} of 8 samples a pixel", taken.samples)
-                                                 : fmt::format("; stopped at squares of {} pixels", taken.block);
+    const std::string note = taken.is_complete ? ""
+                             : taken.samples > 0
+                                 ? fmt::format("; stopped after {} of 8 samples per pixel", taken.samples)
+                                 : fmt::format("; stopped at squares of {} pixels", taken.block);
     const Picture& picture = taken.picture;
     ToneMap tones;
     tones.curve = ToneCurve::filmic, tones.scale = automatic_exposure(picture);
@@ -60,7 +60,7 @@ void add_pictures(const ReportArguments& arguments, const RadiosityFunction& lig
                                 describe(camera), std::move(image)});
 }
 
-/// The largest faces, and how many there are besides.
+/// The 1000 largest faces. Sets `left_out` to the number of the others.
 std::vector<SurfaceId> largest_faces(const Scene& scene, std::size_t& left_out) {
     constexpr std::size_t most_rows = 1000;
     std::vector<SurfaceId> faces;
@@ -72,7 +72,7 @@ std::vector<SurfaceId> largest_faces(const Scene& scene, std::size_t& left_out) 
     return faces;
 }
 
-/// Light maps for the embedded viewer, where they are small enough for a page that is mailed.
+/// Bakes light maps for the embedded viewer, if the scene is small enough for a page that can be mailed.
 void add_viewer(const RadiosityFunction& light, ReportContent& content, Terminal& terminal, const StopRequest& stop) {
     constexpr double many_texels = 150000, few_texels = 2000;
     constexpr std::size_t most_faces = 20000;
@@ -80,7 +80,7 @@ void add_viewer(const RadiosityFunction& light, ReportContent& content, Terminal
     if (scene.surfaces().size() > most_faces) return;
     double area = 0;
     for (const Region& region : scene.regions()) area += region.area;
-    // A texel costs what its emitters do, and those that are not diffuse about eight times as much.
+    // The cost of a texel is proportional to the number of emitters. Directed emitters cost about eight times as much.
     constexpr double cheap_emitters = 16, cost_of_directed = 8;
     const double cost =
         static_cast<double>(scene.emitters().size()) * (scene.has_directed_emission() ? cost_of_directed : 1);
@@ -115,23 +115,23 @@ Result<std::vector<Observer>> all_observers(const ReportArguments& arguments, co
 
 std::optional<Error> find_misuse(const ReportArguments& arguments) {
     if (arguments.output.empty() && arguments.tables.empty())
-        return Error{ErrorCode::usage, "nothing is to be written", "report",
-                     "name a page, -o room.html, or --tables FOLDER"};
+        return Error{ErrorCode::usage, "no output is given", "report", "name a page, -o room.html, or --tables FOLDER"};
     const bool measures = !arguments.planes.empty() || !arguments.working_planes.empty();
     if (arguments.maintenance < 1 && !measures)
-        return Error{ErrorCode::usage, "has no planes to be applied to", "--maintenance", "add --plane 0.75"};
+        return Error{ErrorCode::usage, "has no effect without measuring planes", "--maintenance", "add --plane 0.75"};
     if (arguments.output.empty() && !measures && arguments.observers.empty())
-        return Error{ErrorCode::usage, "there is nothing to tell in tables", "--tables",
+        return Error{ErrorCode::usage, "there are no planes or observers for tables", "--tables",
                      "add --plane 0.75 or --observers auto, or a page, -o room.html"};
     if (arguments.output.empty() && !arguments.views.empty())
-        return Error{ErrorCode::usage, "tables hold no pictures", "--camera", "add a page, -o room.html"};
+        return Error{ErrorCode::usage, "has no effect without a page, since tables hold no pictures", "--camera",
+                     "add a page, -o room.html"};
     if (arguments.output.empty()) return std::nullopt;
     const bool page = arguments.output.ends_with(".html") || arguments.output.ends_with(".htm");
     if (page) return std::nullopt;
     return Error{ErrorCode::usage, "reports are written as .html", arguments.output, "name the output something.html"};
 }
 
-/// Measures what was requested by name. What a stop leaves unfinished is left out.
+/// Adds the requested measuring planes and observers. Those that a stop leaves unfinished are omitted.
 void add_measurements(const ReportArguments& arguments, std::span<const Observer> observers,
                       const RadiosityFunction& light, ReportContent& content, Terminal& terminal,
                       const StopRequest& stop) {
@@ -153,7 +153,7 @@ void add_measurements(const ReportArguments& arguments, std::span<const Observer
             fmt::format("{} of {} observers", observers.size() - content.observers.size(), observers.size()));
 }
 
-/// What a page shows besides planes and observers.
+/// Adds statistics, surfaces, the error at points, pictures and the viewer to the page.
 Result<void> add_page(const ReportArguments& arguments, const RadiosityFunction& light, ReportContent& content,
                       Terminal& terminal, const StopRequest& stop) {
     const Scene& scene = light.solution().scene;
@@ -177,7 +177,7 @@ Result<void> add_page(const ReportArguments& arguments, const RadiosityFunction&
     return {};
 }
 
-/// Writes the files. Without a page they are left out where nothing at all was finished.
+/// Writes page and tables. Fails without a page if a stop left no table finished.
 ExitCode write(const ReportArguments& arguments, const ReportContent& content, Terminal& terminal) {
     const bool is_stopped = !content.unfinished.empty();
     if (is_stopped && arguments.output.empty() && content.grids.empty() && content.observers.empty())
@@ -194,7 +194,7 @@ ExitCode write(const ReportArguments& arguments, const ReportContent& content, T
 
 }  // namespace
 
-/// exitance report SOLUTION -o PAGE --tables FOLDER
+/// Runs `exitance report SOLUTION -o PAGE --tables FOLDER`.
 ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
     if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
     ReportContent content;

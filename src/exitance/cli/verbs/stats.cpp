@@ -5,7 +5,7 @@
 
 namespace exitance {
 
-/// exitance stats SOLUTION
+/// Runs `exitance stats SOLUTION`.
 ExitCode run(const StatsArguments& arguments, Terminal& terminal) {
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());

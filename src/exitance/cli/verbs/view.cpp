@@ -25,15 +25,15 @@ namespace {
 
 using Parameters = ViewServer::Parameters;
 
-/// A solution that the page looks at, and what is made of it once. What points, lines and exact pictures need is made
-/// while the first elements are on their way.
+/// A solution that the page shows, with its camera and its radiosity function. The function, which points, lines and
+/// exact pictures need, is built in the background while the page fetches the first elements.
 class Viewed {
   public:
     explicit Viewed(Solution found)
         : solution(std::move(found)),
           light_(begun()),
           camera(automatic_camera(solution, RayTracer(solution.scene), Projection::perspective, {})) {}
-    /// Seen as another one is.
+    /// With the camera of another solution.
     Viewed(Solution found, const Camera& as_before) : solution(std::move(found)), light_(begun()), camera(as_before) {}
     Viewed(const Viewed&) = delete;
     Viewed& operator=(const Viewed&) = delete;
@@ -52,7 +52,7 @@ class Viewed {
     const Camera camera;
 };
 
-/// All solutions that were there, the newest last: requests under way go on with theirs.
+/// All solutions so far, the newest last. Older ones are kept because running requests may use them.
 class Gallery {
   public:
     std::size_t add(Solution solution) {
@@ -71,7 +71,7 @@ class Gallery {
     std::deque<std::unique_ptr<Viewed>> all_;
 };
 
-/// Requests that read the newest solution, dimmed and repainted as they say.
+/// Registers the requests that read the newest solution, with the changes of light that they specify.
 void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames, ViewChanges<Viewed>& changes) {
     const auto with_light = [&gallery, &changes](auto answer) {
         return [&gallery, &changes, answer](const Parameters& parameters) -> ViewAnswer {
@@ -161,7 +161,7 @@ class RunningSolve {
         };
         Result<Solution> solution = solve_scene(std::move(scene_), options, progress_, limits_.stop(), nullptr, show);
         std::string message = solution ? describe_end(solution->statistics) : solution.error().message;
-        // A solve that was stopped before its first estimate has nothing better than what is shown already.
+        // A solve that was stopped before its first estimate returns no better light than the shown one.
         if (solution && (solution->statistics.relative_error_estimate || !gallery_.newest()))
             show(std::move(*solution));
         std::replace_if(
@@ -170,7 +170,7 @@ class RunningSolve {
     }
 
   private:
-    /// "reached: estimated error 1.8%, 2% requested", "stopped by the time limit: ..."
+    /// Text such as "reached: estimated error 1.8%, 2% requested" or "stopped by the time limit: ...".
     std::string describe_end(const SolveStatistics& statistics) const {
         const std::string error =
             statistics.relative_error_estimate
@@ -200,7 +200,8 @@ class RunningSolve {
     RunLimits& limits_;
 };
 
-/// Listens, tells where, and answers until a signal ends the program.
+/// Prints the address of the server and answers requests until a signal ends the program. `running`: solve to start on
+/// a thread of its own, or null.
 ExitCode serve(ViewServer& server, const ViewArguments& arguments, RunningSolve* running, Terminal& terminal) {
     const Result<int> port = server.bind(arguments.port);
     if (!port) return terminal.fail(port.error());
@@ -216,7 +217,7 @@ ExitCode serve(ViewServer& server, const ViewArguments& arguments, RunningSolve*
 
 }  // namespace
 
-/// exitance view SOLUTION, exitance view SCENE
+/// Runs `exitance view SOLUTION` or `exitance view SCENE`.
 ExitCode run(const ViewArguments& arguments, Terminal& terminal) {
     const Result<std::string> page = find_viewer_page();
     if (!page) return terminal.fail(page.error());

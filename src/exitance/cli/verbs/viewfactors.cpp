@@ -26,8 +26,8 @@ namespace {
 constexpr double default_error = 1e-3;
 constexpr std::size_t default_checked_rows = 4, default_checked_entries = 100, default_rays_an_entry = 1u << 14;
 
-/// Rays of a checked row. The noise of its squared error is 2 sqrt(sum F^2) / n: at n = 0.2 / R^2 and sum F^2 = 0.1 it
-/// is 3 R^2, so that four rows together tell an error of 2 R from one of R.
+/// Rays per checked row. The noise of the squared error of a row is 2 sqrt(sum F^2) / n. With n = 0.2 / R^2 and sum F^2
+/// = 0.1 it is 3 R^2, so that four rows together distinguish an error of 2 R from one of R.
 std::size_t default_rays_a_row(double error) {
     return static_cast<std::size_t>(std::clamp(0.2 / (error * error), 8192.0, 524288.0));
 }
@@ -77,7 +77,8 @@ std::string words_of_entries(const ViewFactorFacts& facts) {
     if (check.entries > 0)
         text += fmt::format(
             "rays: {} random entries, {} off by more than the tolerance and six standard errors of {} "
-            "rays each; farthest off by {:.2g} of the entry, where rays may err by {:.2g} (usually {:.2g})\n",
+            "rays each; largest deviation {:.2g} of the entry, where the standard error of the rays is {:.2g} (median "
+            "{:.2g})\n",
             check.entries, check.wrong, check.rays / check.entries, check.largest_relative, check.relative_error_there,
             check.usual_relative_error);
     return text;
@@ -89,7 +90,7 @@ std::string words_of(const ViewFactorFacts& facts) {
            (facts.tolerance ? words_of_entries(facts) : words_of_rows(facts));
 }
 
-/// What a file of View3D calls surfaces: groups of faces, and some that only block.
+/// Merges the rows of faces into the surfaces of View3D, which are groups of faces. Faces that only block have no row.
 SparseFactors rows_of_view3d(const Scene& scene, const SparseFactors& table) {
     std::vector<std::uint32_t> rows;
     std::size_t count = scene.groups().size();
@@ -100,7 +101,7 @@ SparseFactors rows_of_view3d(const Scene& scene, const SparseFactors& table) {
     return merge_rows(table, rows, count);
 }
 
-/// Scenes of view factors need no light.
+/// Prints warnings and repairs, except the one about missing light, which view factors do not need.
 void show_findings(const CheckedScene& checked, Terminal& terminal) {
     std::vector<Finding> findings = checked.findings;
     std::erase_if(findings, [](const Finding& f) {
@@ -109,7 +110,7 @@ void show_findings(const CheckedScene& checked, Terminal& terminal) {
     terminal.show(findings);
 }
 
-/// Names the work that rows in a work file belong to.
+/// Identifies the computation to which the rows in a work file belong: scene, accuracy and seed.
 std::string work_of(const ViewFactorArguments& arguments, const Scene& scene) {
     return fmt::format("{} error {} tolerance {} seed {}", scene_fingerprint(scene),
                        arguments.error.value_or(default_error), arguments.tolerance.value_or(0), arguments.seed);
@@ -132,7 +133,7 @@ class ViewFactorRun {
         const bool is_finished = facts.finished_rows == table.size() && table.is_settled;
         if (is_finished) check(table, facts);
         if (ending(arguments_.scene.files.front()) == ".vs3") table = rows_of_view3d(scene_, table);
-        // Finished rows are written after a stop, too.
+        // Finished rows are written even after a stop, hence the new StopRequest.
         if (const Result<void> written = write_view_factors(arguments_.output, table, StopRequest()); !written)
             return terminal_.fail(written.error());
         if (is_finished && rows_) rows_->remove();
@@ -143,7 +144,7 @@ class ViewFactorRun {
   private:
     double error() const { return arguments_.error.value_or(default_error); }
 
-    /// Rows are kept beside an output that is, or will be, a plain file.
+    /// Opens OUTPUT.rows for finished rows, unless the output exists and is not a regular file.
     Result<void> open_work_file() {
         std::error_code ignored;
         const std::filesystem::file_status status = std::filesystem::status(arguments_.output, ignored);
@@ -200,10 +201,10 @@ class ViewFactorRun {
 
     ExitCode stopped(const ViewFactorFacts& facts) {
         terminal_.note(
-            fmt::format("stopped after {} of {} rows, which are written as they were computed; --resume goes on",
+            fmt::format("stopped after {} of {} rows, which are written without adjustment; --resume continues",
                         facts.finished_rows, facts.surfaces));
         if (rows_ && !rows_->is_whole())
-            terminal_.note(fmt::format("warning: {} could not be written to its end", rows_->path()));
+            terminal_.note(fmt::format("warning: {} could not be written completely", rows_->path()));
         return limits_.signal() == ExitCode::interrupted ? ExitCode::interrupted : ExitCode::demand_not_reached;
     }
 
@@ -226,7 +227,7 @@ class ViewFactorRun {
         if (facts.unclosed > 0)
             terminal_.note(
                 fmt::format("warning: {} rows do not add up to 1 with the sky and backs of faces, by more than "
-                            "3.5 standard deviations; they are left as they are",
+                            "3.5 standard deviations; they are not adjusted",
                             facts.unclosed));
         return reached ? ExitCode::done : ExitCode::demand_not_reached;
     }
@@ -241,7 +242,7 @@ class ViewFactorRun {
 
 }  // namespace
 
-/// exitance viewfactors SCENE -o MATRIX
+/// Runs `exitance viewfactors SCENE -o MATRIX`.
 ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal) {
     RunLimits& limits = terminal.limits();
     const StopRequest& stop = limits.keep();

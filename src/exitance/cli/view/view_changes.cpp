@@ -5,7 +5,7 @@
 namespace exitance {
 namespace {
 
-/// Calls read(word) for every word between commas.
+/// Calls read(word) for every word of a list separated by commas, until one fails.
 template <class Read>
 Result<void> for_words(const std::string& text, const Read& read) {
     for (std::size_t begin = 0; begin < text.size();) {

@@ -10,27 +10,30 @@
 
 namespace exitance {
 
-/// Reads `dim=NAME:FACTOR,...` and `paint=MATERIAL:r/g/b,...` of a request. Error: usage.
+/// Reads the parameters `dim=NAME:FACTOR,...` and `paint=MATERIAL:r/g/b,...` of a request. Error (usage): malformed
+/// words.
 Result<LightChange> read_light_change(const ViewServer::Parameters& parameters);
 
-/// A solution under other light than it was solved with, as requests ask for it: the last few are kept, since a page
-/// asks for one part of its elements after the other.
+/// Changes the light groups and reflectances of a solution as requests specify. Caches the last three results, since a
+/// page fetches the elements of a solution in parts. Safe from any thread.
 template <class Viewed>
 class ViewChanges {
   public:
     explicit ViewChanges(LightGroups groups) : groups_(std::move(groups)) {}
 
-    /// read(groups), while no request changes them.
+    /// Returns read(groups). Requests that change the groups wait meanwhile.
     template <class Read>
     auto read_groups(const Read& read) {
         const std::lock_guard lock(mutex_);
         return read(groups_);
     }
+    /// True if the request contains changes.
     bool are_asked_for(const ViewServer::Parameters& parameters) const {
         return !view_text(parameters, "dim").empty() || !view_text(parameters, "paint").empty();
     }
 
-    /// What `base` becomes. Requests that come at once wait for one another.
+    /// The solution `base` with the changes of a request. Concurrent calls wait for one another. Error: malformed
+    /// changes, or unknown groups or materials.
     Result<std::shared_ptr<const Viewed>> find(const Viewed& base, const ViewServer::Parameters& parameters) {
         const std::string words = view_text(parameters, "dim") + "\n" + view_text(parameters, "paint");
         const std::lock_guard lock(mutex_);

@@ -51,7 +51,7 @@ void ViewProgress::advance(double fraction, std::string_view detail) {
 }
 
 void ViewProgress::shot(std::span<const Point> outline, double unshot) {
-    constexpr double every = 0.1, first_decades = 3;  // seconds; powers of ten until little is left
+    constexpr double every = 0.1, first_decades = 3;  // seconds; powers of ten of unshot light that count as 100%
     if (since_shot_.seconds() < every) return;
     since_shot_.restart();
     const double done = unshot > 0 ? -std::log10(unshot) / first_decades : 1;

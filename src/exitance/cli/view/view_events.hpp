@@ -9,15 +9,19 @@
 
 namespace exitance {
 
-/// What a running solve has told so far, for pages that follow it. Safe from any thread. Of progress only the newest
-/// counts: a page that comes late is not told the past.
+/// Server-sent events of a running solve, for the pages that follow it. All events are kept except progress, of which
+/// only the newest is: a page that opens late gets no outdated progress. Safe from any thread.
 class ViewEvents {
   public:
+    /// Adds an event.
     void tell(const std::string& name, const std::string& json);
+    /// Replaces the progress.
     void tell_progress(const std::string& json);
+    /// Adds the last event, "end".
     void end(const std::string& json);
 
-    /// Text of the events from number `next` on, waiting for one second at most; false once all is told.
+    /// Waits up to one second for an event. Sets `text` to the progress and the events from number `next` on, and
+    /// advances `next`. Returns false after the last event.
     bool wait(std::size_t& next, std::string& text);
 
   private:
@@ -29,7 +33,7 @@ class ViewEvents {
     bool ended_ = false;
 };
 
-/// Sends on what a solve tells, to pages.
+/// Progress that is sent to pages as events, at most ten times per second, and passed on to `inner`.
 class ViewProgress : public ShotProgress {
   public:
     ViewProgress(ViewEvents& events, Progress& inner) : events_(events), inner_(inner) {}
@@ -38,7 +42,7 @@ class ViewProgress : public ShotProgress {
     void shot(std::span<const Point> outline, double unshot) override;
     void note(std::string_view message) override { inner_.note(message); }
     void warn(std::string_view message) override { inner_.warn(message); }
-    /// What is asked for in this round, before the phase's name.
+    /// Sets the text that precedes the name of the phase in events.
     void set_round(std::string words) { round_ = std::move(words); }
 
   private:

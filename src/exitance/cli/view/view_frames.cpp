@@ -28,7 +28,7 @@ ViewAnswer ViewFrames::take(const RadiosityFunction& light, const ViewServer::Pa
     }
     const std::lock_guard lock(working_);
     Progress quiet;
-    const ViewAnswer late{409, "text/plain", "a newer picture was asked for"};
+    const ViewAnswer late{409, "text/plain", "a newer picture was requested"};
     if (stop->requested()) return late;
     const Picture picture = take_picture(light, options, quiet, *stop);
     if (stop->requested()) return late;

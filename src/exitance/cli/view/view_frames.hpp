@@ -9,16 +9,17 @@
 
 namespace exitance {
 
-/// Pictures of the renderer for the viewer's page, one at a time: a request ends the one before it, whose camera is out
-/// of date (409). `camera=ex,ey,ez,tx,ty,tz,fov`, `size=WIDTH,HEIGHT` in pixels, `samples=N` rays a pixel; the answer
-/// is `viewer_frame`.
+/// Renders pictures for the viewer's page, one at a time. A new request stops the previous one, which is answered with
+/// status 409.
 class ViewFrames {
   public:
+    /// Renders a picture. Parameters: `camera=ex,ey,ez,tx,ty,tz,fov` (metres, degrees), `size=WIDTH,HEIGHT` in pixels,
+    /// `samples=N` rays per pixel. The answer is in the format of viewer_frame(). Safe from any thread.
     ViewAnswer take(const RadiosityFunction& light, const ViewServer::Parameters& parameters);
 
   private:
     std::mutex newest_, working_;
-    std::shared_ptr<StopRequest> stop_;  ///< Of the newest request.
+    std::shared_ptr<StopRequest> stop_;  ///< Stop request of the newest picture.
 };
 
 }  // namespace exitance

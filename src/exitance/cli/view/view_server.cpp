@@ -21,8 +21,8 @@ std::string type_of(const fs::path& file) {
     return found == types.end() ? "application/octet-stream" : found->second;
 }
 
-/// Sends an answer as it is. Handed over as text, cpp-httplib would compress it by brotli's slowest setting, which
-/// takes over a second for the page's script, to spare what costs nothing on one machine.
+/// Sends an answer without compression. A content provider is used because cpp-httplib compresses text with the slowest
+/// setting of brotli: over a second for the page's script, for no gain on one machine.
 void give(httplib::Response& response, ViewAnswer answer) {
     response.status = answer.status;
     if (answer.body.empty()) return;
@@ -39,8 +39,8 @@ struct ViewServer::Implementation {
     httplib::Server server;
     int port = 0;
 
-    /// Does the request mean this server, and does no other site send it? Names of other hosts that lead here (DNS
-    /// rebinding) are refused, too.
+    /// True if the request names this server as host and does not come from another site. Rejects other host names that
+    /// resolve to 127.0.0.1 (DNS rebinding).
     bool is_own(const httplib::Request& request) const {
         const std::string host = request.get_header_value("Host"), origin = request.get_header_value("Origin");
         const std::string site = request.get_header_value("Sec-Fetch-Site");
@@ -56,7 +56,7 @@ struct ViewServer::Implementation {
 ViewServer::ViewServer() : implementation_(std::make_unique<Implementation>()) {
     httplib::Server& server = implementation_->server;
     server.set_payload_max_length(1 << 16);
-    // In place of cpp-httplib's choice, by which two servers share a port and answer by turns.
+    // Replaces the default of cpp-httplib (SO_REUSEPORT), with which two servers could share a port.
     server.set_socket_options([](socket_t socket) {
         const int yes = 1;
         ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -124,7 +124,7 @@ Result<int> ViewServer::bind(int port) {
     const bool bound =
         port == 0 ? (port = server.bind_to_any_port("127.0.0.1")) > 0 : server.bind_to_port("127.0.0.1", port);
     if (!bound)
-        return Error{ErrorCode::failure, fmt::format("port {} is taken", port), "--port",
+        return Error{ErrorCode::failure, fmt::format("port {} is in use", port), "--port",
                      "leave --port out to get a free one"};
     return implementation_->port = port;
 }

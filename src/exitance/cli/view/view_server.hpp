@@ -9,33 +9,35 @@
 
 namespace exitance {
 
+/// HTTP status, content type and body of an answer.
 struct ViewAnswer {
     int status = 200;
     std::string type = "application/json", body;
 };
 
-/// A web server for the viewer's page on this machine alone: it listens on 127.0.0.1, answers only requests that name
-/// it as their host and do not come from another origin, and knows the files of one folder by heart, so that no path
-/// leads out of it. The one door to cpp-httplib.
+/// Web server for the viewer's page, reachable only from this machine. It listens on 127.0.0.1. It rejects requests
+/// with another host name or from another origin. It serves files from memory, so that no path can lead out of the
+/// page's folder. Only this class uses cpp-httplib.
 class ViewServer {
   public:
     using Parameters = std::multimap<std::string, std::string>;
     using Handler = std::function<ViewAnswer(const Parameters&)>;
-    /// The next server-sent events as text, waiting for some; an empty text while there are none, false at the end.
+    /// Sets `text` to the next server-sent events, or to an empty text after a wait without events. Returns false after
+    /// the last event.
     using EventSource = std::function<bool(std::size_t& next, std::string& text)>;
 
     ViewServer();
     ~ViewServer();
 
-    /// Reads every file of the page's folder.
+    /// Reads every file of the page's folder into memory and serves it. Error: a file cannot be read.
     Result<void> serve_page(const std::string& folder);
     void get(const std::string& path, Handler handler);
     void post(const std::string& path, Handler handler);
     void events(const std::string& path, EventSource source);
 
-    /// Takes a port, 0 for any that is free; returns it.
+    /// Binds a port (0: any free port) and returns it. Error (failure): the port is in use.
     Result<int> bind(int port);
-    /// Answers requests, on threads of its own, until the process ends.
+    /// Answers requests on several threads. Returns only when the process ends.
     void listen();
 
   private:
@@ -43,7 +45,8 @@ class ViewServer {
     std::unique_ptr<Implementation> implementation_;
 };
 
-/// Where the page is: beside the program as built, or as installed. An error says what to install.
+/// Folder of the viewer's page, in the build folder or the installation of the running program. Error (failure): there
+/// is none; the hint names the packages to install.
 Result<std::string> find_viewer_page();
 
 }  // namespace exitance

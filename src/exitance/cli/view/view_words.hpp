@@ -7,15 +7,18 @@
 
 namespace exitance {
 
-/// What a request of the viewer's page says by a name; empty where it says nothing.
+/// The parameter `name` of a request by the viewer's page; empty if it is missing.
 std::string view_text(const ViewServer::Parameters& parameters, const std::string& name);
 
-/// Finite numbers between commas; none where there are not `count` of them.
+/// The numbers of the parameter `name`, separated by commas and below 1e12 in magnitude; none if they are not exactly
+/// `count` numbers.
 std::optional<std::vector<double>> view_numbers(const ViewServer::Parameters& parameters, const std::string& name,
                                                 std::size_t count);
 
+/// Answer to a malformed request.
 inline const ViewAnswer view_misunderstood{400, "text/plain", "not understood"};
-/// There is no light yet. A page asks before it knows; browsers would log a status of 400 or above as an error.
+/// Answer while a scene has no light yet. Pages cannot avoid such requests, and browsers log a status of 400 or above
+/// as an error.
 inline const ViewAnswer view_absent{204, "text/plain", ""};
 
 }  // namespace exitance

@@ -75,8 +75,7 @@ Result<std::string> run_scene_program(const std::vector<std::string>& words, con
                                       const std::string& folder, const StopRequest& stop) {
     const std::string name = words.empty() ? "" : words[0];
     if (!is_scene_program(name))
-        return bad(fmt::format("'{}' is no program of Radiance's that makes scenes", shown(name)),
-                   "others are not run");
+        return bad(fmt::format("'{}' is not a Radiance program that makes scenes", shown(name)), "others are not run");
     if (!is_program(name)) return bad(fmt::format("the program '{}' is not installed", name), "it comes with Radiance");
     const File in(std::tmpfile(), &std::fclose), err(std::tmpfile(), &std::fclose);
     Pipe out;
@@ -93,7 +92,7 @@ Result<std::string> run_scene_program(const std::vector<std::string>& words, con
     bool ended = false;
     while (whole && !stop.requested() && !(ended = child.has_ended())) ::poll(nullptr, 0, 1);
     if (stop.requested() && !ended)
-        return Error{ErrorCode::limit, fmt::format("'{}' was still running when a stop was asked for", name), "", ""};
+        return Error{ErrorCode::limit, fmt::format("'{}' was still running when a stop was requested", name), "", ""};
     if (!whole) return bad(fmt::format("'{}' prints more than {} MB", name, max_output_bytes >> 20));
     if (!child.succeeded()) return bad(fmt::format("'{}' fails: {}", name, shown(first_line(err.get()))));
     return text;

@@ -62,13 +62,13 @@ std::string_view trimmed(std::string_view text) {
 }
 
 Result<std::string> EulumdatReader::text(const char* what) {
-    if (at_ >= lines_.size()) return error(fmt::format("ends before {}", what), "is it whole?");
+    if (at_ >= lines_.size()) return error(fmt::format("ends before {}", what), "is the file complete?");
     return shown(trimmed(lines_[at_++]));
 }
 
 /// Reads the number of the next line; the decimal separator may be a comma.
 Result<double> EulumdatReader::number(const std::string& what) {
-    if (at_ >= lines_.size()) return error(fmt::format("ends before {}", what), "is it whole?");
+    if (at_ >= lines_.size()) return error(fmt::format("ends before {}", what), "is the file complete?");
     const std::string_view line = trimmed(lines_[at_]);
     std::string word(line);
     if (std::count(word.begin(), word.end(), ',') == 1) std::replace(word.begin(), word.end(), ',', '.');
@@ -157,7 +157,7 @@ Result<void> EulumdatReader::read_sizes() {
     if (const Result<void> read = numbers(fields); !read) return read;
     for (const double size : {length_, width_, height_, lit_length_, lit_width_, lit_height_[0], lit_height_[1],
                               lit_height_[2], lit_height_[3]})
-        if (!(size >= 0 && size <= 1e7)) return error(fmt::format("a length of {:g} mm is none", size));
+        if (!(size >= 0 && size <= 1e7)) return error(fmt::format("a length of {:g} mm is invalid", size));
     if (conversion_ == 0) {
         tell(out_, Finding::Kind::repair, static_cast<int>(at_) - 1, "the conversion factor 0 is taken for 1");
         conversion_ = 1;
@@ -166,7 +166,7 @@ Result<void> EulumdatReader::read_sizes() {
         return error(fmt::format("the conversion factor is {:g}", conversion_), "intensities are multiplied by it");
     if (tilt_ != 0)
         tell(out_, Finding::Kind::warning, static_cast<int>(at_),
-             fmt::format("was measured tilted by {:g} degrees", tilt_), "light is taken as it stands in the table");
+             fmt::format("was measured tilted by {:g} degrees", tilt_), "the table is used as given");
     return {};
 }
 
@@ -256,7 +256,7 @@ std::size_t EulumdatReader::numbers_left() const {
 Result<void> EulumdatReader::read_table() {
     // Check first, so that no memory is allocated for data that the file cannot contain.
     if (lines_.size() - std::min(at_, lines_.size()) < planes_ + angles_)
-        return at_ = lines_.size(), error("ends before the intensities", "is it whole?");
+        return at_ = lines_.size(), error("ends before the intensities", "is the file complete?");
     const Result<std::vector<double>> circle = read_angles(planes_, "C plane", 360);
     if (!circle) return circle.error();
     const Result<std::vector<double>> gamma = read_angles(angles_, "angle gamma", 180);
@@ -277,14 +277,14 @@ Result<void> EulumdatReader::read_table() {
             if (!value) return value.error();
             if (!(*value >= 0 && *value * factor <= max_value)) {
                 --at_;
-                return error(fmt::format("the intensity {:g} is none", *value), "0 or more");
+                return error(fmt::format("the intensity {:g} is invalid", *value), "0 or more");
             }
             row.push_back(*value * factor);
         }
     }
     if (std::any_of(lines_.begin() + static_cast<std::ptrdiff_t>(at_), lines_.end(),
                     [](std::string_view line) { return !trimmed(line).empty(); }))
-        tell(out_, Finding::Kind::warning, static_cast<int>(at_) + 1, "what follows the intensities is left alone",
+        tell(out_, Finding::Kind::warning, static_cast<int>(at_) + 1, "the text after the intensities is ignored",
              "are the numbers of planes and angles right?");
     if (const Result<void> taken = take_planes(*circle, std::move(rows)); !taken) return taken;
     Planes planes;

@@ -162,7 +162,8 @@ Result<void> IesReader::check_header() {
     if (h.verticals < 2) return text_.error("there is one vertical angle alone", "a distribution has at least two");
     // Each intensity takes at least a digit and a blank.
     if (2 * h.verticals * h.horizontals > static_cast<double>(text_.bytes_left()) + 2)
-        return text_.error(fmt::format("ends before {:g} intensities", h.verticals * h.horizontals), "is it whole?");
+        return text_.error(fmt::format("ends before {:g} intensities", h.verticals * h.horizontals),
+                           "is the file complete?");
     if (h.type != 1 && h.type != 2 && h.type != 3)
         return text_.error(fmt::format("{:g} is no type of photometry", h.type), "1 is C, 2 is B, 3 is A");
     if (h.units != 1 && h.units != 2)
@@ -177,13 +178,14 @@ Result<void> IesReader::check_header() {
         return text_.error(fmt::format("the ballast-lamp photometric factor is {:g}", h.third),
                            "intensities are multiplied by it");
     if (!has_blpf_ && std::abs(h.third - 1) > 0.2)
-        repair(fmt::format("the third factor is {:g}: it is no factor in {} and left alone", h.third, out_.format));
+        repair(fmt::format("the third factor is {:g}: it is ignored, since it is not a factor in {}", h.third,
+                           out_.format));
     if (h.lamps < 1 || h.lamps != std::floor(h.lamps) || h.lamps > 1e6) {
         repair(fmt::format("{:g} lamps are taken for 1", h.lamps));
         h.lamps = 1;
     }
     if (h.watts < 0 || h.watts > 1e9) {
-        repair(fmt::format("{:g} W are taken for not said", h.watts));
+        repair(fmt::format("{:g} W are ignored", h.watts));
         h.watts = 0;
     }
     return {};
@@ -194,7 +196,7 @@ Result<std::vector<double>> IesReader::read_angles(std::size_t count, const char
     for (std::size_t i = 0; i < count; ++i) {
         const Result<double> angle = text_.number(fmt::format("{} angle {} of {}", kind, i + 1, count));
         if (!angle) return angle.error();
-        if (!(std::abs(*angle) <= 360)) return text_.error(fmt::format("the {} angle {:g} is none", kind, *angle));
+        if (!(std::abs(*angle) <= 360)) return text_.error(fmt::format("the {} angle {:g} is invalid", kind, *angle));
         if (i > 0 && !(*angle > out.back()))
             return text_.error(fmt::format("the {} angle {:g} follows {:g}", kind, *angle, out.back()),
                                "angles rise; is the number of angles right?");
@@ -218,12 +220,12 @@ Result<void> IesReader::read_table() {
                 fmt::format("intensity {} of {}", h * vertical->size() + v + 1, horizontal->size() * vertical->size()));
             if (!value) return value.error();
             if (!(*value >= 0 && *value * factor <= max_value))
-                return text_.error(fmt::format("the intensity {:g} cd is none", *value), "0 or more");
+                return text_.error(fmt::format("the intensity {:g} cd is invalid", *value), "0 or more");
             row.push_back(*value * factor);
         }
     }
     if (!text_.at_end())
-        tell(out_, Finding::Kind::warning, text_.line_number(), "what follows the intensities is left alone",
+        tell(out_, Finding::Kind::warning, text_.line_number(), "the text after the intensities is ignored",
              "is the number of angles right?");
     return header_.type == 1 ? make_type_c(*vertical, std::move(planes)) : make_types_ab(*vertical, planes);
 }
@@ -327,7 +329,8 @@ Result<Photometry> IesReader::read() {
     if (header_.lumens > 0)
         out_.lamp_lumens = header_.lumens * header_.lamps;
     else if (header_.lumens != -1)
-        repair(fmt::format("{:g} lm per lamp are taken for absolute photometry", header_.lumens), "-1 would say so");
+        repair(fmt::format("{:g} lm per lamp are taken for absolute photometry", header_.lumens),
+               "lumens per lamp of -1 declare absolute photometry");
     out_.watts = header_.watts;
     out_.opening = opening();
     if (!(out_.largest() > 0)) return text_.error("all intensities are 0");

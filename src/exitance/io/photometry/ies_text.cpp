@@ -6,7 +6,7 @@ namespace exitance {
 
 Result<double> IesText::number(const std::string& what) {
     skip_blanks();
-    if (rest_.empty() || rest_[0] == '\x1a') return error(fmt::format("ends before {}", what), "is it whole?");
+    if (rest_.empty() || rest_[0] == '\x1a') return error(fmt::format("ends before {}", what), "is the file complete?");
     const std::string_view word = rest_.substr(0, std::min(rest_.find_first_of(blanks), rest_.size()));
     double value = 0;
     switch (number_of_word(word, value)) {

@@ -193,7 +193,7 @@ void give_sky(const ChosenSky& sky, ReadScene& read) {
     SceneDescription& description = read.description;
     if (!description.distant.empty())
         read.findings.push_back({Finding::Kind::warning, description.file, 0,
-                                 "the scene has a sky or a sun of its own: that of --sky takes its place",
+                                 "the scene has a sky or a sun of its own: --sky replaces it",
                                  "leave out --sky to have the scene's own"});
     const bool photometric = sky.photometric.value_or(description.photometric);
     description.distant = photometric ? sky.in_lumens : sky.in_watts;
@@ -253,7 +253,7 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
     LoadedScene scene{checked(std::move(read), lines, options.turn_bodies), {}};
     scene.lines = std::move(lines), scene.reflectance_deviation = std::move(deviation);
     if (!scene.scene && options.stop && options.stop->requested())
-        return refused(ErrorCode::limit, paths.front(), "a stop was asked for while the scene was being read", "");
+        return refused(ErrorCode::limit, paths.front(), "a stop was requested while the scene was being read", "");
     if (options.faults == Faults::refuse) refuse_repairs(scene);
     return scene;
 }

@@ -34,7 +34,7 @@ class StlReader {
         else if (text->find("facet") != text->npos || text->starts_with("solid"))
             read_ascii(*text);
         else
-            error(0, "is neither a binary STL file of the length that it says nor one of text");
+            error(0, "is neither a binary STL file of the stated length nor a text STL file");
         return std::move(out_);
     }
 

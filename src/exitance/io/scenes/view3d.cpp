@@ -99,7 +99,7 @@ class View3dReader {
                 return find(Finding::Kind::warning, line_, fmt::format("control '{}' has no value", shown(name)));
             if ((name == "encl" || name == "emit" || name == "row" || name == "col") && value != 0)
                 find(Finding::Kind::warning, line_,
-                     fmt::format("'{}={}' is left out: all rows are computed, as they are", shown(name), value));
+                     fmt::format("'{}={}' is ignored: all rows are computed, without adjustment", shown(name), value));
         }
     }
 

@@ -184,7 +184,7 @@ struct MaterialColumns {
         if (file.has(group + "/material_through")) through = in.read<double>("material_through", 1, name.size());
         for (const double share : through)
             if (!file.failed() && !(share >= 0 && share <= 1))
-                file.fail(group + "/material_through", "holds what is no share");
+                file.fail(group + "/material_through", "holds a value that is not a share");
     }
 };
 

@@ -62,7 +62,7 @@ DistantLight read_sky(Hdf5Reader& file, const std::string& group) {
             m.scale = v[8], m.sun = sun[i];
             m.intermediate = kind[i] & intermediate, m.blends_ground = kind[i] & blends_ground;
             m.below = kind[i] & below;
-            if (kind[i] > all_flags) file.fail(group + "/sky_kind", "holds what is no kind of sky");
+            if (kind[i] > all_flags) file.fail(group + "/sky_kind", "holds an unknown kind of sky");
             out.domes.push_back({m, spectrum(irradiance, i)});
         }
     }

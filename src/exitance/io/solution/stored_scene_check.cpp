@@ -69,20 +69,20 @@ std::optional<std::string> find_nonsense(const ElementTree& tree, const Scene& s
 std::optional<std::string> find_nonsense(const Scene& scene) {
     const Box& box = scene.box();
     if (!is_sane(box.lo) || !is_sane(box.hi) || !(scene.size() > 0) || min(box.lo, box.hi) != box.lo)
-        return "the box is none";
+        return "the box is invalid";
     const double slack = tolerance * scene.size();
     for (const Material& m : scene.materials())
-        if (!is_sane(m)) return "material '" + m.name + "' reflects or emits what nothing can";
+        if (!is_sane(m)) return "material '" + m.name + "' has an impossible reflectance or emission";
     for (SurfaceId s : scene.surfaces().ids()) {
         for (const Point& p : scene.outline(s))
             for (std::size_t axis = 0; axis < 3; ++axis)
                 if (!(p[axis] >= box.lo[axis] - slack && p[axis] <= box.hi[axis] + slack))
                     return "face " + std::to_string(s.value) + " lies outside the scene's box";
         if (!is_sane(scene, s))
-            return "face " + std::to_string(s.value) + " has not the area, the plane or the material that it says";
+            return "face " + std::to_string(s.value) + " does not match its area, plane or material";
     }
     for (RegionId r : scene.regions().ids())
-        if (!is_sane(scene, r)) return "region " + std::to_string(r.value) + " is not what its borders and faces make";
+        if (!is_sane(scene, r)) return "region " + std::to_string(r.value) + " does not match its borders and faces";
     for (const PunctualLight& light : scene.lights())
         if (!is_sane(light.position)) return "light '" + light.name + "' is too far away";
     return {};

@@ -203,12 +203,12 @@ Solution unfinished(const ClassicalInput& input, Method method, const Snapshots:
 Result<void> check_emission(const Scene& scene, const ClassicalOptions& classical) {
     if (scene.has_diffusing_panes())
         return Error{ErrorCode::usage,
-                     "classical forms take light to one side of a surface; the scene has diffusing panes", "--method",
-                     "--method matrix without options of classical forms takes it to both"};
+                     "published forms carry light to one side of a surface, but the scene has diffusing panes",
+                     "--method", "--method matrix without options of published forms supports them"};
     if (!classical.carried() || (!scene.has_light_apart() && scene.panes().empty() && !scene.has_directed_emission()))
         return {};
     return Error{ErrorCode::usage, "carried light comes from diffuse emitters; the scene has others", "--direct",
-                 "--direct apart takes all kinds of emitters"};
+                 "--direct apart supports all emitters"};
 }
 
 }  // namespace

@@ -152,10 +152,11 @@ Result<Solution> solve_by_lines(const Scene& scene, const SolveOptions& options,
     Solution solution{.scene = scene};
     Stage stage(solution.scene);
     if (stage.pieces.size() > LineHierarchy::most_pieces)
-        return Error{ErrorCode::bad_input,
-                     fmt::format("is {} convex polygons, of which --local-pass a to d looks at all pairs: at most {}",
-                                 stage.pieces.size(), LineHierarchy::most_pieces),
-                     scene.file(), "--local-pass e has no such limit"};
+        return Error{
+            ErrorCode::bad_input,
+            fmt::format("has {} convex polygons; --local-pass a to d examines all pairs and supports at most {}",
+                        stage.pieces.size(), LineHierarchy::most_pieces),
+            scene.file(), "--local-pass e has no such limit"};
     stage.rooms = find_light_rooms(stage, options.seed, stop);
     SolveStatistics& s = solution.statistics;
     s.method = name_in(method_names, Method::discontinuity), s.basis = "quadratic";

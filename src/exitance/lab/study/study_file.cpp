@@ -240,7 +240,7 @@ void read_conclusion(Keys& keys, StudyConclusion& conclusion) {
     conclusion.measure = known->first;
     const bool along =
         known->first != Measure::value && known->first != Measure::largest && known->first != Measure::ratio;
-    if (along && conclusion.x.empty()) keys.fail(keys.table(), fmt::format("'{}' wants an 'x'", measure));
+    if (along && conclusion.x.empty()) keys.fail(keys.table(), fmt::format("'{}' needs an 'x'", measure));
 }
 
 void read_reference(Keys& keys, StudyReference& reference) {

@@ -26,7 +26,7 @@ Table unfinished(const StudySolve& run, const std::string& status) {
 
 std::string last_line(const std::string& text) {
     const std::size_t end = text.find_last_not_of(" \n");
-    if (end == std::string::npos) return "it ended without a word";
+    if (end == std::string::npos) return "it ended without output";
     const std::size_t begin = text.find_last_of('\n', end);
     return text.substr(begin == std::string::npos ? 0 : begin + 1, end - begin);
 }
@@ -37,7 +37,7 @@ Table measured(const StudySolve& run, const Scene& scene, const ProgramRun& prog
     if (program.status != 0) return unfinished(run, "failed: " + last_line(program.err));
     if (!light) return unfinished(run, "failed: " + light.error().message);
     if (light->irradiance.size() != reference.points.size())
-        return unfinished(run, fmt::format("failed: it told light of {} points in place of {}",
+        return unfinished(run, fmt::format("failed: it printed light at {} points instead of {}",
                                            light->irradiance.size(), reference.points.size()));
     Table table = unfinished(run, "done");
     add_error(table, error_against(light->irradiance, reference, scene));

@@ -30,7 +30,7 @@ bool has(const std::vector<std::string>& words, const std::string& word) {
 
 std::string first_error(const std::string& text) {
     const std::size_t at = text.find("error: ");
-    if (at == std::string::npos) return "the program ended without a word";
+    if (at == std::string::npos) return "the program ended without output";
     return text.substr(at + 7, text.find('\n', at) - at - 7);
 }
 

@@ -29,7 +29,7 @@ Result<void> apply(const GivenOption& option, SolveRequest& request) {
     return usage(option.row->name, wrong, "exitance solve --help-all describes its values");
 }
 
-/// The presets as options.
+/// The presets of a recipe as options.
 std::vector<GivenOption> presets_of(const Recipe& recipe) {
     std::vector<GivenOption> out;
     const std::vector<std::string> words = preset_words(recipe);
@@ -41,7 +41,8 @@ std::vector<GivenOption> presets_of(const Recipe& recipe) {
     return out;
 }
 
-/// Presets of the recipe that is given, if one is.
+/// Applies the presets of --recipe, if it is given. Error (usage): an unknown recipe, or a --method that differs from
+/// the recipe's.
 Result<void> apply_recipe(std::span<const GivenOption> given, SolveRequest& request) {
     const GivenOption* const option = find(given, "--recipe");
     if (!option) return {};
@@ -58,7 +59,7 @@ Result<void> apply_recipe(std::span<const GivenOption> given, SolveRequest& requ
     return {};
 }
 
-/// --smoothing and --gather say what --output-light and --recipe say now.
+/// Error if --smoothing or --gather is combined with --output-light or --recipe, which replace them.
 Result<void> check_old_names(std::span<const GivenOption> given, const SolveRequest& request) {
     if (!request.output_light) return {};
     const std::string other = find(given, "--output-light") ? "--output-light" : "--recipe " + request.recipe;
@@ -68,7 +69,7 @@ Result<void> check_old_names(std::span<const GivenOption> given, const SolveRequ
     return {};
 }
 
-/// The new spelling of the old names among the options; empty if they can be left out.
+/// The options that replace --smoothing and --gather as given; empty if they can be omitted.
 std::string new_spelling(const GivenOption* smoothing, const GivenOption* gather, const SolveRequest& request) {
     const bool smooths = smoothing && smoothing->word == "on";
     if (form_of(request) != Form::published)
@@ -101,7 +102,7 @@ void settle(SolveRequest& request) {
     SolveOptions& o = request.options;
     ClassicalOptions& c = request.classical;
     if (o.task_engine && c.threshold) o.threshold = std::exchange(c.threshold, std::nullopt);
-    // Growing cells have no published form that gathers: their Gaussians are delivered as they are.
+    // Growing cells have no published form that gathers: `off` delivers the light of their Gaussians.
     if (o.method == Method::growing_cells && c.gather) {
         if (!*c.gather) o.smoothing = false;
         c.gather.reset();

@@ -8,19 +8,19 @@
 
 namespace exitance {
 
-/// An option of the command line, with the word that follows it; flags have none.
+/// An option of the command line and the word after it; empty for flags.
 struct GivenOption {
     const OptionRow* row;
     std::string word;
 };
 
-/// The request that options make, in any order. Presets of a recipe come first, so that options replace them; old names
-/// become new ones, with a warning. Errors (usage) say which option has a wrong value, or which cannot be combined.
+/// Builds a request from options in any order. Presets of a recipe are applied first, so that options replace them. Old
+/// names are accepted with a warning. Error (usage): an option has a wrong value, or options cannot be combined.
 /// Support by methods is checked by find_way().
 Result<SolveRequest> make_request(std::span<const GivenOption> given);
 
-/// Lets options that imply others set them: --output-light the gather and the smoothing, --visibility exact the
-/// published form, --task-engine where the threshold is kept.
+/// Sets the options that others imply: gather and smoothing for --output-light, exact direct light of the published
+/// form for --visibility exact. Moves the threshold to the member that --task-engine reads.
 void settle(SolveRequest& request);
 
 }  // namespace exitance

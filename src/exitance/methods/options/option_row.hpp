@@ -12,7 +12,7 @@
 
 namespace exitance {
 
-/// Who needs an option: --help lists those of users, --help-all those of everybody.
+/// Readers for whom an option is meant. --help lists the options for users, --help-all those of all audiences.
 enum class Audience : std::uint8_t { users, experts, laboratory, old_names };
 
 /// A heading under which help and reference list options.
@@ -39,7 +39,7 @@ inline constexpr OptionGroup all[] = {light,  scene,      limits,  run,       sc
 /// How the word after an option is read.
 struct OptionValue {
     std::string type = {};  ///< "R", "N|off", "jacobi|cg"; empty: the option is a flag.
-    /// Stores a word. Returns what is wrong with it, or nothing.
+    /// Stores a word in the request. Returns the message of an error, or an empty text.
     std::function<std::string(const std::string& word, SolveRequest& request)> read = {};
     /// The word in force; none while the option has its default.
     std::function<std::optional<std::string>(const SolveRequest& request)> word = {};
@@ -47,11 +47,11 @@ struct OptionValue {
     std::function<std::string(const SolveRequest& request)> json = {};
 };
 
-/// A statement of an option's support: these ways support these values.
+/// Support of an option: `ways` support its `values`.
 struct OptionSupport {
     Ways ways = {};
     std::string values = {};                         ///< "a|b"; empty: all values.
-    bool (*only_if)(const SolveRequest&) = nullptr;  ///< Further condition.
+    bool (*only_if)(const SolveRequest&) = nullptr;  ///< Condition of the support; null: none.
     std::string condition = {};                      ///< `only_if` in words: "with --basis constant".
 };
 
@@ -66,9 +66,9 @@ struct OptionRule {
 struct OptionRow {
     std::string name = {};  ///< "--epsilon"
     OptionValue value = {};
-    std::string does = {};     ///< What it does: one sentence.
+    std::string does = {};     ///< Effect of the option: one sentence without a full stop.
     std::string initial = {};  ///< Its default in words; empty: nothing is set.
-    std::string when = {};     ///< When to use it, or what its values mean; may be empty.
+    std::string when = {};     ///< When to use it, or the meaning of its values; may be empty.
     OptionGroup group = {};
     std::vector<OptionSupport> support = {};  ///< Empty: every way supports it.
     bool needs_method = false;                ///< --method must be given: `auto` is not decided by this option.
@@ -77,10 +77,10 @@ struct OptionRow {
     std::string section = {};      ///< Object of the recorded options that holds it; "-": it is not recorded.
 };
 
-/// "What it does. Default D. When to use it."
+/// Help text of an option: its effect, its default, and when to use it.
 std::string help_of(const OptionRow& row);
 
-/// Does "a|b|c" contain the word?
+/// True if `values`, such as "a|b|c", contain the word.
 bool is_among(std::string_view word, std::string_view values);
 
 }  // namespace exitance

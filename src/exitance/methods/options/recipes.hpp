@@ -7,11 +7,11 @@
 
 namespace exitance {
 
-/// Presets of the options that make a method what a publication describes.
+/// Presets of options with which a method works as a publication describes it.
 struct Recipe {
     std::string_view name;     ///< "hanrahan91"
-    std::string_view does;     ///< What it reproduces.
-    std::string_view source;   ///< Key in docs/references.bib; empty: of the method as such.
+    std::string_view does;     ///< The reproduced form of a method, in words.
+    std::string_view source;   ///< Key in docs/references.bib; empty: no publication.
     std::string_view presets;  ///< Options as on the command line.
 };
 
@@ -24,7 +24,7 @@ const Recipe* find_recipe(std::string_view name);
 /// Name of the recipe most similar to `name`; empty if none is similar.
 std::string nearest_recipe(std::string_view name);
 
-/// Words of the presets.
+/// The presets as separate words of a command line.
 std::vector<std::string> preset_words(const Recipe& recipe);
 
 }  // namespace exitance

@@ -144,7 +144,8 @@ OptionValue importance() {
     return out;
 }
 
-/// Words of two tables, which are kept in two members: those of the standard form, and those of published forms alone.
+/// A value with the names of two tables, each stored in a member of its own: one for the standard form, and one for
+/// names that only published forms have.
 template <class First, class FirstMember, class Second, class SecondMember>
 OptionValue either(const First& first, FirstMember in_first, const Second& second, SecondMember in_second) {
     const OptionValue one = choice(first, in_first), other = choice(second, in_second);
@@ -163,7 +164,7 @@ OptionValue either(const First& first, FirstMember in_first, const Second& secon
     return out;
 }
 
-/// The engine of tasks keeps the threshold elsewhere than the published forms.
+/// Value of --threshold. Published forms and the task engine store it in different members.
 OptionValue threshold() {
     OptionValue out = positive("X", at(&ClassicalOptions::threshold));
     const auto value = [](const SolveRequest& r) {
@@ -195,7 +196,7 @@ OptionValue multigrid() {
     return out;
 }
 
-/// "rounds", "shots=100,1000", "t=0.5,1,2"
+/// Reads --snapshots: "rounds", "shots=100,1000" or "t=0.5,1,2" (seconds). Returns the message of an error.
 std::string read_snapshots(const std::string& word, SnapshotPlan& plan) {
     if (word == "rounds") return plan.rounds = true, "";
     const bool shots = word.starts_with("shots="), times = word.starts_with("t=");
@@ -231,7 +232,7 @@ OptionValue snapshots() {
     return out;
 }
 
-/// "8": so many surfaces; "20W": those that send out at least that power.
+/// Value of --dm-sources: "8" for a number of surfaces, "20W" for the surfaces that send out at least that power.
 OptionValue secondary_sources() {
     OptionValue out;
     out.type = "N|POWER";
@@ -760,7 +761,7 @@ std::string key_of(const OptionRow& row) {
     return quoted(key);
 }
 
-/// "key": value, ... of the rows that a section records.
+/// JSON members ("key": value, ...) of the options in a section.
 std::string members(std::string_view section, const SolveRequest& request) {
     std::string out;
     for (const OptionRow& row : solve_option_table())

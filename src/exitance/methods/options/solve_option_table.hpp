@@ -7,11 +7,11 @@
 
 namespace exitance {
 
-/// The table of options that decide how a solve is done. Parser, help, refusals, recorded options, manual page, shell
-/// completion and docs/options.md are made from it. A new option is a new row.
+/// The table of options that control a solve. The parser, help, errors about unsupported options, recorded options,
+/// manual page, shell completions and docs/options.md are generated from it. A new option is a new row.
 std::span<const OptionRow> solve_option_table();
 
-/// The row of "--epsilon"; null if there is none.
+/// The row of an option, such as "--epsilon"; null if there is none.
 const OptionRow* find_option(std::string_view name);
 
 /// JSON object with every recorded option of a request.

@@ -29,10 +29,10 @@ struct SolveRequest {
     std::optional<bool> photometric = {};         ///< Unit of the scene's light; empty: as the file says.
     bool light_groups = false;                    ///< Also solve each group of emitters and keep its light.
     std::optional<double> checkpoint_every = {};  ///< Seconds between checkpoints.
-    bool resume = false;                          ///< Continue from the checkpoint beside the output.
+    bool resume = false;                          ///< Continue from the checkpoint of the same output.
     bool dry_run = false;                         ///< Print a forecast only.
     std::string trace = {};                       ///< File for the trace of parallel loops; empty: none.
-    std::vector<std::string> warnings = {};       ///< About options that are spelled differently now.
+    std::vector<std::string> warnings = {};       ///< Warnings about old names of options.
 };
 
 }  // namespace exitance

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// In the order in which `auto` tries them.
+/// Methods of the standard form, in the order in which `auto` tries them.
 constexpr std::array<Method, 8> standard_methods{Method::matrix,        Method::hierarchical,   Method::wavelet,
                                                  Method::progressive,   Method::substructuring, Method::monte_carlo,
                                                  Method::discontinuity, Method::growing_cells};
@@ -40,7 +40,7 @@ std::string name(Method method) {
     return std::string(name_in(method_names, method));
 }
 
-/// "a, b or c" of "a|b|c".
+/// Lists the values "a|b|c" as "a, b or c".
 std::string alternatives(const std::string& values) {
     std::string out;
     for (const char c : values) out += c == '|' ? std::string(", ") : std::string(1, c);
@@ -48,7 +48,7 @@ std::string alternatives(const std::string& values) {
     return out;
 }
 
-/// Is "--oracle ff|bf" among the options, with one of these values?
+/// True if the request sets an option to one of the values in a condition such as "--oracle ff|bf".
 bool is_given(const std::string& condition, const SolveRequest& request) {
     const std::size_t blank = std::min(condition.find(' '), condition.size());
     const OptionRow* const row = find_option(condition.substr(0, blank));
@@ -64,23 +64,23 @@ std::string with_value(const OptionRow& row, const std::string& value) {
     return row.value.type.empty() ? row.name : row.name + " " + value;
 }
 
-/// "--visibility exact", or "--epsilon" if its values are supported alike.
+/// The option with its value, such as "--visibility exact", if support depends on values; otherwise only its name.
 std::string shown(const OptionRow& row, const std::string& value) {
     const bool depends =
         std::any_of(row.support.begin(), row.support.end(), [](const auto& s) { return !s.values.empty(); });
     return depends ? with_value(row, value) : row.name;
 }
-/// The same, where one way is concerned.
+/// Like shown(row, value), considering support by one way only.
 std::string shown(const OptionRow& row, const std::string& value, Way way) {
     const bool depends = std::any_of(row.support.begin(), row.support.end(),
                                      [&](const OptionSupport& s) { return s.ways.contains(way) && !holds(s, value); });
     return depends ? with_value(row, value) : row.name;
 }
 
-/// Like supporting_methods(), without conditions that hold in a request.
+/// Like supporting_methods(). Conditions that hold in `request` (may be null) are omitted.
 std::string supporting_here(const OptionRow& row, Form form, const std::string& value, const SolveRequest* request);
 
-/// The option that selects a published form, or another form of its own.
+/// The given option that selects the published form, for error messages.
 std::string selecting_option(const SolveRequest& request) {
     if (!request.recipe.empty()) return "--recipe " + request.recipe;
     for (const OptionRow& row : solve_option_table()) {
@@ -93,7 +93,7 @@ std::string selecting_option(const SolveRequest& request) {
     return "--direct";
 }
 
-/// What is wrong with an option in a way that does not support it.
+/// The error for an option that a way does not support.
 Error not_supported(const OptionRow& row, const std::string& value, Way way, const SolveRequest& request) {
     const std::string option = shown(row, value, way), here = supporting_here(row, way.form, value, &request);
     const std::string hint = "exitance solve --help-all says which methods support an option";
@@ -126,12 +126,14 @@ Error not_supported(const OptionRow& row, const std::string& value, Way way, con
                  "--recipe classical-METHOD selects a published form");
 }
 
-/// The method that finds the light: if reflections are counted, `matrix` replaces others.
+/// The method that computes the light. If the number of reflections is limited, `matrix` replaces the standard form of
+/// other methods, except discontinuity meshing.
 Method in_force(Form form, Method method, const SolveRequest& request) {
     const bool replaced = form == Form::standard && request.options.bounces > 0 && method != Method::discontinuity;
     return replaced ? Method::matrix : method;
 }
 
+/// Checks which options need or exclude one another.
 Result<void> check_rules(const SolveRequest& request, Form form) {
     for (const OptionRow& row : solve_option_table()) {
         const std::optional<std::string> word = row.value.word(request);
@@ -161,9 +163,9 @@ const OptionRow* first_unsupported(const SolveRequest& request, Way way) {
     return nullptr;
 }
 
-/// Why no method supports all options.
+/// The error for options that no method supports together.
 Error no_method(const SolveRequest& request, Form form) {
-    // The first option that leaves no method, and the one before it that the methods for it do not support.
+    // Finds the first option after which no method is left, and the last one before it that removed methods.
     std::vector<Method> left(methods_of(form).begin(), methods_of(form).end());
     const OptionRow* before = nullptr;
     for (const OptionRow& row : solve_option_table()) {

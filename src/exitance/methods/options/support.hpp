@@ -12,22 +12,22 @@ namespace exitance {
 /// The form that the options select.
 Form form_of(const SolveRequest& request);
 
-/// Does the way support the option with the value that it has in the request?
+/// True if the way supports the option with its value in the request.
 bool supports(const OptionRow& row, const SolveRequest& request, Way way);
 
-/// The methods that support an option with this value (empty: with any) in a form, as "hierarchical, wavelet; matrix
-/// with
-/// --basis constant". Empty: none.
+/// Names of the methods that support an option with a value (empty: with any value) in a form, such as "hierarchical,
+/// wavelet; matrix with --basis constant". Empty: no method.
 std::string supporting_methods(const OptionRow& row, Form form, const std::string& value = "");
 
 /// The way that carries out a request: its form, with its method or, for `auto`, the first method that supports all
-/// options. Error (usage): an option that is not supported, options that need or exclude one another; the message says
-/// which, and which methods support the option.
+/// options. Error (usage): an option that is not supported, or options that need or exclude one another. The message
+/// names the options and the methods that support them.
 Result<Way> find_way(const SolveRequest& request);
 /// Like find_way(request), in a given form.
 Result<Way> find_way(const SolveRequest& request, Form form);
 
-/// Does the method support all options? If reflections are counted, `matrix` replaces other methods.
+/// True if the method supports all options. If the number of reflections is limited, `matrix` replaces most methods, as
+/// in find_way().
 bool supports_all(Method method, const SolveOptions& options);
 
 /// The first method that supports all options, for `auto`; `automatic` if none does.

@@ -9,7 +9,8 @@
 
 namespace exitance::option_values {
 
-// Kinds of option values. Each function returns how a word is read into a member of SolveRequest, which `at` names.
+// Kinds of option values. Each function returns an OptionValue that reads words into a member of SolveRequest. The
+// functions at() select the member.
 
 template <class T>
 auto at(T SolveOptions::*member) {
@@ -38,13 +39,14 @@ auto at(T SolveRequest::*member) {
 
 /// A finite number that is the whole word; none otherwise.
 std::optional<double> number_in(const std::string& word);
-/// "4G", "500M", "1048576": bytes, with K, M, G and T as powers of 1024; none if the word is no size from 1 byte to
-/// 1e18.
+/// Number of bytes in words such as "4G", "500M" or "1048576". K, M, G and T are powers of 1024. None if the word is
+/// not a size from 1 to 1e18 bytes.
 std::optional<std::size_t> bytes_in(std::string word);
 /// Shortest decimal text that reads back as the same number.
 std::string text_of(double value);
+/// Message of an error.
 std::string not_a_number(const std::string& word);
-/// Text in quotation marks, for JSON.
+/// Text in quotation marks, escaped for JSON.
 std::string quoted(std::string_view text);
 
 template <class T>
@@ -64,7 +66,7 @@ const T* present(const std::optional<T>& value) {
     return value ? &*value : nullptr;
 }
 
-/// A value of which `as_word` makes words and `as_json` JSON.
+/// A value that `as_word` converts to a word and `as_json` to JSON.
 template <class Member, class AsWord, class AsJson>
 OptionValue value_of(std::string type, Member member, AsWord as_word, AsJson as_json) {
     OptionValue out;
@@ -160,7 +162,7 @@ OptionValue count(Member member, long long least, double most = 9e15) {
         if (!value) return not_a_number(word);
         if (*value != std::floor(*value) || *value < static_cast<double>(least))
             return "must be a whole number from " + std::to_string(least) + ", not " + word;
-        if (*value > most) return word + " is too much";
+        if (*value > most) return word + " is too large";
         using Target = std::remove_reference_t<decltype(member(request))>;
         if constexpr (std::is_same_v<Target, int>)
             member(request) = static_cast<int>(*value);

@@ -32,13 +32,14 @@ MethodChoice choose_alone(const Stage& stage, const SolveOptions& options) {
         return choose(Method::matrix, "counts reflections");
     if (options.method == Method::wavelet && !options.basis) out.options.basis = BasisKind::multiwavelet2;
     if (options.method != Method::automatic) return out;
-    if (!options.importance.empty()) return choose(Method::hierarchical, "refines for the points that are looked at");
+    if (!options.importance.empty()) return choose(Method::hierarchical, "refines for the points of --importance");
     if (options.error_interpolant && *options.error_interpolant <= calibrated::sharp_interpolant &&
         !ElementGather::suits(stage))
         return choose(Method::discontinuity,
-                      fmt::format("{:.3g}% asked of what is exported, past shadows", 100 * *options.error_interpolant));
+                      fmt::format("an error of {:.3g}% of the exported mesh needs elements along shadows",
+                                  100 * *options.error_interpolant));
     if (!ElementGather::suits(stage))
-        return choose(Method::matrix, fmt::format("{} polygons that hide one another; rays find light best there",
+        return choose(Method::matrix, fmt::format("{} polygons that occlude one another: rays are the cheapest way",
                                                   stage.scene.surfaces().size()));
     if (!out.forecast.takes_links()) return choose(Method::matrix, describe(out.forecast));
     out.options.basis = BasisKind::multiwavelet3;
@@ -67,7 +68,7 @@ MethodChoice choose_method(const Stage& stage, const SolveOptions& options) {
     if (is_free && other != Method::automatic && !supports_all(choice.options.method, options)) {
         choice.options = options;
         choice.options.method = other;
-        choice.why = "supports all options that were given";
+        choice.why = "supports all given options";
     }
     const bool by_rays = runs_over_processes(choice.options.method, choice.options) &&
                          !(choice.options.method == Method::hierarchical &&

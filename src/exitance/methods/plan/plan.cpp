@@ -16,19 +16,19 @@ namespace {
 void notice_unused_links(Plan& plan) {
     const std::string_view method = name_in(method_names, plan.options.method);
     if (!plan.options.importance.empty())
-        plan.notices.push_back(fmt::format("--importance steers links, of which the method {} has none", method));
+        plan.notices.push_back(fmt::format("--importance has no effect: the method {} has no links", method));
     if (plan.options.keep_links)
         plan.notices.push_back(
-            fmt::format("--keep-links keeps nothing: the method {} has no links (--method hierarchical has)", method));
+            fmt::format("--keep-links has no effect: the method {} has no links (--method hierarchical has)", method));
     if (plan.options.oracle != LinkOracle::transport)
-        plan.notices.push_back(fmt::format("--oracle judges links, of which the method {} has none", method));
+        plan.notices.push_back(fmt::format("--oracle has no effect: the method {} has no links", method));
 }
 
 /// Uses clusters if links between all pairs would exceed the memory limit.
 void fit_links(Plan& plan, const Stage& stage) {
     if (plan.options.clusters != false || !links_outgrow_memory(stage.pieces.size(), plan.options)) return;
     plan.notices.push_back(fmt::format(
-        "links between all pairs of {} polygons would outgrow --memory-limit: clusters are used", stage.pieces.size()));
+        "links between all pairs of {} polygons would exceed --memory-limit: clusters are used", stage.pieces.size()));
     plan.options.clusters = true;
 }
 
@@ -53,8 +53,8 @@ Plan make_plan(const Stage& stage, const SolveOptions& asked, double first_error
     const std::string_view name = name_in(method_names, method);
     if (choice.is_second) plan.notices.push_back(fmt::format("method {}: {}", name, std::exchange(plan.why, {})));
     if (asked.method != Method::automatic && asked.method != method)
-        plan.notices.push_back(fmt::format("--bounces is counted by the method matrix, which solves in place of {}",
-                                           name_in(method_names, asked.method)));
+        plan.notices.push_back(
+            fmt::format("--bounces needs the method matrix, which replaces {}", name_in(method_names, asked.method)));
     const bool sharp = method == Method::discontinuity && plan.options.bounces < 0;
     plan.has_links = method == Method::hierarchical || method == Method::wavelet || sharp;
     if (plan.has_links)

@@ -48,11 +48,10 @@ void Solver::solve_indirect_light() {
         if (is_lowered) next = NextAttempt{.finer = {.knobs = first_knobs(plan_, stage_, *demand), .method = true}};
         if (!next) return stop_early("time limit");
         if (!next->forecast.empty()) progress_.note(next->forecast);
-        progress_.note(fmt::format("error {:.2f}%, {:.2f}% asked for: once more, {}", 100 * certificate_.largest(),
-                                   100 * *demand,
-                                   next->is_step        ? "refining what is delivered"
-                                   : next->finer.method ? "finer"
-                                                        : "finer, on the light that the method found"));
+        progress_.note(fmt::format("estimated error {:.2f}% > {:.2f}%: {}", 100 * certificate_.largest(), 100 * *demand,
+                                   next->is_step        ? "refining the delivered elements"
+                                   : next->finer.method ? "solving again with finer elements"
+                                                        : "refining the gather; the method's light is kept"));
         knobs_ = next->finer.knobs, takes_step_ = next->is_step;
         if (next->finer.method && !takes_step_) light_.reset(), next_ = {}, steps_.not_local = 0;
         if (options_.memory_limit_bytes) {
@@ -117,7 +116,7 @@ Solver::NextAttempt Solver::next_attempt(double demand) const {
                                                        .finer = finer.left});
     out.is_step = forecast.takes_steps();
     out.forecast =
-        fmt::format("another attempt: about {:.3g} rays by refining what is delivered, {:.3g} by finer elements",
+        fmt::format("another attempt: about {:.3g} rays by refining the delivered elements, {:.3g} by finer elements",
                     forecast.step_rays, forecast.finer_rays);
     if (out.is_step) out.finer = refined(knobs_, parts, left, margin(certificate_.points) * demand, target, options_);
     return out;
@@ -140,7 +139,7 @@ void Solver::project_direct() {
                                                   stop_);
     if (fresh.tree.size() > 0) {
         const Spectrum scale = keep_emitted_flux(fresh, stage_, options_.seed);
-        progress_.note(fmt::format("direct light scaled by {:.5f} to what is emitted", mean(scale)));
+        progress_.note(fmt::format("direct light scaled by {:.5f} to the emitted power", mean(scale)));
         direct_ = std::move(fresh);
         unscaled_.direct = inverse(scale);
         share_on_node(direct_.fit.span());  // not modified from here on
@@ -297,9 +296,9 @@ bool Solver::deliver(std::span<const ElementGather> elements, const ReadNextLigh
         return false;
     }
     adopt(std::move(indirect), kept);
-    progress_.note(
-        fmt::format("indirect light scaled by {:.5f} to what arrives; unscaled, the method would find {:.5f} of it",
-                    mean(kept), mean(light_->report.unscaled)));
+    progress_.note(fmt::format(
+        "indirect light scaled by {:.5f} to the arriving power; the method's unscaled light would have {:.5f} of it",
+        mean(kept), mean(light_->report.unscaled)));
     return true;
 }
 

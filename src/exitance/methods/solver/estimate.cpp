@@ -107,7 +107,7 @@ void Solver::warn_of_bodies() {
     const Point at = centroid(scene.outline(worst->first));
     warn(
         fmt::format("the light of '{}' ({} face{}, {:.3g} m^2, near {:.4g}, {:.4g}, {:.4g}) is wrong by about {:.3g}%, "
-                    "more than three times the {:.3g}% requested for the whole{}; a smaller --error makes it right",
+                    "more than three times the {:.3g}% requested for the whole{}; a smaller --error corrects it",
                     scene.groups()[face.group], worst->surfaces, worst->surfaces == 1 ? "" : "s", worst->area, at.x,
                     at.y, at.z, 100 * *worst->error, 100 * options_.error_target(),
                     wrong > 1 ? fmt::format(", and so is that of {} more", wrong - 1) : ""));

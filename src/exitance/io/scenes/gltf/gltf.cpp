@@ -370,7 +370,7 @@ bool GltfReader::read_node(const tinygltf::Node& in, std::size_t number) {
     GltfModel::Node node;
     node.name = shown(in.name);
     const std::optional<Affine> transform = gltf_transform(in.matrix, in.rotation, in.scale, in.translation);
-    if (!transform) return error(fmt::format("node {} ('{}') has a transform that is none", number, node.name));
+    if (!transform) return error(fmt::format("node {} ('{}') has an invalid transform", number, node.name));
     node.to_parent = *transform;
     const double lamp = number_in(in.extensions, "KHR_lights_punctual", "light", -1);
     if ((in.mesh >= 0 && !names_one(in.mesh, out_.meshes)) || (in.camera >= 0 && !names_one(in.camera, out_.views)) ||

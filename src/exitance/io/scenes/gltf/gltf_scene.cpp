@@ -110,7 +110,7 @@ void SceneMaker::report_materials() {
                  hint);
     };
     list([&](std::size_t i) { return max(out_.materials[i].reflectance) > max_reflectance; },
-         fmt::format("would reflect more than {}: that much it is", max_reflectance),
+         fmt::format("would reflect more than {0}: {0} is used", max_reflectance),
          "white is the default of glTF; walls reflect 0.5 to 0.85");
     list([&](std::size_t i) { return in_.materials[i].metallic >= 1 && !out_.materials[i].emits(); },
          "is metal: nothing of it reflects diffusely", "set the metallic factor to 0, glTF's default is 1");
@@ -201,7 +201,7 @@ bool SceneMaker::add_primitive(const GltfModel::Primitive& p, const GltfModel::M
     const std::size_t triangles = p.mode == GltfModel::Mode::triangles ? count / 3 : count < 3 ? 0 : count - 2;
     if (triangles > max_triangles - std::min(triangles_, max_triangles))
         return error(fmt::format("there are more than {} triangles", max_triangles),
-                     "instances count as often as they stand there: leave some out");
+                     "every instance counts: leave some out");
     if (used_.size() < p.positions.size()) used_.resize(p.positions.size());
     if (p.accessor != accessor_) accessor_ = p.accessor, ++round_;
     const std::uint32_t material = material_of(p.material);

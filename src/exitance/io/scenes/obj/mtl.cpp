@@ -96,10 +96,10 @@ void MtlReader::read() {
     warn_all();
     if (white_materials_ > 0)
         find(Finding::Kind::repair, white_line_,
-             fmt::format("material '{}'{} has a reflectance Kd of 1: {} takes its place", shown(white_name_),
+             fmt::format("material '{}'{} has a reflectance Kd of 1: {} is used instead", shown(white_name_),
                          white_materials_ > 1 ? fmt::format(" (and {} more)", white_materials_ - 1) : "",
                          mended_reflectance),
-             "nothing reflects all light; at 1 it would never die out");
+             "nothing reflects all light; with 1 reflections would never fade");
 }
 
 void MtlReader::start_material() {
@@ -153,7 +153,7 @@ std::shared_ptr<const TextureArea> MtlReader::picture(const std::string& name, c
               : Result<TextureArea>(bytes.error());
     if (area) return out = std::make_shared<const TextureArea>(std::move(*area));
     find(Finding::Kind::warning, line_,
-         fmt::format("the texture '{}' of material '{}' {}: {} stands by itself", shown(name), shown(material_.name),
+         fmt::format("the texture '{}' of material '{}' {}: {} is used alone", shown(name), shown(material_.name),
                      area.error().message, otherwise),
          "put it beside the material file, as PNG or JPEG");
     return nullptr;
@@ -193,7 +193,7 @@ void MtlReader::take_glass() {
 void MtlReader::warn_all() {
     if (textured_.count > 0)
         find(Finding::Kind::warning, textured_.line,
-             fmt::format("{} has a texture: a face is of one colour, the mean of its own part of that",
+             fmt::format("{} has a texture: a face gets one colour, the mean of its part of the texture",
                          textured_.names()),
              "");
     if (opaque_.count > 0)
@@ -211,7 +211,7 @@ void MtlReader::end_material() {
     const auto same = [&](const Material& m) { return m.name == material_.name; };
     if (std::any_of(materials_.begin(), materials_.end(), same)) {
         find(Finding::Kind::warning, line_,
-             fmt::format("material '{}' is there already: the first one holds", shown(material_.name)),
+             fmt::format("material '{}' is already defined: the first definition is used", shown(material_.name)),
              "give it another name");
         return;
     }
@@ -244,7 +244,7 @@ void MtlReader::read_values(const std::string& key, Spectrum Material::*value) {
         if (reflectance && !(v >= 0 && v <= whitest_reflectance))
             return error(fmt::format("material '{}': reflectance Kd of {} is {:g}, not in [0, 1)",
                                      shown(material_.name), band_name(b, values.size()), v),
-                         "a reflectance is at least 0 and below 1, or light would never die out");
+                         "a reflectance is at least 0 and below 1, or reflections would never fade");
         if (!reflectance && v < 0)
             return error(fmt::format("material '{}': emission Ke of {} is {:g}, below 0", shown(material_.name),
                                      band_name(b, values.size()), v),

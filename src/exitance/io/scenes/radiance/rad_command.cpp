@@ -9,7 +9,7 @@ namespace exitance {
 Result<std::vector<CommandWords>> parse_command(std::string_view command) {
     const auto bad = [&](const char* why) {
         return Error{ErrorCode::bad_input, fmt::format("the command '!{}' is not run: {}", shown(command), why), "",
-                     "run it yourself, write what it prints to a file, and name that in a line '!xform FILE'"};
+                     "run it yourself, write its output to a file, and name the file in a line '!xform FILE'"};
     };
     std::vector<CommandWords> out(1);
     std::string word;

@@ -93,7 +93,7 @@ Result<void> read_table(std::string_view text, std::size_t dimensions, EmissionP
         return wrong(fmt::format("it has {} dimensions, and {} angles are named", *found, dimensions));
     for (std::size_t i = 0; i < dimensions; ++i) {
         auto axis = read_axis(numbers);
-        if (!axis) return wrong("it has an axis that is none");
+        if (!axis) return wrong("it has an invalid axis");
         p.axes[i].at = std::move(*axis);
     }
     const double entries = static_cast<double>(p.axes[0].at.size()) * static_cast<double>(p.axes[1].at.size());
@@ -166,7 +166,7 @@ Result<RadDistribution> read_data(const RadPattern& pattern, const std::string& 
     if (words.size() < 4)
         return bad(fmt::format("it has {} words: function, data, calculation and angles", words.size()));
     if (!words[2].ends_with("source.cal"))
-        return bad(fmt::format("its functions stand in '{}'", shown(words[2])), "those of source.cal are known");
+        return bad(fmt::format("its functions are in '{}'", shown(words[2])), "those of source.cal are known");
     RadDistribution out;
     std::size_t angles = 0;
     while (3 + angles < words.size() && !words[3 + angles].starts_with("-")) {

@@ -26,14 +26,14 @@ const RadEmission::Lamp& RadEmission::lamp_of(const RadMeaning& meaning, const R
     const std::string name = fmt::format("{} '{}'", pattern.primitive.type, shown(pattern.primitive.name));
     const std::string by = fmt::format("'{}' emits by the {}, which cannot be read: ", shown(face.name), name);
     if (meaning.pattern_count > 1) {
-        findings_.error({file, face.line}, by + "it lies on another pattern", "an emitter has one distribution");
+        findings_.error({file, face.line}, by + "it modifies another pattern", "an emitter has one distribution");
         return lamp;
     }
     Result<RadDistribution> read = read_distribution(pattern, scene_file_);
     if (!read) {
         const std::string hint = read.error().hint;
         findings_.error({file, face.line}, by + read.error().message,
-                        hint.empty() ? "without it the light would be another" : hint);
+                        hint.empty() ? "without it the light would be wrong" : hint);
         return lamp;
     }
     if (!pattern.primitive.words.empty() && pattern.primitive.words[0].starts_with("lboxcorr"))

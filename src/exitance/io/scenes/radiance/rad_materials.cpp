@@ -99,7 +99,7 @@ void RadMaterials::add_glass(const RadPrimitive& p, const std::string& file) {
 bool RadMaterials::take_material(const RadPrimitive& p, const std::string& file) {
     const RadPlace at{file, p.line};
     if (const std::optional<RadPrimitive> plain = without_function(p)) {
-        findings_.note(fmt::format("what a {} says beyond diffuse reflection", p.type), at);
+        findings_.note(fmt::format("all but the diffuse reflection of {}", p.type), at);
         return take_material(*plain, file);
     }
     const bool reflects = is_one_of(p.type, {"plastic", "metal", "plastic2", "metal2", "trans", "trans2"});
@@ -200,9 +200,9 @@ void RadMaterials::take(RadPrimitive p, const std::string& file, const Affine& t
     if (p.type == "alias") return take_alias(p, file);
     if (take_material(p, file)) return;
     if (p.type == "mesh" || p.type == "instance")
-        return findings_.error(
-            {file, p.line}, fmt::format("{} '{}' stands in a compiled file, which is not read", p.type, shown(p.name)),
-            "put its polygons here, with !xform");
+        return findings_.error({file, p.line},
+                               fmt::format("{} '{}' is in a compiled file, which is not read", p.type, shown(p.name)),
+                               "put its polygons here, with !xform");
     if (p.type.starts_with("mix")) return take_mixture(p, file);
     take_pattern(std::move(p), file, to_world);
 }

@@ -75,7 +75,7 @@ Result<SkyModel> gendaylit(const RadPattern& pattern) {
 Result<SkyModel> sky_of_pattern(const RadPattern& pattern) {
     const std::vector<std::string>& words = pattern.primitive.words;
     if (pattern.primitive.type != "brightfunc" || words.size() < 2)
-        return no_sky(fmt::format("{} '{}' is none", pattern.primitive.type, shown(pattern.primitive.name)));
+        return no_sky(fmt::format("{} '{}' is not a sky", pattern.primitive.type, shown(pattern.primitive.name)));
     for (const double v : pattern.primitive.numbers)
         if (!std::isfinite(v)) return no_sky("it has a number that is not finite");
     Result<SkyModel> sky = words[0] == "skybr" && words[1].ends_with("skybright.cal") ? gensky(pattern)

@@ -139,9 +139,9 @@ void take_number(char option, double value, RadSkyWords& out) {
 
 Result<void> check_options(const RadSkyWords& in) {
     if (!(in.ground >= 0 && in.ground <= 1)) return wrong(in, fmt::format("-g {:g} is no reflectance", in.ground));
-    if (!(std::abs(in.latitude) <= 0.5 * pi)) return wrong(in, "-a lies not in [-90, 90]");
+    if (!(std::abs(in.latitude) <= 0.5 * pi)) return wrong(in, "-a is not in [-90, 90]");
     if (!(std::abs(in.longitude) <= 360) || !(std::abs(in.meridian) <= 360))
-        return wrong(in, "-o and -m lie not in [-360, 360]");
+        return wrong(in, "-o and -m are not in [-360, 360]");
     if (in.year && !is_date(*in.year, in.month ? in.month : 1, in.month ? in.day : 1))
         return wrong(in, fmt::format("{}-{}-{} is no date", *in.year, in.month, in.day));
     if (in.zenith < 0 || in.solar < 0) return wrong(in, "a brightness is negative");
@@ -174,7 +174,7 @@ Result<void> read_options(const CommandWords& words, RadSkyWords& out) {
             take_number(c, *value, out);
         } else {
             return wrong(out, fmt::format("option '{}' is not read", shown(w)),
-                         "--run-commands has the installed program do it");
+                         "--run-commands runs the installed program instead");
         }
     }
     return check_options(out);

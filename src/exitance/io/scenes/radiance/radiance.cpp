@@ -175,7 +175,7 @@ void RadianceReader::take_source(const RadPrimitive& p, const Call& call) {
     if (meaning->pattern_count > 0) {
         const Result<SkyModel> sky = meaning->pattern_count == 1
                                          ? sky_of_pattern(materials_.patterns[meaning->pattern])
-                                         : Error{ErrorCode::bad_input, "it lies on another pattern", "", ""};
+                                         : Error{ErrorCode::bad_input, "it modifies another pattern", "", ""};
         constexpr double wide = 0.2;  // radians; larger than any sun
         if (!sky && angle > wide)
             return findings_.note("skies with patterns that gensky and gendaylit do not print", at);
@@ -235,10 +235,9 @@ Result<std::string> RadianceReader::sky_text(const CommandWords& words, const Ra
 Result<void> RadianceReader::add_output(std::span<const CommandWords> stages, int line, const Call& call, Copied& out) {
     const bool is_known = (is_sky_command(stages[0]) || is_box_command(stages[0])) && stages.size() == 1;
     if (!options_.run_commands && !is_known)
-        return Error{
-            ErrorCode::bad_input, fmt::format("the command '!{}' is not run", shown(stages[0][0])), "",
-            "--run-commands has programs of Radiance's run where they are installed; or run it yourself, write "
-            "what it prints to a file, and name that in a line '!xform FILE'"};
+        return Error{ErrorCode::bad_input, fmt::format("the command '!{}' is not run", shown(stages[0][0])), "",
+                     "--run-commands runs installed Radiance programs; or run it yourself, write its output to a file, "
+                     "and name the file in a line '!xform FILE'"};
     const StopRequest never;
     std::string text;
     for (const CommandWords& words : stages) {

@@ -110,7 +110,7 @@ Result<Xform> XformParser::parse() {
         if (word == "-t" || word == "-rx" || word == "-ry" || word == "-rz" || word == "-s" || word == "-mx" ||
             word == "-my" || word == "-mz") {
             const auto step = transform(word);
-            if (!step) return bad(fmt::format("xform's {} lacks numbers that make sense", word));
+            if (!step) return bad(fmt::format("xform's {} has missing or invalid numbers", word));
             stretches_.back().once = *step * stretches_.back().once;
         } else if (word == "-i" || word == "-a") {
             if (!start_stretch(word == "-a"))
