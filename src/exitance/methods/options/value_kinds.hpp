@@ -114,7 +114,7 @@ OptionValue choice(const Table& table, Member member) {
     return out;
 }
 
-/// "on" or "off".
+/// A switch, whose words are "on" and "off".
 template <class Member>
 OptionValue on_off(Member member) {
     OptionValue out = value_of(

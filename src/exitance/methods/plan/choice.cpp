@@ -39,7 +39,7 @@ MethodChoice choose_alone(const Stage& stage, const SolveOptions& options) {
                       fmt::format("an error of {:.3g}% of the exported mesh needs elements along shadows",
                                   100 * *options.error_interpolant));
     if (!ElementGather::suits(stage))
-        return choose(Method::matrix, fmt::format("{} polygons that occlude one another: rays are the cheapest way",
+        return choose(Method::matrix, fmt::format("{} polygons that occlude one another: rays suit such scenes best",
                                                   stage.scene.surfaces().size()));
     if (!out.forecast.takes_links()) return choose(Method::matrix, describe(out.forecast));
     out.options.basis = BasisKind::multiwavelet3;
