@@ -81,7 +81,7 @@ TEST(ProgramResume, WithoutACheckpointTheSolveStartsWithAMessage) {
     const Finished run =
         run_program({"solve", scene, "-o", folder / "room.h5", "--error", "0.2", "--resume", "--progress", "none"});
     EXPECT_EQ(run.status, 0) << run.err;
-    EXPECT_NE(run.err.find("room.h5.checkpoint: beginning"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("room.h5.checkpoint: starting"), std::string::npos) << run.err;
     EXPECT_EQ(folder.count(), 3u);
 }
 
