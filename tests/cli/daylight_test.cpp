@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "cli/small_scene.hpp"
 
@@ -53,6 +54,43 @@ TEST(ProgramSky, ASolutionUnderASkyIsReadBack) {
                 120 + 600 * std::sin(50 * 3.14159265 / 180), 2);
     EXPECT_EQ(run_program({"render", folder / "s.h5", "-o", folder / "s.png", "--size", "32x24"}).status, 0);
     EXPECT_EQ(run_program({"export", folder / "s.h5", "-o", folder / "s.glb"}).status, 0);
+}
+
+TEST(ProgramSky, ASkyAloneIsASceneForProbe) {
+    const TemporaryFolder folder;
+    write_text(folder / "empty.obj", "# no faces\n");
+    const double horizontal = 120 + 600 * std::sin(50 * 3.14159265 / 180);
+    const std::vector<std::pair<std::string, std::vector<double>>> skies{
+        // Irradiance upwards, towards the east (of the perez sky: any), and downwards. The ground half of a sky
+        // reflects a fifth of the horizontal irradiance.
+        {"uniform,dhi=100", {100, 60, 20}},
+        {"perez,altitude=50,azimuth=180,dni=600,dhi=120", {horizontal, -1, 0.2 * horizontal}}};
+    for (const auto& [sky, expected] : skies) {
+        const Finished run =
+            run_program({"solve", folder / "empty.obj", "-o", folder / "s.h5", "--sky", sky, "--json", "-q"});
+        ASSERT_EQ(run.status, 0) << run.err;
+        for (const bool by_paths : {false, true}) {
+            std::vector<std::string> words{"probe", folder / "s.h5", "--points", "-", "-o", "-"};
+            if (by_paths) words.insert(words.end(), {"--reference", "64"});
+            const Finished probe = run_program(words, "x,y,z,nx,ny,nz\n0,0,0,0,0,1\n3,-20,1.5,1,0,0\n0,0,0,0,0,-1\n");
+            ASSERT_EQ(probe.status, 0) << probe.err;
+            std::istringstream rows(probe.out);
+            std::string row;
+            std::getline(rows, row);
+            for (const double light : expected) {
+                ASSERT_TRUE(std::getline(rows, row));
+                std::istringstream fields(row);
+                std::string field;
+                for (int i = 0; i < 7; ++i) std::getline(fields, field, ',');
+                if (light >= 0) {
+                    EXPECT_NEAR(std::stod(field), light, 1e-3 * light + 1e-9) << row;
+                } else {
+                    EXPECT_GT(std::stod(field), 0) << row;
+                }
+            }
+        }
+    }
+    EXPECT_EQ(run_program({"solve", folder / "empty.obj", "-o", folder / "s.h5"}).status, 3) << "neither sky nor face";
 }
 
 TEST(ProgramSky, OmittedMirroredLightIsReported) {

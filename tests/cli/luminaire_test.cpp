@@ -132,6 +132,28 @@ TEST(ProgramLuminaire, LightOfAnOpeningInACeilingIsTheSumOverItsParts) {
     EXPECT_NEAR(lux[3] / finely_summed(0.9, 0, 0.1), 1, 1e-3);
 }
 
+TEST(ProgramLuminaire, ATableIsInMetresWhateverTheUnitOfTheScene) {
+    const TemporaryFolder folder;
+    const std::string table = "file,x,y,z,rotation\nd.ies,0.5,0,2,90\n", points = "1,0.5,0,0,0,1\n0,1,0,0,0,1\n";
+    const std::vector<double> plain = lux_below(folder, table, points);
+    write_text(folder / "floor.obj",  // in millimetres, with Y up
+               "mtllib floor.mtl\nv -5000 0 5000\nv 5000 0 5000\nv 5000 0 -5000\nv -5000 0 -5000\nusemtl grey\n"
+               "f 1 2 3 4\nv -5000 3000 5000\nv 5000 3000 5000\nv 5000 3000 -5000\nv -5000 3000 -5000\ng ceiling\n"
+               "f 8 7 6 5\n");
+    const Finished solved = run_program({"solve", folder / "floor.obj", "--length-unit", "mm", "--up", "y",
+                                         "--luminaires", folder / "l.csv", "-o", folder / "mm.h5", "-q"});
+    ASSERT_EQ(solved.status, 0) << solved.err;
+    const Finished probed =
+        run_program({"probe", folder / "mm.h5", "--points", "-", "-o", "-"}, "x,y,z,nx,ny,nz\n" + points);
+    std::istringstream lines(probed.out);
+    std::string line;
+    std::getline(lines, line);
+    for (const double lux : plain) {
+        ASSERT_TRUE(std::getline(lines, line));
+        EXPECT_NEAR(std::stod(line.substr(line.rfind(',') + 1)), lux, 1e-4 * lux);
+    }
+}
+
 TEST(ProgramLuminaire, ATableRotatesAndDimsLuminaires) {
     const TemporaryFolder folder;
     const std::vector<double> plain = lux_below(folder, "file,x,y,z\nd.ies,0,0,2\n", "1,0,0,0,0,1\n0,1,0,0,0,1\n");

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdio>
+#include <sstream>
 #include <string>
 
 #include "run_program.hpp"
@@ -20,6 +22,24 @@ inline std::string write_small_room(const TemporaryFolder& folder, const std::st
                                              "usemtl grey\ng floor\nf 1 2 3 4\ng ceiling\nf 8 7 6 5\n"
                                              "g walls\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n"
                                              "usemtl lamp\ng lamp\nf 12 11 10 9\n");
+    return folder / (name + ".obj");
+}
+
+/// The small room in another unit, with Y up if asked: `per_metre` units are a metre.
+inline std::string write_small_room_in(const TemporaryFolder& folder, double per_metre, bool y_up,
+                                       const std::string& name) {
+    std::istringstream lines(read_text(write_small_room(folder, name)));
+    std::ostringstream out;
+    for (std::string line; std::getline(lines, line);) {
+        double x = 0, y = 0, z = 0;
+        if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) != 3)
+            out << line << '\n';
+        else if (y_up)
+            out << "v " << per_metre * x << ' ' << per_metre * z << ' ' << -per_metre * y << '\n';
+        else
+            out << "v " << per_metre * x << ' ' << per_metre * y << ' ' << per_metre * z << '\n';
+    }
+    write_text(folder / (name + ".obj"), out.str());
     return folder / (name + ".obj");
 }
 

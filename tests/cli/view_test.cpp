@@ -198,6 +198,41 @@ TEST(ProgramView, AnswersItsOwnPageAndNobodyElse) {
     EXPECT_EQ(run.finish().status, 130);
 }
 
+TEST(ProgramView, ASceneIsReadInItsLengthUnitAndUprightAxis) {
+    if (!has_page()) GTEST_SKIP() << "the viewer's page was not built";
+    const TemporaryFolder folder;
+    const std::string scene = write_small_room_in(folder, 1000, true, "mm");
+    const int port = free_port();
+    RunningProgram run(
+        {"view", scene, "--length-unit", "mm", "--up", "y", "--error", "0.3", "--port", std::to_string(port)});
+    ASSERT_TRUE(run.wait_for("ends the viewer"));
+    const auto get = [&](const std::string& path) {
+        const std::string answer = ask(port, "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) +
+                                                 "\r\nConnection: close\r\n\r\n");
+        const std::size_t body = answer.find("\r\n\r\n");
+        return body == std::string::npos || !answer.starts_with("HTTP/1.1 200") ? "" : answer.substr(body + 4);
+    };
+    std::string part;
+    for (int tries = 0; part.empty() && tries < 600; ++tries) {
+        part = get("/data/part?layer=exported&part=0");
+        if (part.empty()) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    const ReadPart read(part);
+    ASSERT_TRUE(read.whole);
+    std::array<float, 3> lo{1e9f, 1e9f, 1e9f}, hi{-1e9f, -1e9f, -1e9f};
+    for (std::size_t i = 0; i < read.positions.size(); ++i) {
+        lo[i % 3] = std::min(lo[i % 3], read.positions[i]);
+        hi[i % 3] = std::max(hi[i % 3], read.positions[i]);
+    }
+    EXPECT_NEAR(hi[0] - lo[0], 4, 1e-5);
+    EXPECT_NEAR(hi[1] - lo[1], 3, 1e-5);
+    EXPECT_NEAR(hi[2] - lo[2], 2.5, 1e-5);
+    run.send(SIGINT);
+    EXPECT_EQ(run.finish().status, 130);
+    ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
+    EXPECT_EQ(run_program({"view", folder / "s.h5", "--length-unit", "mm"}).status, 2);
+}
+
 TEST(ProgramView, DimsAndPaintsAsMixDoes) {
     if (!has_page()) GTEST_SKIP() << "the viewer's page was not built";
     const TemporaryFolder folder;

@@ -43,6 +43,24 @@ TEST(ProgramViewFactors, TheTableHasARowAFaceAndClosedRoomsSumToOne) {
     EXPECT_EQ(rows, 7u);
 }
 
+TEST(ProgramViewFactors, LengthUnitAndUprightAxisGiveTheTableInMetres) {
+    const TemporaryFolder folder;
+    ASSERT_EQ(run_program({"viewfactors", write_small_room(folder), "-o", folder / "m.csv"}).status, 0);
+    const std::string scene = write_small_room_in(folder, 1000, true, "mm");
+    const Finished run =
+        run_program({"viewfactors", scene, "--length-unit", "mm", "--up", "y", "-o", folder / "mm.csv"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    std::istringstream expected(read_text(folder / "m.csv")), found(read_text(folder / "mm.csv"));
+    std::string a, b;
+    while (std::getline(expected, a)) {
+        ASSERT_TRUE(std::getline(found, b));
+        const std::vector<std::string> x = fields_of(a), y = fields_of(b);
+        ASSERT_EQ(x.size(), y.size());
+        if (x[0] == "surface") continue;
+        for (std::size_t i = 1; i < x.size(); ++i) EXPECT_NEAR(std::stod(x[i]), std::stod(y[i]), 2e-4) << a;
+    }
+}
+
 TEST(ProgramViewFactors, ToleranceOutOfRangeIsAUsageErrorAndAnUnwritableFolderLeavesNoResult) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder);

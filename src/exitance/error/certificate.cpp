@@ -128,6 +128,7 @@ struct Certifier::Content {
     std::vector<Spectrum> response_to(double first, const RayRows& rows) const;
     std::vector<Spectrum> late_response() const;
     void balance(std::span<const Spectrum> residuals, std::span<Spectrum> errors) const;
+    double true_mean(double mean_error) const;
     Certificate judge();
     void judge_rooms(Certificate& out);
     std::vector<double> mean_by_room() const;
@@ -263,7 +264,7 @@ void Certifier::Content::judge_rooms(Certificate& out) {
     const std::size_t count = stage.rooms.count();
     const std::vector<double> found = mean_by_room();
     if (count == 0) {
-        rooms = {{stage.area, found[0], out.estimate, mean_reflected}};
+        rooms = {{stage.area, found[0], out.estimate, out.mean_reflected}};
         out.worst_room = out.of_rooms = out.estimate, out.room_uncertainty = out.uncertainty;
         return;
     }
@@ -301,6 +302,15 @@ void Certifier::Content::judge_rooms(Certificate& out) {
     out.local = std::sqrt(all_local), out.method = std::sqrt(all_method);
 }
 
+/// Returns the mean reflected radiosity of the true light, to which errors are relative, W/m^2: that of the method's
+/// light, plus the mean error if that is large and the delivered function holds all light. Relative to itself, light
+/// that is far too bright would look accurate, and light that is far too dark would look worse than it is.
+double Certifier::Content::true_mean(double mean_error) const {
+    constexpr double ignored = 0.1, min_share = 0.1;  // of the mean reflected radiosity
+    if (!options.direct_in_elements || std::abs(mean_error) <= ignored * mean_reflected) return mean_reflected;
+    return std::max(mean_reflected + mean_error, min_share * mean_reflected);
+}
+
 Certificate Certifier::Content::judge() {
     Certificate out{.constant = constant,
                     .mean_reflected = mean_reflected,
@@ -308,13 +318,14 @@ Certificate Certifier::Content::judge() {
                     .rays = H.rays() + (other_H ? other_H->rays() : 0)};
     late = late_response();
     std::array<double, batches> residual_squared{}, error_squared{};
-    double local_squared = 0, method_squared = 0, told = 0;
+    double local_squared = 0, method_squared = 0, told = 0, mean_error = 0;
     for (std::size_t k = 0; k < samples.size(); ++k) {
         ResidualSample& s = samples[k];
         const double weight = s.weight / static_cast<double>(looks);
         residual_squared[k % batches] += weight * batches * mean(s.r1 * s.r2);
         s.squared = mean((s.r1 + late[s.leaf]) * (s.r2 + late[s.leaf]));
         error_squared[k % batches] += weight * batches * s.squared;
+        mean_error += weight * mean(0.5 * (s.r1 + s.r2) + late[s.leaf]);
         if (s.tells_local) {
             told += weight;
             local_squared += weight * mean(s.local1 * s.local2);
@@ -322,18 +333,19 @@ Certificate Certifier::Content::judge() {
         }
         out.rays += s.rays;
     }
+    out.mean_reflected = true_mean(mean_error);
     const BatchMean residual(residual_squared), error(error_squared);
     const double upper = std::max(0.0, residual.mean) + student_95 * residual.standard_error;
-    out.residual = std::sqrt(std::max(0.0, residual.mean)) / mean_reflected;
+    out.residual = std::sqrt(std::max(0.0, residual.mean)) / out.mean_reflected;
     if (options.gathered) {
-        out.local = std::sqrt(std::max(0.0, local_squared / told)) / mean_reflected;
-        out.method = std::sqrt(std::max(0.0, method_squared / told)) / mean_reflected;
+        out.local = std::sqrt(std::max(0.0, local_squared / told)) / out.mean_reflected;
+        out.method = std::sqrt(std::max(0.0, method_squared / told)) / out.mean_reflected;
     }
     // The estimate is at least as large as its own uncertainty.
-    out.estimate = std::sqrt(std::max(error.mean, error.standard_error)) / mean_reflected;
+    out.estimate = std::sqrt(std::max(error.mean, error.standard_error)) / out.mean_reflected;
     if (out.estimate > 0)
-        out.uncertainty = 0.5 * error.standard_error / (out.estimate * mean_reflected * mean_reflected);
-    out.bound = std::max(out.estimate, constant * std::sqrt(upper) / mean_reflected);
+        out.uncertainty = 0.5 * error.standard_error / (out.estimate * out.mean_reflected * out.mean_reflected);
+    out.bound = std::max(out.estimate, constant * std::sqrt(upper) / out.mean_reflected);
     judge_rooms(out);
     return out;
 }

@@ -3,6 +3,7 @@
 #include "exitance/base/memory.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/phase_times.hpp"
+#include "exitance/methods/carried_light.hpp"
 #include "exitance/methods/diffusing_panes.hpp"
 #include "exitance/methods/extensions.hpp"
 #include "exitance/methods/solver/solver.hpp"
@@ -21,14 +22,30 @@ void part_times(const PhaseTimes& phases, std::map<std::string, double>& seconds
     move(phases.seconds({"gather"}), "reconstruct", "gather");
 }
 
+/// Returns the solution of a scene without surfaces. All light at its points is direct and evaluated exactly.
+Solution without_surfaces(Scene scene) {
+    Solution out{.scene = std::move(scene)};
+    out.bounces = 0;
+    SolveStatistics& s = out.statistics;
+    s.method = "direct", s.basis = "none";
+    s.threads = threads(), s.schedule = name_in(schedule_names, schedule());
+    s.converged = true;
+    s.relative_error_estimate = s.relative_error_bound = s.error_p99 = 0;
+    s.relative_error_estimate_interpolant = s.relative_error_estimate_worst_room = 0;
+    s.peak_memory_bytes = peak_memory_bytes();
+    return out;
+}
+
 }  // namespace
 
 Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress& progress, const StopRequest& stop,
                              CheckpointStore* checkpoints, const ShowLight& show) {
     if (options.threads > 0) set_threads(options.threads);
     set_schedule(options.schedule);
+    if (scene.surfaces().size() == 0) return without_surfaces(std::move(scene));
     if (const Result<void> linked = check_extensions(options); !linked) return linked.error();
     if (const Result<void> passes = check_diffusing_panes(scene, options); !passes) return passes.error();
+    if (const Result<void> carried = check_classic_cells(scene, options); !carried) return carried.error();
     for (const WholeSolve& whole : extensions().solves)
         if (whole.is_selected(options)) return whole.solve(scene, options, progress, stop);
     const Stopwatch watch;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -89,12 +90,14 @@ class Borders {
     }
 
     /// The components into which such steps divide all sides; part_of[face][is front] is the component of a side.
+    /// Bodies that touch along an edge, or whose faces coincide there, are separate components (`separate_bodies`).
     struct Parts {
         std::vector<std::array<std::uint32_t, 2>> part_of;
         std::vector<bool> is_sure;  ///< For every component: false if a step from it met two coincident faces.
     };
     Parts parts() const {
         constexpr std::uint32_t none = 0xffffffff;
+        const Bodies bodies = separate_bodies();
         Parts out{std::vector<std::array<std::uint32_t, 2>>(faces_.size(), {none, none}), {}};
         std::vector<FaceSide> open;
         for (std::uint32_t k = 0; k < 2 * faces_.size(); ++k) {
@@ -107,7 +110,7 @@ class Borders {
                 const FaceSide side = open.back();
                 open.pop_back();
                 for (const auto& [e, sense] : faces_[side.face].edges) {
-                    const auto next = beyond(side, e, sense);
+                    const auto next = beyond(side, e, sense, &bodies);
                     std::uint32_t* const there = next ? &out.part_of[next->face][next->is_front ? 1 : 0] : nullptr;
                     // A step that is not reversible, or that leads into another component, is at coincident faces.
                     if (!there || (*there != none && *there != part)) out.is_sure[part] = false;
@@ -122,6 +125,36 @@ class Borders {
     const BorderedFace& face(std::size_t f) const { return faces_[f]; }
 
   private:
+    /// Faces joined by edges that exactly two faces share have the same number in `of_face`. `are_apart` is true for an
+    /// edge at which every such body has two faces, and there are several: each body is closed there by itself.
+    struct Bodies {
+        std::vector<std::uint32_t> of_face;
+        std::vector<bool> are_apart;
+    };
+    Bodies separate_bodies() const {
+        Bodies out{std::vector<std::uint32_t>(faces_.size()), std::vector<bool>(users_.size())};
+        std::vector<std::uint32_t>& parent = out.of_face;
+        std::iota(parent.begin(), parent.end(), 0u);
+        const auto root = [&](std::uint32_t f) {
+            while (parent[f] != f) f = parent[f] = parent[parent[f]];
+            return f;
+        };
+        for (const auto& users : users_)
+            if (users.size() == 2) parent[root(users[0].first)] = root(users[1].first);
+        for (std::uint32_t f = 0; f < parent.size(); ++f) parent[f] = root(f);
+        for (std::size_t e = 0; e < users_.size(); ++e) {
+            if (users_[e].size() < 4 || users_[e].size() % 2 != 0) continue;
+            std::vector<std::uint32_t> at_edge;
+            for (const auto& user : users_[e]) at_edge.push_back(out.of_face[user.first]);
+            std::sort(at_edge.begin(), at_edge.end());
+            bool are_pairs = true;
+            for (std::size_t i = 0; i < at_edge.size(); i += 2)
+                are_pairs &= at_edge[i] == at_edge[i + 1] && (i == 0 || at_edge[i] != at_edge[i - 1]);
+            out.are_apart[e] = are_pairs;
+        }
+        return out;
+    }
+
     /// Adds the edge of a face between two corners, split at other corners that are on it.
     void add_edge(std::uint32_t f, std::uint32_t a, std::uint32_t b) {
         if (a == b) return;
@@ -152,8 +185,9 @@ class Borders {
 
     /// Returns the side that faces `side` across an edge: the first one met when turning about the edge. Two coincident
     /// faces with opposite orientation count as a sheet with its fronts outside; with the same orientation there is no
-    /// result.
-    std::optional<FaceSide> beyond(const FaceSide& side, std::uint32_t e, int sense) const {
+    /// result. At edges where `bodies` are apart, only faces of the same body count.
+    std::optional<FaceSide> beyond(const FaceSide& side, std::uint32_t e, int sense,
+                                   const Bodies* bodies = nullptr) const {
         const Vec3 from = inwards(side.face, e, sense);
         const Vec3 up = side.is_front ? Vec3(faces_[side.face].n) : -Vec3(faces_[side.face].n);
         const Vec3 axis = cross(from, up);
@@ -162,6 +196,7 @@ class Borders {
         double nearest = all_round + 2 * one_direction;  // the other side of the same face
         for (const auto& [f, s] : users_[e]) {
             if (f == side.face && s == sense) continue;
+            if (bodies && bodies->are_apart[e] && bodies->of_face[f] != bodies->of_face[side.face]) continue;
             const Vec3 to = inwards(f, e, s);
             double angle = std::atan2(dot(to, up), dot(to, from));
             if (angle < 0) angle += all_round;

@@ -33,7 +33,7 @@ class BodyFinder {
           box_of_face_(in.outlines.size()) {
         for (std::size_t f = 0; f < in.outlines.size(); ++f) box_of_face_[f] = box_of(in.outlines[f]);
         face_tree_ = Bvh(box_of_face_);
-        has_emitters_ = std::find(in.emits.begin(), in.emits.end(), true) != in.emits.end();
+        find_emitters();
         find_spaces();
     }
     std::vector<InsideOut> run();
@@ -45,15 +45,21 @@ class BodyFinder {
             out.push_back({.loops = {in.outlines[f]}, .triangles = {}, .n = in.normals[f]});
         return out;
     }
+    void find_emitters();
     void find_spaces();
     void measure(Space& space) const;
     bool is_front(const FaceSide& side) const { return side.is_front != turned_[side.face]; }
-    double share_of_fronts(const Space& space) const;
+    double share_of_fronts(std::size_t space);
+    double count_fronts(const Space& space) const;
+    void turn(const std::vector<std::uint32_t>& faces);
     bool holds(std::size_t space, const Point& p);
     Point point_within(const Space& space) const;
     std::optional<std::size_t> space_around(std::size_t space);
     bool holds_light(std::size_t space);
     bool holds_faces(std::size_t space);
+    Point place_of_light(std::uint32_t f) const;
+    std::vector<std::uint32_t> cavities_around(const Point& p) const;
+    bool is_in_any_cavity(const Point& p);
     bool has_light_outside();
     bool is_alone(std::size_t space);
     bool is_inward_body(std::size_t space);
@@ -68,14 +74,29 @@ class BodyFinder {
     std::vector<bool> turned_;
     std::vector<Box> box_of_face_;
     Bvh face_tree_;
-    bool has_emitters_ = false;
+    std::vector<std::uint32_t> emitters_;        ///< Faces that emit.
+    Bvh emitter_tree_;                           ///< Of the places just before and just behind their centroids.
+    Bvh cavity_tree_;                            ///< Boxes of `cavities_`.
+    std::optional<bool> has_light_outside_;      ///< As faces are turned by now, once it was needed.
+    std::vector<std::optional<double>> fronts_;  ///< `share_of_fronts` by space, likewise.
 };
+
+void BodyFinder::find_emitters() {
+    const Vec3 beside = 10 * position_tolerance * in_.size * Vec3{1, 1, 1};
+    std::vector<Box> places;
+    for (std::uint32_t f = 0; f < in_.emits.size(); ++f) {
+        if (!in_.emits[f]) continue;
+        const Point at = centroid(in_.outlines[f]);
+        emitters_.push_back(f), places.push_back({at - beside, at + beside});
+    }
+    emitter_tree_ = Bvh(places);
+}
 
 void BodyFinder::find_spaces() {
     const Borders::Parts parts = borders_.parts();
     space_of_ = parts.part_of;
     spaces_.resize(parts.is_sure.size());
-    hulls_.resize(spaces_.size());
+    hulls_.resize(spaces_.size()), fronts_.resize(spaces_.size());
     for (std::size_t k = 0; k < spaces_.size(); ++k) spaces_[k].is_sure = parts.is_sure[k];
     for (std::uint32_t f = 0; f < space_of_.size(); ++f) {
         if (space_of_[f][0] == space_of_[f][1]) {
@@ -91,6 +112,9 @@ void BodyFinder::find_spaces() {
     std::sort(cavities_.begin(), cavities_.end(), [&](auto a, auto b) {
         return spaces_[a].volume < spaces_[b].volume || (spaces_[a].volume == spaces_[b].volume && a < b);
     });
+    std::vector<Box> boxes;
+    for (const std::uint32_t k : cavities_) boxes.push_back(spaces_[k].box);
+    cavity_tree_ = Bvh(boxes);
 }
 
 void BodyFinder::measure(Space& space) const {
@@ -109,7 +133,20 @@ void BodyFinder::measure(Space& space) const {
     if (std::abs(space.volume) <= rounding * all) space.volume = 0;
 }
 
-double BodyFinder::share_of_fronts(const Space& space) const {
+double BodyFinder::share_of_fronts(std::size_t space) {
+    if (!fronts_[space]) fronts_[space] = count_fronts(spaces_[space]);
+    return *fronts_[space];
+}
+
+void BodyFinder::turn(const std::vector<std::uint32_t>& faces) {
+    for (const std::uint32_t f : faces) {
+        turned_[f] = true;
+        for (const std::uint32_t space : space_of_[f]) fronts_[space].reset();
+    }
+    has_light_outside_.reset();
+}
+
+double BodyFinder::count_fronts(const Space& space) const {
     double fronts = 0, all = 0;
     for (const FaceSide& side : space.walls) {
         const double area = norm(area_vector(in_.outlines[side.face]));
@@ -149,27 +186,36 @@ Point BodyFinder::point_within(const Space& space) const {
     return out;
 }
 
+/// The cavities whose boxes hold a point, the smallest cavity first.
+std::vector<std::uint32_t> BodyFinder::cavities_around(const Point& p) const {
+    std::vector<std::uint32_t> order;
+    cavity_tree_.visit_box({p, p}, [&](std::uint32_t i) { order.push_back(i); });
+    std::sort(order.begin(), order.end());
+    for (std::uint32_t& i : order) i = cavities_[i];
+    return order;
+}
+
 /// Returns the smallest other cavity that contains a cavity; nothing if it is in the open.
 std::optional<std::size_t> BodyFinder::space_around(std::size_t space) {
     const Point p = point_within(spaces_[space]);
-    for (const std::uint32_t k : cavities_)
+    for (const std::uint32_t k : cavities_around(p))
         if (k != space && spaces_[k].volume > spaces_[space].volume && holds(k, p)) return k;
     return std::nullopt;
 }
 
+/// A point just before the middle of an emitting face, as it is turned by now.
+Point BodyFinder::place_of_light(std::uint32_t f) const {
+    const Vec3 up = turned_[f] ? -Vec3(in_.normals[f]) : Vec3(in_.normals[f]);
+    return centroid(in_.outlines[f]) + 10 * position_tolerance * in_.size * up;
+}
+
 bool BodyFinder::holds_light(std::size_t space) {
     if (std::any_of(in_.lights.begin(), in_.lights.end(), [&](const Point& p) { return holds(space, p); })) return true;
-    if (!has_emitters_) return false;
     const auto sends_into = [&](std::uint32_t f) {
-        if (!in_.emits[f]) return false;
-        const Vec3 up = turned_[f] ? -Vec3(in_.normals[f]) : Vec3(in_.normals[f]);
         if (space_of_[f][turned_[f] ? 0 : 1] == space) return true;
-        return space_of_[f][0] != space && space_of_[f][1] != space &&
-               holds(space, centroid(in_.outlines[f]) + 10 * position_tolerance * in_.size * up);
+        return space_of_[f][0] != space && space_of_[f][1] != space && holds(space, place_of_light(f));
     };
-    for (std::uint32_t f = 0; f < in_.emits.size(); ++f)
-        if (sends_into(f)) return true;
-    return false;
+    return emitter_tree_.visit_box(spaces_[space].box, [&](std::uint32_t i) { return sends_into(emitters_[i]); });
 }
 
 bool BodyFinder::holds_faces(std::size_t space) {
@@ -179,19 +225,20 @@ bool BodyFinder::holds_faces(std::size_t space) {
     });
 }
 
-/// True if there is light outside of all cavities.
+bool BodyFinder::is_in_any_cavity(const Point& p) {
+    const std::vector<std::uint32_t> around = cavities_around(p);
+    return std::any_of(around.begin(), around.end(), [&](std::uint32_t k) { return holds(k, p); });
+}
+
+/// True if light starts outside of all cavities.
 bool BodyFinder::has_light_outside() {
     if (in_.has_light_from_afar) return true;
-    const auto in_any = [&](const Point& p) {
-        return std::any_of(cavities_.begin(), cavities_.end(), [&](std::uint32_t k) { return holds(k, p); });
-    };
-    if (std::any_of(in_.lights.begin(), in_.lights.end(), [&](const Point& p) { return !in_any(p); })) return true;
-    for (std::uint32_t f = 0; f < in_.emits.size(); ++f) {
-        if (!in_.emits[f]) continue;
-        const Vec3 up = turned_[f] ? -Vec3(in_.normals[f]) : Vec3(in_.normals[f]);
-        if (!in_any(centroid(in_.outlines[f]) + 10 * position_tolerance * in_.size * up)) return true;
-    }
-    return false;
+    if (!has_light_outside_)
+        has_light_outside_ =
+            std::any_of(in_.lights.begin(), in_.lights.end(), [&](const Point& p) { return !is_in_any_cavity(p); }) ||
+            std::any_of(emitters_.begin(), emitters_.end(),
+                        [&](std::uint32_t f) { return !is_in_any_cavity(place_of_light(f)); });
+    return *has_light_outside_;
 }
 
 /// True if there is neither light nor a face outside of a cavity's walls.
@@ -217,10 +264,10 @@ bool BodyFinder::is_inward_body(std::size_t k) {
     });
     if (!is_one || !around.is_sure) return false;
     constexpr double majority = 0.5;
-    if (around.is_cavity()) return share_of_fronts(around) > majority;  // its walls touch the walls of a room
-    if (!(around.volume <= -majority * space.volume)) return false;     // two sides of a thin wall, or an open model
-    if (const auto room = space_around(k)) return share_of_fronts(spaces_[*room]) > majority;
-    return share_of_fronts(around) == 0 && has_light_outside() && !holds_light(k) && !holds_faces(k);
+    if (around.is_cavity()) return share_of_fronts(outside) > majority;  // its walls touch the walls of a room
+    if (!(around.volume <= -majority * space.volume)) return false;      // two sides of a thin wall, or an open model
+    if (const auto room = space_around(k)) return share_of_fronts(*room) > majority;
+    return share_of_fronts(outside) == 0 && has_light_outside() && !holds_light(k) && !holds_faces(k);
 }
 
 /// True if all fronts of a cavity's walls are outside, but the light is inside.
@@ -228,7 +275,7 @@ bool BodyFinder::is_outward_room(std::size_t k) {
     const Space& space = spaces_[k];
     if (std::any_of(space.walls.begin(), space.walls.end(), [&](const FaceSide& s) { return is_front(s); }))
         return false;
-    return holds_light(k) || (has_emitters_ && is_alone(k));
+    return holds_light(k) || (!emitters_.empty() && is_alone(k));
 }
 
 std::vector<InsideOut> BodyFinder::run() {
@@ -244,7 +291,7 @@ std::vector<InsideOut> BodyFinder::run() {
             std::sort(body.faces.begin(), body.faces.end());
             const bool is_new = std::none_of(body.faces.begin(), body.faces.end(), [&](auto f) { return turned_[f]; });
             if (!is_new) continue;  // each face is turned at most once
-            for (const std::uint32_t f : body.faces) turned_[f] = true;
+            turn(body.faces);
             out.push_back(std::move(body));
             changed = true;
         }

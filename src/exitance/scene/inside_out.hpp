@@ -42,7 +42,8 @@ struct InsideOut {
 /// room.
 ///
 /// A body inside a reported body is classified as if the outer one were corrected. Cavities of solid bodies are
-/// ignored. O(n log n) in edges, and O(faces of the enclosing body) per body.
+/// ignored. Bodies may lie on each other's faces, like a cupboard on the floor and against a wall. O(n log n) in edges
+/// if few bodies overlap at any one point.
 std::vector<InsideOut> find_inside_out(const BodyFaces& faces);
 
 }  // namespace exitance

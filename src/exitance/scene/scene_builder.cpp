@@ -135,6 +135,7 @@ void SceneBuilder::place_corners() {
             before = &p;
         }
     }
+    if (is_sky_alone()) box_.add(Point{-0.5, -0.5, -0.5}), box_.add(Point{0.5, 0.5, 0.5});
     constexpr std::size_t one_in = 100;
     const auto percentile = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / one_in);
     if (!lengths.empty()) std::nth_element(lengths.begin(), percentile, lengths.end());
@@ -147,8 +148,9 @@ void SceneBuilder::check_faces() {
     for (std::uint32_t f = 0; f < in_.faces.size(); ++f) check_face(f);
     report_flattened();
     check_panes();
+    if (is_sky_alone()) return;
     if (in_.faces.empty() && in_.panes.empty())
-        error(1, "there are no polygons", "a scene needs at least one face");
+        error(1, "there are no polygons", "a scene needs at least one face, or a sky (solve --sky)");
     else if (in_.faces.empty())
         error(in_.panes[0].line, "all faces are panes of clear glass", "a scene needs at least one opaque face");
     else if (mesh_.size() == 0 && !has_errors())

@@ -45,6 +45,8 @@ class SceneBuilder {
     /// Appends the outlines of panes to the faces, so that they are checked in the same way.
     void add_pane_faces();
     bool is_pane(std::uint32_t f) const { return f >= first_pane_face_; }
+    /// True if there are neither faces nor panes but light from outside, which points in the open receive.
+    bool is_sky_alone() const { return in_.faces.empty() && in_.panes.empty() && !in_.distant.empty(); }
     void check_panes();
     void add_face(std::uint32_t f, std::span<const std::uint32_t> outline, const Vec3& area);
     /// True if the corners are out of plane by more than the tolerance that also applies to the tilt of neighbours.

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+
 #include "support/built_scene.hpp"
 #include "support/test_scenes.hpp"
 
@@ -92,6 +95,48 @@ TEST(Shell, ABodyWithTJointsIsClassifiedToo) {
     faces[6].corners = {q[0], a, b, q[3]};
     faces.push_back({{a, q[1], q[2], b}});
     EXPECT_EQ(sizes(inspect_shell(test::make(faces))), std::vector<std::size_t>{7});
+}
+
+TEST(Shell, FurnitureThatLiesOnFloorAndWallsIsJudged) {
+    const std::vector<test::Face> room = box({0, 0, 0}, {4, 3, 2.5}, true);
+    const std::array<std::pair<Point, Point>, 5> places{{{{1, 1, 0}, {2, 2, 1}},        // on the floor
+                                                         {{1, 0, 0}, {2, 0.5, 2}},      // and against a wall
+                                                         {{0, 0, 0}, {0.6, 0.5, 2}},    // in a corner
+                                                         {{0, 0, 0}, {0.6, 0.5, 2.5}},  // up to the ceiling
+                                                         {{1, 0, 1.5}, {2, 0.3, 2.5}}}};
+    for (const auto& [lo, hi] : places) {
+        EXPECT_EQ(sizes(inspect_shell(test::make(box(lo, hi, true, room)))), std::vector<std::size_t>{6})
+            << lo.x << " " << lo.y << " " << lo.z;
+        EXPECT_TRUE(inspect_shell(test::make(box(lo, hi, false, room))).inside_out.empty());
+    }
+    // Two cupboards side by side, of different heights, the second of which is inside out.
+    const std::vector<test::Face> first = box({1, 0, 0}, {2, 0.5, 2}, false, room);
+    const Shell shell = inspect_shell(test::make(box({2, 0, 0}, {3, 0.5, 1.5}, true, first)));
+    ASSERT_EQ(sizes(shell), std::vector<std::size_t>{6});
+    EXPECT_EQ(shell.inside_out[0].faces[0], 12u);
+}
+
+TEST(Shell, EachOfThousandsOfSmallBodiesIsJudged) {
+    // Leaves as tetrahedra in a room with a lamp; every third one is inside out.
+    std::vector<test::Face> faces = box({-3, -3, -3}, {3, 3, 3}, true);
+    faces.push_back({{{0, 0, 2.9}, {0, 1, 2.9}, {1, 1, 2.9}, {1, 0, 2.9}}, 1});
+    RandomStream random(1, Stream::mesh);
+    constexpr std::size_t leaves = 3000;
+    for (std::size_t i = 0; i < leaves; ++i) {
+        const Point a = 4 * test::any_in_cube(random);
+        std::array<Point, 4> p{a, a + 0.1 * test::any_in_cube(random), a + 0.1 * test::any_in_cube(random),
+                               a + 0.1 * test::any_in_cube(random)};
+        // Outwards: the fourth corner lies behind the first three.
+        if (dot(cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) > 0) std::swap(p[1], p[2]);
+        if (i % 3 == 0) std::swap(p[1], p[2]);
+        for (const auto& f : {std::array{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}})
+            faces.push_back({{p[static_cast<std::size_t>(f[0])], p[static_cast<std::size_t>(f[1])],
+                              p[static_cast<std::size_t>(f[2])]}});
+    }
+    const std::vector<std::size_t> found = sizes(inspect_shell(test::make(faces)));
+    // Leaves within others, which are then cavities, are few.
+    EXPECT_NEAR(static_cast<double>(found.size()), leaves / 3.0, 0.02 * leaves);
+    EXPECT_EQ(*std::max_element(found.begin(), found.end()), 4u);
 }
 
 TEST(Shell, CavitiesOfSolidBodiesAndRoomsSideBySideAreNotInsideOut) {

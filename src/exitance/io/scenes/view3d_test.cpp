@@ -70,6 +70,30 @@ TEST(View3d, PlanesOfFormatF3aHaveTheRightPosition) {
     EXPECT_NEAR(checked.scene->box().hi.z, 3, 1e-12);
 }
 
+TEST(View3d, AQuadrangleThatCrossesItselfIsSplitAtTheCrossing) {
+    // Corners 3 and 4 are exchanged: two triangles of 4 m^2 meet at (2, 2).
+    const CheckedScene checked = load("F 3\n" + square + "S 1 1 2 4 3 0 0 0.9 bow\nS 2 8 7 6 5 0 0 0.9 lid\nE\n");
+    ASSERT_TRUE(checked.scene);
+    double area = 0;
+    std::size_t faces = 0;
+    for (const Surface& s : checked.scene->surfaces()) {
+        if (checked.scene->groups()[s.group] != "bow") continue;
+        area += s.area, ++faces;
+        EXPECT_NEAR(s.area, 4, 1e-9);
+    }
+    EXPECT_EQ(faces, 2u);
+    EXPECT_NEAR(area, 8, 1e-9);
+    std::size_t repairs = 0;
+    for (const Finding& f : checked.findings) repairs += f.kind == Finding::Kind::repair;
+    EXPECT_EQ(repairs, 1u);
+}
+
+TEST(View3d, ACrossedQuadrangleWithASubsurfaceIsAnError) {
+    const CheckedScene checked = load("F 3\n" + square + "S 1 1 2 4 3 0 0 .9 bow\nS 2 5 6 7 8 1 0 .9 part\nE\n");
+    ASSERT_FALSE(checked.scene);
+    EXPECT_NE(checked.scene.error().message.find("crosses itself"), std::string::npos);
+}
+
 TEST(View3d, InputThatView3dRejectsIsAnErrorWithItsLine) {
     const std::pair<std::string, int> wrong[] = {
         {"F 3\nV 2 0 0 0\n", 2},                                                                  // out of order

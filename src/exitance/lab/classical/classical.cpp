@@ -7,6 +7,7 @@
 #include "exitance/gather/local_pass.hpp"
 #include "exitance/lab/classical/classical_input.hpp"
 #include "exitance/lab/classical/vertex_averages.hpp"
+#include "exitance/methods/carried_light.hpp"
 #include "exitance/methods/light/light_functions.hpp"
 #include "exitance/methods/options/support.hpp"
 #include "exitance/methods/solve_report.hpp"
@@ -201,12 +202,14 @@ Solution unfinished(const ClassicalInput& input, Method method, const Snapshots:
 
 /// Returns an error if patches cannot emit or transmit the scene's light.
 Result<void> check_emission(const Scene& scene, const ClassicalOptions& classical) {
+    if (scene.surfaces().size() == 0)
+        return Error{ErrorCode::usage, "classical forms need surfaces; the scene has none", "--method",
+                     "leave out the options of classical forms"};
     if (scene.has_diffusing_panes())
         return Error{ErrorCode::usage,
                      "published forms carry light to one side of a surface, but the scene has diffusing panes",
                      "--method", "--method matrix without options of published forms supports them"};
-    if (!classical.carried() || (!scene.has_light_apart() && scene.panes().empty() && !scene.has_directed_emission()))
-        return {};
+    if (!classical.carried() || is_lit_by_diffuse_surfaces(scene)) return {};
     return Error{ErrorCode::usage, "carried light comes from diffuse emitters; the scene has others", "--direct",
                  "--direct apart supports all emitters"};
 }

@@ -18,6 +18,12 @@ double cell_distance(const CellLight::Cell& cell, const Point& x, const Normal& 
     return along + across * across + (1 - dot(n, cell.n)) / normal_spread;
 }
 
+double share_on_plane(const CellLight::Cell& cell, const Point& x, const Normal& n) {
+    const double height = dot(n, cell.at - x);
+    const Point nearest = cell.at - height * Vec3(n);
+    return std::exp(height * height / (cell.width * cell.width) - cell_distance(cell, nearest, n));
+}
+
 CellFunction::CellFunction(const CellLight& light) : light_(&light) {
     std::vector<Box> boxes;
     boxes.reserve(light.cells.size());
@@ -42,6 +48,16 @@ std::uint32_t CellFunction::nearest(const Point& x, const Normal& n) const {
         if (own < least) least = own, best = c;
     }
     return best;
+}
+
+/// A cell's weight; 0 beyond three widths.
+double CellFunction::weight_at(const CellLight::Cell& cell, const Point& x, const Normal& n) const {
+    if (light_->normalised) {
+        const double q = cell_distance(cell, x, n);
+        return q < cutoff ? std::exp(-q) : 0;
+    }
+    const double q = squared_norm(x - cell.at) / (cell.width * cell.width);
+    return q < cutoff ? std::exp(-q) * share_on_plane(cell, x, n) : 0;
 }
 
 Spectrum CellFunction::at(const Point& x, const Normal& n) const {

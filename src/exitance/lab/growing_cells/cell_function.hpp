@@ -18,15 +18,22 @@ namespace exitance {
 /// surfaces are separated by their shape, not by their tessellation.
 double cell_distance(const CellLight::Cell& cell, const Point& x, const Normal& n);
 
+/// Returns a cell's weight on the plane through x with normal n, relative to its isotropic Gaussian; at most 1. Where
+/// outputs are summed, the weight of a cell is this constant times exp(-|x - w_c|^2 / d^2), so that integrals over
+/// polygons have a closed form. The constant is exp(-q + |x' - w_c|^2 / d^2) at the point x' of the plane nearest to
+/// w_c.
+double share_on_plane(const CellLight::Cell& cell, const Point& x, const Normal& n);
+
 /// Evaluates the light of cells at points.
 class CellFunction {
   public:
     /// Keeps a reference to `light`. O(cells log cells).
     explicit CellFunction(const CellLight& light);
 
-    /// Irradiance at x on a surface with normal n, W/m^2: the sum over cells within three widths of exp(-q) v_c or, if
-    /// `normalised`, the mean of v_c + slope . (x - w_c) with these weights. If no cell is near, the result is that of
-    /// the nearest cell with a similar normal (normalised), or 0 (summed). Never negative.
+    /// Irradiance at x on a surface with normal n, W/m^2: the sum over cells within three widths of v_c times
+    /// `share_on_plane` exp(-|x - w_c|^2 / d^2) or, if `normalised`, the mean of v_c + slope . (x - w_c) with weights
+    /// exp(-q). If no cell is near, the result is that of the nearest cell with a similar normal (normalised), or 0
+    /// (summed). Never negative.
     Spectrum at(const Point& x, const Normal& n) const;
 
     /// Calls visit(cell, weight) for every cell within three widths, in the order of the search index.
@@ -35,13 +42,14 @@ class CellFunction {
         Box here;
         here.add(x);
         index_.visit_box(here, [&](std::uint32_t c) {
-            const double q = cell_distance(light_->cells[c], x, n);
-            if (q < cutoff) visit(c, std::exp(-q));
+            const double weight = weight_at(light_->cells[c], x, n);
+            if (weight > 0) visit(c, weight);
         });
     }
     static constexpr double cutoff = 9;  ///< q beyond which a cell has no weight: three widths.
 
   private:
+    double weight_at(const CellLight::Cell& cell, const Point& x, const Normal& n) const;
     std::uint32_t nearest(const Point& x, const Normal& n) const;
 
     const CellLight* light_;

@@ -8,7 +8,9 @@
 #include "exitance/lab/growing_cells/least_squares.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/methods/solve_scene.hpp"
+#include "exitance/scene/sky/sky_model.hpp"
 #include "support/built_scene.hpp"
+#include "support/test_scenes.hpp"
 
 namespace exitance {
 namespace {
@@ -71,11 +73,41 @@ TEST(GrowingCellsMethod, ACellIsNotLitByItsOwnSurfaceInTransformedScenes) {
 
 TEST(GrowingCellsMethod, DivergingLightIsReported) {
     // Far too few units for seventeen surfaces: each reflection yields more light than the last.
-    const Solution solution = solve_cells(built_scene("cornell"), CellsKind::classic, 32);
+    const Solution solution = solve_cells(built_scene("cornell"), CellsKind::classic, 64);
     EXPECT_FALSE(solution.statistics.converged);
     EXPECT_EQ(solution.statistics.stopped_by, "divergence");
     ASSERT_FALSE(solution.statistics.warnings.empty());
     EXPECT_NE(solution.statistics.warnings.back().find("grows with every reflection"), std::string::npos);
+}
+
+Result<Solution> solve_classic(const Scene& scene) {
+    SolveOptions options{.method = Method::growing_cells, .smoothing = false};
+    options.gcs = CellsKind::classic, options.max_units = 16;
+    Progress progress;
+    const StopRequest stop;
+    return solve_scene(scene, options, progress, stop);
+}
+
+TEST(GrowingCellsMethod, ClassicRefusesLightThatNoDiffuseSurfaceEmits) {
+    Scene scene = box_scene(3, 2, 1.5, 0.5, 1, 0);
+    EXPECT_TRUE(solve_classic(scene));
+    DistantLight sky;
+    sky.domes = {{uniform_sky(), Spectrum(1)}};
+    scene.put_under(sky);
+    const Result<Solution> under_sky = solve_classic(scene);
+    ASSERT_FALSE(under_sky);
+    EXPECT_EQ(under_sky.error().code, ErrorCode::bad_input);
+    EXPECT_NE(under_sky.error().hint.find("--gcs improved"), std::string::npos);
+}
+
+TEST(GrowingCellsMethod, AMethodThatFindsNoLightIsNoResult) {
+    // No sample of the network lies on a lamp of 1 mm^2 in a hall of 24,000 m^2.
+    std::vector<test::Face> faces = test::closed_box({0, 0, 0}, {100, 80, 25});
+    faces.push_back({{{50, 40, 20}, {50, 40.001, 20}, {50.001, 40.001, 20}, {50.001, 40, 20}}, 1e9});
+    const Result<Solution> dark = solve_classic(test::make(faces));
+    ASSERT_FALSE(dark) << "estimate " << dark->statistics.relative_error_estimate.value_or(-1);
+    EXPECT_EQ(dark.error().code, ErrorCode::limit);
+    EXPECT_NE(dark.error().message.find("found no light"), std::string::npos);
 }
 
 TEST(SurfacePool, IsUniformAndItsBlocksAreCompact) {

@@ -17,7 +17,6 @@ namespace {
 constexpr std::size_t max_reflections = 12;
 constexpr std::size_t system_steps = 1000;  ///< Maximum iterations of conjugate gradients on the mass matrix.
 constexpr double negligible = 1e-6;         ///< Amplitude of a product of Gaussians below which it is omitted.
-constexpr double min_cosine = 0.9;          ///< Cosine between normals above which they count as equal.
 
 /// Integrals of Gaussians over the scene's polygons; exact at the polygons' edges.
 class PolygonIntegrals {
@@ -56,11 +55,14 @@ class PolygonIntegrals {
             box, [&](std::uint32_t i) { visit(i, integral_over_polygon(g, polygons_[i].corners, polygons_[i].n)); });
     }
 
-    /// Integral over all polygons with the cell's normal, m^2.
-    double on_surface_of(const CellLight::Cell& cell, const Gaussian& g) const {
+    /// Returns the integral over all polygons of g times the shares of `cells` (`share_on_plane`), m^2. g is the
+    /// product of these cells' isotropic Gaussians, or of one of them and another Gaussian.
+    template <class... Cells>
+    double on_surface_of(const Gaussian& g, const Cells&... cells) const {
         double sum = 0;
         visit(g, [&](std::uint32_t i, double integral) {
-            sum += dot(polygons_[i].n, cell.n) > min_cosine ? integral : 0;
+            const Polygon& p = polygons_[i];
+            sum += (share_on_plane(cells, p.corners[0], p.n) * ...) * integral;
         });
         return sum;
     }
@@ -81,16 +83,16 @@ class PolygonIntegrals {
     Bvh tree_;
 };
 
-/// Mass matrix G_qp = int Phi_q Phi_p over the surface of q; 0 between cells of different normals.
+/// Mass matrix G_qp = int Phi_q Phi_p over all surfaces, with Phi as `CellFunction` evaluates it.
 std::vector<double> mass_matrix(const std::vector<CellLight::Cell>& cells, const PolygonIntegrals& integrals) {
     const std::size_t n = cells.size();
     std::vector<double> G(n * n);
     parallel_for(n, 4, [&](std::size_t q) {
         for (std::size_t p = 0; p <= q; ++p) {
-            if (dot(cells[q].n, cells[p].n) < min_cosine) continue;
+            if (dot(cells[q].n, cells[p].n) <= 0) continue;
             const Gaussian both = product({cells[q].at, cells[q].width}, {cells[p].at, cells[p].width});
             if (both.amplitude < negligible) continue;
-            G[q * n + p] = integrals.on_surface_of(cells[q], both);
+            G[q * n + p] = integrals.on_surface_of(both, cells[q], cells[p]);
         }
     });
     for (std::size_t q = 0; q < n; ++q)
@@ -122,7 +124,7 @@ std::vector<Spectrum> arriving(const std::vector<CellLight::Cell>& cells,
             double sent = 0;
             for (const auto& [polygon, part] : J[i]) sent += faces[polygon] ? part : 0;
             if (!(sent > 0)) continue;
-            const double I = integrals.on_surface_of(cell, both);
+            const double I = integrals.on_surface_of(both, cell);
             const auto v = network.output(units[i]);
             for (std::size_t b = 0; b < bands; ++b) out[q][b] += v[b] * I * sent;
         }

@@ -14,6 +14,7 @@
 #include "exitance/evaluate/energy.hpp"
 #include "exitance/evaluate/quick_function.hpp"
 #include "exitance/lab/local_passes/local_passes.hpp"
+#include "exitance/methods/carried_light.hpp"
 #include "exitance/methods/light/light_functions.hpp"
 #include "exitance/solve/global_light.hpp"
 
@@ -145,7 +146,7 @@ LineHierarchyOptions line_options(const SolveOptions& options, double error) {
 
 Result<Solution> solve_by_lines(const Scene& scene, const SolveOptions& options, Progress& progress,
                                 const StopRequest& stop) {
-    if (scene.has_light_apart() || !scene.panes().empty() || scene.has_directed_emission())
+    if (!is_lit_by_diffuse_surfaces(scene))
         return Error{ErrorCode::bad_input, "has lights without extent, or that are not diffuse", scene.file(),
                      "--local-pass a to d carries light between diffuse polygons alone: e carries this light, too"};
     const Stopwatch watch;

@@ -10,6 +10,7 @@
 #include "exitance/evaluate/energy.hpp"
 #include "exitance/lab/tasks/interaction_forecast.hpp"
 #include "exitance/lab/tasks/task_engine.hpp"
+#include "exitance/methods/carried_light.hpp"
 #include "exitance/methods/light/light_functions.hpp"
 #include "exitance/methods/light/smoothing.hpp"
 #include "exitance/methods/solve_report.hpp"
@@ -105,7 +106,7 @@ TaskOptions task_options(const Scene& scene, const SolveOptions& options) {
 
 Result<Solution> solve_by_tasks(const Scene& scene, const SolveOptions& options, Progress& progress,
                                 const StopRequest& stop) {
-    if (scene.has_light_apart() || !scene.panes().empty() || scene.has_directed_emission())
+    if (!is_lit_by_diffuse_surfaces(scene))
         return Error{ErrorCode::bad_input, "has lights without extent, or that are not diffuse", scene.file(),
                      "--task-engine carries light between diffuse patches alone: leave it out"};
     const Stopwatch watch;

@@ -8,6 +8,7 @@
 #include "exitance/transport/stage.hpp"
 #include "support/built_scene.hpp"
 #include "support/sample_solution.hpp"
+#include "support/solved.hpp"
 
 namespace exitance {
 namespace {
@@ -247,6 +248,45 @@ TEST(AutomaticCamera, LooksIntoARoomThroughItsOpenSide) {
     EXPECT_LT(camera.eye.y, 0);
     EXPECT_NEAR(camera.eye.x, 0.5, 1e-12);
     EXPECT_GT(camera.target.y, camera.eye.y);
+}
+
+/// Faces of a box of one material; fronts inwards or outwards.
+void add_box(SceneDescription& d, const Point& lo, const Point& hi, std::uint32_t material, bool inwards) {
+    const auto first = static_cast<std::uint32_t>(d.points.size());
+    for (const double z : {lo.z, hi.z})
+        d.points.insert(d.points.end(), {{lo.x, lo.y, z}, {hi.x, lo.y, z}, {hi.x, hi.y, z}, {lo.x, hi.y, z}});
+    for (std::vector<std::uint32_t> face : std::vector<std::vector<std::uint32_t>>{
+             {0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}}) {
+        for (std::uint32_t& corner : face) corner += first;
+        if (!inwards) std::reverse(face.begin(), face.end());
+        d.faces.push_back({face, material, 0, 1});
+    }
+}
+
+TEST(AutomaticCamera, StandsInASmallRoomInTheLightAndNotInFurnitureOrWalls) {
+    // A lavatory of 0.9 x 1.3 m with a cistern cupboard, in a block with a dark store room that is larger.
+    SceneDescription d;
+    d.materials = {{"wall", Spectrum(0.7), Spectrum()}, {"lamp", Spectrum(0.0), Spectrum(100)}};
+    d.groups = {"all"};
+    const Point lo{0, 0, 0}, hi{0.9, 1.3, 2.2}, cupboard_lo{0.1, 0.9, 0.01}, cupboard_hi{0.8, 1.29, 1.1};
+    add_box(d, lo, hi, 0, true);
+    add_box(d, cupboard_lo, cupboard_hi, 0, false);
+    add_box(d, {1.1, 0, 0}, {4, 3, 2.2}, 0, true);
+    add_box(d, {-0.2, -0.2, -0.2}, {4.2, 3.2, 2.4}, 0, false);
+    d.points.insert(d.points.end(), {{0.3, 0.4, 2.19}, {0.3, 0.7, 2.19}, {0.6, 0.7, 2.19}, {0.6, 0.4, 2.19}});
+    const auto n = static_cast<std::uint32_t>(d.points.size());
+    d.faces.push_back({{n - 4, n - 3, n - 2, n - 1}, 1, 0, 1});
+    for (const double scale : {1.0, 0.1}) {
+        SceneDescription scaled = d;
+        for (Point& p : scaled.points) p = scale * p;
+        const Solution s = solved(*make_scene(scaled).scene, {.error = 0.1});
+        const Point eye = (1 / scale) * automatic_camera(s, RayTracer(s.scene), Projection::perspective, {64, 40}).eye;
+        const auto is_within = [&](const Point& a, const Point& b) {
+            return eye.x > a.x && eye.y > a.y && eye.z > a.z && eye.x < b.x && eye.y < b.y && eye.z < b.z;
+        };
+        EXPECT_TRUE(is_within(lo, hi)) << eye.x << " " << eye.y << " " << eye.z;
+        EXPECT_FALSE(is_within(cupboard_lo, cupboard_hi));
+    }
 }
 
 /// Requests a stop when the given pass begins, counted from 1.

@@ -65,8 +65,19 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
     record_certificate(certificate_, *light_, solution_.indirect, statistics());
     statistics().rooms = certifier.rooms(), statistics().surface_errors = certifier.surface_errors();
     statistics().bodies = certifier.bodies();
-    if (certificate_.points == 0 && !stop_.requested()) tell_exact();
+    if (certificate_.points == 0 && !stop_.requested()) record_darkness();
     progress_.note(describe(certificate_, *light_, solution_.indirect, gathered_));
+}
+
+void Solver::record_darkness() {
+    const double reflected = mean_direct_light(stage_, direct_).reflected;
+    if (!(reflected > 0)) return tell_exact();
+    refusal_ = Error{ErrorCode::limit,
+                     fmt::format("method {} found no light, but direct light makes surfaces reflect {:.3g} {} in the "
+                                 "mean; nothing is written",
+                                 name_in(method_names, options_.method), reflected,
+                                 stage_.scene.is_photometric() ? "lm/m^2" : "W/m^2"),
+                     stage_.scene.file(), "another --method may find it"};
 }
 
 bool Solver::may_be_last(double demand) const {

@@ -40,6 +40,9 @@ class Solver {
     void warn(std::string message);
     /// Records an error of zero: nothing reflects, and direct light is exact.
     void tell_exact();
+    /// Records an error of zero if no surface reflects direct light. Otherwise the method has lost the light, and
+    /// `refusal_` is set.
+    void record_darkness();
     void stop_early(const char* why);
 
     static constexpr int most_attempts = 9;
@@ -147,7 +150,7 @@ class Solver {
     const StopRequest& stop_;
     CheckpointStore* checkpoints_;
     const ShowLight& show_;
-    std::optional<Error> refusal_;  ///< Set if the method needs more memory than available.
+    std::optional<Error> refusal_;  ///< Set if the method needs more memory than available, or found no light.
     double requested_error_ = 0;  ///< Requested error; options_.error is larger while intermediate solutions are shown.
     int shown_ = 0;               ///< Number of attempts with a larger target error.
     Solution solution_;
