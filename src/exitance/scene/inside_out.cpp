@@ -75,10 +75,10 @@ class BodyFinder {
     std::vector<Box> box_of_face_;
     Bvh face_tree_;
     std::vector<std::uint32_t> emitters_;        ///< Faces that emit.
-    Bvh emitter_tree_;                           ///< Of the places just before and just behind their centroids.
+    Bvh emitter_tree_;                           ///< Boxes around the centroids of `emitters_`.
     Bvh cavity_tree_;                            ///< Boxes of `cavities_`.
-    std::optional<bool> has_light_outside_;      ///< As faces are turned by now, once it was needed.
-    std::vector<std::optional<double>> fronts_;  ///< `share_of_fronts` by space, likewise.
+    std::optional<bool> has_light_outside_;      ///< Empty until needed, and after a body is turned.
+    std::vector<std::optional<double>> fronts_;  ///< Results of `share_of_fronts`, likewise.
 };
 
 void BodyFinder::find_emitters() {
