@@ -180,7 +180,7 @@ const std::vector<Verb>& verbs() {
          facts_of_verb<ExperimentArguments>, "the page is written with the runs that are finished, with status 4"},
         {"viewfactors", "Writes the matrix of view factors between a scene's polygons.",
          "exitance viewfactors room.obj -o room.csv", parse_verb<ViewFactorArguments>,
-         facts_of_verb<ViewFactorArguments>},
+         facts_of_verb<ViewFactorArguments>, "finished rows are written, with status 4; --resume continues from them"},
         {"heat", "Solves for the radiative heat between gray surfaces from view factors.",
          "exitance heat room_factors.h5 --table temperatures.csv -o heat.csv", parse_verb<HeatArguments>,
          facts_of_verb<HeatArguments>},

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <new>
 #include <string>
+#include <system_error>
 #include <type_traits>
 #include <variant>
 #include <vector>
@@ -50,6 +51,8 @@ int main(int argc, char** argv) {
         const int status = run_program({argv + 1, argv + std::max(argc, 1)});
         leave_processes();
         return status;
+    } catch (const std::system_error& failure) {  // of output that is printed directly
+        return static_cast<int>(Terminal({}).fail({ErrorCode::cannot_write, failure.what(), "standard output", ""}));
     } catch (const std::bad_alloc&) {
         return static_cast<int>(Terminal({}).fail({ErrorCode::limit, "the system has no more memory", "",
                                                    "allow a larger --error, or see what `solve --dry-run` forecasts"}));

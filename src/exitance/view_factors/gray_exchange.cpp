@@ -131,6 +131,24 @@ bool is_determined(const GraySystem& system, std::span<const ThermalSurface> sur
     return std::all_of(reached.begin(), reached.end(), [](double r) { return r > 0; });
 }
 
+/// An error if a surface sees an opening: its row misses more than the factors' error explains.
+Result<void> check_closed(const SparseFactors& factors) {
+    constexpr double allowed = 0.01;  // rows of usual accuracy miss a tenth of this
+    std::size_t open = 0;
+    double least = 1;
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        double sum = 0;
+        for (const double F : factors.row_values(i)) sum += F;
+        const double error = i < factors.row_errors.size() ? factors.row_errors[i] : 0;
+        if (sum >= 1 - allowed - 3 * error || !(factors.areas[i] > 0)) continue;
+        ++open, least = std::min(least, sum);
+    }
+    if (open == 0) return {};
+    return wrong(fmt::format("{} of {} surfaces see openings: their view factors add up to {:.3g} or more", open,
+                             factors.size(), least),
+                 "give the temperature behind the openings: --surroundings K");
+}
+
 Result<void> check(const SparseFactors& factors, std::span<const ThermalSurface> surfaces,
                    std::optional<double> surroundings) {
     if (surfaces.size() != factors.size())
@@ -145,7 +163,8 @@ Result<void> check(const SparseFactors& factors, std::span<const ThermalSurface>
             return wrong(fmt::format("surface {}: temperature or heat is out of range", i + 1),
                          "temperatures are in kelvins, heat in watts");
     }
-    if (surroundings && !(*surroundings >= 0 && *surroundings < 1e5))
+    if (!surroundings) return check_closed(factors);
+    if (!(*surroundings >= 0 && *surroundings < 1e5))
         return wrong("the temperature of the surroundings is out of range", "temperatures are in kelvins");
     return {};
 }

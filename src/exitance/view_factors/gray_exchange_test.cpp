@@ -103,6 +103,10 @@ TEST(GrayExchange, WhatIsWrongIsReported) {
     EXPECT_NE(message({{0, 300.0}, {0.5, 300.0}}).find("emissivity"), std::string::npos);
     EXPECT_NE(message({{0.5, -1.0}, {0.5, 300.0}}).find("out of range"), std::string::npos);
     EXPECT_NE(message({{0.5, {}, 0.0}, {0.5, {}, 10.0}}).find("nothing determines"), std::string::npos);
+    const std::vector<ThermalSurface> warm{{0.5, 300.0}, {0.5, 400.0}};
+    const auto open = solve_gray_exchange(table({1, 1}, {{0, 0.2}, {0.2, 0}}), warm, {}, StopRequest());
+    ASSERT_FALSE(open);
+    EXPECT_NE(open.error().message.find("2 of 2 surfaces see openings"), std::string::npos) << open.error().message;
     EXPECT_NE(message({{0.5, {}, -1e6}, {0.5, 300.0}}).find("absolute zero"), std::string::npos);
 }
 

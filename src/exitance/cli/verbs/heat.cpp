@@ -5,6 +5,7 @@
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/view_factors/thermal_table.hpp"
 #include "exitance/io/view_factors/view_factor_file.hpp"
 
@@ -40,6 +41,11 @@ std::string words_of(const GrayExchange& exchange, const std::vector<ThermalSurf
 
 /// Runs `exitance heat FACTORS --table TABLE`.
 ExitCode run(const HeatArguments& arguments, Terminal& terminal) {
+    for (const std::string& output : {arguments.output, arguments.exchange})
+        if (!output.empty() && (is_same_file(output, arguments.factors) || is_same_file(output, arguments.table)))
+            return terminal.fail({ErrorCode::usage, "is an input", output, "choose another name for the output"});
+    if (!arguments.output.empty() && arguments.output == arguments.exchange)
+        return terminal.fail({ErrorCode::usage, "is also the file of --output", "--exchange", "choose another name"});
     const StopRequest& stop = terminal.limits().stop();
     const Result<SparseFactors> factors = read_view_factors(arguments.factors);
     if (!factors) return terminal.fail(factors.error());

@@ -247,6 +247,14 @@ ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal) {
     RunLimits& limits = terminal.limits();
     const StopRequest& stop = limits.keep();
     set_threads(arguments.threads);
+    for (const std::string& input : arguments.scene.files)
+        if (is_same_file(arguments.output, input))
+            return terminal.fail(
+                {ErrorCode::usage, "is the scene", arguments.output, "choose another name for the output"});
+    for (const char* of_scenes : {".mtl", ".obj", ".gltf", ".glb", ".rad", ".stl", ".ply", ".vs3"})
+        if (ending(arguments.output) == of_scenes)
+            return terminal.fail({ErrorCode::usage, "has the ending of a scene's files", arguments.output,
+                                  "view factors are written as .csv, .vf, .mtx or .h5"});
     if (const Result<AtomicFile> file = AtomicFile::create(arguments.output); !file) return terminal.fail(file.error());
     LoadOptions load = arguments.scene.load;
     load.stop = &stop;

@@ -63,6 +63,11 @@ std::string found_beside(const std::string& path, std::string_view name) {
     return as_said;
 }
 
+bool is_same_file(const std::string& a, const std::string& b) {
+    std::error_code failed;
+    return std::filesystem::equivalent(a, b, failed) && !failed;
+}
+
 std::string ending(const std::string& path) {
     std::string out = std::filesystem::path(path).extension().string();
     std::transform(out.begin(), out.end(), out.begin(),

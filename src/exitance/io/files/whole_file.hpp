@@ -17,6 +17,9 @@ std::string beside(const std::string& path, std::string_view name);
 /// do not exist here, or with different capitals. Returns beside(path, name) if there is no such file.
 std::string found_beside(const std::string& path, std::string_view name);
 
+/// True if both paths lead to the same existing file.
+bool is_same_file(const std::string& a, const std::string& b);
+
 /// Returns the ending of a file name in small letters, such as ".obj"; may be empty.
 std::string ending(const std::string& path);
 

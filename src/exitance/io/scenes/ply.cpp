@@ -161,7 +161,8 @@ class PlyReader {
             if (header.lines == 1) {
                 if (key != "ply") return error(1, "is no PLY file: its first line is not 'ply'");
             } else if (key == "format") {
-                if (!read_format(line.word(), header)) return std::nullopt;
+                const std::string name(line.word());
+                if (!read_format(name, line.word(), header)) return std::nullopt;
                 has_format = true;
             } else if (key == "element") {
                 if (!read_element(line, header)) return std::nullopt;
@@ -174,7 +175,8 @@ class PlyReader {
         }
     }
 
-    bool read_format(std::string_view name, Header& header) {
+    bool read_format(std::string_view name, std::string_view version, Header& header) {
+        if (version != "1.0") return error(header.lines, fmt::format("unknown version '{}'", shown(version))), false;
         if (name == "ascii")
             header.encoding = Encoding::text;
         else if (name == "binary_little_endian")
@@ -219,7 +221,11 @@ class PlyReader {
             if (std::none_of(header.elements.begin(), header.elements.end(),
                              [&](const Element& e) { return e.name == needed; }))
                 return void(error(0, fmt::format("has no element '{}'", needed), "export it as a mesh of polygons"));
+        const auto is_vertex = [](const Element& e) { return e.name == "vertex"; };
+        if (std::count_if(header.elements.begin(), header.elements.end(), is_vertex) > 1)
+            return void(error(0, "has several elements 'vertex'", "export it with one"));
         warn_of_colours(header);
+        warn_of_strips(header);
         Numbers numbers(body, header.encoding);
         for (const Element& element : header.elements)
             if (!read_rows(element, numbers, header.lines)) return;
@@ -243,8 +249,17 @@ class PlyReader {
                          "convert it to OBJ or glTF with a material for each colour"});
     }
 
+    void warn_of_strips(const Header& header) {
+        for (const Element& element : header.elements)
+            if (element.name == "tristrips" && element.count > 0)
+                out_.findings.push_back({Finding::Kind::warning, path_, 0,
+                                         "its triangle strips are ignored; only the faces are read",
+                                         "export it as polygons"});
+    }
+
     /// Reads all rows of an element. False where the file ends early or holds no number.
     bool read_rows(const Element& element, Numbers& numbers, int header_lines) {
+        if (element.properties.empty()) return true;  // its rows have no content
         const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
         for (std::size_t row = 0; row < element.count; ++row) {
             Point place;
@@ -294,7 +309,7 @@ class PlyReader {
     bool add_face(const std::vector<double>& corners, std::size_t row, int line) {
         SceneDescription::Face face;
         for (const double corner : corners) {
-            if (!(corner >= 0 && corner < 4294967295.0))
+            if (!(corner >= 0 && corner < 4294967295.0 && corner == std::floor(corner)))
                 return error(line, fmt::format("face {} has corner {}", row, corner)), false;
             face.corners.push_back(static_cast<std::uint32_t>(corner));
         }

@@ -70,6 +70,13 @@ TEST(Ply, SkipsPropertiesThatItDoesNotUseAndWarnsOfColours) {
     EXPECT_EQ(scene.description.points[3].z, 2.5);
 }
 
+TEST(Ply, RowsWithoutContentTakeNoTime) {
+    const ReadScene scene = read(
+        "ply\nformat ascii 1.0\nelement junk 9000000000000000000\nelement vertex 0\nelement face 0\n"
+        "end_header\n");
+    EXPECT_TRUE(scene.findings.empty());
+}
+
 TEST(Ply, BrokenFilesAreErrors) {
     const std::string rows = "0 0 0\n1 0 0\n1 1 0\n0 1 2.5\n";
     for (const std::string& bytes :
@@ -81,6 +88,9 @@ TEST(Ply, BrokenFilesAreErrors) {
           std::string("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nelement face 0\n"
                       "end_header\n1 2\n"),
           std::string("ply\nformat ascii 1.0\nelement vertex -1\nend_header\n"),
+          std::string("ply\nformat ascii 2.0\nelement vertex 0\nelement face 0\nend_header\n"),
+          std::string("ply\nformat ascii 1.0\nelement vertex 0\nelement vertex 0\nelement face 0\nend_header\n"),
+          header("ascii") + rows + "3 0 1 1.5 7\n3 0 1 2 7\n",
           std::string("ply\nformat ascii 1.0\nproperty float x\nend_header\n")}) {
         const ReadScene scene = read(bytes);
         ASSERT_FALSE(scene.findings.empty()) << bytes;

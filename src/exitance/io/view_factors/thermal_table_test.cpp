@@ -33,8 +33,12 @@ TEST(ThermalTable, LaterRowsReplaceEarlierOnesAndEmptyFieldsKeep) {
     EXPECT_EQ((*surfaces)[1].emissivity, 0.6);
 }
 
-TEST(ThermalTable, SurfacesThatDoNotExistAreErrors) {
-    for (const char* text : {"surface,heat\n3,1\n", "surface,heat\n1.5,1\n", "surface,heat\n-1,1\n", "heat\n1\n"})
+TEST(ThermalTable, WrongColumnsRowsAndValuesAreErrors) {
+    for (const char* text :
+         {"surface,emissivty\n1,0.5\n", "surface,heat,heat\n1,1,1\n", "surface,heat\n1,1,2\n", "surface,heat\n1\n",
+          "surface,temperature,heat\n1,300,5\n", "surface;heat\n1;1\n", "surface,emissivity\n1,0\n",
+          "surface,temperature\n1,-1\n", "surface,heat\n1,x\n", "", "surface,heat\n,1\n", "surface,heat\n3,1\n",
+          "surface,heat\n1.5,1\n", "surface,heat\n-1,1\n", "heat\n1\n"})
         EXPECT_FALSE(read(text)) << text;
 }
 
