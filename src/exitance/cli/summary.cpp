@@ -43,6 +43,13 @@ std::string bound_line(const SolveStatistics& s) {
            "amplify all of it as much as any light";
 }
 
+/// Whether the requested error was reached. The recorded options have no error if none was requested.
+std::string reached_line(const Solution& solution) {
+    const SolveStatistics& s = solution.statistics;
+    if (!s.converged) return s.stopped_by.empty() ? "no" : fmt::format("no, stopped by {}", s.stopped_by);
+    return solution.options.find("\"error\":null") == std::string::npos ? "yes" : "no error was requested";
+}
+
 }  // namespace
 
 std::string percent(double share) {
@@ -79,7 +86,7 @@ std::string summary(const Solution& solution) {
         line("tasks", fmt::format("{}, {} stolen; {:.4g} links predicted", s.figures.at("tasks"),
                                   s.figures.at("stolen_tasks"), predicted->second));
     if (s.rooms.size() > 1) line("rooms", rooms_line(s.rooms, unit));
-    line("reached", s.converged ? "yes" : s.stopped_by.empty() ? "no" : fmt::format("no, stopped by {}", s.stopped_by));
+    line("reached", reached_line(solution));
     line("elements", fmt::format("{} ({} leaves) on {} surfaces", s.elements, s.leaf_elements, s.surfaces));
     line("transport", fmt::format("{} links ({}), {} form factors, {} rays", s.links, bytes(s.link_memory_bytes),
                                   s.form_factors, s.rays));
