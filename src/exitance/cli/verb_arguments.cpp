@@ -160,7 +160,7 @@ void declare(CLI::App& app, ExperimentArguments& arguments) {
 }
 
 void declare(CLI::App& app, HeatArguments& arguments) {
-    app.add_option("factors", arguments.factors, "View factors, written by viewfactors as .h5")
+    app.add_option("FACTORS", arguments.factors, "View factors, written by viewfactors as .h5")
         ->type_name("FACTORS")
         ->required();
     app.add_option(

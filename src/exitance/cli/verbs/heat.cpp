@@ -48,7 +48,12 @@ ExitCode run(const HeatArguments& arguments, Terminal& terminal) {
         return terminal.fail({ErrorCode::usage, "is also the file of --output", "--exchange", "choose another name"});
     const StopRequest& stop = terminal.limits().stop();
     const Result<SparseFactors> factors = read_view_factors(arguments.factors);
-    if (!factors) return terminal.fail(factors.error());
+    if (!factors) {
+        Error error = factors.error();
+        if (error.code == ErrorCode::bad_input)
+            error.hint = "heat reads the .h5 file of `exitance viewfactors SCENE -o FACTORS.h5`";
+        return terminal.fail(error);
+    }
     if (const Result<void> whole = check_rows(*factors, arguments.factors); !whole) return terminal.fail(whole.error());
     const auto surfaces = read_thermal_table(arguments.table, *factors);
     if (!surfaces) return terminal.fail(surfaces.error());
