@@ -240,6 +240,15 @@ void tell(const SolveArguments& arguments, const Solution& solution, Terminal& t
     }
 }
 
+/// Adds a warning if the error is as large as the light, which can happen where no error was requested.
+void warn_of_useless_light(SolveStatistics& statistics) {
+    if (statistics.relative_error_estimate.value_or(0) < 1) return;
+    statistics.warnings.push_back(
+        fmt::format("the estimated error is {:.0f}% of the light: the result is not usable; refine the settings, or "
+                    "request an --error",
+                    100 * *statistics.relative_error_estimate));
+}
+
 }  // namespace
 
 /// Runs `exitance solve SCENE -o SOLUTION`.
@@ -289,6 +298,7 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
         return signal ? *signal : failure;
     }
     add_texture_error(*solution, checked.reflectance_deviation, arguments.options.error_demand());
+    warn_of_useless_light(solution->statistics);
     const Result<LightGroups> groups = keep_light_groups(arguments, *solution, tracing.progress(), stop);
     if (!groups) return terminal.fail(groups.error());
     record_run(*solution, arguments, checked.findings, read_seconds, run_time);

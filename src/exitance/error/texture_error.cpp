@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/scene/bodies.hpp"
+
 namespace exitance {
 namespace {
 
@@ -27,6 +29,31 @@ double mean_reflected(const Scene& scene, const Field<SurfaceId, SurfaceLight>& 
 
 void add(std::optional<double>& estimate, double more) {
     if (estimate) *estimate = std::hypot(*estimate, more);
+}
+
+/// Adds the error of each body, relative to its mean light or a tenth of the scene's. The bodies of the statistics are
+/// found again by their first faces.
+void add_to_bodies(const Scene& scene, const Field<SurfaceId, SurfaceLight>& light, std::span<const Spectrum> deviation,
+                   SolveStatistics& statistics) {
+    if (statistics.bodies.empty()) return;
+    constexpr double min_share = 0.1;  // as for bodies in the certificate
+    const SceneBodies found = find_bodies(scene);
+    std::vector<double> squared(found.all.size());
+    for (const SurfaceId s : scene.surfaces().ids())
+        squared[found.body[s]] +=
+            scene.surfaces()[s].area *
+            squared_error(scene.material(s), scene.surfaces()[s].material.value, light[s], deviation);
+    const double least_light = min_share * mean_reflected(scene, light);
+    for (BodyError& body : statistics.bodies) {
+        const auto same = [&](const SceneBody& b) { return b.first == body.first; };
+        const auto at = std::find_if(found.all.begin(), found.all.end(), same);
+        const double reference = std::max(body.mean, least_light);
+        if (!body.error || at == found.all.end() || !(reference > 0)) continue;
+        const double error = std::sqrt(squared[static_cast<std::size_t>(at - found.all.begin())] / at->area);
+        add(body.error, error / reference);
+        statistics.relative_error_estimate_worst_body =
+            std::max(statistics.relative_error_estimate_worst_body.value_or(0), *body.error);
+    }
 }
 
 }  // namespace
@@ -62,6 +89,7 @@ void add_texture_error(Solution& solution, std::span<const Spectrum> deviation, 
                                                    solution.scene.surfaces()[id].material.value, light[id], deviation));
         s.surface_errors[f].error = std::hypot(s.surface_errors[f].error, own / reflected);
     }
+    add_to_bodies(solution.scene, light, deviation, s);
     s.figures["relative_error_textures"] = error;
     const bool missed = demand && *s.relative_error_estimate > *demand;
     // Share of the estimate above which a warning is shown, given by the digits that people read.

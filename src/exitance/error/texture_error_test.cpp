@@ -43,6 +43,16 @@ TEST(TextureError, IsAddedToTheEstimateInQuadratureAndReported) {
     EXPECT_TRUE(s.statistics.converged) << "no error was requested";
 }
 
+TEST(TextureError, TheOnlyBodyHasTheErrorOfTheScene) {
+    Solution s = evenly_lit(0.01);
+    s.statistics.bodies = {{.surfaces = 6, .area = 10, .mean = 1, .error = 0.01, .points = 100, .first = SurfaceId(0)}};
+    s.statistics.relative_error_estimate_worst_body = 0.01;
+    add_texture_error(s, deviation, std::nullopt);
+    // Its mean reflected radiosity is 0.5 E = 1 W/m^2.
+    EXPECT_NEAR(*s.statistics.bodies[0].error, std::hypot(0.01, expected), 1e-6);
+    EXPECT_NEAR(*s.statistics.relative_error_estimate_worst_body, std::hypot(0.01, expected), 1e-6);
+}
+
 TEST(TextureError, ASolutionThatMissesTheRequestedErrorHasNotConverged) {
     Solution s = evenly_lit(0.01);
     add_texture_error(s, deviation, 0.1);

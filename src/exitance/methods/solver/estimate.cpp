@@ -104,11 +104,13 @@ void Solver::tell_clustering_error() {
 }
 
 void Solver::warn_of_bodies() {
+    const std::optional<double> demand = options_.error_demand();
+    if (!demand) return;
     constexpr double max_ratio = 3;  // times the requested error: limit for a small part of a scene
     const BodyError* worst = nullptr;
     std::size_t wrong = 0;
     for (const BodyError& body : statistics().bodies) {
-        if (!body.error || *body.error <= max_ratio * options_.error_target()) continue;
+        if (!body.error || *body.error <= max_ratio * *demand) continue;
         ++wrong;
         if (!worst || *body.error > *worst->error) worst = &body;
     }
@@ -116,12 +118,11 @@ void Solver::warn_of_bodies() {
     const Scene& scene = stage_.scene;
     const Surface& face = scene.surfaces()[worst->first];
     const Point at = centroid(scene.outline(worst->first));
-    warn(
-        fmt::format("the light of '{}' ({} face{}, {:.3g} m^2, near {:.4g}, {:.4g}, {:.4g}) is wrong by about {:.3g}%, "
-                    "more than three times the {:.3g}% requested for the whole{}; a smaller --error corrects it",
-                    scene.groups()[face.group], worst->surfaces, worst->surfaces == 1 ? "" : "s", worst->area, at.x,
-                    at.y, at.z, 100 * *worst->error, 100 * options_.error_target(),
-                    wrong > 1 ? fmt::format(", and so is that of {} more", wrong - 1) : ""));
+    warn(fmt::format(
+        "the light of '{}' ({} face{}, {:.3g} m^2, near {:.4g}, {:.4g}, {:.4g}) is wrong by about {:.3g}%, "
+        "more than three times the {:.3g}% requested for the whole{}; a smaller --error corrects it",
+        scene.groups()[face.group], worst->surfaces, worst->surfaces == 1 ? "" : "s", worst->area, at.x, at.y, at.z,
+        100 * *worst->error, 100 * *demand, wrong > 1 ? fmt::format(", and so is that of {} more", wrong - 1) : ""));
 }
 
 ErrorParts Solver::error_parts() const {
