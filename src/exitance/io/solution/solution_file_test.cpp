@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "exitance/base/parallel.hpp"
+#include "exitance/io/solution/checkpoint_file.hpp"
 #include "exitance/io/solution/solution_groups.hpp"
 #include "support/sample_solution.hpp"
 #include "support/temporary_folder.hpp"
@@ -197,6 +198,43 @@ TEST_F(SolutionFiles, HoldADiscontinuityMeshAndRejectAnInvalidOne) {
     read_discontinuity(*in, "mesh", 2);
     ASSERT_TRUE(in->failed());
     EXPECT_TRUE(in->error().message.ends_with("leads to a gradient that is not there")) << in->error().message;
+}
+
+/// A lamp below a pane of two faces that transmits half of what leaves it.
+Scene scene_with_pane(double through) {
+    SceneDescription d;
+    d.file = "pane.obj";
+    d.materials = {{"lamp", Spectrum(0.5), Spectrum(1)}, {"pane", Spectrum(0.7), Spectrum(0), {}, through}};
+    d.groups = {"all"};
+    const auto face = [&](std::initializer_list<Point> corners, std::uint32_t material) {
+        SceneDescription::Face f;
+        for (const Point& p : corners) {
+            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            d.points.push_back(p);
+        }
+        f.material = material;
+        d.faces.push_back(std::move(f));
+    };
+    face({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, 0);
+    face({{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, 1);
+    face({{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}}, 1);
+    return std::move(*make_scene(std::move(d)).scene);
+}
+
+TEST(StoredSceneInMemory, KeepsDiffusingPanesAndTheirOtherSides) {
+    const Scene scene = scene_with_pane(0.5);
+    ASSERT_TRUE(scene.has_diffusing_panes());
+    const Result<Scene> back = StoredScene::from_bytes(StoredScene::bytes_of(scene));
+    ASSERT_TRUE(back);
+    EXPECT_TRUE(back->has_diffusing_panes());
+    for (const MaterialId m : scene.materials().ids())
+        EXPECT_EQ(back->materials()[m].through, scene.materials()[m].through);
+    for (const RegionId r : scene.regions().ids()) EXPECT_EQ(back->regions()[r].behind, scene.regions()[r].behind);
+}
+
+TEST(StoredSceneInMemory, FingerprintsDependOnWhatPanesTransmit) {
+    EXPECT_EQ(scene_fingerprint(scene_with_pane(0.5)), scene_fingerprint(scene_with_pane(0.5)));
+    EXPECT_NE(scene_fingerprint(scene_with_pane(0.5)), scene_fingerprint(scene_with_pane(0.4)));
 }
 
 TEST_F(SolutionFiles, OfEqualSolutionsAreEqual) {
