@@ -44,19 +44,20 @@ std::vector<double> literals(std::string line) {
     return out;
 }
 
-/// Lines with a number that controls work but has no explanation: it is not in the table of calibrated numbers, and
-/// there is no comment on its line or directly above, which says what the number is derived from or how it was
-/// measured.
+/// Lines with a number that controls work but has no origin: it is not in the table of calibrated numbers, and no
+/// comment on its line or directly above says what it is given by or derived from, or how it was measured.
 std::vector<std::string> unexplained_literals(const std::string& name, std::istream& in) {
+    static const std::regex origin("//.*([gG]iven by|[dD]erived from|[mM]easured) ");
     std::vector<std::string> out;
     std::string line;
-    bool is_explained = false;  // by a comment directly above
+    bool is_explained = false;  // by the comment directly above
     for (int number = 1; std::getline(in, line); ++number) {
-        const bool has_comment = line.find("//") != std::string::npos;
-        if (!has_comment && !is_explained)
+        const bool here = std::regex_search(line, origin);
+        const bool is_comment = line.find_first_not_of(' ') == line.find("//");
+        if (!here && !is_explained)
             for (const double value : literals(line))
                 if (!is_plain(value)) out.push_back(name + ":" + std::to_string(number) + ": " + line);
-        is_explained = has_comment && line.find_first_not_of(' ') == line.find("//");
+        is_explained = is_comment && (here || is_explained);
     }
     return out;
 }
@@ -81,7 +82,7 @@ TEST(Literals, ThatControlWorkAreInTheTable) {
     EXPECT_GT(files, 20u);
 }
 
-TEST(Literals, AreFoundUnlessACommentExplainsThem) {
+TEST(Literals, AreFoundUnlessTheirOriginIsGiven) {
     const auto count = [](const std::string& code) {
         std::istringstream in(code);
         return unexplained_literals("x.cpp", in).size();

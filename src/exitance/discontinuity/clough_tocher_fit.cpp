@@ -24,10 +24,10 @@ std::array<Vec2, value_count> places_of_values(std::size_t longest) {
     for (std::size_t i = 0; i < 3; ++i) {
         const Vec2 a = corner[i], b = corner[(i + 1) % 3];
         out[i] = a, out[3 + i] = 0.5 * (a + b);
-        // Quarter points: edges are halved twice.
+        // Quarter points, derived from edges that are halved twice.
         out[6 + 2 * i] = 0.75 * a + 0.25 * b, out[7 + 2 * i] = 0.25 * a + 0.75 * b;
     }
-    // Inner node: middle of the line that bisects the longest edge.
+    // Inner node, derived from the line that bisects the longest edge: its middle.
     out[12] = 0.25 * (corner[longest] + corner[(longest + 1) % 3]) + 0.5 * corner[(longest + 2) % 3];
     return out;
 }
@@ -89,7 +89,7 @@ struct SectorSlopes {
     }
     void factor() {
         // Regularization on the order of rounding errors: slivers do not determine the slope across themselves.
-        constexpr double rounding = 1e-14, smallest = 1e-300;
+        constexpr double rounding = 1e-14, smallest = 1e-300;  // derived from double precision
         const double least = rounding * (xx + yy) + smallest;
         l_xx = std::sqrt(xx + least), l_xy = xy / l_xx;
         l_yy = std::sqrt(std::max(yy + least - l_xy * l_xy, least));
@@ -121,7 +121,7 @@ void add_agreement(Rows& rows, std::span<const SectorSlopes> sectors, std::size_
             for (std::size_t i = 0; i < row.size(); ++i) product += row[i] * other[i];
             for (std::size_t i = 0; i < row.size(); ++i) row[i] -= product * other[i];
         }
-    constexpr double dependent = 1e-7;  // square root of the rounding error of slopes
+    constexpr double dependent = 1e-7;  // derived from the rounding error of slopes: its square root
     const double after = norm_of();
     if (!(after > dependent * before)) return;
     for (double& x : row) x /= after;
@@ -328,7 +328,7 @@ Misfit CloughTocherFit::misfit(std::uint32_t triangle, const Spectrum& weight) c
     double square = 0;
     for (std::size_t p = 3; p < value_count; ++p) {
         // Weights that give the mean square of the element's error for a quartic, half of it from middles, half from
-        // quarters.
+        // quarters. Derived from the integrals of the squared basis functions.
         constexpr double of_middle = 0.0613, of_quarter = 0.0968, of_inner = 0.1909;
         const double part = p < 6 ? of_middle : p < 12 ? of_quarter : of_inner;
         square += part * squared(weight * errors[p]) / static_cast<double>(bands);

@@ -12,7 +12,7 @@ ElementFunction linear_elements(const SixNodeMesh& mesh, const Scene& scene) {
         const Point& o = mesh.points[n[0]];
         const Patch patch{o, mesh.points[n[1]] - o, mesh.points[n[2]] - o, Patch::Shape::triangle};
         const double square = squared_norm(cross(patch.a, patch.b));
-        constexpr double flat = 1e-24;  // (area / size^2)^2; thinner triangles are degenerate up to rounding
+        constexpr double flat = 1e-24;  // (area / size^2)^2, derived from rounding: thinner triangles are degenerate
         if (!(square > flat * std::pow(scene.size(), 4))) continue;
         const ElementId root = out.tree.add_root(mesh.region[t], patch);
         const ElementId first = out.tree.split(root, Cut::both);

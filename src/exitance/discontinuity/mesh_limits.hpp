@@ -6,11 +6,12 @@ namespace exitance {
 namespace mesh_limits {
 
 /// Share of the total area on which the largest error may be exceeded. Smaller regions get contact curves only.
-/// Of tables with 20,000 sample points, one in five has a point on so small an area.
+/// Derived from tables with 20,000 sample points: one in five has a point on so small an area.
 constexpr double unfindable_area = 1e-5;
 /// Limit in place of `unfindable_area` where there are so many emitters and regions that WeakLight pays off. Objects a
 /// millimetre above hundreds of desks have penumbras about a millimetre wide; following all of them to 1e-5 would take
-/// most of the triangles. 1e-3 is the area of one of the 1,000 sample points that measure the error.
+/// most of the triangles. Derived from the 1,000 sample points that measure the
+/// error: the area of one.
 constexpr double unfindable_area_among_many = 1e-3;
 
 /// Least light that gets curves, as a multiple of the largest permitted error T. Where light G falls to 0 across a
@@ -22,23 +23,23 @@ constexpr double unfindable_area_among_many = 1e-3;
 /// curves there.
 constexpr int least_bend = 5, least_kink_among_many = 160, least_bend_among_many = 300;  // multiples of T
 /// Least light that gets kink curves in other scenes, as a share of T: ten omitted sources cause an error of T at most.
-constexpr double least_kink = 0.1;  // a tenth of T per source
+constexpr double least_kink = 0.1;  // derived from ten sources: a tenth of T each
 
 /// Light of all omitted sources together, as a share of the requested errors.
-constexpr double unseen_light = 0.02;  // omitting it adds at most 2% to an error
+constexpr double unseen_light = 0.02;  // derived from the error that omitting it adds: at most 2%
 /// RMS noise of light that is sampled by rays, as a share of the requested errors: independent noise of half an error
 /// raises it by an eighth at most.
 constexpr double ray_noise = 0.5;
 
 /// Share of the total area. Larger triangles (at most 1,000) are tested at extra nodes even if they seem flat, since
 /// their six nodes may miss a shadow between them.
-constexpr double tried_area = 1e-3;  // one triangle per sample point that measures the error (1,000)
+constexpr double tried_area = 1e-3;  // derived from the 1,000 sample points that measure the error: one triangle each
 
 /// Share of the scene's size. Triangles without a longer edge are not bisected, and light at nodes on borders is
 /// evaluated this far inside the region.
-constexpr double shortest_edge = 1e-6;  // distance up to which surfaces count as coplanar
+constexpr double shortest_edge = 1e-6;  // derived from the distance up to which surfaces count as coplanar
 /// Share of the scene's size. Line trees merge points that are closer together than this.
-constexpr double one_place = 1e-7;  // a tenth of the above
+constexpr double one_place = 1e-7;  // derived from the above: a tenth of it
 
 }  // namespace mesh_limits
 }  // namespace exitance

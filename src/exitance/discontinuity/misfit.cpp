@@ -17,19 +17,19 @@ Misfit misfit(const BisectionMesh& mesh, std::uint32_t triangle, std::span<const
         square += part * squared(weight * error) / static_cast<double>(bands);
         out.largest = std::max(out.largest, std::abs(mean(weight * error)));
     };
-    // Integral over a triangle of the squared basis function of one test node, per area.
+    // Derived from the integral over a triangle of the squared basis function of one test node, per area.
     constexpr double of_edge = 0.1354 / 2, of_bubble = 0.2893 * (32.0 / 27) * (32.0 / 27);
     for (std::size_t i = 0; i < 3; ++i) {
         const Spectrum &a = values[t.corner[i]], &b = values[t.corner[(i + 1) % 3]], &m = values[t.middle[i]];
-        // Value of the quadratic interpolant a quarter of the way from a.
+        // Weights derived from the quadratic interpolant a quarter of the way from a.
         const Spectrum near_a = 0.375 * a + 0.75 * m - 0.125 * b;
-        // Likewise, from b.
+        // Likewise derived from the interpolant a quarter of the way from b.
         const Spectrum near_b = 0.375 * b + 0.75 * m - 0.125 * a;
         look(values[t.quarter[i][0]] - near_a, of_edge), look(values[t.quarter[i][1]] - near_b, of_edge);
     }
     const std::size_t i = t.longest, j = (i + 1) % 3, k = (i + 2) % 3;
     // Quadratic interpolant at the inner node, whose barycentric coordinates are 1/4, 1/4 (ends of the longest edge)
-    // and 1/2 (opposite corner).
+    // and 1/2 (opposite corner); weights derived from it.
     const Spectrum inner = -0.125 * (values[t.corner[i]] + values[t.corner[j]]) + 0.25 * values[t.middle[i]] +
                            0.5 * (values[t.middle[j]] + values[t.middle[k]]);
     look(values[t.inner] - inner, of_bubble);

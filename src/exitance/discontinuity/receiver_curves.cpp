@@ -12,7 +12,7 @@ namespace exitance {
 namespace {
 
 // Curves closer together than this share of the scene's size are merged.
-constexpr double nearness = 2e-8;  // rounding error where long wedges meet a plane
+constexpr double nearness = 2e-8;  // derived from the rounding error where long wedges meet a plane
 
 PlaneFrame frame_of(const Region& region) {
     PlaneFrame frame(region.loops.front().front(), region.plane.n);
@@ -219,7 +219,8 @@ void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
         const PunctualLight& light = stage_->scene.lights()[beam.light];
         // A directional light is treated as a point so far away that its shadows are accurate to 1e-8 of the scene's
         // size.
-        constexpr double far_distance = 1e8;  // distance in units of the scene's size
+        constexpr double far_distance =
+            1e8;  // in units of the scene's size; derived from double precision: its square loses no digits
         const Point place = light.is_directional()
                                 ? stage_->scene.box().centre() - (far_distance * stage_->scene.size()) * light.direction
                                 : light.position;
@@ -289,7 +290,8 @@ void CurveFinder::add_non_emitter_events(RegionId region, const EventSource& sou
     if (options_.conics == ConicCurves::none) return;
     // Between a conic and its polyline, the polynomial is that of the wrong side. The sagitta limits the width of this
     // strip to a thousandth of the region.
-    constexpr double max_sagitta = 1e-3;  // share of the region's width; the D2 error grows with its third power
+    constexpr double max_sagitta =
+        1e-3;  // share of the region's width, derived from the D2 error, which grows with its third power
     const double sagitta = max_sagitta * std::min(box.hi.x - box.lo.x, box.hi.y - box.lo.y);
     std::vector<ThreeEdgeEvent> conics;
     ThreeEdgeEventFinder(stage_->occluders, *edges_, options_.stop)

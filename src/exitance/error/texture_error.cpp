@@ -36,7 +36,7 @@ void add(std::optional<double>& estimate, double more) {
 void add_to_bodies(const Scene& scene, const Field<SurfaceId, SurfaceLight>& light, std::span<const Spectrum> deviation,
                    SolveStatistics& statistics) {
     if (statistics.bodies.empty()) return;
-    constexpr double min_share = 0.1;  // as for bodies in the certificate
+    constexpr double min_share = 0.1;  // derived from the definition of a body's error, as in the certificate
     const SceneBodies found = find_bodies(scene);
     std::vector<double> squared(found.all.size());
     for (const SurfaceId s : scene.surfaces().ids())

@@ -31,9 +31,9 @@ Vec3 mirrored(const Vec3& w, const Normal& n) {
 }  // namespace
 
 bool panes_may_mirror_light(const Scene& scene) {
-    // Cosine of a grazing angle: every mirroring pane mirrors there, by Fresnel's equations.
+    // Cosine of a grazing angle, derived from Fresnel's equations: every mirroring pane mirrors there.
     constexpr double oblique = 0.1;
-    constexpr double negligible = 1e-4;  // accuracy of the tables of RayFates
+    constexpr double negligible = 1e-4;  // derived from the accuracy of the tables of RayFates
     const auto mirrors = [](const Pane& pane) { return max(pane.reflection(oblique)) > negligible; };
     return scene.has_light() && std::any_of(scene.panes().begin(), scene.panes().end(), mirrors);
 }
@@ -213,7 +213,7 @@ std::vector<Place> measured_places(const Solution& solution, const Stage& stage,
 
 /// Share in one room. The product of two independent estimates has no bias due to noise, unlike the square of one.
 MirroredShare share_of(std::span<const Place> places, std::size_t room) {
-    constexpr double least_light = 0.1;       // share of the room's mean, as in the error norm for parts
+    constexpr double least_light = 0.1;       // derived from the error norm of parts: share of the room's mean
     constexpr std::size_t fewest_places = 8;  // for a standard error
     double arriving = 0, n = 0;
     for (const Place& place : places)

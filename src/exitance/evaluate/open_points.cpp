@@ -12,7 +12,7 @@ bool is_inside_body(const Stage& stage, const Point& x, const Normal& n, RegionI
         return !hit.surface.is_none();
     };
     // In the open the first ray rarely hits a back. The four directions are perpendicular to each other as seen from
-    // above, and not parallel to usual walls.
+    // above, and not parallel to usual walls: ways derived from slopes of 0.3.
     for (const Vec2& way : {Vec2{1, 0.3}, Vec2{-0.3, 1}, Vec2{-1, -0.3}, Vec2{0.3, -1}})
         if (!trace(way.x, way.y) || hit.front) return false;
     return trace(0, 0);

@@ -62,7 +62,7 @@ Field<SurfaceId, SurfaceLight> mean_light(const Solution& solution) {
         }
         Box box;
         for (const Point& p : outline) box.add(p);
-        const Vec3 rounding = Vec3{1, 1, 1} * (1e-9 * scene.size());  // tolerance for rounding
+        const Vec3 rounding = Vec3{1, 1, 1} * (1e-9 * scene.size());  // derived from the rounding of positions
         box.lo -= rounding, box.hi += rounding;
         faces[tree.region(e)].visit_box(box, [&](std::uint32_t i) {
             const SurfaceId s = region.surfaces[i];

@@ -62,7 +62,7 @@ bool is_lit(const Stage& stage, const PathTracer& tracer, const Side& side, unsi
             if (max(tracer.path({x, n, side.region}, directions(p, 0), directions(p, 1), random)) > 0) return true;
     }
     ClusteredLight::Workspace workspace;
-    constexpr LightAccuracy any_light{.relative = 0.1};  // sufficient to decide whether there is any light
+    constexpr LightAccuracy any_light{.relative = 0.1};  // derived from the question: is there any light?
     return std::any_of(open.begin(), open.end(), [&](const auto& place) {
         return max(stage.clustered.at(place.first, n, side.region, any_light, workspace).irradiance) > 0;
     });

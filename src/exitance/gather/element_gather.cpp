@@ -73,7 +73,10 @@ void ElementGather::Group::set(std::size_t lane, const Node& node) {
         centre[axis][lane] = node.centre[axis];
     }
     radius[lane] = node.radius;
-    inward[lane] = node.triangle ? 0.5 : 0.5773502691896257;  // positions of the Gauss points: half-way, or 1 / sqrt(3)
+    inward[lane] =
+        node.triangle
+            ? 0.5
+            : 0.5773502691896257;  // derived from the Gauss points of triangles (half-way) and squares (1 / sqrt(3))
     last[lane] = node.triangle ? 0.5 : 1;
     const Spectrum node_slope = node.slope();
     for (std::size_t k = 0; k < bands; ++k) {

@@ -23,7 +23,7 @@ EXITANCE_INLINE four::Vec lanes_at(const std::array<std::array<double, four::lan
 /// Form factors of four quadrilaterals; the first suitable rule is used for each.
 Real form_factors(const Point& x, const Normal& n, const Quads<Real>& quads) {
     // A corner in the plane of x may be slightly below it due to rounding.
-    constexpr double rounding = 1e-12;
+    constexpr double rounding = 1e-12;  // derived from double precision
     const double sunk = rounding * (std::abs(x.x) + std::abs(x.y) + std::abs(x.z) + quads.radius[0]);
     Real F{};
     int taken = 0;
@@ -62,12 +62,13 @@ EXITANCE_INLINE void weigh_corners(const Normal& n, const Quads<Real>& quads, co
         const four::Vec d = {quads.middle.x + inward * out.x, quads.middle.y + inward * out.y,
                              quads.middle.z + inward * out.z};
         const Real above = max(Real{}, dot(n, d));
-        const Real squared = max(dot(d, d), Real{} + 1e-100);  // avoids division by zero
+        const Real squared =
+            max(dot(d, d), Real{} + 1e-100);  // derived from the smallest double: avoids division by zero
         // The height of x over the element's plane is the same for all points.
         weight[i] = above / (squared * squared) * (i < 2 ? Real{} + 1 : last);
         sum += weight[i];
     }
-    const Real scale = inward / max(sum, Real{} + 1e-300);  // avoids division by zero
+    const Real scale = inward / max(sum, Real{} + 1e-300);  // derived from the smallest double: avoids division by zero
 #pragma GCC unroll 4
     for (int i = 0; i < 4; ++i) weight[i] *= scale;
 }

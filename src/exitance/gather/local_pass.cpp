@@ -43,7 +43,7 @@ double LocalPass::light_near(ElementId e, const LocalPassDemand& demand) const {
 double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
     constexpr double far_lighter = 4;  // for the quarter
     const double usual_rays = 4 * demand.rays.average;
-    // The exponents are half of those that minimize the rays for a mean squared error.
+    // Exponents derived from those that minimize the rays for a mean squared error: half of them.
     const double effort_factor = std::clamp(std::pow(sampled.place_rays / usual_rays, 0.25), 0.5, 2.0);
     const double near = light_near(e, demand), usual_light = far_lighter * near * demand.light;
     const double brightness_factor = usual_light > 0 ? std::sqrt(std::max(1.0, sampled.light / usual_light)) : 1;
@@ -67,7 +67,8 @@ double LocalPass::allowed_misfit(ElementId e, double light, const LocalPassDeman
 double LocalPass::tolerated_misfit_squared(ElementId e, const SampledElement& sampled,
                                            const LocalPassDemand& demand) const {
     const double share = allowed_misfit(e, sampled.light, demand);
-    // With five degrees of freedom, noise alone exceeds 2.3 times its expected misfit once in twenty times.
+    // Derived from the chi-square distribution: with five degrees of freedom, noise alone exceeds 2.3 times its
+    // expected misfit once in twenty times.
     return share * share + 2.3 * sampled.noise_in_misfit;
 }
 
@@ -182,7 +183,7 @@ void LocalPass::look_between(ElementId e, SampledElement& sampled, const Reflect
     sampled.rays += rays * count;
     const double allowed = allowed_misfit(e, sampled.light, demand);
     if (!(misfit > allowed * allowed + 3 * noise)) return;
-    // With five degrees of freedom, as in tolerated_misfit_squared().
+    // Derived from five degrees of freedom, as in tolerated_misfit_squared().
     sampled.misfit_squared = std::max(sampled.misfit_squared, misfit + 2.3 * sampled.noise_in_misfit);
 }
 

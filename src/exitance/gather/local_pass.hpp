@@ -91,7 +91,7 @@ class LocalPass {
     /// Sums over all sampled elements of area times the variance estimated from quarters and from halves of their rays,
     /// (W/m^2)^2 m^2. Initially as for rays between random and uniform light (`Gathered`), with negligible weight.
     struct Spread {
-        double quarters = 1e-100, halves = 0.85e-100;  // middle of the range of gain()
+        double quarters = 1e-100, halves = 0.85e-100;  // derived from the range of gain(): its middle
 
         /// Ratio of the actual variance to its estimate from quarters. A mean over elements, since one element has too
         /// few places.

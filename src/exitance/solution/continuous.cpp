@@ -52,11 +52,12 @@ class Projection {
     /// depends neither on sizes nor on the number of elements [Wathen87], so that a dozen steps give single precision.
     std::vector<Spectrum> solve() const {
         constexpr int most_steps = 60;
-        constexpr double precision = 1e-14;  // of the squared residual, for single precision
+        constexpr double precision = 1e-14;  // of the squared residual; derived from the rounding of single precision
         const std::size_t count = right_.size();
         std::vector<Spectrum> x(count), r(count), p(count), Mp(count);
         for (std::size_t i = 0; i < count; ++i)
-            x[i] = right_[i] / std::max(mass_of(i), 1e-300);  // avoids division by zero
+            x[i] =
+                right_[i] / std::max(mass_of(i), 1e-300);  // derived from the smallest double: avoids division by zero
         multiply(x, Mp);
         Spectrum rz, start;
         for (std::size_t i = 0; i < count; ++i) {

@@ -38,7 +38,7 @@ class Surroundings {
         for (std::size_t i = 0; i < n; ++i) {
             const Neighbour &p = neighbours_[i], &q = neighbours_[(i + 1) % n];
             const double det = cross(p.offset, q.offset);
-            // neighbours in nearly the same direction do not determine a slope
+            // derived from rounding: neighbours in nearly the same direction do not determine a slope
             if (det * det < 0.01 * dot(p.offset, p.offset) * dot(q.offset, q.offset)) continue;
             const Spectrum dp = p.value - value_, dq = q.value - value_;
             const Slope plane{(q.offset.y / det) * dp - (p.offset.y / det) * dq,
@@ -58,9 +58,11 @@ class Surroundings {
     };
 
     void add_neighbour(const ElementLocator& locator, const Point& border) {
-        const Point across = middle_ + 1.25 * (border - middle_);  // a point inside any neighbour
+        const Point across =
+            middle_ +
+            1.25 * (border - middle_);  // derived from neighbours of half the size: a point inside any of them
         const ElementTree::Place place = locator.find(tree_.region(element_), across);
-        const double tolerance = 1e-6 * norm(border - middle_);  // rounding
+        const double tolerance = 1e-6 * norm(border - middle_);  // derived from the rounding of positions
         if (place.element == element_ || norm(tree_.patch(place.element).at(place.uv) - across) > tolerance) {
             walls_.push_back(2.0 * offset(border));
             return;

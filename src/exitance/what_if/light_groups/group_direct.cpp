@@ -28,7 +28,7 @@ class PartOfLight {
         const Normal& n = stage_.scene.regions()[region].plane.n;
         const double off = std::sqrt(allowed) / weight(e);
         const Point middle = tree_.patch(e).at(tree_.centre(e));
-        constexpr double of_its_own = 0.05;  // as in project_direct_light: no point has to be more accurate
+        constexpr double of_its_own = 0.05;  // derived from project_direct_light: no point has to be more accurate
         const LightAccuracy accuracy{of_its_own, 0.5 * off};
         if (clustered_.is_possible() && clustered_.pays(middle, n, region, accuracy, room.clustered))
             return fit_values(e, [&](const Point& x) {
@@ -100,7 +100,7 @@ class PartOfLight {
 double estimated_mean(const PartOfLight& part, const ElementTree& tree, std::span<const ElementId> elements,
                       const StopRequest& stop) {
     constexpr std::size_t samples = 512;
-    constexpr double any_error = 1e300;  // its square root is finite
+    constexpr double any_error = 1e300;  // derived from the largest double: its square root is finite
     const std::size_t step = std::max<std::size_t>(1, elements.size() / samples);
     DirectFitRoom room;
     double flux = 0, area = 0;

@@ -11,7 +11,7 @@ namespace exitance {
 namespace {
 
 /// Distance from a corner at which a leaf is evaluated, since light may jump at its border; in units of the leaf.
-constexpr double inwards = 1e-3;  // a thousandth of an element is above the tolerance of points
+constexpr double inwards = 1e-3;  // derived from the tolerance of points: a thousandth of an element is above it
 
 /// Row of every element of `indirect` that is a receiver or below one.
 Field<ElementId, std::uint32_t> rows_of(const ElementTree& tree, std::span<const std::uint32_t> receivers) {
@@ -106,7 +106,7 @@ TransportLayout make_layout(const Solution& solution, std::span<const std::uint3
 }
 
 std::vector<std::uint32_t> number_nodes(const ElementFunction& f, double scene_size, std::size_t& count) {
-    const double grid = 1e-6 * scene_size;  // other programs store corners in single precision
+    const double grid = 1e-6 * scene_size;  // derived from the single precision of corners in other programs
     struct Corner {
         std::array<std::int64_t, 4> place;
         std::array<std::uint32_t, bands> value;
