@@ -50,7 +50,8 @@ const std::vector<Door> doors{
     {"PETSc", std::regex("petsc.*"), {"solve/petsc.cpp"}},
     {"nlohmann-json",
      std::regex("nlohmann/.*"),
-     {"cli/json_output.cpp", "lab/study/run_facts.cpp", "io/export/viewer_data.cpp"}},
+     {"cli/json_output.cpp", "lab/study/run_facts.cpp", "io/export/viewer_data.cpp", "io/report/honeybee_results.cpp",
+      "io/scenes/honeybee/honeybee_model.cpp"}},
     {"toml++", std::regex("toml\\+\\+/.*"), {"lab/study/study_file.cpp"}},
 };
 

@@ -58,6 +58,9 @@ void read_rad_bytes(const std::string& bytes) {
     (void)load_scene(file_with(bytes, "s.rad"));
 }
 
+void read_honeybee_bytes(const std::string& bytes) {
+    (void)load_scene(file_with(bytes, "s.hbjson"));
+}
 void read_ply_bytes(const std::string& bytes) {
     (void)load_scene(file_with(bytes, "s.ply"));
 }
@@ -95,6 +98,7 @@ std::span<const Target> targets() {
         Target{"gltf", read_gltf_bytes},
         Target{"rad", read_rad_bytes},
         Target{"ply", read_ply_bytes},
+        Target{"hbjson", read_honeybee_bytes},
         Target{"csv", read_csv_bytes},
         Target{"pts", read_pts_bytes},
         Target{"reference", read_reference_bytes},

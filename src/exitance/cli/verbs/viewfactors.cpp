@@ -251,7 +251,7 @@ ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal) {
         if (is_same_file(arguments.output, input))
             return terminal.fail(
                 {ErrorCode::usage, "is the scene", arguments.output, "choose another name for the output"});
-    for (const char* of_scenes : {".mtl", ".obj", ".gltf", ".glb", ".rad", ".stl", ".ply", ".vs3"})
+    for (const char* of_scenes : {".mtl", ".obj", ".gltf", ".glb", ".rad", ".stl", ".ply", ".vs3", ".hbjson"})
         if (ending(arguments.output) == of_scenes)
             return terminal.fail({ErrorCode::usage, "has the ending of a scene's files", arguments.output,
                                   "view factors are written as .csv, .vf, .mtx or .h5"});

@@ -3,6 +3,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/honeybee/honeybee_model.hpp"
+
 namespace exitance {
 namespace {
 
@@ -49,7 +52,24 @@ std::string band_name(std::size_t band) {
     return std::to_string(band + 1);
 }
 
+Result<ProbeReader> ProbeReader::open_model(const std::string& path) {
+    const HoneybeeModel model = read_honeybee_model(path);
+    for (const Finding& finding : model.findings)
+        if (finding.kind == Finding::Kind::error)
+            return Error{ErrorCode::bad_input, finding.message, path, finding.hint};
+    ProbePoints sensors;
+    for (const HoneybeeGrid& grid : model.grids) {
+        sensors.points.insert(sensors.points.end(), grid.points.begin(), grid.points.end());
+        sensors.normals.insert(sensors.normals.end(), grid.normals.begin(), grid.normals.end());
+    }
+    if (sensors.size() == 0)
+        return Error{ErrorCode::bad_input, "holds no sensor grids", path,
+                     "add a grid to the model, or name a table of points"};
+    return ProbeReader(std::move(sensors));
+}
+
 Result<ProbeReader> ProbeReader::open(const std::string& path) {
+    if (ending(path) == ".hbjson") return open_model(path);
     Result<LineReader> lines = LineReader::open(path);
     if (!lines) return lines.error();
     const auto first = lines->next_content();
@@ -88,6 +108,13 @@ Result<bool> ProbeReader::next_row(std::array<double, 6>& row) {
 
 Result<void> ProbeReader::next(ProbePoints& out, std::size_t most) {
     out.points.clear(), out.normals.clear();
+    if (sensors_) {
+        for (; next_sensor_ < sensors_->size() && out.size() < most; ++next_sensor_) {
+            out.points.push_back(sensors_->points[next_sensor_]);
+            out.normals.push_back(sensors_->normals[next_sensor_]);
+        }
+        return {};
+    }
     std::array<double, 6> row;
     while (out.size() < most) {
         const Result<bool> more = next_row(row);

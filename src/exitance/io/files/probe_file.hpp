@@ -33,11 +33,15 @@ class ProbeReader {
   private:
     explicit ProbeReader(NumberTable table) : table_(std::move(table)) {}
     explicit ProbeReader(LineReader lines, std::string first) : lines_(std::move(lines)), first_(std::move(first)) {}
+    explicit ProbeReader(ProbePoints sensors) : sensors_(std::move(sensors)) {}
+    static Result<ProbeReader> open_model(const std::string& path);
     Result<bool> next_row(std::array<double, 6>& row);
 
-    std::optional<NumberTable> table_;  ///< For a CSV file.
-    std::optional<LineReader> lines_;   ///< For a file of plain lines.
-    std::optional<std::string> first_;  ///< First plain line, read when the format was detected.
+    std::optional<NumberTable> table_;    ///< For a CSV file.
+    std::optional<LineReader> lines_;     ///< For a file of plain lines.
+    std::optional<std::string> first_;    ///< First plain line, read when the format was detected.
+    std::optional<ProbePoints> sensors_;  ///< For a Honeybee model.
+    std::size_t next_sensor_ = 0;
 };
 
 /// Reads all points of a file.

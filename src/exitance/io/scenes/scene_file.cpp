@@ -10,6 +10,7 @@
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/photometry/placed_luminaire.hpp"
 #include "exitance/io/scenes/gltf/gltf.hpp"
+#include "exitance/io/scenes/honeybee/honeybee.hpp"
 #include "exitance/io/scenes/obj/obj.hpp"
 #include "exitance/io/scenes/ply.hpp"
 #include "exitance/io/scenes/radiance/radiance.hpp"
@@ -83,6 +84,7 @@ Reader reader_of(const std::string& path) {
     if (end == ".vs3") return read_view3d;
     if (end == ".stl") return read_stl;
     if (end == ".ply") return read_ply;
+    if (end == ".hbjson") return read_honeybee;
     if (end == ".gltf" || end == ".glb" || looks_like_gltf(path)) return read_gltf;
     return nullptr;
 }
@@ -116,9 +118,9 @@ int last_line(const SceneDescription& description) {
     return last;
 }
 
-/// True for glTF, which defines metres and Y up.
+/// True for glTF, which defines metres and Y up, and for Honeybee models, which name their unit and have Z up.
 bool says_units(Reader reader) {
-    return reader == Reader(read_gltf);
+    return reader == Reader(read_gltf) || reader == Reader(read_honeybee);
 }
 
 /// Converts a file without defined units to metres and Z up. Radiances and emission profiles do not depend on the unit
@@ -147,7 +149,7 @@ std::optional<Error> refuse_units(std::span<const std::string> paths, const Load
     };
     const char* const given = options.metres_per_unit ? "--length-unit" : "--up";
     if ((options.metres_per_unit || options.y_is_up) && all(says_units))
-        return Error{ErrorCode::usage, "glTF files say their unit and axis: metres, and Y is up", given,
+        return Error{ErrorCode::usage, "these files define their unit and axis themselves", given,
                      "leave the option out; scale or turn a node in the file if it is wrong"};
     const bool has_radiance = !all([](Reader r) { return r != Reader(read_radiance); });
     if (options.y_is_up.value_or(false) && has_radiance)
@@ -236,7 +238,7 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
             return refused(ErrorCode::cannot_read, path, "there is no such file", "");
         if (!reader_of(path))
             return refused(ErrorCode::bad_input, path, "this kind of scene file is not known",
-                           "known endings: .obj, .gltf, .glb, .rad, .stl, .ply, .vs3");
+                           "known endings: .obj, .gltf, .glb, .rad, .stl, .ply, .vs3, .hbjson");
         if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), path) !=
             paths.begin() + static_cast<std::ptrdiff_t>(i))
             return refused(ErrorCode::usage, path, "is named twice", "each file of a scene once");

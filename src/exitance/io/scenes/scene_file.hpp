@@ -54,7 +54,8 @@ struct LoadedScene : CheckedScene {
 /// Errors as for the overload below.
 LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& options);
 
-/// Reads and checks a scene file in the format of its ending (.obj, .gltf, .glb, .rad, .stl, .ply, .vs3). The findings
+/// Reads and checks a scene file in the format of its ending (.obj, .gltf, .glb, .rad, .stl, .ply, .vs3,
+/// .hbjson). The findings
 /// list every error in the file. The error code is cannot_read if the file cannot be read, otherwise bad_input.
 CheckedScene load_scene(const std::string& path, Faults faults = Faults::repair);
 

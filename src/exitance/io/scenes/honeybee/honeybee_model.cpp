@@ -1,0 +1,465 @@
+#include "exitance/io/scenes/honeybee/honeybee_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "exitance/io/files/text_lines.hpp"
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/honeybee/honeybee_modifiers.hpp"
+
+namespace exitance {
+namespace {
+
+using Json = nlohmann::json;
+
+/// A member of an object; a null value if it has none of this name.
+const Json& member(const Json& object, const char* key) {
+    static const Json none;
+    if (!object.is_object()) return none;
+    const auto found = object.find(key);
+    return found == object.end() ? none : *found;
+}
+
+std::string text(const Json& object, const char* key) {
+    const Json& value = member(object, key);
+    return value.is_string() ? value.get<std::string>() : std::string();
+}
+
+bool flag(const Json& object, const char* key) {
+    const Json& value = member(object, key);
+    return value.is_boolean() && value.get<bool>();
+}
+
+/// The entries of a list; none if there is no such list.
+const Json& entries(const Json& object, const char* key) {
+    static const Json none = Json::array();
+    const Json& value = member(object, key);
+    return value.is_array() ? value : none;
+}
+
+const Json& radiance(const Json& object) {
+    return member(member(object, "properties"), "radiance");
+}
+
+/// Name of a material that is given by its name or as a whole object; empty for neither.
+std::string modifier_name(const Json& value) {
+    return value.is_string() ? value.get<std::string>() : text(value, "identifier");
+}
+
+std::optional<Vec3> vector_of(const Json& value) {
+    if (!value.is_array() || value.size() != 3) return std::nullopt;
+    Vec3 out;
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (!value[i].is_number()) return std::nullopt;
+        out[i] = value[i].get<double>();
+    }
+    if (!is_finite(out)) return std::nullopt;
+    return out;
+}
+
+/// Number of metres in a model's unit of length.
+std::optional<double> metres_in(const std::string& units) {
+    if (units.empty() || units == "Meters") return 1;
+    if (units == "Centimeters") return 1e-2;
+    if (units == "Millimeters") return 1e-3;
+    if (units == "Feet") return 0.3048;    // by definition
+    if (units == "Inches") return 0.0254;  // by definition
+    return std::nullopt;
+}
+
+/// Position of a sheet in the model, which decides the material that a modifier set gives it.
+struct Host {
+    const HoneybeeModifierSet* set = nullptr;  ///< The set of its room; null outside of rooms.
+    std::string face_type = "Wall";
+};
+
+class ModelReader {
+  public:
+    explicit ModelReader(const std::string& path) : path_(path) {}
+
+    HoneybeeModel read() {
+        const Result<std::string> bytes = read_whole_file(path_);
+        if (!bytes) return error(bytes.error().message), std::move(out_);
+        Json model;
+        try {
+            model = Json::parse(*bytes);
+        } catch (const Json::parse_error& fault) {
+            const auto end = bytes->begin() + static_cast<std::ptrdiff_t>(std::min(fault.byte, bytes->size()));
+            const auto line = 1 + std::count(bytes->begin(), end, '\n');
+            find(Finding::Kind::error, static_cast<int>(line), "is not valid JSON here",
+                 "save the model again as HBJSON");
+            return std::move(out_);
+        }
+        if (text(model, "type") != "Model") {
+            error(fmt::format("is no Honeybee model but '{}'", shown(text(model, "type"))),
+                  "save the whole model as HBJSON");
+            return std::move(out_);
+        }
+        read_model(model);
+        return std::move(out_);
+    }
+
+  private:
+    void find(Finding::Kind kind, int line, std::string message, std::string hint = "") {
+        out_.findings.push_back({kind, path_, line, std::move(message), std::move(hint)});
+    }
+    void error(std::string message, std::string hint = "") {
+        find(Finding::Kind::error, 0, std::move(message), std::move(hint));
+    }
+
+    void read_model(const Json& model) {
+        const std::optional<double> unit = metres_in(text(model, "units"));
+        if (!unit) return error(fmt::format("the unit of length '{}' is unknown", shown(text(model, "units"))));
+        metres_ = *unit;
+        read_materials(radiance(model));
+        for (const Json& room : entries(model, "rooms")) read_room(room);
+        const Host outside;
+        for (const Json& face : entries(model, "orphaned_faces")) read_face(face, outside);
+        for (const Json& aperture : entries(model, "orphaned_apertures")) read_part(aperture, outside, false);
+        for (const Json& door : entries(model, "orphaned_doors")) read_part(door, outside, true);
+        for (const Json& shade : entries(model, "orphaned_shades")) add_shade(shade, "context_modifier", outside);
+        for (const Json& mesh : entries(model, "shade_meshes")) add_mesh(mesh);
+        for (const Json& grid : entries(radiance(model), "sensor_grids")) read_grid(grid);
+        for (const Json& view : entries(radiance(model), "views")) read_view(view);
+        if (dynamic_ > 0)
+            find(Finding::Kind::warning, 0,
+                 fmt::format("{} with several states {} in the first of them",
+                             dynamic_ == 1 ? "1 object" : fmt::format("{} objects", dynamic_),
+                             dynamic_ == 1 ? "is" : "are"),
+                 "reorder the states in the model to choose another one");
+    }
+
+    // --- materials
+
+    void read_materials(const Json& properties) {
+        const Json& global = member(properties, "global_modifier_set");
+        add_modifiers(entries(properties, "modifiers"));
+        add_modifiers(entries(global, "modifiers"));
+        read_set(global, global_);
+        for (const Json& set : entries(properties, "modifier_sets")) {
+            add_modifiers(entries(set, "modifiers"));
+            read_set(set, sets_[text(set, "identifier")]);
+        }
+        for (RadPrimitive& modifier : generic_modifiers())
+            if (names_.insert(modifier.name).second) out_.modifiers.push_back(std::move(modifier));
+    }
+
+    void read_set(const Json& json, HoneybeeModifierSet& set) {
+        for (const auto& [key, generic] : generic_modifier_set()) {
+            const std::size_t dot = key.find('.');
+            const Json& group = dot == std::string::npos ? json : member(json, key.substr(0, dot).c_str());
+            const Json& value = member(group, key.substr(dot == std::string::npos ? 0 : dot + 1).c_str());
+            if (value.is_object()) add_modifier(value);
+            if (const std::string name = modifier_name(value); !name.empty()) set[key] = name;
+        }
+    }
+
+    void add_modifiers(const Json& list) {
+        for (const Json& modifier : list) add_modifier(modifier);
+    }
+
+    void add_modifier(const Json& json) {
+        RadPrimitive p;
+        p.modifier = "void", p.name = text(json, "identifier");
+        if (p.name.empty() || !names_.insert(p.name).second) return;
+        const std::string type = text(json, "type");
+        if (member(json, "modifier").is_object() && text(member(json, "modifier"), "type") != "Void")
+            find(Finding::Kind::warning, 0,
+                 fmt::format("the pattern that changes material '{}' is left out", shown(p.name)));
+        const auto take = [&](std::initializer_list<const char*> keys) {
+            for (const char* key : keys) {
+                const Json& value = member(json, key);
+                if (value.is_number()) p.numbers.push_back(value.get<double>());
+                // Honeybee leaves out values that are its defaults: 0, but for the specularity of metals and mirrors.
+                else
+                    p.numbers.push_back(default_of(type, key));
+            }
+        };
+        if (type == "Plastic" || type == "Metal" || type == "Trans") {
+            take({"r_reflectance", "g_reflectance", "b_reflectance", "specularity", "roughness"});
+            if (type == "Trans") take({"transmitted_diff", "transmitted_spec"});
+            p.type = type == "Plastic" ? "plastic" : type == "Metal" ? "metal" : "trans";
+        } else if (type == "Glass") {
+            take({"r_transmissivity", "g_transmissivity", "b_transmissivity"});
+            if (member(json, "refraction_index").is_number()) take({"refraction_index"});
+            p.type = "glass";
+        } else if (type == "Light" || type == "Glow") {
+            take({"r_emittance", "g_emittance", "b_emittance"});
+            if (type == "Glow") take({"max_radius"});
+            p.type = type == "Light" ? "light" : "glow";
+        } else if (type == "Mirror") {
+            take({"r_reflectance", "g_reflectance", "b_reflectance"});
+            p.type = "mirror";
+        } else if (type == "BSDF") {
+            return add_bsdf(json, p);
+        } else if (type == "Void") {
+            return;  // surfaces with it are left out
+        } else {
+            return error(fmt::format("material '{}' is of the unknown type '{}'", shown(p.name), shown(type)));
+        }
+        out_.modifiers.push_back(std::move(p));
+    }
+
+    static double default_of(const std::string& type, std::string_view key) {
+        if (type == "Metal" && key == "specularity") return 0.9;  // honeybee-schema
+        return type == "Mirror" ? 1 : 0;
+    }
+
+    /// A BSDF is replaced by the diffuse pane of its diffuse reflectance and transmittance, if the model names them.
+    void add_bsdf(const Json& json, RadPrimitive& p) {
+        const std::optional<Vec3> through = vector_of(member(json, "diffuse_transmittance")),
+                                  front = vector_of(member(json, "front_diffuse_reflectance"));
+        if (!through && !front)
+            return error(
+                fmt::format("material '{}' is a table of scattered light (BSDF), which is not read", shown(p.name)),
+                "replace it by glass or by a translucent material, or give its diffuse reflectance and "
+                "transmittance");
+        const Vec3 r = front.value_or(Vec3()), t = through.value_or(Vec3());
+        const double all = r.x + r.y + r.z + t.x + t.y + t.z;
+        const double share = all > 0 ? (t.x + t.y + t.z) / all : 0;
+        p.type = "trans";
+        p.numbers = {r.x + t.x, r.y + t.y, r.z + t.z, 0, 0, share, 0};
+        find(Finding::Kind::warning, 0,
+             fmt::format("only the diffuse part of material '{}' (BSDF) is used", shown(p.name)));
+        out_.modifiers.push_back(std::move(p));
+    }
+
+    /// The material of a set's place, in Honeybee's order: the room's set, the model's set, the generic set.
+    std::string from_sets(const std::string& key, const Host& host) const {
+        if (host.set)
+            if (const auto own = host.set->find(key); own != host.set->end()) return own->second;
+        if (const auto own = global_.find(key); own != global_.end()) return own->second;
+        return generic_modifier_set().at(key);
+    }
+
+    /// The material of an object: that of its first state, its own, or that of the sets.
+    std::string modifier_of(const Json& object, const std::string& key, const Host& host) const {
+        const Json& states = entries(radiance(object), "states");
+        if (!states.empty())
+            if (const std::string name = modifier_name(member(states[0], "modifier")); !name.empty()) return name;
+        const std::string name = modifier_name(member(radiance(object), "modifier"));
+        return name.empty() ? from_sets(key, host) : name;
+    }
+
+    // --- geometry
+
+    std::optional<std::vector<Point>> loop_of(const Json& points, const std::string& name) {
+        std::vector<Point> out;
+        for (const Json& point : points.is_array() ? points : entries(points, "none")) {
+            const std::optional<Vec3> at = vector_of(point);
+            if (!at) {
+                error(fmt::format("'{}' has a corner that is not three finite numbers", shown(name)));
+                return std::nullopt;
+            }
+            out.push_back(metres_ * *at);
+        }
+        if (out.size() >= 3) return out;
+        error(fmt::format("'{}' has an outline of fewer than three corners", shown(name)));
+        return std::nullopt;
+    }
+
+    std::optional<HoneybeeOutline> outline_of(const Json& object) {
+        const std::string name = text(object, "identifier");
+        const Json& geometry = member(object, "geometry");
+        std::optional<std::vector<Point>> boundary = loop_of(member(geometry, "boundary"), name);
+        if (!boundary) return std::nullopt;
+        HoneybeeOutline out{std::move(*boundary)};
+        for (const Json& hole : entries(geometry, "holes")) {
+            std::optional<std::vector<Point>> loop = loop_of(hole, name);
+            if (!loop) return std::nullopt;
+            out.holes.push_back(std::move(*loop));
+        }
+        return out;
+    }
+
+    void read_room(const Json& room) {
+        Host host;
+        if (const auto set = sets_.find(text(radiance(room), "modifier_set")); set != sets_.end())
+            host.set = &set->second;
+        for (const Json& face : entries(room, "faces")) read_face(face, host);
+        read_shades(room, host);
+    }
+
+    void read_face(const Json& face, Host host) {
+        host.face_type = text(face, "face_type");
+        std::vector<HoneybeeOutline> openings;
+        for (const char* key : {"apertures", "doors"})
+            for (const Json& part : entries(face, key))
+                if (std::optional<HoneybeeOutline> outline = read_part(part, host, key[0] == 'd'))
+                    openings.push_back(std::move(*outline));
+        read_shades(face, host);
+        if (host.face_type == "AirBoundary") return;
+        std::optional<HoneybeeOutline> outline = outline_of(face);
+        if (!outline) return;
+        const std::string boundary = text(member(face, "boundary_condition"), "type");
+        const std::string group = host.face_type == "Floor"         ? "floor_set"
+                                  : host.face_type == "RoofCeiling" ? "roof_ceiling_set"
+                                                                    : "wall_set";
+        const bool is_outer = boundary == "Outdoors" || boundary == "Ground";
+        HoneybeeSheet sheet;
+        sheet.name = text(face, "identifier");
+        sheet.modifier = modifier_of(face, group + (is_outer ? ".exterior_modifier" : ".interior_modifier"), host);
+        sheet.outlines.push_back(std::move(*outline));
+        sheet.openings = std::move(openings);
+        sheet.partner = partner_of(face);
+        // No light reaches the outer side: the ground, or a part of the building that is not modelled, covers it.
+        if (boundary == "Ground" || boundary == "Adiabatic" || boundary == "OtherSideTemperature")
+            sheet.sides = HoneybeeSides::back;
+        out_.sheets.push_back(std::move(sheet));
+    }
+
+    /// Reads an aperture or a door. Returns its outline, which is cut out of its face.
+    std::optional<HoneybeeOutline> read_part(const Json& part, const Host& host, bool is_door) {
+        std::optional<HoneybeeOutline> outline = outline_of(part);
+        if (!outline) return std::nullopt;
+        const bool inside = text(member(part, "boundary_condition"), "type") == "Surface",
+                   on_wall = host.face_type == "Wall";
+        std::string key;
+        if (is_door)
+            key = flag(part, "is_glass")
+                      ? (inside ? "door_set.interior_glass_modifier" : "door_set.exterior_glass_modifier")
+                  : inside  ? "door_set.interior_modifier"
+                  : on_wall ? "door_set.exterior_modifier"
+                            : "door_set.overhead_modifier";
+        else
+            key = inside                      ? "aperture_set.interior_modifier"
+                  : flag(part, "is_operable") ? "aperture_set.operable_modifier"
+                  : on_wall                   ? "aperture_set.window_modifier"
+                                              : "aperture_set.skylight_modifier";
+        HoneybeeSheet sheet;
+        sheet.name = text(part, "identifier");
+        sheet.modifier = modifier_of(part, key, host);
+        sheet.outlines = {*outline};
+        sheet.partner = partner_of(part);
+        out_.sheets.push_back(std::move(sheet));
+        read_state(part, host);
+        read_shades(part, host);
+        return outline;
+    }
+
+    static std::string partner_of(const Json& object) {
+        const Json& condition = member(object, "boundary_condition");
+        const Json& names = entries(condition, "boundary_condition_objects");
+        return text(condition, "type") == "Surface" && !names.empty() && names[0].is_string()
+                   ? names[0].get<std::string>()
+                   : std::string();
+    }
+
+    void read_shades(const Json& host_object, const Host& host) {
+        for (const Json& shade : entries(host_object, "indoor_shades"))
+            add_shade(shade, "shade_set.interior_modifier", host);
+        for (const Json& shade : entries(host_object, "outdoor_shades"))
+            add_shade(shade, "shade_set.exterior_modifier", host);
+    }
+
+    void add_shade(const Json& shade, const std::string& key, const Host& host) {
+        std::optional<HoneybeeOutline> outline = outline_of(shade);
+        if (!outline) return;
+        HoneybeeSheet sheet;
+        sheet.name = text(shade, "identifier");
+        sheet.modifier = modifier_of(shade, key, host);
+        sheet.outlines.push_back(std::move(*outline));
+        out_.sheets.push_back(std::move(sheet));
+        read_state(shade, host);
+    }
+
+    /// Adds the shades of an object's first state.
+    void read_state(const Json& object, const Host& host) {
+        const Json& states = entries(radiance(object), "states");
+        if (states.size() > 1) ++dynamic_;
+        if (states.empty()) return;
+        for (const Json& shade : entries(states[0], "shades")) {
+            std::optional<HoneybeeOutline> outline = outline_of(shade);
+            if (!outline) continue;
+            std::string modifier = modifier_name(member(shade, "modifier"));
+            if (modifier.empty()) modifier = from_sets("shade_set.exterior_modifier", host);
+            out_.sheets.push_back({text(shade, "identifier"), std::move(modifier), {std::move(*outline)}});
+        }
+    }
+
+    void add_mesh(const Json& mesh) {
+        HoneybeeSheet sheet;
+        sheet.name = text(mesh, "identifier");
+        sheet.modifier = modifier_of(mesh, "context_modifier", {});
+        const Json &geometry = member(mesh, "geometry"), &vertices = entries(geometry, "vertices");
+        std::vector<Point> points;
+        for (const Json& vertex : vertices) {
+            const std::optional<Vec3> at = vector_of(vertex);
+            if (!at)
+                return error(
+                    fmt::format("shade mesh '{}' has a vertex that is not three finite numbers", shown(sheet.name)));
+            points.push_back(metres_ * *at);
+        }
+        for (const Json& face : entries(geometry, "faces")) {
+            HoneybeeOutline outline;
+            for (const Json& corner : face) {
+                if (!corner.is_number_unsigned() || corner.get<std::size_t>() >= points.size())
+                    return error(
+                        fmt::format("a face of shade mesh '{}' names a vertex that does not exist", shown(sheet.name)));
+                outline.boundary.push_back(points[corner.get<std::size_t>()]);
+            }
+            sheet.outlines.push_back(std::move(outline));
+        }
+        out_.sheets.push_back(std::move(sheet));
+    }
+
+    // --- sensors and views
+
+    void read_grid(const Json& grid) {
+        HoneybeeGrid out{.name = text(grid, "identifier")};
+        for (const Json& sensor : entries(grid, "sensors")) {
+            const std::optional<Vec3> at = vector_of(member(sensor, "pos")), towards = vector_of(member(sensor, "dir"));
+            if (!at || !towards || !(norm(*towards) > 0))
+                return error(fmt::format("sensor {} of grid '{}' has no position or no direction",
+                                         out.points.size() + 1, shown(out.name)));
+            out.points.push_back(metres_ * *at), out.normals.push_back(normalized(*towards));
+        }
+        if (!out.points.empty()) out_.grids.push_back(std::move(out));
+    }
+
+    void read_view(const Json& view) {
+        const std::string type = text(view, "view_type"), name = text(view, "identifier");
+        const std::optional<Vec3> at = vector_of(member(view, "position")),
+                                  towards = vector_of(member(view, "direction")),
+                                  up = vector_of(member(view, "up_vector"));
+        const bool is_parallel = type == "l";
+        if (!type.empty() && type != "v" && !is_parallel)
+            return find(
+                Finding::Kind::warning, 0,
+                fmt::format("view '{}' is neither a perspective nor a parallel one, and is left out", shown(name)));
+        const Json& width = member(view, "h_size");
+        const double h = width.is_number() ? width.get<double>() : 60;  // honeybee-schema
+        const bool is_sane = is_parallel ? h > 0 : h > 0 && h < 180;
+        if (!at || !towards || !up || !is_sane || !(norm(cross(*towards, *up)) > 0))
+            return error(fmt::format("view '{}' has no position, direction, upward vector or angle", shown(name)));
+        SceneCamera camera;
+        camera.name = name, camera.eye = metres_ * *at, camera.target = camera.eye + metres_ * *towards;
+        camera.up = normalized(*up);
+        if (is_parallel)
+            camera.width = metres_ * h;
+        else
+            camera.fov = h;
+        out_.views.push_back(std::move(camera));
+    }
+
+    const std::string& path_;
+    HoneybeeModel out_;
+    double metres_ = 1;
+    HoneybeeModifierSet global_;
+    std::map<std::string, HoneybeeModifierSet> sets_;
+    std::set<std::string> names_;  ///< Materials so far.
+    std::size_t dynamic_ = 0;      ///< Objects with several states.
+};
+
+}  // namespace
+
+HoneybeeModel read_honeybee_model(const std::string& path) {
+    return ModelReader(path).read();
+}
+
+}  // namespace exitance

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "exitance/base/result.hpp"
+#include "exitance/io/scenes/radiance/rad_words.hpp"
+#include "exitance/scene/scene.hpp"
+
+namespace exitance {
+
+/// A planar polygon with holes, metres.
+struct HoneybeeOutline {
+    std::vector<Point> boundary;
+    std::vector<std::vector<Point>> holes = {};
+};
+
+/// Sides of a sheet that light can reach. The front is the one from which the boundary runs counter-clockwise; faces of
+/// rooms have their front outside.
+enum class HoneybeeSides : std::uint8_t { back, both };
+
+/// A face, aperture, door, shade or shade mesh of a model.
+struct HoneybeeSheet {
+    std::string name;      ///< Its identifier.
+    std::string modifier;  ///< Name of its material.
+    std::vector<HoneybeeOutline> outlines;
+    std::vector<HoneybeeOutline> openings = {};  ///< Apertures and doors, which are cut out of it.
+    HoneybeeSides sides = HoneybeeSides::both;
+    /// Sheet of the neighbouring room in the same place; empty without one.
+    std::string partner = {};
+};
+
+/// The sensors of a grid: positions in metres and unit normals.
+struct HoneybeeGrid {
+    std::string name;
+    std::vector<Point> points = {};
+    std::vector<Normal> normals = {};
+};
+
+/// The parts of a Honeybee model that exitance uses.
+struct HoneybeeModel {
+    std::vector<RadPrimitive> modifiers;  ///< Materials in the words of Radiance, each name once.
+    std::vector<HoneybeeSheet> sheets;
+    std::vector<HoneybeeGrid> grids;
+    std::vector<SceneCamera> views;
+    std::vector<Finding> findings;  ///< Errors, and warnings about omitted parts.
+};
+
+/// Reads a Honeybee model (HBJSON, schema 1 and 2). Objects without a material get that of their room's modifier set,
+/// the model's global set, or Honeybee's generic set, as Honeybee itself chooses it. Dynamic apertures, doors and
+/// shades are in their first state. Air boundaries are open. Energy properties are ignored. O(size of the file).
+/// Source: honeybee-schema.
+HoneybeeModel read_honeybee_model(const std::string& path);
+
+}  // namespace exitance
