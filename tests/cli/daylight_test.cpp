@@ -144,6 +144,32 @@ TEST(ProgramSky, InvalidOptionsAreUsageErrors) {
         3);
 }
 
+TEST(ProgramDaylight, TakesAHoneybeeModelWithItsGridsAndWritesResultsForHoneybee) {
+    const TemporaryFolder folder;
+    // A floor below the open sky: the light of each hour is that of a sensor in the open.
+    write_text(folder / "open.hbjson", R"({"type": "Model", "properties": {"radiance": {"sensor_grids": [
+        {"identifier": "a/b", "sensors": [{"pos": [1, 1, 0.8], "dir": [0, 0, 1]}, {"pos": [2, 2, 0.8], "dir": [0, 0, 1]}]},
+        {"identifier": "c", "sensors": [{"pos": [3, 3, 0.8], "dir": [0, 0, 1]}]}]}},
+        "orphaned_shades": [{"identifier": "floor",
+            "geometry": {"boundary": [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]]}}]})");
+    write_text(folder / "w.epw", weather());
+    const Finished run =
+        run_program({"daylight", folder / "open.hbjson", "--epw", folder / "w.epw", "-o", folder / "year", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.out.find("\"sensors\": 3.0"), std::string::npos) << run.out;
+    EXPECT_EQ(lines(read_text(folder / "year/honeybee/a_b.ill")), 2u);
+    EXPECT_EQ(lines(read_text(folder / "year/honeybee/c.ill")), 1u);
+    const std::string hours = read_text(folder / "year/honeybee/sun-up-hours.txt");
+    const std::string row = read_text(folder / "year/honeybee/c.ill");
+    EXPECT_EQ(lines(hours), static_cast<std::size_t>(std::count(row.begin(), row.end(), ' ')));
+    // The weather is that of 21 June, day 172 of the year, and the sun rises after 4 o'clock.
+    const double first = std::stod(hours);
+    EXPECT_GT(first, 171 * 24 + 3);
+    EXPECT_LT(first, 171 * 24 + 8);
+    EXPECT_NE(read_text(folder / "year/honeybee/grids_info.json").find("\"full_id\": \"a_b\""), std::string::npos);
+    EXPECT_EQ(run_program({"daylight", write_court(folder), "--epw", folder / "w.epw", "-o", folder / "y"}).status, 2);
+}
+
 TEST(ProgramDaylight, WritesTablesOfAYear) {
     const TemporaryFolder folder;
     ASSERT_EQ(run_program({"solve", write_court(folder), "-o", folder / "s.h5", "--bounces", "0", "-q", "--sky",
@@ -166,7 +192,8 @@ TEST(ProgramDaylight, WritesTablesOfAYear) {
     // EN 17037: 12 of the 24 hours are daylight hours, and half of these have more than 750 lx through the open half.
     EXPECT_NE(run.out.find("\"EN17037_daylight_hours\": 12.0"), std::string::npos) << run.out;
     EXPECT_NE(run.out.find("\"EN17037_level\": 3.0"), std::string::npos) << run.out;
-    EXPECT_TRUE(first_line_of(read_text(folder / "year/metrics.csv")).ends_with(",E_half_of_daylight,sunlight_hours"));
+    EXPECT_TRUE(first_line_of(read_text(folder / "year/metrics.csv")).ends_with(",E_half_of_daylight_high"));
+    EXPECT_EQ(lines(read_text(folder / "year/grids.csv")), 2u);
     EXPECT_EQ(lines(read_text(folder / "year/view.csv")), 3u);
     EXPECT_EQ(run_program({"daylight", folder / "s.h5", "--epw", folder / "w.epw", "--points", folder / "p.pts", "-o",
                            folder / "year", "--sun-day", "02-30"})

@@ -134,8 +134,11 @@ struct ReportArguments : CommonArguments {
 };
 
 struct DaylightArguments : CommonArguments {
-    std::string solution, epw, points, output;
-    int division = 1;  ///< Parts into which Tregenza's sky patches are divided in each direction: 1, 2 or 4.
+    SceneArguments scene;  ///< A scene, or one solution (.h5) of it.
+    std::string epw, output;
+    std::string points;   ///< Empty: the sensor grids of the scene's Honeybee model.
+    double error = 0.02;  ///< Requested relative RMS error of every grid.
+    int division = 1;     ///< Parts into which Tregenza's sky patches are divided in each direction: 1, 2 or 4.
     double north = 0, ground = 0.2;
     SunDay sun_day;    ///< Day for which hours of sunlight are counted.
     std::string eyes;  ///< File with points for views out; empty: none.

@@ -92,14 +92,20 @@ void declare(CLI::App& app, BakeArguments& arguments) {
 }
 
 void declare(CLI::App& app, DaylightArguments& arguments) {
-    app.add_option("SOLUTION", arguments.solution, "Solution (.h5) of the scene; its own light is ignored")->required();
+    declare_scene(app, arguments.scene);
+    app.get_option("SCENE")->description("Scene, or a solution (.h5) of it, whose own light is ignored");
     app.add_option("--epw", arguments.epw, "Weather of a year (EnergyPlus .epw)")->type_name("FILE")->required();
-    app.add_option("--points", arguments.points, "Sensors: CSV x,y,z,nx,ny,nz or .pts x y z dx dy dz")
-        ->type_name("FILE")
-        ->required();
+    app.add_option("--points", arguments.points,
+                   "Sensors: CSV x,y,z,nx,ny,nz or .pts x y z dx dy dz, or a Honeybee model with sensor grids. "
+                   "Default: the grids of the scene, if it is a Honeybee model")
+        ->type_name("FILE");
     app.add_option("-o,--output", arguments.output, "Folder for illuminance.csv, metrics.csv, matrix.csv, summary.csv")
         ->type_name("FOLDER")
         ->required();
+    add_positive(app, "--error", arguments.error, "R",
+                 "Requested relative RMS error of the daylight factors and the annual lux hours of every grid of "
+                 "sensors. Default 0.02")
+        ->check(CLI::Range(1e-4, 1.0));
     add_choice(app, "--sky-patches", patch_counts, arguments.division, "Number of patches of the sky. Default 146");
     app.add_option_function<std::string>(
            "--north", [&arguments](const std::string& w) { arguments.north = read_number("--north", w); },

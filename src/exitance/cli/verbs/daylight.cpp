@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/border_points.hpp"
@@ -8,7 +9,11 @@
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/files/epw_file.hpp"
 #include "exitance/io/files/probe_file.hpp"
+#include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/report/daylight_tables.hpp"
+#include "exitance/io/report/honeybee_results.hpp"
+#include "exitance/io/scenes/honeybee/honeybee_model.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 
@@ -28,19 +33,56 @@ std::string as_text(const DaylightResults& results, const std::string& folder) {
     constexpr std::array<const char*, 4> levels{"no level", "minimum", "medium", "high"};
     return fmt::format(
         "daylight   {} sensors, {} hours, {} of them occupied\n"
-        "factor     {:.3g}% in the mean (overcast sky)\n"
-        "sDA        {:.1f}% of the sensors have 300 lx in half of the occupied hours\n"
+        "factor     {:.3g}% in the mean (overcast sky; 95%: {:.3g} to {:.3g}%)\n"
+        "error      {:.2g}% of the daylight factors, {:.2g}% of the lux hours (RMS, worst grid)\n"
+        "sDA        {:.1f}% of the sensors have 300 lx in half of the occupied hours (95%: {:.1f} to {:.1f}%)\n"
         "ASE        {:.1f}% of the sensors have 1000 lx of sun in more than 250 hours\n"
         "EN 17037   {}: 300 lx in half of the daylight hours at {:.1f}% of the sensors, 100 lx at {:.1f}%\n"
         "written    {}\n",
         results.sensors.size(), results.hours.size(), s.occupied_hours, s.mean_daylight_factor,
-        100 * s.spatial_autonomy, 100 * s.sunlight_exposure, levels[static_cast<std::size_t>(provision.level())],
-        100 * provision.at_target[0], 100 * provision.at_minimum[0], folder);
+        results.intervals.mean_factor.low, results.intervals.mean_factor.high, 100 * results.worst_error().factor,
+        100 * results.worst_error().lux_hours, 100 * s.spatial_autonomy, 100 * results.intervals.spatial_autonomy.low,
+        100 * results.intervals.spatial_autonomy.high, 100 * s.sunlight_exposure,
+        levels[static_cast<std::size_t>(provision.level())], 100 * provision.at_target[0],
+        100 * provision.at_minimum[0], folder);
+}
+
+/// The scene of scene files or of a solution. A scene needs no light of its own.
+Result<Scene> scene_of(const DaylightArguments& arguments, Terminal& terminal) {
+    const std::vector<std::string>& files = arguments.scene.files;
+    if (files.size() == 1 && ending(files[0]) == ".h5") {
+        Result<Solution> solution = load_solution(files[0]);
+        if (!solution) return solution.error();
+        return std::move(solution->scene);
+    }
+    CheckedScene checked = load_scene(files, arguments.scene.load);
+    std::erase_if(checked.findings, [](const Finding& f) {
+        return f.kind == Finding::Kind::warning && f.message.starts_with("nothing emits light");
+    });
+    terminal.show(checked.findings);
+    return std::move(checked.scene);
+}
+
+/// The file with the sensors: --points, or the scene itself if it is a Honeybee model; empty for neither.
+std::string sensor_file(const DaylightArguments& arguments) {
+    if (!arguments.points.empty()) return arguments.points;
+    for (const std::string& file : arguments.scene.files)
+        if (ending(file) == ".hbjson") return file;
+    return "";
+}
+
+/// The grids of a Honeybee model; one without a name for other files.
+std::vector<SensorGrid> grids_of(const std::string& sensors, std::size_t count) {
+    if (ending(sensors) != ".hbjson") return {{"", count}};
+    std::vector<SensorGrid> grids;
+    for (const HoneybeeGrid& grid : read_honeybee_model(sensors).grids)
+        grids.push_back({grid.name, grid.points.size()});
+    return grids;
 }
 
 }  // namespace
 
-/// Runs `exitance daylight SOLUTION --epw WEATHER --points SENSORS -o FOLDER`.
+/// Runs `exitance daylight SCENE --epw WEATHER --points SENSORS -o FOLDER`.
 ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     const Result<Weather> weather = load_epw(arguments.epw);
@@ -50,23 +92,26 @@ ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     if (const std::string partial = weather->not_a_year(); !partial.empty())
         terminal.progress().warn(fmt::format("{}: {}: sDA, ASE and the levels of EN 17037 are defined for whole years",
                                              arguments.epw, partial));
-    const Result<ProbePoints> points = load_probe_points(arguments.points);
+    const std::string sensors = sensor_file(arguments);
+    if (sensors.empty())
+        return terminal.fail({ErrorCode::usage, "there are no sensors", "--points", "name a file with points"});
+    const Result<ProbePoints> points = load_probe_points(sensors);
     if (!points) return terminal.fail(points.error());
     if (points->size() == 0)
         return terminal.fail(
-            {ErrorCode::bad_input, "holds no points", arguments.points, "give one sensor per line: x y z dx dy dz"});
+            {ErrorCode::bad_input, "holds no points", sensors, "give one sensor per line: x y z dx dy dz"});
     std::optional<ProbePoints> eyes;
     if (!arguments.eyes.empty()) {
         Result<ProbePoints> read = load_probe_points(arguments.eyes);
         if (!read) return terminal.fail(read.error());
         eyes = std::move(*read);
     }
-    const Result<Solution> solution = load_solution(arguments.solution);
-    if (!solution) return terminal.fail(solution.error());
+    const Result<Scene> scene = scene_of(arguments, terminal);
+    if (!scene) return terminal.fail(scene.error());
 
     DaylightResults results;
     BorderPoints borders;
-    const PlaceFinder places(solution->scene);
+    const PlaceFinder places(*scene);
     for (std::size_t i = 0; i < points->size(); ++i) {
         results.sensors.push_back({points->points[i], points->normals[i]});
         borders.add(places.find(points->points[i], points->normals[i]).is_between_sides);
@@ -78,24 +123,33 @@ ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
                             .ground = arguments.ground,
                             .efficacy_diffuse = efficacy_of_sky,
                             .efficacy_direct = efficacy_of_sun};
-    const SkyPatches patches(arguments.division);
-    results.matrix = make_daylight_matrix(solution->scene, results.sensors, patches, {}, terminal.progress());
-    terminal.progress().phase("year");
-    results.year = daylight_year(solution->scene, results.sensors, patches, results.matrix, results.hours, site);
-    results.metrics = daylight_metrics(results.year, patches, results.matrix, results.hours, site);
-    results.summary = summarize(results.metrics, results.hours);
-    results.provision = daylight_provision(results.year, results.metrics, results.hours, site);
-    results.sunlight = sunlight_hours(solution->scene, results.sensors, site, weather->zone, arguments.sun_day);
-    if (eyes) results.eyes = eyes->points, results.views = views_out(solution->scene, results.eyes);
+    results.grids = grids_of(sensors, points->size());
+    if (const Result<void> done = simulate_year(*scene, arguments.division, site, arguments.error, results,
+                                                terminal.progress(), terminal.limits().stop());
+        !done)
+        return terminal.fail(done.error());
+    results.sunlight = sunlight_hours(*scene, results.sensors, site, weather->zone, arguments.sun_day);
+    if (eyes) results.eyes = eyes->points, results.views = views_out(*scene, results.eyes);
     terminal.progress().phase("write");
     if (const Result<void> written = write_daylight(arguments.output, results); !written)
         return terminal.fail(written.error());
+    if (ending(sensors) == ".hbjson") {
+        const std::string folder = (std::filesystem::path(arguments.output) / "honeybee").string();
+        if (const Result<void> written = write_honeybee_results(folder, results); !written)
+            return terminal.fail(written.error());
+    }
     terminal.progress().finish();
     if (arguments.json)
         terminal.print(values_json(summary_values(results)));
     else if (!arguments.quiet)
         terminal.print(as_text(results, arguments.output));
-    return ExitCode::done;
+    const DaylightError error = results.worst_error();
+    if (std::max(error.factor, error.lux_hours) <= arguments.error) return ExitCode::done;
+    terminal.progress().warn(fmt::format(
+        "the error of {:.2g}% is above the requested {:.2g}%{}", 100 * std::max(error.factor, error.lux_hours),
+        100 * arguments.error,
+        results.bias.patches > arguments.error ? ": the patches of the sky are too coarse (--sky-patches)" : ""));
+    return ExitCode::demand_not_reached;
 }
 
 }  // namespace exitance

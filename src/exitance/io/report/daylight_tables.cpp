@@ -39,15 +39,46 @@ Result<void> write_hours(const std::string& path, const DaylightResults& results
 Result<void> write_metrics(const std::string& path, const DaylightResults& results) {
     std::string text =
         "x,y,z,nx,ny,nz,DF,DA_300,UDI_below_100,UDI_100_300,UDI_300_3000,UDI_above_3000,sun_hours,"
-        "E_half_of_daylight,sunlight_hours\n";
+        "E_half_of_daylight,sunlight_hours,DF_low,DF_high,DA_300_low,DA_300_high,UDI_below_100_low,UDI_below_100_high,"
+        "UDI_100_300_low,UDI_100_300_high,UDI_300_3000_low,UDI_300_3000_high,UDI_above_3000_low,UDI_above_3000_high,"
+        "E_half_of_daylight_low,E_half_of_daylight_high\n";
     for (std::size_t i = 0; i < results.sensors.size(); ++i) {
         const auto& [x, n] = results.sensors[i];
         const DaylightMetrics& m = results.metrics[i];
+        const SensorIntervals& s = results.intervals.sensors[i];
         text += fmt::format(
-            "{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g}"
-            "\n",
+            "{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},"
+            "{:.6g}",
             x.x, x.y, x.z, n.x, n.y, n.z, m.daylight_factor, m.autonomy, m.useful[0], m.useful[1], m.useful[2],
             m.useful[3], m.sunny_hours, results.provision.reached[i], results.sunlight[i]);
+        const auto add = [&](const Interval& interval) {
+            text += fmt::format(",{:.6g},{:.6g}", interval.low, interval.high);
+        };
+        add(s.factor), add(s.autonomy);
+        for (const Interval& useful : s.useful) add(useful);
+        add(s.reached);
+        text += '\n';
+    }
+    return write_file(path, text);
+}
+
+/// Quotes a name for CSV.
+std::string quoted(const std::string& name) {
+    std::string out = "\"";
+    for (const char c : name) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return out + '"';
+}
+
+Result<void> write_grids(const std::string& path, const DaylightResults& results) {
+    std::string text = "grid,sensors,mean_daylight_factor,error_daylight_factor,error_lux_hours\n";
+    std::size_t first = 0;
+    for (std::size_t g = 0; g < results.grids.size(); ++g) {
+        double mean = 0;
+        for (std::size_t i = first; i < first + results.grids[g].count; ++i) mean += results.metrics[i].daylight_factor;
+        mean /= std::max<double>(1, static_cast<double>(results.grids[g].count));
+        text += fmt::format("{},{},{:.6g},{:.4g},{:.4g}\n", quoted(results.grids[g].name), results.grids[g].count, mean,
+                            results.errors[g].factor, results.errors[g].lux_hours);
+        first += results.grids[g].count;
     }
     return write_file(path, text);
 }
@@ -115,7 +146,13 @@ std::vector<std::pair<std::string, double>> summary_values(const DaylightResults
                                                     {"occupied_hours", static_cast<double>(s.occupied_hours)},
                                                     {"mean_daylight_factor", s.mean_daylight_factor},
                                                     {"sDA_300_50", s.spatial_autonomy},
-                                                    {"ASE_1000_250", s.sunlight_exposure}};
+                                                    {"ASE_1000_250", s.sunlight_exposure},
+                                                    {"error_daylight_factor", results.worst_error().factor},
+                                                    {"error_lux_hours", results.worst_error().lux_hours},
+                                                    {"mean_daylight_factor_low", results.intervals.mean_factor.low},
+                                                    {"mean_daylight_factor_high", results.intervals.mean_factor.high},
+                                                    {"sDA_300_50_low", results.intervals.spatial_autonomy.low},
+                                                    {"sDA_300_50_high", results.intervals.spatial_autonomy.high}};
     add_provision(results, out);
     return out;
 }
@@ -130,7 +167,8 @@ Result<void> write_daylight(const std::string& folder, const DaylightResults& re
     for (const Result<void>& written :
          {write_hours(in("illuminance.csv"), results, results.year.illuminance),
           write_hours(in("sun.csv"), results, results.year.sun), write_metrics(in("metrics.csv"), results),
-          write_matrix(in("matrix.csv"), results.matrix), write_file(in("summary.csv"), summary)})
+          write_grids(in("grids.csv"), results), write_matrix(in("matrix.csv"), results.matrix),
+          write_file(in("summary.csv"), summary)})
         if (!written) return written.error();
     return results.views.empty() ? Result<void>() : write_views(in("view.csv"), results);
 }

@@ -22,22 +22,36 @@ struct Row {
     std::vector<std::pair<std::uint32_t, float>> leaves, patches;
 };
 
+/// The elements of the transport.
+struct DaylightElements {
+    DaylightElements(const Stage& stage, double count)
+        : tree(stage.make_elements({.edge = edge_for_elements(stage.pieces, static_cast<std::size_t>(count))})),
+          numbering(tree),
+          locator(tree, stage.scene.regions().size()) {}
+
+    ElementTree tree;
+    LeafNumbering numbering;
+    ElementLocator locator;
+};
+
+/// One replicate: reflected light on the elements, found by rays of its own.
 class MatrixMaker {
   public:
-    MatrixMaker(const Stage& stage, const SkyPatches& patches, const DaylightOptions& options)
+    MatrixMaker(const Stage& stage, const SkyPatches& patches, const DaylightElements& elements,
+                const DaylightOptions& options)
         : stage_(stage),
           patches_(patches),
           options_(options),
-          tree_(stage.make_elements(
-              {.edge = edge_for_elements(stage.pieces, static_cast<std::size_t>(options.elements))})),
-          numbering_(tree_),
-          locator_(tree_, stage.scene.regions().size()) {}
+          tree_(elements.tree),
+          numbering_(elements.numbering),
+          locator_(elements.locator) {}
 
     void cast_rows() {
         const std::vector<double> area = leaf_areas(tree_, numbering_);
         double all = 0;
         for (const double a : area) all += a;
-        const RayBudget budget{.average = options_.rays_an_element};
+        // A replicate has few rays of its own; more than its share would make small elements dear.
+        const RayBudget budget{.average = options_.rays_an_element, .least = 2};
         rows_.resize(area.size());
         parallel_ranges(area.size(), 16, [&](std::size_t begin, std::size_t end) {
             Ends ends;
@@ -149,10 +163,10 @@ class MatrixMaker {
 
     const Stage& stage_;
     const SkyPatches& patches_;
-    const DaylightOptions& options_;
-    ElementTree tree_;
-    LeafNumbering numbering_;
-    ElementLocator locator_;
+    const DaylightOptions options_;
+    const ElementTree& tree_;
+    const LeafNumbering& numbering_;
+    const ElementLocator& locator_;
     std::vector<Row> rows_;
     std::vector<float> reflected_;  ///< rho E, one row per leaf.
 };
@@ -230,6 +244,14 @@ class PatchView {
     std::vector<Vec3> part_, room_;
 };
 
+/// The settings of one replicate.
+DaylightOptions share_of(DaylightOptions options, std::size_t replicate) {
+    options.seed = hash(options.seed, replicate);
+    options.rays_an_element /= static_cast<double>(daylight_replicates);
+    options.rays_a_sensor = std::max<unsigned>(1, options.rays_a_sensor / daylight_replicates);
+    return options;
+}
+
 }  // namespace
 
 DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
@@ -242,15 +264,17 @@ DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sen
     progress.phase("rays");
     Stage stage(scene);
     stage.rooms = find_light_rooms(stage, options.seed, StopRequest());
-    MatrixMaker maker(stage, patches, options);
-    maker.cast_rows();
+    const DaylightElements elements(stage, options.elements);
+    std::vector<MatrixMaker> makers;
+    for (std::size_t k = 0; k < daylight_replicates; ++k)
+        makers.emplace_back(stage, patches, elements, share_of(options, k)).cast_rows();
     progress.phase("solve");
-    const std::size_t sweeps = maker.solve();
-    progress.note("daylight: " + std::to_string(sweeps) + " sweeps of " + std::to_string(patches.size()) + " patches");
+    for (MatrixMaker& maker : makers) maker.solve();
     progress.phase("sensors");
     DaylightMatrix out;
     const std::size_t m = out.patches = patches.size();
     out.direct.resize(sensors.size() * m), out.reflected.resize(sensors.size() * m);
+    for (std::vector<float>& replicate : out.replicates) replicate.resize(sensors.size() * m);
     const std::vector<Receiver> places = sensor_places(scene, stage.occluders, sensors);
     const Spectrum weights = luminous_weights();
     const std::vector<Cone> cones = cones_of(patches);
@@ -258,7 +282,12 @@ DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sen
         PatchView view(stage, cones);
         for (std::size_t i = begin; i < end; ++i) {
             view.see(places[i], weights, std::span(&out.direct[i * m], m));
-            maker.gather(places[i], i, std::span(&out.reflected[i * m], m));
+            for (std::size_t k = 0; k < daylight_replicates; ++k) {
+                const std::span<float> row(&out.replicates[k][i * m], m);
+                makers[k].gather(places[i], i, row);
+                for (std::size_t p = 0; p < m; ++p)
+                    out.reflected[i * m + p] += row[p] / static_cast<float>(daylight_replicates);
+            }
         }
     });
     return out;

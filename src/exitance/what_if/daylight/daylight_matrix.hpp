@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "exitance/base/progress.hpp"
@@ -8,7 +9,11 @@
 
 namespace exitance {
 
-/// Settings of a daylight matrix.
+/// Number of independent estimates of reflected light. Each uses its share of the rays, from the transport to the
+/// sensors, so that the spread of any result of them is the noise of that result.
+constexpr std::size_t daylight_replicates = 8;
+
+/// Settings of a daylight matrix. Rays are those of all replicates together.
 struct DaylightOptions {
     double elements = 6000;         ///< Approximate number of elements for interreflection.
     double rays_an_element = 256;   ///< Average number of rays per element.
@@ -21,7 +26,8 @@ struct DaylightOptions {
 struct DaylightMatrix {
     std::size_t patches = 0;
     std::vector<float> direct;     ///< Row by row, one per sensor: light that arrives from the sky, also through glass.
-    std::vector<float> reflected;  ///< Light after at least one reflection.
+    std::vector<float> reflected;  ///< Light after at least one reflection: the mean of the replicates.
+    std::array<std::vector<float>, daylight_replicates> replicates;  ///< Independent estimates of it.
 
     std::size_t sensors() const { return patches > 0 ? direct.size() / patches : 0; }
     double total(std::size_t sensor, std::size_t patch) const {
@@ -33,9 +39,9 @@ struct DaylightMatrix {
 ///
 ///     E = S + F rho E,     S: light of patches on elements, F: transport between elements, both by the same rays,
 ///
-/// by Jacobi iteration over all columns at once. Then computes the exact visible part of every patch at the sensors,
-/// and a gather of rho E by rays. The scene's own emitters are off; its light from outside is replaced by the patches.
-/// O(rays + iterations x rays x patches).
+/// by Jacobi iteration over all columns at once, for each replicate. Then computes the exact visible part of every
+/// patch at the sensors, and a gather of rho E by rays. The scene's own emitters are off; its light from outside is
+/// replaced by the patches. O(rays + iterations x rays x patches).
 DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
                                     const DaylightOptions& options, Progress& progress);
 

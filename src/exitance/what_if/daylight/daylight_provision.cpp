@@ -12,27 +12,6 @@
 namespace exitance {
 namespace {
 
-/// Indices of the half of all hours with the most diffuse light.
-std::vector<std::size_t> daylight_hours(std::span<const DaylightHour> hours) {
-    std::vector<std::size_t> order(hours.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return hours[a].diffuse_horizontal > hours[b].diffuse_horizontal;
-    });
-    order.resize(hours.size() / 2);
-    return order;
-}
-
-/// Largest value that at least half of the values reach.
-double reached_by_half(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto wanted =
-        static_cast<std::size_t>(std::ceil(DaylightProvision::time_share * static_cast<double>(values.size())));
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(wanted - 1);
-    std::nth_element(values.begin(), at, values.end(), std::greater<>());
-    return *at;
-}
-
 DaylightProvision::Shares shares_of(std::span<const double> lux) {
     DaylightProvision::Shares out;
     const double n = std::max<double>(1, static_cast<double>(lux.size()));
@@ -45,6 +24,25 @@ DaylightProvision::Shares shares_of(std::span<const double> lux) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> daylight_hours(std::span<const DaylightHour> hours) {
+    std::vector<std::size_t> order(hours.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return hours[a].diffuse_horizontal > hours[b].diffuse_horizontal;
+    });
+    order.resize(hours.size() / 2);
+    return order;
+}
+
+double reached_by_half(std::vector<double> values) {
+    if (values.empty()) return 0;
+    const auto wanted =
+        static_cast<std::size_t>(std::ceil(DaylightProvision::time_share * static_cast<double>(values.size())));
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(wanted - 1);
+    std::nth_element(values.begin(), at, values.end(), std::greater<>());
+    return *at;
+}
 
 int DaylightProvision::Shares::level() const {
     constexpr double rounding = 1e-9;

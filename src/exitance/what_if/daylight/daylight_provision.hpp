@@ -26,6 +26,12 @@ struct DaylightProvision {
     Shares by_factor;             ///< Shares by `median_diffuse` times each sensor's daylight factor.
 };
 
+/// Indices of the half of all hours with the most diffuse light.
+std::vector<std::size_t> daylight_hours(std::span<const DaylightHour> hours);
+
+/// Largest value that at least half of the values reach; 0 without values.
+double reached_by_half(std::vector<double> values);
+
 DaylightProvision daylight_provision(const DaylightYear& year, std::span<const DaylightMetrics> metrics,
                                      std::span<const DaylightHour> hours, const DaylightSite& site);
 

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "exitance/methods/solve_scene.hpp"
-#include "exitance/what_if/daylight/daylight_provision.hpp"
-#include "exitance/what_if/daylight/daylight_year.hpp"
+#include "exitance/reference/path_reference.hpp"
+#include "exitance/what_if/daylight/daylight_results.hpp"
 #include "support/solved.hpp"
 
 namespace exitance {
@@ -58,7 +58,7 @@ TEST(Daylight, InTheOpenAgreesWithTheWeather) {
         open, sensors, patches, {.elements = 50, .rays_an_element = 64, .rays_a_sensor = 64}, progress);
     const std::vector<DaylightHour> hours = day();
     const DaylightSite site{.place = {47.4, 8.5, 400}};
-    const DaylightYear year = daylight_year(open, sensors, patches, matrix, hours, site);
+    const DaylightYear year = daylight_year(open, sensors, matrix, YearSky(patches, hours, site));
     const auto metrics = daylight_metrics(year, patches, matrix, hours, site);
     for (std::size_t i = 0; i < sensors.size(); ++i) {
         EXPECT_NEAR(metrics[i].daylight_factor, 100, 0.2);
@@ -121,6 +121,61 @@ TEST(Daylight, OnTheEdgeOfAWallIsThatInside) {
         ASSERT_GT(expected[i].daylight_factor, 0.05);
         EXPECT_NEAR(found[i].daylight_factor / expected[i].daylight_factor, 1, 0.02) << i;
         EXPECT_NEAR(hours[i], hours_beside[i], 1.0 / 15) << i;  // two steps of two minutes
+    }
+}
+
+/// A grid of 6 x 4 sensors in the room.
+std::vector<ProbePoint> desk_sensors() {
+    std::vector<ProbePoint> out;
+    for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 4; ++j) out.push_back({{0.25 + 0.5 * i, 0.5 + j, 0.8}, {0, 0, 1}});
+    return out;
+}
+
+TEST(Daylight, TheToldErrorAndTheIntervalsCoverTheTrueOnes) {
+    const Scene room = scene(true);
+    const DaylightSite site{.place = {47.4, 8.5, 400}, .ground = 0.2};
+    DaylightResults results;
+    results.sensors = desk_sensors(), results.grids = {{"near", 12}, {"far", 12}}, results.hours = day();
+    Progress progress;
+    constexpr double requested = 0.05;
+    ASSERT_TRUE(simulate_year(room, 1, site, requested, results, progress, StopRequest()));
+    ASSERT_EQ(results.errors.size(), 2u);
+
+    // Daylight factors by unbiased paths; their standard error is a tenth of the requested error.
+    SkyModel below = uniform_sky();
+    below.below = true;
+    const Scene lit = scene(true, {{{overcast_sky(), Spectrum(100.0)}, {below, Spectrum(20.0)}}, {}});
+    const std::vector<ReferenceLight> exact = reference_light(lit, results.sensors, 16'384, 7, progress, StopRequest());
+    std::size_t covered = 0;
+    for (std::size_t g = 0; g < 2; ++g) {
+        double mean = 0, squares = 0;
+        for (std::size_t i = 12 * g; i < 12 * (g + 1); ++i) {
+            const double E = exact[i].irradiance[0], found = results.metrics[i].daylight_factor;
+            mean += E / 12, squares += (found - E) * (found - E) / 12;
+            const Interval& factor = results.intervals.sensors[i].factor;
+            const double noise = 2 * exact[i].standard_error[0];
+            covered += factor.low - noise <= E && E <= factor.high + noise;
+            EXPECT_LE(factor.low, found);
+            EXPECT_GE(factor.high, found);
+        }
+        const double error = std::sqrt(squares) / mean;
+        EXPECT_LE(results.errors[g].factor, requested);
+        // Twelve sensors share the noise of the elements, so that the true error varies by half of its mean.
+        EXPECT_LT(error, 1.5 * results.errors[g].factor) << g;
+    }
+    EXPECT_GE(covered, 21u);  // of 24, for 95%: fewer than 21 happen in one of 30 runs of independent sensors
+}
+
+TEST(Daylight, ASmallerRequestedErrorIsReached) {
+    const Scene room = scene(true);
+    DaylightResults results;
+    results.sensors = desk_sensors(), results.grids = {{"", 24}}, results.hours = day();
+    Progress progress;
+    for (const double requested : {0.2, 0.01}) {
+        ASSERT_TRUE(simulate_year(room, 2, {.place = {47.4, 8.5, 400}}, requested, results, progress, StopRequest()));
+        EXPECT_LE(results.errors[0].factor, requested);
+        EXPECT_GT(results.errors[0].factor, 0);
     }
 }
 

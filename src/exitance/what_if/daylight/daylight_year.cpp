@@ -42,99 +42,132 @@ std::vector<std::pair<std::size_t, double>> sun_in_patches(const Normal& sun, co
     return out;
 }
 
-/// Sky and sun of one hour.
-struct HourLight {
-    std::vector<double> patches;                         ///< cd/m^2
-    std::vector<std::pair<std::size_t, double>> of_sun;  ///< cd/m^2, for reflected light only.
-    Normal sun;
-    double direct = 0;  ///< lx
-    bool is_dark = true;
-};
+}  // namespace
 
-HourLight light_of(const DaylightHour& hour, const SkyPatches& patches, const DaylightSite& site) {
-    HourLight out;
-    if (!(hour.diffuse_horizontal > 0) && !(hour.direct_normal > 0)) return out;
-    const SunPosition at = sun_position(hour.time, site.place);
-    out.sun = sky_direction(at.altitude, at.azimuth, site.north);
-    const double direct = out.sun.z > 0 ? hour.direct_normal : 0;
-    const int day = day_of_year(hour.time.year, hour.time.month, hour.time.day);
-    const double diffuse_lux = site.efficacy_diffuse * hour.diffuse_horizontal;
-    out.direct = site.efficacy_direct * direct;
-    out.patches.assign(patches.size(), 0);
-    if (hour.diffuse_horizontal > 0)
-        out.patches = luminances(perez_sky({hour.diffuse_horizontal, direct, day}, out.sun), patches, diffuse_lux);
-    out.patches[0] = site.ground * (diffuse_lux + out.direct * std::max(0.0, out.sun.z)) / pi;
-    if (out.direct > 0) out.of_sun = sun_in_patches(out.sun, patches, out.direct);
-    out.is_dark = false;
+YearSky::YearSky(const SkyPatches& patches, std::span<const DaylightHour> hours, const DaylightSite& site)
+    : patches_(patches.size()), row_(hours.size(), dark), suns_(hours.size()) {
+    sum_of_sky_.assign(patches_, 0), sum_with_sun_.assign(patches_, 0);
+    for (std::size_t h = 0; h < hours.size(); ++h) {
+        const DaylightHour& hour = hours[h];
+        if (!(hour.diffuse_horizontal > 0) && !(hour.direct_normal > 0)) continue;
+        const SunPosition at = sun_position(hour.time, site.place);
+        Sun& sun = suns_[h];
+        sun.towards = sky_direction(at.altitude, at.azimuth, site.north);
+        const double direct = sun.towards.z > 0 ? hour.direct_normal : 0;
+        const int day = day_of_year(hour.time.year, hour.time.month, hour.time.day);
+        const double diffuse_lux = site.efficacy_diffuse * hour.diffuse_horizontal;
+        sun.illuminance = site.efficacy_direct * direct;
+        std::vector<double> sky(patches_, 0);
+        if (hour.diffuse_horizontal > 0)
+            sky = luminances(perez_sky({hour.diffuse_horizontal, direct, day}, sun.towards), patches, diffuse_lux);
+        sky[0] = site.ground * (diffuse_lux + sun.illuminance * std::max(0.0, sun.towards.z)) / pi;
+        std::vector<double> with_sun = sky;
+        if (sun.illuminance > 0) {
+            std::size_t k = 0;
+            for (const auto& [patch, luminance] : sun_in_patches(sun.towards, patches, sun.illuminance))
+                with_sun[patch] += luminance, sun.patches[k++] = patch;
+        }
+        row_[h] = static_cast<std::uint32_t>(sky_.size() / patches_);
+        sky_.insert(sky_.end(), sky.begin(), sky.end());
+        with_sun_.insert(with_sun_.end(), with_sun.begin(), with_sun.end());
+        for (std::size_t p = 0; p < patches_; ++p) sum_of_sky_[p] += sky[p], sum_with_sun_[p] += with_sun[p];
+    }
+}
+
+void YearSky::add(std::span<const float> luminances, std::span<const float> coefficients, std::span<float> lux) const {
+    const std::size_t sensors = coefficients.size() / patches_;
+    EXI_ASSERT(lux.size() == sensors * hours());
+    for (std::size_t h = 0; h < hours(); ++h) {
+        if (is_dark(h)) continue;
+        const float* const luminance = &luminances[row_[h] * patches_];
+        for (std::size_t i = 0; i < sensors; ++i) {
+            const float* const row = &coefficients[i * patches_];
+            float sum = 0;
+            for (std::size_t p = 0; p < patches_; ++p) sum += row[p] * luminance[p];
+            lux[i * hours() + h] += sum;
+        }
+    }
+}
+
+std::vector<double> overcast_luminances(const SkyPatches& patches, double ground) {
+    std::vector<double> out = luminances(overcast_sky(), patches, 100);
+    out[0] = 100 * ground / pi;
     return out;
 }
 
-}  // namespace
-
-DaylightYear daylight_year(const Scene& scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
-                           const DaylightMatrix& matrix, std::span<const DaylightHour> hours,
-                           const DaylightSite& site) {
-    const std::size_t n = sensors.size(), m = patches.size();
+DaylightYear daylight_year(const Scene& scene, std::span<const ProbePoint> sensors, const DaylightMatrix& matrix,
+                           const YearSky& sky) {
+    const std::size_t n = sensors.size(), m = matrix.patches, hours = sky.hours();
     DaylightYear out;
     out.sensors = n;
-    out.illuminance.assign(hours.size() * n, 0), out.sun.assign(hours.size() * n, 0);
+    out.illuminance.assign(hours * n, 0), out.sun.assign(hours * n, 0);
     const Occluders occluders(scene);
     const std::vector<Receiver> at = sensor_places(scene, occluders, sensors);
-    std::vector<float> all(n * m);  // direct and reflected
-    for (std::size_t k = 0; k < all.size(); ++k) all[k] = matrix.direct[k] + matrix.reflected[k];
-    parallel_for(hours.size(), 8, [&](std::size_t h) {
-        const HourLight light = light_of(hours[h], patches, site);
-        if (light.is_dark) return;
-        const std::vector<float> luminance(light.patches.begin(), light.patches.end());
+    constexpr std::size_t block = 16;  // sensors whose coefficients stay in the processor's first cache
+    parallel_for((n + block - 1) / block, 1, [&](std::size_t b) {
+        const std::size_t first = b * block, count = std::min(block, n - first);
+        std::vector<float> lux(count * hours, 0);
+        sky.add_sky(std::span(matrix.direct).subspan(first * m, count * m), lux);
+        sky.add_with_sun(std::span(matrix.reflected).subspan(first * m, count * m), lux);
+        for (std::size_t i = 0; i < count; ++i)
+            for (std::size_t h = 0; h < hours; ++h) out.illuminance[h * n + first + i] = lux[i * hours + h];
+    });
+    parallel_for(hours, 8, [&](std::size_t h) {
+        const YearSky::Sun& shining = sky.sun(h);
+        if (!(shining.illuminance > 0)) return;
         std::vector<PunctualLight> sun(1);
-        sun[0].kind = PunctualLight::Kind::directional, sun[0].direction = -light.sun;
-        sun[0].intensity = Spectrum(light.direct);
+        sun[0].kind = PunctualLight::Kind::directional, sun[0].direction = -shining.towards;
+        sun[0].intensity = Spectrum(shining.illuminance);
         const Beams beams(sun, occluders);
         for (std::size_t i = 0; i < n; ++i) {
-            const float* row = &all[i * m];
-            float sum = 0;
-            for (std::size_t p = 0; p < m; ++p) sum += row[p] * luminance[p];
-            double straight = 0, reflected = 0;
             // A sensor that sees none of the sun's patches does not see the sun.
-            const auto is_seen = [&](const auto& part) { return matrix.direct[i * m + part.first] > 0; };
-            if (light.direct > 0 && dot(light.sun, at[i].n) > 0 &&
-                std::any_of(light.of_sun.begin(), light.of_sun.end(), is_seen)) {
-                straight = luminous_sum(beams.irradiance(at[i]));
-            }
-            for (const auto& [patch, L] : light.of_sun) reflected += double(matrix.reflected[i * m + patch]) * L;
-            out.sun[h * n + i] = static_cast<float>(straight);
-            out.illuminance[h * n + i] = sum + static_cast<float>(straight + reflected);
+            const auto is_seen = [&](std::size_t patch) { return matrix.direct[i * m + patch] > 0; };
+            if (!(dot(shining.towards, at[i].n) > 0) ||
+                std::none_of(shining.patches.begin(), shining.patches.end(), is_seen))
+                continue;
+            const auto straight = static_cast<float>(luminous_sum(beams.irradiance(at[i])));
+            out.sun[h * n + i] = straight, out.illuminance[h * n + i] += straight;
         }
     });
     return out;
 }
 
+DaylightMetrics metrics_of(double factor, std::span<const float> illuminance, std::span<const float> sun,
+                           std::span<const DaylightHour> hours) {
+    constexpr double target = 300, sunny = 1000;  // lx
+    constexpr std::array<double, 3> limits{100, 300, 3000};
+    DaylightMetrics metrics;
+    metrics.daylight_factor = factor;
+    double occupied = 0;
+    for (std::size_t h = 0; h < illuminance.size(); ++h) {
+        if (!is_occupied(hours[h].hour)) continue;
+        const double E = double(illuminance[h]);
+        ++occupied;
+        metrics.sunny_hours += double(sun[h]) > sunny;
+        metrics.autonomy += E >= target;
+        std::size_t k = 0;
+        while (k < limits.size() && E >= limits[k]) ++k;
+        ++metrics.useful[k];
+    }
+    if (!(occupied > 0)) return metrics;
+    metrics.autonomy /= occupied;
+    for (double& share : metrics.useful) share /= occupied;
+    return metrics;
+}
+
 std::vector<DaylightMetrics> daylight_metrics(const DaylightYear& year, const SkyPatches& patches,
                                               const DaylightMatrix& matrix, std::span<const DaylightHour> hours,
                                               const DaylightSite& site) {
-    constexpr double target = 300, sunny = 1000;  // lx
-    constexpr std::array<double, 3> limits{100, 300, 3000};
-    const std::size_t n = year.sensors, m = patches.size();
-    std::vector<double> overcast = luminances(overcast_sky(), patches, 1);
-    overcast[0] = site.ground / pi;
+    const std::size_t n = year.sensors;
+    const std::vector<double> overcast = overcast_luminances(patches, site.ground);
     std::vector<DaylightMetrics> out(n);
     parallel_for(n, 16, [&](std::size_t i) {
-        DaylightMetrics& metrics = out[i];
-        for (std::size_t p = 0; p < m; ++p) metrics.daylight_factor += 100 * overcast[p] * matrix.total(i, p);
-        double occupied = 0;
-        for (std::size_t h = 0; h < hours.size(); ++h) {
-            const double E = double(year.illuminance[h * n + i]);
-            if (!is_occupied(hours[h].hour)) continue;
-            ++occupied;
-            metrics.sunny_hours += double(year.sun[h * n + i]) > sunny;
-            metrics.autonomy += E >= target;
-            std::size_t k = 0;
-            while (k < limits.size() && E >= limits[k]) ++k;
-            ++metrics.useful[k];
-        }
-        if (!(occupied > 0)) return;
-        metrics.autonomy /= occupied;
-        for (double& share : metrics.useful) share /= occupied;
+        double factor = 0;
+        for (std::size_t p = 0; p < patches.size(); ++p) factor += overcast[p] * matrix.total(i, p);
+        std::vector<float> illuminance, sun;
+        for (std::size_t h = 0; h < hours.size(); ++h)
+            illuminance.push_back(year.illuminance[h * n + i]), sun.push_back(year.sun[h * n + i]);
+        out[i] = metrics_of(factor, illuminance, sun, hours);
     });
     return out;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <span>
+#include <vector>
 
 #include "exitance/scene/sky/sun_position.hpp"
 #include "exitance/what_if/daylight/daylight_matrix.hpp"
@@ -23,6 +25,49 @@ struct DaylightSite {
     double efficacy_diffuse = 120;  ///< lm/W
     double efficacy_direct = 100;   ///< lm/W
 };
+
+/// Sky and sun of every hour, as luminances of the patches of the sky: Perez' model, scaled to the measured diffuse
+/// light. For reflected light the sun is spread over the patches around it.
+class YearSky {
+  public:
+    YearSky(const SkyPatches& patches, std::span<const DaylightHour> hours, const DaylightSite& site);
+
+    std::size_t hours() const { return suns_.size(); }
+    /// Sums over the hours of the luminances, cd/m^2 h: of the sky alone, and with the sun spread over its patches.
+    const std::vector<double>& sum_of_sky() const { return sum_of_sky_; }
+    const std::vector<double>& sum_with_sun() const { return sum_with_sun_; }
+
+    /// Adds the light of the sky alone in every hour to `lux`: a row per sensor, a column per hour. `coefficients`: a
+    /// row per sensor, a column per patch. O(rows x hours x patches).
+    void add_sky(std::span<const float> coefficients, std::span<float> lux) const { add(sky_, coefficients, lux); }
+    /// Adds the light of the sky and of the sun that is spread over its patches.
+    void add_with_sun(std::span<const float> coefficients, std::span<float> lux) const {
+        add(with_sun_, coefficients, lux);
+    }
+
+    /// Direction to the sun, and its illuminance of a plane that faces it, lx.
+    struct Sun {
+        Normal towards;
+        double illuminance = 0;
+        std::array<std::size_t, 4> patches{};  ///< The patches around it.
+    };
+    const Sun& sun(std::size_t hour) const { return suns_[hour]; }
+    bool is_dark(std::size_t hour) const { return row_[hour] == dark; }
+
+  private:
+    static constexpr std::uint32_t dark = 0xffffffffu;
+    void add(std::span<const float> luminances, std::span<const float> coefficients, std::span<float> lux) const;
+
+    std::size_t patches_;
+    std::vector<std::uint32_t> row_;     ///< Row of each hour in the tables of luminances, or `dark`.
+    std::vector<float> sky_, with_sun_;  ///< cd/m^2, a row per hour with light.
+    std::vector<double> sum_of_sky_, sum_with_sun_;
+    std::vector<Sun> suns_;
+};
+
+/// Luminances of the patches under the traditional overcast sky with a diffuse illuminance of 100 lx, and of the ground
+/// below it: their light at a sensor is its daylight factor in per cent.
+std::vector<double> overcast_luminances(const SkyPatches& patches, double ground);
 
 /// Illuminances of a year.
 struct DaylightYear {
@@ -52,11 +97,15 @@ constexpr bool is_occupied(int hour) {
     return hour > 8 && hour <= 18;
 }
 
-/// Computes the illuminance of every hour at every sensor. The sky is Perez' model over the matrix's patches. Direct
-/// sunlight uses exact visibility; its reflections are those of the patches around the sun. Hours without light are 0.
+/// Computes the illuminance of every hour at every sensor. Direct sunlight uses exact visibility; its reflections are
+/// those of the patches around the sun. Hours without light are 0.
 /// `scene`: the scene that the matrix was computed for. About 1 us per sensor and hour of sun.
-DaylightYear daylight_year(const Scene& scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
-                           const DaylightMatrix& matrix, std::span<const DaylightHour> hours, const DaylightSite& site);
+DaylightYear daylight_year(const Scene& scene, std::span<const ProbePoint> sensors, const DaylightMatrix& matrix,
+                           const YearSky& sky);
+
+/// Metrics of one sensor from its illuminances in all hours, lx. `factor`: its daylight factor, per cent.
+DaylightMetrics metrics_of(double factor, std::span<const float> illuminance, std::span<const float> sun,
+                           std::span<const DaylightHour> hours);
 
 std::vector<DaylightMetrics> daylight_metrics(const DaylightYear& year, const SkyPatches& patches,
                                               const DaylightMatrix& matrix, std::span<const DaylightHour> hours,
