@@ -101,7 +101,7 @@ All verbs and their options. This page is printed by `exitance reference --forma
 them. `exitance VERB --help` lists the options for users, `--help-all` those of all groups.
 
 An option that the chosen method does not support is a usage error (status 2), which names the methods that do. `--method auto`
-takes a method that supports all options. *Published* means a method in the form of its paper ([classical.md](classical.md)).
+takes a method that supports all options. *Published* means a method in the form of its paper ([recipes](laboratory/recipes.md)).
 )";
 
 std::string markdown_recipes() {

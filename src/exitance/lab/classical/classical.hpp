@@ -25,7 +25,7 @@ using SnapshotSink = std::function<Result<void>(const Solution& on_the_way, std:
 /// solver and result. It is independent of `solve_scene`. One attempt, no certificate; the error estimate is absent.
 ///
 /// `carried`: emitters are elements like others, b = M + rho F b, and E = F b is all light, read from the elements.
-/// `apart`: b = rho (E_dir + F b) with exact E_dir. See docs/classical.md.
+/// `apart`: b = rho (E_dir + F b) with exact E_dir. See docs/laboratory/recipes.md.
 Result<Solution> solve_classical(const Scene& scene, const SolveOptions& options, const ClassicalOptions& classical,
                                  Progress& progress, const StopRequest& stop, ClassicalFacts& facts,
                                  const SnapshotSink& sink = {});

@@ -17,8 +17,8 @@ struct GrowingLinesOptions {
 };
 
 /// Learns a function of x along a line in the plane by growing cells (k = 1, n = 2: samples are the points (x, 0)).
-/// Returns the relative L2 error for each number of units, which must be ascending. The method of docs/growing_cells.md
-/// in two dimensions.
+/// Returns the relative L2 error for each number of units, which must be ascending. This is the method of
+/// docs/methods/growing_cells.md in two dimensions.
 std::vector<double> errors_of_growing_line(const std::function<double(double)>& f, std::span<const std::size_t> units,
                                            const GrowingLinesOptions& options);
 

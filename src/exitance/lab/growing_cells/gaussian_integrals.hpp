@@ -35,7 +35,7 @@ double integral_over_polygon(const Gaussian& g, std::span<const Point> corners, 
 
 /// Transfer coefficient between two units p, q of the shading network and one unit o of the kernel network: k_pqo = int
 /// int Phi_p(x) Phi_q(y) Omega_o(x, y) dx dy over the planes of p and q, with Omega_o = exp(-(|x - o_x|^2 + |y -
-/// o_y|^2) / d_o^2). The published derivation loses a factor of two in an exponent (docs/growing_cells.md).
+/// o_y|^2) / d_o^2). The published derivation loses a factor of two in an exponent (docs/methods/growing_cells.md).
 struct SurfaceGaussian {
     Point at;
     Normal n;

@@ -79,8 +79,8 @@ void keep_network(const KernelNetwork& network, CellLight& light) {
 
 /// Growing cells: a network of dimension four learns from sample rays how light flows from y to x; one of dimension two
 /// learns the surfaces. Both grow where their error is large [Fritzke94]. The mesh does not depend on the polygons.
-/// Either Bohn's method of 2002 (`--gcs classic`) or its improvement described in docs/growing_cells.md. O(units^2)
-/// memory and kernels; the number of rays is proportional to units.
+/// Either Bohn's method of 2002 (`--gcs classic`) or its improvement described in docs/methods/growing_cells.md.
+/// O(units^2) memory and kernels; the number of rays is proportional to units.
 GlobalLight solve_growing_cells(const MethodInput& input) {
     const bool classic = input.options.gcs == CellsKind::classic;
     GlobalLight light{.tree = input.direct.tree, .numbering = LeafNumbering(input.direct.tree)};

@@ -39,7 +39,7 @@ double point_kernel(const Point& x, const Normal& n_x, const Point& y, const Nor
 
 /// A network of dimension four over rays (x, y). It grows where its error is large, and new samples are drawn there.
 /// Deterministic: samples are drawn and traced in batches and learned in order. Source: Bohn's scheme of 2002,
-/// described in docs/growing_cells.md.
+/// described in docs/methods/growing_cells.md.
 class KernelNetwork {
   public:
     struct Sample {

@@ -106,7 +106,7 @@ struct StudyConclusion {
 };
 
 /// A study: scenes by rows of options by values of a parameter, or a table that a part of the program computes; plots
-/// of it, and conclusions from it. See docs/experiments.md.
+/// of it, and conclusions from it. See docs/laboratory/test_bed.md.
 struct Study {
     std::string name, title, about;
     std::string parameter = "value", unit;

@@ -38,7 +38,7 @@ bool finds_discontinuity_links_by_rays(const SolveRequest& r) {
 
 const char* const with_constant = "with --basis constant";
 const char* const with_galerkin = "with --basis galerkin1 to galerkin3";
-const char* const with_links_by_rays = "if rays find the links (see docs/methods.md)";
+const char* const with_links_by_rays = "if rays find the links (see docs/methods/hierarchical.md)";
 const char* const judged = "Setting it makes one attempt, without refinement to --error";
 
 Support operator+(Support a, const Support& b) {

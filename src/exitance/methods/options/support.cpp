@@ -108,7 +108,7 @@ Error not_supported(const OptionRow& row, const std::string& value, Way way, con
             if (here.empty())
                 return usage(fmt::format("{} cannot be combined with {}, which selects the method's published form",
                                          option, selecting_option(request)),
-                             "leave one of them out; docs/classical.md lists the options of published forms");
+                             "leave one of them out; docs/laboratory/recipes.md lists the options of published forms");
             return usage(fmt::format("{} is not supported by the published form of {}{}", option, name(way.method), by),
                          hint);
         case Form::standard:

@@ -10,9 +10,9 @@ namespace exitance {
 /// The pipeline that a solve runs through.
 enum class Form : std::uint8_t {
     standard,     ///< Exact direct light, a method, a final gather, an error estimate.
-    published,    ///< The method as its paper describes it (docs/classical.md).
-    tasks,        ///< Hierarchical radiosity as tasks that create tasks (docs/tasks.md).
-    local_passes  ///< Discontinuity meshing with local pass a to d (docs/local_passes.md).
+    published,    ///< The method as its paper describes it (docs/laboratory/recipes.md).
+    tasks,        ///< Hierarchical radiosity as tasks that create tasks (docs/methods/tasks.md).
+    local_passes  ///< Discontinuity meshing with local pass a to d (docs/methods/local_passes.md).
 };
 
 /// A method in one of its forms.
