@@ -2,7 +2,7 @@
 
 namespace exitance {
 namespace {
-TaskTrace* current_trace = nullptr;  // set before any threads exist
+TaskTrace* current_trace = nullptr;  // written only while there is one thread
 }
 
 void set_task_trace(TaskTrace* trace) {

@@ -12,8 +12,8 @@ namespace {
 
 void* allocate(std::size_t size, std::size_t alignment) {
     static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-    constexpr std::size_t large = std::size_t(1) << 20;  // bytes; smaller arrays are not shared
-    if (size >= large) alignment = std::max(alignment, page);
+    constexpr std::size_t min_shared_bytes = std::size_t(1) << 20;  // bytes; smaller arrays are not shared
+    if (size >= min_shared_bytes) alignment = std::max(alignment, page);
     for (;;) {
         void* const found = alignment > alignof(std::max_align_t)
                                 ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)

@@ -66,12 +66,12 @@ CLI::Option* add_positive(CLI::App& app, const std::string& name, Target& target
 template <class Target>
 CLI::Option* add_count(CLI::App& app, const std::string& name, Target& target, long long least,
                        const std::string& help) {
-    constexpr double most = std::is_same_v<Target, int> ? 1 << 16 : 9e15;
+    constexpr double max_count = std::is_same_v<Target, int> ? 1 << 16 : 9e15;
     const auto read = [name, &target, least](const std::string& word) {
         const double value = read_number(name, word);
         if (value != std::floor(value) || value < static_cast<double>(least))
             throw CLI::ValidationError(name, fmt::format("must be a whole number from {}, not {}", least, word));
-        if (value > most) throw CLI::ValidationError(name, fmt::format("{} is too large", word));
+        if (value > max_count) throw CLI::ValidationError(name, fmt::format("{} is too large", word));
         target = static_cast<std::size_t>(value);
     };
     return app.add_option_function<std::string>(name, read, help)->type_name("N");

@@ -25,12 +25,12 @@ std::string seconds_line(const std::map<std::string, double>& seconds) {
 
 /// Area, mean radiosity and error of the four largest rooms.
 std::string rooms_line(const std::vector<RoomError>& rooms, const LightUnit& unit) {
-    constexpr std::size_t most = 4;
+    constexpr std::size_t max_rooms = 4;
     std::string text;
-    for (std::size_t i = 0; i < std::min(most, rooms.size()); ++i)
+    for (std::size_t i = 0; i < std::min(max_rooms, rooms.size()); ++i)
         text += fmt::format("{}{:.4g} m^2: {:.3g} {}, error {}", i > 0 ? "; " : "", rooms[i].area, rooms[i].mean,
                             unit.radiosity(), percent(rooms[i].error));
-    return rooms.size() > most ? text + fmt::format("; and {} more", rooms.size() - most) : text;
+    return rooms.size() > max_rooms ? text + fmt::format("; and {} more", rooms.size() - max_rooms) : text;
 }
 
 /// The upper bound of the error, with the advice to use the estimate if the bound is more than twice as large.

@@ -6,7 +6,7 @@ namespace exitance {
 
 ElementFunction linear_elements(const SixNodeMesh& mesh, const Scene& scene) {
     ElementFunction out;
-    std::vector<std::uint32_t> triangle_of;  // by element
+    std::vector<std::uint32_t> triangle_of;  // the triangle of each element
     for (std::uint32_t t = 0; t < mesh.size(); ++t) {
         const auto& n = mesh.nodes[t];
         const Point& o = mesh.points[n[0]];

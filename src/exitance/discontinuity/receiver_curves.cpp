@@ -189,7 +189,7 @@ double CurveFinder::effect_beyond(const BlockerEdges::Edge& edge, const EventSou
 }
 
 void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
-    std::map<std::uint32_t, std::vector<PieceId>> blockers;  // by emitter
+    std::map<std::uint32_t, std::vector<PieceId>> blockers;  // the blockers of each emitter
     const auto candidates = [&](const auto& from) {
         return std::span(out.light.candidates).subspan(from.first, from.count);
     };

@@ -65,27 +65,27 @@ Solution direct_light(Scene scene) {
     return s;
 }
 
-constexpr double inside = 1e-4;  ///< Metres; over this distance light changes by less than 1e-3.
+constexpr double step_inside = 1e-4;  ///< Metres; over this distance light changes by less than 1e-3.
 
-/// Points on borders, each with a point at the distance `inside`.
+/// Points on borders, each with a point at the distance `step_inside`.
 struct Pair {
     ProbePoint on, beside;
 };
 std::vector<Pair> border_points() {
     const Normal up{0, 0, 1}, right{1, 0, 0}, back{0, 1, 0};
-    return {{{{0, 1.5, 0}, up}, {{inside, 1.5, 0}, up}},  // below a wall
-            {{{4, 1.5, 0}, up}, {{4 - inside, 1.5, 0}, up}},
-            {{{1, 0, 0}, up}, {{1, inside, 0}, up}},
-            {{{0, 0, 0}, up}, {{inside, inside, 0}, up}},  // in corners of three faces
-            {{{4, 3, 0}, up}, {{4 - inside, 3 - inside, 0}, up}},
-            {{{2 + 1e-7, 0.5, 0}, up}, {{2 + inside, 0.5, 0}, up}},  // below the sheet
-            {{{2 - 1e-7, 0.5, 0}, up}, {{2 - inside, 0.5, 0}, up}},
-            {{{0, 1, 0}, right}, {{0, 1, inside}, right}},  // at the foot of a wall
-            {{{0, 0, 1}, right}, {{0, inside, 1}, right}},  // in the corner of two walls
-            {{{0, 0, 1}, back}, {{inside, 0, 1}, back}},
-            {{{0, 1.5, 0.8}, up}, {{inside, 1.5, 0.8}, up}},  // in free space, in the plane of a wall
-            {{{0, 0, 0.8}, up}, {{inside, inside, 0.8}, up}},
-            {{{2, 0.5, 2}, up}, {{2, 0.5, 2 + inside}, up}}};  // on the upper edge of the sheet
+    return {{{{0, 1.5, 0}, up}, {{step_inside, 1.5, 0}, up}},  // below a wall
+            {{{4, 1.5, 0}, up}, {{4 - step_inside, 1.5, 0}, up}},
+            {{{1, 0, 0}, up}, {{1, step_inside, 0}, up}},
+            {{{0, 0, 0}, up}, {{step_inside, step_inside, 0}, up}},  // in corners of three faces
+            {{{4, 3, 0}, up}, {{4 - step_inside, 3 - step_inside, 0}, up}},
+            {{{2 + 1e-7, 0.5, 0}, up}, {{2 + step_inside, 0.5, 0}, up}},  // below the sheet
+            {{{2 - 1e-7, 0.5, 0}, up}, {{2 - step_inside, 0.5, 0}, up}},
+            {{{0, 1, 0}, right}, {{0, 1, step_inside}, right}},  // at the foot of a wall
+            {{{0, 0, 1}, right}, {{0, step_inside, 1}, right}},  // in the corner of two walls
+            {{{0, 0, 1}, back}, {{step_inside, 0, 1}, back}},
+            {{{0, 1.5, 0.8}, up}, {{step_inside, 1.5, 0.8}, up}},  // in free space, in the plane of a wall
+            {{{0, 0, 0.8}, up}, {{step_inside, step_inside, 0.8}, up}},
+            {{{2, 0.5, 2}, up}, {{2, 0.5, 2 + step_inside}, up}}};  // on the upper edge of the sheet
 }
 
 TEST(BorderLight, IsTheLimitFromTheSideOfThePoint) {
@@ -153,7 +153,7 @@ TEST(BorderLight, IsMeasuredOnTheSideOfThePlanesMiddleInAllDirections) {
         return *grid;
     };
     for (const bool is_cylindrical : {false, true}) {
-        const GridLight on = grid_from(-0.25, is_cylindrical), beside = grid_from(-0.25 + inside, is_cylindrical);
+        const GridLight on = grid_from(-0.25, is_cylindrical), beside = grid_from(-0.25 + step_inside, is_cylindrical);
         ASSERT_EQ(on.columns, 10);
         EXPECT_EQ(on.points[0].x, 0);
         EXPECT_NEAR(on.irradiance[0][0] / beside.irradiance[0][0], 1, 1e-3);

@@ -56,7 +56,7 @@ std::array<double, 2> MirroredLight::at(const Receiver& place, std::uint32_t ray
     return out;
 }
 
-/// E_m from skies.
+/// Estimates the mirrored light E_m of the skies by rays, W/m^2.
 double MirroredLight::by_rays(const Receiver& place, std::uint32_t rays, std::uint64_t key) const {
     if (scene_.distant().domes.empty()) return 0;
     const ScrambledSobol points(key);
@@ -181,14 +181,15 @@ namespace {
 struct Place {
     std::size_t room = 0;
     double arriving = 0;                 ///< E, mean over bands, W/m^2.
-    std::array<double, 2> by_mirrors{};  ///< E_m, two estimates.
+    std::array<double, 2> by_mirrors{};  ///< Two independent estimates of the mirrored light E_m, W/m^2.
 };
 
 /// Places that are uniform in area within each room, equally many in every room.
 std::vector<Place> measured_places(const Solution& solution, const Stage& stage, const MirroredLight& light,
                                    std::uint64_t seed) {
-    constexpr std::size_t count = 4096;  // places vary more than rays: many places, few rays
-    constexpr std::uint32_t rays = 32;   // per estimate
+    constexpr std::size_t count =
+        4096;  // light varies more between places than between rays, so many places get few rays
+    constexpr std::uint32_t rays = 32;  // number of rays per estimate
     const ElementTree& tree = solution.interpolant.tree;
     const std::vector<ElementId> leaves = tree.leaves();
     std::vector<double> up_to;
@@ -214,7 +215,7 @@ std::vector<Place> measured_places(const Solution& solution, const Stage& stage,
 /// Share in one room. The product of two independent estimates has no bias due to noise, unlike the square of one.
 MirroredShare share_of(std::span<const Place> places, std::size_t room) {
     constexpr double least_light = 0.1;       // derived from the error norm of parts: share of the room's mean
-    constexpr std::size_t fewest_places = 8;  // for a standard error
+    constexpr std::size_t fewest_places = 8;  // number of places from which a standard error can be computed
     double arriving = 0, n = 0;
     for (const Place& place : places)
         if (place.room == room) arriving += place.arriving, ++n;

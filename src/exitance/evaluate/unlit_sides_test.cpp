@@ -20,7 +20,8 @@ std::vector<Face> room_with_box(bool open) {
     std::vector<Face> faces;
     for (const Face& f : test::closed_box({0, 0, 0}, {2, 2, 2})) add_both_sides(faces, f);
     const std::vector<Face> box = test::closed_box({0.5, 0.5, 0}, {0.4, 0.4, 0.4});
-    for (std::size_t i = open ? 2 : 1; i < box.size(); ++i) add_both_sides(faces, box[i]);  // without a bottom
+    for (std::size_t i = open ? 2 : 1; i < box.size(); ++i)
+        add_both_sides(faces, box[i]);  // the bottom is omitted; if `open`, the next face, too
     faces.push_back({{{0.9, 0.9, 1.9}, {0.9, 1.1, 1.9}, {1.1, 1.1, 1.9}, {1.1, 0.9, 1.9}}, 10});
     return faces;
 }

@@ -135,8 +135,8 @@ struct Quads {
 /// Positive if a quad subtends a large angle, so that its contour sum is needed; smaller quads use quadrature points.
 template <class Real>
 EXITANCE_INLINE Real size_over_least(const Quads<Real>& quads) {
-    constexpr double least = 0.006;
-    return 4 * quads.radius * quads.radius - least * least * dot(quads.middle, quads.middle);
+    constexpr double min_relative_size = 0.006;
+    return 4 * quads.radius * quads.radius - min_relative_size * min_relative_size * dot(quads.middle, quads.middle);
 }
 
 /// Computes the lowest and highest height of a quad's corners above the horizon.

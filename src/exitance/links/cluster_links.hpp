@@ -59,7 +59,7 @@ Field<FacingId, VectorPower> find_vector_powers(const Bodies& bodies, const Noda
 /// bytes per link.
 class ClusterLinks {
   public:
-    /// links  in any order
+    /// `links` may be in any order.
     ClusterLinks(const Bodies& bodies, std::vector<ClusterLink> links);
 
     std::size_t size() const { return links_.size(); }

@@ -177,7 +177,7 @@ class ClusterRefiner::Judge {
         RandomStream random(tolerance_.seed, Stream::visibility, pair.link.receiver.value(), pair.link.source.value());
         std::vector<SurfacePoint> from, to;
         std::vector<double> share;
-        constexpr unsigned attempts = 4;  // per ray
+        constexpr unsigned attempts = 4;  // random pairs of points that are tried per wanted ray
         for (unsigned i = 0; i < attempts * wanted && from.size() < wanted; ++i) {
             const SurfacePoint x = any_point(pair.link.receiver, random), y = any_point(pair.link.source, random);
             const Vec3 d = y.at - x.at;

@@ -99,7 +99,7 @@ void link_leaf(const LinkSites& sites, const LeafOfPiece& receiver, std::span<co
 LeafLinks link_leaves(const LinkSites& sites, const NodalField& b, const LinkTolerance& tolerance,
                       const StopRequest& stop) {
     const std::vector<LeafOfPiece> leaves = leaves_by_piece(sites.tree());
-    const Field<ElementId, double> roughness(sites.tree().size(), 0.0);  // leaves are exact
+    const Field<ElementId, double> roughness(sites.tree().size(), 0.0);  // zero: the light of leaves counts as exact
     std::vector<Block> found((leaves.size() + block_size - 1) / block_size);
     parallel_for(
         found.size(), 1,

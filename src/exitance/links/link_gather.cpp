@@ -225,7 +225,7 @@ class ReceivedLight {
     float rest_[3]{};
     Lanes sum_[bands]{}, rest_lanes_[bands]{};
     float rest_sum_[bands]{};
-    NodalValues total_{};  ///< Sums moved by put_by().
+    NodalValues total_{};  ///< Finished sums, which put_by() adds here.
 };
 
 /// Light of constant elements, padded to whole registers.

@@ -35,10 +35,11 @@ Patch LinkSites::inertia_parallelogram(ElementId e) const {
         xy += twice * (2 * a.x * a.y + a.x * b.y + b.x * a.y + 2 * b.x * b.y) / 24;
     }
     xx /= area, xy /= area, yy /= area;
-    const double l = std::sqrt(std::max(xx, 1e-30)), m = xy / l;  // given by rounding
-    const double k = std::sqrt(std::max(yy - m * m, 1e-30));      // given by rounding
+    const double l = std::sqrt(std::max(xx, 1e-30)), m = xy / l;  // derived from rounding: no division by zero
+    const double k = std::sqrt(std::max(yy - m * m, 1e-30));      // derived from rounding
     const Patch& frame = tree_->patch(e);
-    const Vec3 s = std::sqrt(3.0) * (l * frame.a + m * frame.b), t = std::sqrt(3.0) * k * frame.b;  // given by geometry
+    const Vec3 s = std::sqrt(3.0) * (l * frame.a + m * frame.b),
+               t = std::sqrt(3.0) * k * frame.b;  // given by geometry: a parallelogram with the same second moments
     return {frame.at(c) - s - t, 2 * s, 2 * t, Patch::Shape::parallelogram};
 }
 
@@ -48,12 +49,12 @@ Patch LinkSites::frame(ElementId e) const {
 }
 
 Point LinkSites::within(ElementId e, const Point& x) const {
-    constexpr double inside = 0.999;  // given by rounding
+    constexpr double share_of_reach = 0.999;  // derived from rounding: a little inside of the cell
     if (!tree_->is_cell(e)) return x;
     const double reach = tree_->reach(e, tree_->patch(e).coordinates(x));
     if (reach == 1) return x;
     const Point middle = centre(e);
-    return middle + inside * reach * (x - middle);
+    return middle + share_of_reach * reach * (x - middle);
 }
 
 ElementId LinkSites::held_above(ElementId e) const {

@@ -44,7 +44,7 @@ std::vector<std::size_t> sort_by_receiver(std::vector<Link>& links, std::size_t 
 
 Links::Rows::Rows(std::vector<Link>& links, std::size_t elements) {
     const std::vector<std::size_t> end = sort_by_receiver(links, elements);
-    Field<ElementId, std::uint32_t> place(elements, 0);  // among the sources
+    Field<ElementId, std::uint32_t> place(elements, 0);  // position among the elements that are sources
     for (const Link& link : links) place[link.source] = 1;
     for (ElementId e : place.ids()) {
         const std::size_t begin = e.value == 0 ? 0 : end[e.value - 1];

@@ -24,7 +24,7 @@ struct Rows : Kept, LitElements {
     Rows(Scene given, const Light& light) : Kept{std::move(given)}, LitElements(scene, HierarchyBasis::haar, light) {}
 
     Links links(double allowed) const { return link_by_rays(sites, numbering, rows, b, allowed); }
-    /// E of the leaves.
+    /// Returns the irradiance E that the links bring to each leaf.
     std::vector<double> over(const Links& links) const {
         NodalField E(sites);
         links.gather(b, E);

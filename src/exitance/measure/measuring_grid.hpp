@@ -53,8 +53,8 @@ struct Levels {
     double mean = 0, least = 0, most = 0;
     std::size_t count = 0;
 
-    double uniformity() const { return mean > 0 ? least / mean : 0; }  ///< U0; 0 in the dark.
-    double diversity() const { return most > 0 ? least / most : 0; }   ///< Ud; 0 in the dark.
+    double uniformity() const { return mean > 0 ? least / mean : 0; }  ///< U0 of EN 12464-1; 0 in the dark.
+    double diversity() const { return most > 0 ? least / most : 0; }   ///< Ud of EN 12464-1; 0 in the dark.
 };
 Levels levels_of(std::span<const double> values);
 

@@ -33,7 +33,7 @@ struct ClusterTree::Group {
         std::array<Box, bins> box;
         std::array<std::size_t, bins> count{};
         for (const Item& item : items) box[bin(item)].add(item.box), ++count[bin(item)];
-        std::array<double, bins> cost{};  // of cutting before a bin
+        std::array<double, bins> cost{};  // cost of a cut in front of each bin
         const auto sweep = [&](auto first, auto last, int step) {
             Box so_far;
             std::size_t n = 0;

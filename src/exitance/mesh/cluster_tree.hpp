@@ -20,7 +20,7 @@ class Body {
     bool is_cluster() const { return value_ & cluster_bit; }
     ElementId element() const { return ElementId(value_); }
     ClusterId cluster() const { return ClusterId(value_ & ~cluster_bit); }
-    std::uint32_t value() const { return value_; }  ///< Unique for each body.
+    std::uint32_t value() const { return value_; }  ///< A number that no other body has.
     constexpr auto operator<=>(const Body&) const = default;
 
   private:

@@ -246,9 +246,9 @@ PlaneNodes::Leaf PlaneNodes::with_own_nodes(const Polygon& polygon) {
 
 /// Returns whether every triangle has an area above 1e-6 of the element's frame.
 bool has_area(const Fan& fan) {
-    constexpr double least = 1e-6;
+    constexpr double min_area = 1e-6;
     for (std::size_t i = 1; i < fan.border.size(); ++i)
-        if (cross(fan.border[i - 1] - fan.apex, fan.border[i] - fan.apex) < least) return false;
+        if (cross(fan.border[i - 1] - fan.apex, fan.border[i] - fan.apex) < min_area) return false;
     return true;
 }
 

@@ -14,18 +14,18 @@ namespace {
 /// otherwise into cells. Returns false, and does nothing, if almost nothing would be on one side, as for a line along
 /// the border.
 bool cut_along(ElementTree& tree, ElementId e, const CutLine& line) {
-    constexpr double least = 1e-5;     // share of the area
-    constexpr double parallel = 1e-6;  // deviation from parallel, as a share of the element
+    constexpr double min_share = 1e-5;  // share of the element's area that each part must have
+    constexpr double parallel = 1e-6;   // deviation from parallel, as a share of the element
     if (!tree.is_cell(e) && !tree.patch(e).is_triangle())
         for (const auto& [way, along, across] :
              {std::tuple{Cut::u, line.normal.x, line.normal.y}, {Cut::v, line.normal.y, line.normal.x}}) {
             if (std::abs(across) > parallel * std::abs(along)) continue;
             const double ratio = line.offset / along;
-            if (ratio < least || ratio > 1 - least) return false;
+            if (ratio < min_share || ratio > 1 - min_share) return false;
             tree.split(e, way, ratio);
             return true;
         }
-    return !tree.split_by_line(e, line, least).is_none();
+    return !tree.split_by_line(e, line, min_share).is_none();
 }
 
 /// Splits one element along the contact lines inside it.
@@ -56,7 +56,7 @@ class ContactCutter {
         ElementId element;
         double area;                               ///< Area before contacts split it, m^2.
         std::size_t lines = ~std::size_t(0);       ///< Number of lines when it last decreased by a quarter or more.
-        int in_vain = 0;                           ///< Number of bisections since then.
+        int in_vain = 0;                           ///< Number of bisections since that decrease.
         std::size_t of_parent = ~std::size_t(0);   ///< Number of lines of the parent, which was split by a line.
         int unchanged = 0;                         ///< How often a part had no fewer lines than its parent.
         std::shared_ptr<const Lines> around = {};  ///< Lines that may cross it, if known.

@@ -209,7 +209,7 @@ std::vector<ContactLines::Line> ContactLines::over_plane(std::span<const RegionI
                                    [](RegionId a, RegionId b) { return a.value < b.value; });
     };
     // A surface that covers a point may be above it by this much (Occluders::is_covered).
-    constexpr double coplanar = 1e-6;  // share of the scene's size
+    constexpr double coplanar = 1e-6;  // the same distance as there, as a share of the scene's size
     const double near = coplanar * scene_->size(), highest = std::max(near, gap);
     Box box;
     for (RegionId region : regions)

@@ -30,7 +30,7 @@ struct ElementLocator::Nearest {
             root = &r, uv = at, distance = 0;
             return;
         }
-        for (const Root& r : roots) {  // reached only because of rounding
+        for (const Root& r : roots) {  // no root contains p, because of rounding: take the nearest
             const Vec2 at = r.coordinates(p), held = into_shape(at, r.shape);
             const double d = squared_length(r, at - held);
             if (d < distance) root = &r, uv = held, distance = d;

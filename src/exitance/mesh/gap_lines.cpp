@@ -130,7 +130,7 @@ class GapFinder {
     double touching_, highest_ = 0;
     RegionId own_;
     const Plane& plane_;
-    std::vector<Opposite> opposite_;  ///< For the current mouth.
+    std::vector<Opposite> opposite_;  ///< Faces opposite the current mouth of a gap.
     std::vector<GapLine> out_;
 };
 

@@ -196,8 +196,8 @@ LeafFinder::LeafFinder(const ElementTree& tree) {
         const double cells = 4.0 * static_cast<double>(builder.leaves_met - before);
         const double aspect = norm(tree.patch(root).a) / norm(tree.patch(root).b);
         const auto power = [](double wanted) {
-            constexpr double most = 1024;
-            return std::bit_floor(static_cast<std::uint32_t>(std::clamp(wanted, 1.0, most)));
+            constexpr double max_cells = 1024;
+            return std::bit_floor(static_cast<std::uint32_t>(std::clamp(wanted, 1.0, max_cells)));
         };
         Grid grid{static_cast<std::uint32_t>(start_.size())};
         if (cells > 4) grid.columns = power(std::sqrt(cells * aspect)), grid.rows = power(cells / grid.columns);

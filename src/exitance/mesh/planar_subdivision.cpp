@@ -43,7 +43,7 @@ void count_loops_around(AnyTriangulation& t, const IsBorder& is_border) {
             const bool border = is_border(face, i);
             next->info().value = face->info().value + (border ? 1 : 0);
             if (border)
-                open.push_back(next);  // after everything on this side of the border
+                open.push_back(next);  // visited after all faces on this side of the border
             else
                 open.push_front(next);
         }
@@ -322,8 +322,8 @@ class DelaunayRefinement {
         double share = 0.5;
         if (const bool first = is_given(a); first != is_given(b)) {
             const double shell = std::exp2(std::round(std::log2(0.5 * length / nearest_))) * nearest_;
-            constexpr double least = 0.3;
-            share = std::clamp(shell / length, least, 1 - least);
+            constexpr double min_share = 0.3;
+            share = std::clamp(shell / length, min_share, 1 - min_share);
             if (!first) share = 1 - share;
         }
         const Vec2 m = pa + share * way;

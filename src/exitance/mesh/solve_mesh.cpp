@@ -9,7 +9,7 @@ namespace {
 /// Returns whether a length exceeds a limit by more than the rounding of coordinates in files. Scenes whose lengths are
 /// multiples of the mesh size are then split the same way in every orientation.
 bool exceeds(double length, double limit) {
-    constexpr double rounding = 1e-6;  // share of the limit
+    constexpr double rounding = 1e-6;  // allowed excess, as a share of the limit
     return length > (1 + rounding) * limit;
 }
 

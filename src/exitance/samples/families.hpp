@@ -10,7 +10,7 @@ namespace exitance {
 /// Complete and checked values of a family's parameters.
 using FamilyValues = std::map<std::string, double>;
 
-// Analytic scenes and rooms.
+// Scenes with analytic solutions, and rooms.
 PolygonKit make_blocker(const FamilyValues& values);
 PolygonKit make_tube(const FamilyValues& values);
 PolygonKit make_furnace(const FamilyValues& values);

@@ -98,7 +98,7 @@ PolygonKit make_cove(const FamilyValues& v) {
                         {wall + side * at, y, to},
                         {wall + side * at, 0, to}});
         };
-        constexpr double edge = 0.02;  // thickness of the lip
+        constexpr double edge = 0.02;  // thickness of the lip, metres
         const double first = std::max(0.0, (deep - edge - lamp) / 2), last = std::min(deep - edge, first + lamp);
         across(0, deep, v.at("at"), below, "wall");
         if (first > 0) across(0, first, top, above, "wall");

@@ -83,8 +83,10 @@ PolygonKit make_float(const FamilyValues& values) {
     kit.material("red", {0.60, 0.22, 0.18});
     add_floor(kit, 2.5);
     add_table32(kit, "table", "wood", {});
-    const std::array<Vec3, 4> chairs = {
-        {{-0.35, -0.75, 4}, {0.38, -0.80, -7}, {-0.40, 0.78, 176}, {0.36, 0.74, 185}}};  // x, y, degrees
+    const std::array<Vec3, 4> chairs = {{{-0.35, -0.75, 4},
+                                         {0.38, -0.80, -7},
+                                         {-0.40, 0.78, 176},
+                                         {0.36, 0.74, 185}}};  // x and y in metres, turned by z degrees
     for (std::size_t i = 0; i < chairs.size(); ++i)
         add_chair36(kit, "chair" + std::to_string(i), "blue", Placement::at(chairs[i].x, chairs[i].y, 0, chairs[i].z));
     add_chair36(kit, "chair_float", "red", Placement::at(0.1, 0.05, 1.15, 33));

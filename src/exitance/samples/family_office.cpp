@@ -10,7 +10,7 @@ namespace exitance {
 namespace {
 
 constexpr double room = 4.0;    // width and depth of a room, metres
-constexpr double height = 2.8;  // of the ceiling, metres
+constexpr double height = 2.8;  // height of the ceiling, metres
 constexpr double half_wall = 0.06;
 constexpr double door_from = 0.45, door_width = 0.9, door_height = 2.1;
 

@@ -262,11 +262,12 @@ Result<SceneDescription> generate_scene(const std::string& family,
     const Result<Motion> motion = motion_of(parameters);
     if (!motion) return motion.error();
     if (family == "office") {
-        constexpr double most = 2e7;
+        constexpr double max_polygons = 2e7;
         const double polygons =
             values->at("nx") * values->at("ny") * (32 + values->at("nfurn") * (83 + 20 * values->at("books")));
-        if (polygons > most)
-            return usage(fmt::format("this office has about {:.0f} polygons, more than {:.0f}", polygons, most), "");
+        if (polygons > max_polygons)
+            return usage(fmt::format("this office has about {:.0f} polygons, more than {:.0f}", polygons, max_polygons),
+                         "");
     }
     if (family == "cove" && values->at("at") + values->at("thick") + values->at("lip") >= values->at("z"))
         return usage("the lips of this cove reach its ceiling", "at + thick + lip is to be less than z");

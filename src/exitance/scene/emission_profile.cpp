@@ -176,11 +176,11 @@ bool DirectedEmission::is_sane() const {
 double exitance_of(const EmissionProfile& profile, const Normal& n) {
     // Two-point Gauss rule on every step of a grid about the face's normal. Exact if the table's steps are the grid's,
     // as for lamps that shine straight down or up.
-    constexpr int fewest = 90;
+    constexpr int min_steps = 90;
     constexpr std::array gauss{0.5 - 0.28867513459481287, 0.5 + 0.28867513459481287};
     const bool is_upright = std::abs(n.z) > 1 - 1e-9;
     std::vector<double> steps;
-    for (int i = 0; i <= fewest; ++i) steps.push_back(i * 90.0 / fewest);
+    for (int i = 0; i <= min_steps; ++i) steps.push_back(i * 90.0 / min_steps);
     for (const EmissionProfile::Axis& axis : profile.axes)
         if (is_upright && axis.angle == Angle::theta)
             for (const double at : axis.at) steps.push_back(n.z < 0 ? at - axis.offset : 180 - at + axis.offset);

@@ -21,7 +21,7 @@ struct EmissionProfile {
         phi4,          ///< folded to 0 to 90: symmetric in x and y.
         b_vertical,    ///< Type B photometry: towards +x, -180 to 180;
         b_vertical2,   ///< its absolute value;
-        b_horizontal,  ///< towards -y;
+        b_horizontal,  ///< Type B photometry: horizontal angle towards -y, degrees;
         b_horizontal2  ///< its absolute value.
     };
     static constexpr int angle_kinds = 8;

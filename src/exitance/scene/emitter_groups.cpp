@@ -16,7 +16,7 @@ EmitterGroup& group_named(std::vector<EmitterGroup>& groups, const std::string& 
 }  // namespace
 
 void part_emitters_by_group(SceneDescription& description) {
-    std::map<std::uint32_t, std::uint32_t> first_group;  // for each material
+    std::map<std::uint32_t, std::uint32_t> first_group;  // first group found to use each material
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> copies;
     for (SceneDescription::Face& face : description.faces) {
         if (face.material >= description.materials.size() || !description.materials[face.material].emits()) continue;

@@ -78,7 +78,7 @@ class BodyFinder {
     Bvh emitter_tree_;                           ///< Boxes around the centroids of `emitters_`.
     Bvh cavity_tree_;                            ///< Boxes of `cavities_`.
     std::optional<bool> has_light_outside_;      ///< Empty until needed, and after a body is turned.
-    std::vector<std::optional<double>> fronts_;  ///< Results of `share_of_fronts`, likewise.
+    std::vector<std::optional<double>> fronts_;  ///< Results of `share_of_fronts`; empty until needed.
 };
 
 void BodyFinder::find_emitters() {

@@ -18,7 +18,7 @@ std::string name_with_colour(std::string_view material, const Spectrum& colour) 
 }
 
 std::string_view name_in_file(std::string_view material) {
-    constexpr std::size_t colour = 8;  // " #rrggbb"
+    constexpr std::size_t colour = 8;  // length of " #rrggbb"
     if (material.size() < colour) return material;
     const std::string_view end = material.substr(material.size() - colour);
     const bool is_colour = end.starts_with(" #") && end.find_first_not_of("0123456789abcdef", 2) == end.npos;

@@ -16,12 +16,13 @@ struct BoxSides {
 
     explicit BoxSides(const Scene& scene) {
         const Box& box = scene.box();
-        constexpr double near = 0.02;  // relative to the box's extent: windows and panelling are slightly off the walls
+        constexpr double near_side =
+            0.02;  // relative to the box's extent: windows and panelling are slightly off the walls
         for (const SurfaceId s : scene.surfaces().ids()) {
             const Surface& surface = scene.surfaces()[s];
             for (std::size_t k = 0; k < 3; ++k)
                 for (const bool upper : {false, true}) {
-                    const double side = upper ? box.hi[k] : box.lo[k], reach = near * (box.hi[k] - box.lo[k]);
+                    const double side = upper ? box.hi[k] : box.lo[k], reach = near_side * (box.hi[k] - box.lo[k]);
                     bool lies_there = reach > 0;
                     for (const Point& p : scene.outline(s)) lies_there &= std::abs(p[k] - side) <= reach;
                     if (!lies_there) continue;

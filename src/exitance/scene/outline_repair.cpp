@@ -125,7 +125,7 @@ bool is_one_polygon(std::span<const Point> points, std::span<const std::uint32_t
     if (loops.empty()) return false;
     const std::vector<Point> outer = places(points, loops[0]);
     for (std::size_t i = 1; i < loops.size(); ++i) {
-        if (dot(area_vector(places(points, loops[i])), area) > 0) continue;  // a second outer loop
+        if (dot(area_vector(places(points, loops[i])), area) > 0) continue;  // another outer loop, not a hole
         for (std::uint32_t c : loops[i])
             if (std::find(loops[0].begin(), loops[0].end(), c) == loops[0].end() &&
                 !contains(outer, normalized(area), points[c]))

@@ -40,7 +40,7 @@ bool compare_all(const Scene& scene, std::span<const PlaneEntry> group, double t
     std::vector<FlatBox> boxes(faces.size());
     for (std::size_t i = 0; i < faces.size(); ++i)
         for (const Point& p : scene.outline(faces[i])) boxes[i].add({dot(p, frame.u), dot(p, frame.v)});
-    constexpr std::size_t enough = 4;
+    constexpr std::size_t max_examples = 4;
     std::size_t told = 0;
     std::uint32_t last = 0;
     return each_overlap(boxes, tolerance, [&](std::uint32_t i, std::uint32_t j) {
@@ -53,7 +53,7 @@ bool compare_all(const Scene& scene, std::span<const PlaneEntry> group, double t
         if (!std::ranges::all_of(scene.outline(faces[i]), in_plane)) return false;
         const double area = common_area(scene.outline(s), scene.outline(t), frame.n, tolerance);
         if (area > 0) out.push_back({regions, {s, t, area}});
-        return area > 0 && ++told == enough;
+        return area > 0 && ++told == max_examples;
     });
 }
 

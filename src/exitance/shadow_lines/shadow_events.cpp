@@ -98,8 +98,8 @@ bool ShadowEventFinder::blank(const Wedge& wedge, const Vec3& normal, PieceId nu
     const auto mt_of = [&](const Point& p) { return dot(cross(b, p - wedge.apex), normal) / area; };
     bool all = false;
     const auto add = [&](Point from, Point to, double sign) {
-        constexpr double near = 1e-9;
-        if (!cut(from, to, sign * m_of(from), sign * m_of(to), near)) return;
+        constexpr double min_m = 1e-9;
+        if (!cut(from, to, sign * m_of(from), sign * m_of(to), min_m)) return;
         const double s = mt_of(from) / m_of(from), t = mt_of(to) / m_of(to);
         hidden_.emplace_back(std::min(s, t), std::max(s, t));
         all |= hidden_.back().first <= wedge.first && hidden_.back().second >= wedge.last;

@@ -175,8 +175,8 @@ void ThreeEdgeEventFinder::follow(const Point& q0, const Point& q1, const Blocke
         if (!(length > 4 * sagitta_)) continue;
         // The distance to the conic is quadratic in the chord's parameter range.
         const double off = std::abs(cross(chord, m - a)) / length;
-        constexpr double most = 32;
-        const auto count = static_cast<int>(std::clamp(std::ceil(std::sqrt(off / sagitta_)), 1.0, most));
+        constexpr double max_chords = 32;
+        const auto count = static_cast<int>(std::clamp(std::ceil(std::sqrt(off / sagitta_)), 1.0, max_chords));
         event.places.push_back(a);
         for (int k = 1; k < count; ++k) event.places.push_back(place(from + k * (to - from) / count));
         event.places.push_back(b);

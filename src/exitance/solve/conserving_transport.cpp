@@ -8,15 +8,15 @@
 namespace exitance {
 
 bool is_kept(const Spectrum& arriving, const Spectrum& sent) {
-    constexpr double least = 0.98;
-    return mean(arriving) >= least * mean(sent);
+    constexpr double min_kept_share = 0.98;
+    return mean(arriving) >= min_kept_share * mean(sent);
 }
 
 Spectrum conserving_scale(const Spectrum& arriving, const Spectrum& received) {
-    constexpr double small = 0.05;
+    constexpr double max_difference = 0.05;
     Spectrum scale(1.0);
     for (std::size_t band = 0; band < bands; ++band)
-        if (std::abs(arriving[band] - received[band]) < small * received[band])
+        if (std::abs(arriving[band] - received[band]) < max_difference * received[band])
             scale[band] = arriving[band] / received[band];
     return scale;
 }

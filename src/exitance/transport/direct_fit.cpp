@@ -158,9 +158,9 @@ DirectFit inherited_fit(const ElementTree& tree, ElementId e, const DirectFit& p
 }
 
 Spectrum light_weight(const Material& material) {
-    constexpr double least = 0.1;
+    constexpr double min_weight = 0.1;
     Spectrum w = material.reflectance;
-    for (double& v : w.value) v = std::max(v, least);
+    for (double& v : w.value) v = std::max(v, min_weight);
     return w;
 }
 

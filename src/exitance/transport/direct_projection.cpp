@@ -73,8 +73,8 @@ std::vector<double> shares_by_room(const Stage& stage, const DirectProjection& l
     }
     std::vector<double> out(rooms);
     for (std::size_t room = 0; room < rooms; ++room) {
-        constexpr double least = 0.01;
-        const double light_there = std::max(flux[room] / stage.rooms.area(room), least * all / stage.area);
+        constexpr double min_share_of_mean = 0.01;
+        const double light_there = std::max(flux[room] / stage.rooms.area(room), min_share_of_mean * all / stage.area);
         out[room] =
             tolerance * light_there * tolerance * light_there * stage.rooms.area(room) / std::max(1.0, elements[room]);
     }
@@ -131,12 +131,13 @@ class Projector {
     static constexpr std::size_t few_elements = 2000, few_emitters = 8;
 
     bool are_many(std::size_t elements) const {
-        constexpr double small = 0.25;  // share of all area
+        constexpr double max_emitting_share = 0.25;  // share of all area
         double emitting = 0;
         for (const DirectLight::Emitter& emitter : stage_.direct.emitters())
             if (!emitter.region.is_none()) emitting += stage_.scene.regions()[emitter.region].area;
         return elements > few_elements && stage_.direct.emitters().size() > few_emitters &&
-               (emitting < small * stage_.area || stage_.clustered.is_possible()) && !stage_.scene.has_light_apart();
+               (emitting < max_emitting_share * stage_.area || stage_.clustered.is_possible()) &&
+               !stage_.scene.has_light_apart();
     }
 
     /// Squared error that an element of mean area may have, by the total flux, (W/m^2)^2 m^2.

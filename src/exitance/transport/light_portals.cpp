@@ -192,7 +192,7 @@ Rectangle smallest_around(const std::vector<Vec2>& points) {
 }
 
 PortalCell PortalFinder::opening(std::size_t room, const Way& way) const {
-    constexpr std::size_t fewest = 8;  // points needed for a rectangle
+    constexpr std::size_t min_points = 8;  // number of points from which a rectangle can be found
     const Point at = middle(room, way);
     const Frame frame(normal(room, way, at));
     // Doubles the search square until the half of it that surrounds all points found so far contains no more.
@@ -210,7 +210,7 @@ PortalCell PortalFinder::opening(std::size_t room, const Way& way) const {
     for (int i = 0; i < 2; ++i) {  // refine the estimate with denser points
         const double wide = 1.2 * reach;
         open = open_points(room, way.into, at, frame, {-wide, -wide}, {wide, wide}, hash(key, i));
-        if (open.size() < fewest) return {};
+        if (open.size() < min_points) return {};
         reach = 0;
         for (const Vec2& p : open) reach = std::max({reach, std::abs(p.x), std::abs(p.y)});
     }
@@ -236,7 +236,7 @@ bool passes(const Way& way, const PortalCell& cell) {
 /// elements of each room, W/m^2.
 std::vector<Spectrum> apart_light(const Stage& stage, const LightRooms& rooms, const ElementTree& tree,
                                   const LeafNumbering& numbering) {
-    constexpr std::size_t samples = 64;  // per room
+    constexpr std::size_t samples = 64;  // number of points per room
     std::vector<std::vector<std::size_t>> of_room(rooms.count());
     for (std::size_t i = 0; i < numbering.leaves.size(); ++i) of_room[rooms.of(tree, numbering.leaves[i])].push_back(i);
     std::vector<Spectrum> out(numbering.leaves.size());

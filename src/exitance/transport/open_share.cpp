@@ -46,7 +46,7 @@ std::vector<ElementId> leaves_in_strata(const LeafNumbering& numbering, std::spa
 
 namespace {
 
-/// open_share() from every `every`-th stratum.
+/// Estimates open_share() from one stratum in `every`.
 double open_share(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
                   const ElementLocator& locator, std::span<const Spectrum> radiosity, std::uint64_t seed,
                   std::size_t every) {

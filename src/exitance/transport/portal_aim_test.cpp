@@ -58,7 +58,9 @@ TEST(LightPortals, AHoleIsFoundAndAimedAtFromTheDarkSide) {
         stage.rooms = find_light_rooms(stage, 1, StopRequest());
         ASSERT_EQ(stage.rooms.count(), 2u);
         ASSERT_NE(stage.rooms.portals(), nullptr) << hole;
-        EXPECT_TRUE(stage.rooms.portals()->of_room(1).empty());  // the brighter room, the box
+        EXPECT_TRUE(stage.rooms.portals()
+                        ->of_room(1)
+                        .empty());  // room 1 is the box, which is brighter: its light needs no portal
         const auto cells = stage.rooms.portals()->of_room(0);
         ASSERT_FALSE(cells.empty()) << hole;
         double area = 0;

@@ -63,7 +63,7 @@ RayRows::RayRows(const Stage& stage, const ElementTree& tree, const LeafNumberin
                  : DealtUnknowns(numbering.leaves.size(), dealt_block(numbering.leaves.size()))) {
     const std::size_t n = numbering.leaves.size(), block = dealt_.block();
     const double mean_area = stage.area / static_cast<double>(n);
-    std::vector<std::size_t> first(n + 1, 0);  // for all rows
+    std::vector<std::size_t> first(n + 1, 0);  // position of each row's first ray
     for (std::size_t i = 0; i < n; ++i)
         first[i + 1] = first[i] + budget.rays(stage.important_area(tree, numbering.leaves[i]), mean_area);
     rays_ = first[n];

@@ -264,7 +264,7 @@ void ClutteredExchange::judge(Cell& cell) {
     for (const double other : found) most = std::max(most, std::abs(sum - other));
     cell.integral = sum, cell.error = error_per_difference * most;
     if (cell.sources.empty()) {
-        cell.error = 0;  // certainly hidden
+        cell.error = 0;  // no source is left, so the cell is certainly hidden
         return;
     }
     const bool clear = std::ranges::all_of(cell.sources, [](const SourcePart& s) { return s.blockers.empty(); });

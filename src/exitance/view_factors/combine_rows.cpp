@@ -37,7 +37,7 @@ OneSide side_of(const RawRow& row, const RowEntry* entry, double face_area) {
 }
 
 Exchange combined(const OneSide& a, const OneSide& b, std::uint32_t column) {
-    double share = 0.5;  // of the first estimate
+    double share = 0.5;  // weight of the first estimate
     if (a.density != b.density)
         share = std::isinf(a.density) ? 1 : std::isinf(b.density) ? 0 : a.density / (a.density + b.density);
     return {column, share * a.area + (1 - share) * b.area,

@@ -32,7 +32,7 @@ TEST(OccludedExchange, UsesFewCellsAlongTheCommonEdgeOfTouchingFaces) {
     ASSERT_TRUE(value);
     EXPECT_FALSE(unoccluded);
     const double other = halving(legs.pair, {1e-5, 0, 0, 500'000}, false, unoccluded);
-    EXPECT_NEAR(*value / other, 1, 1.1e-4);  // the tolerance of both
+    EXPECT_NEAR(*value / other, 1, 1.1e-4);  // the sum of both tolerances, 1e-4 and 1e-5
     // A cell's allowed error decreases with its area, and so does its integral. If the error due to the source's
     // nearness alone had to be below the allowance, cells along the common edge would be halved endlessly.
     EXPECT_LT(lines.evaluations, 10'000U);

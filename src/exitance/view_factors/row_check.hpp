@@ -11,7 +11,7 @@ namespace exitance {
 
 struct RowCheckOptions {
     std::size_t rows = 4;         ///< Chosen at random from the finished rows, without repetition.
-    std::size_t rays = 1u << 17;  ///< Per half of a row.
+    std::size_t rays = 1u << 17;  ///< Number of rays for each half of a row.
     std::size_t groups = 16;      ///< Random groups of neighbouring faces per row.
     std::uint64_t seed = 1;
     double error = 1e-3;  ///< R, allowed error of every row.

@@ -214,7 +214,7 @@ RowEstimator::Plan RowEstimator::plan(double variance) {
         }
         return sum;
     };
-    double low = 1e-40, high = 1;  // variance per unit of cost
+    double low = 1e-40, high = 1;  // bounds on the variance that a unit of cost removes
     for (int step = 0; step < 60; ++step) {
         const double price = std::sqrt(low * high);
         (variance_at(price) > variance ? high : low) = price;

@@ -96,7 +96,7 @@ TEST(RowFactors, RowsReachTheRequestedErrorComparedWithQuadrature) {
         double row = 0;
         for (std::size_t j = 0; j < table.size(); ++j) row += std::pow(entry(table, i, j) - exact.row(i)[j], 2);
         squares += row / static_cast<double>(table.size());
-        EXPECT_LE(std::sqrt(row), 2.5 * R) << i;  // R is a standard deviation
+        EXPECT_LE(std::sqrt(row), 2.5 * R) << i;  // R is a standard deviation; 2.5 of them are rarely exceeded
     }
     EXPECT_LE(std::sqrt(squares), R);
 }

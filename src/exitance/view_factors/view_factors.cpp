@@ -31,7 +31,7 @@ bool exceeds_memory(std::size_t limit) {
 /// Relative difference of the two rows' values for a pair of faces, by the larger one.
 double disagreement(const ViewFactors& table, std::size_t i, std::size_t j) {
     const double there = table.areas[i] * table.row(i)[j], back = table.areas[j] * table.row(j)[i];
-    if (!std::isfinite(there) || !std::isfinite(back)) return HUGE_VAL;  // failed quadrature: is recomputed
+    if (!std::isfinite(there) || !std::isfinite(back)) return HUGE_VAL;  // the quadrature failed: recompute the pair
     const double larger = std::max(there, back);
     return larger > 0 ? std::abs(there - back) / larger : 0;
 }
@@ -128,7 +128,7 @@ class TableMaker {
     /// tolerances, the last times without critical lines.
     Result<void> mend() {
         struct Round {
-            double share;  ///< Share of the tolerance.
+            double share;  ///< Tolerance of this round, as a share of the requested one.
             RowWorker::Means means;
         };
         constexpr Round rounds[] = {{0.2, RowWorker::Means::usual},

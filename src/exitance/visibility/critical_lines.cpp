@@ -91,7 +91,7 @@ void CriticalLineFinder::add(const Shadow& a, const Shadow& b, std::vector<Criti
         const double d = x * p.x + y * p.y + z;
         lowest = std::min(lowest, d), highest = std::max(highest, d);
     }
-    if (lowest >= 0 || highest <= 0) return;  // the usual case
+    if (lowest >= 0 || highest <= 0) return;  // the line misses the polygon, as most do
     const double length = std::sqrt(x * x + y * y);
     if (!(length > 0)) return;
     CriticalLine line{{x / length, y / length}, -z / length, 0, 0};

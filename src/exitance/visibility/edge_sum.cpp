@@ -130,7 +130,7 @@ void add_polygon(std::span<const Vec3> corners, int owner, bool reversed, Bounda
         if (reversed) std::swap(edge.a, edge.b);
         const Vec3 inward = cross(edge.b - edge.a, edge.a);
         const double length = norm(inward);
-        if (length <= 1e-13 * norm(edge.a) * norm(edge.b)) continue;  // seen end-on
+        if (length <= 1e-13 * norm(edge.a) * norm(edge.b)) continue;  // from x, the edge appears as a point
         edge.inward = inward / length;
         edge.noise_a = noise(edge.a), edge.noise_b = noise(edge.b);
         boundary.add_edge(edge);

@@ -164,7 +164,8 @@ struct RayTracer::Content {
         for (SurfaceId id : s.surfaces().ids()) {
             const std::span<const Point> outline = s.outline(id);
             faces[id] = {s.surfaces()[id].normal, outline[0], s.surfaces()[id].region};
-            if (is_second_side(s, other_side, id)) continue;  // read() selects the side
+            if (is_second_side(s, other_side, id))
+                continue;  // one triangle represents both faces; read() selects the side
             const auto first = static_cast<std::uint32_t>(corners.size());
             // Stacked coplanar surfaces are separated, so that the upper one is hit first.
             const Vec3 lifted = (stack_step * s.size() * s.regions()[faces[id].region].level) * faces[id].normal;

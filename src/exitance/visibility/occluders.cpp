@@ -75,12 +75,13 @@ void Occluders::add_windows() {
 }
 
 void Occluders::add_distant_pieces() {
-    constexpr double far = 1e6;
+    constexpr double sky_distance = 1e6;  // as a multiple of the scene's size
     middle_ = scene_->box().centre();
     const std::size_t first = pieces_.size();
     for (const DistantFacet& facet : distant_facets(scene_->distant())) {
         const auto at = static_cast<std::uint32_t>(corners_.size());
-        for (const Vec3& towards : facet.corners) corners_.push_back(middle_ + (far * scene_->size()) * towards);
+        for (const Vec3& towards : facet.corners)
+            corners_.push_back(middle_ + (sky_distance * scene_->size()) * towards);
         pieces_.add({at,
                      static_cast<std::uint32_t>(facet.corners.size()),
                      RegionId(),
@@ -180,7 +181,7 @@ bool Occluders::is_covered(const Point& place, const Normal& n, RegionId own) co
         const ConvexPiece& piece = pieces_[p];
         if (is_own(piece.region, own)) return false;
         const double facing = dot(piece.plane.n, n);
-        const double height = dot(corners(p)[0] - x, piece.plane.n) * facing;  // of the piece above x
+        const double height = dot(corners(p)[0] - x, piece.plane.n) * facing;  // height of the piece above x, metres
         if (std::abs(height) > piece.thickness || std::abs(facing) < 0.999) return false;
         if (facing > 0 && height <= rounding_) return false;
         if (!contains(corners(p), piece.plane.n, x)) return false;

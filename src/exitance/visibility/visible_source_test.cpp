@@ -105,7 +105,7 @@ TEST(VisibleSource, ManyShadowsHideTheirUnion) {
     std::vector<const ConvexBlocker*> blockers;
     double F = point_to_polygon({0, 0, 0}, up, ceiling);
     for (int k = 0; k < 12; ++k) {
-        const double x = -0.8 + 0.5 * (k % 4), y = -0.6 + 0.5 * (k / 4);  // of the shadow
+        const double x = -0.8 + 0.5 * (k % 4), y = -0.6 + 0.5 * (k / 4);  // centre of the shadow on the ceiling
         plates.push_back(sheet(level_square(0.5 * x, 0.5 * y, 1, 0.05)));
         plates.push_back(sheet(level_square(0.25 * (x + 0.1), 0.25 * y, 0.5, 0.025)));
         F -= point_to_polygon(

@@ -207,15 +207,16 @@ ExitCode render_path(const RenderArguments& arguments, const std::vector<Camera>
 ExitCode render_film(const RenderArguments& arguments, const std::vector<CameraStation>& stations,
                      const RadiosityFunction& light, Terminal& terminal) {
     constexpr double rate = 25;  // pictures per second
-    constexpr std::size_t most = 9999;
+    constexpr std::size_t max_pictures = 9999;
     if (const Result<void> found = find_film_program(arguments.output); !found) return terminal.fail(found.error());
     const auto falls = [](const CameraStation& a, const CameraStation& b) { return b.time < a.time; };
     const std::vector<Camera> cameras = std::adjacent_find(stations.begin(), stations.end(), falls) == stations.end()
-                                            ? at_equal_times(stations, rate, most)
+                                            ? at_equal_times(stations, rate, max_pictures)
                                             : std::vector<Camera>();
     if (cameras.empty())
-        return terminal.fail(Error{ErrorCode::bad_input, "times of a video must increase and span at most 400 s",
-                                   arguments.path, "the first number of a row is its time in seconds"});
+        return terminal.fail(Error{ErrorCode::bad_input,
+                                   "times of a video must increase and span at max_pictures 400 s", arguments.path,
+                                   "the first number of a row is its time in seconds"});
     const Result<ScratchFolder> folder = ScratchFolder::make("exitance-film");
     if (!folder) return terminal.fail(folder.error());
     RenderArguments frames = arguments;

@@ -56,8 +56,8 @@ class ReflectanceMap {
             }
             for (std::size_t c = 0; c < 3; ++c) colour[c] /= std::max(mean[c], 1e-6);
             Spectrum local = reflectance * spread(colour);
-            constexpr double most = 0.95;
-            for (double& value : local.value) value = std::min(value, most);
+            constexpr double max_reflectance = 0.95;
+            for (double& value : local.value) value = std::min(value, max_reflectance);
             const std::size_t i = map_.index(chart.x + cover.x, chart.y + cover.y);
             sum_[i] += cover.share * local, weight_[i] += cover.share;
         }

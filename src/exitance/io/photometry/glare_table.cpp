@@ -139,7 +139,7 @@ double glare_sum(const Photometry& p, const OpeningArea& opening, const std::vec
     double sum = 0;
     for (const double y : ys)
         for (const double x : xs) {
-            const Vec3 d{x - width / 2, y, height};  // from the eye
+            const Vec3 d{x - width / 2, y, height};  // vector from the eye to the luminaire
             if (glare_limit(view, d, true) != GlareLimit::none) continue;
             const Vec3 towards_eye = in_luminaire(normalized(Vec3() - d), crosswise);
             const double area = opening.towards(towards_eye);

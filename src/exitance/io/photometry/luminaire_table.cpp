@@ -90,7 +90,7 @@ Result<double> TableReader::number(const Row& row, std::size_t column, double ot
 }
 
 Result<PlacedLuminaire> TableReader::luminaire_of(const Row& row) {
-    constexpr double far = 1e9;
+    constexpr double max_coordinate = 1e9;
     PlacedLuminaire out;
     if (row[0].empty()) return lines_.error("column file is empty");
     out.path = beside(path_, row[0]);
@@ -103,12 +103,14 @@ Result<PlacedLuminaire> TableReader::luminaire_of(const Row& row) {
         std::size_t column;
         double otherwise, least, most;
     };
-    for (const Field& f :
-         {Field{&out.position.x, 1, 0, -far, far}, Field{&out.position.y, 2, 0, -far, far},
-          Field{&out.position.z, 3, 0, -far, far}, Field{&direction.x, 4, 0, -far, far},
-          Field{&direction.y, 5, 0, -far, far}, Field{&direction.z, 6, has_aim ? 0.0 : -1.0, -far, far},
-          Field{&rotation, 7, 0, -3600, 3600}, Field{&out.dimming, 8, 1, 0, 1}, Field{&lumens, 9, 0, 0, 1e9},
-          Field{&out.maintenance, 10, 1, 0, 1}}) {
+    for (const Field& f : {Field{&out.position.x, 1, 0, -max_coordinate, max_coordinate},
+                           Field{&out.position.y, 2, 0, -max_coordinate, max_coordinate},
+                           Field{&out.position.z, 3, 0, -max_coordinate, max_coordinate},
+                           Field{&direction.x, 4, 0, -max_coordinate, max_coordinate},
+                           Field{&direction.y, 5, 0, -max_coordinate, max_coordinate},
+                           Field{&direction.z, 6, has_aim ? 0.0 : -1.0, -max_coordinate, max_coordinate},
+                           Field{&rotation, 7, 0, -3600, 3600}, Field{&out.dimming, 8, 1, 0, 1},
+                           Field{&lumens, 9, 0, 0, 1e9}, Field{&out.maintenance, 10, 1, 0, 1}}) {
         const Result<double> value = number(row, f.column, f.otherwise, f.least, f.most);
         if (!value) return value.error();
         *f.target = *value;

@@ -203,8 +203,8 @@ ColourScale make_colour_scale(const Picture& picture, Quantity quantity, const S
     const auto range = choice.range ? choice.range : range_of(picture, quantity);
     if (!range) return scale;
     auto [lo, hi] = *range;
-    constexpr double wide = 30, min_ratio = 1e-4;  // values below this share of the maximum count as dark
-    const bool by_ratio = choice.by_ratio || (!choice.range && hi > wide * lo);
+    constexpr double min_range_for_log = 30, min_ratio = 1e-4;  // values below this share of the maximum count as dark
+    const bool by_ratio = choice.by_ratio || (!choice.range && hi > min_range_for_log * lo);
     if (by_ratio) lo = std::max(lo, min_ratio * hi);
     if (!choice.range && !by_ratio) lo = std::min(lo, 0.98 * hi);
     scale.steps = choice.range ? steps_within(lo, hi, by_ratio) : round_steps(lo, hi, by_ratio);

@@ -148,7 +148,9 @@ void draw_isolux(Image& image, const Picture& picture, const ColourScale& scale,
         const std::string& name = names[static_cast<std::size_t>(lines[from])];
         const std::vector<std::size_t> line = take_line(lines, from, picture.size);
         if (line.size() < shortest) continue;
-        for (const double along : {0.5, 0.35, 0.65, 0.2, 0.8}) {  // the first free position
+        for (const double along :
+             {0.5, 0.35, 0.65, 0.2,
+              0.8}) {  // positions to try, as shares of the line; the first free one gets the label
             const auto at = static_cast<int>(line[static_cast<std::size_t>(along * static_cast<double>(line.size()))]);
             const int width = text_width(name, s) + 4 * s, height = 11 * s;
             const Label label{at % image.width - width / 2, at / image.width - height / 2, width, height};

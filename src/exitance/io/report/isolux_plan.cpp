@@ -120,7 +120,7 @@ Drawing isolux_plan(const ReportFigures::Grid& grid, const LightUnit& unit, cons
     plan.v = cross(plan.n, plan.u), plan.scale = round_scale(std::max(length, width)), plan.to_mm = 1000.0 / plan.scale;
     Drawing out;
     out.size = {plan.to_mm * length + 2 * around, plan.to_mm * width + 2 * around + header};
-    out.size.x = std::max(out.size.x, 90.0);  // for the title
+    out.size.x = std::max(out.size.x, 90.0);  // wide enough for the title, mm
     plan.corner = {around, header + around + plan.to_mm * width};
     out.clip_lo = {around / 2, header + around / 2}, out.clip_hi = {out.size.x - around / 2, out.size.y};
     draw_scene(scene, plan, out);

@@ -20,7 +20,7 @@ namespace {
 /// Returns the generation if `name` is a part of `checkpoint` (file names without folders); otherwise empty.
 std::optional<std::uint64_t> generation_in(std::string_view name, std::string_view checkpoint) {
     if (!name.starts_with(checkpoint)) return {};
-    std::array<std::uint64_t, 2> numbers{};  // generation, process
+    std::array<std::uint64_t, 2> numbers{};  // the generation and the number of the process
     const char* at = name.data() + checkpoint.size();
     const char* const end = name.data() + name.size();
     for (std::uint64_t& number : numbers) {

@@ -58,7 +58,8 @@ class Replay {
                           {p[6], p[7], p[8]},
                           shape_[i] == 1 ? Patch::Shape::triangle : Patch::Shape::parallelogram};
         const double squared_area = squared_norm(cross(patch.a, patch.b));
-        if (!(squared_area > 0 && std::isfinite(1 / squared_area))) return false;  // points would not have coordinates
+        if (!(squared_area > 0 && std::isfinite(1 / squared_area)))
+            return false;  // no area: its points would have no coordinates
         tree.add_root(RegionId(region_[i]), patch);
         return true;
     }

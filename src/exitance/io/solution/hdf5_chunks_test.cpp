@@ -114,7 +114,7 @@ TEST(Hdf5Chunks, AreReportedIfDamaged) {
     constexpr std::size_t places = 40;
     for (std::size_t k = 0; k < places; ++k) {
         std::string damaged = whole;
-        damaged[whole.size() / 2 + hash(3, k) % (whole.size() / 4)] ^= 4;  // within the numbers
+        damaged[whole.size() / 2 + hash(3, k) % (whole.size() / 4)] ^= 4;  // change a bit of a byte that holds data
         const std::string path = folder / "damaged.h5";
         ASSERT_TRUE(write_file(path, damaged));
         Result<Hdf5Reader> in = Hdf5Reader::open(path);

@@ -263,7 +263,7 @@ TEST(HostileSolutions, WithMetadataThatRequestMuchMemoryAreErrors) {
     std::size_t refused = 0;
     for (std::size_t at = bytes.find(goes_on); at != bytes.npos && at < 20000; at = bytes.find(goes_on, at + 4)) {
         std::string longer = bytes;
-        longer[at + goes_on.size() + 1 + 8 + 5] = '\x20';  // flags, address, length
+        longer[at + goes_on.size() + 1 + 8 + 5] = '\x20';  // the length field, which follows flags and address
         fuzz::mend_solution(longer);
         ASSERT_TRUE(write_file(folder / "s.h5", longer));
         const Result<Solution> back = load_solution(folder / "s.h5");

@@ -75,7 +75,8 @@ class Vf : public TextFormat {
   public:
     using TextFormat::TextFormat;
     void begin(std::string& text) const override {
-        text = "View3D 4.0.0 0 0 0 " + std::to_string(table_.size());  // out encl emit N
+        text = "View3D 4.0.0 0 0 0 " +
+               std::to_string(table_.size());  // View3D's fields: version, output, enclosure, emittances, N
         if (text.size() < 30) text.resize(30, ' ');
         text += '\n';
         for (double area : table_.areas) append(text, " %g", area);

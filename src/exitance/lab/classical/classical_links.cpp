@@ -12,8 +12,8 @@ namespace {
 
 /// Default of A_eps, relative to the scene's area: eight cuts into quarters.
 constexpr double default_min_share = 1.0 / 65536;
-constexpr std::size_t default_memory = std::size_t(1) << 32;  // of links, bytes
-constexpr double rounding = 1e-6;                             // relative; lengths and areas in files are rounded
+constexpr std::size_t default_memory = std::size_t(1) << 32;  // limit on the memory of links, bytes
+constexpr double rounding = 1e-6;                             // relative rounding of lengths and areas in files
 constexpr std::size_t max_rounds = 200;                       // limit on rounds of refinement and gathering
 
 /// Returns how to cut an element: into quarters, or across its length if a parallelogram is much longer than wide, so
@@ -232,7 +232,7 @@ void LinkedElements::link_roots() {
 
 bool LinkedElements::refine(double threshold) {
     bool cut_any = false;
-    const std::size_t before = tree_.size();  // new elements are settled already
+    const std::size_t before = tree_.size();  // elements that are made below need no further step
     for (std::uint32_t i = 0; i < before && !input_.stop.requested(); ++i) {
         const ElementId p(i);
         const std::vector<Link> own = std::exchange(links_[p], {});

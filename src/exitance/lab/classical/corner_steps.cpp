@@ -22,7 +22,7 @@ void CornerSteps::add(RegionId region, const Patch& patch) {
 void CornerSteps::average(std::span<const Spectrum> values) {
     for (Vertex& v : vertices_) v.sum = {}, v.count = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
-        Spectrum delivered;  // functions on elements store floats
+        Spectrum delivered;  // rounded as functions on elements store it
         for (std::size_t b = 0; b < bands; ++b) delivered[b] = static_cast<double>(static_cast<float>(values[i][b]));
         for (std::size_t k = 0; k < corner_count_[i]; ++k) {
             Vertex& v = vertices_[vertices_of_[i][k]];

@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-constexpr int grid = 4;  // of jittered rays [Hanrahan91]
+constexpr int grid = 4;  // jittered rays along each side of an element [Hanrahan91]
 
 std::vector<Point> corners_of(const Patch& patch) {
     std::vector<Point> out;

@@ -24,7 +24,7 @@ class DmTree {
     void insert_grid(std::size_t count);
 
     const WingedEdgeMesh& mesh() const { return mesh_; }
-    std::size_t construction_edges() const;  ///< Inside the outline.
+    std::size_t construction_edges() const;  ///< Number of edges inside the outline.
     std::size_t memory_bytes() const { return mesh_.memory_bytes() + nodes_.size() * sizeof(Node); }
     /// Returns the face that contains a point of the outline. O(depth).
     std::uint32_t face_at(const Vec2& p) const;
@@ -34,7 +34,7 @@ class DmTree {
         Vec2 normal;  ///< Unit length; unused in leaves.
         double offset = 0;
         std::uint32_t left = WingedEdgeMesh::none, right = WingedEdgeMesh::none;
-        std::uint32_t face = WingedEdgeMesh::none;  ///< In leaves.
+        std::uint32_t face = WingedEdgeMesh::none;  ///< The face of a leaf; `none` in other nodes.
         double distance(const Vec2& p) const { return dot(normal, p) - offset; }
     };
     void cut_leaf(std::uint32_t node, const Vec2& a, const Vec2& b, std::uint32_t curve);

@@ -33,7 +33,7 @@ double area_of(const LabelledTriangles& t) {
 }
 
 ReceiverTriangles by_tree(const ReceiverCurves& receiver, const TreeCut& cut, double tolerance) {
-    constexpr std::size_t cells = 4;  // number along each side
+    constexpr std::size_t cells = 4;  // number of grid cells along each side
     DmTree tree(receiver.loops.front(), tolerance);
     if (cut.grid) tree.insert_grid(cells);
     std::vector<const FlatCurve*> curves;

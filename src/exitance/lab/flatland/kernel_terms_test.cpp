@@ -50,7 +50,7 @@ TEST(KernelTerms, FlatletsHaveVanishingMoments) {
         const TwoScaleStep step(basis);
         const std::size_t k = step.order();
         std::vector<double> fine(2 * k), out(2 * k);
-        for (std::size_t i = 0; i < 2 * k; ++i) {  // means of x^(k-1) over boxes
+        for (std::size_t i = 0; i < 2 * k; ++i) {  // the means of x^(k-1) over the boxes
             const double lo = static_cast<double>(i), power = static_cast<double>(k);
             fine[i] = (std::pow(lo + 1, power) - std::pow(lo, power)) / power;
         }

@@ -23,11 +23,11 @@ void put_on_elements(const Stage& stage, const CellFunction& E, GlobalLight& lig
         const Normal& normal = stage.scene.regions()[region].plane.n;
         const Patch& patch = light.tree.patch(e);
         // Corners are on folds, where cells of both sides are near: evaluate slightly inside.
-        constexpr double inside = 0.05;
+        constexpr double step_inside = 0.05;
         const Vec2 centre{patch.is_triangle() ? 1.0 / 3 : 0.5, patch.is_triangle() ? 1.0 / 3 : 0.5};
         Spectrum sum;
         for (int k = 0; k < patch.corner_count(); ++k) {
-            const Vec2 uv = patch.corner_uv(k) + inside * (centre - patch.corner_uv(k));
+            const Vec2 uv = patch.corner_uv(k) + step_inside * (centre - patch.corner_uv(k));
             sum += light.indirect_corners[i][static_cast<std::size_t>(k)] = E.at(patch.at(uv), normal);
         }
         light.indirect[i] = sum / static_cast<double>(patch.corner_count());

@@ -121,7 +121,8 @@ TEST(SurfacePool, IsUniformAndItsBlocksAreCompact) {
         area[p.region.value] += pool.area_each();
     }
     for (const RegionId r : scene.regions().ids())
-        EXPECT_NEAR(area[r.value], scene.regions()[r].area, 2 * pool.area_each());  // systematic in area
+        EXPECT_NEAR(area[r.value], scene.regions()[r].area,
+                    2 * pool.area_each());  // sampling is systematic, so the areas agree to a sample or two
     int far = 0, all = 0;
     for (std::uint32_t i = 0; i < pool.size(); i += 17, ++all)
         far += norm(pool[pool.near(i, 0.1, 0.99)].at - pool[i].at) > 0.4;
@@ -153,8 +154,8 @@ TEST(CellFunction, NormalisedCellsWithSlopesReproduceAPlaneAndSeparateFolds) {
         const Point at{0.1 * (i % 10), 0.1 * (i / 10), 0};
         light.cells.push_back({at, {0, 0, 1}, 0.1, Spectrum(plane(at)), {Spectrum(2), Spectrum(-0.5), Spectrum(0)}});
     }
-    light.cells.push_back({{0.5, 0.5, 0.01}, {0, 0, -1}, 0.3, Spectrum(50), {}});  // of the other side
-    light.cells.push_back({{0.5, 0.5, 0.0}, {1, 0, 0}, 0.3, Spectrum(70), {}});    // of a wall
+    light.cells.push_back({{0.5, 0.5, 0.01}, {0, 0, -1}, 0.3, Spectrum(50), {}});  // a cell of the sheet's other side
+    light.cells.push_back({{0.5, 0.5, 0.0}, {1, 0, 0}, 0.3, Spectrum(70), {}});    // a cell of a wall
     const CellFunction f(light);
     for (const Point& p : {Point{0.33, 0.42, 0}, Point{0.5, 0.5, 0}, Point{0.9, 0.05, 0}})
         EXPECT_NEAR(f.at(p, {0, 0, 1})[0], plane(p), 1e-3 * plane(p));  // cells of the wall have a weight of e^-10

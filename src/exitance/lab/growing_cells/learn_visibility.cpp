@@ -71,8 +71,8 @@ Nodes make_nodes(const Stage& stage, const SurfacePool& pool, const ShadingNetwo
 /// from rho E_dir.
 struct CellTransport {
     std::size_t size = 0;
-    std::vector<Spectrum> matrix;  ///< Row by row.
-    std::vector<Spectrum> first;   ///< E_1, W/m^2.
+    std::vector<Spectrum> matrix;  ///< Transport from cell to cell, row by row.
+    std::vector<Spectrum> first;   ///< Irradiance of each cell by light that was reflected once, W/m^2.
     std::size_t kernels = 0, rays = 0;
 };
 
@@ -357,7 +357,7 @@ LearnedLight learn_visibility(const MethodInput& input, const SurfacePool& pool)
 MethodForecast forecast_cells(const Stage& stage, const SolveOptions& options, const Knobs& knobs, double facing,
                               bool blocked) {
     constexpr double units_near = 80;    // per sample, at most: 12 (chairs in a room) to 79 (the Cornell box)
-    constexpr double insertions = 2;     // per requested unit
+    constexpr double insertions = 2;     // insertions per requested unit
     constexpr double vector_room = 1.5;  // capacity of growing vectors per size, on average
     const double n = static_cast<double>(units_of(stage, knobs, options));
     const double samples = insertions * static_cast<double>(KernelNetworkOptions().samples_a_unit) * n;

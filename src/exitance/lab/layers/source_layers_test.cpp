@@ -41,7 +41,7 @@ struct Layered {
 };
 
 TEST(SourceLayers, AddUpToTheLightOfAllSources) {
-    for (const double error : {0.02, 0.001}) {  // half floats, floats
+    for (const double error : {0.02, 0.001}) {  // layers of half floats, and of floats
         const Layered l(lamps(2), error);
         ASSERT_EQ(l.layers.sources.size(), 2u);
         EXPECT_NE(l.layers.sources[0], l.layers.sources[1]);

@@ -106,11 +106,11 @@ double LineHierarchy::form_factor(std::uint32_t p, std::uint32_t q) const {
         for (const Point& c : corners(n)) out = std::max(out, norm(c - from));
         return out;
     };
-    constexpr double near = 3;  // times the receiver's radius, from the source's border
-    constexpr int parts = 4;    // per edge
+    constexpr double near_distance = 3;  // times the receiver's radius, from the source's border
+    constexpr int parts = 4;             // parts that an edge of the source is divided into
     const Point x = frame.at(node.centre),
                 y = receivers_[tree_.nodes()[q].region.value].frame.at(tree_.nodes()[q].centre);
-    const int n = norm(y - x) < near * span_of(p, x) + span_of(q, y) ? parts : 1;
+    const int n = norm(y - x) < near_distance * span_of(p, x) + span_of(q, y) ? parts : 1;
     double sum = 0;
     for (const FanTriangle& t : fan_of(node.outline))
         for (int i = 0; i < n; ++i)

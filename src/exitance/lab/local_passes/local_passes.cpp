@@ -132,7 +132,7 @@ SixNodeMesh take_mesh(const LineHierarchy& h, const BisectionMesh& mesh, const s
 }  // namespace
 
 SixNodeMesh run_local_pass(const LineHierarchy& h, LocalPassRule rule, LocalPassWork& work, const StopRequest& stop) {
-    constexpr double nearness = 2e-8, nudge = 1e-6;  // of the scene's size; rounding
+    constexpr double nearness = 2e-8, nudge = 1e-6;  // shares of the scene's size, derived from rounding
     const Stage& stage = h.stage();
     const std::size_t regions = stage.scene.regions().size();
     std::vector<std::vector<std::uint32_t>> leaves(regions);

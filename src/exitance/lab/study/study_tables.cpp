@@ -55,7 +55,7 @@ void add_growing_rows(Table& table, const FlatKernel& kernel, std::span<const st
             double sum = 0, least = of_seed[0][i], most = least;
             for (const auto& errors : of_seed)
                 sum += errors[i], least = std::min(least, errors[i]), most = std::max(most, errors[i]);
-            // in both decompositions, for plots
+            // a row for each decomposition, so that plots of both have it
             for (const char* way : {"standard", "non-standard"}) {
                 add_flatland_row(table, kernel, name, way, counts[i], sum / seeds);
                 table.set("spread", field((most - least) / 2));

@@ -72,7 +72,7 @@ class alignas(64) TaskWorker {
     std::vector<PatchTask> made_;
     /// Interactions to be examined; parts of split ones; accepted ones.
     std::vector<Interaction> fresh_, next_, kept_;
-    std::array<double, 5> before_{};  ///< `seconds` before the current task.
+    std::array<double, 5> before_{};  ///< `seconds` when the current task began.
     double mark_ = 0;                 ///< Processor time at the last call of spend().
 };
 

@@ -23,7 +23,7 @@ std::vector<Vec2> points_between_nodes(Patch::Shape shape, int order) {
     }
     // Order 2: given by the rule, too.
     if (order == 2) return {{0.5, 0.5}, {0.5, 0.08}, {0.92, 0.5}, {0.5, 0.92}, {0.08, 0.5}};
-    constexpr double g = 0.26;  // given by the rule
+    constexpr double g = 0.26;  // given by the rule above, for order 3
     return {{0.5, 0.5}, {0.5 - g, 0.5 - g}, {0.5 + g, 0.5 - g}, {0.5 - g, 0.5 + g}, {0.5 + g, 0.5 + g}};
 }
 

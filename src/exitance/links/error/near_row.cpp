@@ -32,8 +32,8 @@ void NearRow::add(const Point& x, const Normal& n, const Box& box, int depth) {
     const Vec3 a = box.size.x * frame_.a, b = box.size.y * frame_.b;
     const Point origin = frame_.at(box.origin);
     const Point middle = triangle ? origin + (a + b) / 3 : origin + 0.5 * (a + b);
-    const double squared_radius =
-        0.25 * std::max(squared_norm(a + b), squared_norm(a - b)) * (triangle ? 16.0 / 9 : 1.0);  // given by geometry
+    const double squared_radius = 0.25 * std::max(squared_norm(a + b), squared_norm(a - b)) *
+                                  (triangle ? 16.0 / 9 : 1.0);  // given by geometry: radius of a ball around the box
     const Vec3 d = middle - x;
     const double squared_distance = squared_norm(d), here = dot(n, d);
     if (here < 0 && here * here > squared_radius) return;
@@ -89,7 +89,7 @@ double NearRow::operator()(const Point& x, const Normal& n, double* out) {
         basis.from_monomials(frame_.shape, sum_, std::span(out, count));
     double all = 0;
     for (std::size_t l = 0; l < count; ++l) all += out[l];
-    if (all > 1e-12 * F) {  // given by rounding
+    if (all > 1e-12 * F) {  // derived from rounding: some of the source is visible
         for (std::size_t l = 0; l < count; ++l) out[l] *= F / all;
     } else {  // only a sliver between the rule's points is visible
         for (std::size_t l = 0; l < count; ++l) out[l] = F * basis.nodes(frame_.shape)[l].weight;

@@ -62,7 +62,7 @@ class Undersampling {
         const double thickness = source.thickness();
         const Point before = nearest(receiver_frame, receiver, source.middle + in_front * thickness * source_.normal);
         Point close = nearest(receiver_frame, receiver, source.middle);
-        for (int i = 0; i < 4; ++i)  // alternating projections
+        for (int i = 0; i < 4; ++i)  // alternating projections converge to the closest point
             close = nearest(receiver_frame, receiver, nearest(source_frame, source, close));
         const double depth = norm(receiver.middle - close);
         const double off = std::min(calibrated::peak_largest_border, in_front * thickness / std::max(depth, thickness));

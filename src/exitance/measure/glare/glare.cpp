@@ -30,9 +30,9 @@ double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 void cut(const Point& eye, const Point& a, const Point& b, const Point& c, int depth, std::vector<Piece>& out) {
     constexpr double fine = 2e-4;  // sr
-    constexpr int least = 2, most = 6;
+    constexpr int min_depth = 2, max_depth = 6;
     const double angle = solid_angle(a - eye, b - eye, c - eye);
-    if (depth >= most || (depth >= least && angle <= fine)) {
+    if (depth >= max_depth || (depth >= min_depth && angle <= fine)) {
         out.push_back({(a + b + c) / 3, 0.5 * norm(cross(b - a, c - a)), angle});
         return;
     }
@@ -132,7 +132,7 @@ class Eye {
     /// True if an area is at most that of the visible faces of a cube that represents a luminaire without extent.
     static bool is_point(double area) {
         constexpr double rounding = 1e-6;
-        return area <= 3 * point_opening_size * point_opening_size * (1 + rounding);  // three of its faces
+        return area <= 3 * point_opening_size * point_opening_size * (1 + rounding);  // three faces of the cube
     }
 
     /// True if all corners of the faces are above the height of the eye.

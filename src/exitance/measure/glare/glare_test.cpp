@@ -144,7 +144,8 @@ TEST(Glare, IsTheSameForAnEyeOnAWallAndBesideIt) {
     ASSERT_EQ(before.sources.size(), 2u);
     ASSERT_EQ(away.sources.size(), 2u);
     for (std::size_t i = 0; i < 2; ++i)
-        EXPECT_NEAR(away.sources[i].term() / before.sources[i].term(), 1, 0.01);  // 1 mm of 3 m
+        EXPECT_NEAR(away.sources[i].term() / before.sources[i].term(), 1,
+                    0.01);  // the luminaires moved by 1 mm at a distance of 3 m
 }
 
 }  // namespace

@@ -75,13 +75,14 @@ class TileBaker {
   private:
     /// Adds the uncovered points of a texel. If the first four are all covered or all uncovered, so are the others.
     void add_open_points(const Chart& chart, const TexelCover& cover) {
-        constexpr std::size_t few = 4;
+        constexpr std::size_t first_points = 4;
         const Normal& n = stage_.scene.regions()[chart.region].plane.n;
         std::size_t found = 0;
         for (std::size_t k = 0; k < texel_points; ++k) {
-            if (k == few && found == 0) return;
+            if (k == first_points && found == 0) return;
             const Point x = finder_.find(chart.at(places_[cover.first + k]), n).x;
-            if ((k >= few && found == k) || is_in_open(stage_, x, n, chart.region)) points_.push_back(x), ++found;
+            if ((k >= first_points && found == k) || is_in_open(stage_, x, n, chart.region))
+                points_.push_back(x), ++found;
         }
     }
 
@@ -136,12 +137,12 @@ Result<LightMaps> make_empty_maps(const Scene& scene, const BakeOptions& options
 }  // namespace
 
 double automatic_density(const Scene& scene) {
-    constexpr double most = 1e6, usual = 64, along_scene = 512;
+    constexpr double max_texels = 1e6, usual_density = 64, texels_along_scene = 512;
     double area = 0;
     for (const Region& region : scene.regions()) area += region.area;
-    double density = usual;
-    while (2 * density * scene.size() <= along_scene) density *= 2;
-    while (density * density * area > most) density /= 2;
+    double density = usual_density;
+    while (2 * density * scene.size() <= texels_along_scene) density *= 2;
+    while (density * density * area > max_texels) density /= 2;
     return density;
 }
 

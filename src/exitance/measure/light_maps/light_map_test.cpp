@@ -295,7 +295,7 @@ TEST(LightMap, IsRefusedIfTooLarge) {
     const Result<LightMaps> wide = bake_light_maps(light, {1e9, 4, 8192}, progress, stop);
     ASSERT_FALSE(wide);
     EXPECT_EQ(wide.error().where, "--density");
-    EXPECT_EQ(automatic_density(s.scene), 8);  // 5400 m^2
+    EXPECT_EQ(automatic_density(s.scene), 8);  // the scene has 5400 m^2
     EXPECT_EQ(automatic_density(box_scene(0.1, 0.1, 0.1, 0.5, 1)), 2048);
 }
 

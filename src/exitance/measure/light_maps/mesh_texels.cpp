@@ -124,8 +124,9 @@ int tiles_down(const Chart& chart) {
 
 std::optional<Spectrum> MeshTexels::Integral::mean(double share) const {
     // Share of a texel: more than rounding of single-precision coordinates of layers leaves uncovered at borders.
-    constexpr double least = 1e-3;
-    if (open + buried < (1 - least) * share - least * least || open < least * share) return std::nullopt;
+    constexpr double min_share = 1e-3;
+    if (open + buried < (1 - min_share) * share - min_share * min_share || open < min_share * share)
+        return std::nullopt;
     return light / open;
 }
 

@@ -24,8 +24,9 @@ struct View {
     /// Quality of a view from outside: dark fronts count little, and backs reduce it, as they hide surfaces behind
     /// them.
     double quality_outside() const {
-        constexpr double dark = 0.05;
-        return (lit + dark * fronts) * (0.5 + std::min(variety, 1.0)) * fronts / std::max(fronts + backs, 1e-9);
+        constexpr double weight_of_dark = 0.05;
+        return (lit + weight_of_dark * fronts) * (0.5 + std::min(variety, 1.0)) * fronts /
+               std::max(fronts + backs, 1e-9);
     }
 };
 
@@ -76,10 +77,10 @@ class Scout {
 
     /// True if few rays from a point leave the scene, as in a room with windows and open doors.
     bool is_enclosed(const Point& eye) const {
-        constexpr double closed = 0.85;  // share of all directions
+        constexpr double min_fronts = 0.85;  // share of all directions in which a front is visible
         Camera around{eye, eye + Vec3{0, 1, 0}, 360};
         around.projection = Projection::panorama;
-        return look(around, {24, 12}).fronts >= closed;
+        return look(around, {24, 12}).fronts >= min_fronts;
     }
 
     /// At most `count` points at eye level in front of the surfaces that send most light.
@@ -97,7 +98,7 @@ class Scout {
             RayHit hit;
             tracer_.nearest(std::span(&start, 1), std::span<const Vec3>(&n, 1), RegionId(), std::span(&hit, 1));
             const double free = hit.surface.is_none() ? solution_.scene.size() : hit.distance;
-            constexpr double eyes = 1.6;  // metres above a floor
+            constexpr double eyes = 1.6;  // eye level above a floor, metres
             out.push_back(start + (n.z > 0.5 ? std::min(0.6 * free, eyes) : 0.5 * free) * n);
             if (out.size() == count) break;
         }
@@ -132,7 +133,7 @@ class Scout {
 /// looking towards its middle; at places with light; or outside an open side. None if no such camera sees almost only
 /// fronts, with light on a third of them.
 std::optional<Camera> camera_inside(const Scene& scene, const Scout& scout, PictureSize size) {
-    constexpr double closed = 0.95;  // share of fronts in a room: the rest may be windows and open doors
+    constexpr double min_fronts = 0.95;  // share of fronts in a room: the rest may be windows and open doors
     constexpr double least_lit = 1.0 / 3;
     const Box& box = scene.box();
     const Vec3 extent = box.size();
@@ -142,7 +143,7 @@ std::optional<Camera> camera_inside(const Scene& scene, const Scout& scout, Pict
     double best_quality = 0;
     const auto consider = [&](const Camera& camera) {
         const View view = scout.look(camera, {24, 15});
-        if (view.fronts >= closed && view.lit >= least_lit && view.quality() > best_quality)
+        if (view.fronts >= min_fronts && view.lit >= least_lit && view.quality() > best_quality)
             best = camera, best_quality = view.quality();
     };
     for (const double inset : {0.06, 0.15, 0.25, 0.35}) {  // a room may not extend into the corners of its box
@@ -165,7 +166,8 @@ std::optional<Camera> camera_inside(const Scene& scene, const Scout& scout, Pict
     for (int side = 0; side < 4; ++side) {
         const Vec3 out = side < 2 ? Vec3{side == 0 ? -1.0 : 1.0, 0, 0} : Vec3{0, side == 2 ? -1.0 : 1.0, 0};
         const double depth = side < 2 ? extent.x : extent.y, width = side < 2 ? extent.y : extent.x;
-        const double seen = std::min(width, extent.z * size.width / size.height);  // across the opening, metres
+        const double seen =
+            std::min(width, extent.z * size.width / size.height);  // width that the picture shows, metres
         const double away = 0.5 * seen * 0.98 / std::tan(20 * degree);
         consider({box.centre() + (0.5 * depth + away) * out, box.centre(), 40});
     }
@@ -234,8 +236,8 @@ Camera camera_amid(const Scene& scene, const Scout& scout) {
         Camera camera{eye, eye + Vec3{0, 1, 0}, 360};
         camera.projection = Projection::panorama;
         const View view = scout.look(camera, {24, 12});
-        constexpr double dark = 0.05;
-        const double quality = (view.lit + dark * view.fronts) * view.breadth * (1 - off);
+        constexpr double weight_of_dark = 0.05;
+        const double quality = (view.lit + weight_of_dark * view.fronts) * view.breadth * (1 - off);
         if (quality > most) best = camera, most = quality;
     };
     for (const double s : {0.5, 0.35, 0.65, 0.2, 0.8})

@@ -186,7 +186,7 @@ bool TileLight::differs_from_neighbours(std::span<const Spot> spots, std::size_t
             ++neighbours;
             if (!agree(spots[found - 1].irradiance, spots[i].irradiance)) return true;
         }
-    return neighbours < 3;  // too few to decide
+    return neighbours < 3;  // with fewer than three known neighbours, it counts as different
 }
 
 /// True if light at a square differs from the mean of its two neighbours, horizontally or vertically. If one of them is

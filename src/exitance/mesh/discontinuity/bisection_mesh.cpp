@@ -78,9 +78,9 @@ double BisectionMesh::longest_edge(std::uint32_t triangle) const {
 
 /// A step of length nudge_ in a direction, but at most a share of the way.
 Vec3 BisectionMesh::inwards(const Vec3& way) const {
-    constexpr double most = 0.3;
+    constexpr double max_share = 0.3;
     const double distance = norm(way);
-    return distance > 0 ? std::min(nudge_ / distance, most) * way : Vec3();
+    return distance > 0 ? std::min(nudge_ / distance, max_share) * way : Vec3();
 }
 
 std::uint32_t BisectionMesh::add_node(const Point& at, const Triangle& t, bool nudged) {

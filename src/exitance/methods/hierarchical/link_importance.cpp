@@ -27,9 +27,9 @@ Field<ElementId, double> find_link_importance(Hierarchy& h) {
     }
     for (std::size_t e = importance.size(); e-- > 0;)
         for (ElementId child : tree.children(ElementId(e))) importance[ElementId(e)] += importance[child];
-    constexpr double least = 1e-6;  // derived from rounding
+    constexpr double min_importance = 1e-6;  // derived from rounding
     for (ElementId e : importance.ids())
-        importance[e] = std::max(least, importance[e] / total * h.input.stage.area / tree.area(e));
+        importance[e] = std::max(min_importance, importance[e] / total * h.input.stage.area / tree.area(e));
     return importance;
 }
 

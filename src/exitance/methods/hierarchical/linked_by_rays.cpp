@@ -15,9 +15,9 @@ namespace {
 /// Distributed over the hierarchy, half of the rays of independent rows suffice.
 RayBudget dealt_out(RayBudget rays) {
     constexpr double share = 0.5;
-    constexpr unsigned least = 8;
+    constexpr unsigned min_rays = 8;
     rays.average *= share;
-    rays.least = std::min(rays.least, least);
+    rays.least = std::min(rays.least, min_rays);
     return rays;
 }
 

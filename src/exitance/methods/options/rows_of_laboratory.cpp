@@ -29,14 +29,14 @@ OptionValue threshold() {
 }
 
 OptionValue multigrid() {
-    static constexpr double most = 40;
+    static constexpr double max_rounds = 40;
     OptionValue out = count(at(&ClassicalOptions::multigrid), 1);
     out.type = "N|off";
     out.read = [](const std::string& word, SolveRequest& r) -> std::string {
         if (word == "off") return r.classical.multigrid.reset(), "";
         const std::optional<double> value = number_in(word);
-        if (!value || *value != std::floor(*value) || *value < 1 || *value > most)
-            return fmt::format("must be 'off' or a whole number from 1 to {}, not '{}'", most, word);
+        if (!value || *value != std::floor(*value) || *value < 1 || *value > max_rounds)
+            return fmt::format("must be 'off' or a whole number from 1 to {}, not '{}'", max_rounds, word);
         r.classical.multigrid = static_cast<std::size_t>(*value);
         return "";
     };

@@ -46,10 +46,10 @@ void add_dome(const DistantLight::Dome& dome, std::vector<DistantFacet>& out) {
         add_face(dome, {-1, -1, 1}, {0, 2, 0}, {2, 0, 0}, n, n, out);
     const double z = dome.model.below ? -1 : 0;
     const Vec3 up{0, 0, 1};
-    add_face(dome, {1, 1, z}, {0, -2, 0}, up, n, half, out);   // x = 1, seen from inside
-    add_face(dome, {-1, -1, z}, {0, 2, 0}, up, n, half, out);  // x = -1
-    add_face(dome, {-1, 1, z}, {2, 0, 0}, up, n, half, out);   // y = 1
-    add_face(dome, {1, -1, z}, {-2, 0, 0}, up, n, half, out);  // y = -1
+    add_face(dome, {1, 1, z}, {0, -2, 0}, up, n, half, out);   // the side x = 1 of the box, seen from inside
+    add_face(dome, {-1, -1, z}, {0, 2, 0}, up, n, half, out);  // the side x = -1
+    add_face(dome, {-1, 1, z}, {2, 0, 0}, up, n, half, out);   // the side y = 1
+    add_face(dome, {1, -1, z}, {-2, 0, 0}, up, n, half, out);  // the side y = -1
 }
 
 DistantFacet facet_of(const DistantLight::Disc& disc) {

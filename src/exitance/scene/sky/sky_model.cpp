@@ -138,9 +138,9 @@ double SkyModel::value(const Vec3& w) const {
 }
 
 double SkyModel::smooth_width(const Vec3& w) const {
-    constexpr double near = 50 * pi / 180, share = 1.5;
+    constexpr double near_sun = 50 * pi / 180, share = 1.5;
     double width = max_smooth_width;
-    if (c != 0 && dot(w, sun) > std::cos(near) && d < 0) width = std::min(width, share / -d);
+    if (c != 0 && dot(w, sun) > std::cos(near_sun) && d < 0) width = std::min(width, share / -d);
     // Towards the horizon, phi varies over an angle of about |b|.
     if (a != 0 && b < 0 && std::abs(w.z) < 0.5) width = std::min(width, std::max(0.1, share * -b));
     if (blends_ground && std::abs(w.z) < 0.6) width = std::min(width, 0.15);

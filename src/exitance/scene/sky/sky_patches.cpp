@@ -45,7 +45,7 @@ std::size_t SkyPatches::of(const Vec3& w) const {
     const auto row = static_cast<std::size_t>(std::asin(std::min(1.0, w.z)) / height_);
     if (row >= in_row_.size()) return first_.back();
     const auto count = static_cast<double>(in_row_[row]);
-    const double turn = std::atan2(w.x, w.y) / (2 * pi);  // -1/2 to 1/2
+    const double turn = std::atan2(w.x, w.y) / (2 * pi);  // azimuth as a share of the circle, -1/2 to 1/2
     const double at = std::floor((turn < 0 ? turn + 1 : turn) * count + 0.5);
     return first_[row] + static_cast<std::size_t>(at) % in_row_[row];
 }

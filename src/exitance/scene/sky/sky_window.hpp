@@ -49,8 +49,9 @@ class SkyWindow {
             if (is_uniform) return 1;
             if (!has_tables) return sky->relative(w);
             const double sine_squared = 0.5 * (1 - dot(w, sky->sun));
-            constexpr double far = 0.95;  // there the table is steep
-            if (sine_squared > far) return sky->relative(w);
+            constexpr double max_sine_squared =
+                0.95;  // beyond it, near the sun's opposite point, the table is too steep to interpolate
+            if (sine_squared > max_sine_squared) return sky->relative(w);
             const double v = at(by_height, w.z) * at(by_sun, std::sqrt(std::max(0.0, sine_squared)));
             return std::max(0.0, v);
         }

@@ -22,8 +22,9 @@ TEST(DaylightProvision, LevelsAgreeWithTheStandard) {
     year.illuminance.assign(8 * 20, 0), year.sun = year.illuminance;
     for (std::size_t i = 0; i < 20; ++i) {
         const float lux = i < 11 ? 400 : i < 19 ? 120 : 90;
-        year.illuminance[3 * 20 + i] = lux, year.illuminance[5 * 20 + i] = 2 * lux;  // two of four
-        year.illuminance[0 * 20 + i] = 9999;                                         // at night
+        year.illuminance[3 * 20 + i] = lux,
+                                  year.illuminance[5 * 20 + i] = 2 * lux;  // two of the four hours of daylight
+        year.illuminance[0 * 20 + i] = 9999;                               // an hour of the night, which must not count
     }
     std::vector<DaylightMetrics> metrics(20);
     for (DaylightMetrics& m : metrics) m.daylight_factor = 5;

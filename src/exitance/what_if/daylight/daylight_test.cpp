@@ -103,9 +103,10 @@ TEST(Daylight, OnTheEdgeOfAWallIsThatInside) {
                                      {{0, 2, 1}, {0, 0, 1}},
                                      {{0, 2, 0}, {1, 0, 0}}};
     std::vector<ProbePoint> beside = on;
-    constexpr double inside = 1e-3;  // metres
-    beside[0].x.x += inside, beside[1].x.y -= inside, beside[2].x.x -= inside, beside[2].x.y -= inside;
-    beside[3].x.x += inside, beside[4].x.z += inside;
+    constexpr double step_inside = 1e-3;  // metres
+    beside[0].x.x += step_inside, beside[1].x.y -= step_inside, beside[2].x.x -= step_inside,
+        beside[2].x.y -= step_inside;
+    beside[3].x.x += step_inside, beside[4].x.z += step_inside;
     const SkyPatches patches(1);
     const DaylightSite site{.place = {47.4, 8.5, 400}};
     Progress progress;

@@ -20,7 +20,7 @@ constexpr std::size_t points = 1280;  ///< Number of points; as many as a certif
 /// A point, and two estimates of every group's residual there.
 struct Residual {
     ElementTree::Place place;
-    std::uint32_t source = 0;  ///< The source that contains it.
+    std::uint32_t source = 0;  ///< The source that contains the point.
     std::vector<Spectrum> r1, r2;
 };
 
@@ -48,7 +48,7 @@ class GroupsLight {
                                                : groups_.layout.number[solution_.interpolant.tree.parent(leaf)];
     }
 
-    /// Projected direct light.
+    /// Returns the projected direct light of a group at a point of a source, W/m^2.
     Spectrum direct_at(std::size_t g, std::uint32_t source, const Point& y) const {
         const Patch& patch = solution_.interpolant.tree.patch(groups_.layout.sources[source]);
         return Between{0, corner_weights(patch, patch.coordinates(y))}.of(direct_[g][source].corners);

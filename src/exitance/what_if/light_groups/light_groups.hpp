@@ -23,7 +23,7 @@ struct LightGroup {
     EmitterGroup emitters;
     double factor = 1;            ///< Dimming factor in the solution that it is stored with.
     CornerValues indirect;        ///< Like Solution::indirect, which is the sum over the groups.
-    CornerValues interpolant;     ///< Like Solution::interpolant, likewise.
+    CornerValues interpolant;     ///< Like Solution::interpolant, which is the sum over the groups.
     std::optional<double> error;  ///< Estimated error of this group, relative to its own light.
     double reflected = 0;         ///< Mean of its reflected light, W/m^2.
 };

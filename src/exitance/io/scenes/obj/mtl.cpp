@@ -183,8 +183,8 @@ void MtlReader::take_glass() {
     if (!is_glass || material_.emits()) return;
     const Spectrum passes = (opacity_ < 1 ? 1 - opacity_ : 1) * filter_.value_or(Spectrum(1.0));
     // Materials that transmit less, such as leaves and curtains, are not glass.
-    constexpr double least = 0.5;
-    if (!(mean(passes) > least)) return opaque_.add(line_, material_.name);
+    constexpr double min_transmission = 0.5;
+    if (!(mean(passes) > min_transmission)) return opaque_.add(line_, material_.name);
     extras_.glass.emplace(material_.name,
                           MtlExtras::Glass{transmissivity_of(passes), fmt::format("{}:{}", file_, line_)});
     glazed_.add(line_, material_.name);

@@ -88,7 +88,7 @@ void find_irradiances(Perez& p) {
     p.diffuse = p.diffuse_lux * solar_irradiance / solar_illuminance;
     p.direct = p.direct_lux * solar_irradiance / solar_illuminance;
     p.find_parameters();
-    constexpr int rounds = 9;             // as in gendaylit
+    constexpr int rounds = 9;             // number of iterations in gendaylit
     constexpr double min_efficacy = 0.1;  // lm/W; below it, gendaylit ignores the sun
     for (int i = 0; i < rounds; ++i) {
         const double of_sky = diffuse_efficacy(p), of_sun = direct_efficacy(p);
@@ -142,7 +142,7 @@ std::string darkness(const RadSkyWords& in, const Perez& p) {
 Result<Perez> read_input(const RadSkyWords& in) {
     Perez p;
     p.zenith_angle = std::min(0.5 * pi - in.altitude, 0.5 * pi);
-    constexpr int day_of_angles = 0, day_of_angles_before = 150;  // as in the programs, for lines without a date
+    constexpr int day_of_angles = 0, day_of_angles_before = 150;  // the programs' days for lines without a date
     p.day = in.month > 0 ? day_of_year(2021, in.month, in.day) : in.older ? day_of_angles_before : day_of_angles;
     p.water = std::exp(0.07 * in.dew_point - 0.075);
     const double first = std::max(0.0, in.first), second = std::max(0.0, in.second), sine = std::sin(in.altitude);

@@ -120,7 +120,7 @@ void take_number(char option, double value, RadSkyWords& out) {
             out.output = value;
             return;
         case 'd':
-            if (std::abs(value) <= 40) out.dew_point = value;  // gendaylit ignores other values, too
+            if (std::abs(value) <= 40) out.dew_point = value;  // like gendaylit, ignore values beyond 40
             return;
         case 'E':
             out.input = 'E', out.first = value;

@@ -176,8 +176,8 @@ void RadianceReader::take_source(const RadPrimitive& p, const Call& call) {
         const Result<SkyModel> sky = meaning->pattern_count == 1
                                          ? sky_of_pattern(materials_.patterns[meaning->pattern])
                                          : Error{ErrorCode::bad_input, "it modifies another pattern", "", ""};
-        constexpr double wide = 0.2;  // radians; larger than any sun
-        if (!sky && angle > wide)
+        constexpr double max_disc_angle = 0.2;  // radians; larger than any sun
+        if (!sky && angle > max_disc_angle)
             return findings_.note("skies with patterns that gensky and gendaylit do not print", at);
         if (!sky)
             return findings_.error(at,

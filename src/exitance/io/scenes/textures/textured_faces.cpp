@@ -93,7 +93,7 @@ void TexturedFaces::show(std::size_t face, const ShownColour& colour) {
 /// Computes the RMS deviation from the material's mean m by E (r - m)^2 = E r^2 - 2 m E r + m^2.
 void TexturedFaces::set_deviation(std::size_t material, const Sum& sum, const Spectrum& mean) {
     if (deviation_.size() <= material) deviation_.resize(material + 1);
-    constexpr double rounding = 1e-12;  // of the second moment
+    constexpr double rounding = 1e-12;  // relative rounding error of the second moment
     for (std::size_t b = 0; b < bands; ++b) {
         const double second = sum.squares[b] / sum.area, first = sum.reflectance[b] / sum.area;
         const double about_mean = second - 2 * mean[b] * first + mean[b] * mean[b];
