@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -10,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "exitance/solve/solve_options.hpp"
 #include "support/places.hpp"
 
 namespace exitance {
@@ -151,6 +153,89 @@ TEST(Documentation, AnchorsLeadToHeadings) {
         }
     }
     EXPECT_GT(found, 20u);
+}
+
+TEST(Documentation, SourcesNameOnlyPagesThatExist) {
+    static const std::regex page(R"(\bdocs/[a-z_0-9/]+\.(md|bib)\b)");
+    const fs::path root = test::source_folder();
+    std::size_t found = 0;
+    for (const std::string folder : {"src", "tests", "bench", "scripts", "experiments"})
+        for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
+            if (!entry.is_regular_file() || entry.path().filename() == "docs_test.cpp") continue;
+            const std::string text = content(entry.path());
+            for (std::sregex_iterator at(text.begin(), text.end(), page), end; at != end; ++at) {
+                ++found;
+                EXPECT_TRUE(fs::exists(root / at->str())) << entry.path() << " names " << at->str();
+            }
+        }
+    EXPECT_GT(found, 10u);
+}
+
+TEST(Documentation, NamesOnlyToolsThatExist) {
+    static const std::regex tool(R"((^|[\s`])((bench|scripts)/[a-z_0-9]+(\.[a-z]+)?))");
+    const fs::path root = test::source_folder();
+    std::size_t found = 0;
+    for (const fs::path& document : documents()) {
+        const std::string text = content(document);
+        for (std::sregex_iterator at(text.begin(), text.end(), tool), end; at != end; ++at) {
+            ++found;
+            EXPECT_TRUE(fs::exists(root / (*at)[2].str()) || fs::exists(root / ((*at)[2].str() + ".cpp")))
+                << document << " names " << (*at)[2];
+        }
+    }
+    EXPECT_GT(found, 20u);
+}
+
+TEST(Documentation, ReadmeShowsTheMeasuredTimes) {
+    const std::string root = test::source_folder();
+    const std::string check = "python3 '" + root + "/scripts/result_tables.py' --check '" + root + "/README.md'";
+    EXPECT_EQ(std::system(check.c_str()), 0) << "run scripts/result_tables.py README.md";
+}
+
+TEST(Documentation, TablesHaveTheColumnsOfTheirFiles) {
+    const std::string root = test::source_folder();
+    std::string command = "python3 -c \"import sys; sys.path.insert(0, '" + root +
+                          "/scripts'); import result_tables as r; " +
+                          "[r.expand(open(p).read(), p) for p in sys.argv[1:]]\"";
+    std::size_t found = 0;
+    for (const fs::path& document : documents()) {
+        const std::string text = content(document);
+        if (text.find("```results") == std::string::npos && text.find("```chart") == std::string::npos) continue;
+        command += " '" + document.string() + "'", ++found;
+    }
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    EXPECT_GT(found, 4u);
+}
+
+/// Blocks of a page that are fenced as a language.
+std::vector<std::string> fenced_blocks(const std::string& text, const std::string& language) {
+    std::vector<std::string> out;
+    const std::string begin = "```" + language + "\n";
+    for (std::size_t at = text.find(begin); at != text.npos; at = text.find(begin, at + 1))
+        out.push_back(text.substr(at + begin.size(), text.find("```", at + 3) - at - begin.size()));
+    return out;
+}
+
+TEST(Documentation, ProgramsAreTheReadmesOne) {
+    // tests/package compiles and runs the README's program, and tests/CMakeLists.txt those of adding_a_method.md.
+    const fs::path root = test::source_folder();
+    const std::vector<std::string> expected = fenced_blocks(content(root / "README.md"), "cpp");
+    ASSERT_EQ(expected.size(), 1u);
+    std::size_t found = 0;
+    for (const fs::path& document : documents()) {
+        if (document.filename() == "adding_a_method.md") continue;
+        for (const std::string& block : fenced_blocks(content(document), "cpp")) {
+            ++found;
+            EXPECT_EQ(block, expected[0]) << document;
+        }
+    }
+    EXPECT_EQ(found, 2u);
+}
+
+TEST(Documentation, AddingAMethodCountsTheMethods) {
+    const std::string text = content(fs::path(test::source_folder()) / "docs/adding_a_method.md");
+    const std::string table = "std::pair<Method, std::string_view>, " + std::to_string(method_names.size() + 1) + ">";
+    EXPECT_NE(text.find(table), std::string::npos) << table;
 }
 
 TEST(Documentation, ArchitectureListsEveryFolder) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "cli/input_files.hpp"
 #include "cli/small_scene.hpp"
 
 namespace exitance::test {
@@ -17,17 +18,6 @@ std::string write_court(const TemporaryFolder& folder) {
                "v 2 0 2.5\nv 2 3 2.5\nusemtl grey\nf 1 2 3 4\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n"
                "usemtl glass\nf 5 9 10 8\n");
     return folder / "court.obj";
-}
-
-std::string weather() {
-    std::string text = "LOCATION,Town,-,CHE,test,0,47.4,8.5,1.0,400\n";
-    for (int i = 0; i < 7; ++i) text += "HEADER\n";
-    for (int hour = 1; hour <= 24; ++hour) {
-        const bool day = hour > 6 && hour < 19;
-        text += "2021,6,21," + std::to_string(hour) + ",0,f,10,5,70,95000,0,1300,300,500," + (day ? "600,120" : "0,0") +
-                ",0,0,0\n";
-    }
-    return text;
 }
 
 std::string first_line_of(const std::string& text) {
@@ -176,7 +166,7 @@ TEST(ProgramDaylight, WritesTablesOfAYear) {
                            "uniform,dhi=100"})
                   .status,
               0);
-    write_text(folder / "w.epw", weather());
+    write_text(folder / "w.epw", weather_of_a_day());
     write_text(folder / "p.pts", "3 1.5 0.8 0 0 1\n1 1.5 0.8 0 0 1\n");
     const Finished run = run_program({"daylight", folder / "s.h5", "--epw", folder / "w.epw", "--points",
                                       folder / "p.pts", "-o", folder / "year", "--eyes", folder / "p.pts", "--sun-day",

@@ -6,14 +6,11 @@
 #include <numbers>
 #include <sstream>
 
+#include "cli/input_files.hpp"
 #include "run_program.hpp"
 
 namespace exitance::test {
 namespace {
-
-constexpr const char* downlight =
-    "IESNA:LM-63-2002\n[TEST] own\n[MANUFAC] nobody\nTILT=NONE\n1 4000 1 7 1 1 2 0.6 1.2 0\n1 1 20\n"
-    "0 15 30 45 60 75 90\n0\n1000 965.9 866 707.1 500 258.8 0\n";
 
 TEST(ProgramLuminaire, PrintsAndDrawsFacts) {
     const TemporaryFolder folder;
