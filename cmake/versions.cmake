@@ -21,7 +21,7 @@ if(EXITANCE_PETSC)
 endif()
 
 set(EXITANCE_LIBRARIES "Embree ${embree_VERSION}, oneTBB ${TBB_VERSION}, CGAL ${cgal_version}")
-string(APPEND EXITANCE_LIBRARIES ", HDF5 ${HDF5_VERSION}, libpng ${PNG_VERSION_STRING}, OpenEXR ${OpenEXR_VERSION}, fmt ${fmt_VERSION}")
+string(APPEND EXITANCE_LIBRARIES ", HDF5 ${HDF5_VERSION}, libpng ${PNG_VERSION_STRING}, FreeType ${FREETYPE_VERSION_STRING}, OpenEXR ${OpenEXR_VERSION}, fmt ${fmt_VERSION}")
 string(APPEND EXITANCE_LIBRARIES ", CLI11 ${CLI11_VERSION}, nlohmann-json ${nlohmann_json_VERSION}, cpp-httplib ${httplib_version}")
 if(MPI_C_FOUND)
     string(APPEND EXITANCE_LIBRARIES ", MPI ${MPI_C_VERSION}")

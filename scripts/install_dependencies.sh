@@ -7,6 +7,7 @@ packages=(
     g++ cmake ninja-build ccache                                             # to build
     libembree-dev libtbb-dev libcgal-dev libhdf5-dev zlib1g-dev libpng-dev libopenexr-dev  # the library
     libtinygltf-dev libjpeg-dev                                              # scenes as glTF, and their textures
+    libfreetype-dev fonts-dejavu-core                                        # text in pictures
     libfmt-dev libcli11-dev nlohmann-json3-dev                               # the program
     libcpp-httplib-dev                                                       # the viewer's server
     libtomlplusplus-dev gnuplot-nox                                          # the test bed's studies and their plots

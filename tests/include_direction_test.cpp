@@ -41,6 +41,7 @@ const std::vector<Door> doors{
       "io/solution/hdf5_output.cpp", "io/solution/hdf5_writer.cpp", "io/solution/hdf5_chunks.cpp"}},
     {"zlib", std::regex("zlib\\.h"), {"io/solution/hdf5_chunks.cpp"}},
     {"libpng", std::regex("png\\.h"), {"io/pictures/png.cpp"}},
+    {"FreeType", std::regex("ft2build\\.h"), {"io/pictures/text.cpp"}},
     {"libjpeg", std::regex("jpeglib\\.h"), {"io/scenes/textures/jpeg_mean.cpp"}},
     {"tinygltf", std::regex("tiny_gltf\\.h"), {"io/scenes/gltf/gltf.cpp", "io/scenes/gltf/gltf_parse.cpp"}},
     {"OpenEXR", std::regex("OpenEXR/.*|Imf.*"), {"io/pictures/exr.cpp"}},

@@ -7,7 +7,7 @@
 
 #include "exitance/base/polygon.hpp"
 #include "exitance/base/triangulation.hpp"
-#include "exitance/io/pictures/bitmap_font.hpp"
+#include "exitance/io/pictures/text.hpp"
 
 namespace exitance {
 namespace {
@@ -119,6 +119,7 @@ void SceneView::draw_mark(std::span<const Point> outline, Rgb colour) {
 
 void draw_legend(Image& image, std::span<const Mark> marks) {
     constexpr Rgb ink = {20, 20, 20};
+    constexpr int size = 14;
     const int y = image.height - legend_height + 6;
     int x = 12;
     for (std::size_t kind = 0; kind < looks.size(); ++kind) {
@@ -126,8 +127,8 @@ void draw_legend(Image& image, std::span<const Mark> marks) {
                                          [&](const Mark& m) { return static_cast<std::size_t>(m.kind) == kind; });
         const std::string text = std::string(looks[kind].name) + " " + std::to_string(count);
         fill_rectangle(image, x, y, 14, 14, looks[kind].colour);
-        draw_text(image, x + 20, y, text, 2, ink);
-        x += 20 + text_width(text, 2) + 24;
+        draw_text(image, x + 20, y + 2, text, size, ink);
+        x += 20 + text_width(text, size) + 24;
     }
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "exitance/base/vec.hpp"
-#include "exitance/io/pictures/bitmap_font.hpp"
+#include "exitance/io/pictures/text.hpp"
 
 namespace exitance {
 

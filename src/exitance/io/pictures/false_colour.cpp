@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "exitance/scene/photometric_units.hpp"
 
@@ -214,11 +216,42 @@ ColourScale make_colour_scale(const Picture& picture, Quantity quantity, const S
     return scale;
 }
 
+namespace {
+
+/// Smallest change of the value to the pixels on either side of a pixel: edges of surfaces, where the value jumps on
+/// one side, do not count. `next` is the distance of those pixels in the picture's array.
+double change_along(std::span<const double> values, std::size_t i, std::size_t at, std::size_t count,
+                    std::size_t next) {
+    if (at == 0 || at + 1 == count) return 0;
+    return std::min(std::abs(values[i] - values[i - next]), std::abs(values[i + next] - values[i]));
+}
+
+/// Mean colour of the values from value - change / 2 to value + change / 2, which a pixel shows where light changes by
+/// that much from pixel to pixel. Without it, borders between the colours would have steps.
+std::array<double, 3> mean_colour(const ColourScale& scale, double value, double change) {
+    constexpr int samples = 8;
+    std::array<double, 3> sum{};
+    for (int k = 0; k < samples; ++k) {
+        const Rgb colour = scale.colour(value + change * ((k + 0.5) / samples - 0.5));
+        for (std::size_t c = 0; c < 3; ++c) sum[c] += colour[c] / static_cast<double>(samples);
+    }
+    return sum;
+}
+
+}  // namespace
+
 Image false_colour_image(const Picture& picture, Quantity quantity, const ColourScale& scale) {
     Image image(picture.size.width, picture.size.height);
+    const auto width = static_cast<std::size_t>(picture.size.width),
+               height = static_cast<std::size_t>(picture.size.height);
+    std::vector<double> values;
+    for (const Pixel& pixel : picture.pixels) values.push_back(value_of(pixel, quantity));
     std::uint8_t* out = image.rgb.data();
-    for (const Pixel& pixel : picture.pixels) {
-        const Rgb front = scale.colour(value_of(pixel, quantity));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const Pixel& pixel = picture.pixels[i];
+        const double change =
+            change_along(values, i, i % width, width, 1) + change_along(values, i, i / width, height, width);
+        const std::array<double, 3> front = mean_colour(scale, values[i], change);
         const double rest = 1 - pixel.front - pixel.back;
         for (std::size_t c = 0; c < 3; ++c)
             *out++ = static_cast<std::uint8_t>(
@@ -229,28 +262,28 @@ Image false_colour_image(const Picture& picture, Quantity quantity, const Colour
 
 /// Draws a column of colours, darkest at the bottom, with the value of each border, and the title in two lines above.
 void draw_legend(Image& image, const std::string& text, const ColourScale& scale) {
-    const int s = std::max(1, std::min(image.width / 600, image.height / 375));
+    const int s = std::max(1, std::min(image.width / 600, image.height / 375)), size = 11 * s;
     const std::size_t gap = text.find(' ');
     const std::vector<std::string> names = scale.names();
-    int widest = std::max(text_width(text.substr(0, gap), s), text_width(text.substr(gap + 1), s));
-    for (const std::string& name : names) widest = std::max(widest, 16 * s + text_width(name, s));
-    const int count = static_cast<int>(scale.band_count()), margin = 6 * s;
-    const int band = std::clamp((image.height - 40 * s) / (count + 1), 4, 18 * s);
-    const int width = widest + 2 * margin, height = 38 * s + band * count;
+    int widest = std::max(text_width(text.substr(0, gap), size), text_width(text.substr(gap + 1), size));
+    for (const std::string& name : names) widest = std::max(widest, 17 * s + text_width(name, size));
+    const int count = static_cast<int>(scale.band_count()), margin = 7 * s;
+    const int band = std::clamp((image.height - 52 * s) / (count + 1), 4, 18 * s);
+    const int width = widest + 2 * margin, height = 50 * s + band * count;
     const int left = image.width - width - margin, top = margin;
     fill_rectangle(image, left, top, width, height, night);
-    draw_text(image, left + margin, top + 5 * s, text.substr(0, gap), s, white);
-    draw_text(image, left + margin, top + 15 * s, text.substr(gap + 1), s, white);
-    const int bottom = top + 30 * s + band * count;
+    draw_text(image, left + margin, top + margin, text.substr(0, gap), size, white);
+    draw_text(image, left + margin, top + margin + 14 * s, text.substr(gap + 1), size, white);
+    const int bottom = top + 38 * s + band * count;
     for (int y = 0; y < band * count; ++y) {
         const double place = (y + 0.5) / (band * count);
         const Rgb colour =
             scale.smooth ? colour_at(scale.palette, place) : band_colour(scale, static_cast<std::size_t>(y / band));
-        fill_rectangle(image, left + margin, bottom - y - 1, 11 * s, 1, colour);
+        fill_rectangle(image, left + margin, bottom - y - 1, 12 * s, 1, colour);
     }
-    const int every = band < 9 * s ? (9 * s + band - 1) / band : 1;  // keeps labels from overlapping
+    const int every = band < 12 * s ? (12 * s + band - 1) / band : 1;  // keeps labels from overlapping
     for (int i = 0; i <= count; i += every)
-        draw_text(image, left + margin + 16 * s, bottom - band * i - 3 * s, names[static_cast<std::size_t>(i)], s,
+        draw_text(image, left + margin + 17 * s, bottom - band * i - 4 * s, names[static_cast<std::size_t>(i)], size,
                   white);
 }
 

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "exitance/io/pictures/bitmap_font.hpp"
 #include "exitance/io/pictures/png.hpp"
+#include "exitance/io/pictures/text.hpp"
 #include "exitance/measure/pictures/picture.hpp"
 
 namespace exitance {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/io/pictures/bitmap_font.hpp"
+#include "exitance/io/pictures/text.hpp"
 
 namespace exitance {
 namespace {
@@ -129,17 +129,17 @@ void draw_segments(Image& image, const std::vector<Segment>& segments, double wi
 
 void draw_isolux(Image& image, const Picture& picture, const ColourScale& scale, const std::string& title) {
     constexpr Rgb paper{20, 20, 24}, ink{255, 255, 255};
-    const int s = std::max(1, std::min(image.width / 600, image.height / 375));
+    const int s = std::max(1, std::min(image.width / 600, image.height / 375)), size = 11 * s;
     const std::vector<Segment> segments = find_segments(picture, scale);
     draw_segments(image, segments, 1.2 * s);
     std::vector<int> lines = lines_of(segments, picture.size);
 
     const std::vector<std::string> names = scale.names();
     const std::string caption = "lines " + title;
-    std::vector<Label> labels{{0, image.height - 14 * s, text_width(caption, s) + 8 * s, 14 * s}};
+    std::vector<Label> labels{{0, image.height - 16 * s, text_width(caption, size) + 8 * s, 16 * s}};
     const auto write = [&](const Label& label, const std::string& text) {
         fill_rectangle(image, label.left, label.top, label.width, label.height, paper);
-        draw_text(image, label.left + 2 * s, label.top + 2 * s, text, s, ink);
+        draw_text(image, label.left + 2 * s, label.top + (label.height - 8 * s) / 2, text, size, ink);
     };
     write(labels[0], caption);
     const auto shortest = static_cast<std::size_t>(60 * s);
@@ -148,11 +148,10 @@ void draw_isolux(Image& image, const Picture& picture, const ColourScale& scale,
         const std::string& name = names[static_cast<std::size_t>(lines[from])];
         const std::vector<std::size_t> line = take_line(lines, from, picture.size);
         if (line.size() < shortest) continue;
-        for (const double along :
-             {0.5, 0.35, 0.65, 0.2,
-              0.8}) {  // positions to try, as shares of the line; the first free one gets the label
+        // Positions to try, as shares of the line; the first free one gets the label.
+        for (const double along : {0.5, 0.35, 0.65, 0.2, 0.8}) {
             const auto at = static_cast<int>(line[static_cast<std::size_t>(along * static_cast<double>(line.size()))]);
-            const int width = text_width(name, s) + 4 * s, height = 11 * s;
+            const int width = text_width(name, size) + 4 * s, height = 12 * s;
             const Label label{at % image.width - width / 2, at / image.width - height / 2, width, height};
             const bool inside = label.left >= 0 && label.top >= 0 && label.left + width <= image.width &&
                                 label.top + height <= image.height;

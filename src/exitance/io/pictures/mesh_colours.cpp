@@ -52,23 +52,23 @@ void draw_ordered_edges(Image& image, std::span<const std::optional<CurveOrder>>
 }
 
 std::vector<KeyEntry> edge_order_key() {
-    return {{"d0 value", value_breaks},
-            {"d1 slope", slope_breaks},
-            {"d2 curvature", curvature_breaks},
-            {"eee conic", conic}};
+    return {{"D0: value", value_breaks},
+            {"D1: slope", slope_breaks},
+            {"D2: curvature", curvature_breaks},
+            {"EEE: conic", conic}};
 }
 
 void draw_key(Image& image, std::span<const KeyEntry> key) {
     const int s = std::max(1, std::min(image.width / 600, image.height / 375));
-    const int margin = 6 * s, row = 14 * s, swatch = 11 * s;
+    const int margin = 7 * s, row = 16 * s, swatch = 11 * s, size = 11 * s;
     int widest = 0;
-    for (const KeyEntry& entry : key) widest = std::max(widest, text_width(entry.name, s));
+    for (const KeyEntry& entry : key) widest = std::max(widest, text_width(entry.name, size));
     const int height = static_cast<int>(key.size()) * row + 2 * margin;
     fill_rectangle(image, margin, margin, widest + swatch + 3 * margin, height, night);
     int y = 2 * margin;
     for (const KeyEntry& entry : key) {
         fill_rectangle(image, 2 * margin, y, swatch, swatch, entry.colour);
-        draw_text(image, 3 * margin + swatch, y + 2 * s, entry.name, s, white);
+        draw_text(image, 3 * margin + swatch, y + 2 * s, entry.name, size, white);
         y += row;
     }
 }

@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "exitance/io/pictures/bitmap_font.hpp"
 #include "exitance/io/pictures/png.hpp"
+#include "exitance/io/pictures/text.hpp"
 #include "exitance/measure/pictures/mesh_view.hpp"
 
 namespace exitance {
 
 /// A colour of a legend with its meaning.
 struct KeyEntry {
-    std::string name;  ///< Small letters and digits.
+    std::string name;  ///< Text in ASCII.
     Rgb colour;
 };
 

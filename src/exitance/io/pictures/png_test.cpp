@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "exitance/io/files/whole_file.hpp"
-#include "exitance/io/pictures/bitmap_font.hpp"
 #include "exitance/io/pictures/false_colour.hpp"
+#include "exitance/io/pictures/text.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace exitance {

@@ -1,54 +1,74 @@
-#include "exitance/io/pictures/bitmap_font.hpp"
+#include "exitance/io/pictures/text.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include <ft2build.h>
+#include FT_FREETYPE_H
+#include FT_OUTLINE_H
+
+/// The font file, which the build embeds (cmake/font.cmake).
+extern "C" const unsigned char exitance_font_begin[], exitance_font_end[];
 
 namespace exitance {
 namespace {
 
-constexpr int glyph_width = 5, glyph_height = 7, advance = 6;
-
-/// Seven rows of five bits; the highest bit is leftmost. '^' is drawn as a raised 2, and the digit after it is skipped.
-struct Glyph {
-    char letter;
-    std::array<std::uint8_t, glyph_height> rows;
-};
-constexpr Glyph glyphs[] = {
-    {'0', {0x0e, 0x11, 0x13, 0x15, 0x19, 0x11, 0x0e}}, {'1', {0x04, 0x0c, 0x04, 0x04, 0x04, 0x04, 0x0e}},
-    {'2', {0x0e, 0x11, 0x01, 0x06, 0x08, 0x10, 0x1f}}, {'3', {0x0e, 0x11, 0x01, 0x06, 0x01, 0x11, 0x0e}},
-    {'4', {0x02, 0x06, 0x0a, 0x12, 0x1f, 0x02, 0x02}}, {'5', {0x1f, 0x10, 0x1e, 0x01, 0x01, 0x11, 0x0e}},
-    {'6', {0x06, 0x08, 0x10, 0x1e, 0x11, 0x11, 0x0e}}, {'7', {0x1f, 0x01, 0x02, 0x04, 0x08, 0x08, 0x08}},
-    {'8', {0x0e, 0x11, 0x11, 0x0e, 0x11, 0x11, 0x0e}}, {'9', {0x0e, 0x11, 0x11, 0x0f, 0x01, 0x02, 0x0c}},
-    {'.', {0x00, 0x00, 0x00, 0x00, 0x00, 0x0c, 0x0c}}, {'-', {0x00, 0x00, 0x00, 0x1f, 0x00, 0x00, 0x00}},
-    {'/', {0x01, 0x01, 0x02, 0x04, 0x08, 0x10, 0x10}}, {'^', {0x0c, 0x02, 0x04, 0x0e, 0x00, 0x00, 0x00}},
-    {'W', {0x11, 0x11, 0x11, 0x15, 0x15, 0x1b, 0x11}}, {'a', {0x00, 0x00, 0x0e, 0x01, 0x0f, 0x11, 0x0f}},
-    {'b', {0x10, 0x10, 0x1e, 0x11, 0x11, 0x11, 0x1e}}, {'f', {0x06, 0x09, 0x08, 0x1c, 0x08, 0x08, 0x08}},
-    {'g', {0x00, 0x0f, 0x11, 0x11, 0x0f, 0x01, 0x0e}}, {'h', {0x10, 0x10, 0x16, 0x19, 0x11, 0x11, 0x11}},
-    {'p', {0x00, 0x00, 0x1e, 0x11, 0x1e, 0x10, 0x10}}, {'v', {0x00, 0x00, 0x11, 0x11, 0x11, 0x0a, 0x04}},
-    {'w', {0x00, 0x00, 0x11, 0x11, 0x15, 0x15, 0x0a}}, {'c', {0x00, 0x00, 0x0e, 0x11, 0x10, 0x11, 0x0e}},
-    {'d', {0x01, 0x01, 0x0f, 0x11, 0x11, 0x11, 0x0f}}, {'e', {0x00, 0x00, 0x0e, 0x11, 0x1f, 0x10, 0x0e}},
-    {'i', {0x04, 0x00, 0x0c, 0x04, 0x04, 0x04, 0x0e}}, {'k', {0x10, 0x10, 0x12, 0x14, 0x18, 0x14, 0x12}},
-    {'l', {0x0c, 0x04, 0x04, 0x04, 0x04, 0x04, 0x0e}}, {'m', {0x00, 0x00, 0x1a, 0x15, 0x15, 0x15, 0x15}},
-    {'n', {0x00, 0x00, 0x16, 0x19, 0x11, 0x11, 0x11}}, {'o', {0x00, 0x00, 0x0e, 0x11, 0x11, 0x11, 0x0e}},
-    {'r', {0x00, 0x00, 0x16, 0x19, 0x10, 0x10, 0x10}}, {'s', {0x00, 0x00, 0x0f, 0x10, 0x0e, 0x01, 0x1e}},
-    {'t', {0x08, 0x08, 0x1c, 0x08, 0x08, 0x09, 0x06}}, {'u', {0x00, 0x00, 0x11, 0x11, 0x11, 0x13, 0x0d}},
-    {'x', {0x00, 0x00, 0x11, 0x0a, 0x04, 0x0a, 0x11}}, {'y', {0x00, 0x00, 0x11, 0x11, 0x0f, 0x01, 0x0e}},
-};
-
-/// Calls visit(letter, column) for each glyph of a text; returns the number of columns.
-template <class Visit>
-int lay_out(std::string_view text, const Visit& visit) {
-    int column = 0;
-    for (std::size_t i = 0; i < text.size(); ++i, ++column) {
-        visit(text[i], column);
-        if (text.substr(i, 2) == "^2") ++i;
+/// A font size, opened for one text. Outlines are not hinted, so that letters have the same shape at every size.
+class Font {
+  public:
+    explicit Font(int size) {
+        if (FT_Init_FreeType(&library_) != 0) return;
+        const FT_Long bytes = exitance_font_end - exitance_font_begin;
+        if (FT_New_Memory_Face(library_, exitance_font_begin, bytes, 0, &face_) != 0) return;
+        is_open_ = FT_Set_Pixel_Sizes(face_, 0, static_cast<FT_UInt>(size)) == 0;
     }
-    return column;
+    Font(const Font&) = delete;
+    Font& operator=(const Font&) = delete;
+    ~Font() {
+        if (library_) FT_Done_FreeType(library_);  // closes the face, too
+    }
+
+    /// Calls visit(bitmap, left, above) for each letter: its coverage, the column of the bitmap's left side, and the
+    /// rows from the bitmap's top down to the baseline. Returns the width of the text in pixels.
+    template <class Visit>
+    int lay_out(std::string_view text, const Visit& visit) const {
+        if (!is_open_) return 0;
+        constexpr FT_Pos pixel = 64;  // FreeType's unit of lengths is 1/64 of a pixel
+        constexpr FT_ULong raised_two = 0xb2;
+        FT_Pos pen = 0;
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            const bool raises = text.substr(i, 2) == "^2";
+            const FT_ULong letter = raises ? raised_two : static_cast<unsigned char>(text[i]);
+            if (raises) ++i;
+            if (FT_Load_Char(face_, letter, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP) != 0) continue;
+            FT_GlyphSlot glyph = face_->glyph;
+            const FT_Pos advance = glyph->advance.x;
+            FT_Outline_Translate(&glyph->outline, pen % pixel, 0);
+            if (FT_Render_Glyph(glyph, FT_RENDER_MODE_NORMAL) == 0)
+                visit(glyph->bitmap, static_cast<int>(pen / pixel) + glyph->bitmap_left, glyph->bitmap_top);
+            pen += advance;
+        }
+        return static_cast<int>((pen + pixel - 1) / pixel);
+    }
+
+  private:
+    FT_Library library_ = nullptr;
+    FT_Face face_ = nullptr;
+    bool is_open_ = false;
+};
+
+/// Mixes a colour into a pixel of the picture; `coverage` is in [0, 255].
+void mix(Image& image, int x, int y, Rgb colour, int coverage) {
+    if (coverage == 0 || x < 0 || y < 0 || x >= image.width || y >= image.height) return;
+    std::uint8_t* pixel = image.at(x, y);
+    for (std::size_t c = 0; c < 3; ++c)
+        pixel[c] = static_cast<std::uint8_t>((pixel[c] * (255 - coverage) + colour[c] * coverage + 127) / 255);
 }
 
 }  // namespace
 
-int text_width(std::string_view text, int scale) {
-    return scale * (advance * lay_out(text, [](char, int) {}) - (advance - glyph_width));
+int text_width(std::string_view text, int size) {
+    return Font(size).lay_out(text, [](const FT_Bitmap&, int, int) {});
 }
 
 void fill_rectangle(Image& image, int x, int y, int width, int height, Rgb colour) {
@@ -57,15 +77,14 @@ void fill_rectangle(Image& image, int x, int y, int width, int height, Rgb colou
             std::copy(colour.begin(), colour.end(), image.at(i, j));
 }
 
-void draw_text(Image& image, int x, int y, std::string_view text, int scale, Rgb colour) {
-    lay_out(text, [&](char letter, int column) {
-        const auto* glyph =
-            std::find_if(std::begin(glyphs), std::end(glyphs), [&](const Glyph& g) { return g.letter == letter; });
-        if (glyph == std::end(glyphs)) return;
-        for (int row = 0; row < glyph_height; ++row)
-            for (int bit = 0; bit < glyph_width; ++bit)
-                if (glyph->rows[static_cast<std::size_t>(row)] >> (glyph_width - 1 - bit) & 1)
-                    fill_rectangle(image, x + scale * (advance * column + bit), y + scale * row, scale, scale, colour);
+void draw_text(Image& image, int x, int y, std::string_view text, int size, Rgb colour) {
+    constexpr double capital = 0.729;  // height of DejaVu Sans' capital letters per em
+    const int baseline = y + static_cast<int>(std::lround(capital * size));
+    Font(size).lay_out(text, [&](const FT_Bitmap& bitmap, int left, int above) {
+        for (int row = 0; row < static_cast<int>(bitmap.rows); ++row)
+            for (int column = 0; column < static_cast<int>(bitmap.width); ++column)
+                mix(image, x + left + column, baseline - above + row, colour,
+                    bitmap.buffer[row * bitmap.pitch + column]);
     });
 }
 
