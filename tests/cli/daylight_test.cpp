@@ -127,7 +127,8 @@ TEST(ProgramSky, InvalidOptionsAreUsageErrors) {
     const std::string scene = write_court(folder), out = folder / "s.h5";
     const Finished kind = run_program({"solve", scene, "-o", out, "--sky", "grey,dhi=100"});
     EXPECT_EQ(kind.status, 2);
-    EXPECT_EQ(kind.err.find("error: --sky: 'grey' is no kind of sky\nhint: kinds: uniform, overcast"), 0u) << kind.err;
+    EXPECT_EQ(kind.err.find("error: --sky: 'grey' is not a kind of sky\nhint: kinds: uniform, overcast"), 0u)
+        << kind.err;
     EXPECT_EQ(run_program({"solve", scene, "-o", out, "--epw", "x.epw"}).status, 2);
     EXPECT_EQ(
         run_program({"solve", scene, "-o", out, "--sky", "perez,time=06-21T12:00", "--epw", folder / "x.epw"}).status,

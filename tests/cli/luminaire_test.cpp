@@ -58,8 +58,8 @@ TEST(ProgramLuminaire, WritesTheTrueHeightOfAThinOpeningAndReportsAMissingOne) {
         EXPECT_NEAR(height_of(read_text(folder / "l.obj")), height, 1e-9);
         EXPECT_EQ(thin.err.find("extent"), std::string::npos) << thin.err;
     }
-    EXPECT_NE(run("0 1.2 0").err.find("no extent in some direction: 1 cm is taken"), std::string::npos);
-    EXPECT_NE(run("0 0 0").err.find("a cube of 1 mm stands for it"), std::string::npos);
+    EXPECT_NE(run("0 1.2 0").err.find("no extent in some direction: 1 cm is used there"), std::string::npos);
+    EXPECT_NE(run("0 0 0").err.find("a cube of 1 mm is used"), std::string::npos);
 }
 
 TEST(ProgramLuminaire, ReportsTheLineOfAnError) {

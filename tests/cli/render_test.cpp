@@ -119,7 +119,8 @@ TEST(ProgramRender, LeavesNoFileAfterASignal) {
     run.send(SIGINT);
     EXPECT_EQ(run.finish().status, 130);
     EXPECT_FALSE(std::filesystem::exists(folder / "s.png"));
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / ""), {}), 1);  // only the solution
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / ""), {}),
+              1);  // no picture was written: only the solution is there
 }
 
 TEST(ProgramRender, SupportsTheCamerasOfAScene) {

@@ -73,7 +73,7 @@ TEST(ProgramUsage, AnUnknownVerbIsAUsageErrorThatNamesTheNearest) {
 TEST(ProgramUsage, AnUnknownOptionIsAUsageErrorThatNamesTheNearest) {
     const Finished run = run_program({"solve", "room.obj", "--eror", "0.1", "-o", "s.h5"});
     EXPECT_EQ(run.status, 2);
-    EXPECT_EQ(run.err, "error: '--eror' is not understood\nhint: did you mean --error?\n");
+    EXPECT_EQ(run.err, "error: '--eror' is not a known option or argument\nhint: did you mean --error?\n");
 }
 
 TEST(ProgramUsage, ValuesOutOfRangeAreUsageErrorsThatNameTheOptionAndTheValue) {

@@ -24,7 +24,7 @@ Error unexpected(const CLI::App& app, const std::vector<std::string>& words) {
     for (const CLI::Option* option : app.get_options())
         for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
     const std::string near = word.starts_with("--") ? nearest(word.substr(0, word.find('=')), known) : "";
-    return {ErrorCode::usage, fmt::format("'{}' is not understood", word), "",
+    return {ErrorCode::usage, fmt::format("'{}' is not a known option or argument", word), "",
             near.empty() ? app.get_name() + " --help lists the options" : fmt::format("did you mean {}?", near)};
 }
 

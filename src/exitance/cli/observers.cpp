@@ -40,7 +40,8 @@ Result<std::vector<Observer>> load_observers(const std::string& path) {
         if (!more) return more.error();
         if (!*more) break;
         const Vec3 view{row[3], row[4], row[5]};
-        if (!(norm(view) > 0)) return table->lines().error("looks in no direction", "dx, dy, dz must not all be 0");
+        if (!(norm(view) > 0))
+            return table->lines().error("has a line of sight without a direction", "dx, dy, dz must not all be 0");
         out.push_back({fmt::format("{}", out.size() + 1), {row[0], row[1], row[2]}, normalized(view)});
     }
     if (out.empty())

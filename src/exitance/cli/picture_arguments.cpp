@@ -144,9 +144,12 @@ void declare_display(CLI::App& app, RenderArguments& arguments) {
 }  // namespace
 
 void declare(CLI::App& app, CompareArguments& arguments) {
-    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
-    app.add_option("REFERENCE", arguments.reference, "Probe CSV with E_*, or another solution")->required();
-    app.add_flag("--interpolant", arguments.interpolant, "Measure the exported mesh instead of the full function");
+    app.add_option("SOLUTION", arguments.solution, "Solution file (.h5), as solve writes it")->required();
+    app.add_option("REFERENCE", arguments.reference,
+                   "Light to compare with: a CSV of probe (columns E_*), or another solution")
+        ->required();
+    app.add_flag("--interpolant", arguments.interpolant,
+                 "Measure the mesh that export writes, instead of the full solution with its exact direct light");
     app.add_option("--map", arguments.map,
                    "Picture (.png) of |E - E_ref| in false colours; for a CSV, at its nearest point on the surface")
         ->type_name("FILE");
@@ -167,7 +170,7 @@ void declare(CLI::App& app, CompareArguments& arguments) {
 }
 
 void declare(CLI::App& app, RenderArguments& arguments) {
-    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
+    app.add_option("SOLUTION", arguments.solution, "Solution file (.h5), as solve writes it")->required();
     app.add_option("-o,--output", arguments.output,
                    "Picture to write: .png, linear radiance as .exr or .hdr; with --path also a video by ffmpeg: .mp4, "
                    ".mkv, .webm, .gif")
@@ -194,7 +197,8 @@ void declare(CLI::App& app, RenderArguments& arguments) {
     add_count(app, "--samples", arguments.samples, 1, "Rays per pixel, at most 1024. Default 16")
         ->check(CLI::Range(1, 1024));
     add_count(app, "--gather", arguments.gather, 4,
-              "Rays of a final gather at every sample, instead of the elements' indirect light; a power of two");
+              "Rays of a final gather at every sample, instead of the elements' indirect light; a power of two from 4. "
+              "Default: none. It is slow, and shows which details are due to the elements");
     declare_display(app, arguments);
     declare_unit(app, arguments.unit);
     app.add_flag("--mesh", arguments.mesh,
@@ -209,9 +213,9 @@ void declare(CLI::App& app, RenderArguments& arguments) {
 }
 
 void declare(CLI::App& app, ReportArguments& arguments) {
-    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
+    app.add_option("SOLUTION", arguments.solution, "Solution file (.h5), as solve writes it")->required();
     app.add_option("-o,--output", arguments.output,
-                   "Page to write (.html), with its numbers beside it (.json); optional with --tables")
+                   "Page to write (.html; its numbers are also written as .json); optional with --tables")
         ->type_name("FILE");
     app.add_option_function<std::vector<std::string>>(
            "--grid",

@@ -14,16 +14,21 @@ constexpr std::array<std::pair<int, std::string_view>, 3> patch_counts{{{1, "146
 }  // namespace
 
 void declare(CLI::App& app, ProbeArguments& arguments) {
-    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
-    app.add_option("--points", arguments.points,
-                   "Points: CSV x,y,z,nx,ny,nz or .pts x y z dx dy dz; - for standard input")
+    app.add_option("SOLUTION", arguments.solution, "Solution file (.h5), as solve writes it")->required();
+    app.add_option(
+           "--points", arguments.points,
+           "Points in metres, each with the direction that it faces: CSV x,y,z,nx,ny,nz or .pts x y z dx dy dz; - for "
+           "standard input")
         ->type_name("FILE")
         ->required();
-    app.add_option("-o,--output", arguments.output, "CSV with the columns E_* and B_*. Default -: standard output")
+    app.add_option("-o,--output", arguments.output,
+                   "CSV to write: irradiance E_* and radiosity B_* of every point. Default -: standard output")
         ->type_name("FILE");
-    app.add_flag("--interpolant", arguments.interpolant, "Evaluate the exported mesh instead of the full function");
-    add_choice(app, "--component", component_names, arguments.component,
-               "Part of the light to evaluate. Default total");
+    app.add_flag("--interpolant", arguments.interpolant,
+                 "Evaluate the mesh that export writes, instead of the full solution with its exact direct light");
+    add_choice(
+        app, "--component", component_names, arguments.component,
+        "Part of the light: all of it, light straight from emitters, or light that was reflected. Default total");
     declare_unit(app, arguments.unit);
     CLI::Option* const reference =
         add_count(app, "--reference", arguments.reference_paths, 1,
@@ -33,13 +38,15 @@ void declare(CLI::App& app, ProbeArguments& arguments) {
 }
 
 void declare(CLI::App& app, StatsArguments& arguments) {
-    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
+    app.add_option("SOLUTION", arguments.solution, "Solution file (.h5), as solve writes it")->required();
     declare_json(app, arguments);
 }
 
 void declare(CLI::App& app, MixArguments& arguments) {
-    app.add_option("SOLUTION", arguments.solution, "Solution (.h5) of solve --light-groups")->required();
-    app.add_option("CHANGES", arguments.dim, "GROUP=FACTOR: light of a group relative to the scene")
+    app.add_option("SOLUTION", arguments.solution, "Solution file (.h5), as solve --light-groups writes it")
+        ->required();
+    app.add_option("CHANGES", arguments.dim,
+                   "GROUP=FACTOR: light of a group, relative to that in the scene; 0 turns it off")
         ->type_name("GROUP=FACTOR");
     app.add_option("--reflectance", arguments.reflectance, "New reflectance of a material. May be given several times")
         ->type_name("MATERIAL=r,g,b");
@@ -49,10 +56,11 @@ void declare(CLI::App& app, MixArguments& arguments) {
 }
 
 void declare(CLI::App& app, ExportArguments& arguments) {
-    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
-    app.add_option("-o,--output", arguments.output,
-                   "File to write; its ending is the format: .glb, .hdf or .vtkhdf, .vtu, .obj, .csv; .curves.csv "
-                   "holds the curves of a discontinuity mesh")
+    app.add_option("SOLUTION", arguments.solution, "Solution file (.h5), as solve writes it")->required();
+    app.add_option(
+           "-o,--output", arguments.output,
+           "File to write; its ending is the format: .glb (3D programs and engines), .vtu, .hdf or .vtkhdf (ParaView), "
+           ".obj, .csv (a table); .curves.csv holds the curves of a discontinuity mesh")
         ->type_name("FILE")
         ->required();
     app.add_option("--links", arguments.links,
@@ -63,7 +71,7 @@ void declare(CLI::App& app, ExportArguments& arguments) {
 
 void declare(CLI::App& app, BakeArguments& arguments) {
     LightMapFormat& format = arguments.format;
-    app.add_option("SOLUTION", arguments.solution, "Solution (.h5)")->required();
+    app.add_option("SOLUTION", arguments.solution, "Solution file (.h5), as solve writes it")->required();
     app.add_option("-o,--output", arguments.output,
                    "Folder for lightmaps.json, lightmap_0.exr and .png, ..., scene.glb")
         ->type_name("FOLDER")
@@ -95,9 +103,10 @@ void declare(CLI::App& app, DaylightArguments& arguments) {
     declare_scene(app, arguments.scene);
     app.get_option("SCENE")->description("Scene, or a solution (.h5) of it, whose own light is ignored");
     app.add_option("--epw", arguments.epw, "Weather of a year (EnergyPlus .epw)")->type_name("FILE")->required();
-    app.add_option("--points", arguments.points,
-                   "Sensors: CSV x,y,z,nx,ny,nz or .pts x y z dx dy dz, or a Honeybee model with sensor grids. "
-                   "Default: the grids of the scene, if it is a Honeybee model")
+    app.add_option(
+           "--points", arguments.points,
+           "Sensors in metres, each with the direction that it faces: CSV x,y,z,nx,ny,nz, .pts x y z dx dy dz, or a "
+           "Honeybee model with sensor grids. Default: the grids of the scene, if it is a Honeybee model")
         ->type_name("FILE");
     app.add_option("-o,--output", arguments.output, "Folder for illuminance.csv, metrics.csv, matrix.csv, summary.csv")
         ->type_name("FOLDER")
@@ -133,9 +142,11 @@ void declare(CLI::App& app, CheckArguments& arguments) {
 }
 
 void declare(CLI::App& app, GenerateArguments& arguments) {
-    app.add_option("FAMILY", arguments.family, "Family of scenes, or 'list'")->required();
-    app.add_option("PARAMETERS", arguments.parameters, "Parameters of the family, name=value");
-    app.add_option("-o,--output", arguments.output, "Scene to write (.obj, its .mtl beside it)")->type_name("FILE");
+    app.add_option("FAMILY", arguments.family, "Family of scenes; 'list' prints all families with their parameters")
+        ->required();
+    app.add_option("PARAMETERS", arguments.parameters, "Parameters of the family, as name=value");
+    app.add_option("-o,--output", arguments.output, "Scene to write (.obj; its .mtl is written into the same folder)")
+        ->type_name("FILE");
 }
 
 void declare(CLI::App& app, LuminaireArguments& arguments) {
@@ -231,7 +242,7 @@ void declare(CLI::App& app, ViewFactorArguments& arguments) {
 
 void declare(CLI::App& app, ViewArguments& arguments) {
     declare_scene(app, arguments.scene);
-    app.get_option("SCENE")->description("Solution (.h5), or a scene, whose light is shown while it is solved");
+    app.get_option("SCENE")->description("Solution file (.h5), or a scene, whose light is shown while it is solved");
     add_count(app, "--port", arguments.port, 0, "Port on 127.0.0.1. Default: any free port")
         ->check(CLI::Range(0, 65535));
     add_positive(app, "--error", arguments.error, "R", "Requested relative RMS error of a scene. Default 0.02")

@@ -12,6 +12,11 @@
 namespace exitance {
 namespace {
 
+/// "1 emitter" or "3 emitters".
+std::string counted(std::size_t count, const char* noun) {
+    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
 std::string place(const Finding& finding) {
     return finding.line > 0 ? fmt::format("{}:{}", finding.file, finding.line) : finding.file;
 }
@@ -45,10 +50,11 @@ std::string report(const CheckedScene& checked, const Shell& shell) {
                             shell.open_edges, shell.open_length);
     return text + fmt::format(
                       "The scene can be used: {} surfaces of {:.4g} m^2 ({} after joining coplanar neighbours), "
-                      "{} emitters, {}{} materials, {:.4g} x {:.4g} x {:.4g} m.\n",
-                      scene.surfaces().size(), area, scene.regions().size(), scene.emitters().size(),
-                      scene.lights().empty() ? "" : fmt::format("{} lights without extent, ", scene.lights().size()),
-                      scene.materials().size(), size.x, size.y, size.z);
+                      "{}, {}{}, {:.4g} x {:.4g} x {:.4g} m.\n",
+                      scene.surfaces().size(), area, scene.regions().size(),
+                      counted(scene.emitters().size(), "emitter"),
+                      scene.lights().empty() ? "" : counted(scene.lights().size(), "light") + " without extent, ",
+                      counted(scene.materials().size(), "material"), size.x, size.y, size.z);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
         return usage("cannot be combined with --false-colour: both colour the pixels", "--shadow-classes",
                      "make a picture of each");
     if (!a.path.empty() && (a.camera || !a.camera_name.empty() || a.projection != Projection::perspective))
-        return usage("has its own cameras, in perspective", "--path", "leave --camera and --projection out");
+        return usage("has its own cameras, in perspective", "--path", "omit --camera and --projection");
     if (!a.path.empty() && (a.false_colour || a.isolux) && !a.scale.range)
         return usage("needs one scale for all pictures", "--path", "add --scale LO,HI");
     if (a.gather > 0 && (!std::has_single_bit(a.gather) || a.gather > 1 << 20))
@@ -214,9 +214,8 @@ ExitCode render_film(const RenderArguments& arguments, const std::vector<CameraS
                                             ? at_equal_times(stations, rate, max_pictures)
                                             : std::vector<Camera>();
     if (cameras.empty())
-        return terminal.fail(Error{ErrorCode::bad_input,
-                                   "times of a video must increase and span at max_pictures 400 s", arguments.path,
-                                   "the first number of a row is its time in seconds"});
+        return terminal.fail(Error{ErrorCode::bad_input, "times of a video must increase and span at most 400 s",
+                                   arguments.path, "the first number of a row is its time in seconds"});
     const Result<ScratchFolder> folder = ScratchFolder::make("exitance-film");
     if (!folder) return terminal.fail(folder.error());
     RenderArguments frames = arguments;

@@ -171,7 +171,7 @@ Result<void> add_page(const ReportArguments& arguments, const RadiosityFunction&
     content.surfaces = measure_surfaces(light, faces, surface_points, terminal.progress(), stop);
     if (stop.requested()) content.surfaces.clear(), content.unfinished.push_back("surfaces and materials");
     content.error = find_error_percentile(light, error_points, error_rays, terminal.progress(), stop);
-    if (stop.requested()) content.error = {}, content.unfinished.push_back("the error at 99 of 100 places");
+    if (stop.requested()) content.error = {}, content.unfinished.push_back("the 99th percentile of the error");
     for (const Camera& camera : cameras) add_pictures(arguments, light, camera, content, terminal, stop);
     add_viewer(light, content, terminal, stop);
     return {};

@@ -125,7 +125,7 @@ Result<int> ViewServer::bind(int port) {
         port == 0 ? (port = server.bind_to_any_port("127.0.0.1")) > 0 : server.bind_to_port("127.0.0.1", port);
     if (!bound)
         return Error{ErrorCode::failure, fmt::format("port {} is in use", port), "--port",
-                     "leave --port out to get a free one"};
+                     "omit --port to get a free one"};
     return implementation_->port = port;
 }
 

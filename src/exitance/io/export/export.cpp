@@ -28,8 +28,8 @@ Result<void> export_solution(const Solution& solution, const std::string& path) 
         if (path.ends_with(format.ending)) return format.write(solution, path);
         known += std::string(known.empty() ? "" : ", ") + format.ending;
     }
-    return Error{ErrorCode::usage, "the ending of " + path + " names no format to export to", path,
-                 "endings known: " + known + ", .curves.csv"};
+    return Error{ErrorCode::usage, "the ending of " + path + " is not that of a known format", path,
+                 "known endings: " + known + ", .curves.csv"};
 }
 
 }  // namespace exitance

@@ -60,8 +60,8 @@ Result<std::vector<ElementId>> receivers(const ElementTree& tree, const std::str
         return Error{ErrorCode::usage, fmt::format("'{}' is neither an element's number nor x,y,z", which), "--links",
                      ""};
     if ((*given)[0] >= static_cast<double>(tree.size()))
-        return Error{ErrorCode::usage, fmt::format("there is no element {}: they end at {}", which, tree.size() - 1),
-                     "--links", ""};
+        return Error{ErrorCode::usage,
+                     fmt::format("there is no element {}; the last one is {}", which, tree.size() - 1), "--links", ""};
     return std::vector<ElementId>{ElementId(static_cast<std::size_t>((*given)[0]))};
 }
 
@@ -128,8 +128,8 @@ Result<void> export_links(const Solution& solution, const std::string& which, co
     if (path.ends_with(".csv")) return write_file(path, as_table(tree, chosen));
     if (path.ends_with(".obj")) return write_file(path, as_lines(tree, *to, chosen));
     if (path.ends_with(".glb")) return write_links_glb(tree, *to, sources_of(chosen), chosen, path);
-    return Error{ErrorCode::usage, "the ending of " + path + " names no format to export links to", path,
-                 "endings known: .csv, .obj, .glb"};
+    return Error{ErrorCode::usage, "the ending of " + path + " is not that of a known format of links", path,
+                 "known endings: .csv, .obj, .glb"};
 }
 
 }  // namespace exitance

@@ -187,12 +187,12 @@ Result<void> EpwReader::read_row(const std::vector<std::string_view>& fields) {
     for (std::size_t i = 0; i < date.size(); ++i) {
         const auto value = number_within(fields[i], 0, 9999);
         if (!value || *value != std::floor(*value))
-            return lines_.error(fmt::format("'{}' is no part of a date", shown(fields[i])));
+            return lines_.error(fmt::format("'{}' is not a valid part of a date", shown(fields[i])));
         date[i] = static_cast<int>(*value);
     }
     Row row{date[0], date[1], date[2], date[3]};
     if (!mend_date(row) || row.hour > 24)
-        return lines_.error(fmt::format("{}-{}-{}, hour {}, is no date", row.year, row.month, row.day, row.hour));
+        return lines_.error(fmt::format("{}-{}-{}, hour {}, is not a date", row.year, row.month, row.day, row.hour));
     row.minute = parse_number(fields[minute_field]).value_or(0);
     constexpr double missing_watts = 9999, missing_lux = 999'900;  // limits in EnergyPlus' definition of the format
     const Result<Light> watts = read_light(fields, first_watts_field, missing_watts);
@@ -201,7 +201,7 @@ Result<void> EpwReader::read_row(const std::vector<std::string_view>& fields) {
     if (!lux) return lux.error();
     row.watts = *watts, row.lux = *lux, row.line = lines_.line();
     rows_.push_back(row);
-    if (rows_.size() > max_rows) return lines_.error("there are more hours than a century has");
+    if (rows_.size() > max_rows) return lines_.error("there are too many hours, more than a century has");
     return {};
 }
 
@@ -295,7 +295,7 @@ Result<void> EpwReader::make_hours() {
         for (const Row* other : hours[at->second])
             if (other->minute == row.minute)
                 return error_at(row.line,
-                                fmt::format("{}-{}-{}, hour {}, comes twice", row.year, row.month, row.day, row.hour),
+                                fmt::format("{}-{}-{}, hour {}, occurs twice", row.year, row.month, row.day, row.hour),
                                 "lines of one hour differ in their minutes, the fifth field");
         hours[at->second].push_back(&row);
     }
@@ -357,7 +357,7 @@ std::string Weather::not_a_year() const {
         repeated += count[i] > 1;
     }
     if (absent == 0 && repeated == 0) return "";
-    return fmt::format("its {} hours are not those of one year ({} of 8760 are absent, {} come more than once)",
+    return fmt::format("its {} hours are not those of one year ({} of 8760 are absent, {} occur more than once)",
                        hours.size(), absent, repeated);
 }
 

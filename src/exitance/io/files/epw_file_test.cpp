@@ -126,7 +126,7 @@ TEST_F(EpwFile, HoursMayBeInAnyOrderButNotTwice) {
     const std::string one = line(1, 1, 1, "0", "0,0,1"), two = line(1, 1, 2, "0", "0,0,2");
     EXPECT_EQ(good(location + two + one).hours[1].diffuse_horizontal, 1);
     EXPECT_EQ(fault(location + one + two + one).substr(0, 7), "w.epw:4");
-    EXPECT_NE(fault(location + one + two + one).find("comes twice"), std::string::npos);
+    EXPECT_NE(fault(location + one + two + one).find("occurs twice"), std::string::npos);
 }
 
 TEST_F(EpwFile, LinesOfTheSameHourAreAveraged) {
@@ -203,7 +203,7 @@ TEST_F(EpwFile, NotAYearReportsMissingAndRepeatedHours) {
     EXPECT_NE(good(location + june).not_a_year().find("8040 of 8760"), std::string::npos);
     std::string second = year;
     for (std::size_t at = 0; (at = second.find("2019,", at)) != second.npos; at += 5) second.replace(at, 4, "2018");
-    EXPECT_NE(good(location + year + second).not_a_year().find("8760 come more than once"), std::string::npos);
+    EXPECT_NE(good(location + year + second).not_a_year().find("8760 occur more than once"), std::string::npos);
 }
 
 }  // namespace exitance

@@ -67,7 +67,7 @@ std::optional<std::string> rehearse(const std::function<bool()>& work, double se
     while (::waitpid(copy, &status, 0) < 0)
         if (errno != EINTR) return {};  // another thread has already waited for the copy
     if (WIFEXITED(status) && WEXITSTATUS(status) == lacks_memory)
-        return "asks for more than " + std::to_string((memory >> 20) + 1) + " MiB";
+        return "needs more than " + std::to_string((memory >> 20) + 1) + " MiB";
     if (WIFEXITED(status) && WEXITSTATUS(status) == failed) return "fails";
     if (WIFEXITED(status))
         return WEXITSTATUS(status) == went_well ? std::nullopt : std::optional<std::string>("crashes");

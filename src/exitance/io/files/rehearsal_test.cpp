@@ -42,7 +42,7 @@ TEST(Rehearsal, EndsAtTheMemoryLimit) {
             return taken.back() == 0;
         };
     };
-    EXPECT_EQ(rehearse(take(300 << 20), 5, 100 << 20), "asks for more than 101 MiB");
+    EXPECT_EQ(rehearse(take(300 << 20), 5, 100 << 20), "needs more than 101 MiB");
     EXPECT_FALSE(rehearse(take(50 << 20), 5, 100 << 20));
 }
 

@@ -75,7 +75,8 @@ Result<std::string> run_scene_program(const std::vector<std::string>& words, con
                                       const std::string& folder, const StopRequest& stop) {
     const std::string name = words.empty() ? "" : words[0];
     if (!is_scene_program(name))
-        return bad(fmt::format("'{}' is not a Radiance program that makes scenes", shown(name)), "others are not run");
+        return bad(fmt::format("'{}' is not a Radiance program that makes scenes", shown(name)),
+                   "other programs are not run");
     if (!is_program(name)) return bad(fmt::format("the program '{}' is not installed", name), "it comes with Radiance");
     const File in(std::tmpfile(), &std::fclose), err(std::tmpfile(), &std::fclose);
     Pipe out;

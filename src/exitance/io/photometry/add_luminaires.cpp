@@ -128,10 +128,11 @@ void add_luminaires(const std::vector<PlacedLuminaire>& luminaires, std::optiona
         !scene.lights.empty();
     const bool in_lumens = photometric.value_or(scene.photometric || !shines);
     if (!in_lumens && !photometric)
-        findings.push_back({Finding::Kind::warning, scene.file, 0,
-                            fmt::format("light of the scene is in watts: the luminaires' is taken as W by {:g} lm/W",
-                                        daylight_efficacy),
-                            "--quantity photometric takes the scene's own light as given in cd/m^2"});
+        findings.push_back(
+            {Finding::Kind::warning, scene.file, 0,
+             fmt::format("the light of the scene is in watts: that of the luminaires is converted to W by {:g} lm/W",
+                         daylight_efficacy),
+             "--quantity photometric takes the scene's own light as given in cd/m^2"});
     scene.photometric = in_lumens;
     Luminaires all(scene, findings);
     if (!in_lumens) all.lumens_to_light = 1 / daylight_efficacy;

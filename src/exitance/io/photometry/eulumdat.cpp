@@ -74,7 +74,7 @@ Result<double> EulumdatReader::number(const std::string& what) {
     if (std::count(word.begin(), word.end(), ',') == 1) std::replace(word.begin(), word.end(), ',', '.');
     double value = 0;
     if (number_of_word(word, value) != NumberKind::finite)
-        return error(fmt::format("'{}' in place of {} is not a number", shown(line), what),
+        return error(fmt::format("'{}' is not a number (expected: {})", shown(line), what),
                      line.empty() ? "empty lines count: is one too many above?" : "");
     ++at_;
     return value;
@@ -94,7 +94,7 @@ Result<std::size_t> EulumdatReader::count(const char* what, double least, double
     if (!value) return value.error();
     if (!(*value >= least && *value <= most && *value == std::floor(*value))) {
         --at_;
-        return error(fmt::format("{:g} is no {}", *value, what), fmt::format("{:g} to {:g}", least, most));
+        return error(fmt::format("{:g} is not a possible {}", *value, what), fmt::format("{:g} to {:g}", least, most));
     }
     return static_cast<std::size_t>(*value);
 }
@@ -127,7 +127,7 @@ Result<void> EulumdatReader::read_counts() {
     if (!angles) return angles.error();
     angles_ = *angles;
     if (static_cast<double>(planes_) * static_cast<double>(angles_) > max_candelas)
-        return error(fmt::format("{} intensities are more than are read", planes_ * angles_));
+        return error(fmt::format("{} intensities exceed the limit of this program", planes_ * angles_));
     const std::array<std::pair<double*, const char*>, 1> other{{{&angle_step_, "the step of angles gamma"}}};
     if (const Result<void> read = numbers(other); !read) return read;
     for (const char* what : {"report", "luminaire", "luminaire number", "file", "date"}) {
@@ -159,7 +159,7 @@ Result<void> EulumdatReader::read_sizes() {
                               lit_height_[2], lit_height_[3]})
         if (!(size >= 0 && size <= 1e7)) return error(fmt::format("a length of {:g} mm is invalid", size));
     if (conversion_ == 0) {
-        tell(out_, Finding::Kind::repair, static_cast<int>(at_) - 1, "the conversion factor 0 is taken for 1");
+        tell(out_, Finding::Kind::repair, static_cast<int>(at_) - 1, "the conversion factor 0 is read as 1");
         conversion_ = 1;
     }
     if (!(conversion_ > 0 && conversion_ < 1e9))
@@ -194,7 +194,7 @@ Result<void> EulumdatReader::read_lamps() {
         flux_ = *flux;
         const double number = std::abs(*lamps);
         out_.lamps = number >= 1 && number < 1e6 ? static_cast<int>(number) : 1;
-        if (number < 1) tell(out_, Finding::Kind::repair, static_cast<int>(at_) - 5, "0 lamps are taken for 1");
+        if (number < 1) tell(out_, Finding::Kind::repair, static_cast<int>(at_) - 5, "0 lamps are read as 1");
         if (*lamps >= 0) out_.lamp_lumens = flux_;
         out_.watts = *watts > 0 && *watts < 1e9 ? *watts : 0;
         out_.keywords.emplace_back("lamps", *type);
@@ -203,7 +203,7 @@ Result<void> EulumdatReader::read_lamps() {
     }
     if (*sets > 1)
         tell(out_, Finding::Kind::warning, static_cast<int>(at_),
-             fmt::format("has {} sets of lamps: the first is taken", *sets), "they are alternatives");
+             fmt::format("has {} sets of lamps: the first is used", *sets), "they are alternatives");
     for (int i = 0; i < 10; ++i)
         if (const Result<double> ratio = number("a direct ratio"); !ratio) return ratio.error();
     return {};
@@ -264,7 +264,8 @@ Result<void> EulumdatReader::read_table() {
     std::size_t stored = stored_planes();
     if (stored < planes_ && numbers_left() == planes_ * angles_) {
         tell(out_, Finding::Kind::repair, static_cast<int>(at_) + 1,
-             fmt::format("all {} planes are there, though symmetry leaves {}: all are read", planes_, stored));
+             fmt::format("the file has all {} planes, although its symmetry needs only {}: all are read", planes_,
+                         stored));
         stored = planes_, symmetry_ = 0;
     }
     const double factor = flux_ / 1000 * conversion_;
@@ -345,7 +346,7 @@ void EulumdatReader::set_opening() {
         tell(out_, Finding::Kind::warning, 18,
              fmt::format("the luminous heights in C0, C90, C180, C270 are {:g}, {:g}, {:g}, {:g} mm", c0, c90, c180,
                          c270),
-             "opposite sides (of a round opening all) are taken to be as high as the highest");
+             "opposite sides (of a round opening, all sides) are assumed to be as high as the highest");
     out_.opening.shape =
         round ? (height > 0 ? Shape::cylinder_z : Shape::ellipse) : (height > 0 ? Shape::box : Shape::rectangle);
 }
@@ -359,7 +360,7 @@ void EulumdatReader::check_output_ratio() {
         tell(out_, Finding::Kind::warning, 23,
              fmt::format("the light output ratio is {:.4g}% by its line, {:.4g}% by the intensities", ratio_,
                          100 * found),
-             "the intensities are taken");
+             "the intensities are used");
 }
 
 Result<Photometry> EulumdatReader::read() {

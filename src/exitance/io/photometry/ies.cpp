@@ -104,7 +104,8 @@ Result<void> IesReader::read_tilt() {
     if (tilt_ == "NONE") return {};
     if (tilt_ != "INCLUDE") {
         tell(out_, Finding::Kind::warning, text_.line_number() - 1,
-             fmt::format("the factors of tilt in '{}' are not read", shown(tilt_)), "light is as of the untilted lamp");
+             fmt::format("the factors of tilt in '{}' are not read", shown(tilt_)),
+             "the light is that of the lamp without tilt");
         return {};
     }
     const Result<double> geometry = text_.number("the geometry of lamp and luminaire");
@@ -112,7 +113,7 @@ Result<void> IesReader::read_tilt() {
     const Result<double> pairs = text_.number("the number of angles of tilt");
     if (!pairs) return pairs.error();
     if (*pairs != std::floor(*pairs) || *pairs < 0 || *pairs > max_pairs)
-        return text_.error(fmt::format("{} is no number of angles of tilt", *pairs));
+        return text_.error(fmt::format("{} is not a possible number of angles of tilt", *pairs));
     bool all_one = true;
     for (int i = 0; i < 2 * static_cast<int>(*pairs); ++i) {
         const Result<double> value = text_.number(i < *pairs ? "an angle of tilt" : "a factor of tilt");
@@ -121,7 +122,7 @@ Result<void> IesReader::read_tilt() {
     }
     if (!all_one)
         tell(out_, Finding::Kind::warning, text_.line_number(), "the factors of tilt are not applied",
-             "light is as of the untilted lamp");
+             "the light is that of the lamp without tilt");
     return {};
 }
 
@@ -154,20 +155,22 @@ Result<void> IesReader::read_header() {
 Result<void> IesReader::check_header() {
     Header& h = header_;
     const auto is_count = [](double v) { return v == std::floor(v) && v >= 1 && v <= max_angles; };
-    if (!is_count(h.verticals)) return text_.error(fmt::format("{:g} is no number of vertical angles", h.verticals));
+    if (!is_count(h.verticals))
+        return text_.error(fmt::format("{:g} is not a possible number of vertical angles", h.verticals));
     if (!is_count(h.horizontals))
-        return text_.error(fmt::format("{:g} is no number of horizontal angles", h.horizontals));
+        return text_.error(fmt::format("{:g} is not a possible number of horizontal angles", h.horizontals));
     if (h.verticals * h.horizontals > max_candelas)
-        return text_.error(fmt::format("{:g} intensities are more than are read", h.verticals * h.horizontals));
-    if (h.verticals < 2) return text_.error("there is one vertical angle alone", "a distribution has at least two");
+        return text_.error(
+            fmt::format("{:g} intensities exceed the limit of this program", h.verticals * h.horizontals));
+    if (h.verticals < 2) return text_.error("there is only one vertical angle", "a distribution has at least two");
     // Each intensity takes at least a digit and a blank.
     if (2 * h.verticals * h.horizontals > static_cast<double>(text_.bytes_left()) + 2)
         return text_.error(fmt::format("ends before {:g} intensities", h.verticals * h.horizontals),
                            "is the file complete?");
     if (h.type != 1 && h.type != 2 && h.type != 3)
-        return text_.error(fmt::format("{:g} is no type of photometry", h.type), "1 is C, 2 is B, 3 is A");
+        return text_.error(fmt::format("{:g} is not a type of photometry", h.type), "1 is C, 2 is B, 3 is A");
     if (h.units != 1 && h.units != 2)
-        return text_.error(fmt::format("{:g} is no kind of units", h.units), "1 is feet, 2 is metres");
+        return text_.error(fmt::format("{:g} is not a kind of units", h.units), "1 is feet, 2 is metres");
     if (!(h.multiplier > 0 && h.multiplier < max_value))
         return text_.error(fmt::format("the multiplier is {:g}", h.multiplier), "intensities are multiplied by it");
     if (!(h.ballast > 0 && h.ballast < 1e6))
@@ -181,7 +184,7 @@ Result<void> IesReader::check_header() {
         repair(fmt::format("the third factor is {:g}: it is ignored, since it is not a factor in {}", h.third,
                            out_.format));
     if (h.lamps < 1 || h.lamps != std::floor(h.lamps) || h.lamps > 1e6) {
-        repair(fmt::format("{:g} lamps are taken for 1", h.lamps));
+        repair(fmt::format("{:g} lamps are read as 1", h.lamps));
         h.lamps = 1;
     }
     if (h.watts < 0 || h.watts > 1e9) {
@@ -235,7 +238,7 @@ Result<void> IesReader::read_table() {
 Result<void> IesReader::make_type_c(const std::vector<double>& vertical, Planes planes) {
     if (vertical.front() < 0 || vertical.back() > 180)
         return text_.error(fmt::format("vertical angles go from {:g} to {:g}", vertical.front(), vertical.back()),
-                           "those of type C lie between 0 (down) and 180");
+                           "those of type C are between 0 (down) and 180");
     if (!has_known_range(planes.angle))
         return text_.error(
             fmt::format("horizontal angles go from {:g} to {:g}", planes.angle.front(), planes.angle.back()),
@@ -247,7 +250,7 @@ Result<void> IesReader::make_type_c(const std::vector<double>& vertical, Planes 
                     : last == 180            ? "about the plane of 0 degrees"
                                              : "none";
     if (planes.angle.size() == 1 && first != 0)
-        repair(fmt::format("the only horizontal angle is {:g}: all planes are taken to be alike", first));
+        repair(fmt::format("the only horizontal angle is {:g}: all planes are assumed to be equal", first));
     if (last > 180 && last < 360)
         if (!(first == 90 && last == 270))
             repair(fmt::format("horizontal angles end at {:g}: the circle is closed with those of 0", last));
@@ -264,14 +267,14 @@ Result<void> IesReader::make_types_ab(const std::vector<double>& vertical, const
     const bool mirrored_v = v.front() == 0, mirrored_h = h.front() == 0 && h.size() > 1;
     std::vector<std::vector<double>> by_h = planes.rows;
     if (h.size() == 1 && h[0] == 0)
-        return text_.error("there is one horizontal angle alone", "types A and B have no symmetry about the axis");
+        return text_.error("there is only one horizontal angle", "types A and B have no symmetry about the axis");
     if (mirrored_h) mirror(h, by_h);
     std::vector<std::vector<double>> by_v = transposed(by_h);
     if (mirrored_v) mirror(v, by_v);
     for (const auto* angles : {&v, &h})
         if (angles->front() < -90 || angles->back() > 90)
             return text_.error(fmt::format("angles go from {:g} to {:g}", angles->front(), angles->back()),
-                               "those of types A and B lie between -90 and 90");
+                               "those of types A and B are between -90 and 90");
     out_.symmetry = mirrored_v && mirrored_h ? "in each quadrant"
                     : mirrored_h             ? "left and right"
                     : mirrored_v             ? "up and down"
@@ -285,7 +288,7 @@ Result<void> IesReader::make_types_ab(const std::vector<double>& vertical, const
     for (const double a : polar) theta.push_back(std::clamp(90 + a, 0.0, 180.0));
     const Planes circle = around_axis(around, rows);
     for (std::size_t i = 1; i < circle.angle.size(); ++i)
-        if (!(circle.angle[i] > circle.angle[i - 1])) return text_.error("angles lie too close to one another");
+        if (!(circle.angle[i] > circle.angle[i - 1])) return text_.error("angles are too close to one another");
     set_table(out_, theta, circle);
     // The beam is along the luminaire's -z, V towards +x, H towards +y. The polar angle -90 is along the table's -z.
     if (is_b)
@@ -329,7 +332,7 @@ Result<Photometry> IesReader::read() {
     if (header_.lumens > 0)
         out_.lamp_lumens = header_.lumens * header_.lamps;
     else if (header_.lumens != -1)
-        repair(fmt::format("{:g} lm per lamp are taken for absolute photometry", header_.lumens),
+        repair(fmt::format("{:g} lm per lamp are read as absolute photometry", header_.lumens),
                "lumens per lamp of -1 declare absolute photometry");
     out_.watts = header_.watts;
     out_.opening = opening();

@@ -13,9 +13,9 @@ Result<double> IesText::number(const std::string& what) {
         case NumberKind::finite:
             break;
         case NumberKind::not_finite:
-            return error(fmt::format("'{}' in place of {} is not finite", shown(word), what));
+            return error(fmt::format("'{}' is not finite (expected: {})", shown(word), what));
         case NumberKind::not_a_number:
-            return error(fmt::format("'{}' in place of {} is not a number", shown(word), what));
+            return error(fmt::format("'{}' is not a number (expected: {})", shown(word), what));
     }
     rest_.remove_prefix(word.size());
     return value;

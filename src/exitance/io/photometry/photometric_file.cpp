@@ -12,12 +12,12 @@ namespace {
 void warn_of_missing_extent(Photometry& p) {
     if (p.opening.shape == Opening::Shape::point)
         tell(p, Finding::Kind::warning, 0,
-             fmt::format("its opening is a point: a cube of {:g} mm stands for it", 1000 * point_opening_size),
-             "UGR takes the luminaire for a small source of 0.005 m^2");
+             fmt::format("its opening has no size: a cube of {:g} mm is used", 1000 * point_opening_size),
+             "UGR treats the luminaire as a small source of 0.005 m^2");
     else if (!(body_size(p.opening) == p.opening.size))
         tell(p, Finding::Kind::warning, 0,
-             fmt::format("its opening has no extent in some direction: {:g} cm is taken", 100 * strip_width),
-             "light nearer than some centimetres, and UGR, follow from that");
+             fmt::format("its opening has no extent in some direction: {:g} cm is used there", 100 * strip_width),
+             "this affects the light within some centimetres, and UGR");
 }
 
 }  // namespace
@@ -29,7 +29,7 @@ bool names_photometry(const std::string& path) {
 
 Result<Photometry> load_photometry(const std::string& path) {
     if (!names_photometry(path))
-        return Error{ErrorCode::bad_input, "this kind of photometric file is not known", path,
+        return Error{ErrorCode::bad_input, "is not a known kind of photometric file", path,
                      "known endings: .ies, .ldt"};
     const Result<std::string> text = read_whole_file(path);
     if (!text) return Error{text.error().code, text.error().message, path, text.error().hint};
@@ -37,9 +37,9 @@ Result<Photometry> load_photometry(const std::string& path) {
     constexpr double accepted = 1.02;
     if (out && out->lamp_lumens && out->flux() > accepted * *out->lamp_lumens)
         tell(*out, Finding::Kind::warning, 0,
-             fmt::format("its intensities come to {:.4g} lm, more than its lamps' {:.4g} lm", out->flux(),
+             fmt::format("its intensities amount to {:.4g} lm, more than its lamps' {:.4g} lm", out->flux(),
                          *out->lamp_lumens),
-             "the intensities are taken");
+             "the intensities are used");
     if (out) warn_of_missing_extent(*out);
     return out;
 }

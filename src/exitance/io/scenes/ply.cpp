@@ -293,7 +293,7 @@ class PlyReader {
 
     bool broken(const Element& element, std::size_t row, const Numbers& numbers, int header_lines) {
         error(numbers.line() > 0 ? header_lines + numbers.line() : 0,
-              fmt::format("element '{}' ends within row {} of {}, or holds something that is no number there",
+              fmt::format("element '{}' ends within row {} of {}, or has something other than a number there",
                           element.name, row + 1, element.count));
         return false;
     }

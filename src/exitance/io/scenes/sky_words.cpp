@@ -95,7 +95,7 @@ Result<void> read_pair(const std::string& word, Words& out) {
     if (out.number.count(name) || (name == "time" && out.time)) return wrong(fmt::format("'{}' is given twice", name));
     if (name == "time") {
         if (read_time(value, out)) return {};
-        return wrong(fmt::format("time '{}' is no moment", shown(value)),
+        return wrong(fmt::format("time '{}' is not a valid date and time", shown(value)),
                      "such as time=06-21T12:00 or 2024-06-21T12:00:30");
     }
     const auto known = std::find_if(numbers.begin(), numbers.end(), [&](const Named& n) { return name == n.name; });
@@ -183,7 +183,7 @@ Result<ChosenSky> parse_sky(const std::string& text, const Weather* weather) {
     const bool perez = words.kind == "perez", plain = words.kind == "uniform" || words.kind == "overcast";
     const int type = cie_type(words.kind);
     if (!perez && !plain && type == 0)
-        return wrong(fmt::format("'{}' is no kind of sky", shown(words.kind)), sky_help());
+        return wrong(fmt::format("'{}' is not a kind of sky", shown(words.kind)), sky_help());
     const Result<std::optional<Normal>> sun = find_sun(words, weather);
     if (!sun) return sun.error();
 

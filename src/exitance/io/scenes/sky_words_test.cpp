@@ -50,8 +50,8 @@ TEST(SkyWords, MakeSkySunAndGround) {
 }
 
 TEST(SkyWords, ReportErrors) {
-    EXPECT_EQ(fault("blue,dhi=1"), "'blue' is no kind of sky");
-    EXPECT_EQ(fault("cie16,dhi=1"), "'cie16' is no kind of sky");
+    EXPECT_EQ(fault("blue,dhi=1"), "'blue' is not a kind of sky");
+    EXPECT_EQ(fault("cie16,dhi=1"), "'cie16' is not a kind of sky");
     EXPECT_EQ(fault("uniform"), "dhi, the irradiance of the ground by the sky, is missing");
     EXPECT_EQ(fault("uniform,dhi=x"), "dhi 'x' is not a number");
     EXPECT_EQ(fault("uniform,dhi=-1"), "dhi is -1, not from 0 to 1e+06 (diffuse horizontal irradiance, W/m^2)");
@@ -65,8 +65,8 @@ TEST(SkyWords, ReportErrors) {
     EXPECT_EQ(fault("clear,dhi=100,altitude=20"),
               "the sun is given by altitude and azimuth together, or by time and place");
     EXPECT_EQ(fault("clear,dhi=100,time=06-21T12:00"), "a time needs a place: lat and lon are missing");
-    EXPECT_EQ(fault("clear,dhi=100,lat=1,lon=2,time=02-30T12:00"), "time '02-30T12:00' is no moment");
-    EXPECT_EQ(fault("clear,dhi=100,lat=1,lon=2,time=noon"), "time 'noon' is no moment");
+    EXPECT_EQ(fault("clear,dhi=100,lat=1,lon=2,time=02-30T12:00"), "time '02-30T12:00' is not a valid date and time");
+    EXPECT_EQ(fault("clear,dhi=100,lat=1,lon=2,time=noon"), "time 'noon' is not a valid date and time");
     EXPECT_EQ(fault("perez,dhi=10,dni=5,altitude=-20,azimuth=0"), "the sun is below the horizon, and dni is not 0");
 }
 

@@ -115,7 +115,7 @@ class StlReader {
                     add_triangle(corners.data(), begun);
                 corners.clear();
             } else if (key != "facet" && key != "endfacet" && key != "endsolid") {
-                return error(lines.number(), fmt::format("'{}' is no word of STL", shown(key)));
+                return error(lines.number(), fmt::format("'{}' is not a keyword of STL", shown(key)));
             }
         }
         if (!corners.empty()) error(begun, "the file ends within a loop");

@@ -133,7 +133,7 @@ class View3dReader {
         const auto number = parse_integer(word);
         if (number && *number >= 0 && *number <= static_cast<long long>(pieces_.size()))
             return static_cast<std::size_t>(*number);
-        error(line_, fmt::format("{} '{}' is no earlier surface", what, shown(word)));
+        error(line_, fmt::format("{} '{}' is not an earlier surface", what, shown(word)));
         return std::nullopt;
     }
 
@@ -189,7 +189,7 @@ class View3dReader {
             error(line_, fmt::format("is merged into surface {}, which is merged itself", piece.merged),
                   "name the first of them");
         if (piece.merged > 0 && pieces_[piece.merged - 1].kind != 'S')
-            error(line_, fmt::format("is merged into surface {}, which is no part of the result", piece.merged));
+            error(line_, fmt::format("is merged into surface {}, which is not part of the result", piece.merged));
         const std::string_view word = items.word();
         if (!word.empty() && number_of_word(word, piece.emittance) != NumberKind::finite)
             error(line_, fmt::format("emittance '{}' is not a number", shown(word)));

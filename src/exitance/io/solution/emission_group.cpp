@@ -107,7 +107,7 @@ std::vector<DirectedEmission> read_emission(Hdf5Reader& file, const std::string&
         const double* a = &axes[9 * i];
         out[i] = {ProfileId(profile[i]), {a[0], a[1], a[2]}, {a[3], a[4], a[5]}, {a[6], a[7], a[8]}, scale[i]};
         if (profile[i] >= profile_count || !out[i].is_sane())
-            file.fail(group + "/material_profile", "and the sets beside it are no way to emit");
+            file.fail(group + "/material_profile", "and the other data sets do not describe an emission");
     }
     return out;
 }

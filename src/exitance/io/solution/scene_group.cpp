@@ -58,7 +58,7 @@ std::vector<PunctualLight> read_lights(Hdf5Reader& file, const std::string& grou
     const auto cone = in.read<double>("light_cone", 2, count);
     for (std::size_t i = 0; i < count && !file.failed(); ++i) {
         if (kind[i] > static_cast<std::uint8_t>(PunctualLight::Kind::directional))
-            file.fail(group + "/light_kind", "holds " + std::to_string(kind[i]) + ", which is no kind of light");
+            file.fail(group + "/light_kind", "holds " + std::to_string(kind[i]) + ", which is not a kind of light");
         if (!(cone[2 * i] >= 0 && cone[2 * i] < cone[2 * i + 1] && cone[2 * i + 1] <= pi / 2))
             file.fail(group + "/light_cone", "holds cones that no spot has");
     }

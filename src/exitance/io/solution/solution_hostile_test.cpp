@@ -276,7 +276,7 @@ TEST(Exports, ByUnknownEndingsAreErrors) {
     const Result<void> written = export_solution(sample_solution(), "solution.stl");
     ASSERT_FALSE(written);
     EXPECT_EQ(written.error().code, ErrorCode::usage);
-    EXPECT_EQ(written.error().hint, "endings known: .vtkhdf, .hdf, .vtu, .glb, .obj, .csv, .curves.csv");
+    EXPECT_EQ(written.error().hint, "known endings: .vtkhdf, .hdf, .vtu, .glb, .obj, .csv, .curves.csv");
     EXPECT_EQ(export_solution(sample_solution(), "no/folder/s.glb").error().code, ErrorCode::cannot_write);
 }
 

@@ -83,8 +83,8 @@ class GltfReader {
 bool GltfReader::check_extensions() {
     for (const std::string& name : in_.extensionsRequired)
         if (std::find(known_extensions.begin(), known_extensions.end(), name) == known_extensions.end())
-            return error(fmt::format("needs the extension '{}', which is not read", shown(name)),
-                         "export it again without (compression and instancing are switched off there)");
+            return error(fmt::format("needs the extension '{}', which is not supported", shown(name)),
+                         "export it again without this extension (switch off compression and instancing)");
     return true;
 }
 
@@ -121,7 +121,7 @@ bool GltfReader::rows(int accessor, int type, bool is_index, const std::string& 
     if (!names_one(accessor, in_.accessors))
         return error(fmt::format("{} name accessor {} of {}", what, accessor, in_.accessors.size()));
     const tinygltf::Accessor& in = in_.accessors[static_cast<std::size_t>(accessor)];
-    if (in.type != type) return error(fmt::format("{} are not of the type that is expected there", what));
+    if (in.type != type) return error(fmt::format("{} do not have the expected type", what));
     const Result<GltfRows> held = accessors_->rows(accessor_of(in), is_index ? 1 : 3, is_index, what);
     if (!held) return error(held.error().message);
     out = *held;
@@ -146,11 +146,11 @@ bool GltfReader::read_primitive(const tinygltf::Primitive& in, const std::string
         case TINYGLTF_MODE_TRIANGLES:
             break;
         default:
-            return error(fmt::format("mesh '{}' is drawn in mode {}, which does not exist", mesh, in.mode));
+            return error(fmt::format("mesh '{}' has the drawing mode {}, which does not exist", mesh, in.mode));
     }
     for (const auto& [name, value] : in.extensions)
         if (name == "KHR_draco_mesh_compression")
-            return error(fmt::format("mesh '{}' is compressed (Draco), which is not read", mesh),
+            return error(fmt::format("mesh '{}' is compressed (Draco), which is not supported", mesh),
                          "export it again without compression");
     const auto position = in.attributes.find("POSITION");
     if (position == in.attributes.end()) return true;  // the specification requires readers to skip such primitives
@@ -254,7 +254,7 @@ GltfModel::Colour GltfReader::texture_mean(int texture, const ByteCurve& decode,
     std::span<const std::uint8_t> bytes = image.image;
     if (image.bufferView >= 0) {
         const auto held = view_bytes(image.bufferView);
-        if (!held) return unread("lies in bytes that are not there");
+        if (!held) return unread("refers to bytes that the file does not have");
         bytes = *held;
     } else if (bytes.empty()) {
         return unread(fmt::format("('{}') cannot be found or read", shown(image.uri)));
@@ -375,7 +375,8 @@ bool GltfReader::read_node(const tinygltf::Node& in, std::size_t number) {
     const double lamp = number_in(in.extensions, "KHR_lights_punctual", "light", -1);
     if ((in.mesh >= 0 && !names_one(in.mesh, out_.meshes)) || (in.camera >= 0 && !names_one(in.camera, out_.views)) ||
         !(lamp < static_cast<double>(out_.lamps.size())))
-        return error(fmt::format("node {} ('{}') names a mesh, camera or light that is not there", number, node.name));
+        return error(
+            fmt::format("node {} ('{}') names a mesh, camera or light that does not exist", number, node.name));
     node.mesh = in.mesh, node.view = in.camera, node.lamp = lamp < 0 ? -1 : static_cast<int>(lamp);
     node.is_deformed = in.skin >= 0 || !in.weights.empty();
     for (const int child : in.children) {
@@ -385,8 +386,9 @@ bool GltfReader::read_node(const tinygltf::Node& in, std::size_t number) {
         node.children.push_back(child);
     }
     if (in.extensions.count("EXT_mesh_gpu_instancing") > 0)
-        return error(fmt::format("node {} ('{}') has instances in a buffer, which are not read", number, node.name),
-                     "export it again with a node an instance");
+        return error(
+            fmt::format("node {} ('{}') has instances in a buffer, which are not supported", number, node.name),
+            "export it again with one node per instance");
     out_.nodes.push_back(std::move(node));
     return true;
 }
@@ -408,7 +410,8 @@ bool GltfReader::read_nodes() {
         for (const int child : node.children) is_child[static_cast<std::size_t>(child)] = true;
     for (std::size_t i = 0; i < is_child.size(); ++i)
         if (!is_child[i]) out_.roots.push_back(static_cast<int>(i));
-    return !out_.roots.empty() || in_.nodes.empty() || error("every node hangs in another one: none is a root");
+    return !out_.roots.empty() || in_.nodes.empty() ||
+           error("every node is the child of another: the scene has no root node");
 }
 
 Result<GltfModel> GltfReader::read() {

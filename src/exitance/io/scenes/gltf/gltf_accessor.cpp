@@ -43,17 +43,18 @@ bool fits(std::size_t bytes, std::size_t offset, std::size_t stride, std::size_t
 Result<GltfRows> GltfAccessorCheck::rows(const GltfAccessor& a, std::size_t width, bool is_index,
                                          const std::string& what) {
     const auto number = number_of(a.component);
-    if (!number) return bad(fmt::format("{} are not of the type that is expected there", what));
+    if (!number) return bad(fmt::format("{} do not have the expected type", what));
     const bool whole = *number == GltfRows::Number::uint8 || *number == GltfRows::Number::uint16 ||
                        *number == GltfRows::Number::uint32;
     if (is_index && !whole) return bad(fmt::format("{} are not whole numbers", what));
     const std::size_t row = width * GltfRows::bytes(*number);
     GltfRows out;
     if (a.view >= 0) {
-        if (!a.bytes) return bad(fmt::format("{} lie in bytes that are not there (buffer view {})", what, a.view));
+        if (!a.bytes)
+            return bad(fmt::format("{} refer to bytes that the file does not have (buffer view {})", what, a.view));
         const std::size_t stride = a.stride == 0 ? row : a.stride;
         if (stride < row || !fits(a.bytes->size(), a.first, stride, row, a.count))
-            return bad(fmt::format("{} are {} rows from byte {} of {} bytes: they are not all there", what, a.count,
+            return bad(fmt::format("{} are {} rows from byte {} on, but there are only {} bytes", what, a.count,
                                    a.first, a.bytes->size()));
         out = GltfRows(a.bytes->data() + a.first, stride, a.count, *number, a.normalized);
     } else if (!a.sparse) {
@@ -72,13 +73,13 @@ Result<GltfRows> GltfAccessorCheck::fill_sparse(const GltfAccessor& a, std::size
     const auto place_number = number_of(sparse.place_component);
     const std::size_t row = width * GltfRows::bytes(number);
     if (!sparse.places || !sparse.values || !place_number || sparse.first_place < 0 || sparse.first_value < 0)
-        return bad(fmt::format("{} are sparse, and what replaces them is not there", what));
+        return bad(fmt::format("{} are sparse, and their replacements are missing", what));
     const auto first_place = static_cast<std::size_t>(sparse.first_place),
                first_value = static_cast<std::size_t>(sparse.first_value);
     const std::size_t place_size = GltfRows::bytes(*place_number);
     if (!fits(sparse.places->size(), first_place, place_size, place_size, count) ||
         !fits(sparse.values->size(), first_value, row, row, count))
-        return bad(fmt::format("{} are sparse, and what replaces them is not all there", what));
+        return bad(fmt::format("{} are sparse, and their replacements are incomplete", what));
     copied_ += row * a.count;
     if (copied_ > 8 * file_bytes_) return bad(fmt::format("{} are sparse, and too many for the file", what));
     std::vector<std::uint8_t>& bytes = copies_.emplace_back(row * a.count);

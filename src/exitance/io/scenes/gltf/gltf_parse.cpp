@@ -66,11 +66,12 @@ std::optional<Error> parse_gltf(const std::string& bytes, const std::string& pat
         std::memcpy(&version, bytes.data() + 4, 4), std::memcpy(&length, bytes.data() + 12, 4);
         if (version != 2) return bad(fmt::format("is a binary glTF of version {}; version 2 is read", version));
         if (length > bytes.size() - header)
-            return bad(fmt::format("has a JSON chunk of {} bytes, of {} left", length, bytes.size() - header));
+            return bad(
+                fmt::format("has a JSON chunk of {} bytes, but only {} are left", length, bytes.size() - header));
         json = json.substr(header, length);
     }
     const JsonShape shape = shape_of_json(json);
-    if (shape.depth > 100) return bad(fmt::format("has JSON nested {} deep", shape.depth));
+    if (shape.depth > 100) return bad(fmt::format("has JSON that is nested {} levels deep", shape.depth));
     if (binary && shape.buffers * (bytes.size() - header - json.size()) > 4 * bytes.size() + (std::size_t(32) << 20))
         return bad(fmt::format("has {} buffers", shape.buffers));
 
@@ -92,11 +93,12 @@ std::optional<Error> parse_gltf(const std::string& bytes, const std::string& pat
     }
     // Compressed meshes have accessors without data, which make tinygltf fail first.
     if (!done && bytes.find("KHR_draco_mesh_compression") != bytes.npos)
-        return bad("has meshes that are compressed (Draco), which is not read", "export it again without compression");
+        return bad("has meshes that are compressed (Draco), which is not supported",
+                   "export it again without compression");
     if (!done) {
         const std::string first = problem.substr(0, problem.find('\n'));
         return bad(first.empty() ? "is no glTF" : fmt::format("cannot be read as glTF: {}", shown(first)),
-                   first.starts_with("File not found") ? "put the files that it names beside it" : "");
+                   first.starts_with("File not found") ? "put the files that it names in the same folder" : "");
     }
     if (!out.asset.version.starts_with("2"))
         return bad(fmt::format("is glTF of version '{}'; version 2 is read", shown(out.asset.version)));

@@ -113,7 +113,7 @@ void SceneMaker::report_materials() {
          fmt::format("would reflect more than {0}: {0} is used", max_reflectance),
          "white is the default of glTF; walls reflect 0.5 to 0.85");
     list([&](std::size_t i) { return in_.materials[i].metallic >= 1 && !out_.materials[i].emits(); },
-         "is metal: nothing of it reflects diffusely", "set the metallic factor to 0, glTF's default is 1");
+         "is metal: it does not reflect diffusely", "set the metallic factor to 0, glTF's default is 1");
     list([&](std::size_t i) { return in_.materials[i].transparent && !is_clear_glass(in_.materials[i]); },
          "lets light through: here it is opaque", "panes of clear glass have KHR_materials_transmission");
     list([&](std::size_t i) { return is_clear_glass(in_.materials[i]); },
@@ -254,7 +254,7 @@ void SceneMaker::add_lamp(const GltfModel::Lamp& lamp, const Affine& to_world) {
     light.intensity = spread(lamp.intensity);
     light.inner_cone = lamp.inner_cone, light.outer_cone = lamp.outer_cone;
     if (lamp.has_range)
-        warn(fmt::format("light '{}' has a range: light does not end there, so it is passed over", lamp.name));
+        warn(fmt::format("light '{}' has a range, which is ignored: real light does not end there", lamp.name));
     out_.lights.push_back(std::move(light));
     out_.photometric = true;  // intensities are in candela and lux
 }
@@ -269,7 +269,7 @@ void SceneMaker::add_view(const GltfModel::View& view, const Affine& to_world) {
     if (view.xmag > 0) camera.fov = 60;
     const bool usable = along > 0 && up > 0 && norm(cross(to_world.z, to_world.y)) > 1e-9 * along * up &&
                         camera.fov > 0 && camera.fov < 180 && std::isfinite(camera.width) && is_finite(to_world.origin);
-    if (!usable) return warn(fmt::format("camera '{}' shows nothing: it is left out", view.name));
+    if (!usable) return warn(fmt::format("camera '{}' shows nothing and is omitted", view.name));
     camera.eye = to_world.origin;
     camera.target = camera.eye - to_world.z / along;
     camera.up = to_world.y / up;
@@ -312,7 +312,7 @@ bool SceneMaker::visit_nodes() {
         const auto at = static_cast<std::size_t>(number);
         const GltfModel::Node& node = in_.nodes[at];
         if (seen[at])
-            return error(fmt::format("node {} ('{}') hangs in two places, or in itself", number, node.name),
+            return error(fmt::format("node {} ('{}') has two parents, or is its own ancestor", number, node.name),
                          "the nodes of glTF form trees");
         seen[at] = true;
         const Affine to_world = parent * node.to_parent;

@@ -155,7 +155,7 @@ std::shared_ptr<const TextureArea> MtlReader::picture(const std::string& name, c
     find(Finding::Kind::warning, line_,
          fmt::format("the texture '{}' of material '{}' {}: {} is used alone", shown(name), shown(material_.name),
                      area.error().message, otherwise),
-         "put it beside the material file, as PNG or JPEG");
+         "put it in the folder of the material file, as PNG or JPEG");
     return nullptr;
 }
 

@@ -179,7 +179,7 @@ void ObjReader::read_library(std::string_view name) {
     out_.darkening.push_back({Finding::Kind::repair, path_, lines_.number(),
                               fmt::format("material file '{}' {}: its materials reflect 0.5 and emit nothing",
                                           shown(name), text.error().message),
-                              "put it beside the scene file"});
+                              "put it in the folder of the scene file"});
     library_missing_ = true;
 }
 

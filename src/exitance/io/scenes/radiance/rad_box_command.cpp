@@ -21,7 +21,7 @@ Result<std::string> box_command_output(const CommandWords& words) {
     for (std::size_t k = 0; k < 3; ++k)
         if (number_of_word(words[3 + k], size[k]) != NumberKind::finite || !(size[k] > 0))
             return Error{ErrorCode::bad_input,
-                         fmt::format("genbox's size '{}' is no number above 0", shown(words[3 + k])), "",
+                         fmt::format("genbox's size '{}' is not a number above 0", shown(words[3 + k])), "",
                          "genbox material name x y z"};
     const bool inwards = words.size() > 6;
     // Corner indices, counter-clockwise seen from outside.

@@ -212,9 +212,9 @@ Result<RadDistribution> read_function(const RadPattern& pattern) {
 Result<RadDistribution> read_distribution(const RadPattern& pattern, const std::string& scene_file) {
     Result<RadDistribution> out = pattern.primitive.type == "brightdata"   ? read_data(pattern, scene_file)
                                   : pattern.primitive.type == "brightfunc" ? read_function(pattern)
-                                                                           : bad("this type is not read");
+                                                                           : bad("this type is not supported");
     if (out && !out->profile.is_sane())
-        return bad("its table is no distribution", "angles ascend, sizes are positive, values finite");
+        return bad("its table is not a distribution", "angles ascend, sizes are positive, values finite");
     return out;
 }
 

@@ -40,7 +40,7 @@ const RadEmission::Lamp& RadEmission::lamp_of(const RadMeaning& meaning, const R
         findings_.note("what lboxcorr changes near a lamp", {pattern.file, pattern.primitive.line});
     const Affine& to_world = read->to_world;
     if (!(std::abs(to_world.determinant()) > 0)) {
-        findings_.error({file, face.line}, by + "its transform leaves no space");
+        findings_.error({file, face.line}, by + "its transform has a scale of 0");
         return lamp;
     }
     lamp.emission.x = normalized(to_world.x), lamp.emission.y = normalized(to_world.y);

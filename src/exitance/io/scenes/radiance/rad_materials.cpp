@@ -124,7 +124,7 @@ bool RadMaterials::take_material(const RadPrimitive& p, const std::string& file)
         if (p.type == "spotlight") findings_.note("the cone of a spotlight, which shines everywhere", at);
         if (p.type == "glow" && p.numbers[3] != 0) findings_.note("the radius of a glow", at);
         if (std::any_of(p.numbers.begin(), p.numbers.begin() + 3, [](double v) { return v < 0; }))
-            findings_.error(at, fmt::format("'{}' emits less than nothing", shown(p.name)));
+            findings_.error(at, fmt::format("'{}' has a negative emission", shown(p.name)));
         add_material(p, RadMeaning::Kind::emits, {}, spread(p.numbers, 1));
     } else if (p.type == "glass") {
         add_glass(p, file);
@@ -156,7 +156,7 @@ const RadMeaning* RadMaterials::meaning_of(const RadPrimitive& p, const std::str
     else if (found == meanings_.end())  // such as those that mkillum replaces
         findings_.note("surfaces of void, which light passes", at);
     else if (found->second.kind == RadMeaning::Kind::pattern)
-        findings_.error(at, fmt::format("'{}' has no material that is read", shown(p.name)),
+        findings_.error(at, fmt::format("'{}' has no supported material", shown(p.name)),
                         "its modifier is a pattern, or of a kind that is not known here");
     else
         return &found->second;
@@ -166,7 +166,7 @@ const RadMeaning* RadMaterials::meaning_of(const RadPrimitive& p, const std::str
 void RadMaterials::take_alias(const RadPrimitive& p, const std::string& file) {
     const auto meaning = meanings_.find(p.words[0]);
     if (meaning == meanings_.end() && p.words[0] != "void")
-        return findings_.error({file, p.line}, fmt::format("alias '{}' stands for '{}', which is not defined",
+        return findings_.error({file, p.line}, fmt::format("alias '{}' refers to '{}', which is not defined",
                                                            shown(p.name), shown(p.words[0])));
     const RadMeaning same = meaning == meanings_.end() ? RadMeaning() : meaning->second;
     meanings_[p.name] = same;
@@ -174,7 +174,7 @@ void RadMaterials::take_alias(const RadPrimitive& p, const std::string& file) {
 
 /// A mixture is replaced by its first material, or by the second if the first is void.
 void RadMaterials::take_mixture(const RadPrimitive& p, const std::string& file) {
-    findings_.note("mixtures, which are of their first material", {file, p.line});
+    findings_.note("mixtures, for which their first material is used", {file, p.line});
     for (std::size_t i = 0; i < std::min<std::size_t>(2, p.words.size()); ++i) {
         const auto found = meanings_.find(p.words[i]);
         if (found == meanings_.end()) continue;
@@ -182,7 +182,7 @@ void RadMaterials::take_mixture(const RadPrimitive& p, const std::string& file) 
         meanings_[p.name] = same;
         return;
     }
-    findings_.error({file, p.line}, fmt::format("mixture '{}' is of no material that is defined", shown(p.name)));
+    findings_.error({file, p.line}, fmt::format("mixture '{}' has no material that is defined", shown(p.name)));
 }
 
 void RadMaterials::take_pattern(RadPrimitive p, const std::string& file, const Affine& to_world) {
@@ -200,9 +200,9 @@ void RadMaterials::take(RadPrimitive p, const std::string& file, const Affine& t
     if (p.type == "alias") return take_alias(p, file);
     if (take_material(p, file)) return;
     if (p.type == "mesh" || p.type == "instance")
-        return findings_.error({file, p.line},
-                               fmt::format("{} '{}' is in a compiled file, which is not read", p.type, shown(p.name)),
-                               "put its polygons here, with !xform");
+        return findings_.error(
+            {file, p.line}, fmt::format("{} '{}' is in a compiled file, which is not supported", p.type, shown(p.name)),
+            "put its polygons here, with !xform");
     if (p.type.starts_with("mix")) return take_mixture(p, file);
     take_pattern(std::move(p), file, to_world);
 }

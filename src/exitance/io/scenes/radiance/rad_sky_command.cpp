@@ -43,7 +43,7 @@ Result<void> read_plain_hour(double hour, bool goes_on, RadSkyWords& out) {
 
 /// Parses "14", "14.5", "14:30", "14:30EDT", "+14.5" (solar time).
 Result<void> read_hour(std::string_view word, RadSkyWords& out) {
-    const Error bad = wrong(out, fmt::format("'{}' is no time", shown(std::string(word))),
+    const Error bad = wrong(out, fmt::format("'{}' is not a time", shown(std::string(word))),
                             "such as 14.5, 14:30, 14:30EST, or +14.5 for solar time");
     if (word.starts_with('+')) out.is_solar_time = true, word.remove_prefix(1);
     const std::size_t digits = std::min(word.find_first_not_of("0123456789.:"), word.size());
@@ -73,14 +73,14 @@ Result<RadSkyWords> read_head(const CommandWords& words) {
     if (words[1] == "-ang") {
         const std::optional<double> altitude = parse_number(words[2]), azimuth = parse_number(words[3]);
         if (!altitude || !azimuth || !(std::abs(*altitude) <= 90) || !(std::abs(*azimuth) <= 720))
-            return wrong(out, fmt::format("'-ang {} {}' is no altitude and azimuth in degrees", shown(words[2]),
+            return wrong(out, fmt::format("'-ang {} {}' is not an altitude and an azimuth in degrees", shown(words[2]),
                                           shown(words[3])));
         out.altitude = *altitude * pi / 180, out.azimuth = *azimuth * pi / 180;
         out.has_angles = true;
     } else {
         const auto month = parse_integer(words[1]), day = parse_integer(words[2]);
         if (!month || !day || *month < 1 || *month > 12 || *day < 1 || *day > 31)
-            return wrong(out, fmt::format("'{} {}' is no month and day", shown(words[1]), shown(words[2])));
+            return wrong(out, fmt::format("'{} {}' is not a month and a day", shown(words[1]), shown(words[2])));
         out.month = static_cast<int>(*month), out.day = static_cast<int>(*day);
         if (const Result<void> read = read_hour(words[3], out); !read) return read.error();
     }
@@ -138,15 +138,15 @@ void take_number(char option, double value, RadSkyWords& out) {
 }
 
 Result<void> check_options(const RadSkyWords& in) {
-    if (!(in.ground >= 0 && in.ground <= 1)) return wrong(in, fmt::format("-g {:g} is no reflectance", in.ground));
+    if (!(in.ground >= 0 && in.ground <= 1)) return wrong(in, fmt::format("-g {:g} is not a reflectance", in.ground));
     if (!(std::abs(in.latitude) <= 0.5 * pi)) return wrong(in, "-a is not in [-90, 90]");
     if (!(std::abs(in.longitude) <= 360) || !(std::abs(in.meridian) <= 360))
         return wrong(in, "-o and -m are not in [-360, 360]");
     if (in.year && !is_date(*in.year, in.month ? in.month : 1, in.month ? in.day : 1))
-        return wrong(in, fmt::format("{}-{}-{} is no date", *in.year, in.month, in.day));
+        return wrong(in, fmt::format("{}-{}-{} is not a date", *in.year, in.month, in.day));
     if (in.zenith < 0 || in.solar < 0) return wrong(in, "a brightness is negative");
     if (in.interval < 0) return wrong(in, "-i lies below 0");
-    if (in.older && in.year) return wrong(in, "-y is no option of the programs of before November 2019");
+    if (in.older && in.year) return wrong(in, "-y is not an option of the programs before November 2019");
     return {};
 }
 

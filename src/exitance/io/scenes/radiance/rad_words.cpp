@@ -78,7 +78,7 @@ std::optional<RadFault> read_primitive(RadWords& words, RadPrimitive& out) {
         if (!word && words.is_open_quote()) return ended(words.line(), shown_name);
         const std::optional<long long> count = parse_integer(word.value_or(""));
         if (!count || *count < 0)
-            return RadFault{words.line(), fmt::format("'{}' is no count of the arguments of {}",
+            return RadFault{words.line(), fmt::format("'{}' is not a number of arguments (of {})",
                                                       shown(word.value_or("")), shown_name)};
         for (long long i = 0; i < *count; ++i) {
             const auto argument = words.next();

@@ -170,7 +170,7 @@ void RadianceReader::take_source(const RadPrimitive& p, const Call& call) {
     const double length = norm(towards), angle = p.numbers[3] * pi / 180;
     if (!(length > 0) || !(angle > 0))
         return findings_.error(at, fmt::format("source '{}' has no direction or size", p.name));
-    if (meaning->kind != RadMeaning::Kind::emits) return findings_.note("sources that do not shine", at);
+    if (meaning->kind != RadMeaning::Kind::emits) return findings_.note("sources that do not emit", at);
     std::optional<SkyModel> pattern;
     if (meaning->pattern_count > 0) {
         const Result<SkyModel> sky = meaning->pattern_count == 1
@@ -189,7 +189,7 @@ void RadianceReader::take_source(const RadPrimitive& p, const Call& call) {
     const Spectrum radiance = radiance_of_exitance(materials_.materials[meaning->material].exitance);
     const std::optional<DistantLight> light =
         light_of_source(towards / length, angle, radiance, pattern ? &*pattern : nullptr);
-    if (!light) return findings_.note("wide sources that are neither half of the sky nor all of it", at);
+    if (!light) return findings_.note("wide sources that are neither half of the sky nor the whole sky", at);
     out_.description.distant.append(*light);
 }
 
@@ -277,8 +277,9 @@ Result<RadianceReader::Copied> RadianceReader::copied_by(const std::vector<Comma
         if (!xform) return xform.error();
         if (xform->files.empty() != (run > 1))
             return Error{ErrorCode::bad_input,
-                         run > 1 ? "xform is given a file and what a command prints" : "xform is given no file", "",
-                         ""};
+                         run > 1 ? "xform has both a file and the output of a command to transform"
+                                 : "xform has no file to transform",
+                         "", ""};
         last.push_back(std::move(*xform));
     }
     const Result<void> added =
@@ -295,7 +296,8 @@ Result<RadianceReader::Copied> RadianceReader::copied_by(const std::vector<Comma
 
 void RadianceReader::run_command(const std::string& command, int line, const Call& call) {
     const RadPlace at{*call.name, line};
-    if (call.depth >= max_depth) return findings_.error(at, fmt::format("files call each other {} deep", max_depth));
+    if (call.depth >= max_depth)
+        return findings_.error(at, fmt::format("files include each other {} levels deep", max_depth));
     const Result<std::vector<CommandWords>> stages = parse_command(command);
     if (!stages) return findings_.error(at, stages.error().message, stages.error().hint);
     const CommandWords& first = stages->front();
@@ -394,9 +396,9 @@ ReadScene RadianceReader::read() {
     out_.description.profiles = std::move(emission_.profiles);
     out_.findings = findings_.take();
     if (opened_)
-        out_.findings.push_back({Finding::Kind::warning, paths_.front(), 0,
-                                 "a shining ball about everything else counts as a uniform sky infinitely far away",
-                                 ""});
+        out_.findings.push_back(
+            {Finding::Kind::warning, paths_.front(), 0,
+             "an emitting sphere around everything else is read as a uniform sky, infinitely far away", ""});
     return std::move(out_);
 }
 

@@ -233,7 +233,7 @@ TEST_F(RadianceFiles, PatternsMayBeNestedAndMixturesUseTheirFirstMaterial) {
     });
     EXPECT_EQ(notes, 1);
     EXPECT_EQ(first_error("void brightfunc a 2 a b.cal 0 0\na polygon p 0 0 9 0 0 0 1 0 0 0 1 0\n"),
-              "s.rad:5: 'p' has no material that is read");
+              "s.rad:5: 'p' has no supported material");
 }
 
 TEST_F(RadianceFiles, UnreadablePatternsOfEmittersAreErrors) {
@@ -316,7 +316,7 @@ TEST_F(RadianceFiles, ErrorsNameFileAndLine) {
     EXPECT_EQ(first_error("blue polygon a 0 0 9 0 0 0 1 0 0 0 1 0\n"),
               "s.rad:4: material 'blue' is not defined before 'a'");
     EXPECT_EQ(first_error("grey instance a 1 b.oct 0 0\n"),
-              "s.rad:4: instance 'a' is in a compiled file, which is not read");
+              "s.rad:4: instance 'a' is in a compiled file, which is not supported");
 }
 
 }  // namespace exitance

@@ -142,7 +142,7 @@ Result<Affine> parse_transform(const std::vector<std::string>& words) {
     const Result<Xform> parsed = XformParser(words, 1).parse();
     if (!parsed) return parsed.error();
     if (!parsed->files.empty())
-        return Error{ErrorCode::bad_input, fmt::format("'{}' is no transform", shown(parsed->files[0])), "", ""};
+        return Error{ErrorCode::bad_input, fmt::format("'{}' is not a transform", shown(parsed->files[0])), "", ""};
     return parsed->copies[0];
 }
 
