@@ -70,7 +70,7 @@ TEST(InterpolantError, FindsLightThatAFitAtItsPlacesDoesNotSee) {
         }
     }
     const double error = interpolant_error(stage, interpolant, leaves, {exact, Spectrum()}, 1);
-    const double right = 0.5 * std::sqrt(0.5 / 6);  // rho 1 W/m^2 on half of one of six faces
+    const double right = 0.5 * std::sqrt(0.5 / 6);  // the error is rho 1 W/m^2 on half of one of the six faces
     EXPECT_NEAR(error, right, 0.1 * right);         // 1024 stratified places, a sixth of them on that face
 }
 

@@ -63,7 +63,7 @@ TEST(UnlitSides, DoNotCountInTheAreaAndAreNotMeshed) {
     std::size_t whole = 0;
     for (ElementId leaf : tree.leaves()) whole += stage.is_left_out(tree.region(leaf)) ? 1 : 0;
     EXPECT_EQ(whole, 11u);
-    EXPECT_GT(tree.leaves().size(), 2400u);  // squares of 0.1 m of the room
+    EXPECT_GT(tree.leaves().size(), 2400u);  // the room's faces become squares of 0.1 m
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace exitance {
 /// A hierarchy, or its upper part: for every element, either all of its children are in it or none. The elements of one
 /// level are independent of each other.
 struct ElementPart {
-    std::vector<std::vector<ElementId>> inner;  ///< Per depth, roots first: elements whose children are in it.
+    std::vector<std::vector<ElementId>> inner;  ///< Elements whose children are in the part, by depth, roots first.
     std::vector<ElementId> ends;                ///< Elements whose children are not in it, in the order of their ids.
 };
 

@@ -47,7 +47,7 @@ class ClutteredExchange {
     struct Cell {
         std::array<Vec2, 4> corner;
         std::uint32_t count;
-        double integral = 0, error = 0;   ///< m^2; `error` is an estimate.
+        double integral = 0, error = 0;   ///< Integral over the cell, and its estimated error, m^2.
         std::vector<SourcePart> sources;  ///< Excludes parts that are certainly hidden.
         std::span<const Vec2> corners() const { return std::span(corner).first(count); }
         bool operator<(const Cell& other) const { return error < other.error; }

@@ -81,7 +81,7 @@ class GraySystem {
             if (known_[i]) continue;
             const ThermalSurface& s = surfaces_[i];
             const double own = s.temperature ? area_[i] * s.emissivity / (1 - s.emissivity) * emitted[i] : heat[i];
-            r[i] = own + leak_[i] * surroundings + incoming(i, x);  // the unknown ones are 0 so far
+            r[i] = own + leak_[i] * surroundings + incoming(i, x);  // unknown radiosities are still 0
             scale += r[i] * r[i] / diagonal_[i];
             p[i] = r[i] / diagonal_[i];
         }

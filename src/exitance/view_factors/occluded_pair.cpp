@@ -159,7 +159,7 @@ double OccludedExchange::integrate_smooth(const Cell& cell, double d, double all
     const double digits = whole > wanted ? std::log(whole / wanted) : 0;
     const int points = std::max(2, static_cast<int>(std::ceil(digits / (2 * std::log(std::max(rho, 1.0001))))));
     if (points == 2 && cell.count == 4) return cell.two_points;
-    if (points > 8) return exact(cell, allowed);  // too near for Gauss points
+    if (points > 8) return exact(cell, allowed);  // the cell is too near to the source for Gauss points
     nodes_.clear(), weights_.clear();
     place_nodes(cell, points);
     double sum = 0;

@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// Times an edge's length and the square of `reach_`: heights below this count as zero.
+/// Heights below this, times an edge's length and the square of `reach_`, count as zero.
 constexpr double rounding = 2e-15;
 constexpr double one_line = 1e-12;  ///< Edges closer than this from everywhere count as one line.
 /// From a point: below this, the intersection of two such edges is lost in rounding.

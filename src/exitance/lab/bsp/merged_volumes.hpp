@@ -39,7 +39,7 @@ class MergedVolumes {
     /// behind the plane. Adds the number of plane tests to `tests`. O(depth) for polygons that no plane cuts.
     void classify(std::span<const Point> polygon, Classes& out, std::size_t& tests) const;
 
-    std::size_t nodes() const { return nodes_.size(); }  ///< Inner nodes and leaves.
+    std::size_t nodes() const { return nodes_.size(); }  ///< Number of inner nodes and leaves.
     std::size_t unmerged() const { return rest_.size(); }
 
   private:

@@ -49,7 +49,7 @@ void solve_with(const ClassicalInput& input, const ElementTree& tree, const Leaf
         for (std::size_t i = 0; i < n; ++i) rhs[i] *= rho[i];
     std::vector<Spectrum> b = rhs, E(n);
     light.link_memory_bytes = F.memory_bytes();
-    light.coefficient_memory_bytes = 3 * n * sizeof(Spectrum);  // b, E and source term
+    light.coefficient_memory_bytes = 3 * n * sizeof(Spectrum);  // memory of b, E and the source term
     std::size_t rounds = 0;
     const auto light_so_far = [&] {
         F.gather(b, E);

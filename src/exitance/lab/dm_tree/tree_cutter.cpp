@@ -14,7 +14,7 @@ bool is_convex_outline(const ReceiverCurves& receiver) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
         const Vec2 a = loop[(i + 1) % loop.size()] - loop[i],
                    b = loop[(i + 2) % loop.size()] - loop[(i + 1) % loop.size()];
-        constexpr double straight = 1e-9;  // sine of the angle; rounding of coordinates
+        constexpr double straight = 1e-9;  // sine of an angle that may be due to rounding of coordinates
         if (cross(a, b) < -straight * std::sqrt(dot(a, a) * dot(b, b))) return false;
     }
     return true;

@@ -263,7 +263,7 @@ SolveReport reflect(const CellTransport& T, std::span<const double> area, std::v
         ++report.iterations;
         report.residual = size(last) / whole;
         report.converged = report.residual <= residual;
-        if (watch.grows(flux(last))) {  // can happen with far too few units
+        if (watch.grows(flux(last))) {  // the series diverges, as with far too few units
             report.converged = false, report.residual = std::max(1.0, report.residual);  // has_diverged
             break;
         }
