@@ -1,6 +1,8 @@
 #include "exitance/scene/bodies.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <queue>
 #include <string_view>
 #include <tuple>
@@ -76,6 +78,82 @@ SceneBodies bodies_of(const Scene& scene, DisjointSets& sets) {
     return out;
 }
 
+/// The two opposite directions that most of a body's area faces.
+class Sides {
+  public:
+    /// Adds a face: its normal, times its area in m^2, and its centroid, metres.
+    void add(const Vec3& normal, double area, const Point& at) {
+        for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t k = 0; k < 3; ++k) tensor_[i][k] += area * normal[i] * normal[k];
+        area_ += area, flux_ += area * dot(normal, at), sum_ += area * normal, centre_ += area * at;
+    }
+    /// Finds the main direction by power iteration.
+    void settle() {
+        std::size_t largest = 0;
+        for (std::size_t i = 1; i < 3; ++i)
+            if (tensor_[i][i] > tensor_[largest][largest]) largest = i;
+        Vec3 v{};
+        v[largest] = 1;
+        constexpr int iterations = 60;  // each reduces the other directions to half or less, given by `min_share`
+        for (int i = 0; i < iterations; ++i) v = normalized(times(v));
+        axis_ = v;
+    }
+    /// True if the body is a sheet, a plate or a row of parallel ones: two thirds of its area, twice as much as all the
+    /// rest, face one of two opposite directions, and the two sides face away from each other.
+    bool is_flat(double size) const {
+        constexpr double min_share = 2.0 / 3, rounding = 1e-9;
+        const double outwards = flux_ - dot(sum_, centre_ / area_);  // three times the volume of a closed body
+        return dot(axis_, times(axis_)) >= min_share * area_ && outwards >= -rounding * area_ * size;
+    }
+    /// Returns 1 or -1 for a face of one of the sides, and 0 for the rim: faces more than 60 degrees off.
+    int of(const Normal& normal) const {
+        const double cosine = dot(axis_, normal);
+        return cosine >= 0.5 ? 1 : cosine <= -0.5 ? -1 : 0;
+    }
+
+  private:
+    Vec3 times(const Vec3& v) const { return {dot(tensor_[0], v), dot(tensor_[1], v), dot(tensor_[2], v)}; }
+
+    Vec3 tensor_[3];  ///< Sum of area n n^T, m^2.
+    double area_ = 0, flux_ = 0;
+    Vec3 sum_, centre_, axis_;
+};
+
+/// Separates the two sides of flat bodies. The rim belongs to the larger side; of equal ones, to that of the first
+/// face.
+DisjointSets separate_sides(const Scene& scene, const SceneBodies& joined) {
+    std::vector<Sides> sides(joined.all.size());
+    for (SurfaceId s : scene.surfaces().ids()) {
+        const Surface& surface = scene.surfaces()[s];
+        sides[joined.body[s]].add(surface.normal, surface.area, centroid(scene.outline(s)));
+    }
+    for (Sides& body : sides) body.settle();
+    std::vector<double> more(joined.all.size(), 0);  // area of the side along the axis minus that of the other, m^2
+    std::vector<int> first_side(joined.all.size(), 0);
+    for (SurfaceId s : scene.surfaces().ids()) {
+        const std::uint32_t b = joined.body[s];
+        const int side = sides[b].of(scene.surfaces()[s].normal);
+        more[b] += side * scene.surfaces()[s].area;
+        if (first_side[b] == 0) first_side[b] = side;
+    }
+    DisjointSets out(scene.surfaces().size());
+    std::vector<std::array<SurfaceId, 2>> first(joined.all.size(), {SurfaceId(), SurfaceId()});
+    for (SurfaceId s : scene.surfaces().ids()) {
+        constexpr double rounding = 1e-9;  // of areas that are equal
+        const std::uint32_t b = joined.body[s];
+        int side = 1;
+        if (sides[b].is_flat(scene.size())) {
+            side = sides[b].of(scene.surfaces()[s].normal);
+            if (side == 0)
+                side = std::abs(more[b]) <= rounding * joined.all[b].area ? first_side[b] : more[b] > 0 ? 1 : -1;
+        }
+        SurfaceId& start = first[b][side > 0 ? 0 : 1];
+        if (start.is_none()) start = s;
+        out.unite(start.value, s.value);
+    }
+    return out;
+}
+
 /// Returns the position of a point on a Morton curve through a box, 20 bits per axis.
 std::uint64_t morton(const Point& p, const Box& box) {
     std::uint64_t out = 0;
@@ -146,6 +224,7 @@ SceneBodies find_bodies(const Scene& scene, std::size_t max_bodies) {
     DisjointSets sets(scene.surfaces().size());
     join_by_edges(scene, sets);
     join_by_name(scene, sets);
+    sets = separate_sides(scene, bodies_of(scene, sets));
     SceneBodies out = bodies_of(scene, sets);
     if (out.all.size() <= std::max<std::size_t>(1, max_bodies)) return out;
     Pool(scene, out).shrink(std::max<std::size_t>(1, max_bodies), [&](std::uint32_t a, std::uint32_t b) {

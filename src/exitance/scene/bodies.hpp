@@ -7,7 +7,8 @@
 
 namespace exitance {
 
-/// A part of a scene for which an error is reported: faces that are joined by edges or belong to one named object.
+/// A part of a scene for which an error is reported: faces that are joined by edges or belong to one named object. The
+/// two sides of a sheet or of a plate are two bodies, since their light has nothing in common.
 struct SceneBody {
     std::size_t surfaces = 0;  ///< Number of its faces.
     double area = 0;           ///< Area in m^2.
@@ -22,8 +23,10 @@ struct SceneBodies {
     std::uint32_t of(const Scene& scene, RegionId region) const { return body[scene.regions()[region].surfaces[0]]; }
 };
 
-/// Finds the bodies of a scene. If there are more than `max_bodies`, merges the smallest one repeatedly with the nearer
-/// of its two neighbours on a Morton curve through the bodies' centres. O(n log n) in corners.
+/// Finds the bodies of a scene. A body is a sheet or plate if at least two thirds of its area face one of two opposite
+/// directions and its sides face away from each other; its rim belongs to the larger side. If there are more than
+/// `max_bodies`, merges the smallest one repeatedly with the nearer of its two neighbours on a Morton curve through the
+/// bodies' centres. O(n log n) in corners.
 SceneBodies find_bodies(const Scene& scene, std::size_t max_bodies = 512);
 
 }  // namespace exitance

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace exitance {
 namespace {
 
@@ -52,6 +54,47 @@ TEST(Bodies, AreFacesOfOneNamedObject) {
     const SceneBodies bodies = find_bodies(made(std::move(d)));
     ASSERT_EQ(bodies.all.size(), 3u);  // "default" is the name given to faces without a name
     EXPECT_EQ(bodies.all[0].surfaces, 12u);
+}
+
+/// Adds a box with its lower corner at `at`, after a rotation by an odd angle about an odd axis.
+void add_turned_box(SceneDescription& d, const Point& at, const Vec3& size, bool inwards, bool with_rim = true) {
+    const Frame frame(normalized(Vec3{1, 2, 3}));
+    const std::vector<std::vector<int>> faces = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                                 {1, 3, 7, 5}, {3, 2, 6, 7}, {2, 0, 4, 6}};
+    for (std::size_t f = 0; f < (with_rim ? 6 : 2); ++f) {
+        SceneDescription::Face out{{}, 0, 0, 0};
+        for (const int corner : faces[f]) {
+            out.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            const Vec3 p{size.x * (corner & 1), size.y * (corner >> 1 & 1), size.z * (corner >> 2)};
+            d.points.push_back(at + p.x * frame.u + p.y * frame.v + p.z * frame.n);
+        }
+        if (inwards) std::reverse(out.corners.begin(), out.corners.end());
+        d.faces.push_back(out);
+    }
+}
+
+SceneBodies bodies_of_box(const Vec3& size, bool inwards = false, bool with_rim = true) {
+    SceneDescription d = with_groups({"default"});
+    add_turned_box(d, {500, -300, 20}, size, inwards, with_rim);
+    return find_bodies(made(std::move(d)));
+}
+
+TEST(Bodies, AreTheSidesOfPlatesAndSheets) {
+    for (const double scale : {1e-3, 1.0, 1e3}) {
+        const SceneBodies plate = bodies_of_box(scale * Vec3{4, 4, 0.1});
+        ASSERT_EQ(plate.all.size(), 2u);
+        EXPECT_NEAR(plate.all[0].area, scale * scale * 17.6, scale * scale * 1e-6);  // with the rim
+        EXPECT_NEAR(plate.all[1].area, scale * scale * 16, scale * scale * 1e-6);
+        EXPECT_EQ(plate.all[1].surfaces, 1u);
+        const SceneBodies sheet = bodies_of_box(scale * Vec3{4, 4, 0}, false, false);
+        ASSERT_EQ(sheet.all.size(), 2u);
+        EXPECT_EQ(sheet.all[0].surfaces, 1u);
+    }
+}
+
+TEST(Bodies, OfCompactShapesAndFlatHallsAreWhole) {
+    EXPECT_EQ(bodies_of_box({4, 4, 1.1}).all.size(), 1u);
+    EXPECT_EQ(bodies_of_box({60, 40, 3}, true).all.size(), 1u);  // the floor and the ceiling see each other
 }
 
 TEST(Bodies, TheSmallestAreMergedWithNeighbours) {
