@@ -1,6 +1,7 @@
 #include "exitance/transport/hemicube_rows.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/trace.hpp"
@@ -28,6 +29,20 @@ Hemicube::Hemicube(unsigned cells) {
     add_face({-1, -1, 0}, z, x, cells / 2, cells);
 }
 
+Normal hemicube_axis(const Patch& patch, const Normal& n) {
+    const Normal u = normalized(patch.a - dot(patch.a, n) * n), v = cross(n, u);
+    const Vec3 edges[] = {patch.a, patch.b, patch.b - patch.a};
+    double x = 0, y = 0, both = 0;  // sums of squares and products of the edges' coordinates in the plane
+    for (std::size_t k = 0; k < (patch.is_triangle() ? 3u : 2u); ++k) {
+        const double s = dot(edges[k], u), t = dot(edges[k], v);
+        x += s * s, y += t * t, both += s * t;
+    }
+    constexpr double rounding = 1e-6;  // as long in all directions, but for the rounding of corners
+    if (std::hypot(x - y, 2 * both) <= rounding * (x + y)) return u;
+    const double angle = 0.5 * std::atan2(2 * both, x - y);
+    return std::cos(angle) * u + std::sin(angle) * v;
+}
+
 namespace {
 
 /// Makes the rows of one thread's elements, one at a time.
@@ -48,8 +63,7 @@ class RowMaker {
     void make(ElementId e, const Add& add) {
         const Patch& patch = tree_.patch(e);
         const RegionId region = tree_.region(e);
-        const Normal n = stage_.scene.regions()[region].plane.n, u = normalized(patch.a - dot(patch.a, n) * n),
-                     v = cross(n, u);
+        const Normal n = stage_.scene.regions()[region].plane.n, u = hemicube_axis(patch, n), v = cross(n, u);
         const Point x = patch.at(tree_.centre(e));
         for (std::size_t k = 0; k < directions_.size(); ++k) {
             const Vec3& d = cube_.direction[k];

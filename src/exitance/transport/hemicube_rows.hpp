@@ -19,7 +19,11 @@ struct Hemicube {
     std::vector<double> factor;
 };
 
-/// Transport by hemicubes. A hemicube is placed at the centre of every element, aligned with the first edge of its
+/// The direction in the plane of a patch, with normal n, with which its hemicube is aligned: its principal axis, which
+/// does not depend on the order of corners; the first edge of patches that are as long in all directions.
+Normal hemicube_axis(const Patch& patch, const Normal& n);
+
+/// Transport by hemicubes. A hemicube is placed at the centre of every element, aligned with the principal axis of its
 /// patch. A ray through the centre of each cell finds the element whose front is visible there. F_ij is the sum of the
 /// form factors of the cells that see j. Rows of a closed scene sum to 1. The error of an entry is that of the cells on
 /// the outline of j; an element that lies between the rays gets F_ij = 0. 3 N^2 rays per row, 8 bytes per entry.

@@ -69,6 +69,31 @@ TEST(Hemicube, HasTheDeltaFormFactorsOfThePaper) {
     }
 }
 
+TEST(Hemicube, IsAlignedIndependentlyOfTheOrderOfCorners) {
+    const Frame plane(normalized(Vec3{1, 2, 3}));
+    const auto on_plane = [&](double x, double y) { return Point{7, -5, 2} + plane.to_world(x, y, 0); };
+    const Point corners[] = {on_plane(0, 0), on_plane(3, 0.4), on_plane(1, 2)};
+    const auto triangle = [&](int k) {
+        const Point &p = corners[k % 3], &q = corners[(k + 1) % 3], &r = corners[(k + 2) % 3];
+        return Patch{p, q - p, r - p, Patch::Shape::triangle};
+    };
+    const auto parallelogram = [&](bool other) {
+        const Vec3 a = corners[1] - corners[0], b = corners[2] - corners[0];
+        return other ? Patch{corners[1], b, -a} : Patch{corners[0], a, b};
+    };
+    const auto aligned = [&](const Patch& one, const Patch& other) {
+        return std::abs(dot(hemicube_axis(one, plane.n), hemicube_axis(other, plane.n)));
+    };
+    for (int k : {1, 2}) EXPECT_NEAR(aligned(triangle(0), triangle(k)), 1, 1e-12);
+    EXPECT_NEAR(aligned(parallelogram(false), parallelogram(true)), 1, 1e-12);
+    // A hemicube that is turned by 90 degrees is the same.
+    const Patch square{{}, {1, 0, 0}, {0, 1, 0}}, rectangle{{}, {1, 0, 0}, {0, 2, 0}};
+    for (const Patch& patch : {square, rectangle}) {
+        const Normal axis = hemicube_axis(patch, {0, 0, 1});
+        EXPECT_NEAR(std::max(std::abs(axis.x), std::abs(axis.y)), 1, 1e-12);
+    }
+}
+
 TEST(HemicubeRows, SumToOneInAClosedScene) {
     // A room with a block that floats in it. Edges of the block do not coincide with any ray, which could then hit a
     // back.
