@@ -1,5 +1,7 @@
 #include "exitance/methods/light/nodal_light.hpp"
 
+#include <algorithm>
+
 #include "exitance/base/parallel.hpp"
 
 namespace exitance {
@@ -21,6 +23,26 @@ Spectrum mean_over(const LinkSites& sites, const NodalValues& values, ElementId 
     Spectrum sum;
     for (std::size_t k = 0; k < sites.nodes(); ++k) sum += sites.weight(e, k) * values[k];
     return sum;
+}
+
+void keep_positive(const ElementTree& tree, ElementId e, std::array<Spectrum, 4>& corners) {
+    const Patch& patch = tree.patch(e);
+    const auto count = static_cast<std::size_t>(patch.corner_count());
+    const auto at = [&](const Vec2& uv, std::size_t band) {
+        const double u = uv.x, v = uv.y;
+        if (patch.is_triangle()) return (1 - u - v) * corners[0][band] + u * corners[1][band] + v * corners[2][band];
+        return (1 - v) * ((1 - u) * corners[0][band] + u * corners[1][band]) +
+               v * (u * corners[2][band] + (1 - u) * corners[3][band]);
+    };
+    const std::vector<Vec2> outline = tree.domain(e);
+    const Vec2 centre = tree.centre(e);
+    for (std::size_t band = 0; band < bands; ++band) {
+        double lowest = 0;
+        for (const Vec2& uv : outline) lowest = std::min(lowest, at(uv, band));
+        if (lowest >= 0) continue;
+        const double mean = std::max(0.0, at(centre, band)), share = mean / (mean - lowest);
+        for (std::size_t k = 0; k < count; ++k) corners[k][band] = mean + share * (corners[k][band] - mean);
+    }
 }
 
 ElementFit fit_polynomial(const LinkSites& sites, const NodalValues& values, ElementId e) {
@@ -91,6 +113,7 @@ void write_nodal_light(const LinkSites& sites, const NodalLight& indirect, const
             light.indirect_corners[leaf][corner] = polynomial.corner(i);
             light.direct_corners[leaf][corner] = projection.at({own, of_own.coordinates(patch.corner(i))});
         }
+        keep_positive(light.tree, e, light.indirect_corners[leaf]);
     });
 }
 
