@@ -52,6 +52,7 @@ class GltfReader {
     GltfAccessor accessor_of(const tinygltf::Accessor& in) const;
     void read_views_and_lamps();
     void read_places(const tinygltf::Primitive& in, GltfModel::Primitive& out);
+    void read_colours(const tinygltf::Primitive& in, GltfModel::Primitive& out);
     GltfModel::TextureUse texture_use(int index, int place_set, const tinygltf::ExtensionMap& extensions) const;
     void read_pictures();
     bool read_nodes();
@@ -164,7 +165,7 @@ bool GltfReader::read_primitive(const tinygltf::Primitive& in, const std::string
     if (in.material >= 0 && !names_one(in.material, in_.materials))
         return error(fmt::format("mesh '{}' has material {} of {}", mesh, in.material, in_.materials.size()));
     p.material = in.material;
-    if (with_textures_) read_places(in, p);
+    if (with_textures_) read_places(in, p), read_colours(in, p);
     out.primitives.push_back(p);
     return true;
 }
@@ -185,6 +186,18 @@ void GltfReader::read_places(const tinygltf::Primitive& in, GltfModel::Primitive
         const Result<GltfRows> held = accessors_->rows(accessor_of(accessor), 2, false, "places");
         if (held && held->size() >= out.positions.size()) out.places[set] = *held;
     }
+}
+
+/// Reads the colours of vertices. Those of exitance's own exports are light and not paint, and are ignored.
+void GltfReader::read_colours(const tinygltf::Primitive& in, GltfModel::Primitive& out) {
+    const auto found = in.attributes.find("COLOR_0");
+    if (found == in.attributes.end() || in.attributes.contains("_RADIOSITY")) return;
+    if (!names_one(found->second, in_.accessors)) return;
+    const tinygltf::Accessor& accessor = in_.accessors[static_cast<std::size_t>(found->second)];
+    const bool has_alpha = accessor.type == TINYGLTF_TYPE_VEC4;
+    if (!has_alpha && accessor.type != TINYGLTF_TYPE_VEC3) return;
+    const Result<GltfRows> held = accessors_->rows(accessor_of(accessor), has_alpha ? 4 : 3, false, "colours");
+    if (held && held->size() >= out.positions.size()) out.colours = *held;
 }
 
 GltfModel::TextureUse GltfReader::texture_use(int index, int place_set,

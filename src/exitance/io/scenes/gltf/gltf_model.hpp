@@ -61,6 +61,7 @@ struct GltfModel {
         int material = -1;
         Mode mode = Mode::triangles;
         std::array<GltfRows, 2> places;  ///< TEXCOORD_0 and 1 if textures were requested; empty if missing.
+        GltfRows colours;  ///< COLOR_0, which multiplies the base colour; empty if missing or not requested.
     };
     struct Mesh {
         std::string name;

@@ -175,10 +175,32 @@ ShownPart SceneMaker::shown(const GltfModel::TextureUse& texture, const GltfMode
                     TextureArea::wrap_of(texture.wrap_t));
 }
 
+/// Multiplies a part of a texture by the colours of a triangle's vertices, which vary linearly in between.
+void multiply(ShownPart& part, const GltfRows& colours, const std::array<std::uint32_t, 3>& vertices) {
+    std::array<Spectrum, 3> c;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto channel = [&](std::size_t i) { return std::clamp(colours.at(vertices[k], i), 0.0, 1.0); };
+        c[k] = spread({channel(0), channel(1), channel(2)});
+    }
+    for (std::size_t b = 0; b < bands; ++b) {
+        const double mean = (c[0][b] + c[1][b] + c[2][b]) / 3;
+        double variance = 0;
+        for (const Spectrum& at : c) variance += (at[b] - mean) * (at[b] - mean) / 12;
+        part.deviation[b] =
+            std::sqrt(std::pow(part.deviation[b], 2) * (mean * mean + variance) + std::pow(part.mean[b], 2) * variance);
+        part.mean[b] *= mean;
+        part.lowest[b] *= std::min({c[0][b], c[1][b], c[2][b]});
+        part.highest[b] *= std::max({c[0][b], c[1][b], c[2][b]});
+    }
+}
+
 ShownColour SceneMaker::colour_of(const GltfModel::Primitive& p, const std::array<std::uint32_t, 3>& vertices) {
-    if (p.material < 0) return {};
+    ShownColour out;
+    if (p.material >= 0)
+        out.reflectance = shown(in_.materials[static_cast<std::size_t>(p.material)].base_texture, p, vertices);
+    if (p.colours.size() > 0) multiply(out.reflectance, p.colours, vertices);
+    if (p.material < 0) return out;
     const GltfModel::Material& m = in_.materials[static_cast<std::size_t>(p.material)];
-    ShownColour out{shown(m.base_texture, p, vertices), {}};
     if (out_.materials[static_cast<std::size_t>(p.material)].emits())
         out.exitance = shown(m.emission_texture, p, vertices);
     return out;

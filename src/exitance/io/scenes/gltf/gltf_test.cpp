@@ -186,6 +186,25 @@ TEST_F(GltfFiles, ATriangleTakesItsPartOfAnAtlas) {
     EXPECT_NEAR(made.materials()[MaterialId(0)].reflectance[0], 0.3, 1e-9);
 }
 
+TEST_F(GltfFiles, ColoursOfVerticesMultiplyTheReflectance) {
+    for (const bool own_export : {false, true}) {
+        GltfText text = triangle(
+            R"({"name":"card","pbrMetallicRoughness":{"baseColorFactor":[0.6,0.6,0.6,1],"metallicFactor":0}})");
+        const std::array<std::uint8_t, 12> corners = {255, 0, 51, 255, 255, 0, 51, 255, 255, 0, 51, 255};
+        const int colours = text.add(corners.data(), sizeof corners, 5121, "VEC4", 3);
+        text.accessors.insert(text.accessors.size() - 1, R"(,"normalized":true)");
+        const std::string light = own_export ? R"(,"_RADIOSITY":0)" : "";
+        text.meshes = R"({"primitives":[{"attributes":{"POSITION":0,"COLOR_0":)" + std::to_string(colours) + light +
+                      R"(},"indices":1,"material":0}]})";
+        text.nodes = R"({"mesh":0})";
+        const Spectrum reflectance = scene(text).material(SurfaceId(0)).reflectance;
+        EXPECT_NEAR(mean(reflectance), own_export ? 0.6 : 0.6 * (2.0 / 3 + 1.0 / 3 + 0.2) / 3, 1e-6);
+        if (bands == 3 && !own_export) {
+            EXPECT_NEAR(reflectance[2], 0.6 * 0.2, 1e-6);
+        }
+    }
+}
+
 TEST_F(GltfFiles, LightsArePlacedByTheirNodes) {
     GltfText text = triangle();
     text.more =
