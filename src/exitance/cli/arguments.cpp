@@ -187,6 +187,9 @@ const std::vector<Verb>& verbs() {
         {"view", "Shows a solution in a browser, or a scene while it is solved.", "exitance view room.h5",
          parse_verb<ViewArguments>, facts_of_verb<ViewArguments>,
          "solving stops, and the light found so far remains visible"},
+        {"reference", "Prints a manual page, a completion for the shell, or all options.",
+         "exitance reference --format man | man -l -", parse_verb<ReferenceArguments>,
+         facts_of_verb<ReferenceArguments>},
     };
     return all;
 }
@@ -197,23 +200,7 @@ std::string help() {
         "Light in rooms of diffuse surfaces.\n\n"
         "Usage: exitance VERB [options] INPUT...\n\nVerbs:\n";
     for (const Verb& verb : verbs()) text += fmt::format("  {:<12} {}\n", verb.name, verb.does);
-    return text +
-           "\nexitance VERB --help describes a verb; exitance --version names the libraries built in.\n"
-           "exitance reference --format man|bash|zsh prints a manual page or a completion for the shell.\n";
-}
-
-/// The text of `exitance reference --format FORMAT`.
-Result<Parsed> reference(const std::vector<std::string>& words) {
-    std::vector<VerbFacts> facts;
-    for (const Verb& verb : verbs()) facts.push_back(verb.facts());
-    const std::string format = words.size() == 2 && words[0] == "--format" ? words[1] : "";
-    if (format == "man") return Parsed(Information{man_page(facts, EXITANCE_VERSION)});
-    if (format == "markdown") return Parsed(Information{markdown_page(facts)});
-    if (format == "bash") return Parsed(Information{bash_completion(facts)});
-    if (format == "zsh") return Parsed(Information{zsh_completion(facts)});
-    if (format == "list") return Parsed(Information{option_list(facts)});
-    return Error{ErrorCode::usage, "must be man, markdown, bash, zsh or list", "--format",
-                 "exitance reference --format man | man -l -"};
+    return text + "\nexitance VERB --help describes a verb; exitance --version names the libraries built in.\n";
 }
 
 Error unknown_verb(const std::string& word) {
@@ -227,6 +214,12 @@ Error unknown_verb(const std::string& word) {
 
 }  // namespace
 
+std::vector<VerbFacts> facts_of_verbs() {
+    std::vector<VerbFacts> out;
+    for (const Verb& verb : verbs()) out.push_back(verb.facts());
+    return out;
+}
+
 Result<Parsed> parse_arguments(const std::vector<std::string>& arguments) {
     if (arguments.empty()) return Error{ErrorCode::usage, "a verb is missing", "", "exitance --help lists the verbs"};
     const std::string& first = arguments.front();
@@ -234,9 +227,8 @@ Result<Parsed> parse_arguments(const std::vector<std::string>& arguments) {
     if (first == "--version")
         return Parsed(Information{fmt::format("exitance {}\n{}\n", EXITANCE_VERSION, EXITANCE_LIBRARIES)});
     const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
-    if (first == "reference") return reference(rest);
-    if (first == "--man") return reference({"--format", "man"});
-    if (first == "--completion") return reference({"--format", rest.empty() ? "" : rest.front()});
+    if (first == "--man") return parse_arguments({"reference", "--format", "man"});
+    if (first == "--completion") return parse_arguments({"reference", "--format", rest.empty() ? "" : rest.front()});
     const auto verb = std::find_if(verbs().begin(), verbs().end(), [&](const Verb& v) { return v.name == first; });
     if (verb == verbs().end()) return unknown_verb(first);
     for (const std::string& word : rest) {

@@ -8,6 +8,7 @@
 
 #include "exitance/base/result.hpp"
 #include "exitance/cli/exit_code.hpp"
+#include "exitance/cli/reference/verb_facts.hpp"
 #include "exitance/cli/run_limits.hpp"
 #include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/io/export/light_map_files.hpp"
@@ -196,16 +197,26 @@ struct ViewArguments : CommonArguments {
     std::string save = "viewed.h5";
 };
 
-/// A verb with its options.
-using Command =
-    std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, MixArguments, ExportArguments,
-                 RenderArguments, BakeArguments, ReportArguments, DaylightArguments, CheckArguments, GenerateArguments,
-                 LuminaireArguments, ExperimentArguments, ViewFactorArguments, HeatArguments, ViewArguments>;
+/// What `exitance reference` prints.
+enum class ReferenceFormat : std::uint8_t { man, markdown, bash, zsh, list };
 
-/// Text to print instead of running a verb, for --help, --version and `reference`.
+struct ReferenceArguments : CommonArguments {
+    ReferenceFormat format = ReferenceFormat::man;
+};
+
+/// A verb with its options.
+using Command = std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, MixArguments,
+                             ExportArguments, RenderArguments, BakeArguments, ReportArguments, DaylightArguments,
+                             CheckArguments, GenerateArguments, LuminaireArguments, ExperimentArguments,
+                             ViewFactorArguments, HeatArguments, ViewArguments, ReferenceArguments>;
+
+/// Text to print instead of running a verb, for --help and --version.
 struct Information {
     std::string text;
 };
+
+/// The names, examples and options of all verbs, in the order of `exitance --help`.
+std::vector<VerbFacts> facts_of_verbs();
 
 /// Parses the command line without the program's name. Error (usage): an unknown verb or option, with the most similar
 /// known one in the hint; a missing, wrong or repeated value.

@@ -127,5 +127,6 @@ void declare(CLI::App& app, ExperimentArguments& arguments);
 void declare(CLI::App& app, ViewFactorArguments& arguments);
 void declare(CLI::App& app, HeatArguments& arguments);
 void declare(CLI::App& app, ViewArguments& arguments);
+void declare(CLI::App& app, ReferenceArguments& arguments);
 
 }  // namespace exitance

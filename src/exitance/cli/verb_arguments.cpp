@@ -9,6 +9,14 @@ constexpr std::array<std::pair<Component, std::string_view>, 3> component_names{
     {Component::indirect, "indirect"},
 }};
 
+constexpr std::array<std::pair<ReferenceFormat, std::string_view>, 5> reference_format_names{{
+    {ReferenceFormat::man, "man"},
+    {ReferenceFormat::markdown, "markdown"},
+    {ReferenceFormat::bash, "bash"},
+    {ReferenceFormat::zsh, "zsh"},
+    {ReferenceFormat::list, "list"},
+}};
+
 constexpr std::array<std::pair<int, std::string_view>, 3> patch_counts{{{1, "146"}, {2, "577"}, {4, "2305"}}};
 
 }  // namespace
@@ -147,6 +155,12 @@ void declare(CLI::App& app, GenerateArguments& arguments) {
     app.add_option("PARAMETERS", arguments.parameters, "Parameters of the family, as name=value");
     app.add_option("-o,--output", arguments.output, "Scene to write (.obj; its .mtl is written into the same folder)")
         ->type_name("FILE");
+}
+
+void declare(CLI::App& app, ReferenceArguments& arguments) {
+    add_choice(app, "--format", reference_format_names, arguments.format,
+               "Manual page, completion for a shell, page of all options, or list of them")
+        ->required();
 }
 
 void declare(CLI::App& app, LuminaireArguments& arguments) {

@@ -25,5 +25,6 @@ ExitCode run(const ExperimentArguments& arguments, Terminal& terminal);
 ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal);
 ExitCode run(const HeatArguments& arguments, Terminal& terminal);
 ExitCode run(const ViewArguments& arguments, Terminal& terminal);
+ExitCode run(const ReferenceArguments& arguments, Terminal& terminal);
 
 }  // namespace exitance

@@ -43,7 +43,7 @@ struct ClassicalOptions {
     std::optional<ClassicalDirect> direct;  ///< apart: E_dir exact; carried: transported by the method.
     std::optional<MeshKind> mesh;
     std::optional<bool> gather;   ///< final gather
-    std::optional<bool> certify;  ///< only `off` is supported: classical forms have no certificate
+    std::optional<bool> certify;  ///< on: the standard form, which always estimates its error; off: classical form
     /// Threshold of the oracle: F_eps (no unit), or BF_eps (W in the brightest band).
     std::optional<double> threshold;
     /// Number of rounds in which the threshold is halved down to the requested one.
@@ -59,7 +59,7 @@ struct ClassicalOptions {
 
     /// True if any option requests a classical form.
     bool any() const {
-        return direct || mesh || gather || certify || threshold || multigrid || kernel || refine_gradient || refine ||
+        return direct || mesh || gather || certify == false || threshold || multigrid || kernel || refine_gradient || refine ||
                relaxation || sor_factor || receivers || ambient || snapshots.any();
     }
     bool carried() const { return direct == ClassicalDirect::carried; }
