@@ -10,8 +10,6 @@
 #include "exitance/methods/options/solve_request.hpp"
 #include "exitance/methods/plan/forecast.hpp"
 #include "exitance/reference/compare.hpp"
-#include "exitance/scene/photometric_units.hpp"
-#include "exitance/solution/solution.hpp"
 #include "exitance/view_factors/gray_exchange.hpp"
 #include "exitance/view_factors/ray_check.hpp"
 #include "exitance/view_factors/row_check.hpp"
@@ -22,16 +20,9 @@ namespace exitance {
 // JSON of the command line. Every function returns text without a line end. The names and the order of the keys are
 // part of the program's interface.
 
-/// The statistics in a report page: `stats --json` without the keys that describe mesh, links and direct light. `own`:
-/// unit of the scene's light.
-std::string statistics_json(const SolveStatistics& statistics, const LightUnit& own);
-
 /// Light groups and materials that the viewer's page can change: `groups [{name, factor}]`, `materials [{name,
 /// reflectance}]`. Both lists are empty if the solution keeps no groups.
 std::string light_groups_json(const LightGroups& groups, const Scene& scene);
-
-/// `solve --json` and `stats --json`: statistics, and the kinds of mesh, links and direct light.
-std::string statistics_json(const Solution& solution);
 
 /// `solve --dry-run --json`.
 std::string forecast_json(const Forecast& forecast);

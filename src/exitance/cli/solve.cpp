@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <limits>
@@ -10,7 +8,6 @@
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/processes.hpp"
 #include "exitance/cli/solve/classical_solve.hpp"
-#include "exitance/cli/solve/kept_groups.hpp"
 #include "exitance/cli/solve/settle_options.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
@@ -19,11 +16,13 @@
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/solution/checkpoint_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/io/solution/statistics_json.hpp"
 #include "exitance/io/solution/stored_scene_check.hpp"
 #include "exitance/methods/plan/forecast.hpp"
+#include "exitance/methods/run_report.hpp"
 #include "exitance/methods/solve_scene.hpp"
 #include "exitance/processes/distributed.hpp"
-#include "exitance/scene/findings.hpp"
+#include "exitance/what_if/light_groups/keep_light_groups.hpp"
 
 namespace exitance {
 namespace {
@@ -34,17 +33,6 @@ double time_to_solve(const SolveArguments& arguments, const RunLimits& limits, d
     // polygons.
     constexpr double written_against_read = 8;
     return limits.seconds_left() - std::min(0.5 * *arguments.limits.time_limit, written_against_read * read_seconds);
-}
-
-/// Prepends the warnings among the findings, with their places, so that the solution file records them.
-void add_findings(std::vector<std::string>& warnings, const std::vector<Finding>& findings, const std::string& file) {
-    std::vector<std::string> all;
-    for (const Finding& finding : findings)
-        if (finding.kind == Finding::Kind::warning)
-            all.push_back(finding.file != file ? place_of(finding) + ": " + finding.message
-                          : finding.line > 0   ? fmt::format("line {}: {}", finding.line, finding.message)
-                                               : finding.message);
-    warnings.insert(warnings.begin(), all.begin(), all.end());
 }
 
 /// Runs `exitance solve SCENE --dry-run`.
@@ -163,15 +151,11 @@ ExitCode code_of(const SolveStatistics& statistics, const RunLimits& limits) {
     return statistics.converged ? ExitCode::done : ExitCode::demand_not_reached;
 }
 
-/// Returns the failure of a run that a stop ended before there was light with an estimate of its error; none for runs
-/// of forms that have no estimate.
+/// Returns the failure of a run that was stopped before the first estimate of its error; none for runs of forms that
+/// have no estimate.
 std::optional<Error> no_estimate(const SolveArguments& arguments, const SolveStatistics& statistics) {
-    if (statistics.relative_error_estimate || statistics.stopped_by.empty()) return {};
     if (arguments.classical.any() || arguments.options.task_engine) return {};
-    return Error{ErrorCode::limit,
-                 fmt::format("the {} ended the run before the first estimate of the error; nothing is written",
-                             statistics.stopped_by),
-                 arguments.output, "allow more time or memory, or request a larger --error"};
+    return error_of_missing_estimate(statistics, arguments.output);
 }
 
 /// Reads the scene with the options of the solve. Programs that generate parts of it are ended at the time limit.
@@ -240,15 +224,6 @@ void tell(const SolveArguments& arguments, const Solution& solution, Terminal& t
     }
 }
 
-/// Adds a warning if the error is as large as the light, which can happen where no error was requested.
-void warn_of_useless_light(SolveStatistics& statistics) {
-    if (statistics.relative_error_estimate.value_or(0) < 1) return;
-    statistics.warnings.push_back(
-        fmt::format("the estimated error is {:.0f}% of the light: the result is not usable; refine the settings, or "
-                    "request an --error",
-                    100 * *statistics.relative_error_estimate));
-}
-
 }  // namespace
 
 /// Runs `exitance solve SCENE -o SOLUTION`.
@@ -268,7 +243,8 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     LoadedScene checked = read_scene(arguments, limits.stop());
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);
-    if (const Result<void> few = check_light_groups(arguments, *checked.scene); !few) return terminal.fail(few.error());
+    if (arguments.light_groups)
+        if (const Result<void> few = check_light_groups(*checked.scene); !few) return terminal.fail(few.error());
     const double read_seconds = reading.seconds();
     if (arguments.dry_run) return show_forecast(arguments, *checked.scene, terminal);
     if (const Result<void> sane = check_scene(arguments, *checked.scene); !sane) return terminal.fail(sane.error());
@@ -299,7 +275,9 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     }
     add_texture_error(*solution, checked.reflectance_deviation, arguments.options.error_demand());
     warn_of_useless_light(solution->statistics);
-    const Result<LightGroups> groups = keep_light_groups(arguments, *solution, tracing.progress(), stop);
+    const Result<LightGroups> groups = arguments.light_groups
+                                           ? keep_light_groups(*solution, arguments.options, tracing.progress(), stop)
+                                           : LightGroups();
     if (!groups) return terminal.fail(groups.error());
     record_run(*solution, arguments, checked.findings, read_seconds, run_time);
     SolveStatistics& statistics = solution->statistics;

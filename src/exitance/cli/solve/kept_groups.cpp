@@ -2,40 +2,6 @@
 
 namespace exitance {
 
-Result<void> check_light_groups(const SolveArguments& arguments, const Scene& scene) {
-    const std::size_t count = arguments.light_groups ? find_emitter_groups(scene).size() : 0;
-    if (count <= most_light_groups) return {};
-    return Error{ErrorCode::usage,
-                 "there are " + std::to_string(count) + " groups that emit, at most " +
-                     std::to_string(most_light_groups) + " are solved one by one",
-                 "--light-groups", "give lamps that are switched together the same group name"};
-}
-
-Result<LightGroups> keep_light_groups(const SolveArguments& arguments, Solution& solution, Progress& progress,
-                                      const StopRequest& stop) {
-    if (!arguments.light_groups || !solution.scene.has_light()) return LightGroups();
-    SolveStatistics& s = solution.statistics;
-    const auto not_kept = [&](const std::string& why) {
-        s.warnings.push_back("light groups are not kept: " + why), s.converged = false;
-        return LightGroups();
-    };
-    if (stop.requested()) return not_kept("the run was stopped before they were solved");
-    const Stopwatch watch;
-    // The discontinuity mesh holds the light of all lamps together. It cannot hold that of a single group.
-    solution.discontinuity = {}, solution.layers = {}, solution.own_form = {}, solution.delivers_own_form = false;
-    Result<LightGroups> groups = solve_light_groups(solution, arguments.options, progress, stop);
-    if (!groups && stop.requested()) return not_kept(groups.error().message);
-    if (!groups) return groups;
-    s.seconds["light_groups"] = watch.seconds();
-    s.figures["light_groups"] = static_cast<double>(groups->groups.size());
-    s.figures["light_group_bytes"] = static_cast<double>(groups->light_bytes());
-    s.figures["repaint_bytes"] = static_cast<double>(groups->transport.bytes());
-    s.figures["repaint_rays"] = static_cast<double>(groups->transport.rays);
-    s.figures["repaint_rows"] = static_cast<double>(groups->transport.receiver.size());
-    s.figures["repaint_entries"] = static_cast<double>(groups->transport.source.size());
-    return groups;
-}
-
 Error no_light_groups(const std::string& solution_file) {
     return {ErrorCode::usage, "keeps no light groups", solution_file,
             "solve a scene with emitters: exitance solve SCENE --light-groups -o S.h5"};

@@ -7,6 +7,7 @@
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/textures/scene_textures.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/what_if/light_groups/light_groups.hpp"
 
 namespace exitance {
 namespace {

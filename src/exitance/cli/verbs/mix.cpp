@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
 #include "exitance/base/parallel.hpp"
-#include "exitance/cli/json_output.hpp"
 #include "exitance/cli/solve/kept_groups.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/evaluate/energy.hpp"
 #include "exitance/io/solution/solution_file.hpp"
-#include "exitance/transport/stage.hpp"
+#include "exitance/io/solution/statistics_json.hpp"
+#include "exitance/what_if/light_groups/keep_light_groups.hpp"
 #include "exitance/what_if/light_groups/light_change_words.hpp"
 
 namespace exitance {
@@ -28,12 +27,7 @@ ExitCode run(const MixArguments& arguments, Terminal& terminal) {
     if (const Result<void> changed = change_light(*solution, groups, change); !changed)
         return terminal.fail(changed.error());
     solution->statistics.seconds["mix"] = watch.seconds();
-    solution->statistics.energy = {};
-    if (!solution->scene.has_light_from_outside()) {
-        Stage stage(solution->scene);
-        stage.rooms = find_light_rooms(stage, 1, StopRequest());
-        solution->statistics.energy = energy_of_interpolant(*solution, stage);
-    }
+    solution->statistics.energy = energy_after_change(*solution);
     if (const Result<void> written = write_solution(arguments.output, *solution, &groups); !written)
         return terminal.fail(written.error());
     if (arguments.json)

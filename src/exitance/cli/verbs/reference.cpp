@@ -1,3 +1,4 @@
+#include "exitance/base/version.hpp"
 #include "exitance/cli/reference/pages.hpp"
 #include "exitance/cli/verbs.hpp"
 
@@ -8,7 +9,7 @@ std::string page(ReferenceFormat format) {
     const std::vector<VerbFacts> facts = facts_of_verbs();
     switch (format) {
         case ReferenceFormat::man:
-            return man_page(facts, EXITANCE_VERSION);
+            return man_page(facts, program_version);
         case ReferenceFormat::markdown:
             return markdown_page(facts);
         case ReferenceFormat::bash:

@@ -7,7 +7,6 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/camera_choice.hpp"
-#include "exitance/cli/json_output.hpp"
 #include "exitance/cli/light_unit.hpp"
 #include "exitance/cli/observers.hpp"
 #include "exitance/cli/verbs.hpp"
@@ -16,6 +15,7 @@
 #include "exitance/io/pictures/isolux.hpp"
 #include "exitance/io/pictures/unit_picture.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/io/solution/statistics_json.hpp"
 #include "exitance/measure/pictures/timed_picture.hpp"
 
 namespace exitance {

@@ -1,7 +1,7 @@
-#include "exitance/cli/json_output.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/io/solution/statistics_json.hpp"
 
 namespace exitance {
 

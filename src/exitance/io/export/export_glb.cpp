@@ -5,6 +5,7 @@
 #include <iterator>
 #include <numeric>
 
+#include "exitance/base/version.hpp"
 #include "exitance/io/export/conforming_mesh.hpp"
 #include "exitance/io/export/export_formats.hpp"
 #include "exitance/io/export/glb_container.hpp"
@@ -53,15 +54,10 @@ Triangles make_triangles(const Solution& solution, const ToneMap& tone) {
                                       out.index.size(), 0});
         Primitive& primitive = out.primitives.back();
         const Normal& n = solution.scene.regions()[RegionId(static_cast<std::size_t>(mesh.region[i]))].plane.n;
-        const auto add_triangle = [&](std::size_t a, std::size_t b, std::size_t c) {
-            for (const std::size_t corner : {a, b, c})
-                out.index.push_back(static_cast<std::uint32_t>(primitive.vertices + corner));
-        };
-        const std::size_t count = mesh.corner_count(i);
-        if (conforming.has_middle[i])
-            for (std::size_t c = 0; c + 1 < count; ++c) add_triangle(count - 1, c, (c + 1) % (count - 1));
-        else
-            for (std::size_t c = 2; c < count; ++c) add_triangle(0, c - 1, c);
+        conforming.for_triangles(i, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+            for (const std::uint32_t corner : {a, b, c})
+                out.index.push_back(static_cast<std::uint32_t>(primitive.vertices) + corner);
+        });
         for (std::uint32_t p = mesh.first_point[i]; p < mesh.first_point[i + 1]; ++p) {
             Spectrum light;
             Float3 radiosity, irradiance;
@@ -184,7 +180,7 @@ std::string make_json(const Scene& scene, const Triangles& triangles, const Tone
         "\"radianceUnit\":\"{}\",\"exposure\":{},\"white\":{}}}}},{}\"scene\":0,\"scenes\":[{{\"nodes\":[{}]}}],"
         "\"nodes\":[{}],\"meshes\":[{}],\"materials\":[{}],\"accessors\":[{}],\"bufferViews\":[{}],{}"
         "\"buffers\":[{{\"byteLength\":{}}}]}}",
-        EXITANCE_VERSION, unit.radiosity(), unit.radiance(), tone.scale, tone.white, extensions_json(scene, placed),
+        program_version, unit.radiosity(), unit.radiance(), tone.scale, tone.white, extensions_json(scene, placed),
         scene_nodes, lists.nodes, lists.meshes, materials, lists.accessors, views,
         placed.cameras.empty() ? "" : fmt::format("\"cameras\":[{}],", placed.cameras),
         attributes * array_bytes + index_bytes);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "exitance/base/version.hpp"
 #include "exitance/io/export/export_links_glb.hpp"
 #include "exitance/io/export/glb_container.hpp"
 
@@ -52,7 +53,7 @@ class LineMeshes {
             "\"KHR_materials_unlit\"],\"scene\":0,\"scenes\":[{{\"nodes\":[{}]}}],\"nodes\":[{}],\"meshes\":[{}],"
             "\"materials\":[{}],\"accessors\":[{}],\"bufferViews\":[{{\"buffer\":0,\"byteLength\":{},\"byteStride\":12,"
             "\"target\":34962}}],\"buffers\":[{{\"byteLength\":{}}}]}}",
-            EXITANCE_VERSION, scene_, nodes_, meshes_, materials_, accessors_, bytes, bytes);
+            program_version, scene_, nodes_, meshes_, materials_, accessors_, bytes, bytes);
         out.resize((out.size() + 3) / 4 * 4, ' ');
         return out;
     }

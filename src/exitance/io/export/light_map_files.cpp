@@ -7,6 +7,7 @@
 #include <iterator>
 #include <optional>
 
+#include "exitance/base/version.hpp"
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/pictures/png.hpp"
@@ -99,7 +100,7 @@ std::string manifest(const Scene& scene, const LightMaps& light, LightMapQuantit
         "{{\n  \"version\": 1,\n  \"generator\": \"exitance {}\",\n  \"quantity\": \"{}\",\n  \"unit\": \"{}\",\n"
         "  \"texels_per_metre\": {},\n  \"padding\": {},\n  \"model\": \"scene.glb\",\n  \"exposure\": {},\n  "
         "\"maps\": [",
-        EXITANCE_VERSION, name_of(quantity), unit_of(scene, quantity), light.density, light.padding, tones.scale);
+        program_version, name_of(quantity), unit_of(scene, quantity), light.density, light.padding, tones.scale);
     for (std::size_t m = 0; m < light.maps.size(); ++m)
         text += fmt::format("{}\n    {{\"file\": \"{}.exr\", \"preview\": \"{}.png\", \"width\": {}, \"height\": {}}}",
                             m > 0 ? "," : "", map_stem(m), map_stem(m), light.maps[m].size.width,

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "exitance/base/triangulation.hpp"
+#include "exitance/base/version.hpp"
 #include "exitance/io/export/glb_container.hpp"
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/export/light_map_files.hpp"
@@ -263,7 +264,7 @@ class Document {
             "],\"nodes\":[{}],\"meshes\":[{}],\"materials\":[{}],\"images\":[{}],\"textures\":[{}],\"samplers\":[{}],{}"
             "\"accessors\":[{}],"
             "\"bufferViews\":[{}],\"buffers\":[{{\"byteLength\":{}}}]}}",
-            EXITANCE_VERSION, tone.scale, levels.peak, used, scene_nodes_, nodes_, meshes_, materials, textures_.images,
+            program_version, tone.scale, levels.peak, used, scene_nodes_, nodes_, meshes_, materials, textures_.images,
             textures_.textures, textures_.samplers, cameras, accessors_, views_, bytes_);
         json.resize((json.size() + 3) / 4 * 4, ' ');
         return json;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/version.hpp"
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/files/base64.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
@@ -151,7 +152,7 @@ std::string report_json(const ReportContent& content, const ReportFigures& figur
         "  \"pictures\": {},\n  \"grids\": {},\n  \"maintenance\": {},\n  \"observers\": {},\n  \"materials\": {},\n  "
         "\"surfaces\": {},\n"
         "  \"surfaces_left_out\": {},\n  \"unfinished\": {},\n  \"statistics\": {},\n  \"options\": {}\n}}\n",
-        EXITANCE_VERSION, lux ? "lx" : "W/m^2", json_text(scene.file()), scene.surfaces().size(), figure(figures.area),
+        program_version, lux ? "lx" : "W/m^2", json_text(scene.file()), scene.surfaces().size(), figure(figures.area),
         point(size), scene.emitters().size(), scene.lights().size(), figure(content.error.median),
         figure(content.error.p99), figure(content.error.noise), content.error.points,
         list(content.pictures,

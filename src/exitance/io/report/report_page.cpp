@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "exitance/base/version.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/report/report_figures.hpp"
 
@@ -252,7 +253,7 @@ Result<void> write_report(const ReportContent& content, const std::string& path)
         section("method", "Method and what it took", method_part(content)) +
         section("warnings", "Warnings", warnings(s)) +
         fmt::format("<p class=\"note\">Made by exitance {}.</p>\n<script type=\"application/json\" id=\"numbers\">\n",
-                    EXITANCE_VERSION) +
+                    program_version) +
         embedded(json) + "</script>\n</body>\n</html>\n";
     const std::string twin = std::filesystem::path(path).replace_extension(".json").string();
     if (const Result<void> written = write_file(twin, json); !written) return written;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "exitance/base/random.hpp"
+#include "exitance/base/version.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/processes/distributed.hpp"
@@ -101,7 +102,7 @@ std::string scene_fingerprint(const Scene& scene) {
 
 CheckpointFile::CheckpointFile(std::string path, CheckpointFacts facts, double every)
     : path_(std::move(path)), facts_(std::move(facts)), every_(every) {
-    facts_.emplace_back("the version", EXITANCE_VERSION);
+    facts_.emplace_back("the version", program_version);
     facts_.emplace_back("the build", program_fingerprint());
 }
 

@@ -1,5 +1,6 @@
 #include "exitance/io/solution/solution_file.hpp"
 
+#include "exitance/base/version.hpp"
 #include "exitance/io/solution/solution_groups.hpp"
 #include "exitance/io/solution/stored_scene_check.hpp"
 
@@ -31,7 +32,7 @@ Result<void> write_solution(const std::string& path, const Solution& solution, c
     write_vtkhdf(file, solution);
     file.make_group("exitance");
     file.set_attribute("exitance", "format", format);
-    file.set_attribute("exitance", "program_version", std::string_view(EXITANCE_VERSION));
+    file.set_attribute("exitance", "program_version", std::string_view(program_version));
     file.set_attribute("exitance", "bands", static_cast<std::int64_t>(bands));
     file.set_attribute("exitance", "bounces", static_cast<std::int64_t>(solution.bounces));
     file.set_attribute("exitance", "direct_in_elements", static_cast<std::int64_t>(solution.direct_in_elements));

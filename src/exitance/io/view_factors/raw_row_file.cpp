@@ -9,6 +9,7 @@
 #include <span>
 
 #include "exitance/base/random.hpp"
+#include "exitance/base/version.hpp"
 
 namespace exitance {
 namespace {
@@ -71,7 +72,7 @@ Result<RawRowFile> RawRowFile::open(const std::string& path, const std::string& 
     if (descriptor < 0) return refused(path, errno);
     out.file_.reset(::fdopen(descriptor, "r+b"));
     if (!out.file_) return refused(path, errno);
-    const std::string all = work + " version " EXITANCE_VERSION;
+    const std::string all = work + " version " + program_version;
     const std::array<std::uint64_t, 2> id = {hash_bytes(std::as_bytes(std::span(all)), 1), all.size()};
     std::FILE* const file = out.file_.get();
     long end = 0;

@@ -11,6 +11,8 @@
 namespace exitance {
 namespace {
 
+constexpr std::int64_t file_version = 1;  ///< Version of the .h5 format; raised if older programs cannot read the file.
+
 template <class... Values>
 void append(std::string& text, const char* format, Values... values) {
     char buffer[64];
@@ -149,6 +151,7 @@ Result<void> write_hdf5(const std::string& path, const SparseFactors& table, con
     Hdf5Writer file(path);
     file.make_group(group);
     file.set_attribute(group, "format", std::string_view("csr"));
+    file.set_attribute(group, "version", file_version);
     const std::int64_t shape[] = {static_cast<std::int64_t>(table.size()), static_cast<std::int64_t>(table.size())};
     file.set_attribute(group, "shape", std::span<const std::int64_t>(shape));
     file.set_attribute(group, "combined", static_cast<std::int32_t>(table.combined));
@@ -194,6 +197,13 @@ Result<SparseFactors> read_view_factors(const std::string& path) {
     Result<Hdf5Reader> file = Hdf5Reader::open(path);
     if (!file) return file.error();
     const std::string group = "view_factors/";
+    // Files without a version are of the first one.
+    const std::int64_t version = file->integer_attribute("view_factors", "version").value_or(1);
+    if (version > file_version)
+        return Error{ErrorCode::bad_input,
+                     "is of version " + std::to_string(version) + "; this program reads versions up to " +
+                         std::to_string(file_version),
+                     path, "use the program that wrote it, or compute the view factors again"};
     SparseFactors table;
     table.areas = file->read<double>(group + "areas");
     const std::size_t n = table.size();

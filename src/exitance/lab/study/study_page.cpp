@@ -7,6 +7,7 @@
 #include <set>
 #include <thread>
 
+#include "exitance/base/version.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/base64.hpp"
 #include "exitance/io/files/child_process.hpp"
@@ -149,7 +150,7 @@ std::string processor_name() {
 
 std::string machine(const StudyPage& page) {
     return fmt::format("<p>exitance {}; {}, {} threads; {} in {:.0f} s (finished runs are not repeated).</p>\n",
-                       EXITANCE_VERSION, escaped(processor_name()), std::thread::hardware_concurrency(),
+                       program_version, escaped(processor_name()), std::thread::hardware_concurrency(),
                        page.quick ? "quick" : "in full", page.seconds);
 }
 

@@ -1,0 +1,35 @@
+#include "exitance/methods/run_report.hpp"
+
+#include <fmt/format.h>
+
+#include "exitance/scene/findings.hpp"
+
+namespace exitance {
+
+void add_findings(std::vector<std::string>& warnings, std::span<const Finding> findings, const std::string& file) {
+    std::vector<std::string> all;
+    for (const Finding& finding : findings)
+        if (finding.kind == Finding::Kind::warning)
+            all.push_back(finding.file != file ? place_of(finding) + ": " + finding.message
+                          : finding.line > 0   ? fmt::format("line {}: {}", finding.line, finding.message)
+                                               : finding.message);
+    warnings.insert(warnings.begin(), all.begin(), all.end());
+}
+
+void warn_of_useless_light(SolveStatistics& statistics) {
+    if (statistics.relative_error_estimate.value_or(0) < 1) return;
+    statistics.warnings.push_back(
+        fmt::format("the estimated error is {:.0f}% of the light: the result is not usable; refine the settings, or "
+                    "request an --error",
+                    100 * *statistics.relative_error_estimate));
+}
+
+std::optional<Error> error_of_missing_estimate(const SolveStatistics& statistics, const std::string& where) {
+    if (statistics.relative_error_estimate || statistics.stopped_by.empty()) return {};
+    return Error{ErrorCode::limit,
+                 fmt::format("the {} ended the run before the first estimate of the error; nothing is written",
+                             statistics.stopped_by),
+                 where, "allow more time or memory, or request a larger --error"};
+}
+
+}  // namespace exitance

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "exitance/scene/scene.hpp"
+#include "exitance/solution/solution.hpp"
+
+namespace exitance {
+
+// Facts about a whole run, from reading the scene to the solution, that its statistics record.
+
+/// Prepends the warnings among the findings, with their places, so that the solution records them. `file`: the scene's
+/// file, which is not repeated in front of its findings.
+void add_findings(std::vector<std::string>& warnings, std::span<const Finding> findings, const std::string& file);
+
+/// Adds a warning if the error is as large as the light, which can happen if no error was requested.
+void warn_of_useless_light(SolveStatistics& statistics);
+
+/// Returns the failure of a run that a stop ended before there was light with an estimate of its error; else none.
+/// `where`: the output, or empty.
+std::optional<Error> error_of_missing_estimate(const SolveStatistics& statistics, const std::string& where);
+
+}  // namespace exitance
