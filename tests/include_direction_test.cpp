@@ -17,12 +17,12 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Folders in the order of dependency: each may include itself, its subfolders and the folders before it. Nothing but
-/// the program includes the laboratory.
+/// the program includes the laboratory. `api` implements the public headers, include/exitance, and alone includes them.
 const std::vector<std::string> order{"base",       "calibration",  "scene",   "samples", "processes", "form_factors",
                                      "visibility", "shadow_lines", "mesh",    "basis",   "direct",    "transport",
                                      "links",      "solution",     "solve",   "gather",  "evaluate",  "discontinuity",
                                      "error",      "reference",    "measure", "methods", "what_if",   "view_factors",
-                                     "io",         "lab",          "cli"};
+                                     "io",         "api",          "lab",     "cli"};
 
 /// The files that may include a third-party library, which is identified by the first folder or the name of its
 /// headers.
@@ -100,6 +100,12 @@ std::string first_folder(const std::string& path) {
     return path.substr(0, path.find('/'));
 }
 
+/// True for the public headers, "exitance/scene.hpp", which are in no folder of the engine.
+bool is_public(const std::string& header) {
+    static const std::regex pattern("exitance/[a-z_]+\\.hpp");
+    return std::regex_match(header, pattern);
+}
+
 }  // namespace
 
 TEST(Includes, FoldersIncludeOnlyThoseBeforeThem) {
@@ -108,6 +114,10 @@ TEST(Includes, FoldersIncludeOnlyThoseBeforeThem) {
         const std::optional<std::size_t> from = rank(first_folder(include.file));
         ASSERT_TRUE(from) << include.file << " stands in a folder without a place in the order";
         if (!include.header.starts_with(own)) continue;
+        if (is_public(include.header)) {
+            EXPECT_EQ(first_folder(include.file), "api") << include.place();
+            continue;
+        }
         const std::optional<std::size_t> to = rank(first_folder(include.header.substr(own.size())));
         ASSERT_TRUE(to) << include.place();
         EXPECT_LE(*to, *from) << include.place() << ": an arrow pointing back";
@@ -133,6 +143,21 @@ TEST(Includes, HeadersIncludeNoThirdPartyLibrary) {
             EXPECT_FALSE(std::regex_match(include.header, third_party)) << include.place();
         }
     }
+}
+
+/// The public headers are installed alone, so that they need only the standard library and each other.
+TEST(Includes, PublicHeadersIncludeOnlyTheStandardLibraryAndEachOther) {
+    const fs::path root = fs::path(test::source_folder()) / "include/exitance";
+    const std::regex standard("[a-z_]+");
+    std::size_t headers = 0;
+    for (const fs::directory_entry& entry : fs::directory_iterator(root)) {
+        ++headers;
+        for (const Include& include : read_includes(root, entry.path()))
+            EXPECT_TRUE(std::regex_match(include.header, standard) ||
+                        (is_public(include.header) && fs::exists(root.parent_path() / include.header)))
+                << include.place();
+    }
+    EXPECT_GE(headers, 12u);
 }
 
 /// If two types in one program have the same name, the linker keeps only one version of their inline code.

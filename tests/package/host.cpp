@@ -1,5 +1,5 @@
-extern "C" double sum_below(unsigned count);
+extern "C" double light_of_a_small_room();
 
 int main() {
-    return sum_below(1000) == 499500 ? 0 : 1;
+    return light_of_a_small_room() > 0 ? 0 : 1;
 }

@@ -1,6 +1,10 @@
-#include <exitance/base/parallel.hpp>
+#include <exitance/solve.hpp>
 
-/// Sum of the integers from 0 to `count` - 1, computed with the library's parallel loop.
-extern "C" double sum_below(unsigned count) {
-    return exitance::parallel_sum<double>(count, [](std::size_t i) { return static_cast<double>(i); });
+#include "small_room.hpp"
+
+/// Irradiance in the middle of the floor of a small room, W/m^2.
+extern "C" double light_of_a_small_room() {
+    const exitance::api::Solution solution = exitance::api::solve(small_room().value(), {.error = 0.1}).value();
+    const exitance::api::Probe floor[] = {{{2, 1.5, 0}, {0, 0, 1}}};
+    return exitance::api::mean(solution.light(floor).value()[0].irradiance);
 }

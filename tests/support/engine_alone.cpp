@@ -1,5 +1,5 @@
-#include <exitance/lab/laboratory.hpp>
-#include <exitance/methods/methods.hpp>
+#include "exitance/lab/laboratory.hpp"
+#include "exitance/methods/methods.hpp"
 
 /// The engine has no growing cells until the laboratory is installed.
 int main() {

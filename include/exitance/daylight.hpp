@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "exitance/solution.hpp"
+
+namespace exitance::api {
+
+/// Options of a year of daylight.
+struct DaylightOptions {
+    int division = 1;     ///< Parts of Tregenza's sky patches in each direction: 1, 2 or 4.
+    double north = 0;     ///< Degrees from the y axis to north, clockwise seen from above.
+    double ground = 0.2;  ///< Reflectance of the ground.
+};
+
+/// One hour of a weather file, in local standard time.
+struct Hour {
+    int month = 1, day = 1, hour = 1;  ///< The hour ends at `hour`, 1 to 24.
+};
+
+/// Illuminances of sensors in every hour of a weather file, and their annual figures.
+struct Daylight {
+    std::vector<Hour> hours;
+    std::size_t sensors = 0;
+    std::vector<float> illuminance;       ///< lx; one row per hour, one column per sensor.
+    std::vector<float> sun;               ///< Direct sunlight contained in `illuminance`, lx.
+    std::vector<double> daylight_factor;  ///< Per sensor: per cent, under the traditional overcast sky.
+    std::vector<double> autonomy;         ///< Per sensor: share of the occupied hours (8 to 18 h) with 300 lx.
+    /// Per sensor: shares of the occupied hours below 100 lx, from 100 to 300, from 300 to 3000, and above.
+    std::vector<std::array<double, 4>> useful;
+    std::vector<double> sunny_hours;    ///< Per sensor: occupied hours with more than 1000 lx of direct sunlight.
+    double spatial_autonomy = 0;        ///< sDA(300 lx, 50%): share of the sensors.
+    double sunlight_exposure = 0;       ///< ASE(1000 lx, 250 h): share of the sensors.
+    std::vector<std::string> warnings;  ///< Sentences about the weather file.
+};
+
+/// Computes the daylight of a year at sensors by daylight coefficients: one transport for all sky patches, and exact
+/// direct light of sun and sky. The scene's own lamps are off, and its sky is replaced by the weather.
+/// epw      weather file
+/// sensors  points and normals
+/// Errors: cannot_read, bad_input for the weather file; usage for options out of range or no sensors; limit after a
+/// stop.
+Result<Daylight> daylight(const Scene& scene, const std::string& epw, std::span<const Probe> sensors,
+                          const DaylightOptions& options = {}, const Control& control = {});
+
+}  // namespace exitance::api

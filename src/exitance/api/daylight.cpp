@@ -1,0 +1,80 @@
+#include "exitance/daylight.hpp"
+
+#include "exitance/api/inside.hpp"
+#include "exitance/io/files/epw_file.hpp"
+#include "exitance/io/scenes/sky_words.hpp"
+#include "exitance/what_if/daylight/daylight_year.hpp"
+
+namespace exitance::api {
+namespace {
+
+/// The error of options out of range; none if all are within.
+std::optional<Error> find_misuse(std::span<const Probe> sensors, const DaylightOptions& options) {
+    if (sensors.empty()) return usage("there are no sensors", "sensors");
+    if (options.division != 1 && options.division != 2 && options.division != 4)
+        return usage("must be 1, 2 or 4", "division");
+    if (!(options.ground >= 0 && options.ground < 1)) return usage("must be from 0 to below 1", "ground");
+    if (!std::isfinite(options.north)) return usage("must be an angle in degrees", "north");
+    return std::nullopt;
+}
+
+std::vector<std::string> warnings_of(const Weather& weather, const std::string& epw) {
+    std::vector<std::string> out;
+    for (const std::string& warning : weather.warnings) out.push_back(epw + ": " + warning);
+    if (const std::string partial = weather.not_a_year(); !partial.empty())
+        out.push_back(epw + ": " + partial + ": sDA and ASE are defined for whole years");
+    return out;
+}
+
+void add_metrics(std::span<const DaylightMetrics> metrics, Daylight& out) {
+    for (const DaylightMetrics& m : metrics) {
+        out.daylight_factor.push_back(m.daylight_factor);
+        out.autonomy.push_back(m.autonomy);
+        out.useful.push_back(m.useful);
+        out.sunny_hours.push_back(m.sunny_hours);
+    }
+}
+
+Result<Daylight> compute(const exitance::Scene& scene, const Weather& weather, std::span<const ProbePoint> sensors,
+                         const DaylightOptions& options, Run& run) {
+    std::vector<DaylightHour> hours;
+    Daylight out;
+    for (const WeatherHour& hour : weather.hours) {
+        hours.push_back({hour.middle(weather.zone), hour.hour, hour.diffuse_horizontal, hour.direct_normal});
+        out.hours.push_back({hour.month, hour.day, hour.hour});
+    }
+    const DaylightSite site{.place = weather.place,
+                            .north = options.north,
+                            .ground = options.ground,
+                            .efficacy_diffuse = efficacy_of_sky,
+                            .efficacy_direct = efficacy_of_sun};
+    const SkyPatches patches(options.division);
+    const DaylightMatrix matrix = make_daylight_matrix(scene, sensors, patches, {}, run.progress());
+    if (run.stop().requested()) return stopped("the computation of daylight");
+    DaylightYear year = daylight_year(scene, sensors, patches, matrix, hours, site);
+    const std::vector<DaylightMetrics> metrics = daylight_metrics(year, patches, matrix, hours, site);
+    const DaylightSummary summary = summarize(metrics, hours);
+    add_metrics(metrics, out);
+    out.sensors = year.sensors;
+    out.illuminance = std::move(year.illuminance), out.sun = std::move(year.sun);
+    out.spatial_autonomy = summary.spatial_autonomy, out.sunlight_exposure = summary.sunlight_exposure;
+    return out;
+}
+
+}  // namespace
+
+Result<Daylight> daylight(const Scene& scene, const std::string& epw, std::span<const Probe> sensors,
+                          const DaylightOptions& options, const Control& control) {
+    return take_turn<Daylight>(control, [&](Run& run) -> Result<Daylight> {
+        if (const std::optional<Error> misuse = find_misuse(sensors, options)) return *misuse;
+        const Result<std::vector<ProbePoint>> points = to_engine(sensors);
+        if (!points) return points.error();
+        const exitance::Result<Weather> weather = load_epw(epw);
+        if (!weather) return to_api(weather.error());
+        Result<Daylight> out = compute(*scene.data().scene, *weather, *points, options, run);
+        if (out) out->warnings = warnings_of(*weather, epw);
+        return out;
+    });
+}
+
+}  // namespace exitance::api

@@ -1,0 +1,58 @@
+#include "exitance/view_factors.hpp"
+
+#include "exitance/api/inside.hpp"
+#include "exitance/io/view_factors/view_factor_file.hpp"
+#include "exitance/view_factors/row_factors.hpp"
+
+namespace exitance::api {
+namespace {
+
+/// The error of options out of range; none if all are within.
+std::optional<Error> find_misuse(const ViewFactorOptions& options) {
+    if (!(options.error >= 1e-6 && options.error <= 0.5)) return usage("must be from 1e-6 to 0.5", "error");
+    if (!(options.smallest >= 0 && options.smallest < 1)) return usage("must be from 0 to below 1", "smallest");
+    return std::nullopt;
+}
+
+/// The error of arrays that are not a sparse matrix; none if they are.
+std::optional<Error> find_misfit(const ViewFactors& f) {
+    const std::size_t n = f.areas.size();
+    bool fits = f.emittances.size() == n && f.row_sums.size() == n && f.row_errors.size() == n &&
+                f.starts.size() == n + 1 && f.columns.size() == f.values.size();
+    fits = fits && f.starts.front() == 0 && f.starts.back() == f.values.size() &&
+           std::is_sorted(f.starts.begin(), f.starts.end()) &&
+           std::all_of(f.columns.begin(), f.columns.end(), [&](std::uint32_t j) { return j < n; });
+    if (fits) return std::nullopt;
+    return usage("the arrays do not form a sparse matrix", "view factors", "save the result of view_factors()");
+}
+
+}  // namespace
+
+Result<ViewFactors> view_factors(const Scene& scene, const ViewFactorOptions& options, const Control& control) {
+    return take_turn<ViewFactors>(control, [&](Run& run) -> Result<ViewFactors> {
+        if (const std::optional<Error> misuse = find_misuse(options)) return *misuse;
+        RowFactorOptions in;
+        in.error = options.error, in.smallest = options.smallest, in.seed = options.seed;
+        SparseFactors table = compute_row_factors(*scene.data().scene, in, nullptr, run.progress(), run.stop());
+        if (run.stop().requested()) return stopped("the computation of view factors");
+        return ViewFactors{std::move(table.areas),     std::move(table.emittances), std::move(table.starts),
+                           std::move(table.columns),   std::move(table.values),     std::move(table.row_sums),
+                           std::move(table.row_errors)};
+    });
+}
+
+Result<void> save(const ViewFactors& factors, const std::string& path) {
+    return take_turn<void>([&]() -> Result<void> {
+        if (const std::optional<Error> misfit = find_misfit(factors)) return *misfit;
+        SparseFactors table;
+        table.areas = factors.areas, table.emittances = factors.emittances;
+        table.starts = factors.starts, table.columns = factors.columns, table.values = factors.values;
+        table.row_sums = factors.row_sums, table.row_errors = factors.row_errors;
+        table.finished.assign(table.size(), 1);
+        table.dropped.assign(table.size(), 0);
+        table.combined = true;
+        return to_api(write_view_factors(path, table, exitance::StopRequest()));
+    });
+}
+
+}  // namespace exitance::api
