@@ -16,7 +16,7 @@ check_layout() {
 run_suite() {  # PRESET FOLDER
     local start=$SECONDS
     echo "== $1: configure and build"
-    cmake --preset "$1" --log-level=WARNING
+    cmake --preset "$1" --log-level=WARNING -D EXITANCE_PYTHON=ON
     cmake --build "$2" --parallel "$jobs"
     echo "== $1: test (built in $((SECONDS - start)) s)"
     ctest --test-dir "$2" --parallel "$jobs" --output-on-failure --no-tests=error --progress

@@ -22,5 +22,9 @@ endif()
 if(TARGET exitance-cli)
     install(TARGETS exitance-cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 endif()
+if(TARGET exitance-python)
+    install(DIRECTORY ${PROJECT_BINARY_DIR}/python/exitance DESTINATION lib/python3/dist-packages COMPONENT python
+        PATTERN __pycache__ EXCLUDE)
+endif()
 install(DIRECTORY ${PROJECT_BINARY_DIR}/viewer/ DESTINATION ${CMAKE_INSTALL_DATADIR}/exitance/viewer OPTIONAL
     COMPONENT program)

@@ -12,7 +12,9 @@ packages=(
     libcpp-httplib-dev                                                       # the viewer's server
     libtomlplusplus-dev gnuplot-nox                                          # the test bed's studies and their plots
     libopenmpi-dev openmpi-bin libpetsc64-real-dev                           # several processes
-    libgtest-dev librapidcheck-dev python3-h5py python3-vtk9 python3-numpy   # the tests; our files in other readers
+    pybind11-dev python3-dev python3-numpy python3-scipy                     # the Python module
+    python3-pytest mypy python3-pip python3-venv python3-setuptools python3-wheel  # its tests and its package
+    libgtest-dev librapidcheck-dev python3-h5py python3-vtk9                 # the tests; our files in other readers
     libbenchmark-dev                                                         # the benchmarks
 )
 # The viewer's page is built by node and npm, of any origin; without them everything else is built.

@@ -68,7 +68,7 @@ std::string fault_of_source(const std::string& source) {
 TEST(PlainEnglish, CommentsAreSentencesOrNounPhrases) {
     const fs::path root = test::source_folder();
     std::size_t count = 0;
-    for (const std::string folder : {"src/exitance", "include/exitance", "tests", "bench"})
+    for (const std::string folder : {"src/exitance", "include/exitance", "bindings", "tests", "bench"})
         for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder)) {
             const std::string extension = entry.path().extension();
             if (extension != ".cpp" && extension != ".hpp" && extension != ".inc") continue;

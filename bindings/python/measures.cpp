@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include "arrays.hpp"
+#include "docs.hpp"
+#include "exitance/daylight.hpp"
+#include "exitance/view_factors.hpp"
+#include "module.hpp"
+#include "running.hpp"
+
+namespace python {
+namespace {
+
+using namespace py::literals;
+
+template <class T>
+py::array vector_of(std::vector<T> values) {
+    const auto count = static_cast<py::ssize_t>(values.size());
+    return array_of(std::move(values), {count});
+}
+
+/// View factors as a scipy.sparse.csr_array.
+py::object view_factors(const api::Scene& scene, double error, double smallest, std::uint64_t seed,
+                        const py::object& progress) {
+    const py::object make = py::module_::import("scipy.sparse").attr("csr_array");
+    const api::ViewFactorOptions options{error, smallest, seed};
+    api::ViewFactors F = run<api::ViewFactors>(
+        progress, [&](const api::Control& control) { return api::view_factors(scene, options, control); });
+    const std::size_t n = F.areas.size();
+    std::vector<std::int64_t> starts(F.starts.begin(), F.starts.end());
+    std::vector<std::int64_t> columns(F.columns.begin(), F.columns.end());
+    return make(
+        py::make_tuple(vector_of(std::move(F.values)), vector_of(std::move(columns)), vector_of(std::move(starts))),
+        "shape"_a = py::make_tuple(n, n));
+}
+
+api::Daylight daylight(const api::Scene& scene, const py::object& epw, const py::object& sensors,
+                       const py::object& normals, int division, double north, double ground,
+                       const py::object& progress) {
+    bool is_single = false;
+    const std::vector<api::Probe> probes = probes_of(sensors, normals, is_single);
+    const std::string path = path_of(epw);
+    return run<api::Daylight>(progress, [&](const api::Control& control) {
+        return api::daylight(scene, path, probes, {division, north, ground}, control);
+    });
+}
+
+/// A property that shows a vector of the object without a copy, one number per sensor.
+template <class T>
+auto per_sensor(const std::vector<T> api::Daylight::*member) {
+    return [member](const py::object& self) {
+        const std::vector<T>& values = self.cast<const api::Daylight&>().*member;
+        return view_of(values.data(), {static_cast<py::ssize_t>(values.size())}, self);
+    };
+}
+
+/// A property that shows one row per hour and one column per sensor.
+auto per_hour(const std::vector<float> api::Daylight::*member) {
+    return [member](const py::object& self) {
+        const auto& d = self.cast<const api::Daylight&>();
+        return view_of((d.*member).data(),
+                       {static_cast<py::ssize_t>(d.hours.size()), static_cast<py::ssize_t>(d.sensors)}, self);
+    };
+}
+
+constexpr const char* view_factor_arguments = R"doc(
+
+error      limit on the error of every row
+smallest   smaller entries are dropped
+seed       seed of the random points
+progress   as for solve()
+returns    scipy.sparse.csr_array (n, n): entry (i, j) is the share of the flux leaving face i that reaches face j)doc";
+
+constexpr const char* daylight_arguments = R"doc(
+
+sensors    (n, 3) metres
+normals    of the same shape, or (3,) for all; up by default
+division   parts of Tregenza's sky patches in each direction: 1, 2 or 4
+north      degrees from the y axis to north, clockwise seen from above
+ground     reflectance of the ground
+progress   as for solve())doc";
+
+}  // namespace
+
+void add_measures(py::module_& m) {
+    static const std::string factors_doc = std::string(docs::view_factors) + view_factor_arguments;
+    m.def("view_factors", &view_factors, "scene"_a, "error"_a = 1e-3, py::kw_only(), "smallest"_a = 0.0, "seed"_a = 1,
+          "progress"_a = py::none(), factors_doc.c_str());
+    py::class_<api::Daylight>(m, "Daylight", docs::Daylight::self)
+        .def_property_readonly(
+            "hours",
+            [](const api::Daylight& d) {
+                std::vector<std::int32_t> out;
+                for (const api::Hour& h : d.hours) out.insert(out.end(), {h.month, h.day, h.hour});
+                return array_of(std::move(out), {static_cast<py::ssize_t>(d.hours.size()), 3});
+            },
+            "Month, day and hour (1 to 24, the end) of every row.")
+        .def_property_readonly("illuminance", per_hour(&api::Daylight::illuminance), docs::Daylight::illuminance)
+        .def_property_readonly("sun", per_hour(&api::Daylight::sun), docs::Daylight::sun)
+        .def_property_readonly("daylight_factor", per_sensor<double>(&api::Daylight::daylight_factor),
+                               docs::Daylight::daylight_factor)
+        .def_property_readonly("autonomy", per_sensor<double>(&api::Daylight::autonomy), docs::Daylight::autonomy)
+        .def_property_readonly(
+            "useful",
+            [](const py::object& self) { return view_of_rows(self.cast<const api::Daylight&>().useful, self); },
+            docs::Daylight::useful)
+        .def_property_readonly("sunny_hours", per_sensor<double>(&api::Daylight::sunny_hours),
+                               docs::Daylight::sunny_hours)
+        .def_readonly("spatial_autonomy", &api::Daylight::spatial_autonomy, docs::Daylight::spatial_autonomy)
+        .def_readonly("sunlight_exposure", &api::Daylight::sunlight_exposure, docs::Daylight::sunlight_exposure)
+        .def_readonly("warnings", &api::Daylight::warnings, docs::Daylight::warnings)
+        .def("__repr__", [](const api::Daylight& d) {
+            return fmt::format("<exitance.Daylight: {} hours, {} sensors>", d.hours.size(), d.sensors);
+        });
+    static const std::string daylight_doc = std::string(docs::daylight) + daylight_arguments;
+    m.def("daylight", &daylight, "scene"_a, "epw"_a, "sensors"_a, "normals"_a = py::cast(std::vector<double>{0, 0, 1}),
+          py::kw_only(), "division"_a = 1, "north"_a = 0.0, "ground"_a = 0.2, "progress"_a = py::none(),
+          daylight_doc.c_str());
+}
+
+}  // namespace python
