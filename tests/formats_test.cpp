@@ -1,0 +1,109 @@
+// Files that released versions of the program wrote, and that every later version reads (docs/developers/releasing.md).
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "exitance/base/version.hpp"
+#include "exitance/evaluate/radiosity_function.hpp"
+#include "exitance/io/solution/solution_file.hpp"
+#include "exitance/io/view_factors/view_factor_file.hpp"
+#include "exitance/what_if/light_groups/light_groups.hpp"
+#include "support/places.hpp"
+
+namespace exitance {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The folders with stored files, one per version.
+std::vector<fs::path> versions() {
+    std::vector<fs::path> out;
+    for (const fs::directory_entry& entry :
+         fs::directory_iterator(fs::path(test::source_folder()) / "tests/data/formats"))
+        if (entry.is_directory()) out.push_back(entry.path());
+    return out;
+}
+
+/// Rows of numbers of a table with a header.
+std::vector<std::vector<double>> rows_of(const fs::path& path) {
+    std::vector<std::vector<double>> rows;
+    std::ifstream in(path);
+    std::string line, cell;
+    for (std::getline(in, line); std::getline(in, line);) {
+        std::istringstream cells(line);
+        for (rows.emplace_back(); std::getline(cells, cell, ',');)
+            rows.back().push_back(std::strtod(cell.c_str(), nullptr));
+    }
+    return rows;
+}
+
+std::string content(const fs::path& path) {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+}
+
+}  // namespace
+
+TEST(StoredFiles, ThereAreSomeOfThisVersion) {
+    EXPECT_TRUE(fs::exists(fs::path(test::source_folder()) / "tests/data/formats" / program_version))
+        << "tests/data/formats/make writes them";
+}
+
+TEST(StoredFiles, SolutionsOfAllVersionsHaveTheLightThatTheyHad) {
+    for (const fs::path& folder : versions()) {
+        const Result<Solution> solution = load_solution(folder / "solution.h5");
+        ASSERT_TRUE(solution) << folder << ": " << solution.error().message;
+        EXPECT_LE(solution->statistics.relative_error_estimate.value_or(1), 0.3) << folder;
+        const RadiosityFunction light(*solution);
+        const std::vector<std::vector<double>> rows = rows_of(folder / "light.csv");
+        ASSERT_EQ(rows.size(), 3u) << folder;
+        for (const std::vector<double>& row : rows) {
+            const ProbePoint point{{row[0], row[1], row[2]}, {row[3], row[4], row[5]}};
+            const Spectrum E = light.at({&point, 1})[0].irradiance;
+            // Points in the air gather by rays, whose numbers may change: a thousandth. The table has ten digits.
+            for (std::size_t b = 0; b < bands; ++b) EXPECT_NEAR(E[b], row[6 + b], 1e-3 * row[6 + b]) << folder;
+        }
+    }
+}
+
+TEST(StoredFiles, LightGroupsOfAllVersionsCanBeDimmed) {
+    for (const fs::path& folder : versions()) {
+        LightGroups groups;
+        Result<Solution> solution = load_solution(folder / "groups.h5", Rehearsed::not_yet, &groups);
+        ASSERT_TRUE(solution) << folder << ": " << solution.error().message;
+        ASSERT_FALSE(groups.empty()) << folder;
+        EXPECT_TRUE(change_light(*solution, groups, {.dim = {{"lamp", 0.5}}})) << folder;
+    }
+}
+
+TEST(StoredFiles, ViewFactorsOfAllVersionsAreRead) {
+    for (const fs::path& folder : versions()) {
+        const Result<SparseFactors> factors = read_view_factors(folder / "view_factors.h5");
+        ASSERT_TRUE(factors) << folder << ": " << factors.error().message;
+        ASSERT_EQ(factors->size(), 7u) << folder;
+        // Rows of walls sum to 1, less a share of at most a tenth that meets the back of the lamp.
+        for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(factors->row_sums[i], 0.95, 0.1) << folder;
+    }
+}
+
+/// The version is in CMakeLists.txt. Two files repeat it for their readers.
+TEST(Version, IsThatOfTheCitationAndOfTheChanges) {
+    const fs::path root = test::source_folder();
+    const std::string version = program_version;
+    EXPECT_NE(content(root / "CITATION.cff").find("version: " + version + "\n"), std::string::npos);
+    std::smatch heading;
+    const std::string changes = content(root / "CHANGELOG.md");
+    ASSERT_TRUE(std::regex_search(changes, heading, std::regex("\n## ([0-9.]+)")));
+    EXPECT_EQ(heading[1], version);
+}
+
+}  // namespace exitance
