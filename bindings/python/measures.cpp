@@ -35,13 +35,13 @@ py::object view_factors(const api::Scene& scene, double error, double smallest, 
 }
 
 api::Daylight daylight(const api::Scene& scene, const py::object& epw, const py::object& sensors,
-                       const py::object& normals, int division, double north, double ground,
+                       const py::object& normals, double error, int division, double north, double ground,
                        const py::object& progress) {
     bool is_single = false;
     const std::vector<api::Probe> probes = probes_of(sensors, normals, is_single);
     const std::string path = path_of(epw);
     return run<api::Daylight>(progress, [&](const api::Control& control) {
-        return api::daylight(scene, path, probes, {division, north, ground}, control);
+        return api::daylight(scene, path, probes, {error, division, north, ground}, control);
     });
 }
 
@@ -75,6 +75,7 @@ constexpr const char* daylight_arguments = R"doc(
 
 sensors    (n, 3) metres
 normals    of the same shape, or (3,) for all; up by default
+error      requested relative RMS error of the daylight factors and of the lux hours of the year
 division   parts of Tregenza's sky patches in each direction: 1, 2 or 4
 north      degrees from the y axis to north, clockwise seen from above
 ground     reflectance of the ground
@@ -104,18 +105,33 @@ void add_measures(py::module_& m) {
             "useful",
             [](const py::object& self) { return view_of_rows(self.cast<const api::Daylight&>().useful, self); },
             docs::Daylight::useful)
+        .def_property_readonly(
+            "daylight_factor_bounds",
+            [](const py::object& self) {
+                return view_of_rows(self.cast<const api::Daylight&>().daylight_factor_bounds, self);
+            },
+            docs::Daylight::daylight_factor_bounds)
+        .def_property_readonly(
+            "autonomy_bounds",
+            [](const py::object& self) {
+                return view_of_rows(self.cast<const api::Daylight&>().autonomy_bounds, self);
+            },
+            docs::Daylight::autonomy_bounds)
         .def_property_readonly("sunny_hours", per_sensor<double>(&api::Daylight::sunny_hours),
                                docs::Daylight::sunny_hours)
         .def_readonly("spatial_autonomy", &api::Daylight::spatial_autonomy, docs::Daylight::spatial_autonomy)
         .def_readonly("sunlight_exposure", &api::Daylight::sunlight_exposure, docs::Daylight::sunlight_exposure)
+        .def_readonly("error_daylight_factor", &api::Daylight::error_daylight_factor,
+                      docs::Daylight::error_daylight_factor)
+        .def_readonly("error_lux_hours", &api::Daylight::error_lux_hours, docs::Daylight::error_lux_hours)
         .def_readonly("warnings", &api::Daylight::warnings, docs::Daylight::warnings)
         .def("__repr__", [](const api::Daylight& d) {
             return fmt::format("<exitance.Daylight: {} hours, {} sensors>", d.hours.size(), d.sensors);
         });
     static const std::string daylight_doc = std::string(docs::daylight) + daylight_arguments;
     m.def("daylight", &daylight, "scene"_a, "epw"_a, "sensors"_a, "normals"_a = py::cast(std::vector<double>{0, 0, 1}),
-          py::kw_only(), "division"_a = 1, "north"_a = 0.0, "ground"_a = 0.2, "progress"_a = py::none(),
-          daylight_doc.c_str());
+          "error"_a = 0.02, py::kw_only(), "division"_a = 1, "north"_a = 0.0, "ground"_a = 0.2,
+          "progress"_a = py::none(), daylight_doc.c_str());
 }
 
 }  // namespace python

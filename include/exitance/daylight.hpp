@@ -11,6 +11,7 @@ namespace exitance::api {
 
 /// Options of a year of daylight.
 struct DaylightOptions {
+    double error = 0.02;  ///< Requested relative RMS error of the daylight factors and of the lux hours of the year.
     int division = 1;     ///< Parts of Tregenza's sky patches in each direction: 1, 2 or 4.
     double north = 0;     ///< Degrees from the y axis to north, clockwise seen from above.
     double ground = 0.2;  ///< Reflectance of the ground.
@@ -29,20 +30,22 @@ struct Daylight {
     std::vector<float> sun;               ///< Direct sunlight contained in `illuminance`, lx.
     std::vector<double> daylight_factor;  ///< Per sensor: per cent, under the traditional overcast sky.
     std::vector<double> autonomy;         ///< Per sensor: share of the occupied hours (8 to 18 h) with 300 lx.
+    std::vector<std::array<double, 2>> daylight_factor_bounds;  ///< 95% interval of `daylight_factor`.
+    std::vector<std::array<double, 2>> autonomy_bounds;         ///< 95% interval of `autonomy`.
     /// Per sensor: shares of the occupied hours below 100 lx, from 100 to 300, from 300 to 3000, and above.
     std::vector<std::array<double, 4>> useful;
     std::vector<double> sunny_hours;    ///< Per sensor: occupied hours with more than 1000 lx of direct sunlight.
     double spatial_autonomy = 0;        ///< sDA(300 lx, 50%): share of the sensors.
     double sunlight_exposure = 0;       ///< ASE(1000 lx, 250 h): share of the sensors.
-    std::vector<std::string> warnings;  ///< Sentences about the weather file.
+    double error_daylight_factor = 0;   ///< Relative RMS error of the daylight factors.
+    double error_lux_hours = 0;         ///< Relative RMS error of the sums of all hours' illuminances.
+    std::vector<std::string> warnings;  ///< Sentences about the weather file, and about an error above the requested.
 };
 
 /// Computes the daylight of a year at sensors by daylight coefficients: one transport for all sky patches, and exact
-/// direct light of sun and sky. The scene's own lamps are off, and its sky is replaced by the weather.
-/// epw      weather file
-/// sensors  points and normals
-/// Errors: cannot_read, bad_input for the weather file; usage for options out of range or no sensors; limit after a
-/// stop.
+/// direct light of sun and sky. The scene's own lamps are off, and its sky is replaced by the weather. Rays and
+/// elements are added until the requested error is reached. epw      weather file sensors  points and normals Errors:
+/// cannot_read, bad_input for the weather file; usage for options out of range or no sensors; limit after a stop.
 Result<Daylight> daylight(const Scene& scene, const std::string& epw, std::span<const Probe> sensors,
                           const DaylightOptions& options = {}, const Control& control = {});
 

@@ -48,6 +48,9 @@ def test_daylight_on_open_ground_is_that_of_the_sky(tmp_path):
     assert year.illuminance[noon, 0] == pytest.approx(200 * 120, rel=0.01)  # 120 lm/W of the sky
     assert year.daylight_factor[0] == pytest.approx(100, rel=0.02)
     assert year.useful.shape == (1, 4) and year.autonomy.shape == (1,)
+    low, high = year.daylight_factor_bounds[0]
+    assert low <= year.daylight_factor[0] <= high
+    assert 0 <= year.error_lux_hours <= 0.02
     assert year.warnings  # the file is not a whole year
     with pytest.raises(ex.UsageError):
         ex.daylight(ground, tmp_path / "town.epw", np.zeros((0, 3)))

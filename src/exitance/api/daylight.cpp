@@ -3,7 +3,7 @@
 #include "exitance/api/inside.hpp"
 #include "exitance/io/files/epw_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
-#include "exitance/what_if/daylight/daylight_year.hpp"
+#include "exitance/what_if/daylight/daylight_results.hpp"
 
 namespace exitance::api {
 namespace {
@@ -13,6 +13,7 @@ std::optional<Error> find_misuse(std::span<const Probe> sensors, const DaylightO
     if (sensors.empty()) return usage("there are no sensors", "sensors");
     if (options.division != 1 && options.division != 2 && options.division != 4)
         return usage("must be 1, 2 or 4", "division");
+    if (!(options.error > 0 && options.error <= 1)) return usage("must be above 0 and at most 1", "error");
     if (!(options.ground >= 0 && options.ground < 1)) return usage("must be from 0 to below 1", "ground");
     if (!std::isfinite(options.north)) return usage("must be an angle in degrees", "north");
     return std::nullopt;
@@ -26,21 +27,27 @@ std::vector<std::string> warnings_of(const Weather& weather, const std::string& 
     return out;
 }
 
-void add_metrics(std::span<const DaylightMetrics> metrics, Daylight& out) {
-    for (const DaylightMetrics& m : metrics) {
+void add_metrics(const DaylightResults& results, Daylight& out) {
+    for (const DaylightMetrics& m : results.metrics) {
         out.daylight_factor.push_back(m.daylight_factor);
         out.autonomy.push_back(m.autonomy);
         out.useful.push_back(m.useful);
         out.sunny_hours.push_back(m.sunny_hours);
     }
+    for (const SensorIntervals& s : results.intervals.sensors) {
+        out.daylight_factor_bounds.push_back({s.factor.low, s.factor.high});
+        out.autonomy_bounds.push_back({s.autonomy.low, s.autonomy.high});
+    }
 }
 
 Result<Daylight> compute(const exitance::Scene& scene, const Weather& weather, std::span<const ProbePoint> sensors,
                          const DaylightOptions& options, Run& run) {
-    std::vector<DaylightHour> hours;
+    DaylightResults results;
+    results.sensors.assign(sensors.begin(), sensors.end());
+    results.grids = {{"", sensors.size()}};
     Daylight out;
     for (const WeatherHour& hour : weather.hours) {
-        hours.push_back({hour.middle(weather.zone), hour.hour, hour.diffuse_horizontal, hour.direct_normal});
+        results.hours.push_back({hour.middle(weather.zone), hour.hour, hour.diffuse_horizontal, hour.direct_normal});
         out.hours.push_back({hour.month, hour.day, hour.hour});
     }
     const DaylightSite site{.place = weather.place,
@@ -48,16 +55,17 @@ Result<Daylight> compute(const exitance::Scene& scene, const Weather& weather, s
                             .ground = options.ground,
                             .efficacy_diffuse = efficacy_of_sky,
                             .efficacy_direct = efficacy_of_sun};
-    const SkyPatches patches(options.division);
-    const DaylightMatrix matrix = make_daylight_matrix(scene, sensors, patches, {}, run.progress());
-    if (run.stop().requested()) return stopped("the computation of daylight");
-    DaylightYear year = daylight_year(scene, sensors, patches, matrix, hours, site);
-    const std::vector<DaylightMetrics> metrics = daylight_metrics(year, patches, matrix, hours, site);
-    const DaylightSummary summary = summarize(metrics, hours);
-    add_metrics(metrics, out);
-    out.sensors = year.sensors;
-    out.illuminance = std::move(year.illuminance), out.sun = std::move(year.sun);
-    out.spatial_autonomy = summary.spatial_autonomy, out.sunlight_exposure = summary.sunlight_exposure;
+    if (!simulate_year(scene, options.division, site, options.error, results, run.progress(), run.stop()))
+        return stopped("the computation of daylight");
+    add_metrics(results, out);
+    out.sensors = results.year.sensors;
+    out.illuminance = std::move(results.year.illuminance), out.sun = std::move(results.year.sun);
+    out.spatial_autonomy = results.summary.spatial_autonomy;
+    out.sunlight_exposure = results.summary.sunlight_exposure;
+    const DaylightError error = results.worst_error();
+    out.error_daylight_factor = error.factor, out.error_lux_hours = error.lux_hours;
+    if (std::max(error.factor, error.lux_hours) > options.error)
+        out.warnings.push_back("the error is above the requested one: finer patches of the sky may be needed");
     return out;
 }
 
