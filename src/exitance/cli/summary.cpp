@@ -46,8 +46,10 @@ std::string bound_line(const SolveStatistics& s) {
 /// Whether the requested error was reached. The recorded options have no error if none was requested.
 std::string reached_line(const Solution& solution) {
     const SolveStatistics& s = solution.statistics;
-    if (!s.converged) return s.stopped_by.empty() ? "no" : fmt::format("no, stopped by {}", s.stopped_by);
-    return solution.options.find("\"error\":null") == std::string::npos ? "yes" : "no error was requested";
+    const bool is_requested = solution.options.find("\"error\":null") == std::string::npos;
+    if (s.stopped_by.empty() && !is_requested) return "no error was requested";
+    if (s.converged) return is_requested ? "yes" : "no error was requested";
+    return s.stopped_by.empty() ? "no" : fmt::format("no, stopped by {}", s.stopped_by);
 }
 
 }  // namespace

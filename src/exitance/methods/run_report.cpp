@@ -18,6 +18,7 @@ void add_findings(std::vector<std::string>& warnings, std::span<const Finding> f
 
 void warn_of_useless_light(SolveStatistics& statistics) {
     if (statistics.relative_error_estimate.value_or(0) < 1) return;
+    statistics.converged = false;
     statistics.warnings.push_back(
         fmt::format("the estimated error is {:.0f}% of the light: the result is not usable; refine the settings, or "
                     "request an --error",
