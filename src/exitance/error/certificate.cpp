@@ -374,7 +374,7 @@ void Certifier::Content::check_late(Certificate& out) {
     const LateMisfit misfit = by_paths.misfit(samples, late, options.seed, options.check_rays / 2);
     out.rays += misfit.rays;
     if (misfit.mean_square <= 2 * misfit.standard_error) return;
-    const double more = std::sqrt(misfit.mean_square) / mean_reflected;
+    const double more = std::sqrt(misfit.mean_square) / out.mean_reflected;
     out.estimate = std::hypot(out.estimate, more), out.bound = std::hypot(out.bound, more);
     if (stage.rooms.count() == 0) out.worst_room = out.of_rooms = rooms[0].error = out.estimate;
 }
