@@ -200,8 +200,11 @@ std::string help() {
         "Example:\n  exitance solve room.obj -o room.h5\n\n"
         "Light in rooms of diffuse surfaces.\n\n"
         "Usage: exitance VERB [options] INPUT...\n\nVerbs:\n";
-    for (const Verb& verb : verbs()) text += fmt::format("  {:<12} {}\n", verb.name, verb.does);
-    return text + "\nexitance VERB --help describes a verb; exitance --version names the libraries built in.\n";
+    for (const Verb& verb : verbs())
+        if (verb.name != "reference") text += fmt::format("  {:<12} {}\n", verb.name, verb.does);
+    return text +
+           "\nexitance VERB --help describes a verb; exitance --version names the libraries built in.\n"
+           "exitance reference --format man|bash|zsh prints a manual page or a completion for the shell.\n";
 }
 
 Error unknown_verb(const std::string& word) {

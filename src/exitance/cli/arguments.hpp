@@ -197,7 +197,7 @@ struct ViewArguments : CommonArguments {
     std::string save = "viewed.h5";
 };
 
-/// What `exitance reference` prints.
+/// Format of the page that `exitance reference` prints.
 enum class ReferenceFormat : std::uint8_t { man, markdown, bash, zsh, list };
 
 struct ReferenceArguments : CommonArguments {
