@@ -17,15 +17,12 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Folder with scenes; "real" has models with typical properties of users' files, one per model.
-fs::path shared_scenes() {
-    return fs::path(test::shared_folder()) / "scenes";
+fs::path scenes() {
+    return fs::path(test::data_folder()) / "scenes";
 }
 
-#define SKIP_WITHOUT_SHARED_SCENES() \
-    if (!fs::exists(shared_scenes() / "real")) GTEST_SKIP() << "there are no shared scenes"
-
 CheckedScene load_real(const char* name) {
-    return load_scene((shared_scenes() / "real" / name).string());
+    return load_scene((scenes() / "real" / name).string());
 }
 
 Result<Solution> solve_direct(const Scene& scene) {
@@ -45,11 +42,10 @@ std::size_t count(const CheckedScene& checked, Finding::Kind kind) {
 }
 
 TEST(RealModels, WhateverIsSolvedCanBeReadBack) {
-    SKIP_WITHOUT_SHARED_SCENES();
     const TemporaryFolder temporary;
     std::size_t solved = 0;
     for (const char* folder : {"degenerate", "real"})
-        for (const auto& entry : fs::directory_iterator(shared_scenes() / folder)) {
+        for (const auto& entry : fs::directory_iterator(scenes() / folder)) {
             if (entry.path().extension() != ".obj") continue;
             const CheckedScene checked = load_scene(entry.path().string());
             if (!checked.scene || checked.scene->surfaces().size() > 100) continue;
@@ -64,14 +60,12 @@ TEST(RealModels, WhateverIsSolvedCanBeReadBack) {
 }
 
 TEST(RealModels, ANeedleShapedFaceDoesNotPreventASolution) {
-    SKIP_WITHOUT_SHARED_SCENES();
     const CheckedScene checked = load_real("slivers.obj");
     ASSERT_TRUE(checked.scene);
     EXPECT_EQ(count(checked, Finding::Kind::repair), 1u);
 }
 
 TEST(RealModels, AWindowOutlineInsideItsWallIsAHole) {
-    SKIP_WITHOUT_SHARED_SCENES();
     const CheckedScene checked = load_real("hole_same_turn.obj");
     ASSERT_TRUE(checked.scene);
     EXPECT_NEAR(checked.scene->surfaces()[SurfaceId(0)].area, 10, 1e-9);
@@ -79,7 +73,6 @@ TEST(RealModels, AWindowOutlineInsideItsWallIsAHole) {
 }
 
 TEST(RealModels, OfCoplanarFacesTheLastOneIsLit) {
-    SKIP_WITHOUT_SHARED_SCENES();
     const CheckedScene checked = load_real("coplanar.obj");
     ASSERT_TRUE(checked.scene);
     const Result<Solution> solution = solve_direct(*checked.scene);
@@ -108,7 +101,6 @@ TEST(RealModels, OfCoplanarFacesTheLastOneIsLit) {
 }
 
 TEST(RealModels, WhiteAndBentFacesAreRepairedAndReportedOnce) {
-    SKIP_WITHOUT_SHARED_SCENES();
     const CheckedScene checked = load_real("white.obj");
     ASSERT_TRUE(checked.scene);
     EXPECT_EQ(count(checked, Finding::Kind::repair), 2u);
@@ -118,7 +110,6 @@ TEST(RealModels, WhiteAndBentFacesAreRepairedAndReportedOnce) {
 }
 
 TEST(RealModels, ALuminaireShinesAsItsDataSay) {
-    SKIP_WITHOUT_SHARED_SCENES();
     const TemporaryFolder temporary;
     const CheckedScene checked = load_real("luminaire.rad");
     ASSERT_TRUE(checked.scene) << checked.scene.error().message;
@@ -135,16 +126,14 @@ TEST(RealModels, ALuminaireShinesAsItsDataSay) {
 }
 
 TEST(RealModels, NestedPatternsAreOmittedAndReported) {
-    SKIP_WITHOUT_SHARED_SCENES();
     const CheckedScene checked = load_real("chained_patterns.rad");
     ASSERT_TRUE(checked.scene) << checked.scene.error().message;
     EXPECT_EQ(count(checked, Finding::Kind::warning), 2u) << "patterns, and that there is no light";
 }
 
 TEST(RealModels, TwoFilesMakeAScene) {
-    SKIP_WITHOUT_SHARED_SCENES();
-    const std::vector<std::string> files = {(shared_scenes() / "real" / "materials.rad").string(),
-                                            (shared_scenes() / "real" / "room_part.rad").string()};
+    const std::vector<std::string> files = {(scenes() / "real" / "materials.rad").string(),
+                                            (scenes() / "real" / "room_part.rad").string()};
     const CheckedScene checked = load_scene(files, {});
     ASSERT_TRUE(checked.scene) << checked.scene.error().message;
     EXPECT_EQ(checked.scene->surfaces().size(), 3u);

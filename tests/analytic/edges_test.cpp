@@ -13,10 +13,10 @@ namespace exitance {
 namespace {
 
 TEST(OpenScenes, HaveAtMostTwoPercentErrorAtEveryProbe) {
-    const std::filesystem::path folder = std::filesystem::path(test::shared_folder()) / "reference" / "analytic";
+    if constexpr (bands != 3) GTEST_SKIP() << "the references have three bands";
+    const std::filesystem::path folder = std::filesystem::path(test::data_folder()) / "reference" / "analytic";
     for (const char* name : {"plates_1", "plates_0.5"}) {
         const std::string scene_file = (folder / name / (std::string(name) + ".obj")).string();
-        if (!std::filesystem::exists(scene_file) || bands != 3) continue;  // nothing to compare with
         const CheckedScene checked = load_scene(scene_file);
         ASSERT_TRUE(checked.scene);
         const Solution solution = solved(*checked.scene, {.error = 0.005});

@@ -6,8 +6,8 @@ std::string source_folder() {
     return EXITANCE_SOURCE_DIR;
 }
 
-std::string shared_folder() {
-    return EXITANCE_SHARED_DIR;
+std::string data_folder() {
+    return EXITANCE_SOURCE_DIR "/tests/data";
 }
 
 std::string program() {

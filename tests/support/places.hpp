@@ -7,7 +7,7 @@ namespace exitance::test {
 /// Paths that tests use. Only places.cpp depends on them, so that in another copy of the repository all other files
 /// compile identically.
 std::string source_folder();  ///< The repository.
-std::string shared_folder();  ///< Scenes and references outside the repository; may not exist.
+std::string data_folder();    ///< Scenes and references, see tests/data/README.md.
 std::string program();        ///< The built program.
 std::string mpirun();         ///< Program that starts several processes; empty if the build has no MPI.
 

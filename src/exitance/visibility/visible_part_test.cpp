@@ -59,14 +59,13 @@ TEST(VisiblePart, UnderABlockerIsTheSourceLessTheBlockersShadow) {
     }
 }
 
-/// Largest difference from the irradiance (first band) in a reference file, relative to the largest value; negative if
-/// the files are missing.
+/// Largest difference from the irradiance (first band) in a reference file, relative to the largest value.
 double largest_difference(const std::string& scene_name, const std::string& reference_name) {
-    const std::string shared = test::shared_folder();
-    std::ifstream reference(shared + "/reference/" + reference_name);
-    if (!reference) return -1;
-    const CheckedScene checked = load_scene(shared + "/scenes/" + scene_name);
-    if (!checked.scene) return -1;
+    const std::string data = test::data_folder();
+    std::ifstream reference(data + "/reference/" + reference_name);
+    EXPECT_TRUE(reference) << reference_name;
+    const CheckedScene checked = load_scene(data + "/scenes/" + scene_name);
+    EXPECT_TRUE(checked.scene) << scene_name;
     const Scene& scene = *checked.scene;
     const Occluders occluders(scene);
     const DirectLight direct(scene, occluders);

@@ -12,9 +12,9 @@
 namespace exitance {
 namespace {
 
-/// Path of a published test scene, which may not exist.
+/// Path of a published test scene.
 std::filesystem::path published(const std::string& file) {
-    return std::filesystem::path(test::shared_folder()) / "scenes" / file;
+    return std::filesystem::path(test::data_folder()) / "scenes" / file;
 }
 
 TEST(ObjWriter, ScenesAreReadBackAsWritten) {
@@ -66,12 +66,10 @@ TEST(SceneFamilies, AgreeWithThePublishedScenes) {
         {"gcr1", {}},
         {"gcr2", {}},
         {"cornell", {}},
-        {"office", {{"nx", "2"}, {"ny", "1"}, {"nfurn", "2"}, {"books", "3"}}},
-        {"office", {{"nfurn", "3"}}}};
+        {"office", {{"nx", "2"}, {"ny", "1"}, {"nfurn", "2"}, {"books", "3"}}}};
     for (const auto& [family, parameters] : scenes) {
         const auto made = generate_scene(family, parameters);
         ASSERT_TRUE(made);
-        if (!std::filesystem::exists(published(made->file))) continue;
         const auto read = load_obj(published(made->file).string());
         ASSERT_TRUE(read) << read.error().message;
         ASSERT_EQ(read->faces.size(), made->faces.size()) << made->file;
