@@ -38,8 +38,9 @@ Patch LinkSites::inertia_parallelogram(ElementId e) const {
     const double l = std::sqrt(std::max(xx, 1e-30)), m = xy / l;  // derived from rounding: no division by zero
     const double k = std::sqrt(std::max(yy - m * m, 1e-30));      // derived from rounding
     const Patch& frame = tree_->patch(e);
-    const Vec3 s = std::sqrt(3.0) * (l * frame.a + m * frame.b),
-               t = std::sqrt(3.0) * k * frame.b;  // given by geometry: a parallelogram with the same second moments
+    // A parallelogram with the same second moments.
+    const double root3 = std::sqrt(3.0);  // derived from the spread of an even distribution
+    const Vec3 s = root3 * (l * frame.a + m * frame.b), t = root3 * k * frame.b;
     return {frame.at(c) - s - t, 2 * s, 2 * t, Patch::Shape::parallelogram};
 }
 
@@ -112,7 +113,7 @@ LinkSites::ChildMatrices LinkSites::matrices(ElementId parent) const {
             }
     }
     for (std::size_t j = 0; j < n_; ++j)
-        gram[j * n_ + j] *= 1 + 1e-12;  // slivers hardly determine some functions (given by rounding)
+        gram[j * n_ + j] *= 1 + 1e-12;  // slivers hardly determine some functions (derived from rounding)
     out.gram = std::move(gram);
     return out;
 }

@@ -32,8 +32,9 @@ void NearRow::add(const Point& x, const Normal& n, const Box& box, int depth) {
     const Vec3 a = box.size.x * frame_.a, b = box.size.y * frame_.b;
     const Point origin = frame_.at(box.origin);
     const Point middle = triangle ? origin + (a + b) / 3 : origin + 0.5 * (a + b);
-    const double squared_radius = 0.25 * std::max(squared_norm(a + b), squared_norm(a - b)) *
-                                  (triangle ? 16.0 / 9 : 1.0);  // given by geometry: radius of a ball around the box
+    const double squared_diagonal = std::max(squared_norm(a + b), squared_norm(a - b));
+    // Radius of a ball around the box; the factor is derived from geometry.
+    const double squared_radius = squared_diagonal / 4 * (triangle ? 16.0 / 9 : 1.0);
     const Vec3 d = middle - x;
     const double squared_distance = squared_norm(d), here = dot(n, d);
     if (here < 0 && here * here > squared_radius) return;

@@ -24,7 +24,7 @@ double OpenTransfer::largest_light(std::size_t nodes) const {
 }
 
 double OpenTransferRule::ratio(ElementId receiver, ElementId source) const {
-    constexpr double min_gap = 1e-3;  // share of the source's size: avoids rounding (given by rounding)
+    constexpr double min_gap = 1e-3;  // share of the source's size: avoids rounding (derived from rounding)
     const double radius = sites_.radius(source);
     const double gap = norm(sites_.centre(source) - sites_.centre(receiver)) - sites_.radius(receiver);
     return radius / std::max(gap, min_gap * radius);
@@ -79,7 +79,7 @@ double OpenTransferRule::set_rows(OpenTransfer& transfer, ElementId receiver, co
 /// or dim sources even if they are near.
 double OpenTransferRule::error_of_kernel(OpenTransfer& transfer, ElementId receiver, const SourceLight& source) const {
     if (nodes_ == 1) return 0;
-    // Share of their sizes: single precision loses nodes that are nearer (given by rounding)
+    // Share of their sizes: single precision loses nodes that are nearer (derived from rounding).
     constexpr double least = 1e-3;
     const double nearest = least * (sites_.radius(receiver) + sites_.radius(source.element));
     std::array<NodeRow, 9> kernel;
@@ -94,7 +94,7 @@ double OpenTransferRule::error_of_kernel(OpenTransfer& transfer, ElementId recei
         }
     }
     const double scale = transfer.kernel_scale = scale_to(exact, rule);
-    constexpr double rounding = 1e-6;                                        // given by rounding
+    constexpr double rounding = 1e-6;                                        // derived from rounding
     if (std::abs(scale * rule - exact) > rounding * exact) return HUGE_VAL;  // errors of one sign would accumulate
     double most = 0;
     for (std::size_t k = 0; k < nodes_; ++k)

@@ -173,7 +173,7 @@ BatchMean squared_error(const std::vector<Residual>& all, const std::vector<Spec
 /// Factor by which rays have to be increased so that no group's estimate is noise. The noise of a square falls with the
 /// power 3/2 of the number of rays.
 double missing_rays(const std::vector<BatchMean>& squares, const std::vector<LightGroup>& groups, double error) {
-    constexpr double max_uncertainty = 1.0 / 3;  // of an error; its square is known to a ninth
+    constexpr double max_uncertainty = 1.0 / 3;  // of an error; derived from its square, known to a ninth
     double factor = 1;
     for (std::size_t g = 0; g < squares.size(); ++g) {
         const double square = std::max(squares[g].mean, std::pow(error * groups[g].reflected, 2));
