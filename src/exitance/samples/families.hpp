@@ -40,6 +40,14 @@ PolygonKit make_bright(const FamilyValues& values);
 PolygonKit make_tree(const FamilyValues& values);
 PolygonKit make_lightwell(const FamilyValues& values);
 
+// Parts of buildings, in daylight or lamplight.
+PolygonKit make_atrium(const FamilyValues& values);
+PolygonKit make_stair(const FamilyValues& values);
+PolygonKit make_colonnade(const FamilyValues& values);
+PolygonKit make_greenhouse(const FamilyValues& values);
+PolygonKit make_furniture(const FamilyValues& values);
+PolygonKit make_canopy(const FamilyValues& values);
+
 /// Formats a value for a file name: 0.7 becomes 0p7.
 std::string in_a_name(double value);
 

@@ -2,73 +2,12 @@
 
 #include "exitance/samples/families.hpp"
 #include "exitance/samples/mersenne_twister.hpp"
+#include "exitance/samples/room_parts.hpp"
 
 // Closed rooms with light paths that are hard to find: only by reflection, through small openings, in gaps, or behind
 // thousands of thin objects.
 
 namespace exitance {
-namespace {
-
-/// An opening in a rectangle, in the rectangle's coordinates.
-struct Opening {
-    double u0, v0, u1, v1;
-};
-
-/// Adds a rectangle p + u a + v b, u in [0, width] and v in [0, height], without the opening.
-void add_around(PolygonKit& kit, const char* group, const char* material, const Point& p, const Vec3& a, const Vec3& b,
-                double width, double height, const Opening& o, const Point& seen) {
-    const auto part = [&](double u0, double v0, double u1, double v1) {
-        if (u1 - u0 <= 0 || v1 - v0 <= 0) return;
-        kit.facing(seen, group, material,
-                   {p + u0 * a + v0 * b, p + u1 * a + v0 * b, p + u1 * a + v1 * b, p + u0 * a + v1 * b});
-    };
-    part(0, 0, o.u0, height);
-    part(o.u1, 0, width, height);
-    part(o.u0, 0, o.u1, o.v0);
-    part(o.u0, o.v1, o.u1, height);
-}
-
-/// Adds the inside of a box: floor, ceiling and walls.
-void add_room(PolygonKit& kit, const Point& lo, const Point& hi, const char* floor, const char* ceiling,
-              const char* wall) {
-    kit.horizontal("floor", floor, lo.x, lo.y, hi.x, hi.y, lo.z);
-    kit.horizontal("ceiling", ceiling, lo.x, lo.y, hi.x, hi.y, hi.z, false);
-    const std::array<Vec2, 4> corner = {Vec2{lo.x, lo.y}, {hi.x, lo.y}, {hi.x, hi.y}, {lo.x, hi.y}};
-    for (std::size_t i = 0; i < 4; ++i) {
-        const Vec2 p = corner[i], q = corner[(i + 1) % 4];
-        kit.facing(0.5 * (lo + hi), "walls", wall,
-                   {{p.x, p.y, lo.z}, {q.x, q.y, lo.z}, {q.x, q.y, hi.z}, {p.x, p.y, hi.z}});
-    }
-}
-
-void add_materials(PolygonKit& kit, double radiance) {
-    kit.material("floor", 0.4);
-    kit.material("ceiling", 0.8);
-    kit.material("wall", 0.7);
-    kit.material("thing", PolygonKit::Colour{0.6, 0.5, 0.4});
-    kit.material("light", 0, radiance);
-}
-
-/// Adds a lamp that faces down, with a housing above it.
-void add_lamp(PolygonKit& kit, double x, double y, double z, double width, double length, double thickness) {
-    const Point lo{x - width / 2, y - length / 2, z}, hi{x + width / 2, y + length / 2, z + thickness};
-    kit.box("lamp", "ceiling", lo, hi, {false, true, ~0u});
-    kit.horizontal("lamp", "light", lo.x, lo.y, hi.x, hi.y, z, false);
-}
-
-/// Adds a triangle that reflects on both sides.
-void add_sheet(PolygonKit& kit, const char* group, const char* material, const Point& a, const Point& b,
-               const Point& c) {
-    kit.polygon(group, material, {a, b, c});
-    kit.polygon(group, material, {c, b, a});
-}
-
-Vec3 random_direction(MersenneTwister& random) {
-    const double z = random.uniform(-1, 1), angle = random.uniform(0, 2 * pi), r = std::sqrt(1 - z * z);
-    return {r * std::cos(angle), r * std::sin(angle), z};
-}
-
-}  // namespace
 
 /// Emitters on shelves along two walls face up to the ceiling, hidden behind lips: all light in the room is reflected.
 PolygonKit make_cove(const FamilyValues& v) {

@@ -87,6 +87,60 @@ const std::vector<Recipe> hard_recipes{
      make_lightwell},
 };
 
+const FamilyParameter azimuth = {"azimuth", 215, 0, 360, false, "of the sun, degrees clockwise from +y"};
+const FamilyParameter altitude = {"altitude", 35, 1, 90, false, "of the sun above the horizon, degrees"};
+
+/// Parts of buildings.
+const std::vector<Recipe> building_recipes{
+    {{"atrium",
+      "a court with balconies and parapets below a roof light: 7 + 20 floors polygons",
+      {{"floors", 3, 1, 100, true, "floors with balconies"},
+       {"x", 12, 4, 1000, false, "length, metres"},
+       {"y", 9, 4, 1000, false, "width"},
+       {"deep", 1.4, 0.1, 1.5, false, "depth of the balconies"},
+       {"parapet", 1, 0.05, 2, false, "height of the parapets"}}},
+     make_atrium},
+    {{"stair",
+      "a stair of open treads in its stairwell: 24 + 6 steps polygons",
+      {{"steps", 14, 1, 1000, true, "treads"},
+       {"width", 1, 0.2, 10, false, "length of a tread, metres"},
+       {"thick", 0.04, 0.001, 0.15, false, "thickness of a tread"},
+       {"side", 0.4, 0.05, 10, false, "distance from the treads to the walls"}}},
+     make_stair},
+    {{"colonnade",
+      "columns before a wall, below a roof, in the sun: 9 + columns sides polygons",
+      {{"columns", 6, 1, 1000, true, "columns"},
+       {"sides", 12, 3, 1000, true, "sides of a column"},
+       {"radius", 0.25, 0.01, 0.9, false, "of a column, metres"},
+       {"apart", 2.5, 1.9, 100, false, "distance between columns"},
+       azimuth,
+       altitude}},
+     make_colonnade},
+    {{"greenhouse",
+      "a gabled frame of thin bars over beds, in the sun: 12 + 22 ribs + 12 purlins polygons",
+      {{"ribs", 8, 1, 1000, true, "ribs: two posts and two rafters each"},
+       {"purlins", 2, 0, 20, true, "bars along each side of the roof"},
+       {"bar", 0.04, 0.002, 0.1, false, "width and height of a bar, metres"},
+       {"length", 5, 1, 1000, false, "of the house"},
+       azimuth,
+       altitude}},
+     make_greenhouse},
+    {{"furniture",
+      "cupboards of boards that touch, and boxes in them: 12 + 18 n polygons and 6 for every shelf and box",
+      {{"n", 3, 0, 1000, true, "cupboards"}, seed}},
+     make_furniture},
+    {{"canopy",
+      "flat roofs with black tops above a wide ground: 2 + 6 roofs polygons",
+      {{"ground", 800, 1, 1e5, false, "length of the ground's sides, metres"},
+       {"size", 4, 0.01, 1e3, false, "of a roof"},
+       {"height", 3, 0.01, 1e3, false, "of a roof above the ground"},
+       {"roofs", 1, 1, 100, true, "roofs in a row"},
+       {"sun", 1, 0, 1, true, "0: a lamp of a quarter of the roof's area in place of the sun"},
+       azimuth,
+       altitude}},
+     make_canopy},
+};
+
 /// Rooms and objects for studies, and scenes of papers.
 std::vector<Recipe> study_recipes() {
     return {
@@ -144,7 +198,8 @@ std::vector<Recipe> study_recipes() {
 const std::vector<Recipe>& recipes() {
     static const std::vector<Recipe> all = [] {
         std::vector<Recipe> out = study_recipes();
-        out.insert(out.end(), hard_recipes.begin(), hard_recipes.end());
+        for (const auto* const more : {&hard_recipes, &building_recipes})
+            out.insert(out.end(), more->begin(), more->end());
         return out;
     }();
     return all;

@@ -64,7 +64,14 @@ TEST(SceneFamilies, HaveTheStatedPolygonCounts) {
         {"keyhole", {}, 27},
         {"bright", {}, 22},
         {"tree", {{"leaves", "30"}}, 17 + 60},
-        {"lightwell", {}, 14}};
+        {"lightwell", {}, 14},
+        {"atrium", {{"floors", "2"}}, 7 + 40},
+        {"stair", {{"steps", "5"}}, 24 + 30},
+        {"colonnade", {{"columns", "2"}, {"sides", "8"}}, 9 + 16},
+        {"greenhouse", {{"ribs", "3"}, {"purlins", "1"}}, 12 + 66 + 12},
+        {"furniture", {{"n", "0"}}, 12},
+        {"canopy", {{"roofs", "2"}}, 14},
+        {"canopy", {{"sun", "0"}}, 8}};
     for (const auto& [family, parameters, count] : expected) {
         const SceneDescription description = make(family, parameters);
         EXPECT_EQ(description.faces.size(), count) << family;
