@@ -6,6 +6,7 @@
 
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/error/clustering_error.hpp"
+#include "exitance/error/further_looks.hpp"
 #include "exitance/evaluate/energy.hpp"
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/light/light_functions.hpp"
@@ -21,7 +22,9 @@ double Solver::margin(std::size_t points) {
 
 void Solver::certify_solution(CertificateOptions options, std::optional<double> demand,
                               std::span<const ElementGather> gathered) {
-    options.seed = options_.seed;
+    // Every attempt is measured at points of its own, since the previous ones decided how it refines.
+    const auto attempts_before = static_cast<std::uint64_t>(attempt_ - 1 + shown_);
+    options.seed = attempts_before == 0 ? options_.seed : hash(options_.seed, attempts_before);
     options.direct_in_elements = light_->holds_direct;
     options.keeps_flux = gathers() && !light_->holds_direct && keeps_flux() &&
                          has_kept_flux(solution_.indirect, stage_.scene, direct_, *light_, solution_.direct_share);
@@ -50,16 +53,14 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
     }
     Certifier certifier(stage_, *light_, solution_.indirect, delivered, options);
     certificate_ = certifier.look();
-    // The estimate from few points has an error of about a tenth, or a third if a few of them have most of the
-    // error. While it is within two standard errors of the limit, measure at more points: that is cheaper than another
-    // attempt.
-    constexpr std::size_t max_looks = 4;
-    for (std::size_t looks = 1; demand && looks < max_looks && !stop_.requested(); ++looks) {
-        const double limit = margin(certificate_.points) * *demand;
-        const double estimate = certificate_.largest();
-        if (estimate <= limit || estimate - 2 * certificate_.largest_uncertainty() > limit) break;
+    // The number of further points is chosen once. Points that are added until an estimate is small enough would make
+    // it too small.
+    const auto more = [&] {
+        return further_looks({certificate_.largest(), certificate_.largest_uncertainty()},
+                             margin(certificate_.points) * *demand, *demand);
+    };
+    for (std::size_t left = demand ? more() : 0; left > 0 && !stop_.requested(); --left)
         certificate_ = certifier.look();
-    }
     add_clustering_error();
     if (!demand || may_be_last(*demand)) certifier.look_at_bodies(certificate_), certifier.tell_p99(certificate_);
     record_certificate(certificate_, *light_, solution_.indirect, statistics());

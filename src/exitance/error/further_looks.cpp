@@ -1,0 +1,19 @@
+#include "exitance/error/further_looks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace exitance {
+
+std::size_t further_looks(const UncertainError& error, double limit, double demand) {
+    constexpr double sufficient = 2;  // standard errors between an estimate and its limit
+    constexpr double max_looks = 4;   // times the points; a standard error of a third then becomes one of a sixth
+    const bool is_above = error.estimate > limit;
+    const double distance = is_above ? error.estimate - limit : demand - error.estimate;
+    if (error.standard_error <= (is_above ? distance / sufficient : distance)) return 0;
+    // The standard error decreases with the root of the number of points.
+    const double looks = distance > 0 ? std::pow(sufficient * error.standard_error / distance, 2) : max_looks;
+    return static_cast<std::size_t>(std::ceil(std::clamp(looks, 2.0, max_looks))) - 1;
+}
+
+}  // namespace exitance
