@@ -18,7 +18,7 @@ ElementFit fit_polynomial(const LinkSites& sites, const NodalValues& values, Ele
 
 /// Reduces the slopes of an element's linear or bilinear polynomial, given at its corners, such that the polynomial is
 /// negative nowhere on the element. The value at the centre, the mean of a linear one, is kept. A polynomial that is
-/// fitted to a step is negative beside it, and rays into a dark corner read little else.
+/// fitted to a step is negative next to it, and rays into a dark corner read little else.
 void keep_positive(const ElementTree& tree, ElementId e, std::array<Spectrum, 4>& corners);
 
 /// A function on elements, including those below elements with coefficients.
