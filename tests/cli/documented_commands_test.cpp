@@ -73,7 +73,8 @@ std::string made_quick(std::string commands) {
     return commands;
 }
 
-/// Calls the program for a quick form of a command: coarse solves, a viewer that ends, studies that are only read.
+/// Calls the program for a quick form of a command: coarse solves, small pictures, a viewer that ends, studies that are
+/// only read.
 constexpr const char* stand_in = R"(#!/bin/bash
 case "$1" in
 solve)
@@ -81,6 +82,9 @@ solve)
     "$PROGRAM" "$@" -q; status=$?
     [[ $status -eq 4 ]] && status=0
     exit $status ;;
+render | report)
+    [[ " $* " == *" --size "* || " $* " != *" -o "* ]] || set -- "$@" --size 48x30
+    exec "$PROGRAM" "$@" -q ;;
 view)
     timeout --signal INT 1 "$PROGRAM" "$@" --progress none -q
     status=$?
