@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
 
 #include "exitance/base/parallel.hpp"
+#include "exitance/view_factors/closed_variance.hpp"
 
 namespace exitance {
 namespace {
@@ -17,8 +19,13 @@ constexpr double settled_share = 1e-6;  ///< Remaining share of the largest defe
 
 /// An exchange area A_i F_ij, m^2, and its variance.
 struct Exchange {
-    std::uint32_t column;
     double area, variance;
+};
+
+/// Exchange areas of a row, and their variances; columns are those of the row's entries.
+struct ExchangeRow {
+    std::vector<double> areas;
+    std::vector<float> variances;
 };
 
 const RowEntry* find_entry(const RawRow& row, std::uint32_t column) {
@@ -31,29 +38,26 @@ struct OneSide {
     double area = 0, variance = 0, density = 0;
 };
 
-OneSide side_of(const RawRow& row, const RowEntry* entry, double face_area) {
-    if (!entry) return {0, 0, row.cast_density};
-    return {face_area * entry->F, face_area * face_area * double(entry->variance), double(entry->density)};
+OneSide side_of(const RowEntry& entry, double face_area) {
+    return {face_area * entry.F, face_area * face_area * double(entry.variance), double(entry.density)};
 }
 
-Exchange combined(const OneSide& a, const OneSide& b, std::uint32_t column) {
+Exchange combined(const OneSide& a, const OneSide& b) {
     double share = 0.5;  // weight of the first estimate
     if (a.density != b.density)
         share = std::isinf(a.density) ? 1 : std::isinf(b.density) ? 0 : a.density / (a.density + b.density);
-    return {column, share * a.area + (1 - share) * b.area,
-            share * share * a.variance + (1 - share) * (1 - share) * b.variance};
+    return {share * a.area + (1 - share) * b.area, share * share * a.variance + (1 - share) * (1 - share) * b.variance};
 }
 
 /// The combined rows, and the relaxation that removes their closure defects.
 class Combination {
   public:
-    Combination(const std::vector<RawRow>& rows, const std::vector<double>& areas)
+    Combination(std::vector<RawRow>& rows, const std::vector<double>& areas)
         : rows_(rows), areas_(areas), exchanges_(rows.size()) {}
 
     void combine() {
-        find_absent();
+        add_absent();
         parallel_for(rows_.size(), 16, [&](std::size_t i) { combine_row(static_cast<std::uint32_t>(i)); });
-        absent_.clear();
     }
 
     /// Distributes the closure defects. Returns the number of rows whose defect is not explained by their variance.
@@ -63,52 +67,83 @@ class Combination {
         std::size_t unexplained = 0;
         double largest = 0;
         for (std::size_t i = 0; i < n; ++i) {
-            double sum = areas_[i] * rows_[i].missed, variance = areas_[i] * areas_[i] * rows_[i].missed_variance;
-            for (const Exchange& e : exchanges_[i]) sum += e.area, variance += e.variance;
+            const RawRow& row = rows_[i];
+            const double squared_area = areas_[i] * areas_[i];
+            double sum = areas_[i] * (row.sky + row.back), entries = 0;
+            for (std::size_t k = 0; k < row.entries.size(); ++k)
+                sum += exchanges_[i].areas[k], entries += double(exchanges_[i].variances[k]);
             const double d = areas_[i] - sum;
-            if (std::abs(d) > max_noise_deviations * std::sqrt(variance) + areas_[i] * rows_[i].bound) {
+            const double noise = entries + squared_area * (row.missed_variance + one_ray_variance(row));
+            if (std::abs(d) > max_noise_deviations * std::sqrt(noise) + areas_[i] * row.bound) {
                 ++unexplained;
                 continue;
             }
+            const double variance = entries + squared_area * (row.sky_variance + row.back_variance);
             if (variance <= 0) continue;
             defect_[i] = d, stiffness_[i] = variance, largest = std::max(largest, std::abs(d));
         }
         relax(settled_share * largest);
         parallel_for(n, 64, [&](std::size_t i) {
-            for (Exchange& e : exchanges_[i])
-                e.area = std::max(0.0, e.area + e.variance * (multiplier_[i] + multiplier_[e.column]));
+            for (std::size_t k = 0; k < rows_[i].entries.size(); ++k) {
+                const double change = multiplier_[i] + multiplier_[rows_[i].entries[k].column];
+                double& area = exchanges_[i].areas[k];
+                area = std::max(0.0, area + double(exchanges_[i].variances[k]) * change);
+            }
         });
         return unexplained;
     }
 
-    const std::vector<Exchange>& row(std::size_t i) const { return exchanges_[i]; }
-    void release(std::size_t i) { std::vector<Exchange>().swap(exchanges_[i]); }
+    const ExchangeRow& row(std::size_t i) const { return exchanges_[i]; }
+    /// Share of the sky, with its part of the closure defect.
+    double sky(std::size_t i) const { return closed_share(i, rows_[i].sky, rows_[i].sky_variance); }
+    /// Share of backs of faces, with its part of the closure defect.
+    double back(std::size_t i) const { return closed_share(i, rows_[i].back, rows_[i].back_variance); }
+    /// Variance of the shares of sky and backs, or none if the row's defect was not distributed.
+    std::optional<double> missed_variance(std::size_t i) const {
+        return stiffness_[i] > 0 ? std::optional(rows_[i].sky_variance + rows_[i].back_variance) : std::nullopt;
+    }
+    void release(std::size_t i) { exchanges_[i] = {}; }
 
   private:
-    /// For every row, finds the rows that have an entry for it although it has none for them.
-    void find_absent() {
-        absent_.assign(rows_.size(), {});
+    /// Squared share of half a ray: the sky may be visible although no ray reached it.
+    static double one_ray_variance(const RawRow& row) {
+        return row.cast_rays > 0 ? std::pow(0.5 / static_cast<double>(row.cast_rays), 2) : 0;
+    }
+    double closed_share(std::size_t i, double share, double variance) const {
+        return std::clamp(share + areas_[i] * variance * multiplier_[i], 0.0, 1.0);
+    }
+
+    /// Adds an entry of 0 to every row for each row that has an entry for it, although it has none for them.
+    void add_absent() {
+        std::vector<std::vector<RowEntry>> absent(rows_.size());
         for (std::uint32_t i = 0; i < rows_.size(); ++i)
             for (const RowEntry& entry : rows_[i].entries)
-                if (!find_entry(rows_[entry.column], i)) absent_[entry.column].push_back(i);
+                if (!find_entry(rows_[entry.column], i))
+                    absent[entry.column].push_back(
+                        {.column = i, .density = static_cast<float>(rows_[entry.column].cast_density)});
+        parallel_for(rows_.size(), 16, [&](std::size_t i) {
+            if (absent[i].empty()) return;
+            std::vector<RowEntry> all;
+            all.reserve(rows_[i].entries.size() + absent[i].size());
+            std::merge(rows_[i].entries.begin(), rows_[i].entries.end(), absent[i].begin(), absent[i].end(),
+                       std::back_inserter(all),
+                       [](const RowEntry& a, const RowEntry& b) { return a.column < b.column; });
+            rows_[i].entries.swap(all);
+        });
     }
 
     void combine_row(std::uint32_t i) {
-        std::vector<Exchange>& out = exchanges_[i];
-        out.reserve(rows_[i].entries.size() + absent_[i].size());
-        const auto add = [&](std::uint32_t j, const RowEntry* entry) {
-            const OneSide mine = side_of(rows_[i], entry, areas_[i]);
-            const OneSide theirs = side_of(rows_[j], find_entry(rows_[j], i), areas_[j]);
+        ExchangeRow& out = exchanges_[i];
+        const std::size_t count = rows_[i].entries.size();
+        out.areas.resize(count), out.variances.resize(count);
+        for (std::size_t k = 0; k < count; ++k) {
+            const RowEntry& entry = rows_[i].entries[k];
+            const std::uint32_t j = entry.column;
+            const OneSide mine = side_of(entry, areas_[i]), theirs = side_of(*find_entry(rows_[j], i), areas_[j]);
             // In fixed order, so that both rows get the same bits.
-            const Exchange e = i < j ? combined(mine, theirs, j) : combined(theirs, mine, j);
-            if (e.area > 0) out.push_back(e);
-        };
-        auto late = absent_[i].begin();
-        for (const RowEntry& entry : rows_[i].entries) {
-            for (; late != absent_[i].end() && *late < entry.column; ++late) add(*late, nullptr);
-            add(entry.column, &entry);
+            const Exchange e = i < j ? combined(mine, theirs) : combined(theirs, mine);
+            out.areas[k] = e.area, out.variances[k] = static_cast<float>(e.variance);
         }
-        for (; late != absent_[i].end(); ++late) add(*late, nullptr);
     }
 
     /// Minimizes sum (change_ij)^2 / v_ij subject to sum_j change_ij = d_i. The solution is change_ij = v_ij (m_i +
@@ -120,7 +155,8 @@ class Combination {
             for (std::size_t i = 0; i < rows_.size(); ++i) {
                 if (stiffness_[i] <= 0) continue;
                 double sum = defect_[i];
-                for (const Exchange& e : exchanges_[i]) sum -= e.variance * multiplier_[e.column];
+                for (std::size_t k = 0; k < rows_[i].entries.size(); ++k)
+                    sum -= double(exchanges_[i].variances[k]) * multiplier_[rows_[i].entries[k].column];
                 left = std::max(left, std::abs(sum - stiffness_[i] * multiplier_[i]));
                 multiplier_[i] = sum / stiffness_[i];
             }
@@ -128,10 +164,9 @@ class Combination {
         }
     }
 
-    const std::vector<RawRow>& rows_;
+    std::vector<RawRow>& rows_;
     const std::vector<double>& areas_;
-    std::vector<std::vector<std::uint32_t>> absent_;
-    std::vector<std::vector<Exchange>> exchanges_;
+    std::vector<ExchangeRow> exchanges_;
     std::vector<double> defect_, stiffness_, multiplier_;  ///< m^2, m^4, 1 / m^2.
 };
 
@@ -139,7 +174,7 @@ class Combination {
 void find_defects(const std::vector<RawRow>& rows, double error, SparseFactors& out) {
     std::vector<double> reciprocity(rows.size()), closure(rows.size());
     parallel_for(rows.size(), 16, [&](std::size_t i) {
-        double sum = rows[i].missed, largest = 0, off = 0;
+        double sum = rows[i].sky + rows[i].back, largest = 0, off = 0;
         for (const RowEntry& entry : rows[i].entries) {
             sum += entry.F, largest = std::max(largest, entry.F);
             const RowEntry* back = find_entry(rows[entry.column], static_cast<std::uint32_t>(i));
@@ -158,12 +193,18 @@ void find_defects(const std::vector<RawRow>& rows, double error, SparseFactors& 
 /// Appends rows entry by entry and drops entries that are too small.
 class RowAppender {
   public:
-    RowAppender(const CombineOptions& options, SparseFactors& out) : options_(options), out_(out) {
+    RowAppender(const std::vector<RawRow>& rows, const CombineOptions& options, SparseFactors& out)
+        : options_(options), out_(out) {
         out.starts.assign(1, 0), out.columns.clear(), out.values.clear();
         out.row_sums.clear(), out.row_errors.clear(), out.dropped.clear();
+        out.sky.clear(), out.back.clear();
+        std::size_t entries = 0;
+        for (const RawRow& row : rows) entries += row.entries.size();
+        out.columns.reserve(entries), out.values.reserve(entries);
     }
     void add(std::uint32_t column, double F, double variance) {
-        variance_ += variance;
+        variance_.add(variance);
+        if (F == 0) return;
         if (F < options_.smallest) {
             dropped_ += F;
             return;
@@ -171,32 +212,39 @@ class RowAppender {
         out_.columns.push_back(column), out_.values.push_back(F);
         sum_ += F;
     }
-    void end_row(double bound) {
+    /// `missed_variance`: see Combination; none: the row was not closed.
+    void end_row(double bound, double sky, double back, std::optional<double> missed_variance) {
+        const double variance = missed_variance ? variance_.closed(*missed_variance) : variance_.open();
+        out_.sky.push_back(sky), out_.back.push_back(back);
         out_.starts.push_back(out_.values.size());
         out_.row_sums.push_back(sum_), out_.dropped.push_back(dropped_);
-        out_.row_errors.push_back(std::sqrt(variance_) + bound + dropped_);
-        sum_ = dropped_ = variance_ = 0;
+        out_.row_errors.push_back(std::sqrt(variance) + bound + dropped_);
+        sum_ = dropped_ = 0, variance_ = {};
     }
 
   private:
     const CombineOptions& options_;
     SparseFactors& out_;
-    double sum_ = 0, dropped_ = 0, variance_ = 0;
+    double sum_ = 0, dropped_ = 0;
+    ClosedVariance variance_;
 };
 
 }  // namespace
 
-void combine_rows(const std::vector<RawRow>& rows, const CombineOptions& options, SparseFactors& out) {
+void combine_rows(std::vector<RawRow>& rows, const CombineOptions& options, SparseFactors& out) {
     if (out.starts.size() == 1) find_defects(rows, options.error, out);  // after the first pass
     Combination combination(rows, out.areas);
     combination.combine();
     out.unclosed = combination.close();
-    RowAppender appender(options, out);
+    RowAppender appender(rows, options, out);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const double area = out.areas[i];
-        for (const Exchange& e : combination.row(i))
-            appender.add(e.column, std::min(1.0, e.area / area), e.variance / (area * area));
-        appender.end_row(rows[i].bound);
+        const ExchangeRow& exchanges = combination.row(i);
+        for (std::size_t k = 0; k < rows[i].entries.size(); ++k) {
+            const double variance = double(exchanges.variances[k]) / (area * area);
+            appender.add(rows[i].entries[k].column, std::min(1.0, exchanges.areas[k] / area), variance);
+        }
+        appender.end_row(rows[i].bound, combination.sky(i), combination.back(i), combination.missed_variance(i));
         combination.release(i);
     }
     out.finished.assign(rows.size(), 1), out.combined = true;
@@ -204,10 +252,11 @@ void combine_rows(const std::vector<RawRow>& rows, const CombineOptions& options
 
 void store_raw_rows(const std::vector<RawRow>& rows, const std::vector<std::uint8_t>& finished,
                     const CombineOptions& options, SparseFactors& out) {
-    RowAppender appender(options, out);
+    RowAppender appender(rows, options, out);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         for (const RowEntry& entry : rows[i].entries) appender.add(entry.column, entry.F, entry.variance);
-        appender.end_row(finished[i] ? rows[i].bound : std::numeric_limits<double>::infinity());
+        appender.end_row(finished[i] ? rows[i].bound : std::numeric_limits<double>::infinity(), rows[i].sky,
+                         rows[i].back, std::nullopt);
     }
     out.finished = finished, out.combined = false;
 }

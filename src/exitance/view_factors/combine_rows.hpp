@@ -19,9 +19,9 @@ struct CombineOptions {
 ///
 /// For rows of rays this is (h_ij + h_ji) / (n_i / A_i + n_j / A_j). If a row's closure defect is explained by its
 /// variance, it is distributed over the entries: by the smallest change, relative to the variances, that closes all
-/// rows and keeps reciprocity. Sets all of `out` except areas and emittances. Memory: twice that of the rows.
-/// rows  one per face, in order
-void combine_rows(const std::vector<RawRow>& rows, const CombineOptions& options, SparseFactors& out);
+/// rows and keeps reciprocity. Sets all of `out` except areas and emittances. Memory: that of the rows, half of it
+/// again, and the result. rows  one per face, in order; entries of 0 are added so that each pair has two or none
+void combine_rows(std::vector<RawRow>& rows, const CombineOptions& options, SparseFactors& out);
 
 /// Stores the finished rows without combining them.
 /// rows      one per face, in order

@@ -182,6 +182,10 @@ Error stopped() {
 
 }  // namespace
 
+bool is_enclosure(const SparseFactors& factors) {
+    return static_cast<bool>(check_closed(factors));
+}
+
 Result<GrayExchange> solve_gray_exchange(const SparseFactors& factors, std::span<const ThermalSurface> surfaces,
                                          std::optional<double> surroundings, const StopRequest& stop) {
     if (const Result<void> checked = check(factors, surfaces, surroundings); !checked) return checked.error();

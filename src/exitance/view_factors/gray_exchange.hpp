@@ -45,6 +45,9 @@ struct GrayExchange {
 Result<GrayExchange> solve_gray_exchange(const SparseFactors& factors, std::span<const ThermalSurface> surfaces,
                                          std::optional<double> surroundings, const StopRequest& stop);
 
+/// True if the rows of a table add up to 1, up to 1% and three times their errors.
+bool is_enclosure(const SparseFactors& factors);
+
 /// Exchange factors of gray surfaces (script F): row i holds the shares of the black-body power A_i sigma T_i^4 that
 /// surface i would emit that are emitted by i and absorbed by j, so that j receives A_i f_ij sigma (T_i^4 - T_j^4) from
 /// i. Gebhart's factors are f_ij / e_i. Row after row; surfaces without a temperature are taken as adiabatic. Cost: one

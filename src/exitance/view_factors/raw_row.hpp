@@ -25,11 +25,13 @@ struct RawRow {
     std::uint32_t face = 0;
     std::uint32_t round = 0;  ///< 0: first pass; 1 and above: recomputed because its combined error was too large.
     double cast_density = 0;  ///< Samples per m^2 behind absent entries; 0 if absent entries are zero or were dropped.
-    double missed = 0;        ///< Share of rays that hit nothing or the back of a face, or started below another face.
-    double missed_variance = 0;
-    double bound = 0;  ///< Sum of the error bounds of integrated and dropped entries.
-    std::uint64_t rays = 0;
-    std::vector<RowEntry> entries;  ///< Sorted by column, without duplicates.
+    double sky = 0;           ///< Share of rays that hit nothing.
+    double back = 0;          ///< Share of rays that hit the back of a face or started below another face.
+    double sky_variance = 0, back_variance = 0;
+    double missed_variance = 0;             ///< Variance of sky + back.
+    double bound = 0;                       ///< Sum of the error bounds of integrated and dropped entries.
+    std::uint64_t rays = 0, cast_rays = 0;  ///< All rays of the row, and those of its cast.
+    std::vector<RowEntry> entries;          ///< Sorted by column, without duplicates.
 
     /// sqrt(sum of variances) + bound.
     double error() const {

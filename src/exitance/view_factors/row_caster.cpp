@@ -27,15 +27,19 @@ void RowCaster::trace(std::size_t face, bool under_others) {
         for (std::size_t k = 0; k < origins_.size(); ++k)
             if (!scene_.occluders.is_covered(origins_[k], scene_.faces[face].plane.n, own))
                 origins_[kept] = origins_[k], directions_[kept++] = directions_[k];
-        missed_in_batch_ += static_cast<std::uint32_t>(origins_.size() - kept);
+        back_in_batch_ += static_cast<std::uint32_t>(origins_.size() - kept);
         origins_.resize(kept), directions_.resize(kept);
         if (kept == 0) return;
     }
     const std::span<RayHit> hits(found_.data(), origins_.size());
     scene_.tracer.nearest(origins_, directions_, own, hits);
     for (const RayHit& hit : hits) {
-        if (!hit.front || hit.surface.is_none() || hit.surface.value == face) {
-            ++missed_in_batch_;
+        if (hit.surface.is_none()) {
+            ++sky_in_batch_;
+            continue;
+        }
+        if (!hit.front || hit.surface.value == face) {
+            ++back_in_batch_;
             continue;
         }
         if (of_batch_[hit.surface.value]++ == 0) met_in_batch_.push_back(hit.surface.value);
@@ -66,14 +70,16 @@ void RowCaster::finish_batch() {
         hits_[column] += hits, squares_[column] += hits * hits;
     }
     met_in_batch_.clear();
-    const double missed = std::exchange(missed_in_batch_, 0);
-    missed_.hits += missed, missed_.squares += missed * missed;
+    const double sky = std::exchange(sky_in_batch_, 0), back = std::exchange(back_in_batch_, 0);
+    sky_.hits += sky, sky_.squares += sky * sky;
+    back_.hits += back, back_.squares += back * back;
+    missed_.hits += sky + back, missed_.squares += (sky + back) * (sky + back);
 }
 
 void RowCaster::cast(std::size_t face, std::size_t batches, std::size_t rays_a_batch, bool under_others,
                      std::uint64_t seed) {
     batches_ = batches, rays_a_batch_ = rays_a_batch;
-    counts_.clear(), missed_ = {};
+    counts_.clear(), sky_ = back_ = missed_ = {};
     for (std::size_t b = 0; b < batches; ++b) {
         cast_batch(face, under_others, hash(seed, b));
         finish_batch();

@@ -27,12 +27,13 @@ class RowCaster {
     void cast(std::size_t face, std::size_t batches, std::size_t rays_a_batch, bool under_others, std::uint64_t seed);
 
     std::span<const Count> counts() const { return counts_; }  ///< Sorted by column.
-    double missed() const { return missed_.hits; }             ///< Number of rays that hit no front.
+    const Count& sky() const { return sky_; }                  ///< Rays that hit nothing; its column has no meaning.
+    const Count& back() const { return back_; }                ///< Rays that hit a back or started below another face.
     std::size_t rays() const { return batches_ * rays_a_batch_; }
     double share(const Count& count) const { return count.hits / static_cast<double>(rays()); }
     /// Variance of share().
     double variance(const Count& count) const;
-    double missed_variance() const { return variance(missed_); }
+    double missed_variance() const { return variance(missed_); }  ///< Variance of the share of sky and backs together.
 
   private:
     void cast_batch(std::size_t face, bool under_others, std::uint64_t seed);
@@ -45,8 +46,8 @@ class RowCaster {
     std::vector<std::uint32_t> of_batch_;  ///< Hits of every face in the current batch.
     std::vector<double> hits_, squares_;   ///< Sums over batches, for every face.
     std::vector<std::uint32_t> met_in_batch_, met_;
-    std::uint32_t missed_in_batch_ = 0;
-    Count missed_{};
+    std::uint32_t sky_in_batch_ = 0, back_in_batch_ = 0;
+    Count sky_{}, back_{}, missed_{};
     std::vector<Count> counts_;
     std::vector<double> coordinates_[4];
     std::vector<Point> origins_;

@@ -4,39 +4,11 @@
 #include <cmath>
 
 #include "exitance/base/parallel.hpp"
-#include "exitance/base/random.hpp"
-#include "exitance/view_factors/row_scene.hpp"
 
 namespace exitance {
 namespace {
 
 constexpr std::size_t block = 1024;
-
-/// Shares of n pseudo-random rays from a face that hit each front first.
-std::vector<double> cast_half(const RowScene& ready, std::size_t face, std::size_t n, RandomStream random,
-                              const StopRequest& stop) {
-    const FaceSampler& sampler = ready.samplers[face];
-    const Frame frame(sampler.normal());
-    std::vector<double> shares(ready.faces.size());
-    std::vector<Point> origins;
-    std::vector<Vec3> directions;
-    std::vector<RayHit> hits(block);
-    for (std::size_t first = 0; first < n && !stop.requested(); first += block) {
-        origins.clear(), directions.clear();
-        for (std::size_t k = first; k < std::min(first + block, n); ++k) {
-            const double u = random.uniform(), v = random.uniform(), s = random.uniform(), t = random.uniform();
-            const Point x = sampler(u, v);
-            if (ready.occluders.is_covered(x, sampler.normal(), ready.region(face))) continue;
-            origins.push_back(x), directions.push_back(cosine_direction(frame, s, t));
-        }
-        if (origins.empty()) continue;
-        ready.tracer.nearest(origins, directions, ready.region(face), std::span(hits).first(origins.size()));
-        for (std::size_t k = 0; k < origins.size(); ++k)
-            if (hits[k].front && hits[k].surface.value != face) shares[hits[k].surface.value] += 1;
-    }
-    for (double& share : shares) share /= static_cast<double>(n);
-    return shares;
-}
 
 std::vector<double> dense_row(const SparseFactors& table, std::size_t i) {
     std::vector<double> row(table.size());
@@ -77,9 +49,9 @@ CheckedRow check_row(const RowScene& ready, const SparseFactors& table, std::siz
     const double n = static_cast<double>(options.rays);
     const std::vector<double> F = dense_row(table, face);
     const std::vector<double> G1 =
-        cast_half(ready, face, options.rays, RandomStream(options.seed, Stream::reference, face, 1), stop);
+        cast_check_rays(ready, face, options.rays, RandomStream(options.seed, Stream::reference, face, 1), stop);
     const std::vector<double> G2 =
-        cast_half(ready, face, options.rays, RandomStream(options.seed, Stream::reference, face, 2), stop);
+        cast_check_rays(ready, face, options.rays, RandomStream(options.seed, Stream::reference, face, 2), stop);
     CheckedRow checked;
     checked.face = face;
     for (std::size_t j = 0; j < F.size(); ++j) checked.squared_error += (F[j] - G1[j]) * (F[j] - G2[j]);
@@ -113,6 +85,31 @@ std::vector<std::size_t> draw_rows(const SparseFactors& table, const RowCheckOpt
 }
 
 }  // namespace
+
+std::vector<double> cast_check_rays(const RowScene& ready, std::size_t face, std::size_t n, RandomStream random,
+                                    const StopRequest& stop) {
+    const FaceSampler& sampler = ready.samplers[face];
+    const Frame frame(sampler.normal());
+    std::vector<double> shares(ready.faces.size());
+    std::vector<Point> origins;
+    std::vector<Vec3> directions;
+    std::vector<RayHit> hits(block);
+    for (std::size_t first = 0; first < n && !stop.requested(); first += block) {
+        origins.clear(), directions.clear();
+        for (std::size_t k = first; k < std::min(first + block, n); ++k) {
+            const double u = random.uniform(), v = random.uniform(), s = random.uniform(), t = random.uniform();
+            const Point x = sampler(u, v);
+            if (ready.occluders.is_covered(x, sampler.normal(), ready.region(face))) continue;
+            origins.push_back(x), directions.push_back(cosine_direction(frame, s, t));
+        }
+        if (origins.empty()) continue;
+        ready.tracer.nearest(origins, directions, ready.region(face), std::span(hits).first(origins.size()));
+        for (std::size_t k = 0; k < origins.size(); ++k)
+            if (hits[k].front && hits[k].surface.value != face) shares[hits[k].surface.value] += 1;
+    }
+    for (double& share : shares) share /= static_cast<double>(n);
+    return shares;
+}
 
 RowCheck check_rows_by_rays(const Scene& scene, const SparseFactors& table, const RowCheckOptions& options,
                             const StopRequest& stop) {

@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "exitance/base/progress.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/scene/scene.hpp"
+#include "exitance/view_factors/row_scene.hpp"
 #include "exitance/view_factors/sparse_factors.hpp"
 
 namespace exitance {
@@ -39,6 +41,10 @@ struct RowCheck {
     bool is_complete = true;  ///< False if a stop was requested before the last row.
     static constexpr double beyond_noise = 3.5;
 };
+
+/// Returns the shares of pseudo-random rays from a face that hit each front first, for checks.
+std::vector<double> cast_check_rays(const RowScene& ready, std::size_t face, std::size_t rays, RandomStream random,
+                                    const StopRequest& stop);
 
 /// Checks random rows with independent pseudo-random rays. Deterministic on any number of threads. About 0.3 us per
 /// ray.

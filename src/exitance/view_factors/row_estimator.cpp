@@ -6,6 +6,7 @@
 
 #include "exitance/base/random.hpp"
 #include "exitance/form_factors/pair_form_factor.hpp"
+#include "exitance/view_factors/closed_variance.hpp"
 
 namespace exitance {
 namespace {
@@ -28,6 +29,9 @@ constexpr double contour_share = 1e-4;  ///< Share of the error: tolerance of th
 constexpr double integrated_share =
     1e-2;  ///< Share of the error: bound for integrated entries, including cancellation in contour sums.
 constexpr std::size_t min_batches = 8, min_rays_a_batch = 16;
+/// Rays that find the shares of sky and backs: up to max_sky_rays, and at least sky_rays_per_error / R, so that a small
+/// share is noticed.
+constexpr double sky_rays_per_error = 1.5, min_sky_rays = 2048, max_sky_rays = 65536;
 constexpr std::size_t max_rays = std::size_t{1} << 30;
 constexpr int max_attempts = 6;
 
@@ -39,10 +43,9 @@ std::pair<std::size_t, std::size_t> batches_of(double n, std::size_t fewest, std
     return {std::max(fewest, batches), rays};
 }
 
-Point middle(const ViewFace& face) {
-    Point sum{};
-    for (const Point& p : face.outline) sum = sum + p;
-    return sum * (1.0 / static_cast<double>(face.outline.size()));
+/// Number of cast rays that reach a variance, if `share` of the row is left to them.
+double cast_rays_for(double share, double variance) {
+    return std::pow(share / (0.5 * variance), 1 / cast_rate);
 }
 
 }  // namespace
@@ -72,14 +75,14 @@ double RowEstimator::left_of_pair(std::size_t face, std::uint32_t column) const 
 
 /// Expected error of a row after it is combined.
 double RowEstimator::combined_error(const RawRow& row) const {
-    double sum = 0;
+    ClosedVariance sum;
     auto pair = pairs_.begin();
     for (const RowEntry& entry : row.entries) {
         while (pair != pairs_.end() && pair->column < entry.column) ++pair;
         const bool by_pair = pair != pairs_.end() && pair->column == entry.column && !pair->to_cast;
-        sum += double(entry.variance) * (by_pair ? pair->left : left_of_cast(row.face, entry.column));
+        sum.add(double(entry.variance) * (by_pair ? pair->left : left_of_cast(row.face, entry.column)));
     }
-    return std::sqrt(sum) + row.bound;
+    return std::sqrt(sum.closed(row.missed_variance)) + row.bound;
 }
 
 /// True if `other` may cover part of the face, so that rays starting there are blocked at once (Occluders::is_covered).
@@ -96,19 +99,25 @@ bool RowEstimator::may_be_under(std::size_t face, std::size_t other) const {
 /// Finds the faces that may be visible from the face, with approximate unoccluded view factors, in descending order.
 void RowEstimator::find_candidates(std::size_t face) {
     const ViewFace& own = scene_.faces[face];
-    const Point x = middle(own);
+    const Point x = scene_.middles[face];
+    const double reach = scene_.radii[face] + 1e-4 * scene_.scene.size();
+    // A pair is worth its cost if it saves that many cast rays. A tenth of it is a safe limit.
+    const double negligible = 0.1 * pair_cost * cast_rate / cast_rays_for(1, error_ * error_);
     candidates_.clear();
     under_others_ = false;
     for (std::size_t j = 0; j < scene_.faces.size(); ++j) {
         const ViewFace& other = scene_.faces[j];
         bool cut = false;
         if (j == face) continue;
+        const Vec3 apart = scene_.middles[j] - x;
+        const double apart2 = dot(apart, apart), touching = reach + scene_.radii[j];
+        if (apart2 > 4 * touching * touching && other.area < pi * apart2 * negligible) continue;
         if (!face_each_other(own, other, scene_.slack, cut)) {
             under_others_ = under_others_ || may_be_under(face, j);
             continue;
         }
-        const Vec3 d = middle(other) - x;
-        const double squared = std::max(dot(d, d), 1e-300);
+        const Vec3& d = apart;
+        const double squared = std::max(apart2, 1e-300);
         const double cosines =
             cut ? squared : std::max(0.0, dot(own.plane.n, d)) * std::max(0.0, -dot(other.plane.n, d));
         const double about = cosines / (pi * squared * squared) * other.area;
@@ -131,7 +140,7 @@ double RowEstimator::smallest_candidate(std::size_t face, double variance) const
     }
     double best = HUGE_VAL, least = HUGE_VAL;
     const auto consider = [&](std::size_t taken, double smallest) {
-        const double rays = std::pow(std::max(left, 1 / n) / (0.5 * variance), 1 / cast_rate);
+        const double rays = cast_rays_for(std::max(left, 1 / n), variance);
         const double cost = static_cast<double>(taken) * pair_cost + rays;
         if (cost < least) least = cost, best = smallest;
     };
@@ -184,35 +193,40 @@ void RowEstimator::classify(std::size_t face, std::uint32_t round) {
     }
     std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) { return a.column < b.column; });
     const double n = static_cast<double>(pilot_batches * pilot_rays_a_batch);
-    rest_ = 1 / n;
+    rest_ = rest_squares_ = 0;
+    add_rest(1 / n);
     for (const RowCaster::Count& count : pilot_) {
         const auto at = std::lower_bound(pairs_.begin(), pairs_.end(), count.column,
                                          [](const Pair& pair, std::uint32_t column) { return pair.column < column; });
         if (at == pairs_.end() || at->column != count.column || at->to_cast)
-            rest_ += count.hits / n * left_of_cast(face, count.column);
+            add_rest(count.hits / n * (1 - count.hits / n) * left_of_cast(face, count.column));
     }
 }
 
 /// Numbers of samples that reach a variance at the least cost: for variances a^2 n^-r, one more sample must reduce the
 /// variance by the same amount per cost in all estimators.
 RowEstimator::Plan RowEstimator::plan(double variance) {
+    const double for_sky = std::pow(missed_deviation_ / (error_ * error_), 1 / cast_rate);
+    const double min_cast = std::max({double(min_batches * min_rays_a_batch), std::min(for_sky, max_sky_rays),
+                                      std::min(sky_rays_per_error / error_, min_sky_rays)});
     const auto pair_samples = [&](const Pair& pair, double price) {
         const double a = pair.deviation();
         return std::max<double>(PairSampler::pilot_rays,
                                 std::pow(pair_rate * a * a / (price * shadow_ray_cost), 1 / (1 + pair_rate)));
     };
     const auto cast_samples = [&](double price) {
-        return std::max<double>(min_batches * min_rays_a_batch,
-                                std::pow(cast_rate * rest_ / price, 1 / (1 + cast_rate)));
+        return std::max<double>(min_cast, std::pow(cast_rate * rest_ / price, 1 / (1 + cast_rate)));
     };
     const auto variance_at = [&](double price) {
-        double sum = rest_ * std::pow(cast_samples(price), -cast_rate);
+        const double each = std::pow(cast_samples(price), -cast_rate);
+        ClosedVariance sum;
+        sum.add(rest_ * each, rest_squares_ * each * each);
         for (const Pair& pair : pairs_) {
             if (pair.is_exact || pair.to_cast) continue;
             const double a = pair.deviation();
-            sum += a * a * std::pow(pair_samples(pair, price), -pair_rate);
+            sum.add(a * a * std::pow(pair_samples(pair, price), -pair_rate));
         }
-        return sum;
+        return sum.closed(missed_ * each);
     };
     double low = 1e-40, high = 1;  // bounds on the variance that a unit of cost removes
     for (int step = 0; step < 60; ++step) {
@@ -232,9 +246,11 @@ RawRow RowEstimator::measure(std::size_t face, std::uint32_t round, const Plan& 
     row.face = static_cast<std::uint32_t>(face), row.round = round;
     caster_.cast(face, plan.batches, plan.rays_a_batch, under_others_,
                  hash(seed_, face, round, std::uint64_t(Use::cast), std::uint64_t(0)));
-    row.rays = caster_.rays();
+    row.rays = row.cast_rays = caster_.rays();
     row.cast_density = static_cast<double>(row.rays) / area;
-    row.missed = caster_.missed() / static_cast<double>(row.rays), row.missed_variance = caster_.missed_variance();
+    row.sky = caster_.share(caster_.sky()), row.sky_variance = caster_.variance(caster_.sky());
+    row.back = caster_.share(caster_.back()), row.back_variance = caster_.variance(caster_.back());
+    row.missed_variance = caster_.missed_variance();
     const auto add_cast = [&](const RowCaster::Count& count) {
         row.entries.push_back({caster_.share(count), count.column, static_cast<float>(caster_.variance(count)),
                                static_cast<float>(row.cast_density)});
@@ -271,6 +287,8 @@ std::optional<RawRow> RowEstimator::operator()(std::size_t face, std::uint32_t r
     caster_.cast(face, pilot_batches, pilot_rays_a_batch, under_others_,
                  hash(seed_, face, round, std::uint64_t(Use::pilot), std::uint64_t(0)));
     pilot_.assign(caster_.counts().begin(), caster_.counts().end());
+    const double sky = caster_.share(caster_.sky()), back = caster_.share(caster_.back());
+    missed_ = sky + back, missed_deviation_ = std::max(sky * (1 - sky), back * (1 - back));
     classify(face, round);
     const double wanted = share * error_;
     double aim = wanted;

@@ -58,6 +58,7 @@ class RowEstimator {
     View view_of(std::size_t face, std::size_t other);
     void classify_pair(std::size_t face, Pair& pair, std::uint32_t round);
     Plan plan(double variance);
+    void add_rest(double share) { rest_ += share, rest_squares_ += share * share; }
     RawRow measure(std::size_t face, std::uint32_t round, const Plan& plan);
 
     const RowScene& scene_;
@@ -76,7 +77,11 @@ class RowEstimator {
     bool under_others_ = false;  ///< True if another face may cover part of the face.
     std::vector<RowCaster::Count> pilot_;
     std::vector<Pair> pairs_;
-    double rest_ = 0;  ///< Pilot's sum of the entries that are left to cast rays, each times left_of_cast.
+    double rest_squares_ = 0;      ///< Sum of the squares of the terms of rest_.
+    double missed_ = 0;            ///< Pilot's share of rays that hit no front.
+    double missed_deviation_ = 0;  ///< The larger variance of one ray's sky and back.
+    /// Pilot's sum of F (1 - F) over the entries F that are left to cast rays, each times left_of_cast.
+    double rest_ = 0;
 };
 
 }  // namespace exitance

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/view_factors/row_check.hpp"
 #include "exitance/view_factors/view_factors.hpp"
 
@@ -161,6 +162,72 @@ TEST(RowFactors, SmallEntriesAreDroppedAndCounted) {
     for (std::size_t i = 0; i < all.size(); ++i) {
         EXPECT_NEAR(some.row_sums[i] + some.dropped[i], all.row_sums[i], 1e-14) << i;
         EXPECT_NEAR(some.row_errors[i], all.row_errors[i] + some.dropped[i], 1e-14) << i;
+    }
+}
+
+TEST(RowFactors, CountTheSkyAndBacksOfFaces) {
+    // Two opposite unit squares at distance 1, the lower one with an opaque lid over half of it that shows it its back.
+    const Outline low = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+                  high = {{0, 1, 1}, {1, 1, 1}, {1, 0, 1}, {0, 0, 1}};
+    const double R = 1e-3, F = 0.199824895698387;  // Howell's C-11
+    const SparseFactors open = factors_of(scene_of({low, high}), {.error = R});
+    EXPECT_NEAR(entry(open, 0, 1), F, R);
+    EXPECT_NEAR(open.sky[0], 1 - F, 3 * R);
+    EXPECT_EQ(open.back[0], 0);
+    const Outline away(high.rbegin(), high.rend());  // its back is below
+    const SparseFactors turned = factors_of(scene_of({low, away}), {.error = R});
+    EXPECT_EQ(entry(turned, 0, 1), 0);
+    EXPECT_NEAR(turned.back[0], F, 3 * R);
+    EXPECT_NEAR(turned.sky[0], 1 - F, 3 * R);
+    EXPECT_NEAR(turned.sky[1], 1, 1e-12);
+    for (const SparseFactors* table : {&open, &turned}) {
+        EXPECT_EQ(table->unclosed, 0U);
+        for (std::size_t i = 0; i < 2; ++i)
+            EXPECT_NEAR(table->row_sums[i] + table->sky[i] + table->back[i], 1, 3 * R) << i;
+    }
+}
+
+TEST(RowFactors, KeepInvariantsOnRandomScenes) {
+    const double R = 3e-3;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        RandomStream random(seed, Stream::reference, 1);
+        const auto between = [&](double a, double b) { return a + (b - a) * random.uniform(); };
+        std::vector<Outline> faces;
+        for (int k = 0; k < 4; ++k)  // in different quadrants, so that boxes do not intersect
+            add_box(faces, {2.0 * (k % 2) + between(0.9, 1.1), 2.0 * (k / 2) + between(0.9, 1.1), between(0, 2)},
+                    {between(0.3, 1.1), between(0.3, 1.1), between(0.3, 1.5)}, between(0, 3), false);
+        const SparseFactors without = factors_of(scene_of(faces), {.error = R});
+        std::vector<Outline> more = faces;
+        const double at = between(0, 4);  // a screen through the scene
+        more.push_back({{at, -1, -1}, {at, 5, -1}, {at + 0.3, 5, 3}, {at + 0.3, -1, 3}});
+        const SparseFactors with = factors_of(scene_of(more), {.error = R});
+        for (std::size_t i = 0; i < without.size(); ++i) {
+            EXPECT_NEAR(without.row_sums[i] + without.sky[i] + without.back[i], 1, 3 * R) << seed << ' ' << i;
+            for (std::size_t j = 0; j < without.size(); ++j) {
+                const double F = entry(without, i, j);
+                EXPECT_TRUE(F >= 0 && F <= 1) << seed << ' ' << i << ' ' << j;
+                EXPECT_LE(entry(with, i, j), F + 6 * R) << seed << ' ' << i << ' ' << j;  // three errors of each
+                EXPECT_NEAR(without.areas[i] * F, without.areas[j] * entry(without, j, i), 1e-12);
+            }
+        }
+    }
+}
+
+TEST(RowFactors, CuttingAFaceAddsUp) {
+    std::vector<Outline> whole, cut;
+    add_box(whole, {0, 0, 0}, {3, 2, 2}, 0.4, true), add_box(whole, {0.3, 0.2, 0.1}, {0.8, 0.6, 0.7}, 0.9, false);
+    cut = whole;
+    const Outline wall = cut[1];
+    const Point below = wall[0] + 0.3 * (wall[1] - wall[0]), above = wall[3] + 0.3 * (wall[2] - wall[3]);
+    cut[1] = {wall[0], below, above, wall[3]};
+    cut.push_back({below, wall[1], wall[2], above});
+    const double R = 2e-3;
+    const SparseFactors a = factors_of(scene_of(whole), {.error = R}), b = factors_of(scene_of(cut), {.error = R});
+    const std::size_t last = b.size() - 1;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        if (i == 1) continue;
+        EXPECT_NEAR(entry(a, i, 1), entry(b, i, 1) + entry(b, i, last), 6 * R) << i;
+        EXPECT_NEAR(entry(a, 1, i), 0.3 * entry(b, 1, i) + 0.7 * entry(b, last, i), 6 * R) << i;
     }
 }
 

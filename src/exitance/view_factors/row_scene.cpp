@@ -12,6 +12,13 @@ RowScene::RowScene(const Scene& s)
       slack(std::max(1e-8 * s.size(), occluders.rounding())) {
     samplers.reserve(faces.size());
     for (SurfaceId id : s.surfaces().ids()) samplers.emplace_back(s, id);
+    for (const ViewFace& face : faces) {
+        Point middle{};
+        for (const Point& p : face.outline) middle = middle + p * (1.0 / static_cast<double>(face.outline.size()));
+        double radius = 0;
+        for (const Point& p : face.outline) radius = std::max(radius, norm(p - middle));
+        middles.push_back(middle), radii.push_back(radius);
+    }
 }
 
 }  // namespace exitance

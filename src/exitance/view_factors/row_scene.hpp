@@ -19,7 +19,9 @@ struct RowScene {
     RayTracer tracer;
     std::vector<ViewFace> faces;
     std::vector<FaceSampler> samplers;
-    double slack;  ///< Metres; points nearer to a plane than this are in it.
+    std::vector<Point> middles;  ///< Mean of the corners of each face.
+    std::vector<double> radii;   ///< Largest distance of a face's corner from its middle, metres.
+    double slack;                ///< Metres; points nearer to a plane than this are in it.
 
     RegionId region(std::size_t face) const {
         return scene.surfaces()[SurfaceId(static_cast<std::uint32_t>(face))].region;

@@ -37,6 +37,32 @@ SparseFactors sparse_from(const ViewFactors& table, double smallest) {
     return out;
 }
 
+void close_rows(SparseFactors& table) {
+    constexpr int max_sweeps = 1000;
+    constexpr double tolerance = 1e-7;
+    const std::size_t n = table.size();
+    std::vector<double> scale(n, 1), sum(n);
+    for (int sweep = 0; sweep < max_sweeps; ++sweep) {
+        double largest = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            sum[i] = 0;
+            for (std::size_t k = table.starts[i]; k < table.starts[i + 1]; ++k)
+                sum[i] += table.values[k] * scale[table.columns[k]];
+            if (sum[i] > 0) largest = std::max(largest, std::abs(1 - scale[i] * sum[i]));
+        }
+        if (largest <= tolerance) break;
+        for (std::size_t i = 0; i < n; ++i)
+            if (sum[i] > 0) scale[i] = std::sqrt(scale[i] / sum[i]);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        table.row_sums[i] = 0;
+        for (std::size_t k = table.starts[i]; k < table.starts[i + 1]; ++k) {
+            table.values[k] *= scale[i] * scale[table.columns[k]];
+            table.row_sums[i] += table.values[k];
+        }
+    }
+}
+
 SparseFactors merge_rows(const SparseFactors& table, std::span<const std::uint32_t> rows, std::size_t count) {
     SparseFactors out;
     out.combined = table.combined, out.unclosed = table.unclosed;
@@ -44,24 +70,27 @@ SparseFactors merge_rows(const SparseFactors& table, std::span<const std::uint32
     out.closure_defect = table.closure_defect;
     out.mended = table.mended, out.unsettled = table.unsettled, out.is_settled = table.is_settled;
     std::vector<double> sums(count);
-    const bool has_errors = !table.row_errors.empty();
+    const bool has_errors = !table.row_errors.empty(), has_sky = !table.sky.empty();
     for (const std::vector<std::uint32_t>& members : members_of(rows, count)) {
-        double area = 0, error = 0, dropped = 0;
+        double area = 0, error = 0, dropped = 0, sky = 0, back = 0, emittance = 0;
         bool finished = true;
         std::fill(sums.begin(), sums.end(), 0);
         for (std::uint32_t i : members) {
-            area += table.areas[i], finished &= table.finished[i] != 0;
+            area += table.areas[i], emittance += table.areas[i] * table.emittances[i],
+                finished &= table.finished[i] != 0;
             if (has_errors) error += table.areas[i] * table.row_errors[i];
+            if (has_sky) sky += table.areas[i] * table.sky[i], back += table.areas[i] * table.back[i];
             dropped += table.areas[i] * table.dropped[i];
             for (std::size_t k = table.starts[i]; k < table.starts[i + 1]; ++k)
                 if (rows[table.columns[k]] != no_row) sums[rows[table.columns[k]]] += table.areas[i] * table.values[k];
         }
         out.areas.push_back(area), out.finished.push_back(finished);
-        out.emittances.push_back(members.empty() ? 1 : table.emittances[members.back()]);
+        out.emittances.push_back(area > 0 ? emittance / area : 1);
         for (std::uint32_t j = 0; j < count; ++j)
             if (sums[j] > 0) out.columns.push_back(j), out.values.push_back(sums[j] / area);
         out.starts.push_back(out.values.size());
         out.row_sums.push_back(area > 0 ? std::accumulate(sums.begin(), sums.end(), 0.0) / area : 0);
+        if (has_sky) out.sky.push_back(area > 0 ? sky / area : 0), out.back.push_back(area > 0 ? back / area : 0);
         if (has_errors) out.row_errors.push_back(area > 0 ? error / area : 0);
         out.dropped.push_back(area > 0 ? dropped / area : 0);
     }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "exitance/view_factors/view_factors.hpp"
@@ -19,9 +20,13 @@ struct SparseFactors {
     std::vector<double> values;
 
     std::vector<double> row_sums;  ///< One per face.
+    /// Shares of the flux leaving each face that leave the scene, and that reach the back of a face or start below
+    /// another face. Found by rays. Empty if they were not computed.
+    std::vector<double> sky, back;
     /// Error of each row, sqrt(sum of variances) + sum of bounds; infinite if not finished. Empty for a table with a
     /// tolerance of entries.
     std::vector<double> row_errors;
+    std::vector<std::string> names;      ///< Name of each row; empty: rows have numbers only.
     std::vector<double> dropped;         ///< Sum of the entries of each row that were dropped as too small.
     std::vector<std::uint8_t> finished;  ///< 1 for each computed row.
     bool combined = false;  ///< True if F_ij and F_ji combine both rows, so that A_i F_ij = A_j F_ji up to rounding.
@@ -49,12 +54,16 @@ struct SparseFactors {
 /// Returns the entries of a table that are not zero and at least `smallest`. Row errors are left empty.
 SparseFactors sparse_from(const ViewFactors& table, double smallest = 0);
 
+/// Scales exchange areas A_i F_ij by x_i x_j so that all rows add up to 1, up to 1e-7: for the surfaces of an
+/// enclosure. Keeps reciprocity. Rows without entries are left as they are.
+void close_rows(SparseFactors& table);
+
 inline constexpr std::uint32_t no_row = 0xffffffff;
 
 /// Returns a table whose rows are unions of faces: the row of a union is the area-weighted mean of its faces' rows, and
-/// its column is the sum of their columns. `rows` contains the row of every face, or no_row for a face that only
-/// blocks; `count` rows are returned. The error of a row is at most the mean of its faces' errors. Defects are those of
-/// the faces' table.
+/// its column is the sum of their columns. Emittances are area-weighted means. `rows` contains the row of every face,
+/// or no_row for a face that only blocks; `count` rows are returned. The error of a row is at most the mean of its
+/// faces' errors. Defects are those of the faces' table.
 SparseFactors merge_rows(const SparseFactors& table, std::span<const std::uint32_t> rows, std::size_t count);
 
 }  // namespace exitance

@@ -14,14 +14,14 @@
 namespace exitance {
 namespace {
 
-constexpr std::array<char, 8> magic = {'E', 'X', 'I', 'R', 'O', 'W', 'S', '1'};
+constexpr std::array<char, 8> magic = {'E', 'X', 'I', 'R', 'O', 'W', 'S', '2'};
 
 /// Header of a record, followed by its entries.
 struct RecordHead {
     std::uint64_t checksum;  ///< Hash of the rest of the record.
-    std::uint64_t entries, rays;
+    std::uint64_t entries, rays, cast_rays;
     std::uint32_t face, round;
-    double cast_density, missed, missed_variance, bound;
+    double cast_density, sky, back, sky_variance, back_variance, missed_variance, bound;
 };
 static_assert(std::is_trivially_copyable_v<RecordHead> && std::is_trivially_copyable_v<RowEntry>);
 static_assert(sizeof(RowEntry) == 24, "without gaps, as its bytes are hashed");
@@ -57,8 +57,10 @@ long RawRowFile::read_records(std::size_t faces) {
         if (std::fread(row.entries.data(), sizeof(RowEntry), head.entries, file_.get()) != head.entries) break;
         if (checksum_of(head, row.entries) != head.checksum) break;
         row.face = head.face, row.round = head.round, row.rays = head.rays;
+        row.cast_rays = head.cast_rays;
         row.cast_density = head.cast_density, row.bound = head.bound;
-        row.missed = head.missed, row.missed_variance = head.missed_variance;
+        row.sky = head.sky, row.sky_variance = head.sky_variance;
+        row.back = head.back, row.back_variance = head.back_variance, row.missed_variance = head.missed_variance;
         resumed_.push_back(std::move(row));
         whole = std::ftell(file_.get());
     }
@@ -101,8 +103,19 @@ Result<RawRowFile> RawRowFile::open(const std::string& path, const std::string& 
 
 void RawRowFile::keep(const RawRow& row) {
     if (failed_) return;
-    RecordHead head{0,          row.entries.size(),  row.rays, row.face, row.round, row.cast_density,
-                    row.missed, row.missed_variance, row.bound};
+    RecordHead head{.checksum = 0,
+                    .entries = row.entries.size(),
+                    .rays = row.rays,
+                    .cast_rays = row.cast_rays,
+                    .face = row.face,
+                    .round = row.round,
+                    .cast_density = row.cast_density,
+                    .sky = row.sky,
+                    .back = row.back,
+                    .sky_variance = row.sky_variance,
+                    .back_variance = row.back_variance,
+                    .missed_variance = row.missed_variance,
+                    .bound = row.bound};
     head.checksum = checksum_of(head, row.entries);
     failed_ |= std::fwrite(&head, sizeof head, 1, file_.get()) != 1;
     failed_ |= std::fwrite(row.entries.data(), sizeof(RowEntry), row.entries.size(), file_.get()) != row.entries.size();
