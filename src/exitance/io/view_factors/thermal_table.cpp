@@ -56,7 +56,7 @@ Result<std::vector<std::size_t>> read_header(LineReader& lines) {
 
 /// Values of one row in the order of `column_names`; empty fields are missing.
 Result<std::array<double, 4>> read_row(const LineReader& lines, std::string_view line,
-                                       const std::vector<std::size_t>& columns) {
+                                       const std::vector<std::size_t>& columns, const std::vector<std::string>& names) {
     const std::vector<std::string_view> fields = fields_of(line);
     if (fields.size() != columns.size())
         return lines.error(fmt::format("there are {} fields under {} columns", fields.size(), columns.size()),
@@ -64,7 +64,14 @@ Result<std::array<double, 4>> read_row(const LineReader& lines, std::string_view
     std::array<double, 4> row{missing, missing, missing, missing};
     for (std::size_t k = 0; k < fields.size(); ++k) {
         if (fields[k].empty()) continue;
-        const std::optional<double> value = parse_number(fields[k]);
+        std::optional<double> value = parse_number(fields[k]);
+        if (columns[k] == 0 && !value) {
+            const auto named = std::find(names.begin(), names.end(), fields[k]);
+            if (named == names.end())
+                return lines.error(fmt::format("there is no surface '{}'", shown(fields[k])),
+                                   "the column surface holds numbers from 1, 0 for all, or names of rows");
+            value = static_cast<double>(named - names.begin() + 1);
+        }
         if (!value) return lines.error(fmt::format("'{}' is not a number", shown(fields[k])), "");
         row[columns[k]] = *value;
     }
@@ -105,7 +112,7 @@ Result<std::vector<ThermalSurface>> read_thermal_table(const std::string& path, 
     const Result<std::vector<std::size_t>> columns = read_header(*lines);
     if (!columns) return columns.error();
     while (const auto line = lines->next_content()) {
-        const Result<std::array<double, 4>> row = read_row(*lines, *line, *columns);
+        const Result<std::array<double, 4>> row = read_row(*lines, *line, *columns, factors.names);
         if (!row) return row.error();
         if (const auto [fault, hint] = fault_of(*row, out.size()); !fault.empty()) return lines->error(fault, hint);
         const auto number = static_cast<std::size_t>((*row)[0]);

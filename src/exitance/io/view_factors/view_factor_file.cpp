@@ -1,76 +1,47 @@
 #include "exitance/io/view_factors/view_factor_file.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <cstdio>
+#include <filesystem>
 
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/solution/hdf5_file.hpp"
+#include "exitance/io/view_factors/solver_formats.hpp"
+#include "exitance/io/view_factors/text_format.hpp"
 
 namespace exitance {
 namespace {
 
 constexpr std::int64_t file_version = 1;  ///< Version of the .h5 format; raised if older programs cannot read the file.
 
-template <class... Values>
-void append(std::string& text, const char* format, Values... values) {
-    char buffer[64];
-    const int length = std::snprintf(buffer, sizeof buffer, format, values...);
-    text.append(buffer, static_cast<std::size_t>(length));
-}
-
-/// Appends `value` as %.17g would, without loss, but faster: formatting millions of entries dominates the time to
-/// write.
-void append_exactly(std::string& text, double value) {
-    char buffer[64];
-    text.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 17).ptr);
-}
-
 Error stopped() {
     return {ErrorCode::limit, "stopped while view factors were written", "", "allow more time"};
 }
 
-/// A text format: text before the rows, each row, and text after them.
-class TextFormat {
-  public:
-    explicit TextFormat(const SparseFactors& table) : table_(table) {}
-    virtual ~TextFormat() = default;
-    virtual void begin(std::string& text) const = 0;
-    virtual void add_row(std::string& text, std::size_t i) const = 0;
-    virtual void end(std::string& /*text*/) const {}
-
-  protected:
-    /// Calls take(F) for every column of a row, including zeros.
-    template <class Take>
-    void for_all_columns(std::size_t i, const Take& take) const {
-        const std::span<const std::uint32_t> columns = table_.row_columns(i);
-        std::size_t k = 0;
-        for (std::size_t j = 0; j < table_.size(); ++j)
-            take(k < columns.size() && columns[k] == j ? table_.row_values(i)[k++] : 0.0);
-    }
-    const SparseFactors& table_;
-};
-
 class Csv : public TextFormat {
   public:
-    using TextFormat::TextFormat;
+    Csv(const SparseFactors& table, bool with_sky) : TextFormat(table), with_sky_(with_sky) {}
     void begin(std::string& text) const override {
         text = "surface,area,row_sum";
-        for (std::size_t j = 1; j <= table_.size(); ++j) append(text, ",F_%zu", j);
+        for (std::size_t j = 1; j <= table_.size(); ++j) append_formatted(text, ",F_%zu", j);
+        if (with_sky_) text += ",sky,back";
         text += '\n';
     }
     void add_row(std::string& text, std::size_t i) const override {
         if (!table_.finished[i]) return;
-        append(text, "%zu,%.17g,%.17g", i + 1, table_.areas[i], table_.row_sums[i]);
+        append_formatted(text, "%zu,%.17g,%.17g", i + 1, table_.areas[i], table_.row_sums[i]);
         for_all_columns(i, [&](double F) {
             if (F == 0)
                 text += ",0";
             else
                 append_exactly(text += ',', F);
         });
+        if (with_sky_) append_exactly(text += ',', table_.sky[i]), append_exactly(text += ',', table_.back[i]);
         text += '\n';
     }
+
+  private:
+    bool with_sky_;
 };
 
 class Vf : public TextFormat {
@@ -81,41 +52,54 @@ class Vf : public TextFormat {
                std::to_string(table_.size());  // View3D's fields: version, output, enclosure, emittances, N
         if (text.size() < 30) text.resize(30, ' ');
         text += '\n';
-        for (double area : table_.areas) append(text, " %g", area);
-        text += '\n';
+        add_line(text, "%g", table_.areas);
     }
     void add_row(std::string& text, std::size_t i) const override {
-        for_all_columns(i, [&](double F) { append(text, " %.6f", F); });
+        const char* separator = "";
+        for_all_columns(i, [&](double F) { text += separator, append_formatted(text, "%.6f", F), separator = " "; });
         text += '\n';
     }
-    void end(std::string& text) const override {
-        for (double emittance : table_.emittances) append(text, " %.3f", emittance);
+    void end(std::string& text) const override { add_line(text, "%.3f", table_.emittances); }
+
+  private:
+    static void add_line(std::string& text, const char* format, const std::vector<double>& values) {
+        const char* separator = "";
+        for (const double value : values) text += separator, append_formatted(text, format, value), separator = " ";
         text += '\n';
     }
 };
 
 class MatrixMarket : public TextFormat {
   public:
-    using TextFormat::TextFormat;
+    MatrixMarket(const SparseFactors& table, bool with_sky) : TextFormat(table), with_sky_(with_sky) {}
     void begin(std::string& text) const override {
         const std::size_t n = table_.size();
         text =
             "%%MatrixMarket matrix coordinate real general\n"
             "% view factors: row i, column j is the share of the flux leaving face i that reaches face j\n"
             "% areas in m^2, a line a face:\n";
-        for (std::size_t i = 0; i < n; ++i) append(text, "%% %zu %.17g\n", i + 1, table_.areas[i]);
+        for (std::size_t i = 0; i < n; ++i) append_formatted(text, "%% %zu %.17g\n", i + 1, table_.areas[i]);
         const auto unfinished = static_cast<std::size_t>(std::count(table_.finished.begin(), table_.finished.end(), 0));
-        if (unfinished > 0) append(text, "%% %zu rows are not finished\n", unfinished);
-        append(text, "%zu %zu ", n, n);
-        append(text, "%zu\n", table_.entries());
+        if (unfinished > 0) append_formatted(text, "%% %zu rows are not finished\n", unfinished);
+        if (with_sky_) append_formatted(text, "%% columns %zu and %zu: sky, and backs of faces\n", n + 1, n + 2);
+        append_formatted(text, "%zu %zu ", n, with_sky_ ? n + 2 : n);
+        append_formatted(text, "%zu\n", table_.entries() + (with_sky_ ? 2 * n : 0));
     }
     void add_row(std::string& text, std::size_t i) const override {
         for (std::size_t k = table_.starts[i]; k < table_.starts[i + 1]; ++k) {
-            append(text, "%zu %zu ", i + 1, std::size_t(table_.columns[k]) + 1);
+            append_formatted(text, "%zu %zu ", i + 1, std::size_t(table_.columns[k]) + 1);
             append_exactly(text, table_.values[k]);
             text += '\n';
         }
+        if (!with_sky_) return;
+        const std::size_t n = table_.size();
+        append_formatted(text, "%zu %zu ", i + 1, n + 1), append_exactly(text, table_.sky[i]);
+        append_formatted(text, "\n%zu %zu ", i + 1, n + 2), append_exactly(text, table_.back[i]);
+        text += '\n';
     }
+
+  private:
+    bool with_sky_;
 };
 
 std::string whole_text(const TextFormat& format, std::size_t rows) {
@@ -145,7 +129,8 @@ Result<void> write_text(const std::string& path, const TextFormat& format, std::
 }
 
 /// Writes compressed sparse rows, with SciPy's names for their arrays.
-Result<void> write_hdf5(const std::string& path, const SparseFactors& table, const StopRequest& stop) {
+Result<void> write_hdf5(const std::string& path, const SparseFactors& table, const FactorFileOptions& options,
+                        const StopRequest& stop) {
     if (stop.requested()) return stopped();
     const std::string group = "view_factors";
     Hdf5Writer file(path);
@@ -155,6 +140,8 @@ Result<void> write_hdf5(const std::string& path, const SparseFactors& table, con
     const std::int64_t shape[] = {static_cast<std::int64_t>(table.size()), static_cast<std::int64_t>(table.size())};
     file.set_attribute(group, "shape", std::span<const std::int64_t>(shape));
     file.set_attribute(group, "combined", static_cast<std::int32_t>(table.combined));
+    const double origin[] = {options.origin.x, options.origin.y, options.origin.z};
+    file.set_attribute(group, "origin", std::span<const double>(origin));
     file.set_attribute(group, "reciprocity_defect", table.reciprocity_defect);
     if (table.row_errors.empty())
         file.set_attribute(group, "entry_reciprocity_defect", table.entry_defect);
@@ -175,6 +162,23 @@ Result<void> write_hdf5(const std::string& path, const SparseFactors& table, con
     if (!table.row_errors.empty())
         file.write(group + "/row_errors", table.row_errors, 1,
                    {"1", "root of the sum of the variances of a row, and bounds of what was integrated or dropped"});
+    if (!table.sky.empty()) {
+        file.write(group + "/sky", table.sky, 1, {"1", "shares of the flux from each row that leave the scene"});
+        file.write(group + "/back", table.back, 1, {"1", "shares that reach backs of faces or start below a face"});
+    }
+    if (!table.names.empty()) file.write_texts(group + "/names", table.names, {"1", "names of rows"});
+    if (!options.row_of_face.empty())
+        file.write_rows<std::int32_t>(group + "/row_of_face", options.row_of_face.size(), 1,
+                                      {"1", "row of every face of the scene, from 0; -1: none"},
+                                      [&](std::size_t i, std::span<std::int32_t> row) {
+                                          row[0] = static_cast<std::int32_t>(options.row_of_face[i]);
+                                      });
+    if (!options.script_f.empty()) {
+        file.write(group + "/script_f", options.script_f, table.size(),
+                   {"1", "exchange factors: share of black-body power emitted by the row and absorbed by the column"});
+        file.write(group + "/gebhart", options.gebhart, table.size(),
+                   {"1", "Gebhart's factors: share of emitted power absorbed by the column, over all reflections"});
+    }
     if (stop.requested()) return stopped();
     return file.commit();
 }
@@ -182,7 +186,7 @@ Result<void> write_hdf5(const std::string& path, const SparseFactors& table, con
 }  // namespace
 
 std::string view_factors_csv(const SparseFactors& table) {
-    return whole_text(Csv(table), table.size());
+    return whole_text(Csv(table, false), table.size());
 }
 
 std::string view_factors_vf(const SparseFactors& table) {
@@ -190,7 +194,7 @@ std::string view_factors_vf(const SparseFactors& table) {
 }
 
 std::string view_factors_mtx(const SparseFactors& table) {
-    return whole_text(MatrixMarket(table), table.size());
+    return whole_text(MatrixMarket(table, false), table.size());
 }
 
 Result<SparseFactors> read_view_factors(const std::string& path) {
@@ -215,6 +219,11 @@ Result<SparseFactors> read_view_factors(const std::string& path) {
     table.row_sums = file->read<double>(group + "row_sums", 1, n);
     if (file->has(group + "row_errors")) table.row_errors = file->read<double>(group + "row_errors", 1, n);
     table.dropped = file->read<double>(group + "dropped", 1, n);
+    if (file->has(group + "sky")) {
+        table.sky = file->read<double>(group + "sky", 1, n);
+        table.back = file->read<double>(group + "back", 1, n);
+    }
+    if (file->has(group + "names")) table.names = file->read_texts(group + "names", n);
     table.combined = file->integer_attribute("view_factors", "combined").value_or(0) != 0;
     if (file->failed()) return file->error();
     const bool is_ascending = std::is_sorted(starts.begin(), starts.end());
@@ -229,12 +238,39 @@ Result<SparseFactors> read_view_factors(const std::string& path) {
     return table;
 }
 
-Result<void> write_view_factors(const std::string& path, const SparseFactors& table, const StopRequest& stop) {
+FactorFormat factor_format_of(const std::string& path) {
     const std::string end = ending(path);
-    if (end == ".h5") return write_hdf5(path, table, stop);
-    if (end == ".vf") return write_text(path, Vf(table), table.size(), stop);
-    if (end == ".mtx") return write_text(path, MatrixMarket(table), table.size(), stop);
-    return write_text(path, Csv(table), table.size(), stop);
+    if (end == ".h5") return FactorFormat::hdf5;
+    if (end == ".vf") return FactorFormat::vf;
+    if (end == ".mtx") return FactorFormat::mtx;
+    return end == ".idf" ? FactorFormat::energyplus : FactorFormat::csv;
+}
+
+Result<void> write_view_factors(const std::string& path, const SparseFactors& table, const StopRequest& stop,
+                                const FactorFileOptions& options) {
+    switch (options.format.value_or(factor_format_of(path))) {
+        case FactorFormat::hdf5:
+            return write_hdf5(path, table, options, stop);
+        case FactorFormat::vf:
+            return write_text(path, Vf(table), table.size(), stop);
+        case FactorFormat::mtx:
+            return write_text(path, MatrixMarket(table, options.with_sky), table.size(), stop);
+        case FactorFormat::energyplus:
+            return write_text(path, EnergyPlus(table, options.zone), table.size(), stop);
+        case FactorFormat::pairs:
+            return write_text(path, FactorPairs(table, options.with_sky), table.size(), stop);
+        case FactorFormat::openfoam: {
+            std::error_code failed;
+            std::filesystem::create_directories(path, failed);
+            if (failed) return Error{ErrorCode::cannot_write, "cannot be created: " + failed.message(), path, ""};
+            const Result<void> first = write_text(path + "/F", OpenFoamFactors(table), table.size(), stop);
+            if (!first) return first;
+            return write_text(path + "/globalFaceFaces", OpenFoamColumns(table), table.size(), stop);
+        }
+        case FactorFormat::csv:
+            break;
+    }
+    return write_text(path, Csv(table, options.with_sky), table.size(), stop);
 }
 
 }  // namespace exitance

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "exitance/base/progress.hpp"
 #include "exitance/base/result.hpp"
@@ -8,11 +11,34 @@
 
 namespace exitance {
 
-/// Writes view factors in the format that the path's ending selects: `.vf` is View3D's text format, `.mtx` Matrix
-/// Market's coordinate format and `.h5` HDF5, the last two without zeros; all other endings are CSV. Unfinished rows
-/// are omitted from CSV and empty in the other formats. The file appears whole or not at all.
-/// Errors: ErrorCode::limit if a stop is requested, ErrorCode::cannot_write.
-Result<void> write_view_factors(const std::string& path, const SparseFactors& table, const StopRequest& stop);
+enum class FactorFormat {
+    csv,         ///< A matrix.
+    vf,          ///< View3D's text.
+    mtx,         ///< Matrix Market's coordinates.
+    hdf5,        ///< Compressed rows.
+    energyplus,  ///< Objects ZoneProperty:UserViewFactors:BySurfaceName.
+    openfoam,    ///< Files F and globalFaceFaces in a folder.
+    pairs,       ///< CSV with a line `from_id,to_id,F` per entry.
+};
+
+/// Returns the format that a path's ending selects: .h5, .vf, .mtx, .idf (EnergyPlus), otherwise CSV.
+FactorFormat factor_format_of(const std::string& path);
+
+struct FactorFileOptions {
+    std::optional<FactorFormat> format = {};     ///< Empty: by the path's ending.
+    bool with_sky = false;                       ///< Adds the columns `sky` and `back`: csv, mtx and pairs.
+    std::string zone = "zone";                   ///< Name of the zone or enclosure in EnergyPlus.
+    Point origin = {};                           ///< Subtracted from the coordinates of the scene's file; hdf5 only.
+    std::vector<std::int32_t> row_of_face = {};  ///< Row of every face of the scene, -1 for none; hdf5 only.
+    /// Gray exchange factors, n x n, row by row; hdf5 only. Empty: none.
+    std::vector<double> script_f = {}, gebhart = {};
+};
+
+/// Writes view factors. Unfinished rows are omitted from CSV and empty in the other formats. Each file appears whole or
+/// not at all. `path` is a folder for openfoam. Errors: ErrorCode::limit if a stop is requested,
+/// ErrorCode::cannot_write.
+Result<void> write_view_factors(const std::string& path, const SparseFactors& table, const StopRequest& stop,
+                                const FactorFileOptions& options = {});
 
 /// Reads a `.h5` file of write_view_factors().
 Result<SparseFactors> read_view_factors(const std::string& path);

@@ -1,0 +1,103 @@
+#include "exitance/io/view_factors/node_table.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "exitance/io/files/text_lines.hpp"
+#include "exitance/io/files/text_table.hpp"
+#include "exitance/io/scenes/view3d.hpp"
+#include "exitance/view_factors/sparse_factors.hpp"
+
+namespace exitance {
+namespace {
+
+std::string trimmed(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(" \t\"\r");
+    if (first == std::string_view::npos) return {};
+    return std::string(text.substr(first, text.find_last_not_of(" \t\"\r") - first + 1));
+}
+
+/// Nodes by a key of every face.
+template <class KeyOf>
+FactorNodes nodes_by(const Scene& scene, const KeyOf& key_of) {
+    FactorNodes nodes;
+    std::map<std::string, std::uint32_t> known;
+    for (const Surface& surface : scene.surfaces()) {
+        const std::string& name = key_of(surface);
+        const auto [at, is_new] = known.try_emplace(name, static_cast<std::uint32_t>(nodes.names.size()));
+        if (is_new) nodes.names.push_back(name);
+        nodes.row_of_face.push_back(at->second);
+    }
+    return nodes;
+}
+
+}  // namespace
+
+FactorNodes nodes_by_group(const Scene& scene) {
+    return nodes_by(scene, [&](const Surface& s) -> const std::string& { return scene.groups()[s.group]; });
+}
+
+FactorNodes nodes_by_material(const Scene& scene) {
+    return nodes_by(scene, [&](const Surface& s) -> const std::string& { return scene.materials()[s.material].name; });
+}
+
+FactorNodes view3d_rows(const Scene& scene) {
+    FactorNodes nodes;
+    for (const GroupId g : scene.groups().ids())
+        if (scene.groups()[g] != view3d_obstructions) nodes.names.push_back(scene.groups()[g]);
+    for (const Surface& surface : scene.surfaces())
+        nodes.row_of_face.push_back(surface.group.value < nodes.names.size() ? surface.group.value : no_row);
+    return nodes;
+}
+
+Result<FactorNodes> read_node_table(const std::string& path, std::size_t faces) {
+    Result<LineReader> lines = LineReader::open(path);
+    if (!lines) return lines.error();
+    const std::string hint = "the columns are face,node";
+    const auto header = lines->next_content();
+    if (lines->failed()) return lines->read_error();
+    if (!header) return lines->error("the table is empty", hint);
+    const std::size_t middle = header->find(',');
+    const std::string first = trimmed(header->substr(0, middle));
+    const std::string second = middle == std::string_view::npos ? "" : trimmed(header->substr(middle + 1));
+    const bool is_turned = first == "node" && second == "face";
+    if (!is_turned && !(first == "face" && second == "node"))
+        return lines->error(fmt::format("the header is '{}'", shown(*header)), hint);
+    FactorNodes nodes;
+    nodes.row_of_face.assign(faces, no_row);
+    std::map<std::string, std::uint32_t> known;
+    while (const auto line = lines->next_content()) {
+        const std::size_t comma = is_turned ? line->rfind(',') : line->find(',');
+        if (comma == std::string_view::npos) return lines->error("a line has one field only", hint);
+        const std::string left = trimmed(line->substr(0, comma)), right = trimmed(line->substr(comma + 1));
+        const std::string &face = is_turned ? right : left, &node = is_turned ? left : right;
+        const std::optional<long long> number = parse_integer(face);
+        if (!number || *number < 1 || *number > static_cast<long long>(faces))
+            return lines->error(fmt::format("there is no face '{}'", shown(face)),
+                                fmt::format("faces are numbered from 1 to {}", faces));
+        if (node.empty()) return lines->error("the name of the node is missing", hint);
+        std::uint32_t& row = nodes.row_of_face[static_cast<std::size_t>(*number - 1)];
+        if (row != no_row) return lines->error(fmt::format("face {} has a node already", *number), "name it once");
+        const auto [at, is_new] = known.try_emplace(node, static_cast<std::uint32_t>(nodes.names.size()));
+        if (is_new) nodes.names.push_back(node);
+        row = at->second;
+    }
+    if (lines->failed()) return lines->read_error();
+    if (nodes.names.empty()) return lines->error("the table has no faces", hint);
+    return nodes;
+}
+
+std::vector<std::string> face_names(const Scene& scene) {
+    std::vector<std::size_t> count(scene.groups().size()), next(scene.groups().size());
+    for (const Surface& surface : scene.surfaces()) ++count[surface.group.value];
+    std::vector<std::string> names;
+    for (const Surface& surface : scene.surfaces()) {
+        const std::string& group = scene.groups()[surface.group];
+        const std::size_t number = ++next[surface.group.value];
+        names.push_back(count[surface.group.value] == 1 ? group : fmt::format("{} {}", group, number));
+    }
+    return names;
+}
+
+}  // namespace exitance
