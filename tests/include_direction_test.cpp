@@ -52,7 +52,7 @@ const std::vector<Door> doors{
     {"nlohmann-json",
      std::regex("nlohmann/.*"),
      {"cli/json_output.cpp", "lab/study/run_facts.cpp", "io/export/viewer_data.cpp", "io/report/honeybee_results.cpp",
-      "io/scenes/honeybee/honeybee_model.cpp", "io/solution/statistics_json.cpp"}},
+      "io/scenes/cityjson.cpp", "io/scenes/honeybee/honeybee_model.cpp", "io/solution/statistics_json.cpp"}},
     {"toml++", std::regex("toml\\+\\+/.*"), {"lab/study/study_file.cpp"}},
 };
 

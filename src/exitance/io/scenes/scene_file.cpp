@@ -9,6 +9,7 @@
 
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/photometry/placed_luminaire.hpp"
+#include "exitance/io/scenes/cityjson.hpp"
 #include "exitance/io/scenes/gltf/gltf.hpp"
 #include "exitance/io/scenes/honeybee/honeybee.hpp"
 #include "exitance/io/scenes/obj/obj.hpp"
@@ -77,14 +78,24 @@ bool looks_like_gltf(const std::string& path) {
 
 using Reader = ReadScene (*)(const std::string& path);
 
+ReadScene read_view3d_scene(const std::string& path) {
+    return read_view3d(path);
+}
+
+/// Reads the highest level of detail; read_files() calls read_cityjson() with the requested one.
+ReadScene read_city(const std::string& path) {
+    return read_cityjson(path, "");
+}
+
 Reader reader_of(const std::string& path) {
     const std::string end = ending(path);
     if (end == ".obj") return read_obj;
     if (end == ".rad") return read_radiance;
-    if (end == ".vs3") return read_view3d;
+    if (end == ".vs3") return read_view3d_scene;
     if (end == ".stl") return read_stl;
     if (end == ".ply") return read_ply;
     if (end == ".hbjson") return read_honeybee;
+    if (end == ".json") return read_city;
     if (end == ".gltf" || end == ".glb" || looks_like_gltf(path)) return read_gltf;
     return nullptr;
 }
@@ -125,12 +136,14 @@ bool says_units(Reader reader) {
 
 /// Converts a file without defined units to metres and Z up. Radiances and emission profiles do not depend on the unit
 /// of length and are unchanged.
-void convert_units(SceneDescription& d, const LoadOptions& options) {
+void convert_units(ReadScene& read, const LoadOptions& options) {
+    SceneDescription& d = read.description;
     const double scale = options.metres_per_unit.value_or(1);
     const bool turns = options.y_is_up.value_or(false);
     const auto turned = [&](const Vec3& v) { return turns ? Vec3{v.x, -v.z, v.y} : v; };
     const auto place = [&](Point& p) { p = scale * turned(p); };
     std::for_each(d.points.begin(), d.points.end(), place);
+    place(read.origin);
     for (Pane& pane : d.panes) {
         std::for_each(pane.corners.begin(), pane.corners.end(), place);
         pane.n = turned(pane.n);
@@ -168,8 +181,10 @@ ReadScene read_files(std::span<const std::string> paths, const LoadOptions& opti
     for (const std::string& path : paths) {
         const Reader read = reader_of(path);
         if (!read || (read == Reader(read_radiance) && path != radiance.front())) continue;
-        ReadScene one = read == Reader(read_radiance) ? read_radiance(radiance, options) : read(path);
-        if (!says_units(read)) convert_units(one.description, options);
+        ReadScene one = read == Reader(read_radiance) ? read_radiance(radiance, options)
+                        : read == Reader(read_city)   ? read_cityjson(path, options.lod)
+                                                      : read(path);
+        if (!says_units(read)) convert_units(one, options);
         if (one.lines.empty() && paths.size() > 1) one.lines.add(path, last_line(one.description));
         if (is_first) {
             all = std::move(one);
@@ -238,7 +253,7 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
             return refused(ErrorCode::cannot_read, path, "there is no such file", "");
         if (!reader_of(path))
             return refused(ErrorCode::bad_input, path, "this kind of scene file is not known",
-                           "known endings: .obj, .gltf, .glb, .rad, .stl, .ply, .vs3, .hbjson");
+                           "known endings: .obj, .gltf, .glb, .rad, .stl, .ply, .vs3, .hbjson, .city.json");
         if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), path) !=
             paths.begin() + static_cast<std::ptrdiff_t>(i))
             return refused(ErrorCode::usage, path, "is named twice", "each file of a scene once");
@@ -252,8 +267,10 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
     if (options.light_groups) part_emitters_by_group(read.description);
     SceneLines lines = std::move(read.lines);
     std::vector<Spectrum> deviation = std::move(read.reflectance_deviation);
+    const Point origin = read.origin;
     LoadedScene scene{checked(std::move(read), lines, options.turn_bodies), {}};
     scene.lines = std::move(lines), scene.reflectance_deviation = std::move(deviation);
+    scene.origin = origin;
     if (!scene.scene && options.stop && options.stop->requested())
         return refused(ErrorCode::limit, paths.front(), "a stop was requested while the scene was being read", "");
     if (options.faults == Faults::refuse) refuse_repairs(scene);

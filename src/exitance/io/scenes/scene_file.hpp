@@ -39,6 +39,7 @@ struct LoadOptions {
     /// Length unit and upright axis of files that do not define them; empty: metres, Z up.
     std::optional<double> metres_per_unit = {};
     std::optional<bool> y_is_up = {};
+    std::string lod = {};  ///< Level of detail to read from .city.json files; empty: the highest.
 };
 
 /// A scene with the map from face lines to files. Line numbers of several files are numbered consecutively.
@@ -47,6 +48,7 @@ struct LoadedScene : CheckedScene {
     /// Per material: RMS deviation of the reflectance within and between textured faces of that material, which has
     /// their mean. May be shorter than the list of materials.
     std::vector<Spectrum> reflectance_deviation = {};
+    Point origin = {};  ///< Subtracted from the coordinates of the first file, metres.
 };
 
 /// Reads and checks the files of one scene, in the given order. Radiance files share their material names and are read
@@ -54,9 +56,9 @@ struct LoadedScene : CheckedScene {
 /// Errors as for the overload below.
 LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& options);
 
-/// Reads and checks a scene file in the format of its ending (.obj, .gltf, .glb, .rad, .stl, .ply, .vs3,
-/// .hbjson). The findings
-/// list every error in the file. The error code is cannot_read if the file cannot be read, otherwise bad_input.
+/// Reads and checks a scene file in the format of its ending (.obj, .gltf, .glb, .rad, .stl, .ply, .vs3, .hbjson,
+/// .city.json). The findings list every error in the file. The error code is cannot_read if the file cannot be read,
+/// otherwise bad_input.
 CheckedScene load_scene(const std::string& path, Faults faults = Faults::repair);
 
 /// True if one of the files defines its length unit and upright axis; the scene then uses these.

@@ -19,6 +19,7 @@ struct ReadScene {
     std::vector<Finding> darkening = {};
     /// Per material: RMS deviation of reflectance over textured faces (see `TexturedFaces`); may be shorter.
     std::vector<Spectrum> reflectance_deviation = {};
+    Point origin = {};                        ///< Subtracted from the file's coordinates, metres.
     std::vector<std::string> glazed_by = {};  ///< Materials that became panes: "material 'water' (glass.mtl:4)".
 };
 
