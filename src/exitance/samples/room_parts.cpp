@@ -5,7 +5,7 @@
 namespace exitance {
 
 void add_around(PolygonKit& kit, const char* group, const char* material, const Point& p, const Vec3& a, const Vec3& b,
-                double width, double height, const Opening& o, const Point& seen) {
+                double width, double height, const WallOpening& o, const Point& seen) {
     const auto part = [&](double u0, double v0, double u1, double v1) {
         if (u1 - u0 <= 0 || v1 - v0 <= 0) return;
         kit.facing(seen, group, material,

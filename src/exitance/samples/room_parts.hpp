@@ -8,13 +8,13 @@
 namespace exitance {
 
 /// An opening in a rectangle, in the rectangle's coordinates.
-struct Opening {
+struct WallOpening {
     double u0, v0, u1, v1;
 };
 
 /// Adds a rectangle p + u a + v b, u in [0, width] and v in [0, height], without the opening.
 void add_around(PolygonKit& kit, const char* group, const char* material, const Point& p, const Vec3& a, const Vec3& b,
-                double width, double height, const Opening& o, const Point& seen);
+                double width, double height, const WallOpening& o, const Point& seen);
 
 /// Adds the inside of a box: floor, ceiling and walls.
 void add_room(PolygonKit& kit, const Point& lo, const Point& hi, const char* floor, const char* ceiling,
