@@ -56,6 +56,7 @@ struct ProbeArguments : CommonArguments {
     std::string solution, points;
     std::string output = "-";
     bool interpolant = false;
+    bool exact = false;  ///< Direct light by closed forms only.
     Component component = Component::total;
     UnitArguments unit;
     std::size_t reference_paths = 0;  ///< Unbiased paths per point, traced instead of evaluating the solution; 0: none.

@@ -29,18 +29,22 @@ void declare(CLI::App& app, ProbeArguments& arguments) {
            "standard input")
         ->type_name("FILE")
         ->required();
-    app.add_option("-o,--output", arguments.output,
-                   "CSV to write: irradiance E_* and radiosity B_* of every point. Default -: standard output")
+    app.add_option(
+           "-o,--output", arguments.output,
+           "CSV to write: irradiance E_* and radiosity B_* of every point, and standard errors se_* of E. Default "
+           "-: standard output")
         ->type_name("FILE");
     app.add_flag("--interpolant", arguments.interpolant,
                  "Evaluate the mesh that export writes, instead of the full solution with its exact direct light");
+    app.add_flag("--exact", arguments.exact,
+                 "Evaluate direct light by closed forms even where rays are cheaper, so that it has no noise. Slow in "
+                 "scenes of thousands of faces under a sky");
     add_choice(
         app, "--component", component_names, arguments.component,
         "Part of the light: all of it, light straight from emitters, or light that was reflected. Default total");
     declare_unit(app, arguments.unit);
-    CLI::Option* const reference =
-        add_count(app, "--reference", arguments.reference_paths, 1,
-                  "Trace N unbiased paths per point instead of evaluating the solution; adds standard errors se_*");
+    CLI::Option* const reference = add_count(app, "--reference", arguments.reference_paths, 1,
+                                             "Trace N unbiased paths per point instead of evaluating the solution");
     add_count(app, "--seed", arguments.seed, 0, "Seed of the paths. Default 1")->needs(reference);
     declare_work(app, arguments, arguments.threads);
 }

@@ -1,6 +1,7 @@
 #include "exitance/direct/direct_light.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "exitance/base/polygon.hpp"
 #include "exitance/visibility/glazed_part.hpp"
@@ -32,7 +33,7 @@ void ReceiverLight::clear() {
 }
 
 DirectLight::DirectLight(const Scene& scene, const Occluders& occluders)
-    : occluders_(&occluders), beams_(scene.lights(), occluders) {
+    : scene_(&scene), occluders_(&occluders), beams_(scene.lights(), occluders) {
     for (RegionId r : scene.regions().ids()) {
         if (!scene.material(r).emits()) continue;
         const Region& region = scene.regions()[r];
@@ -148,21 +149,32 @@ Spectrum DirectLight::irradiance(const Point& x, const Normal& n, RegionId own, 
     return (1 - through) * front + through * on_side(x, -n, behind, scratch);
 }
 
+std::optional<Spectrum> DirectLight::irradiance_within(const Point& x, const Normal& n, RegionId own, double most_work,
+                                                       Workspace& scratch) const {
+    scratch.work = 0, scratch.most_work = most_work;
+    const Spectrum found = irradiance(x, n, own, scratch);
+    scratch.most_work = HUGE_VAL;
+    return scratch.work > most_work ? std::nullopt : std::optional(found);
+}
+
 Spectrum DirectLight::on_side(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const {
     const Receiver at = receiver(x, n, own);
     Spectrum sum;
-    for (const Emitter& emitter : emitters_) sum += light_of(emitter, at, scratch);
+    for (const Emitter& emitter : emitters_) {
+        sum += light_of(emitter, at, scratch);
+        if (scratch.gave_up()) return {};
+    }
     return beams_.empty() ? sum : sum + beams_.irradiance(at);
 }
 
 void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
                           Workspace& scratch, const WorthCounting& worth) const {
     const RegionId behind = occluders_->scene().behind(own);
-    prepare_side(receiver, n, own, light, scratch, behind.is_none() ? worth : WorthCounting());
+    prepare_side(receiver, n, own, light, scratch, worth);
     if (behind.is_none()) return;
     light.behind.resize(1), light.through = occluders_->scene().material(own).through;
     const std::vector<Point> turned(receiver.rbegin(), receiver.rend());
-    prepare_side(turned, -n, behind, light.behind[0], scratch, {});
+    prepare_side(turned, -n, behind, light.behind[0], scratch, worth);
 }
 
 void DirectLight::prepare_side(std::span<const Point> receiver, const Normal& n, RegionId own, ReceiverLight& light,
@@ -185,7 +197,7 @@ void DirectLight::prepare_side(std::span<const Point> receiver, const Normal& n,
 void DirectLight::prepare(std::span<const Point> receiver, const Normal& n, RegionId own,
                           std::span<const SourceName> sources, ReceiverLight& light, Workspace& scratch,
                           const WorthCounting& worth) const {
-    if (!occluders_->scene().behind(own).is_none()) return prepare(receiver, n, own, light, scratch);
+    if (!occluders_->scene().behind(own).is_none()) return prepare(receiver, n, own, light, scratch, worth);
     light.n = n, light.own = own;
     light.clear();
     for (const SourceName& source : sources) look_at(source, receiver, light, scratch, worth);

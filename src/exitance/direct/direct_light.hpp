@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "exitance/direct/beams.hpp"
@@ -41,6 +43,10 @@ struct ReceiverLight {
     bool is_dark() const {  ///< True if certainly no light arrives.
         return sources.empty() && beams.empty() && (behind.empty() || behind[0].is_dark());
     }
+    bool has_crowded() const {  ///< True if a source has more candidates than were worth counting.
+        return std::any_of(sources.begin(), sources.end(), [](const Source& s) { return s.is_crowded; }) ||
+               (!behind.empty() && behind[0].has_crowded());
+    }
     bool is_unshadowed() const {  ///< True if certainly no shadow edge crosses the part, so that its light is smooth.
         return candidates.empty() && (behind.empty() || behind[0].is_unshadowed());
     }
@@ -66,6 +72,10 @@ class DirectLight {
     /// (1e-12 relative unless F is tiny); error 1e-3 for directed emitters. About 1-5 microseconds per visible emitter.
     Spectrum irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
 
+    /// Like irradiance(), if that takes no more work than `most_work` (VisibilityWorkspace::work); else none.
+    std::optional<Spectrum> irradiance_within(const Point& x, const Normal& n, RegionId own, double most_work,
+                                              Workspace& scratch) const;
+
     /// Identifies a convex piece of an emitter.
     struct SourceName {
         std::uint32_t emitter = 0;
@@ -73,8 +83,7 @@ class DirectLight {
     };
 
     /// Returns the maximum number of blocker candidates of a source. A source above it is marked `is_crowded`;
-    /// irradiance() must not be called while the list has one. Empty: no limit. On diffusing panes there is no limit in
-    /// any case.
+    /// irradiance() must not be called while the list has one. Empty: no limit.
     using WorthCounting = std::function<std::size_t(const SourceName&)>;
 
     /// Finds the sources of a convex polygon of region `own` (metres, counter-clockwise about n). Fills `light`, whose
@@ -126,6 +135,8 @@ class DirectLight {
     }
     static bool is_own(const Emitter& emitter, RegionId own) { return !own.is_none() && emitter.region == own; }
     const Occluders& occluders() const { return *occluders_; }
+    /// The scene whose materials and lights emit; its geometry is that of the occluders.
+    const Scene& scene() const { return *scene_; }
 
     /// Returns the form factor from a receiver to the visible part of an emitter, weighted by its relative radiance.
     double form_factor(const Receiver& at, const Emitter& emitter, Workspace& scratch) const;
@@ -156,6 +167,7 @@ class DirectLight {
     bool face_each_other(const Plane& receiver_plane, std::span<const Point> receiver, const Plane& source_plane,
                          std::span<const Point> source) const;
 
+    const Scene* scene_;
     const Occluders* occluders_;
     std::vector<Emitter> emitters_;
     std::size_t first_distant_ = 0;

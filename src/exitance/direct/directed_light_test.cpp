@@ -125,11 +125,10 @@ TEST(DirectedLight, SamplingByRaysIsUnbiased) {
     const Stage stage(scene);
     SampledLight sampled(stage.direct, stage.tracer, 1);
     const ElementTree tree = stage.make_elements({0.25, 0});
-    DirectLight::Workspace workspace;
-    ReceiverLight light;
+    DirectFitRoom room;
     double exact = 0, found = 0;
     for (ElementId e : tree.leaves()) {
-        exact += tree.area(e) * mean(fit_direct_light(stage, tree, e, light, workspace).mean);
+        exact += tree.area(e) * mean(fit_direct_light(stage, tree, e, 0, room).mean);
         found += tree.area(e) * mean(sampled(tree, e, Spectrum(1.0), HUGE_VAL, 256).weak);
     }
     EXPECT_NEAR(found / exact, 1, 0.015);

@@ -134,38 +134,4 @@ TEST(DistantLight, ALowSunIsCutByTheHorizon) {
     EXPECT_NEAR(light_at(stage, {10, 0, 3}, {1, 0, 0}, RegionId()), E, 1e-9 * E);
 }
 
-/// Many blockers in front of the whole sky: rays give the same light as exact visibility, and all of it counts as from
-/// outside.
-TEST(DistantLight, BehindManyBlockersRaysAgreeWithExactLight) {
-    std::vector<Corners> faces = {ground};
-    for (int i = 0; i < 40; ++i) {
-        const double x = -4 + 0.2 * i, z = 1 + 0.02 * (i % 7);
-        faces.push_back({{{x, -4, z}, {x + 0.1, -4, z + 0.05}, {x + 0.1, 4, z + 0.05}, {x, 4, z}}});
-    }
-    const SkyModel sky = perez_sky({90, 700, 100}, sky_direction(35, 200));
-    const Scene scene = under({{{sky, Spectrum(100.0)}}, {}}, faces);
-    const Stage stage(scene);
-    const RegionId own = first;
-    const Normal n = scene.regions()[own].plane.n;
-    DirectLight::Workspace room;
-    ReceiverLight light;
-    stage.direct.prepare(scene.regions()[own].loops[0], n, own, light, room);
-    ReceiverLight rest;
-    const CrowdedLight::Crowd crowd = stage.crowded.prepare(scene.regions()[own].loops[0], n, own, 20, rest, room);
-    ASSERT_FALSE(crowd.empty());
-    std::vector<Point> places;
-    for (double x = -2; x < 2; x += 0.23)
-        for (double y = -2; y < 2; y += 0.31) places.push_back({x, y, 0});
-    const std::vector<CrowdedLight::Estimate> more = stage.crowded.at(rest, crowd, places, room);
-    double sum = 0, squares = 0, variance = 0;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        EXPECT_EQ(more[i].irradiance, more[i].parallel);
-        const Spectrum by_rays = more[i].irradiance + stage.direct.irradiance(rest, places[i], room);
-        const double error = mean(by_rays) - mean(stage.direct.irradiance(light, places[i], room));
-        sum += error, squares += error * error, variance += more[i].variance;
-    }
-    EXPECT_LT(squares, 1.3 * variance);
-    EXPECT_LT(std::abs(sum), 3 * std::sqrt(variance));
-}
-
 }  // namespace exitance

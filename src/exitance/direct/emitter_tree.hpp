@@ -6,10 +6,10 @@
 
 namespace exitance {
 
-/// Binary tree of clusters over all convex pieces of all emitters, by position, orientation and power. A cluster is
-/// split across the widest of its six extents (three of position, three of normals, the latter times its radius) so
-/// that each half has about half of its power. The same emitters give the same tree. O(n log^2 n) to build. Source:
-/// [Walter05].
+/// Binary tree of clusters over all convex pieces of all emitters but the open sky and the sun, by position,
+/// orientation and power. A cluster is split across the widest of its six extents (three of position, three of normals,
+/// the latter times its radius) so that each half has about half of its power. The same emitters give the same tree.
+/// O(n log^2 n) to build. Source: [Walter05].
 class EmitterTree {
   public:
     explicit EmitterTree(const DirectLight& direct);

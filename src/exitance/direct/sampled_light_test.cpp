@@ -15,12 +15,9 @@ struct Office {
     Scene scene;
     Stage stage;
     SampledLight sampled{stage.direct, stage.tracer, 1};
-    DirectLight::Workspace workspace;
-    ReceiverLight light;
+    DirectFitRoom room;
 
-    double exact(const ElementTree& tree, ElementId e) {
-        return mean(fit_direct_light(stage, tree, e, light, workspace).mean);
-    }
+    double exact(const ElementTree& tree, ElementId e) { return mean(fit_direct_light(stage, tree, e, 0, room).mean); }
 };
 
 TEST(SampledLight, IsUnbiasedOverManyElements) {

@@ -24,6 +24,8 @@ class SeenPolygon {
     /// Returns cos cos' / r^2 over the sampling density for a point in direction d from x, up to a constant factor; 0
     /// below either horizon. `receiver` is the normal at x.
     double weight(const Vec3& d, const Normal& receiver) const;
+    /// Returns the factor by which the mean of weight() is the integral of the cosine over the visible solid angle.
+    double measure() const { return triangles_.empty() ? area_ : solid_angle_; }
 
   private:
     /// Spherical triangle of the visible polygon: unit vectors to its corners, the angle at the first, and the solid

@@ -14,9 +14,9 @@ DirectCheck::DirectCheck(const Stage& stage, const PathTracer& paths, const Proj
     : stage_(&stage), paths_(&paths), projected_(projected), accuracy_(accuracy) {}
 
 Spectrum DirectCheck::difference(bool is_exact, const HitPoint& hit, const Spectrum& projected, RandomStream& random,
-                                 ClusteredLight::Workspace& room) const {
+                                 PlaceLight::Workspace& room) const {
     const Normal& n = stage_->scene.regions()[hit.region].plane.n;
-    const Spectrum direct = is_exact ? stage_->clustered.at(hit.y, n, hit.region, accuracy_, room).irradiance
+    const Spectrum direct = is_exact ? stage_->place_light.at(hit.y, n, hit.region, accuracy_, room).irradiance
                                      : paths_->step({hit.y, n, hit.region}, random).direct;
     return projected_.weight * (direct - projected);
 }

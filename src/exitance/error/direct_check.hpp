@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "exitance/direct/clustered_light.hpp"
+#include "exitance/direct/place_light.hpp"
 #include "exitance/gather/gather.hpp"
 #include "exitance/gather/path_tracer.hpp"
 
@@ -41,7 +41,7 @@ class DirectCheck {
                 const LightAccuracy& accuracy);
 
     struct Workspace {
-        ClusteredLight::Workspace clustered;
+        PlaceLight::Workspace clustered;
         std::vector<HitPoint> hits;
         std::vector<double> counts;  ///< Rays per hit, divided by the probability of its check.
         std::vector<Spectrum> projected;
@@ -54,7 +54,7 @@ class DirectCheck {
 
     /// Returns w (E_dir - E_proj) at one hit, W/m^2: exactly, or as one unbiased sample.
     Spectrum difference(bool is_exact, const HitPoint& hit, const Spectrum& projected, RandomStream& random,
-                        ClusteredLight::Workspace& room) const;
+                        PlaceLight::Workspace& room) const;
 
     double probability(const CheckPlan& plan, const HitPoint& hit) const;
     double misfit(const HitPoint& hit) const { return projected_.misfit ? projected_.misfit(hit) : 0; }

@@ -17,13 +17,16 @@ struct Place {
 };
 
 Place look(const RadiosityFunction& light, const Locator& locator, const ProbePoint& point, unsigned rays,
-           std::size_t number, DirectLight::Workspace& visibility, GatherWorkspace& gathering) {
+           std::size_t number, PlaceLight::Workspace& visibility, GatherWorkspace& gathering) {
     const Scene& scene = light.solution().scene;
     const SurfaceId s = locator.find(point.x, point.n);
     if (s.is_none()) return {};
     const RegionId region = scene.surfaces()[s].region;
     if (!is_in_open(light.stage(), point.x, point.n, region)) return {};
-    const Spectrum direct = light.stage().direct.irradiance(point.x, point.n, region, visibility);
+    // Derived from the 99th percentile, which is several times the error: the noise of direct light is negligible in
+    // it.
+    constexpr LightAccuracy accuracy{.relative = 0.01};
+    const Spectrum direct = light.stage().place_light.at(point.x, point.n, region, accuracy, visibility).irradiance;
     const Spectrum E = light.elements(region, point.x) + light.exact_share() * direct;
     // The mean of two gathers with half of the rays each is the reference; their difference is its noise.
     Spectrum half[2];
@@ -46,7 +49,7 @@ ErrorPercentile find_error_percentile(const RadiosityFunction& light, std::size_
     for (std::size_t first = 0; first < points.size() && !stop.requested(); first += at_once) {
         progress.advance(static_cast<double>(first) / static_cast<double>(points.size()));
         parallel_ranges(std::min(at_once, points.size() - first), 4, [&](std::size_t begin, std::size_t end) {
-            DirectLight::Workspace visibility;
+            PlaceLight::Workspace visibility;
             GatherWorkspace gathering;
             for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i)
                 places[i] = look(light, locator, points[i], rays, i, visibility, gathering);

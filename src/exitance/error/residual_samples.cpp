@@ -72,7 +72,7 @@ void ResidualSampler::locate(const WeightedSample& at, ResidualSample& sample, W
     sample.is_covered = stage_.occluders.is_covered(x, n, region);
     if (!sample.is_covered) sample.delivered = indirect_.at(at.place);
     if (!sample.is_covered && options_.direct_in_elements)
-        sample.delivered -= stage_.clustered.at(x, n, region, point_accuracy(options_.error), w.clustered).irradiance;
+        sample.delivered -= stage_.place_light.at(x, n, region, point_accuracy(options_.error), w.clustered).irradiance;
     sample.reflected = 0;
     if (!sample.is_covered) {
         Spectrum E = indirect_.at(at.place);

@@ -41,7 +41,7 @@ class ResidualSampler {
     struct Workspace {
         GatherWorkspace rays;
         ElementGather::Workspace sums;
-        ClusteredLight::Workspace clustered;
+        PlaceLight::Workspace clustered;
         DirectCheck::Workspace check;
     };
 

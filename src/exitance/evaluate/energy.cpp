@@ -10,10 +10,10 @@
 namespace exitance {
 namespace {
 
-/// True if a ray from x meets no front. With Mirrored::lost, light of emitters is lost at mirroring panes.
-bool is_lost(const Stage& stage, const Point& x, const Vec3& w, RegionId region, Mirrored mirrored) {
+/// True if a ray from x meets no front.
+bool is_lost(const Stage& stage, const Point& x, const Vec3& w, RegionId region) {
     RayHit hit;
-    stage.tracer.nearest(std::span(&x, 1), std::span(&w, 1), region, std::span(&hit, 1), mirrored);
+    stage.tracer.nearest(std::span(&x, 1), std::span(&w, 1), region, std::span(&hit, 1), Mirrored::followed);
     return hit.surface.is_none() || !hit.front;
 }
 
@@ -29,7 +29,7 @@ double directed_loss(const Stage& stage, const Piece& piece) {
         const Point y = piece.patch.at(uniform_in_shape(piece.patch.shape, points(i, 2), points(i, 3)));
         const double p = radiance(w);
         sent += p;
-        if (is_lost(stage, y, w, piece.region, Mirrored::lost)) lost += p;
+        if (is_lost(stage, y, w, piece.region)) lost += p;
     }
     return sent > 0 ? lost / sent : 0;
 }
@@ -41,7 +41,6 @@ struct Leaving {
     const ElementTree* tree = nullptr;
     ElementId element;
     Patch patch;
-    Mirrored mirrored = Mirrored::followed;
 
     Point place(double s, double t) const {
         if (tree) return tree->patch(element).at(tree->uniform(element, s, t));
@@ -69,7 +68,6 @@ double escaping(const Stage& stage, const Each& each) {
         Point x;
         Vec3 w;
         RegionId region;
-        Mirrored mirrored;
     };
     std::vector<Ray> rays;
     rays.reserve(escape_rays);
@@ -80,14 +78,13 @@ double escaping(const Stage& stage, const Each& each) {
             const auto k = static_cast<std::uint32_t>(rays.size());
             if ((k + 0.5) * total > before * escape_rays) break;
             const Frame frame(stage.scene.regions()[l.region].plane.n);
-            rays.push_back({l.place(points(k, 0), points(k, 1)), cosine_direction(frame, points(k, 2), points(k, 3)),
-                            l.region, l.mirrored});
+            rays.push_back(
+                {l.place(points(k, 0), points(k, 1)), cosine_direction(frame, points(k, 2), points(k, 3)), l.region});
         }
     });
     std::vector<std::uint8_t> lost(rays.size());
-    parallel_for(rays.size(), 64, [&](std::size_t k) {
-        lost[k] = is_lost(stage, rays[k].x, rays[k].w, rays[k].region, rays[k].mirrored);
-    });
+    parallel_for(rays.size(), 64,
+                 [&](std::size_t k) { lost[k] = is_lost(stage, rays[k].x, rays[k].w, rays[k].region); });
     const auto count = std::count(lost.begin(), lost.end(), std::uint8_t(1));
     return rays.empty() ? 0 : total * static_cast<double>(count) / static_cast<double>(rays.size());
 }
@@ -100,15 +97,11 @@ void for_arriving(const Solution& solution, const DirectProjection& direct, cons
             const auto& n = mesh.nodes[t];
             const Spectrum E = mesh.mean(t);
             const Point &a = mesh.points[n[0]], &b = mesh.points[n[1]], &c = mesh.points[n[2]];
-            visit(
-                mesh.area(t), E,
-                Leaving{mesh.region[t], 0, nullptr, {}, {a, b - a, c - a, Patch::Shape::triangle}, Mirrored::followed});
+            visit(mesh.area(t), E, Leaving{mesh.region[t], 0, nullptr, {}, {a, b - a, c - a, Patch::Shape::triangle}});
         }
         return;
     }
-    const auto of = [](const ElementTree& tree, ElementId e) {
-        return Leaving{tree.region(e), 0, &tree, e, {}, Mirrored::followed};
-    };
+    const auto of = [](const ElementTree& tree, ElementId e) { return Leaving{tree.region(e), 0, &tree, e, {}}; };
     if (!solution.direct_in_elements)
         for (ElementId e : direct.tree.leaves())
             visit(direct.tree.area(e), (Spectrum(1.0) - solution.direct_share) * direct.fit[e].mean,
@@ -136,7 +129,7 @@ EnergyBalance energy_balance(const Solution& solution, const DirectProjection& d
         for (const auto& [region, patch] : stage.pieces) {
             const Material& material = scene.material(region);
             if (material.emits() && !material.is_directed())
-                visit(Leaving{region, patch.area() * total(material.exitance), nullptr, {}, patch, Mirrored::lost});
+                visit(Leaving{region, patch.area() * total(material.exitance), nullptr, {}, patch});
         }
         for_arriving(solution, direct, [&](double area, const Spectrum& E, Leaving at) {
             at.power = area * total(scene.material(at.region).reflectance * E);

@@ -68,7 +68,7 @@ double interpolant_error(const Stage& stage, const ElementFunction& interpolant,
     shared_ranges(
         square.size(), 8,
         [&](std::size_t begin, std::size_t end) {
-            ClusteredLight::Workspace workspace;
+            PlaceLight::Workspace workspace;
             for (std::size_t k = begin; k < end; ++k) {
                 const auto i = static_cast<std::uint32_t>(k);
                 const auto [e, weight] =
@@ -78,7 +78,7 @@ double interpolant_error(const Stage& stage, const ElementFunction& interpolant,
                 const Vec2 uv = tree.uniform(e, random(i, 1), random(i, 2));
                 const Point x = tree.patch(e).at(uv);
                 if (stage.occluders.is_covered(x, n, region)) continue;
-                const Spectrum direct = stage.clustered.at(x, n, region, point_accuracy(0), workspace).irradiance;
+                const Spectrum direct = stage.place_light.at(x, n, region, point_accuracy(0), workspace).irradiance;
                 const Spectrum exact = light.direct_weight * direct + light.indirect.at(locator.find(region, x));
                 const Spectrum counts = is_black ? Spectrum(1.0) : stage.scene.material(region).reflectance;
                 const Spectrum off = counts * (exact - interpolant.at(tree.leaf_at(e, uv)));

@@ -1,5 +1,7 @@
 #include "exitance/evaluate/radiosity_function.hpp"
 
+#include <cmath>
+
 #include "exitance/base/parallel.hpp"
 #include "exitance/gather/gather.hpp"
 
@@ -9,20 +11,43 @@ namespace {
 constexpr unsigned free_space_rays = 4096;
 constexpr std::size_t points_a_task = 32;
 
+/// Mean irradiance of a solution over its surfaces, mean over bands, W/m^2.
+double mean_irradiance(const ElementFunction& E) {
+    double sum = 0, area = 0;
+    for (const ElementId e : E.tree.leaves()) {
+        sum += E.tree.area(e) * mean(E.at({e, E.tree.centre(e)}));
+        area += E.tree.area(e);
+    }
+    return area > 0 ? sum / area : 0;
+}
+
+/// Accuracy of direct light at points: half of it relative to the light there, half to the mean light, to which the
+/// solution's error is relative.
+LightAccuracy accuracy_of(const Solution& solution) {
+    LightAccuracy out = point_accuracy(solution.statistics.relative_error_estimate.value_or(1));
+    const double level = mean_irradiance(solution.interpolant);
+    if (!(level > 0)) return out;
+    out.relative *= 0.5, out.absolute = out.relative * level;
+    return out;
+}
+
 Light light_on(const Material& material, const Spectrum& irradiance) {
-    return {irradiance, material.exitance + material.reflectance * irradiance, true};
+    return {.irradiance = irradiance,
+            .radiosity = material.exitance + material.reflectance * irradiance,
+            .standard_error = {},
+            .on_surface = true};
 }
 
 }  // namespace
 
-RadiosityFunction::RadiosityFunction(const Solution& solution)
+RadiosityFunction::RadiosityFunction(const Solution& solution, DirectBy direct)
     : solution_(solution),
       places_(solution.scene),
       indirect_locator_(solution.indirect.tree, solution.scene.regions().size()),
       interpolant_locator_(solution.interpolant.tree, solution.scene.regions().size()),
       triangles_(solution.discontinuity, solution.scene),
       stage_(std::make_unique<Stage>(solution.scene)),
-      accuracy_(point_accuracy(solution.statistics.relative_error_estimate.value_or(1))) {}
+      accuracy_(direct == DirectBy::closed_forms ? LightAccuracy() : accuracy_of(solution)) {}
 
 RadiosityFunction::~RadiosityFunction() = default;
 
@@ -36,20 +61,22 @@ Spectrum RadiosityFunction::gathered(const ProbePoint& point, RegionId own, unsi
     return gather_reflected(*stage_, point.x, point.n, own, rays, key, reflected, workspace).irradiance;
 }
 
-Spectrum RadiosityFunction::irradiance_on(RegionId region, const Point& x, Component component,
-                                          ClusteredLight::Workspace& workspace) const {
+Light RadiosityFunction::light_on(RegionId region, const Material& material, const Point& x, Component component,
+                                  PlaceLight::Workspace& workspace) const {
     // The elements hold E_ind + c E_dir. The factor of exact direct light is 1 - c for the total, 1 for direct and -c
     // for indirect light.
     Spectrum weight = exact_share();
     if (!solution_.direct_in_elements && component == Component::direct) weight = Spectrum(1);
     if (!solution_.direct_in_elements && component == Component::indirect) weight -= Spectrum(1);
-    Spectrum irradiance;
+    PlaceLight::Estimate direct;
     if (squared(weight) > 0)
-        irradiance +=
-            weight *
-            stage_->clustered.at(x, solution_.scene.regions()[region].plane.n, region, accuracy_, workspace).irradiance;
+        direct = stage_->place_light.at(x, solution_.scene.regions()[region].plane.n, region, accuracy_, workspace);
+    Spectrum irradiance = weight * direct.irradiance;
     if (component != Component::direct) irradiance += elements(region, x);
-    return irradiance;
+    Light out = exitance::light_on(material, irradiance);
+    out.standard_error = direct.standard_error();
+    for (std::size_t b = 0; b < bands; ++b) out.standard_error[b] *= std::abs(weight[b]);
+    return out;
 }
 
 std::vector<Light> RadiosityFunction::at(std::span<const ProbePoint> points, Component component) const {
@@ -79,7 +106,7 @@ std::vector<Light> RadiosityFunction::at_until(const StopRequest& stop, std::spa
 void RadiosityFunction::evaluate(std::span<const ProbePoint> points, std::size_t first, Component component,
                                  std::span<Light> results) const {
     parallel_ranges(results.size(), points_a_task, [&](std::size_t begin, std::size_t end) {
-        ClusteredLight::Workspace workspace;
+        PlaceLight::Workspace workspace;
         GatherWorkspace gathering;
         for (std::size_t k = begin; k < end; ++k) {
             const std::size_t i = first + k;
@@ -88,14 +115,17 @@ void RadiosityFunction::evaluate(std::span<const ProbePoint> points, std::size_t
             const auto& [x, surface, region, is_between_sides] = places_.find(points[i].x, n);
             if (!surface.is_none()) {
                 const bool is_covered = stage_->occluders.is_covered(x, n, region);
-                out = light_on(solution_.scene.material(surface),
-                               is_covered ? Spectrum() : irradiance_on(region, x, component, workspace));
+                const Material& material = solution_.scene.material(surface);
+                out = is_covered ? exitance::light_on(material, Spectrum())
+                                 : light_on(region, material, x, component, workspace);
                 out.is_between_sides = is_between_sides;
                 continue;
             }
             out.is_between_sides = is_between_sides;
-            if (component != Component::indirect)
-                out.irradiance += stage_->clustered.at(x, n, region, accuracy_, workspace).irradiance;
+            if (component != Component::indirect) {
+                const PlaceLight::Estimate direct = stage_->place_light.at(x, n, region, accuracy_, workspace);
+                out.irradiance += direct.irradiance, out.standard_error = direct.standard_error();
+            }
             const std::uint64_t key = hash(static_cast<std::uint64_t>(Stream::gather), i);
             if (component != Component::direct)
                 out.irradiance += gathered({x, n}, RegionId(), free_space_rays, key, gathering);
@@ -114,7 +144,7 @@ std::vector<Light> RadiosityFunction::interpolant_at(std::span<const ProbePoint>
     parallel_for(points.size(), 256, [&](std::size_t i) {
         const MeasuredPlace place = places_.find(points[i].x, points[i].n);
         if (!place.surface.is_none())
-            out[i] = light_on(solution_.scene.material(place.surface), interpolated(place.region, place.x));
+            out[i] = exitance::light_on(solution_.scene.material(place.surface), interpolated(place.region, place.x));
         out[i].is_between_sides = place.is_between_sides;
     });
     return out;

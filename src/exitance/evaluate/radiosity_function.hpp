@@ -4,7 +4,7 @@
 #include <span>
 
 #include "exitance/base/progress.hpp"
-#include "exitance/direct/clustered_light.hpp"
+#include "exitance/direct/place_light.hpp"
 #include "exitance/mesh/element_locator.hpp"
 #include "exitance/scene/place_finder.hpp"
 #include "exitance/solution/solution.hpp"
@@ -19,8 +19,9 @@ enum class Component { total, direct, indirect };
 
 /// Light at one point.
 struct Light {
-    Spectrum irradiance;  ///< E, W/m^2
-    Spectrum radiosity;   ///< B = M + rho E, W/m^2; undefined if `on_surface` is false.
+    Spectrum irradiance;      ///< E, W/m^2
+    Spectrum radiosity;       ///< B = M + rho E, W/m^2; undefined if `on_surface` is false.
+    Spectrum standard_error;  ///< Of E, by the rays of direct light, W/m^2; 0: exact direct light.
     bool on_surface = false;
     bool is_between_sides = false;  ///< True if the point is on a border of several sides, see PlaceFinder.
 };
@@ -31,13 +32,19 @@ struct ProbePoint {
     Normal n;
 };
 
+/// How direct light is evaluated at points.
+enum class DirectBy : std::uint8_t {
+    cheaper,       ///< By closed forms or by rays, whichever is cheaper at `point_accuracy()` (PlaceLight).
+    closed_forms,  ///< By closed forms; only light that panes mirror is estimated.
+};
+
 /// A solution as a function of place: B(x) = M + rho (E_dir(x) + E_ind(x)). Direct light is evaluated from the
-/// polygons, exactly or, with many small emitters, to `point_accuracy()`. Indirect light is read from the solution's
+/// polygons, exactly or, where that is expensive, by rays. Indirect light is read from the solution's
 /// elements, less the share of direct light that they contain.
 class RadiosityFunction {
   public:
     /// Keeps a reference to the solution, which must outlive the object.
-    explicit RadiosityFunction(const Solution& solution);
+    explicit RadiosityFunction(const Solution& solution, DirectBy direct = DirectBy::cheaper);
     ~RadiosityFunction();
 
     /// Light at each point, computed on all cores, at the place that `places()` finds for it. At a point off all
@@ -76,15 +83,15 @@ class RadiosityFunction {
     void evaluate(std::span<const ProbePoint> points, std::size_t first, Component component,
                   std::span<Light> out) const;
     Spectrum interpolated(RegionId region, const Point& x) const;
-    Spectrum irradiance_on(RegionId region, const Point& x, Component component,
-                           ClusteredLight::Workspace& workspace) const;
+    Light light_on(RegionId region, const Material& material, const Point& x, Component component,
+                   PlaceLight::Workspace& workspace) const;
 
     const Solution& solution_;
     PlaceFinder places_;
     ElementLocator indirect_locator_, interpolant_locator_;
     SixNodeLocator triangles_;  ///< Locates triangles of the discontinuity mesh, if there is one.
     std::unique_ptr<Stage> stage_;
-    LightAccuracy accuracy_;  ///< Accuracy of direct light with many small emitters.
+    LightAccuracy accuracy_;  ///< Accuracy of direct light by rays; 0: closed forms.
 };
 
 }  // namespace exitance

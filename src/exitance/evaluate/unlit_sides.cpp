@@ -61,10 +61,10 @@ bool is_lit(const Stage& stage, const PathTracer& tracer, const Side& side, unsi
         for (unsigned p = 0; p < paths; ++p)
             if (max(tracer.path({x, n, side.region}, directions(p, 0), directions(p, 1), random)) > 0) return true;
     }
-    ClusteredLight::Workspace workspace;
-    constexpr LightAccuracy any_light{.relative = 0.1};  // derived from the question: is there any light?
+    PlaceLight::Workspace workspace;
+    constexpr LightAccuracy any_light{.relative = 0.01};  // derived from the question: is there any light?
     return std::any_of(open.begin(), open.end(), [&](const auto& place) {
-        return max(stage.clustered.at(place.first, n, side.region, any_light, workspace).irradiance) > 0;
+        return max(stage.place_light.at(place.first, n, side.region, any_light, workspace).irradiance) > 0;
     });
 }
 

@@ -15,7 +15,8 @@ PathTracer::PathTracer(const Stage& stage) : stage_(stage) {
 }
 
 std::optional<PathTracer::Vertex> PathTracer::first(const Vertex& from, double a, double b) const {
-    return follow(from, met_direction(stage_.scene, from.region, from.n, a, b), nullptr, Mirrored::followed);
+    const Vec3 direction = met_direction(stage_.scene, from.region, from.n, a, b);
+    return vertex_of(trace(from, direction, Mirrored::followed), from, direction);
 }
 
 Spectrum PathTracer::path(const Vertex& probe, double a, double b, RandomStream& random) const {
@@ -45,32 +46,43 @@ PathTracer::Step PathTracer::step(const Vertex& vertex, RandomStream& random) co
     if (!outside.discs.empty()) out.direct += light_of_discs(y, random);
     const double u = random.uniform(), v = random.uniform();
     const Vec3 on = cosine_direction(Frame(y.n), u, v);
-    bool lost = false;
-    out.next = follow(y, on, &lost, Mirrored::followed);
-    if (lost && !outside.domes.empty()) out.direct += outside.radiosity(normalized(on), false);
-    if (out.next && !out.next->mirrored) {
-        const Spectrum& exitance = stage_.scene.material(out.next->region).exitance;
-        if (max(exitance) > 0)
-            out.direct += exitance * (stage_.scene.relative_radiance(out.next->region).towards(y.x, out.next->x) *
-                                      (1 - weight_of_shadow_ray(y, *out.next)));
-    }
+    if (stage_.place_light.is_mirrored())
+        out.direct += stage_.place_light.mirrored_images({y.x, y.n, y.region}, 1, random.bits());
+    const RayHit hit = trace(y, on, Mirrored::followed);
+    out.next = vertex_of(hit, y, on);
+    out.direct += met_light(hit, y, on);
     return out;
+}
+
+/// Light of sky and emitters that the path's next ray meets, straight or mirrored, times the weight of that ray.
+Spectrum PathTracer::met_light(const RayHit& hit, const Vertex& from, const Vec3& direction) const {
+    const Vec3 w = normalized(arriving(stage_.scene, hit, direction));
+    if (hit.surface.is_none())
+        return stage_.scene.distant().domes.empty() ? Spectrum() : stage_.scene.distant().radiosity(w, false);
+    const std::optional<Vertex> met = vertex_of(hit, from, direction);
+    if (!met) return {};
+    const Spectrum& exitance = stage_.scene.material(met->region).exitance;
+    if (!(max(exitance) > 0)) return {};
+    // Shadow rays meet no mirror images.
+    const double weight = hit.mirror >= 0 ? 1 : 1 - weight_of_shadow_ray(from, *met);
+    return (stage_.scene.relative_radiance(met->region)(-w) * weight) * exitance;
 }
 
 double PathTracer::rays_per_step() const {
     return 1.0 + (lights_.empty() ? 0 : 1) + static_cast<double>(stage_.scene.distant().discs.size());
 }
 
-/// Returns the vertex that a ray reaches; none if it is lost or meets a back.
-std::optional<PathTracer::Vertex> PathTracer::follow(const Vertex& from, const Vec3& direction, bool* lost,
-                                                     Mirrored mirrored) const {
+RayHit PathTracer::trace(const Vertex& from, const Vec3& direction, Mirrored mirrored) const {
     RayHit hit;
     stage_.tracer.nearest(std::span(&from.x, 1), std::span(&direction, 1), from.region, std::span(&hit, 1), mirrored);
-    if (lost) *lost = hit.surface.is_none() && hit.mirror < 0;
+    return hit;
+}
+
+std::optional<PathTracer::Vertex> PathTracer::vertex_of(const RayHit& hit, const Vertex& from,
+                                                        const Vec3& direction) const {
     if (hit.surface.is_none() || !hit.front) return std::nullopt;
     const RegionId region = hit.region;
-    return Vertex{place_of(stage_.scene, hit, from.x, direction), stage_.scene.regions()[region].plane.n, region,
-                  hit.mirror >= 0};
+    return Vertex{place_of(stage_.scene, hit, from.x, direction), stage_.scene.regions()[region].plane.n, region};
 }
 
 /// Returns a sample of the light of all distant discs: one ray per disc, uniform in its solid angle.
@@ -81,8 +93,7 @@ Spectrum PathTracer::light_of_discs(const Vertex& y, RandomStream& random) const
         const double z = 1 - u * (1 - least), r = std::sqrt(std::max(0.0, 1 - z * z));
         const Vec3 w = Frame(disc.towards).to_world(r * std::cos(2 * pi * v), r * std::sin(2 * pi * v), z);
         const double cosine = dot(y.n, w);
-        bool lost = false;
-        if (cosine > 0) follow(y, w, &lost);
+        const bool lost = cosine > 0 && trace(y, w, Mirrored::lost).surface.is_none();
         // Uniform radiance L: irradiance across it is pi L sin^2, its solid angle 2 pi (1 - cos).
         if (lost) sum += (2 * cosine / (1 + least)) * disc.irradiance;
     }
@@ -154,7 +165,7 @@ Spectrum PathTracer::shadow_ray(const Vertex& y, RandomStream& random) const {
     const double r2 = squared_norm(w), r = std::sqrt(r2);
     const double at_y = dot(y.n, w) / r, at_light = -dot(light.n, w) / r;
     if (at_y <= 0 || at_light <= 0 || light.region == y.region) return {};
-    const std::optional<Vertex> seen = follow(y, w);
+    const std::optional<Vertex> seen = vertex_of(trace(y, w, Mirrored::lost), y, w);
     if (!seen || seen->region != light.region) return {};
     const double density = shadow_density(y, target);
     if (density <= 0) return {};

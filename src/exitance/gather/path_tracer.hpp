@@ -10,7 +10,8 @@ namespace exitance {
 
 /// Follows paths of light from the place where it arrives [Kajiya86]. At every vertex the direct light is estimated by
 /// one shadow ray to an emitter, chosen by its unoccluded contribution, by one ray to each distant disc, and by the
-/// path's next ray (weighted by the balance heuristic [Veach95]; a lost ray sees the sky). Paths end by Russian
+/// path's next ray (weighted by the balance heuristic [Veach95]; a lost ray sees the sky), which panes mirror. Sun and
+/// lights without extent are also estimated by one of their mirror images in panes. Paths end by Russian
 /// roulette with the reflectance as survival. The stage must outlive the tracer.
 class PathTracer {
   public:
@@ -19,8 +20,6 @@ class PathTracer {
         Point x;
         Normal n;
         RegionId region;
-        /// True if a pane mirrored the path on its way here. Emission here is then ignored, as direct light ignores it.
-        bool mirrored = false;
     };
 
     /// Result of one step of a path at a vertex.
@@ -56,9 +55,10 @@ class PathTracer {
         RelativeRadiance radiance;
     };
 
-    /// `lost`, if given, is set if a ray meets nothing and no pane mirrored it.
-    std::optional<Vertex> follow(const Vertex& from, const Vec3& direction, bool* lost = nullptr,
-                                 Mirrored mirrored = Mirrored::lost) const;
+    RayHit trace(const Vertex& from, const Vec3& direction, Mirrored mirrored) const;
+    /// Returns the vertex of a hit; none if nothing or a back is hit.
+    std::optional<Vertex> vertex_of(const RayHit& hit, const Vertex& from, const Vec3& direction) const;
+    Spectrum met_light(const RayHit& hit, const Vertex& from, const Vec3& direction) const;
     Spectrum light_of_discs(const Vertex& y, RandomStream& random) const;
     double chances(const Vertex& y, std::vector<double>& chance) const;
     double shadow_density(const Vertex& y, const Vertex& target) const;

@@ -104,7 +104,7 @@ void ShootingSetup::split(const std::vector<ElementId>& leaves) {
     direct.assign(n, {});
     parallel_ranges(n, 8, [&](std::size_t begin, std::size_t end) {
         PatchTransfer::Workspace workspace;
-        ClusteredLight::Workspace exact;
+        PlaceLight::Workspace exact;
         for (std::size_t i = begin; i < end; ++i) {
             const ElementId e = numbering.leaves[i];
             if (e.value < old_size) {
@@ -138,14 +138,14 @@ Spectrum ShootingSetup::light_of_patches(std::size_t leaf, PatchTransfer::Worksp
     });
 }
 
-Spectrum ShootingSetup::mean_direct_light(ElementId e, ClusteredLight::Workspace& workspace) const {
+Spectrum ShootingSetup::mean_direct_light(ElementId e, PlaceLight::Workspace& workspace) const {
     const LightAccuracy accuracy{.relative = 0.5 * input_.options.error_target()};
     const RegionId region = tree.region(e);
     const Normal& n = input_.stage.scene.regions()[region].plane.n;
     Spectrum mean;
     for (const WeightedPlace& place : element_rule(tree, e, RuleOrder::nodes))
         mean += place.weight *
-                input_.stage.clustered.at(tree.patch(e).at(place.uv), n, region, accuracy, workspace).irradiance;
+                input_.stage.place_light.at(tree.patch(e).at(place.uv), n, region, accuracy, workspace).irradiance;
     return mean;
 }
 

@@ -48,7 +48,7 @@ class ShootingSetup {
     void update_patches();
 
   private:
-    Spectrum mean_direct_light(ElementId e, ClusteredLight::Workspace& workspace) const;
+    Spectrum mean_direct_light(ElementId e, PlaceLight::Workspace& workspace) const;
     std::span<const float> column(std::size_t patch);
     Spectrum light_of_patches(std::size_t leaf, PatchTransfer::Workspace& workspace) const;
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "exitance/evaluate/mirrored_light.hpp"
 #include "exitance/methods/light/light_functions.hpp"
 #include "exitance/methods/methods.hpp"
 
@@ -38,25 +37,6 @@ void record_certificate(const Certificate& certificate, const GlobalLight& light
     statistics.relative_error_estimate_worst_room = certificate.worst_room;
     statistics.relative_error_estimate_worst_body = certificate.worst_body;
     statistics.error_p99 = certificate.p99;
-}
-
-void record_mirrored_light(Solution& solution, const Stage& stage, const SolveOptions& options, Progress& progress) {
-    if (!panes_may_mirror_light(stage.scene)) return;
-    const MirroredShare mirrored = mirrored_share(solution, stage, options.seed);
-    SolveStatistics& statistics = solution.statistics;
-    statistics.figures["mirrored_light_share"] = mirrored.share;
-    const std::optional<double> demand = options.error_demand();
-    if (mirrored.certainly <= demand.value_or(default_error)) return;
-    std::string message = fmt::format(
-        "panes mirror light of the sky, the sun or lamps, which is left out: {:.3g}% of the light that arrives at "
-        "surfaces (RMS)",
-        100 * mirrored.share);
-    if (demand) {
-        message += fmt::format(", more than the {:.3g}% requested", 100 * *demand);
-        statistics.converged = false;
-    }
-    progress.warn(message);
-    statistics.warnings.push_back(std::move(message));
 }
 
 std::string describe(const Certificate& certificate, const GlobalLight& light, const ElementFunction& delivered,

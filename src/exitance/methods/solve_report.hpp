@@ -21,12 +21,6 @@ void record_method(const Stage& stage, const GlobalLight& light, bool has_links,
 void record_certificate(const Certificate& certificate, const GlobalLight& light, const ElementFunction& delivered,
                         SolveStatistics& statistics);
 
-/// Measures light that is reflected specularly by panes, which the solve omits (`mirrored_share`), and records it as
-/// the figure `mirrored_light_share`. If it certainly exceeds the requested error, adds a warning to the solution,
-/// reports it, and marks the solution as not converged. Records nothing for scenes without mirroring panes or without
-/// light.
-void record_mirrored_light(Solution& solution, const Stage& stage, const SolveOptions& options, Progress& progress);
-
 /// Describes the parts of a certificate's error in one line, in per cent of the mean reflected light.
 std::string describe(const Certificate& certificate, const GlobalLight& light, const ElementFunction& delivered,
                      const LocalPassReport& gathered);

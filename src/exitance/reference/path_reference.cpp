@@ -6,6 +6,17 @@
 #include "exitance/gather/path_tracer.hpp"
 
 namespace exitance {
+namespace {
+
+/// Adds direct light and its noise to a reference.
+void add_direct(const PlaceLight::Estimate& direct, ReferenceLight& out) {
+    out.irradiance += direct.irradiance;
+    const Spectrum error = direct.standard_error();
+    for (std::size_t b = 0; b < bands; ++b) out.standard_error[b] = std::hypot(out.standard_error[b], error[b]);
+}
+
+}  // namespace
+
 std::vector<ReferenceLight> reference_light(const Scene& scene, std::span<const ProbePoint> points, std::size_t paths,
                                             std::uint64_t seed, Progress& progress, const StopRequest& stop) {
     constexpr std::size_t randomisations = 16, chunk = 64;
@@ -27,7 +38,6 @@ std::vector<ReferenceLight> reference_light(const Scene& scene, std::span<const 
             out[i].surface = surface, out[i].is_between_sides = is_between_sides;
             is_finished[i] = !surface.is_none() && stage.occluders.is_covered(x, n, region);
             if (is_finished[i]) return;
-            DirectLight::Workspace workspace;
             std::array<Spectrum, randomisations> batch{};
             for (std::size_t k = 0; k < randomisations; ++k) {
                 const ScrambledSobol first_directions(hash(seed, static_cast<std::uint64_t>(Stream::reference), i, k));
@@ -43,7 +53,9 @@ std::vector<ReferenceLight> reference_light(const Scene& scene, std::span<const 
             for (const Spectrum& value : batch) square += (value - out[i].irradiance) * (value - out[i].irradiance);
             for (std::size_t b = 0; b < bands; ++b)
                 out[i].standard_error[b] = std::sqrt(square[b] / (randomisations * (randomisations - 1.0)));
-            out[i].irradiance += stage.direct.irradiance(x, n, region, workspace);
+            PlaceLight::Workspace workspace;
+            add_direct(stage.place_light.at(x, n, region, {.relative = RayLight::error_of(1.0 * paths)}, workspace),
+                       out[i]);
             is_finished[i] = 1;
         });
         progress.advance(static_cast<double>(first + count) / static_cast<double>(points.size()));

@@ -2,7 +2,6 @@
 
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/basis/misfit_along.hpp"
-#include "exitance/direct/crowd_by_light.hpp"
 
 namespace exitance {
 namespace {
@@ -46,90 +45,50 @@ NoisyFit count_noise(const ElementTree& tree, ElementId e, double noise, DirectF
     return {fit, kept * noise};
 }
 
-/// Fits exact values, or values by rays if these are cheaper (`CrowdedLight`). `named`: the sources to evaluate; null:
-/// all sources and beams.
-NoisyFit fit_values(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
-                    ReceiverLight& light, DirectLight::Workspace& workspace,
-                    const std::vector<DirectLight::SourceName>* named = nullptr) {
-    const RegionId region = tree.region(e);
-    const double w = mean(light_weight(stage.scene.material(region)));
-    const CrowdedLight::Crowd crowd = stage.crowded.prepare(tree.outline(e), stage.scene.regions()[region].plane.n,
-                                                            region, allowed.squared / (w * w), light, workspace, named);
-    if (light.is_dark() && crowd.empty()) return {};
-    std::vector<CrowdedLight::Estimate> by_rays;
-    if (!crowd.empty()) {
-        std::vector<Point> places;
-        for (const WeightedPlace& place : element_rule(tree, e, RuleOrder::fine))
-            places.push_back(tree.patch(e).at(place.uv));
-        by_rays = allowed.mean_light > 0
-                      ? estimates_by_light(stage.crowded, light, crowd, places, kept_noise_share(tree, e),
-                                           allowed.mean_light / w, workspace)
-                      : stage.crowded.at(light, crowd, places, workspace);
-    }
+std::vector<Point> places_of(const ElementTree& tree, ElementId e) {
+    std::vector<Point> out;
+    for (const WeightedPlace& place : element_rule(tree, e, RuleOrder::fine)) out.push_back(tree.patch(e).at(place.uv));
+    return out;
+}
+
+/// Accuracy of light at a node of an element's rule. Noise that is allotted by light has the squared error
+/// e^2 (1 + E / mean E) / 2: its root is at most this linear function, which is equal at E = 0 and at the mean.
+LightAccuracy accuracy_on(double w, const NoiseAllowed& allowed) {
+    const double e = std::sqrt(allowed.squared) / w;
+    if (!(allowed.mean_light > 0)) return {0, e};
+    const double at_dark = std::sqrt(0.5);
+    return {(1 - at_dark) * e / (allowed.mean_light / w), at_dark * e};
+}
+
+NoisyFit fit_estimates(const Stage& stage, const ElementTree& tree, ElementId e,
+                       std::span<const PlaceLight::Estimate> at) {
     double noise = 0;
     std::size_t next = 0;
-    const DirectFit out = fit_at_places(stage, tree, e, [&](const Point& x, Spectrum& parallel) {
-        const Spectrum E = stage.direct.irradiance(light, x, workspace, &parallel);
-        if (crowd.empty()) return E;
-        const CrowdedLight::Estimate& more = by_rays[next++];
-        noise += more.variance, parallel += more.parallel;
-        return E + more.irradiance;
+    const DirectFit out = fit_at_places(stage, tree, e, [&](const Point&, Spectrum& parallel) {
+        const PlaceLight::Estimate& estimate = at[next++];
+        noise += estimate.variance, parallel += estimate.parallel;
+        return estimate.irradiance;
     });
     if (noise <= 0) return {out};
+    const double w = mean(light_weight(stage.scene.material(tree.region(e))));
     return count_noise(tree, e, w * w * noise / static_cast<double>(next), out);
-}
-
-/// Largest error of clustered light at a point of an element, if the element's fit may have the mean squared error
-/// `allowed`.
-LightAccuracy accuracy_on(const Stage& stage, RegionId region, double allowed) {
-    constexpr double of_error = 0.5;   // the error of a fit is an RMS error, and smaller than that of its values
-    constexpr double at_least = 0.05;  // relative error that is always accepted
-    return {at_least, of_error * std::sqrt(allowed) / mean(light_weight(stage.scene.material(region)))};
-}
-
-NoisyFit fit_clusters(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
-                      ClusteredLight::Workspace& workspace) {
-    const RegionId region = tree.region(e);
-    const Normal& n = stage.scene.regions()[region].plane.n;
-    const LightAccuracy accuracy = accuracy_on(stage, region, allowed);
-    double noise = 0, places = 0;
-    const bool parallel_light = !stage.direct.beams().empty();
-    const DirectFit out = fit_at_places(stage, tree, e, [&](const Point& x, Spectrum& parallel) {
-        const ClusteredLight::Estimate at = stage.clustered.by_clusters(x, n, region, accuracy, workspace);
-        noise += at.variance, ++places;
-        if (parallel_light) stage.direct.beams().irradiance({x, n, region}, &parallel);
-        return at.irradiance;
-    });
-    const double w = mean(light_weight(stage.scene.material(region)));
-    return count_noise(tree, e, w * w * noise / places, out);
-}
-
-/// True if clusters are cheaper than exact light at the centre of an element.
-bool suits_clusters(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
-                    ClusteredLight::Workspace& workspace) {
-    if (!stage.clustered.is_possible()) return false;
-    const RegionId region = tree.region(e);
-    return stage.clustered.pays(tree.patch(e).at(tree.centre(e)), stage.scene.regions()[region].plane.n, region,
-                                accuracy_on(stage, region, allowed), workspace);
 }
 
 }  // namespace
 
 NoisyFit fit_all_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
                        DirectFitRoom& room) {
-    if (suits_clusters(stage, tree, e, allowed.squared, room.clustered))
-        return fit_clusters(stage, tree, e, allowed.squared, room.clustered);
-    return fit_values(stage, tree, e, allowed, room.light, room.clustered.exact);
+    const RegionId region = tree.region(e);
+    const double w = mean(light_weight(stage.scene.material(region)));
+    const std::vector<Point> places = places_of(tree, e), outline = tree.outline(e);
+    stage.place_light.at_places({outline, stage.scene.regions()[region].plane.n, region, places},
+                                accuracy_on(w, allowed), room.place, room.found);
+    return fit_estimates(stage, tree, e, room.found);
 }
 
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
                            DirectFitRoom& room) {
     return fit_all_light(stage, tree, e, {allowed}, room).fit;
-}
-
-DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, ReceiverLight& light,
-                           DirectLight::Workspace& workspace) {
-    return fit_values(stage, tree, e, {}, light, workspace).fit;
 }
 
 namespace {
@@ -167,19 +126,21 @@ Spectrum light_weight(const Material& material) {
 NoisyFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
                           unsigned rays, SampledLight& sampled, DirectFitRoom& room) {
     const RegionId region = tree.region(e);
-    if (!stage.scene.behind(region).is_none()) return fit_all_light(stage, tree, e, allowed, room);
-    constexpr std::size_t max_strong = 24;  // exact light of up to this many sources costs no more than clusters
-    // Each source is evaluated, if only approximately. Above this number of sources even that is expensive, and
-    // clusters are tried first.
+    // Each source is evaluated, if only approximately. Above this number of sources even that is expensive.
     constexpr std::size_t max_examined = 10000;
-    const bool clusters_first = stage.clustered.tree().sources().size() > max_examined;
-    if (clusters_first && suits_clusters(stage, tree, e, allowed.squared, room.clustered))
-        return fit_clusters(stage, tree, e, allowed.squared, room.clustered);
-    const SampledLight::Estimate& of =
-        sampled(tree, e, light_weight(stage.scene.material(region)), allowed.squared, rays);
-    if (of.strong.size() > max_strong && suits_clusters(stage, tree, e, allowed.squared, room.clustered))
-        return fit_clusters(stage, tree, e, allowed.squared, room.clustered);
-    NoisyFit out = fit_values(stage, tree, e, allowed, room.light, room.clustered.exact, &of.strong);
+    const std::size_t sources = stage.place_light.rays().emitters().sources().size();
+    if (!stage.scene.behind(region).is_none() || sources > max_examined)
+        return fit_all_light(stage, tree, e, allowed, room);
+    const Spectrum weight = light_weight(stage.scene.material(region));
+    const SampledLight::Estimate& of = sampled(tree, e, weight, allowed.squared, rays);
+    const std::vector<Point> places = places_of(tree, e), outline = tree.outline(e);
+    const PlaceLight::Polygon on{outline, stage.scene.regions()[region].plane.n, region, places};
+    const LightAccuracy accuracy = accuracy_on(mean(weight), allowed);
+    if (!stage.place_light.exact_at_places(on, &of.strong, accuracy, room.place, room.found)) {
+        stage.place_light.at_places(on, accuracy, room.place, room.found);
+        return fit_estimates(stage, tree, e, room.found);
+    }
+    NoisyFit out = fit_estimates(stage, tree, e, room.found);
     for (Spectrum& corner : out.fit.corners) corner += of.weak;
     out.fit.mean += of.weak;
     // The error bound of weak sources does not trigger a split; it is added to the error of elements that stay whole.

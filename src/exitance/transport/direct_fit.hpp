@@ -12,7 +12,7 @@ struct NoisyFit {
     double noise = 0;
 };
 
-/// Limits on the noise that a fit may keep, if sources with many blockers are sampled by rays (`CrowdedLight`).
+/// Limits on the noise that a fit may keep, if light is estimated by rays (`PlaceLight`).
 struct NoiseAllowed {
     double squared = 0;  ///< Largest mean square of w (E - polynomial) due to noise, (W/m^2)^2; 0: exact light.
     double mean_light =

@@ -130,14 +130,19 @@ class Projector {
     // The fits of the first mesh then determine the error share of an element.
     static constexpr std::size_t few_elements = 2000, few_emitters = 8;
 
+    /// True if a cut through the tree of emitters is cheaper than all of them.
+    bool has_many_sources() const {
+        constexpr std::size_t many_sources = 1000;
+        return stage_.place_light.rays().emitters().sources().size() > many_sources;
+    }
+
     bool are_many(std::size_t elements) const {
         constexpr double max_emitting_share = 0.25;  // share of all area
         double emitting = 0;
         for (const DirectLight::Emitter& emitter : stage_.direct.emitters())
             if (!emitter.region.is_none()) emitting += stage_.scene.regions()[emitter.region].area;
         return elements > few_elements && stage_.direct.emitters().size() > few_emitters &&
-               (emitting < max_emitting_share * stage_.area || stage_.clustered.is_possible()) &&
-               !stage_.scene.has_light_apart();
+               (emitting < max_emitting_share * stage_.area || has_many_sources()) && !stage_.scene.has_light_apart();
     }
 
     /// Squared error that an element of mean area may have, by the total flux, (W/m^2)^2 m^2.

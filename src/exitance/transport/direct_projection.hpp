@@ -48,20 +48,16 @@ Spectrum light_weight(const Material& material);
 
 /// Workspace of one thread.
 struct DirectFitRoom {
-    ReceiverLight light;
-    ClusteredLight::Workspace clustered;
+    PlaceLight::Workspace place;
+    std::vector<PlaceLight::Estimate> found;
 };
 
-/// Fits direct light on one element from values at the nodes of its fine rule. Uses clusters of emitters where these
-/// are cheaper (`ClusteredLight`), rays to sources with many blockers (`CrowdedLight`), and exact values otherwise.
+/// Fits direct light on one element from values at the nodes of its fine rule: exact ones, or by rays where these are
+/// cheaper (`PlaceLight`).
 /// `allowed`: largest mean square of w (E - polynomial) due to noise, (W/m^2)^2. Noise that the polynomial keeps counts
 /// as misfit; the rest of it does not.
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
                            DirectFitRoom& room);
-
-/// Like the above, from exact values only. `light` and `workspace` are scratch memory.
-DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, ReceiverLight& light,
-                           DirectLight::Workspace& workspace);
 
 /// Restricts the fit of an element's parent to the element, for work that is stopped early.
 DirectFit inherited_fit(const ElementTree& tree, ElementId e, const DirectFit& parent);

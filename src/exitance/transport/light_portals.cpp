@@ -240,7 +240,7 @@ std::vector<Spectrum> apart_light(const Stage& stage, const LightRooms& rooms, c
     std::vector<std::vector<std::size_t>> of_room(rooms.count());
     for (std::size_t i = 0; i < numbering.leaves.size(); ++i) of_room[rooms.of(tree, numbering.leaves[i])].push_back(i);
     std::vector<Spectrum> out(numbering.leaves.size());
-    ClusteredLight::Workspace workspace;
+    PlaceLight::Workspace workspace;
     for (const std::vector<std::size_t>& leaves : of_room) {
         const std::size_t step = std::max<std::size_t>(1, leaves.size() / samples);
         Spectrum sum;
@@ -250,7 +250,7 @@ std::vector<Spectrum> apart_light(const Stage& stage, const LightRooms& rooms, c
             const RegionId region = tree.region(e);
             const Normal& n = stage.scene.regions()[region].plane.n;
             const Point x = tree.patch(e).at(tree.centre(e));
-            sum += tree.area(e) * stage.clustered.at(x, n, region, {.relative = 0.1}, workspace).irradiance;
+            sum += tree.area(e) * stage.place_light.at(x, n, region, {.relative = 0.1}, workspace).irradiance;
             area += tree.area(e);
         }
         for (std::size_t i : leaves) out[i] = area > 0 ? sum / area : Spectrum();

@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "exitance/direct/clustered_light.hpp"
-#include "exitance/direct/crowded_light.hpp"
+#include "exitance/direct/place_light.hpp"
 #include "exitance/mesh/contact_lines.hpp"
 #include "exitance/mesh/solve_mesh.hpp"
 #include "exitance/transport/light_rooms.hpp"
@@ -26,8 +25,7 @@ struct Stage {
           tracer(s),
           occluders(s),
           direct(s, occluders),
-          clustered(direct, tracer),
-          crowded(direct, tracer) {
+          place_light(direct, tracer) {
         leave_out({});
     }
     Stage(const Stage&) = delete;
@@ -40,8 +38,7 @@ struct Stage {
     RayTracer tracer;
     Occluders occluders;
     DirectLight direct;
-    ClusteredLight clustered;  ///< Direct light of many small emitters.
-    CrowdedLight crowded;      ///< Direct light of sources with many blockers.
+    PlaceLight place_light;  ///< Direct light at places, exact or by rays.
     /// Excludes sides of sheets that no light reaches: they do not count in `area` and are not meshed in advance. Light
     /// that does reach them is handled as on any other side.
     void leave_out(Field<RegionId, std::uint8_t> sides) {

@@ -222,6 +222,11 @@ Spectrum glazed_form_factor(const Occluders& occluders, const Receiver& at, Piec
     Fragments fragments;
     visible_fragments(occluders, at, source, candidates, scratch, fragments);
     if (fragments.empty()) return {};
+    // Every fragment is cut along the panes in view and integrated; the search tests every pane.
+    constexpr double work_of_fragment = 20, work_of_pane = 0.1;
+    scratch.work += work_of_fragment * static_cast<double>(fragments.size()) +
+                    work_of_pane * static_cast<double>(occluders.scene().panes().size());
+    if (scratch.gave_up()) return {};
     const Normal& n = occluders.pieces()[source].plane.n;
     const std::vector<PaneInView> panes = panes_in_view(occluders, at, n, dot(n, fragments[0][0]));
     Spectrum out;

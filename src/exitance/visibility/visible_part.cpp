@@ -14,6 +14,7 @@ namespace exitance {
 namespace {
 
 constexpr double on_plane = 1e-14;  ///< Sine of an angle that may be due to rounding alone.
+constexpr double work_of_integral = 20;  ///< Work of the integral of a directed radiance over a fragment.
 constexpr double no_width = 1e-13;  ///< Edges seen under a smaller angle count as points.
 
 using Workspace = VisibilityWorkspace;
@@ -145,6 +146,7 @@ bool region_hides_everything(const Occluders& occluders, const Receiver& at, Reg
 Hides add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPiece& source, bool all_the_way,
                  PieceId candidate, Workspace& scratch) {
     const ConvexPiece& piece = occluders.pieces()[candidate];
+    ++scratch.work;
     if (occluders.is_own(piece.region, at.own) || piece.region == source.region) return Hides::nothing;
     const std::span<const Point> corners = occluders.corners(candidate);
     const double facing = dot(piece.plane.n, at.x - corners[0]);
@@ -197,17 +199,20 @@ bool cut_lit(std::size_t first, Workspace& scratch) {
         const Workspace::Shadow& shadow = scratch.shadows[k];
         const std::span<const Vec3> planes = std::span(scratch.planes).subspan(shadow.first_plane, shadow.plane_count);
         if (!scratch.lit.cut(planes, scratch.lit.bounds(scratch.outlines[shadow.outline]))) return false;
+        scratch.work += static_cast<double>(scratch.lit.size());
+        if (scratch.gave_up()) return false;
     }
     return true;
 }
 
 /// Form factor of the unoccluded source, weighted by its radiance. For a part of the sky it depends only on the normal
 /// and is cached.
-double whole_form_factor(const Occluders& occluders, PieceId source, const Normal& n, const Workspace& scratch,
+double whole_form_factor(const Occluders& occluders, PieceId source, const Normal& n, Workspace& scratch,
                          const RelativeRadiance& radiance) {
     if (!occluders.is_distant(source) || occluders.is_window(source))
         return directed_form_factor(n, scratch.source, radiance);
     double& known = known_far_factor(occluders, source, n);
+    scratch.work += work_of_integral;  // even if it is known, so that the work does not depend on earlier calls
     if (known < 0) known = directed_form_factor(n, scratch.source, radiance);
     return known;
 }
@@ -226,7 +231,9 @@ double finish(const Occluders& occluders, PieceId source, const Normal& n, std::
     }
     if (light.radiance.is_directed()) {
         if (scratch.shadows.empty()) return whole_form_factor(occluders, source, n, scratch, light.radiance);
-        return cut_lit(cut, scratch) ? scratch.lit.form_factor(n, light.radiance, scratch.clipped) : 0;
+        if (!cut_lit(cut, scratch)) return 0;
+        scratch.work += work_of_integral * static_cast<double>(scratch.lit.size());
+        return scratch.gave_up() ? 0 : scratch.lit.form_factor(n, light.radiance, scratch.clipped);
     }
     if (scratch.shadows.empty()) return std::max(0.0, contour_sum(n, scratch.source));
     if (light.method == VisiblePartMethod::edge_sums) {
@@ -260,9 +267,10 @@ double part_among_all(const Occluders& occluders, const Receiver& at, PieceId so
     const auto hides_everything = [&](PieceId p) {
         const bool hides = add_shadow(occluders, at, emitter, all_the_way, p, scratch) == Hides::everything;
         if (hides) likely = p;
-        return hides;
+        return hides || scratch.gave_up();
     };
-    if (!likely.is_none()) {
+    // With limited work the search is always the same: otherwise earlier calls would decide whether it ends in time.
+    if (!likely.is_none() && scratch.most_work == HUGE_VAL) {
         if (hides_everything(likely)) return 0;
         scratch.planes.clear();
         scratch.shadows.clear();
@@ -289,7 +297,8 @@ double part_among(const Occluders& occluders, const Receiver& at, PieceId source
     const ConvexPiece& emitter = occluders.pieces()[source];
     const bool all_the_way = looks_out_on_faces(occluders, source);
     for (PieceId p : candidates)
-        if (add_shadow(occluders, at, emitter, all_the_way, p, scratch) == Hides::everything) return 0;
+        if (add_shadow(occluders, at, emitter, all_the_way, p, scratch) == Hides::everything || scratch.gave_up())
+            return 0;
     return finish(occluders, source, at.n, 0, scratch, light, fragments);
 }
 
@@ -297,6 +306,8 @@ double part_among(const Occluders& occluders, const Receiver& at, PieceId source
 
 double visible_form_factor(const Occluders& occluders, const Receiver& at, PieceId source, VisibilityWorkspace& scratch,
                            const PartLight& light) {
+    ++scratch.work;
+    if (scratch.gave_up()) return 0;
     look_at_source(occluders, at, source, scratch);
     return part_among_all(occluders, at, source, scratch, light);
 }
@@ -311,6 +322,8 @@ void visible_fragments(const Occluders& occluders, const Receiver& at, PieceId s
                        std::optional<std::span<const PieceId>> candidates, VisibilityWorkspace& scratch,
                        Fragments& out) {
     out.clear();
+    ++scratch.work;
+    if (scratch.gave_up()) return;
     look_at_source(occluders, at, source, scratch);
     if (candidates)
         part_among(occluders, at, source, *candidates, scratch, {}, &out);

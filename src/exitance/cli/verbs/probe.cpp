@@ -6,7 +6,6 @@
 #include "exitance/cli/border_points.hpp"
 #include "exitance/cli/light_unit.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/evaluate/mirrored_light.hpp"
 #include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
@@ -26,29 +25,17 @@ std::vector<ProbePoint> zip(const ProbePoints& probes) {
     return out;
 }
 
-/// Warns if mirrored light of panes exceeds the share `limit` of the light at some of the points.
-void warn_of_mirrored_light(const Scene& scene, std::span<const ProbePoint> points, std::span<const Spectrum> light,
-                            double limit, std::uint64_t seed, Terminal& terminal) {
-    const MirroredAtPoints found = mirrored_at_points(scene, points, light, limit, seed);
-    if (found.above > 0)
-        terminal.progress().warn(
-            fmt::format("panes mirror light of the sky, the sun or lamps onto {} of {} examined points, up to {:.3g}% "
-                        "of the light there; it is left out",
-                        found.above, found.points, 100 * found.largest));
-}
-
 /// Number of written rows, and whether they are those of all points.
 struct WrittenRows {
     std::size_t count = 0;
     bool are_all = false;
 };
 
-Result<WrittenRows> write_light(const ProbeArguments& arguments, const Scene& scene, const RadiosityFunction& light,
-                                ProbeReader& reader, ProbeWriter& writer, BorderPoints& borders, Terminal& terminal,
-                                const StopRequest& stop) {
+Result<WrittenRows> write_light(const ProbeArguments& arguments, const RadiosityFunction& light, ProbeReader& reader,
+                                ProbeWriter& writer, BorderPoints& borders, const StopRequest& stop) {
     ProbePoints probes;
     WrittenRows rows;
-    for (bool is_first = true;; is_first = false) {
+    for (;;) {
         if (const Result<void> read = reader.next(probes, batch); !read) return read.error();
         rows.are_all = probes.size() == 0;
         if (rows.are_all || stop.requested()) return rows;
@@ -58,14 +45,11 @@ Result<WrittenRows> write_light(const ProbeArguments& arguments, const Scene& sc
         for (std::size_t i = 0; i < values.size(); ++i) {
             borders.add(values[i].is_between_sides);
             writer.add(points[i].x, points[i].n, values[i].irradiance,
-                       values[i].on_surface ? std::optional(values[i].radiosity) : std::nullopt);
+                       values[i].on_surface ? std::optional(values[i].radiosity) : std::nullopt,
+                       values[i].standard_error);
         }
         rows.count += values.size();
         if (values.size() < points.size()) return rows;
-        if (!is_first || arguments.component != Component::total) continue;
-        std::vector<Spectrum> irradiance;
-        for (const Light& value : values) irradiance.push_back(value.irradiance);
-        warn_of_mirrored_light(scene, points, irradiance, default_error, arguments.seed, terminal);
     }
 }
 
@@ -80,11 +64,6 @@ Result<WrittenRows> write_reference(const ProbeArguments& arguments, const Scene
     const std::vector<ProbePoint> points = zip(probes);
     const std::vector<ReferenceLight> values =
         reference_light(scene, points, arguments.reference_paths, arguments.seed, terminal.progress(), stop);
-    constexpr double exactness = 1e-3;  // share of mirrored light that is reported: the accuracy of panes
-    std::vector<Spectrum> irradiance;
-    for (const ReferenceLight& value : values) irradiance.push_back(value.irradiance);
-    warn_of_mirrored_light(scene, std::span(points).first(values.size()), irradiance, exactness, arguments.seed,
-                           terminal);
     for (std::size_t i = 0; i < values.size(); ++i) {
         const SurfaceId surface = values[i].surface;
         const Spectrum& E = values[i].irradiance;
@@ -106,6 +85,8 @@ std::optional<Error> find_misuse(const ProbeArguments& a) {
         return usage("--interpolant", "cannot be combined with --reference, which does not evaluate the solution");
     if (a.reference_paths > 0 && is_part)
         return usage("--component", "cannot be combined with --reference, which computes all light");
+    if (a.exact && (a.interpolant || a.reference_paths > 0))
+        return usage("--exact", "cannot be combined with --interpolant or --reference, which evaluate no direct light");
     if (a.interpolant && is_part)
         return usage("--component", "cannot be combined with --interpolant, which evaluates all light");
     return std::nullopt;
@@ -125,18 +106,18 @@ ExitCode run(const ProbeArguments& arguments, Terminal& terminal) {
     const LightUnit unit = unit_of(arguments.unit, solution->scene, terminal);
     const bool told = unit.is_lux() || arguments.unit.choice != UnitChoice::scene;
     Result<ProbeWriter> writer = ProbeWriter::create(
-        arguments.output, {.standard_errors = by_paths, .unit = told ? std::optional(unit) : std::nullopt});
+        arguments.output, {.standard_errors = true, .unit = told ? std::optional(unit) : std::nullopt});
     if (!writer) return terminal.fail(writer.error());
 
     RunLimits& limits = terminal.limits();
     std::optional<RadiosityFunction> light;
-    if (!by_paths) light.emplace(*solution);
+    if (!by_paths) light.emplace(*solution, arguments.exact ? DirectBy::closed_forms : DirectBy::cheaper);
     const StopRequest& stop = limits.keep();
     BorderPoints borders;
     const Scene& scene = solution->scene;
-    const Result<WrittenRows> rows =
-        by_paths ? write_reference(arguments, scene, *reader, *writer, borders, terminal, stop)
-                 : write_light(arguments, scene, *light, *reader, *writer, borders, terminal, stop);
+    const Result<WrittenRows> rows = by_paths
+                                         ? write_reference(arguments, scene, *reader, *writer, borders, terminal, stop)
+                                         : write_light(arguments, *light, *reader, *writer, borders, stop);
     terminal.progress().finish();
     if (!rows) return terminal.fail(rows.error());
     if (!rows->are_all && rows->count == 0) return terminal.fail_stopped("no point was finished");

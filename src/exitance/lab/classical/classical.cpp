@@ -261,7 +261,6 @@ Result<Solution> solve_classical(const Scene& scene, const SolveOptions& options
     solution.interpolant = with_direct(solution.indirect, direct);
     stage.rooms = find_light_rooms(stage, options.seed, stop);  // the energy balance needs rooms to find escaping light
     statistics.energy = energy_balance(solution, direct, stage);
-    if (!stop.requested()) record_mirrored_light(solution, stage, options, progress);
     statistics.seconds["reconstruct"] = watch.restart();
     statistics.seconds["total"] = whole.seconds() - snapshots.writing();
     statistics.peak_memory_bytes = peak_memory_bytes();

@@ -50,14 +50,14 @@ Nodes make_nodes(const Stage& stage, const SurfacePool& pool, const ShadingNetwo
     out.first.push_back(static_cast<std::uint32_t>(out.point.size()));
     out.reflectance.resize(out.point.size()), out.reflected_direct.resize(out.point.size());
     parallel_ranges(out.point.size(), 32, [&](std::size_t begin, std::size_t end) {
-        ClusteredLight::Workspace workspace;
+        PlaceLight::Workspace workspace;
         for (std::size_t i = begin; i < end; ++i) {
             const PoolPoint& p = pool[out.point[i]];
             const Spectrum& rho = stage.scene.material(p.region).reflectance;
             out.reflectance[i] = rho;
             if (max(rho) <= 0 || stage.occluders.is_covered(p.at, p.n, p.region)) continue;
             const LightAccuracy accuracy = point_accuracy(direct_accuracy);
-            out.reflected_direct[i] = rho * stage.clustered.at(p.at, p.n, p.region, accuracy, workspace).irradiance;
+            out.reflected_direct[i] = rho * stage.place_light.at(p.at, p.n, p.region, accuracy, workspace).irradiance;
         }
     });
     for (std::size_t c = 0; c < cells; ++c) {

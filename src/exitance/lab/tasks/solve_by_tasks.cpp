@@ -138,7 +138,6 @@ Result<Solution> solve_by_tasks(const Scene& scene, const SolveOptions& options,
     if (!statistics.converged && statistics.stopped_by.empty()) statistics.stopped_by = "iterations";
     stage.rooms = find_light_rooms(stage, options.seed, stop);  // the energy balance needs rooms to find escaping light
     statistics.energy = energy_balance(solution, stage);
-    if (!stop.requested()) record_mirrored_light(solution, stage, options, progress);
     if (task_trace()) task_trace()->add_graph(engine.take_graph());
     statistics.seconds["reconstruct"] = phase.restart();
     statistics.seconds["total"] = watch.seconds();

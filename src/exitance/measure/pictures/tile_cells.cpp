@@ -9,7 +9,7 @@ namespace exitance {
 namespace {
 
 /// Allowed relative error of a pixel's light: invisible next to its neighbours.
-constexpr double pixel_error = 0.004;
+constexpr double pixel_error = 0.008;
 constexpr std::uint32_t cell_side = 4;  ///< Pixels; light may be interpolated between the corners of a cell.
 constexpr double even = 0.04;           ///< Relative difference of the corners below which light is interpolated.
 
@@ -18,42 +18,23 @@ constexpr double dim = 0.25;
 
 }  // namespace
 
-/// True if clusters of emitters are faster for spots of one region, tested at three of them. Only if there are too many
-/// emitters to evaluate each; otherwise it is better to exclude certainly hidden emitters first (`share_rays`).
-bool TileLight::suits_clusters(std::span<const Spot> spots) {
-    constexpr std::size_t min_sources = 1000;
+/// Decides between exact light and rays for spots of one region. If exact light is cheaper, prepares it for all spots:
+/// sets `whole`, or leaves it null if the spots have no area.
+bool TileLight::rays_are_cheaper(std::span<const Spot> spots, const ReceiverLight*& whole) {
+    if (is_stopped() || squared(direct_share_) == 0) return false;
     const Stage& stage = light_.stage();
-    const bool possible = stage.clustered.is_possible() && stage.clustered.tree().sources().size() > min_sources;
-    if (!possible || squared(direct_share_) == 0) return false;
     const RegionId region = spots.front().region;
     const Normal& n = stage.scene.regions()[region].plane.n;
-    const std::size_t last = spots.size() - 1;
-    return std::ranges::any_of(std::array{std::size_t{0}, last / 2, last}, [&](std::size_t i) {
-        return stage.clustered.pays(points_[spots[i].first], n, region, {.relative = pixel_error}, clustered_);
-    });
-}
-
-/// Finds blocks that use shared rays: those with too many partly hidden sources for exact light. Returns true if there
-/// are any.
-bool TileLight::share_rays(std::span<const Spot> spots, const ReceiverLight* whole) {
-    constexpr std::ptrdiff_t max_exact = 24;
-    const auto has_many_shadows = [&](const ReceiverLight* light) {
-        return light && std::ranges::count_if(light->sources, [](const auto& s) { return s.count > 0; }) > max_exact;
-    };
-    if (squared(direct_share_) == 0 || !shared_.is_possible() || !has_many_shadows(whole)) return false;
-    constexpr std::size_t places = 16;
-    std::vector<Point> some;
-    const std::size_t step = std::max<std::size_t>(1, spots.size() / places);
-    for (std::size_t i = step / 2; i < spots.size(); i += step) some.push_back(points_[spots[i].first]);
-    shared_.choose(*whole, some, hash(seed_, static_cast<std::uint64_t>(Stream::direct), spots.front().pixel));
-    bool any = false;
-    visit_blocks(spots, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        const Point& middle = points_[spots[(begin + end) / 2].first];
-        by_rays_[block] = has_many_shadows(known_[block]) &&
-                          shared_.share(*known_[block], middle, accuracy(0), shared_parts_[block], visibility_);
-        any |= by_rays_[block];
-    });
-    return any;
+    if (stage.place_light.is_mirrored()) return true;
+    const double rays = RayLight::rays_for(pixel_error);
+    if (!outline(spots))
+        return !stage.direct.irradiance_within(points_[spots.front().first], n, region, rays, visibility_);
+    if (static_cast<double>(spots.size()) * rays < stage.place_light.work_of_preparing()) return true;
+    const DirectLight::WorthCounting worth = PlaceLight::worth_counting(rays);
+    stage.direct.prepare(outline_, n, region, whole_, visibility_, worth);
+    if (whole_.has_crowded()) return true;
+    whole = &whole_;
+    return false;
 }
 
 /// Required accuracy of direct light at a pixel that also has other light `rest`, W/m^2.
@@ -67,7 +48,7 @@ const Spot* TileLight::spot_at(std::span<const Spot> spots, int x, int y) const 
     return found == 0 ? nullptr : &spots[found - 1];
 }
 
-/// Direct light at one point of a spot, by clusters of emitters or by shared rays; computed once per pixel.
+/// Direct light at one point of a spot by rays; computed once per pixel.
 Spectrum TileLight::light_by_rays(const Spot& spot) {
     const std::size_t pixel = pixel_of(spot);
     if (is_stopped()) return {};
@@ -78,16 +59,30 @@ Spectrum TileLight::light_by_rays(const Spot& spot) {
         at = Point();
         for (std::uint32_t i = 0; i < spot.count; ++i) at += points_[spot.first + i] / spot.count;
     }
-    const LightAccuracy asked = accuracy(mean(spot.irradiance));  // light found so far
     const Normal& n = stage.scene.regions()[spot.region].plane.n;
-    const auto block = static_cast<std::size_t>(block_of(spot));
-    constexpr int side = 4;  // pixels of such a square use different sets of rays
-    const auto set = static_cast<std::uint32_t>(spot.y % side * side + spot.x % side);
-    const ClusteredLight::Estimate found = by_rays_[block]
-                                               ? shared_.at(shared_parts_[block], at, set, asked, visibility_)
-                                               : stage.clustered.by_clusters(at, n, spot.region, asked, clustered_);
+    LightAccuracy asked = accuracy(mean(spot.irradiance));  // light found so far
+    // A part of a pixel may have more noise than the pixel.
+    const double looser = std::sqrt(static_cast<double>(samples_) / spot.count);
+    asked.relative *= looser, asked.absolute *= looser;
+    const RayLight::Estimate found = stage.place_light.by_rays(at, n, spot.region, asked, place_);
     is_found_[pixel] = 1, noise_[pixel] = std::sqrt(found.variance);
     return found_[pixel] = direct_share_ * found.irradiance;
+}
+
+/// Direct light of a pixel that differs from its neighbours, mean over a few of its samples. Independent noise allows
+/// each sample twice the error.
+Spectrum TileLight::light_of_samples(const Spot& spot) {
+    constexpr std::uint32_t most = 4;
+    const std::uint32_t count = std::min(most, spot.count);
+    LightAccuracy asked = accuracy(mean(spot.irradiance));
+    const double looser = std::sqrt(static_cast<double>(count));
+    asked.relative *= looser, asked.absolute *= looser;
+    const Stage& stage = light_.stage();
+    const Normal& n = stage.scene.regions()[spot.region].plane.n;
+    Spectrum sum;
+    for (std::uint32_t i = 0; i < count && !is_stopped(); ++i)
+        sum += stage.place_light.by_rays(points_[spot.first + i], n, spot.region, asked, place_).irradiance;
+    return direct_share_ * sum / count;
 }
 
 /// Interpolates light between the corners of a cell of pixels. Returns false if it is not uniform or differs at the
@@ -139,31 +134,30 @@ void TileLight::fill_all(std::span<Spot> spots) {
     constexpr int last = tile_side - 1, side = cell_side;
     for (int y = 0; y < last; y += side)
         for (int x = 0; x < last; x += side) fill(spots, x, y, std::min(x + side, last), std::min(y + side, last));
-    for (Spot& spot : spots) {
-        if (spot_at_[pixel_of(spot)] == 0) continue;
-        spot.irradiance += light_by_rays(spot);
+    std::vector<Spectrum>& rest = rest_;
+    rest.resize(spots.size());
+    for (std::size_t i = 0; i < spots.size(); ++i)
+        rest[i] = spots[i].irradiance, spots[i].irradiance += light_by_rays(spots[i]);
+    settled_.assign(spots.size(), 1);
+    for (std::size_t i = 0; i < spots.size(); ++i)
+        settled_[i] = spots[i].count < samples_ || samples_ == 1 || !differs_from_neighbours(spots, i);
+    for (std::size_t i = 0; i < spots.size(); ++i) {
+        Spot& spot = spots[i];
         spot_at_[pixel_of(spot)] = 0, is_found_[pixel_of(spot)] = 0;
+        if (settled_[i]) continue;
+        spot.irradiance = rest[i];
+        spot.irradiance += light_of_samples(spot);
     }
 }
 
-/// Evaluates all spots of one region with many small emitters. Shadows are usually soft there, so that light is
-/// computed at the corners of cells, and in between only where it varies.
-void TileLight::evaluate_by_clusters(std::span<Spot> spots) {
+/// Evaluates all spots of one region by rays. Light is computed at the corners of cells, and in between only where it
+/// varies.
+void TileLight::evaluate_by_rays(std::span<Spot> spots) {
     for (std::size_t i = 0; i < spots.size(); ++i) {
+        spots[i].meshed.reset();
         spots[i].irradiance = elements(spots[i]);
         spot_at_[pixel_of(spots[i])] = static_cast<std::uint32_t>(i + 1);
     }
-    fill_all(spots);
-}
-
-/// Like evaluate_by_clusters(), for the spots of the blocks found by `share_rays`.
-void TileLight::evaluate_by_shared_rays(std::span<Spot> spots) {
-    visit_blocks(spots, [&](std::size_t block, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end && by_rays_[block]; ++i) {
-            spots[i].irradiance = elements(spots[i]);
-            spot_at_[pixel_of(spots[i])] = static_cast<std::uint32_t>(i + 1);
-        }
-    });
     fill_all(spots);
 }
 

@@ -80,33 +80,30 @@ TileLight::TileLight(const RadiosityFunction& light, std::uint32_t samples, unsi
       seed_(seed),
       kind_(kind),
       brightness_(brightness),
-      direct_share_(gather > 0 ? Spectrum(1) : light.exact_share()),
-      shared_(light.stage().direct, light.stage().tracer) {
+      direct_share_(gather > 0 ? Spectrum(1) : light.exact_share()) {
     spot_at_.fill(0), is_found_.fill(0);
 }
 
-/// Prepares direct light for spots of one region. Returns false if their area is too small for that.
-bool TileLight::prepare(std::span<const Spot> spots, const ReceiverLight* whole, ReceiverLight& out) {
-    if (is_stopped()) return false;
-    const Stage& stage = light_.stage();
-    const RegionId region = spots.front().region;
-    const Normal& n = stage.scene.regions()[region].plane.n;
-    Octagon octagon(n);
+/// Sets `outline_` to a convex polygon around spots of one region. Returns false if their area is too small for one.
+bool TileLight::outline(std::span<const Spot> spots) {
+    Octagon octagon(light_.stage().scene.regions()[spots.front().region].plane.n);
     for (const Spot& spot : spots)
         for (std::uint32_t i = 0; i < spot.count; ++i) octagon.add(points_[spot.first + i]);
     octagon.corners(outline_);
-    if (outline_.empty()) return false;
-    if (whole)
-        stage.direct.prepare(outline_, *whole, out, visibility_);
-    else
-        stage.direct.prepare(outline_, n, region, out, visibility_);
+    return !outline_.empty();
+}
+
+/// Prepares direct light for a block of spots. Returns false if their area is too small for that.
+bool TileLight::prepare(std::span<const Spot> spots, const ReceiverLight& whole, ReceiverLight& out) {
+    if (is_stopped() || !outline(spots)) return false;
+    light_.stage().direct.prepare(outline_, whole, out, visibility_);
     return true;
 }
 
 const ReceiverLight* TileLight::look_at_block(std::span<const Spot> spots, const ReceiverLight* whole,
                                               ReceiverLight& room) {
     const bool worth = whole && !whole->is_dark() && !whole->is_unshadowed();
-    return worth && prepare(spots, whole, room) ? &room : whole;
+    return worth && prepare(spots, *whole, room) ? &room : whole;
 }
 
 /// True if a spot is so small compared with its distance from every emitter that direct light is linear over it. E ~ 1
@@ -221,19 +218,15 @@ Spectrum TileLight::mirrored_mean(const Spot& spot, const Spectrum& rest, const 
 
 /// Evaluates all spots of one region, block by block.
 void TileLight::evaluate_region(std::span<Spot> spots) {
-    by_rays_.fill(false);
-    if (suits_clusters(spots)) return evaluate_by_clusters(spots);
-    const ReceiverLight* whole = prepare(spots, nullptr, whole_) ? &whole_ : nullptr;
+    const ReceiverLight* whole = nullptr;
+    if (rays_are_cheaper(spots, whole)) return evaluate_by_rays(spots);
     settled_.assign(spots.size(), 0), rest_.resize(spots.size());
     visit_blocks(spots, [&](std::size_t block, std::size_t begin, std::size_t end) {
         known_[block] = look_at_block(spots.subspan(begin, end - begin), whole, parts_[block]);
     });
-    if (share_rays(spots, whole)) evaluate_by_shared_rays(spots);
     visit_blocks(spots, [&](std::size_t block, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             spot_at_[pixel_of(spots[i])] = static_cast<std::uint32_t>(i + 1);
-            settled_[i] = by_rays_[block];
-            if (settled_[i]) continue;
             Spectrum light;
             settled_[i] = first_guess(spots[i], known_[block], light);
             rest_[i] = elements(spots[i]) + spots[i].meshed.value_or(Spectrum());

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "exitance/base/progress.hpp"
-#include "exitance/direct/shared_rays.hpp"
 #include "exitance/evaluate/mesh_light.hpp"
 #include "exitance/gather/gather.hpp"
 
@@ -73,18 +72,18 @@ class TileLight {
     bool is_stopped() const { return stop_ && stop_->requested(); }
     void evaluate_region(std::span<Spot> spots);
     const ReceiverLight* look_at_block(std::span<const Spot> spots, const ReceiverLight* whole, ReceiverLight& room);
-    bool prepare(std::span<const Spot> spots, const ReceiverLight* whole, ReceiverLight& out);
+    bool outline(std::span<const Spot> spots);
+    bool prepare(std::span<const Spot> spots, const ReceiverLight& whole, ReceiverLight& out);
+    bool rays_are_cheaper(std::span<const Spot> spots, const ReceiverLight*& whole);
     Spectrum direct(const Spot& spot, const ReceiverLight* known, const Point& x);
     bool first_guess(Spot& spot, const ReceiverLight* known, Spectrum& light);
     Spectrum elements(const Spot& spot);
     bool looks_small(const Spot& spot, const ReceiverLight& known, const Point& middle) const;
-    bool suits_clusters(std::span<const Spot> spots);
-    bool share_rays(std::span<const Spot> spots, const ReceiverLight* whole);
-    void evaluate_by_clusters(std::span<Spot> spots);
-    void evaluate_by_shared_rays(std::span<Spot> spots);
+    void evaluate_by_rays(std::span<Spot> spots);
     const Spot* spot_at(std::span<const Spot> spots, int x, int y) const;
     LightAccuracy accuracy(double rest) const;
     Spectrum light_by_rays(const Spot& spot);
+    Spectrum light_of_samples(const Spot& spot);
     void fill_all(std::span<Spot> spots);
     void fill(std::span<Spot> spots, int x0, int y0, int x1, int y1);
     bool interpolate(std::span<Spot> spots, int x0, int y0, int x1, int y1);
@@ -106,9 +105,6 @@ class TileLight {
     ReceiverLight whole_;
     std::array<ReceiverLight, blocks> parts_;
     std::array<const ReceiverLight*, blocks> known_;  ///< Prepared light of each block; null if none could be prepared.
-    SharedRays shared_;                               ///< Shared rays of the current region.
-    std::array<SharedRays::Part, blocks> shared_parts_;  ///< Shared rays of its blocks.
-    std::array<bool, blocks> by_rays_;                   ///< True for blocks that use shared rays.
     /// For each pixel of the current region, the spot's index plus one; 0: none.
     std::array<std::uint32_t, tile_side * tile_side> spot_at_;
     std::vector<std::uint8_t> settled_;
@@ -117,7 +113,7 @@ class TileLight {
     std::array<double, tile_side * tile_side> noise_;    ///< Its standard deviation, W/m^2.
     std::array<std::uint8_t, tile_side * tile_side> is_found_;  ///< True where it is known.
     DirectLight::Workspace visibility_;
-    ClusteredLight::Workspace clustered_;
+    PlaceLight::Workspace place_;
     GatherWorkspace gathering_;
 };
 

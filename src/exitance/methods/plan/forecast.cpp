@@ -101,9 +101,9 @@ Pilot look(const Stage& stage, const Plan& plan, const DirectProjection& direct)
                                       }) /
                          pilot_rays;
     out.light_seconds = seconds_each(points.size(), [&](std::size_t first, std::size_t last) {
-        ClusteredLight::Workspace workspace;
+        PlaceLight::Workspace workspace;
         for (std::size_t i = first; i < last; ++i)
-            stage.clustered.at(points[i].x, points[i].n, region[i], {.relative = plan.options.error_target()},
+            stage.place_light.at(points[i].x, points[i].n, region[i], {.relative = plan.options.error_target()},
                                workspace);
     });
     look_across(stage, points, region, out);

@@ -76,7 +76,6 @@ void Solver::make_output_mesh() {
     statistics().figures["energy_defect_before"] = energy_defect_before(energy, solution_, direct_, unscaled_);
     if (energy.emitted > 0 && energy.absorbed == 0 && !stop_.requested())
         warn("no light reaches the front of any face: they may be turned inside out");
-    if (!stop_.requested()) record_mirrored_light(solution_, stage_, options_, progress_);
     statistics().seconds["reconstruct"] += watch.seconds() - mesh_seconds_;
 }
 

@@ -14,27 +14,15 @@ namespace {
 class PartOfLight {
   public:
     PartOfLight(const Scene& lit, const Stage& stage, const ElementTree& tree)
-        : stage_(stage),
-          tree_(tree),
-          direct_(lit, stage.occluders),
-          clustered_(direct_, stage.tracer),
-          crowded_(direct_, stage.tracer) {}
+        : stage_(stage), tree_(tree), direct_(lit, stage.occluders), place_light_(direct_, stage.tracer) {}
 
     const DirectLight& direct() const { return direct_; }
 
     /// Fits the light of all emitters. `allowed`: permitted mean square of w (E - polynomial) by noise, (W/m^2)^2.
     DirectFit fit(ElementId e, double allowed, DirectFitRoom& room) const {
-        const RegionId region = tree_.region(e);
-        const Normal& n = stage_.scene.regions()[region].plane.n;
-        const double off = std::sqrt(allowed) / weight(e);
-        const Point middle = tree_.patch(e).at(tree_.centre(e));
-        constexpr double of_its_own = 0.05;  // derived from project_direct_light: no point has to be more accurate
-        const LightAccuracy accuracy{of_its_own, 0.5 * off};
-        if (clustered_.is_possible() && clustered_.pays(middle, n, region, accuracy, room.clustered))
-            return fit_values(e, [&](const Point& x) {
-                return clustered_.by_clusters(x, n, region, accuracy, room.clustered).irradiance;
-            });
-        return fit_prepared(e, allowed, room);
+        const Places at(*this, e);
+        place_light_.at_places(at.polygon(), {0, std::sqrt(allowed) / weight(e)}, room.place, room.found);
+        return fit_found(e, room.found);
     }
 
     /// Fits the strong emitters exactly and the others by rays.
@@ -44,7 +32,11 @@ class PartOfLight {
         constexpr unsigned rays = 16;
         const Spectrum w = light_weight(stage_.scene.material(region));
         const SampledLight::Estimate& of = sampled(tree_, e, w, allowed, rays);
-        DirectFit out = fit_prepared(e, allowed, room, &of.strong);
+        const Places at(*this, e);
+        const LightAccuracy accuracy{0, std::sqrt(allowed) / weight(e)};
+        if (!place_light_.exact_at_places(at.polygon(), &of.strong, accuracy, room.place, room.found))
+            return fit(e, allowed, room);
+        DirectFit out = fit_found(e, room.found);
         for (Spectrum& corner : out.corners) corner += of.weak;
         out.mean += of.weak;
         return out;
@@ -53,35 +45,29 @@ class PartOfLight {
     double weight(ElementId e) const { return mean(light_weight(stage_.scene.material(tree_.region(e)))); }
 
   private:
-    /// `named`: the sources to evaluate; null: all.
-    DirectFit fit_prepared(ElementId e, double allowed, DirectFitRoom& room,
-                           const std::vector<DirectLight::SourceName>* named = nullptr) const {
-        const RegionId region = tree_.region(e);
-        DirectLight::Workspace& exact = room.clustered.exact;
-        const double variance = allowed / (weight(e) * weight(e));
-        const CrowdedLight::Crowd crowd = crowded_.prepare(tree_.outline(e), stage_.scene.regions()[region].plane.n,
-                                                           region, variance, room.light, exact, named);
-        if (room.light.is_dark() && crowd.empty()) return {};
-        std::vector<Point> places;
-        for (const WeightedPlace& place : element_rule(tree_, e, RuleOrder::fine))
-            places.push_back(tree_.patch(e).at(place.uv));
-        std::vector<CrowdedLight::Estimate> by_rays;
-        if (!crowd.empty()) by_rays = crowded_.at(room.light, crowd, places, exact);
-        std::size_t next = 0;
-        return fit_values(e, [&](const Point& x) {
-            const Spectrum E = direct_.irradiance(room.light, x, exact);
-            return crowd.empty() ? E : E + by_rays[next++].irradiance;
-        });
-    }
+    /// The nodes of an element's rule.
+    struct Places {
+        Places(const PartOfLight& part, ElementId e)
+            : outline(part.tree_.outline(e)),
+              region(part.tree_.region(e)),
+              n(part.stage_.scene.regions()[region].plane.n) {
+            for (const WeightedPlace& place : element_rule(part.tree_, e, RuleOrder::fine))
+                places.push_back(part.tree_.patch(e).at(place.uv));
+        }
+        PlaceLight::Polygon polygon() const { return {outline, n, region, places}; }
 
-    template <class Value>
-    DirectFit fit_values(ElementId e, const Value& value_at) const {
+        std::vector<Point> outline, places;
+        RegionId region;
+        Normal n;
+    };
+
+    DirectFit fit_found(ElementId e, std::span<const PlaceLight::Estimate> found) const {
         DirectFit out;
         const std::vector<WeightedPlace> places = element_rule(tree_, e, RuleOrder::fine);
         std::vector<Spectrum> values;
-        for (const WeightedPlace& place : places) {
-            values.push_back(value_at(tree_.patch(e).at(place.uv)));
-            out.mean += place.weight * values.back();
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            values.push_back(found[i].irradiance);
+            out.mean += places[i].weight * values.back();
         }
         const ElementFit fit(tree_, e, places, values);
         for (int i = 0; i < tree_.patch(e).corner_count(); ++i)
@@ -92,8 +78,7 @@ class PartOfLight {
     const Stage& stage_;
     const ElementTree& tree_;
     DirectLight direct_;
-    ClusteredLight clustered_;
-    CrowdedLight crowded_;
+    PlaceLight place_light_;
 };
 
 /// Mean of w E_dir over the elements, estimated from a subset with loose accuracy.

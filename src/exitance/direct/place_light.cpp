@@ -1,0 +1,131 @@
+#include "exitance/direct/place_light.hpp"
+
+#include <cmath>
+
+#include "exitance/base/polygon.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/direct/mirrored_light.hpp"
+
+namespace exitance {
+namespace {
+
+// Work in units of VisibilityWorkspace::work, about that of a ray, measured by `bench/exitance-bench`.
+constexpr double work_of_shaft = 10;     ///< Search for the blockers between a polygon and a source.
+constexpr double work_of_blocker = 6;    ///< A blocker that is clipped from a source, if there are many fragments.
+constexpr double work_of_integral = 20;  ///< Integral of a directed radiance over a fragment.
+
+}  // namespace
+
+PlaceLight::PlaceLight(const DirectLight& direct, const RayTracer& tracer) : direct_(&direct), rays_(direct, tracer) {
+    for (const DirectLight::Emitter& emitter : direct.emitters()) {
+        const bool is_directed = emitter.radiance.is_directed();
+        const double pieces = static_cast<double>(emitter.pieces.size());
+        preparing_ += (work_of_shaft + (is_directed ? work_of_integral : 0)) * pieces;
+        // Even if every piece blocks every source; integrals over fragments have no such bound.
+        most_work_ += is_directed ? HUGE_VAL : pieces * static_cast<double>(direct.occluders().pieces().size());
+    }
+    if (panes_may_mirror_light(direct.scene()))
+        mirrored_ = std::make_unique<const MirroredLight>(direct.scene(), tracer);
+}
+
+PlaceLight::~PlaceLight() = default;
+
+/// Adds light that panes mirror, from both sides of a diffusing pane.
+void PlaceLight::add_mirrored(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
+                              Estimate& out) const {
+    if (!mirrored_) return;
+    // If no error is allowed: about the accuracy of closed forms through panes (glazed_form_factor).
+    constexpr LightAccuracy finest{.relative = 1e-3};
+    const LightAccuracy& required = accuracy.relative > 0 || accuracy.absolute > 0 ? accuracy : finest;
+    const RegionId behind = direct_->occluders().scene().behind(own);
+    const double through = behind.is_none() ? 0 : direct_->occluders().scene().material(own).through;
+    const double E = mean(out.irradiance);
+    const auto add = [&](double share, const Normal& normal, RegionId side) {
+        const MirroredLight::Estimate found =
+            mirrored_->at(direct_->receiver(x, normal, side), E, required, RayLight::key_of(x, side));
+        out.irradiance += share * found.irradiance, out.parallel += share * found.parallel;
+        out.variance += share * share * found.variance, out.rays += found.rays;
+    };
+    add(1 - through, n, own);
+    if (!behind.is_none()) add(through, -n, behind);
+}
+
+Spectrum PlaceLight::mirrored_images(const Receiver& at, std::size_t most, std::uint64_t key) const {
+    return mirrored_ ? mirrored_->images(at, most, key).irradiance : Spectrum();
+}
+
+PlaceLight::Estimate PlaceLight::by_rays(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
+                                         Workspace& room) const {
+    Estimate out = rays_.at(x, n, own, accuracy, room);
+    add_mirrored(x, n, own, accuracy, out);
+    return out;
+}
+
+PlaceLight::Estimate PlaceLight::at(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
+                                    Workspace& room) const {
+    std::optional<Spectrum> exact;
+    if (accuracy.relative > 0 || accuracy.absolute > 0) {
+        const double of_one = RayLight::rays_for(std::max(accuracy.relative, RayLight::error_of(accuracy.most_rays)));
+        const double work =
+            most_work_ <= of_one || !(accuracy.absolute > 0) ? of_one : rays_.forecast(x, n, own, accuracy, room);
+        exact = most_work_ <= work ? direct_->irradiance(x, n, own, room.exact)
+                                   : direct_->irradiance_within(x, n, own, work, room.exact);
+        if (!exact) return by_rays(x, n, own, accuracy, room);
+    } else {
+        exact = direct_->irradiance(x, n, own, room.exact);
+    }
+    Estimate out{.irradiance = *exact};
+    add_mirrored(x, n, own, accuracy, out);
+    return out;
+}
+
+/// Work of exact light at one place of a prepared polygon.
+double PlaceLight::exact_work(const ReceiverLight& light) const {
+    double work = 0;
+    for (const ReceiverLight::Source& source : light.sources) {
+        if (source.in_batch || source.far_factor >= 0) continue;
+        const double blockers = source.count;
+        work += 1 + work_of_blocker * blockers;
+        if (direct_->emitters()[source.emitter].radiance.is_directed()) work += work_of_integral * (1 + blockers);
+    }
+    return light.behind.empty() ? work : work + exact_work(light.behind[0]);
+}
+
+DirectLight::WorthCounting PlaceLight::worth_counting(double work) {
+    return [work](const SourceName&) { return static_cast<std::size_t>(work / work_of_blocker); };
+}
+
+/// Prepares exact light at places of a polygon. Returns false if one place certainly takes more than `work`.
+bool PlaceLight::prepare(const Polygon& on, double work, const std::vector<SourceName>* named, Workspace& room) const {
+    const DirectLight::WorthCounting worth = work < HUGE_VAL ? worth_counting(work) : DirectLight::WorthCounting();
+    if (named)
+        direct_->prepare(on.outline, on.n, on.own, *named, room.light_, room.exact, worth);
+    else
+        direct_->prepare(on.outline, on.n, on.own, room.light_, room.exact, worth);
+    return !room.light_.has_crowded() && exact_work(room.light_) <= work;
+}
+
+bool PlaceLight::exact_at_places(const Polygon& on, const std::vector<SourceName>* named, const LightAccuracy& accuracy,
+                                 Workspace& room, std::vector<Estimate>& out) const {
+    double work = HUGE_VAL;
+    if (accuracy.relative > 0 || accuracy.absolute > 0) {
+        const double preparing = named ? work_of_shaft * static_cast<double>(named->size()) : preparing_;
+        work = rays_.forecast(centroid(on.outline), on.n, on.own, accuracy, room) -
+               preparing / static_cast<double>(on.places.size());
+    }
+    if (work <= 0 || !prepare(on, work, named, room)) return false;
+    out.assign(on.places.size(), {});
+    for (std::size_t i = 0; i < out.size() && !room.light_.is_dark(); ++i)
+        out[i].irradiance = direct_->irradiance(room.light_, on.places[i], room.exact, &out[i].parallel);
+    for (std::size_t i = 0; i < out.size(); ++i) add_mirrored(on.places[i], on.n, on.own, accuracy, out[i]);
+    return true;
+}
+
+void PlaceLight::at_places(const Polygon& on, const LightAccuracy& accuracy, Workspace& room,
+                           std::vector<Estimate>& out) const {
+    if (exact_at_places(on, nullptr, accuracy, room, out)) return;
+    out.clear();
+    for (const Point& x : on.places) out.push_back(by_rays(x, on.n, on.own, accuracy, room));
+}
+
+}  // namespace exitance

@@ -1,0 +1,376 @@
+#include "exitance/direct/ray_light.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "exitance/base/polygon.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/visibility/glazed_part.hpp"
+#include "exitance/visibility/window_view.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr double strong_share = 1.0 / 8;  ///< Share of the unoccluded light above which a source has its own rays.
+
+/// Standard deviation of one ray to a half-hidden source, relative to its unoccluded light. Also the uncertainty of
+/// features smaller than the light of one ray, as a share of that light.
+constexpr double half_hidden = 0.5;
+
+constexpr std::uint32_t least_pilot = 16, most_pilot = 64, least_rays_of_part = 4;
+constexpr std::uint32_t fastest_growth = 16;  ///< Per round: a variance from few rays is uncertain.
+
+/// Nearly hidden light needs no better accuracy than light of this share of the unoccluded light.
+constexpr double min_share = 0.05;
+
+std::size_t facet_count(const DistantLight::Dome& dome) {
+    DistantLight alone;
+    alone.domes.push_back(dome);
+    return distant_facets(alone).size();
+}
+
+/// The domes of the scene whose facets are among the emitters.
+DistantLight kept_domes(const DirectLight& direct) {
+    DistantLight out;
+    std::vector<std::uint32_t> dome_of;  // per facet, in the order of distant_facets()
+    const std::vector<DistantLight::Dome>& domes = direct.occluders().scene().distant().domes;
+    for (std::uint32_t i = 0; i < domes.size(); ++i) dome_of.resize(dome_of.size() + facet_count(domes[i]), i);
+    std::vector<std::uint8_t> is_kept(domes.size(), 0);
+    for (const DirectLight::Emitter& emitter : direct.emitters()) {
+        if (emitter.sky != DirectLight::Emitter::Sky::open) continue;
+        const PieceId piece = *emitter.pieces.begin();
+        is_kept[dome_of[piece.value - direct.occluders().distant_pieces().front().value]] = 1;
+    }
+    for (std::size_t i = 0; i < domes.size(); ++i)
+        if (is_kept[i]) out.domes.push_back(domes[i]);
+    return out;
+}
+
+bool is_grey(const Spectrum& s) {
+    return std::all_of(s.value.begin(), s.value.end(), [&](double v) { return v == s[0]; });
+}
+
+std::uint32_t power_of_two(double rays, std::uint32_t least, std::uint32_t most) {
+    return std::bit_ceil(
+        static_cast<std::uint32_t>(std::clamp(rays, static_cast<double>(least), static_cast<double>(most))));
+}
+
+}  // namespace
+
+std::uint64_t RayLight::key_of(const Point& x, RegionId own) {
+    const auto bits = [](double c) { return std::bit_cast<std::uint64_t>(c); };
+    return hash(static_cast<std::uint64_t>(Stream::direct), bits(x.x), bits(x.y), bits(x.z), own.value);
+}
+
+Spectrum RayLight::Estimate::standard_error() const {
+    const double level = mean(irradiance), error = std::sqrt(variance);
+    return level > 0 ? error / level * irradiance : Spectrum(error);
+}
+
+double RayLight::rays_for(double relative_error) {
+    return std::pow(half_hidden / relative_error, 4.0 / 3);
+}
+
+double RayLight::error_of(double rays) {
+    return half_hidden * std::pow(rays, -0.75);
+}
+
+RayLight::RayLight(const DirectLight& direct, const RayTracer& tracer)
+    : direct_(&direct),
+      tracer_(&tracer),
+      tree_(direct),
+      sky_(kept_domes(direct)),
+      size_(direct.occluders().scene().size()) {
+    for (std::uint32_t e = 0; e < direct.emitters().size(); ++e) {
+        const DirectLight::Emitter& emitter = direct.emitters()[e];
+        if (!direct.looks_far(e) || emitter.sky != DirectLight::Emitter::Sky::none) continue;
+        const PieceId piece = *emitter.pieces.begin();
+        const std::span<const Point> corners = direct.occluders().corners(piece);
+        discs_.push_back(
+            {{e, piece},
+             SeenPolygon(corners, emitter.plane.n, norm(area_vector(corners)), direct.occluders().middle())});
+    }
+    for (const Pane& pane : direct.occluders().scene().panes()) is_coloured_ |= !is_grey(pane.transmissivity);
+}
+
+Spectrum RayLight::Part::light() const {
+    Spectrum all, arrived;
+    for (const Block& b : blocks) all += b.all, arrived += b.arrived;
+    if (kind == Kind::others) return arrived / static_cast<double>(rays);
+    Spectrum out;
+    for (std::size_t b = 0; b < bands; ++b) out[b] = all[b] > 0 ? open[b] * arrived[b] / all[b] : 0;
+    return out;
+}
+
+/// Variance of the mean over bands, from the spread of eighths of the rays, each of which is stratified (of quarters,
+/// if there are few rays).
+double RayLight::Part::variance() const {
+    std::array<double, 8> all{}, arrived{};
+    const std::size_t count = std::min<std::size_t>(all.size(), blocks.size());
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        const std::size_t q = count * i / blocks.size();
+        all[q] += mean(blocks[i].all), arrived[q] += mean(blocks[i].arrived);
+    }
+    const double L = mean(open), n = rays, groups = static_cast<double>(count);
+    const double whole = std::accumulate(all.begin(), all.end(), 0.0);
+    const double part = std::accumulate(arrived.begin(), arrived.end(), 0.0);
+    if (!(whole > 0)) return std::pow(half_hidden * L, 2) / (kind == Kind::others ? n * n : 1);
+    double squares = 0;
+    for (std::size_t q = 0; q < count; ++q)
+        squares += std::pow(kind == Kind::others ? arrived[q] - part / groups : arrived[q] - part / whole * all[q], 2);
+    const double scale = kind == Kind::others ? 1 / n : L / whole;
+    const double missed = half_hidden * L / n;
+    return groups / (groups - 1) * squares * scale * scale + missed * missed;
+}
+
+/// Unoccluded light of a piece of an emitter.
+Spectrum RayLight::open_light(const Receiver& at, const DirectLight::SourceName& source, Workspace& room) const {
+    const DirectLight::Emitter& emitter = direct_->emitters()[source.emitter];
+    if (!direct_->shines_on(emitter, at.own)) return {};
+    return visible_form_factor(direct_->occluders(), at, source.piece, {}, room.exact, emitter.radiance) *
+           emitter.exitance;
+}
+
+void RayLight::add_discs(const Receiver& at, Workspace& room) const {
+    if (discs_.empty()) return;
+    if (room.disc_light_.empty() || !(room.disc_normal_ == at.n)) {
+        room.disc_normal_ = at.n, room.disc_light_.clear();
+        for (const Disc& disc : discs_) room.disc_light_.push_back(open_light(at, disc.name, room));
+    }
+    for (std::size_t i = 0; i < discs_.size(); ++i)
+        if (max(room.disc_light_[i]) > 0)
+            room.parts_.push_back({.kind = Part::Kind::piece,
+                                   .source = discs_[i].name,
+                                   .open = room.disc_light_[i],
+                                   .seen = &discs_[i].seen,
+                                   .from = direct_->occluders().middle()});
+}
+
+void RayLight::add_piece(const Receiver& at, const DirectLight::SourceName& source, Workspace& room) const {
+    const Spectrum open = open_light(at, source, room);
+    if (!(max(open) > 0)) return;
+    const std::span<const Point> corners = direct_->occluders().corners(source.piece);
+    const Normal& n = direct_->emitters()[source.emitter].plane.n;
+    room.parts_.push_back({.kind = Part::Kind::piece,
+                           .source = source,
+                           .open = open,
+                           .seen = &room.seen_.emplace_back(corners, n, norm(area_vector(corners)), at.x),
+                           .from = at.x});
+}
+
+/// Finds the parts of the light at a receiver and the numbers of their first rays. Returns the unoccluded light, mean
+/// over bands.
+double RayLight::find_parts(const Receiver& at, const LightAccuracy& accuracy, Workspace& room) const {
+    room.parts_.clear(), room.seen_.clear();
+    if (!sky_.empty() && !direct_->occluders().enclosure().holds(at.own)) {
+        sky_.aim(at.n, room.aim_);
+        if (room.aim_.weight[0] > 0) room.parts_.push_back({.kind = Part::Kind::sky, .open = room.aim_.open});
+    }
+    add_discs(at, room);
+    tree_.cut(at, accuracy.relative / 2, accuracy.absolute / 2, room.cut_);
+    double total = 0, chance = 0;
+    for (const Part& part : room.parts_) total += mean(part.open);
+    total += room.cut_.light;
+    room.chance_before_.assign(1, 0);
+    Spectrum others;
+    for (const EmitterTree::Term& term : room.cut_.terms) {
+        const EmitterTree::Node& node = tree_.nodes()[term.node];
+        const bool is_strong = node.is_leaf() && term.light > strong_share * total;
+        if (is_strong) add_piece(at, tree_.sources()[node.first].name, room);
+        // Clusters of unknown light have a chance in proportion to its bound.
+        const double own = is_strong ? 0 : term.light + term.error;
+        chance += own;
+        room.chance_before_.push_back(chance);
+        others += own * node.colour;
+    }
+    if (chance > 0) room.parts_.push_back({.kind = Part::Kind::others, .open = others});
+    double open = 0;
+    for (const Part& part : room.parts_) open += mean(part.open);
+    if (!(open > 0)) return 0;
+    const double pilot =
+        std::clamp(0.5 * rays_for(std::max(accuracy.allowed(open) / open, 1e-9)), 1.0 * least_pilot, 1.0 * most_pilot);
+    for (Part& part : room.parts_)
+        part.block = power_of_two(pilot * mean(part.open) / open, least_rays_of_part, most_pilot) / 4;
+    return open;
+}
+
+/// Adds the rays of a part up to number `last` to the batch.
+void RayLight::add_rays(const Receiver& at, Part& part, std::uint32_t last, std::uint64_t key, Workspace& room) const {
+    const auto number = static_cast<std::uint32_t>(&part - room.parts_.data());
+    const std::size_t count = last - part.rays;
+    const ScrambledSobol places(hash(
+        key, part.kind == Part::Kind::piece ? part.source.piece.value + 2ull : static_cast<std::uint64_t>(part.kind)));
+    room.s_.resize(count), room.t_.resize(count), room.u_.resize(count);
+    places.fill(part.rays, 0, room.s_), places.fill(part.rays, 1, room.t_);
+    if (part.kind == Part::Kind::others) places.fill(part.rays, 2, room.u_);
+    part.blocks.resize(last / part.block);
+    const Occluders& occluders = direct_->occluders();
+    const double reach = 2 * (size_ + norm(at.x - occluders.middle()));
+    const auto add = [&](std::uint32_t i, const Point& to, RegionId region, const Spectrum& weight, bool is_distant,
+                         PieceId window) {
+        part.blocks[i / part.block].all += weight;
+        room.rays_.push_back({number, i / part.block, is_distant, window, weight});
+        room.from_.push_back({at.x, at.own}), room.to_.push_back({to, region});
+    };
+    /// Adds a ray to a point y of an emitter; `scale`: 1 / (pi density), or 1 if only the ratio of weights matters.
+    const auto add_towards = [&](std::uint32_t i, const DirectLight::SourceName& source, const Point& y,
+                                 const Point& from, double weight) {
+        const DirectLight::Emitter& emitter = direct_->emitters()[source.emitter];
+        const Vec3 d = y - from;
+        weight *= emitter.radiance.towards(from, y);
+        if (!(weight > 0)) return;
+        const bool is_window = emitter.sky == DirectLight::Emitter::Sky::window;
+        constexpr double before = 1e-5;  // share of the scene's size: rays end in front of a window's pane
+        const double length = norm(d);
+        const double way = direct_->looks_far(source.emitter) ? std::min(1.0, reach / length)
+                           : is_window                        ? std::max(0.5, 1 - before * size_ / length)
+                                                              : 1;
+        add(i, at.x + way * d, emitter.region, weight * emitter.exitance, direct_->is_distant(source.emitter),
+            is_window && looks_out_on_faces(occluders, source.piece) ? source.piece : PieceId());
+    };
+    std::size_t term = 0;
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const std::uint32_t i = part.rays + k;
+        const double s = room.s_[k], t = room.t_[k];
+        if (part.kind == Part::Kind::sky) {
+            const SkyTree::Direction to = sky_.direction(room.aim_, s, t);
+            const double cosine = dot(at.n, to.w);
+            if (cosine <= 0) continue;
+            const Spectrum light = occluders.scene().distant().radiosity(to.w, false);
+            add(i, at.x + reach * to.w, RegionId(), cosine / (pi * to.density) * light, true, PieceId());
+        } else if (part.kind == Part::Kind::piece) {
+            const Point y = part.seen->at(s, t);
+            add_towards(i, part.source, y, part.from, part.seen->weight(y - part.from, at.n));
+        } else {
+            const std::vector<double>& before = room.chance_before_;
+            const double wanted = room.u_[k] * before.back();
+            term = static_cast<std::size_t>(std::upper_bound(before.begin() + 1, before.end() - 1, wanted) -
+                                            before.begin()) -
+                   1;
+            const EmitterTree::Node& node = tree_.nodes()[room.cut_.terms[term].node];
+            const double chance = (before[term + 1] - before[term]) / before.back();
+            if (!(chance > 0)) continue;
+            const double within = std::clamp((wanted - before[term]) / (before[term + 1] - before[term]), 0.0, 1.0);
+            const auto first = tree_.power_before().begin() + node.first,
+                       end = tree_.power_before().begin() + node.last;
+            const auto found = std::upper_bound(first + 1, end, *first + within * (*end - *first));
+            const EmitterTree::Source& source =
+                tree_.sources()[static_cast<std::size_t>(found - tree_.power_before().begin()) - 1];
+            const DirectLight::Emitter& emitter = direct_->emitters()[source.name.emitter];
+            if (!direct_->shines_on(emitter, at.own)) continue;
+            const Point y = uniform_on(occluders.corners(source.name.piece), source.area, s, t);
+            const Vec3 d = y - at.x;
+            const double above = dot(at.n, d), below = -dot(emitter.plane.n, d), squared = squared_norm(d);
+            if (above <= 0 || below <= 0) continue;
+            const double density = chance * source.power / node.power / source.area;
+            add_towards(i, source.name, y, at.x, above * below / (pi * squared * squared * density));
+        }
+    }
+    part.rays = last;
+}
+
+/// Rays through a window to the sky are continued behind its pane, whose transmission is part of the radiance.
+void RayLight::continue_through_windows(const Receiver& at, Workspace& room) const {
+    room.onwards_.clear(), room.onwards_from_.clear(), room.onwards_to_.clear();
+    for (std::size_t i = 0; i < room.rays_.size(); ++i) {
+        if (room.blocked_[i] || room.rays_[i].window.is_none()) continue;
+        constexpr double step = 3e-5, beyond_all = 2;  // shares of the scene's size
+        const Point& end = room.to_[i].at;
+        const Vec3 w = normalized(end - at.x);
+        room.onwards_.push_back(i);
+        room.onwards_from_.push_back({end + (step * size_) * w, RegionId()});
+        room.onwards_to_.push_back({end + (beyond_all * size_) * w, RegionId()});
+    }
+    const auto hidden = std::make_unique<bool[]>(room.onwards_.size());
+    tracer_->occluded(room.onwards_from_, room.onwards_to_, std::span(hidden.get(), room.onwards_.size()));
+    for (std::size_t k = 0; k < room.onwards_.size(); ++k) room.blocked_[room.onwards_[k]] = hidden[k];
+}
+
+/// Traces the batch and adds what arrives to the blocks.
+void RayLight::trace(const Receiver& at, Workspace& room) const {
+    if (room.blocked_size_ < room.rays_.size()) {
+        room.blocked_size_ = std::bit_ceil(room.rays_.size());
+        room.blocked_ = std::make_unique<bool[]>(room.blocked_size_);
+    }
+    tracer_->occluded(room.from_, room.to_, std::span(room.blocked_.get(), room.rays_.size()));
+    const auto ends_at_window = [](const Workspace::Ray& ray) { return !ray.window.is_none(); };
+    if (std::any_of(room.rays_.begin(), room.rays_.end(), ends_at_window)) continue_through_windows(at, room);
+    for (std::size_t i = 0; i < room.rays_.size(); ++i) {
+        if (room.blocked_[i]) continue;
+        Workspace::Ray& ray = room.rays_[i];
+        if (is_coloured_) {  // rays pass by the mean of the bands
+            const Spectrum T = transmission_between(direct_->occluders().scene().panes(), at.x, room.to_[i].at);
+            ray.weight *= T / mean(T);
+        }
+        Part& part = room.parts_[ray.part];
+        part.blocks[ray.block].arrived += ray.weight;
+        if (ray.is_distant) part.distant += ray.weight;
+    }
+    room.rays_.clear(), room.from_.clear(), room.to_.clear();
+}
+
+RayLight::Estimate RayLight::on_side(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
+                                     Workspace& room) const {
+    const Receiver at = direct_->receiver(x, n, own);
+    const std::uint64_t key = key_of(x, own);
+    Estimate out;
+    const double open = find_parts(at, accuracy, room);
+    for (Part& part : room.parts_) add_rays(at, part, 4 * part.block, key, room);
+    for (bool grows = true; grows;) {
+        trace(at, room);
+        out = Estimate();
+        double rates = 0;  // sum of c^(2/5), c the variance of one ray
+        for (const Part& part : room.parts_) {
+            const double variance = part.variance();
+            out.irradiance += part.light(), out.variance += variance, out.rays += part.rays;
+            rates += std::pow(variance * std::pow(part.rays, 1.5), 0.4);
+        }
+        // Less than the light found by a standard deviation: light that is overestimated must not end the search.
+        const double least = std::max(mean(out.irradiance) - std::sqrt(out.variance), min_share * open);
+        const double allowed = accuracy.allowed(least);
+        const double limit = allowed * allowed;
+        if (out.variance <= limit || out.rays >= accuracy.most_rays) break;
+        // The variance sum of c_i n_i^(-3/2) is reached with fewest rays by n_i in proportion to c_i^(2/5).
+        grows = false;
+        const double scale = std::pow(rates / limit, 2.0 / 3);
+        for (Part& part : room.parts_) {
+            const double wanted = scale * std::pow(part.variance() * std::pow(part.rays, 1.5), 0.4);
+            const std::uint32_t rays =
+                power_of_two(wanted, 1, std::min(fastest_growth * part.rays, accuracy.most_rays));
+            if (rays <= part.rays) continue;
+            add_rays(at, part, rays, key, room);
+            grows = true;
+        }
+    }
+    for (const Part& part : room.parts_)
+        out.parallel += part.kind == Part::Kind::others ? part.distant / static_cast<double>(part.rays)
+                        : part.kind == Part::Kind::sky || direct_->is_distant(part.source.emitter) ? part.light()
+                                                                                                   : Spectrum();
+    if (!direct_->beams().empty()) out.irradiance += direct_->beams().irradiance(at, &out.parallel);
+    return out;
+}
+
+double RayLight::forecast(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
+                          Workspace& room) const {
+    constexpr double work_of_place = 20;  // choosing the parts, measured in rays
+    const double open = find_parts(direct_->receiver(x, n, own), accuracy, room);
+    const double rays = open > 0 ? rays_for(std::max(accuracy.allowed(open) / open, 1e-9)) : 0;
+    return work_of_place + std::clamp(rays, 1.0 * least_pilot, 1.0 * accuracy.most_rays);
+}
+
+RayLight::Estimate RayLight::at(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
+                                Workspace& room) const {
+    const RegionId behind = direct_->occluders().scene().behind(own);
+    const Estimate front = on_side(x, n, own, accuracy, room);
+    if (behind.is_none()) return front;
+    const double through = direct_->occluders().scene().material(own).through, not_through = 1 - through;
+    const Estimate back = on_side(x, -n, behind, accuracy, room);
+    return {not_through * front.irradiance + through * back.irradiance,
+            not_through * front.parallel + through * back.parallel,
+            not_through * not_through * front.variance + through * through * back.variance, front.rays + back.rays};
+}
+
+}  // namespace exitance

@@ -1,0 +1,138 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "exitance/direct/emitter_tree.hpp"
+#include "exitance/direct/light_accuracy.hpp"
+#include "exitance/direct/sky_tree.hpp"
+#include "exitance/direct/source_point.hpp"
+#include "exitance/visibility/rays.hpp"
+
+namespace exitance {
+
+/// Direct light at a place by rays, for scenes in which exact visible parts are too expensive: thousands of faces under
+/// a sky, thousands of emitters, or many blockers. The light is a sum over parts: the sky, strong emitters and discs of
+/// the sun one by one, and all other emitters together.
+///
+///     E = sum over parts of  L sum over rays of w_i V_i / sum over rays of w_i,    w_i = (radiance cos) / density,
+///
+/// where L is the light of the part without occlusion. Rays to the sky have the density of radiance times cosine
+/// (SkyTree), rays to an emitter that of its area or solid angle (SeenPolygon), rays to the other emitters choose one
+/// by a cut through the tree of emitters [Walter05]; there the mean of w V is used, since L is not known exactly. The
+/// mean over many places is the exact light. Rays are points of a scrambled Sobol sequence, so that the error falls
+/// about as n^(-3/4) where light is cut by edges. The sequence depends on the coordinates of the place alone: every
+/// caller gets the same light there.
+///
+/// A pilot of a few rays per part estimates variances; rays are then added to each part in the proportion that reaches
+/// the required accuracy with fewest. Panes let rays pass at random, in proportion to their transmission. Light of
+/// punctual lights is exact.
+class RayLight {
+  public:
+    /// Both must outlive it.
+    RayLight(const DirectLight& direct, const RayTracer& tracer);
+
+    class Workspace;
+    struct Estimate {
+        Spectrum irradiance = {};  ///< W/m^2
+        Spectrum parallel = {};    ///< The part of it from sky and sun.
+        double variance = 0;       ///< Variance of the mean over bands, (W/m^2)^2; 0: exact.
+        std::size_t rays = 0;      ///< Number of rays cast.
+
+        Spectrum standard_error() const;  ///< Per band, in proportion to the light of the band, W/m^2.
+    };
+
+    /// Returns the light at x on region `own` (none: in free space). About 0.2 us per ray.
+    Estimate at(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy, Workspace& room) const;
+
+    /// Forecasts the work of at(), in rays.
+    double forecast(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
+                    Workspace& room) const;
+
+    /// Returns the number of rays after which stratified rays reach an error, relative to the unoccluded light of a
+    /// source that is half hidden.
+    static double rays_for(double relative_error);
+    /// Returns the random key of a place.
+    static std::uint64_t key_of(const Point& x, RegionId own);
+    /// Returns the inverse of rays_for().
+    static double error_of(double rays);
+
+    /// The tree of the emitters that are not parts of the open sky.
+    const EmitterTree& emitters() const { return tree_; }
+
+  private:
+    struct Part;
+    Estimate on_side(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
+                     Workspace& room) const;
+    double find_parts(const Receiver& at, const LightAccuracy& accuracy, Workspace& room) const;
+    void add_discs(const Receiver& at, Workspace& room) const;
+    void add_piece(const Receiver& at, const DirectLight::SourceName& source, Workspace& room) const;
+    Spectrum open_light(const Receiver& at, const DirectLight::SourceName& source, Workspace& room) const;
+    void add_rays(const Receiver& at, Part& part, std::uint32_t last, std::uint64_t key, Workspace& room) const;
+    void trace(const Receiver& at, Workspace& room) const;
+    void continue_through_windows(const Receiver& at, Workspace& room) const;
+
+    const DirectLight* direct_;
+    const RayTracer* tracer_;
+    EmitterTree tree_;
+    SkyTree sky_;
+    /// A disc of the sun, as seen from every place.
+    struct Disc {
+        DirectLight::SourceName name;
+        SeenPolygon seen;
+    };
+    std::vector<Disc> discs_;
+    double size_ = 0;           ///< m
+    bool is_coloured_ = false;  ///< True if a pane's transmission differs between bands.
+};
+
+/// A source of light that has its own rays.
+struct RayLight::Part {
+    enum class Kind : std::uint8_t { sky, piece, others } kind = Kind::sky;
+    DirectLight::SourceName source = {};  ///< For a piece.
+    Spectrum open;                        ///< Light without occlusion, W/m^2; for `others` an estimate.
+    const SeenPolygon* seen = nullptr;    ///< For a piece.
+    Point from = {};                      ///< Viewpoint of a piece: the place, or the scene's middle for the sun.
+    std::uint32_t rays = 0;               ///< Rays cast so far: a power of two.
+    std::uint32_t block = 1;              ///< Rays per block.
+    /// Sums over a block of rays: of the weights, and of the weights of the rays that arrive.
+    struct Block {
+        Spectrum all, arrived;
+    };
+    std::vector<Block> blocks = {};
+    Spectrum distant = {};  ///< Sum over arriving rays from outside; `others` only.
+
+    Spectrum light() const;
+    double variance() const;
+};
+
+/// Temporary storage; one per thread, for one RayLight.
+class RayLight::Workspace {
+  public:
+    DirectLight::Workspace exact;
+
+  private:
+    friend RayLight;
+    struct Ray {
+        std::uint32_t part, block;
+        bool is_distant;
+        PieceId window;  ///< None unless the ray must be continued beyond a window.
+        Spectrum weight;
+    };
+    std::vector<Part> parts_;
+    std::deque<SeenPolygon> seen_;
+    SkyTree::Aim aim_;
+    Normal disc_normal_;                ///< Normal of the receiver for which
+    std::vector<Spectrum> disc_light_;  ///< the unoccluded light of each disc is known; empty: none.
+    EmitterTree::Cut cut_;
+    std::vector<double> chance_before_;  ///< Prefix sums of the chances of the terms of `others`.
+    std::vector<Ray> rays_;
+    std::vector<SurfacePoint> from_, to_, onwards_from_, onwards_to_;
+    std::vector<std::size_t> onwards_;
+    std::vector<double> s_, t_, u_;
+    std::unique_ptr<bool[]> blocked_;
+    std::size_t blocked_size_ = 0;
+};
+
+}  // namespace exitance
