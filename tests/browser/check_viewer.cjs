@@ -50,11 +50,12 @@ async function compare(page, picture) {
         if (process.env.KEEP) fs.writeFileSync(path.join(process.env.KEEP, name + '.png'), Buffer.from(shown.split(',')[1], 'base64'));
         return shown;
     };
-    const delivered = await keep('delivered');
-    await page.selectOption('#source', 'exact');
+    await page.evaluate(() => document.querySelectorAll('details').forEach(d => { d.open = true; }));
     await page.waitForFunction(() => exitance.whole());
     const exact = await keep('exact'), apart = await difference(page, exact, png(picture));
-    check(apart < 0.01, `the exact picture differs from render by ${(100 * apart).toFixed(2)}% of white (1% allowed)`);
+    check(apart < 0.01, `the picture at rest differs from render by ${(100 * apart).toFixed(2)}% of white (1% allowed)`);
+    await page.selectOption('#source', 'delivered');
+    const delivered = await keep('delivered');
     await page.selectOption('#source', 'raw');
     await page.waitForFunction(() => document.body.dataset.raw);
     const raw = await keep('raw'), rough = await difference(page, raw, delivered);
@@ -71,9 +72,9 @@ async function compare(page, picture) {
     await page.selectOption('#arrangement', 'panes');
     await page.waitForFunction(() => exitance.whole());
     await keep('panes');
-    check(await page.textContent('#panes') === 'rawdeliveredexact', 'three panes with their names');
+    check(await page.textContent('#panes') === "method's elementscontinuousexact", 'three panes with their names');
     await page.selectOption('#arrangement', 'one');
-    await page.selectOption('#source', 'delivered');
+    await page.selectOption('#source', 'best');
 }
 
 async function check_solution(page) {
@@ -88,16 +89,18 @@ async function check_solution(page) {
     const picture = path.join(folder, 'render.png');
     execFileSync(exitance, ['render', solution, '-o', picture, '--size', drawn.join('x'), '--camera', words,
         '--exposure', exposure + 'x', '--tone-map', 'filmic', '-q']);
+    await page.evaluate(() => document.querySelectorAll('details').forEach(d => { d.open = true; }));
+    await page.selectOption('#source', 'delivered');
     const shown = await page.evaluate(() => exitance.canvas());
     if (process.env.KEEP) fs.writeFileSync(path.join(process.env.KEEP, 'viewer.png'), Buffer.from(shown.split(',')[1], 'base64'));
     const apart = await difference(page, shown, png(picture));
-    check(apart < 0.03, `differs from render by ${(100 * apart).toFixed(2)}% of white on average (3% allowed)`);
-    await page.mouse.click(size[0] * 0.75, size[1] * 0.6);
-    await page.waitForFunction(() => /element/.test(document.getElementById('point').textContent), null, {timeout: 10000});
-    check(true, 'picks: ' + (await page.textContent('#point')).replaceAll('\n', '; ').slice(0, 120));
+    check(apart < 0.03, `while moving it differs from render by ${(100 * apart).toFixed(2)}% of white on average (3% allowed)`);
+    await page.selectOption('#source', 'best');
+    await check_answers(page, origin);
     await compare(page, picture);
     await page.selectOption('#quantity', 'irradiance');
     check(await page.isVisible('#legend') && /W\/m²|lx/.test(await page.textContent('#legend')), 'a legend with units');
+    await check_colours(page);
     await page.focus('#picture');
     await page.keyboard.press('m');
     check(await page.isChecked('#mesh'), 'the keyboard shows the mesh');
@@ -113,8 +116,106 @@ async function check_solution(page) {
     program.kill();
 }
 
+/** A value under the pointer, and a card with the exact one, which agrees with `probe`. */
+async function check_answers(page) {
+    const [x, y] = [size[0] * 0.4, size[1] * 0.7];
+    await page.mouse.move(x, y);
+    await page.waitForFunction(() => !document.getElementById('hover').hidden);
+    const hover = await page.textContent('#hover');
+    await page.mouse.click(x, y);
+    await page.waitForFunction(() => /reflected/.test(document.getElementById('card').textContent), null, {timeout: 10000});
+    const card = await page.textContent('#card'), exact = parseFloat(await page.textContent('#card strong'));
+    check(/W\/m²|lx/.test(hover) && Math.abs(parseFloat(hover) - exact) < 0.3 * exact, `${hover} under the pointer, ${exact} on the card`);
+    const box = await page.locator('#card').boundingBox();
+    check(box.x >= 0 && box.y >= 0 && box.x + box.width <= size[0] && box.y + box.height <= size[1] && Math.abs(box.x - x) < 300,
+        'the card is in the picture, near the point');
+    const light = await page.evaluate(() => exitance.canvas());
+    await page.click('#card >> text=Hide object');
+    check(await difference(page, light, await page.evaluate(() => exitance.canvas())) > 0.003, 'an object is hidden from its card: ' + card.slice(0, 40));
+    await page.click('#objects_all');
+    await page.focus('#picture');
+    await page.keyboard.press('Escape');
+    check(await page.isHidden('#card'), 'Esc closes the card');
+}
+
+/** The range of the colours by its handles and numbers, the palette, and the threshold. */
+async function check_colours(page) {
+    const read = () => page.evaluate(() => [document.getElementById('legend').textContent, exitance.canvas()]);
+    const [words, shown] = await read();
+    await page.focus('#scale_hi');
+    for (let i = 0; i < 100; ++i) await page.keyboard.press('ArrowLeft');
+    const [narrow, brighter] = await read();
+    check(narrow !== words && await difference(page, shown, brighter) > 0.005, 'the upper handle changes legend and picture');
+    await page.selectOption('#palette', 'inferno');
+    check(await difference(page, brighter, (await read())[1]) > 0.01, 'so does the palette');
+    await page.fill('#threshold', await page.inputValue('#scale_hi_number'));
+    check(/threshold/.test((await read())[0]), 'a threshold is in the legend');
+    await page.fill('#threshold', '');
+    await page.selectOption('#palette', 'viridis');
+    await page.click('#scale_auto');
+    check((await read())[0] === words, 'and the automatic range comes back');
+}
+
+/** Share of the pixels that show backs of faces, and of those that show neither fronts nor backs. */
+async function dark_shares(page) {
+    return page.evaluate(async () => {
+        const image = new Image();
+        image.src = exitance.canvas();
+        await image.decode();
+        const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext('2d');
+        context.drawImage(image, 0, 0);
+        const p = context.getImageData(0, 0, image.width, image.height).data, sky = getComputedStyle(document.documentElement).getPropertyValue('--sky').trim();
+        const [r, g, b] = [1, 3, 5].map(i => parseInt(sky.slice(i, i + 2), 16));
+        let backs = 0, empty = 0;
+        for (let i = 0; i < p.length; i += 4) {
+            if (p[i] === p[i + 1] && p[i] === p[i + 2] && Math.abs(p[i] - 39) <= 1) ++backs;  // srgb(0.02) is 39
+            if (Math.abs(p[i] - r) + Math.abs(p[i + 1] - g) + Math.abs(p[i + 2] - b) <= 3) ++empty;
+        }
+        return [4 * backs / p.length, 4 * empty / p.length];
+    });
+}
+
+/** Drags and walks in ten rooms never leave them; the overview shows light. */
+async function check_rooms(page) {
+    const rooms = [['office', 'nx=1', 'ny=1', 'nfurn=0'], ['office', 'nx=1', 'ny=1', 'nfurn=2', 'books=3'], ['office', 'nx=2', 'ny=1', 'nfurn=1'],
+        ['office', 'nx=1', 'ny=2', 'nfurn=2'], ['cornell'], ['cove'], ['door'], ['gaps'], ['blocker'], ['complex', 'm=1']];
+    let worst = 0, least_lit = 1, tried = 0;
+    for (const [number, words] of rooms.entries()) {
+        const obj = path.join(folder, `room_${number}.obj`), h5 = path.join(folder, `room_${number}.h5`);
+        try {
+            execFileSync(exitance, ['generate', ...words, '-o', obj, '-q'], {stdio: 'pipe'});
+            execFileSync(exitance, ['solve', obj, '-o', h5, '--error', '0.5', '-q'], {stdio: 'pipe'});
+        } catch (error) { check(false, `${words}: ${String(error.stderr ?? error).slice(0, 200)}`); continue; }
+        const {program, origin} = await start(h5);
+        await page.goto(origin);
+        await page.waitForFunction('document.body.dataset.ready');
+        const inside = await page.evaluate(() => exitance.inside());
+        for (const [dx, dy] of [[160, 0], [-320, 40], [200, -80], [-90, 120], [250, 10]]) {
+            await page.mouse.move(320, 220);
+            await page.mouse.down();
+            await page.mouse.move(320 + dx, 220 + dy, {steps: 4});
+            await page.mouse.up();
+            await page.mouse.wheel(0, -600);
+            const [backs, empty] = await dark_shares(page);
+            worst = Math.max(worst, backs, inside ? empty : 0), ++tried;
+            if (backs > 0.05 || (inside && empty > 0.05)) {
+                console.log(`  ${words.join(' ')}: ${(100 * backs).toFixed(1)}% backs, ${(100 * empty).toFixed(1)}% empty at ${await page.evaluate(() => exitance.words())}`);
+                if (process.env.KEEP) await page.screenshot({path: path.join(process.env.KEEP, `lost_${number}.png`)});
+            }
+        }
+        await page.click('#fit');
+        const [backs, empty] = await dark_shares(page);
+        least_lit = Math.min(least_lit, 1 - empty - backs);
+        await page.goto('about:blank');
+        program.kill();
+    }
+    check(tried >= 45 && worst < 0.05, `in ${tried} drags and walks at most ${(100 * worst).toFixed(2)}% of the pixels showed backs of faces or nothing (5% allowed)`);
+    check(least_lit > 0.1, `overviews show the scene in ${(100 * least_lit).toFixed(0)}% of the pixels at least`);
+}
+
 /** A line with its plot and its numbers; lines of equal light; a path that `render` takes. */
 async function check_tools(page) {
+    await page.evaluate(() => document.querySelectorAll('details').forEach(d => { d.open = true; }));
     await page.focus('#picture');
     const plain = await page.evaluate(() => exitance.canvas());
     await page.keyboard.press('i');
@@ -124,14 +225,16 @@ async function check_tools(page) {
     await page.keyboard.press('i');
     await page.keyboard.press('l');
     await page.keyboard.press('Enter');
-    await page.waitForFunction(() => /other end/.test(document.getElementById('point').textContent));
+    await page.waitForFunction(() => /other end/.test(document.getElementById('card').textContent));
     for (let i = 0; i < 3; ++i) await page.keyboard.press('ArrowUp');
     await page.keyboard.press('Enter');
     await page.waitForFunction(() => !document.getElementById('measured').hidden);
+    check(/\d m/.test(await page.textContent('#card')), 'the card has the distance: ' + (await page.textContent('#card')).slice(1, 60).replaceAll('\n', '; '));
+    await page.keyboard.press('Escape');
     check(await page.locator('#plot path').count() === 3, 'a line is plotted for raw, delivered and exact light, by keyboard alone');
     await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
     await page.click('#copy');
-    await page.waitForFunction(() => document.getElementById('point').textContent === 'copied');
+    await page.waitForFunction(() => /Copied/.test(document.getElementById('card').textContent));
     const rows = (await page.evaluate(() => navigator.clipboard.readText())).trim().split('\n');
     check(rows.length === 130 && rows[0].startsWith('s_m,x_m,y_m,z_m,exact'), `its ${rows.length - 1} points are copied as CSV`);
     await page.click('#record');
@@ -155,16 +258,24 @@ async function check_access(page) {
     check(unnamed.length === 0, `controls without a name: ${unnamed.join() || 'none'}`);
     await page.selectOption('#arrangement', 'split');
     await page.evaluate(() => { document.activeElement.blur(); });
+    await page.evaluate(() => document.querySelectorAll('details').forEach(d => { d.open = true; }));
     const wanted = await page.evaluate(() => [...document.querySelectorAll('button, input, select, summary, canvas, [role=separator]')]
-        .filter(e => e.checkVisibility() && !e.disabled).length);
+        .filter(e => e.checkVisibility() && !e.disabled && e.tabIndex >= 0).length);
     const reached = new Set();
     for (let i = 0; i < wanted + 3; ++i) {
         await page.keyboard.press('Tab');
-        reached.add(await page.evaluate(() => { const e = document.activeElement; return e === document.body ? '' : e.id || e.getAttribute('aria-label') || e.tagName; }));
+        reached.add(await page.evaluate(() => {
+            const e = document.activeElement;
+            return e === document.body ? '' : e.id || e.getAttribute('aria-label') || e.tagName + e.textContent;
+        }));
     }
     reached.delete('');
     check(reached.size === wanted, `Tab reaches ${reached.size} of ${wanted} controls`);
     await page.selectOption('#arrangement', 'one');
+    await page.evaluate(() => { document.querySelectorAll('details').forEach(d => { d.open = false; }); document.activeElement.blur(); });
+    const stops = await page.evaluate(() => [...document.querySelectorAll('button, input, select, summary, canvas, [role=separator]')]
+        .filter(e => e.checkVisibility() && !e.disabled && e.tabIndex >= 0).length);
+    check(stops <= 14, `with folded sections there are ${stops} stops of the Tab key (14 allowed)`);
     for (const colorScheme of ['light', 'dark']) {
         await page.emulateMedia({colorScheme});
         const worst = await page.evaluate(() => {
@@ -172,7 +283,7 @@ async function check_access(page) {
             const level = c => c.map(x => x / 255).map(x => x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4)
                 .reduce((sum, x, i) => sum + [0.2126, 0.7152, 0.0722][i] * x, 0);
             let low = [99, ''];
-            for (const e of document.querySelectorAll('aside *, #legend *, #panes *')) {
+            for (const e of document.querySelectorAll('aside *, #bar *, #card *, #legend *, #panes *')) {
                 if (!e.checkVisibility() || ![...e.childNodes].some(n => n.nodeType === 3 && n.data.trim()) || e.closest(':disabled')) continue;
                 let back = null;
                 for (let p = e; p && !back; p = p.parentElement) back = rgb(getComputedStyle(p).backgroundColor);
@@ -195,7 +306,9 @@ async function check_layers(page) {
     let {program, origin} = await start(meshed);
     await page.goto(origin);
     await page.waitForFunction('document.body.dataset.ready');
+    await page.evaluate(() => document.querySelectorAll('details').forEach(d => { d.open = true; }));
     await page.selectOption('#quantity', 'classes');
+    await page.selectOption('#source', 'delivered');
     const [words, drawn] = await page.evaluate(() => [exitance.words(), exitance.size()]);
     const picture = path.join(folder, 'classes.png');
     execFileSync(exitance, ['render', meshed, '-o', picture, '--size', drawn.join('x'), '--camera', words, '--shadow-classes', '-q']);
@@ -213,8 +326,8 @@ async function check_layers(page) {
     await page.focus('#picture');
     const before = await page.evaluate(() => exitance.canvas());
     await page.keyboard.press('Enter');
-    await page.waitForFunction(() => / links/.test(document.getElementById('point').textContent));
-    const links = Number((await page.textContent('#point')).match(/(\d+) links/)[1]);
+    await page.waitForFunction(() => / links/.test(document.getElementById('card').textContent));
+    const links = Number((await page.textContent('#card')).match(/(\d+) links/)[1]);
     check(links > 0 && await difference(page, before, await page.evaluate(() => exitance.canvas())) > 0.001, `${links} linked elements are outlined`);
     program.kill();
 }
@@ -235,6 +348,8 @@ async function check_sliders(page) {
     });
     await page.goto(origin);
     await page.waitForFunction('document.body.dataset.whatif');
+    await page.evaluate(() => document.querySelectorAll('details').forEach(d => { d.open = true; }));
+    await page.selectOption('#source', 'delivered');
     const before = await page.evaluate(() => exitance.canvas());
     await page.focus('#group_0');
     for (let i = 0; i < 50; ++i) await page.keyboard.press('ArrowLeft');
@@ -306,6 +421,7 @@ async function check_scene(page) {
     page.on('console', message => { if (message.type() === 'error') check(false, `console: ${message.text()} (${message.location().url})`); });
     await check_solution(page);
     await check_sliders(page);
+    await check_rooms(page);
     if (scene) await check_layers(page);
     if (scene) await check_scene(page);
     await browser.close();

@@ -4,7 +4,7 @@ export type Triple = [number, number, number];
 export type Layer = 'exported' | 'method' | 'raw';
 
 export interface Facts {
-    file: string; photometric: boolean; weights: Triple; surfaces: number; elements: number; method: string; basis: string;
+    file: string; photometric: boolean; units: {irradiance: string; radiosity: string}; weights: Triple; surfaces: number; elements: number; method: string; basis: string;
     materials: {name: string; reflectance: Triple; exitance: Triple}[]; groups: string[];
     exposure: number; camera: {eye: Triple; target: Triple; fov: number}; box: [Triple, Triple];
     parts: Record<Layer, number>; error: number | null; links: number;
@@ -27,6 +27,9 @@ export interface Light {
 /** A picture of the program's renderer, rows from the bottom up. */
 export interface Frame { width: number; height: number; light: Float32Array; rest: Float32Array }
 
+/** What is seen: backs of faces or what is behind them; hidden groups of faces; a plane (n, d) beyond which all is hidden. */
+export interface Seen { backs: boolean; hidden: number[]; cut: number[] | null }
+
 /** Dimmed groups and painted materials, as requests tell them; empty: the light as it was solved. */
 export interface Change { dim: string; paint: string }
 export const unchanged: Change = {dim: '', paint: ''};
@@ -47,7 +50,7 @@ function query(path: string, words: Record<string, string>, change: Change): str
 
 async function answer(path: string, method = 'GET'): Promise<Response> {
     const response = await fetch(path, {method});
-    if (response.status === 204) throw new Refused(204, `${path.split('?')[0]}: there is no light yet`);
+    if (response.status === 204) throw new Refused(204, `${path.split('?')[0]}: nothing yet`);
     if (!response.ok) throw new Refused(response.status, `${path.split('?')[0]}: ${await response.text()}`);
     return response;
 }
@@ -57,7 +60,10 @@ const letters = (bytes: ArrayBuffer) => new TextDecoder().decode(new Uint8Array(
 
 export const post = (path: string) => answer(path, 'POST').then(r => r.text());
 export const load_state = () => answer('/data/state').then(r => r.json() as Promise<{solving: boolean}>);
-export const load_facts = () => answer('/data/scene').then(r => r.json() as Promise<Facts>);
+export async function load_facts(change: Change = unchanged): Promise<Facts> {
+    const facts = await (await answer(query('/data/scene', {}, change))).json() as Facts;
+    return {...facts, units: facts.photometric ? {irradiance: 'lx', radiosity: 'lm/m²'} : {irradiance: 'W/m²', radiosity: 'W/m²'}};
+}
 export const load_point = (at: number[], change: Change) =>
     answer(query('/data/point', {at: at.join(',')}, change)).then(r => r.json() as Promise<Light>);
 export const load_line = (at: number[], change: Change) =>

@@ -1,6 +1,7 @@
 // The elements of one layer as three.js draws them, a part at a time.
 import * as THREE from 'three';
-import {face_words, load_light, load_part, no_group, six_nodes, type Change, type Facts, type Layer, type Part, type Triple} from './data';
+import {acceleratedRaycast, MeshBVH, type MeshBVHOptions} from 'three-mesh-bvh';
+import {face_words, load_light, load_part, no_group, six_nodes, type Change, type Facts, type Layer, type Part, type Seen, type Triple} from './data';
 import type {Shading} from './shading';
 
 /** Of edges by the order of the discontinuity along them (CurveOrder), as `render --mesh` has them. */
@@ -8,7 +9,7 @@ export const order_colours: Record<number, [string, Triple]> = {0: ['border', [2
     2: ['D1 slope', [0, 150, 90]], 3: ['D2 curvature', [40, 110, 245]], 4: ['conic', [170, 60, 200]]};
 const plain: Triple = [64, 64, 72];
 
-interface Loaded { part: Part; mesh: THREE.Mesh; first: Uint32Array; materials: Float32Array }
+interface Loaded { part: Part; mesh: THREE.Mesh; first: Uint32Array; materials: Float32Array; groups: Float32Array; tree: MeshBVH | null }
 
 /** Which vertices make triangles: a fan a face, four a quadratic triangle. */
 function triangles_of(faces: Uint32Array): {index: Uint32Array; first: Uint32Array} {
@@ -107,8 +108,9 @@ export class Elements {
         for (const [name, values] of Object.entries(scalars)) geometry.setAttribute(name, new THREE.BufferAttribute(values, 1));
         geometry.setIndex(new THREE.BufferAttribute(index, 1));
         const mesh = new THREE.Mesh(geometry, this.shading.material);
+        mesh.raycast = acceleratedRaycast;
         this.whole.add(mesh);
-        this.loaded.push({part, mesh, first, materials});
+        this.loaded.push({part, mesh, first, materials, groups, tree: null});
         if (this.lines.visible) this.add_lines(this.loaded.length - 1);
     }
 
@@ -143,10 +145,39 @@ export class Elements {
         this.lines.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({vertexColors: true, toneMapped: false})));
     }
 
+    /** Trees for rays, made when the first ray needs them. */
+    trees(): MeshBVH[] {
+        return this.loaded.map(l => l.tree ??= l.mesh.geometry.boundsTree = new MeshBVH(l.mesh.geometry, {indirect: true} as MeshBVHOptions));
+    }
+
+    /** The first hit of a ray on something that is seen. */
+    hit(ray: THREE.Raycaster, seen: Seen): THREE.Intersection | null {
+        this.trees();
+        return ray.intersectObjects(this.whole.children, false).find(hit => {
+            if (!hit.face) return false;
+            const {cut} = seen;
+            if (cut && cut[0] * hit.point.x + cut[1] * hit.point.y + cut[2] * hit.point.z > cut[3]) return false;
+            return (seen.backs || hit.face.normal.dot(ray.ray.direction) < 0) && !seen.hidden.includes(this.group(hit));
+        }) ?? null;
+    }
+
+    private of(hit: THREE.Intersection): Loaded { return this.loaded.find(l => l.mesh === hit.object)!; }
+
+    /** The group of the face that a ray has hit; the number of groups if it is in none. */
+    group(hit: THREE.Intersection): number { return this.of(hit).groups[hit.face!.a]; }
+
+    /** Irradiance there as one number, interpolated between the corners as the picture is. */
+    value(hit: THREE.Intersection): number {
+        const {a, b, c} = hit.face!, {part} = this.of(hit), corner = (v: number) => new THREE.Vector3().fromArray(part.positions, 3 * v);
+        const light = (v: number) => new THREE.Vector3().fromArray(part.irradiance, 3 * v);
+        const found = THREE.Triangle.getInterpolation(hit.point, corner(a), corner(b), corner(c), light(a), light(b), light(c), new THREE.Vector3());
+        return found ? found.dot(new THREE.Vector3(...this.facts.weights)) : NaN;
+    }
+
     /** The corners of the face that a hit of a ray is on. */
     outline(hit: THREE.Intersection): THREE.Vector3[] {
-        const found = this.loaded.find(l => l.mesh === hit.object);
-        if (!found || !hit.face) return [];
+        const found = this.of(hit);
+        if (!hit.face) return [];
         let low = 0, high = found.first.length - 1;
         while (low < high) {
             const middle = (low + high + 1) >> 1;

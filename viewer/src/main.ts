@@ -1,16 +1,27 @@
 import * as THREE from 'three';
+import {Card} from './card';
+import {css, round_steps, short} from './colours';
 import {load_facts, load_line, load_point, load_state, post, type Facts, type Triple} from './data';
 import {order_colours} from './elements';
-import {by_id, draw_outlines, point_words, profile_csv, show_plot, type Profile} from './measure';
+import {clear_labels, show_labels} from './labels';
+import {by_id, draw_outlines, line_words, make, profile_csv, show_plot, type Profile} from './measure';
+import {Objects} from './objects';
+import {overview} from './overview';
 import {Panes, type Arrangement, type Source} from './panes';
-import {class_colours, css, round_steps, Shading, type Shown} from './shading';
+import {save_file, save_picture} from './save';
+import {ScaleControl} from './scale_control';
+import {class_colours, Shading, type Shown} from './shading';
+import {Space} from './space';
+import {toolbar} from './toolbar';
 import {Viewpoint} from './camera';
+import {Views} from './views';
 import {WhatIf} from './what_if';
 
 performance.mark('script');
 const asked_state = load_state(), asked_facts = load_facts();
 asked_facts.catch(() => {});  // told below; of a running solve there are none yet
 const canvas = by_id<HTMLCanvasElement>('picture'), place = by_id('view');
+if (window.innerWidth <= 760) document.body.classList.add('alone');
 const renderer = new THREE.WebGLRenderer({canvas, antialias: true, preserveDrawingBuffer: true});
 renderer.outputColorSpace = THREE.LinearSRGBColorSpace;  // the shader encodes by itself, as `render` does
 size_picture();
@@ -18,16 +29,26 @@ performance.mark('renderer');
 const chosen = new THREE.Group(), shooters = new THREE.Group(), marks = new THREE.Group();
 marks.add(chosen, shooters);
 const box = (id: string) => by_id<HTMLInputElement>(id), choice = (id: string) => by_id<HTMLSelectElement>(id).value;
-let facts: Facts, shading: Shading, panes: Panes, view: Viewpoint;
+let facts: Facts, shading: Shading, panes: Panes, view: Viewpoint, space: Space | null = null, objects: Objects;
 let wanted = true, measuring: {point: THREE.Vector3; normal: THREE.Vector3}[] | null = null, csv = '', told_panes = '';
+let exposure = 1, labelled = '', rested = 0, hovered: [number, number] | null = null;
 
 const redraw = () => { wanted = true; };
 const width = () => Math.max(1, place.clientWidth), height = () => Math.max(1, place.clientHeight);
+const scale = new ScaleControl(() => panes && apply());
+const card = new Card({
+    hide: group => { objects.hide(group); card.close(); }, isolate: group => objects.isolate(group),
+    copied: words => { void navigator.clipboard.writeText(words); },
+});
+const unit = () => facts.units.irradiance;
 
 function paint(): void {
-    renderer.setClearColor(getComputedStyle(document.documentElement).getPropertyValue('--sky').trim());
+    const sky = getComputedStyle(document.documentElement).getPropertyValue('--sky').trim();
+    renderer.setClearColor(new THREE.Color().setStyle(sky, THREE.LinearSRGBColorSpace));  // as it is, since nothing encodes it
     panes.draw(renderer, view, width(), height(), box('mesh').checked);
     if (panes.sources().map(s => panes.words(s)).join() !== told_panes) show_panes();
+    const first = panes.panes(width())[0];
+    card.follow(view.camera, first.view_left, first.view_width, height());
 }
 
 function draw(last: number): void {
@@ -35,8 +56,30 @@ function draw(last: number): void {
         if (view.fly((now - last) / 1000)) redraw();
         view.keep();
         if (wanted) { wanted = false; paint(); }
+        label_lines(now);
+        show_hover();
         draw(now);
     });
+}
+
+/** Numbers at the isolines, once the camera has rested; none while it moves. */
+function label_lines(now: number): void {
+    const words = JSON.stringify([view.words(), width(), height(), shading.seen, shading.steps, box('isolux').checked, choice('quantity'), panes.change]);
+    if (words !== labelled) { labelled = words, rested = now; clear_labels(); }
+    if (rested === 0 || now - rested < 250 || view.dragging) return;
+    rested = 0;
+    if (!box('isolux').checked || choice('quantity') === 'radiosity' || panes.arrangement !== 'one') return;
+    show_labels(shading.steps, width(), height(), (x, y) => {
+        const found = panes.hit(x, y, width(), height(), view);
+        return found && {value: found.value, object: found.group, normal: found.hit.face!.normal, point: found.hit.point};
+    });
+}
+
+function show_hover(): void {
+    if (!hovered || !panes || view.dragging) return;
+    const [x, y] = hovered, found = panes.hit(x, y, width(), height(), view);
+    hovered = null;
+    card.show_hover(x, y, found ? `${short(found.value)} ${unit()}` : null);
 }
 
 function size_picture(): void {
@@ -50,8 +93,11 @@ function resize(): void {
     redraw();
 }
 
-const unit_of = (radiosity: boolean) => radiosity ? (facts.photometric ? 'exitance, lm/m²' : 'radiosity, W/m²')
-    : (facts.photometric ? 'illuminance, lx' : 'irradiance, W/m²');
+const title_of = (radiosity: boolean) => {
+    const symbol = radiosity ? facts.units.radiosity : facts.units.irradiance;
+    const lux = facts.units.irradiance === 'lx';
+    return `${radiosity ? (lux ? 'luminous exitance' : 'radiosity') : lux ? 'illuminance' : 'irradiance'}, ${symbol}`;
+};
 
 function legend_row(colour: string, words: string, line = false): HTMLElement {
     const row = document.createElement('div'), mark = document.createElement('i');
@@ -63,9 +109,10 @@ function legend_row(colour: string, words: string, line = false): HTMLElement {
 
 function show_legend(shown: Shown, isolux: boolean): void {
     const legend = by_id('legend'), rows: (HTMLElement | string)[] = [], values = shown === 'radiosity' || shown === 'irradiance';
-    if (values || isolux) rows.push(Object.assign(document.createElement('strong'), {textContent: unit_of(shown === 'radiosity')}));
+    if (values || isolux) rows.push(make('strong', title_of(shown === 'radiosity')));
     for (const {colour, from, to} of values || isolux ? shading.legend() : [])
-        rows.push(values ? legend_row(colour, `${from} – ${to}`) : legend_row(colour, `${from}`, true));
+        rows.push(values ? legend_row(colour, `${short(from)} – ${short(to)}`) : legend_row(colour, short(from), true));
+    if (scale.threshold >= 0 && values) rows.push(legend_row('#ff3399', `threshold ${short(scale.threshold)}`, true));
     if (shown === 'classes') for (const [name, colour] of class_colours) rows.push(legend_row(css(colour), name));
     if (box('mesh').checked && facts.discontinuities)
         for (const [name, colour] of Object.values(order_colours)) rows.push(legend_row(css(colour), name, true));
@@ -76,11 +123,16 @@ function show_legend(shown: Shown, isolux: boolean): void {
 /** Everything that the settings say. */
 function apply(): void {
     const shown = choice('quantity') as Shown, stops = Number(box('exposure').value), isolux = box('isolux').checked;
-    shading.show(shown, isolux);
+    const values = shown === 'radiosity' || shown === 'irradiance';
+    shading.show(shown, isolux, values ? scale.threshold : -1);
     shading.uniforms.curve.value = Number(choice('tone'));
-    shading.uniforms.scale.value = facts.exposure * 2 ** stops;
+    shading.uniforms.scale.value = exposure * 2 ** stops;
     by_id('exposure_text').textContent = `${stops >= 0 ? '+' : ''}${stops.toFixed(1)} stops`;
-    if (shown !== 'picture' || isolux) shading.set_steps(round_steps(...panes.layers.delivered.range(shown === 'radiosity')));
+    by_id('values').hidden = !values && !isolux;
+    by_id('threshold_unit').textContent = unit();
+    if (values || isolux) shading.set_steps(scale.steps(panes.layers.delivered.range(shown === 'radiosity')), scale.palette);
+    by_id('tool_colours').setAttribute('aria-pressed', String(values));
+    by_id('tool_isolux').setAttribute('aria-pressed', String(isolux));
     show_legend(shown, isolux);
     redraw();
 }
@@ -89,10 +141,10 @@ function apply(): void {
 function show_panes(): void {
     if (!panes) return;
     const all = panes.panes(width()), split = panes.arrangement === 'split';
-    const named = all.filter(p => p.right - p.left > 30 && (all.length > 1 || !/^\w+$/.test(panes.words(p.source))));
+    const named = all.filter(p => p.right - p.left > 30 && (all.length > 1 || (p.source !== 'best' && !/^\w+$/.test(panes.words(p.source)))));
     told_panes = all.map(p => panes.words(p.source)).join();
     by_id('panes').replaceChildren(...named.map(p => {
-        const name = Object.assign(document.createElement('span'), {textContent: panes.words(p.source)});
+        const name = make('span', panes.words(p.source));
         name.style.left = `${p.left + 10}px`;
         return name;
     }));
@@ -109,7 +161,7 @@ async function arrange(): Promise<void> {
     panes.source = choice('source') as Source;
     by_id<HTMLSelectElement>('source').disabled = panes.arrangement !== 'one';
     show_panes();
-    try { await panes.load(); } catch (error) { by_id('point').textContent = String(error); }
+    try { await panes.load(); } catch (error) { card.tell(String(error)); }
     if (panes.sources().includes('raw')) document.body.dataset.raw = '1';
     apply();
 }
@@ -122,72 +174,126 @@ function move_divider(i: number, to: number): void {
 
 async function pick(x: number, y: number): Promise<void> {
     const found = panes.hit(x, y, width(), height(), view);
-    if (!found || !found.hit.face) { by_id('point').textContent = 'nothing there'; return; }
+    if (!found || !found.hit.face) { measuring ? card.tell('There is nothing. Click on a surface.') : card.close(); return; }
     const point = found.hit.point, normal = found.hit.face.normal;
     try {
         if (measuring) return await add_end(point, normal);
         const light = await load_point([...point.toArray(), ...normal.toArray()], panes.change);
-        by_id('point').textContent = point_words(light, point, facts.photometric ? 'lx' : 'W/m²');
         chosen.clear();
-        draw_outlines(chosen, [found.outline], 0xff7a1a);
+        if (box('mesh').checked || panes.source === 'raw') draw_outlines(chosen, [found.outline], 0xff7a1a);
         const linked = (light.links ?? []).map(l => l.outline.map(p => new THREE.Vector3(...p)));
         draw_outlines(chosen, linked, 0x2f7de1);
         draw_outlines(chosen, linked.map(corners => [point, corners.reduce((sum, p) => sum.add(p), new THREE.Vector3()).divideScalar(corners.length)]),
             0x2f7de1, false);
+        card.show_hover(0, 0, null);
+        const number = (bands: Triple) => bands.reduce((sum, band, c) => sum + facts.weights[c] * band, 0);
+        card.show(light, point, number, unit(), found.group);
         redraw();
-    } catch (error) { by_id('point').textContent = String(error); }
+    } catch (error) { card.tell(String(error)); }
 }
 
 async function add_end(point: THREE.Vector3, normal: THREE.Vector3): Promise<void> {
-    measuring!.push({point, normal: normal.clone()});
-    if (measuring!.length < 2) { by_id('point').textContent = 'now the other end'; return; }
+    measuring!.push({point: point.clone(), normal: normal.clone()});
+    if (measuring!.length < 2) { card.tell('Now the other end.'); return; }
     const [a, b] = measuring!;
-    measuring = null;
+    measuring = [];
     chosen.clear();
     draw_outlines(chosen, [[a.point, b.point]], 0xff7a1a, false);
     redraw();
     const profile = await load_line([...a.point.toArray(), ...b.point.toArray(), ...b.normal.toArray()], panes.change) as Profile;
-    const unit = facts.photometric ? 'lx' : 'W/m²';
-    by_id('point').textContent = `light along ${profile.length.toPrecision(4)} m: ${Math.min(...profile.values).toPrecision(4)} to ` +
-        `${Math.max(...profile.values).toPrecision(4)} ${unit}, ${facts.photometric ? 'bands weighted as the eye does' : 'mean of the bands'}`;
-    csv = profile_csv(profile, a.point, b.point, unit);
-    show_plot(profile, unit);
+    card.tell(line_words(profile, a.point, b.point, unit()));
+    csv = profile_csv(profile, a.point, b.point, unit());
+    by_id('measured_hint').hidden = true;
+    by_id<HTMLDetailsElement>('measured_section').open = true;
+    show_plot(profile, unit());
 }
 
-function measure(): void {
-    measuring = [];
-    by_id('point').textContent = 'click on one end, or Enter for the cross in the middle';
+/** Which answer a click gives: the light at a point, or what lies between two. */
+function use_tool(line: boolean): void {
+    measuring = line ? [] : null;
+    by_id('tool_line').setAttribute('aria-pressed', String(line));
+    by_id('tool_value').setAttribute('aria-pressed', String(!line));
+    if (line) card.tell('Click on one end, or press Enter for the cross in the middle.'); else card.close();
+}
+
+/** The section that the panel describes. */
+function cut(): void {
+    const axis = choice('cut_axis'), c = axis ? 'xyz'.indexOf(axis) : -1, sign = box('cut_flip').checked ? -1 : 1;
+    by_id('tool_section').setAttribute('aria-pressed', String(c >= 0));
+    const [low, high] = c < 0 ? [0, 1] : [facts.box[0][c], facts.box[1][c]], at = low + (high - low) * Number(box('cut_at').value) / 1000;
+    by_id('cut_text').textContent = c < 0 ? '' : `${at.toFixed(2)} m`;
+    const normal = [0, 0, 0];
+    if (c >= 0) normal[c] = sign;
+    shading.cut(c < 0 ? null : [...normal, sign * at]);
+    redraw();
+}
+
+function toggle_section(): void {
+    const select = by_id<HTMLSelectElement>('cut_axis');
+    select.value = select.value ? '' : 'z';
+    if (select.value) by_id<HTMLDetailsElement>('section').open = true;
+    cut();
 }
 
 function show_facts(): void {
     by_id('name').textContent = facts.file.split('/').pop() ?? 'exitance';
-    by_id('facts').textContent = `${facts.method}, ${facts.basis} basis, ${facts.surfaces} faces, ${facts.elements} elements` +
-        (facts.error === null ? '' : `, error ${(100 * facts.error).toPrecision(2)}%`);
+    by_id('facts').textContent = `${facts.surfaces} faces` + (facts.error === null ? '' : `; light accurate to about ${(100 * facts.error).toPrecision(2)}%`);
+    by_id('method').textContent = `Method ${facts.method}, ${facts.basis} basis, ${facts.elements} elements` +
+        (facts.error === null ? '.' : `; estimated error ${(100 * facts.error).toPrecision(2)}%.`);
     const classes = by_id<HTMLSelectElement>('quantity').querySelector<HTMLOptionElement>('[value=classes]')!;
     classes.hidden = classes.disabled = !facts.shadow_classes;
+    const options = by_id<HTMLSelectElement>('quantity').options;
+    options[1].text = title_of(false), options[2].text = title_of(true);
+}
+
+function show_overview(): void {
+    const [eye, target, fov] = overview(renderer, panes, view, facts);
+    view.set(eye, target, fov);
+    view.to_address();
+    redraw();
+}
+
+function enter_room(): void {
+    view.set(facts.camera.eye, facts.camera.target, facts.camera.fov);
+    view.to_address();
+    redraw();
+}
+
+/** What is there for the first time: the camera, the saved views, the loop that draws. */
+function begin(): void {
+    view = new Viewpoint(facts, canvas, () => space, redraw);
+    performance.mark('viewpoint');
+    const views = new Views(facts.file.split('/').pop() ?? '', camera => { if (view.from_words(camera)) redraw(); });
+    by_id('save_view').addEventListener('click', () => views.add(view.words()));
+    by_id('views_save').addEventListener('click', () => save_file('views.json', 'application/json', views.text()));
+    by_id('views_load').addEventListener('click', () => box('views_file').click());
+    box('views_file').addEventListener('change', () => {
+        void box('views_file').files?.[0]?.text().then(text => { if (!views.read(text)) card.tell('The file holds no views.'); });
+    });
+    show_panes();
+    draw(performance.now());
 }
 
 async function load(first: boolean, known: Facts | null = null): Promise<void> {
     facts = known ?? await load_facts();
     performance.mark('facts');
-    const old = panes;
+    const old = panes, old_objects = objects;
     shading = new Shading(facts);
     const fresh: Panes = new Panes(facts, shading, marks, redraw);
     if (old) [fresh.arrangement, fresh.source, fresh.dividers] = [old.arrangement, old.source, old.dividers];
+    exposure = facts.exposure;
     // What was there stays in sight until there is something new.
     await fresh.layers.delivered.load(fresh.change, () => {
         performance.mark('buffers');
         if (panes !== fresh) {
             panes = fresh;
             old?.dispose();
-            if (first) {
-                view = new Viewpoint(facts, canvas, redraw);
-                view.controls.addEventListener('end', () => view.to_address());
-                performance.mark('viewpoint');
-                show_panes();
-                draw(performance.now());
-            }
+            if (first) begin();
             show_facts();
+            objects = new Objects(facts, hidden => { shading.hide(hidden); redraw(); });
+            if (old_objects) objects.restore(old_objects);
+            objects.show();
+            cut();
         }
         apply();
         if (!document.body.dataset.first) {
@@ -198,6 +304,8 @@ async function load(first: boolean, known: Facts | null = null): Promise<void> {
         }
     });
     await panes.load();
+    space = new Space(panes.layers.delivered);
+    view.find_place();
     apply();
     document.body.dataset.ready = '1';
     await new WhatIf(facts, panes, shading, apply).show();
@@ -236,17 +344,37 @@ function follow(): void {
     });
 }
 
-function save_file(name: string, type: string, text: string): void {
-    const link = document.createElement('a');
-    link.href = URL.createObjectURL(new Blob([text], {type}));
-    link.download = name;
-    link.click();
+function toggle(id: string): void { box(id).checked = !box(id).checked; apply(); }
+
+function toggle_panel(): void {
+    document.body.classList.toggle('alone');
+    by_id('tool_panel').setAttribute('aria-pressed', String(!document.body.classList.contains('alone')));
+    if (view) resize();
 }
 
+function toggle_colours(): void {
+    const select = by_id<HTMLSelectElement>('quantity');
+    select.value = select.value === 'irradiance' ? 'picture' : 'irradiance';
+    apply();
+}
+
+const tools: Record<string, [string, () => void]> = {
+    tool_panel: ['h', toggle_panel], tool_value: ['v', () => use_tool(false)], tool_line: ['l', () => use_tool(measuring === null)],
+    tool_section: ['x', toggle_section], tool_colours: ['r', toggle_colours], tool_isolux: ['i', () => toggle('isolux')],
+    fit: ['f', show_overview], enter: ['g', enter_room], save_view: ['b', () => {}],
+    save_picture: ['p', () => { paint(); save_picture(canvas, by_id('legend'), by_id('labels'), (facts.file.split('/').pop() ?? 'picture').replace(/\.\w+$/, '') + '.png'); }],
+};
+for (const [id, [, act]] of Object.entries(tools)) by_id(id).addEventListener('click', () => { if (panes) act(); });
+toolbar(by_id('bar'));
+by_id('tool_panel').setAttribute('aria-pressed', String(!document.body.classList.contains('alone')));
 for (const id of ['quantity', 'tone', 'exposure', 'mesh', 'isolux']) by_id(id).addEventListener('input', () => panes && apply());
 for (const id of ['source', 'arrangement']) by_id(id).addEventListener('input', () => panes && void arrange());
-by_id('fit').addEventListener('click', () => { view.fit(); view.to_address(); });
-by_id('line').addEventListener('click', measure);
+for (const id of ['cut_axis', 'cut_at', 'cut_flip']) by_id(id).addEventListener('input', () => panes && cut());
+by_id('objects_all').addEventListener('click', () => objects?.show_all());
+by_id('exposure_auto').addEventListener('click', () => void load_facts(panes.change).then(now => {
+    exposure = now.exposure, box('exposure').value = '0';
+    apply();
+}));
 by_id('record').addEventListener('click', () => {
     view.record();
     by_id('record').textContent = view.recording ? 'Stop recording' : 'Record path';
@@ -254,7 +382,7 @@ by_id('record').addEventListener('click', () => {
 });
 by_id('replay').addEventListener('click', () => view.replay());
 by_id('save_path').addEventListener('click', () => save_file('path.csv', 'text/csv', view.path_text()));
-by_id('copy').addEventListener('click', () => navigator.clipboard.writeText(csv).then(() => { by_id('point').textContent = 'copied'; },
+by_id('copy').addEventListener('click', () => navigator.clipboard.writeText(csv).then(() => card.tell('Copied.'),
     () => save_file('line.csv', 'text/csv', csv)));
 by_id('stop').addEventListener('click', () => post('/data/stop').catch(error => { by_id('phase').textContent = String(error); }));
 by_id('save').addEventListener('click', () => post('/data/save').then(text => { by_id('phase').textContent = text; },
@@ -270,18 +398,20 @@ document.querySelectorAll<HTMLElement>('.divider').forEach((divider, i) => {
     });
 });
 let pressed: [number, number] = [0, 0];
-canvas.addEventListener('pointerdown', event => { pressed = [event.clientX, event.clientY]; canvas.focus(); });
+canvas.addEventListener('pointerdown', event => { pressed = [event.clientX, event.clientY]; card.show_hover(0, 0, null); canvas.focus(); });
 canvas.addEventListener('pointerup', event => {
     if (panes && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 4) void pick(event.offsetX, event.offsetY);
+    redraw();
 });
+canvas.addEventListener('pointermove', event => { if (event.buttons === 0 && event.pointerType !== 'touch') hovered = [event.offsetX, event.offsetY]; });
+canvas.addEventListener('pointerleave', () => { hovered = null; card.show_hover(0, 0, null); });
 canvas.addEventListener('keyup', event => {
     if (!panes || event.ctrlKey || event.metaKey) return;
-    const toggle = (id: string) => { box(id).checked = !box(id).checked; apply(); };
     const key = event.key.toLowerCase();
-    if (key === 'f') view.fit();
+    const tool = Object.entries(tools).find(([, [k]]) => k === key && k !== 'h');
+    if (tool) by_id(tool[0]).click();
     if (key === 'm') toggle('mesh');
-    if (key === 'i') toggle('isolux');
-    if (key === 'l') measure();
+    if (key === 'escape') { use_tool(false); chosen.clear(); redraw(); }
     if (key === 'c') {
         const select = by_id<HTMLSelectElement>('arrangement');
         select.selectedIndex = (select.selectedIndex + 1) % select.options.length;
@@ -295,7 +425,8 @@ canvas.addEventListener('keyup', event => {
 });
 window.addEventListener('keyup', event => {
     const typing = event.target instanceof HTMLInputElement && event.target.type !== 'checkbox' && event.target.type !== 'range';
-    if (event.key.toLowerCase() === 'h' && !event.ctrlKey && !typing) { document.body.classList.toggle('alone'); if (view) resize(); }
+    if (event.key.toLowerCase() === 'h' && !event.ctrlKey && !typing) toggle_panel();
+    if (event.key === 'Escape' && event.target !== canvas && card.open) { card.close(); canvas.focus(); }
 });
 window.addEventListener('resize', () => view && resize());
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
@@ -305,7 +436,7 @@ by_id('software').hidden = !/swiftshader|llvmpipe|software|basic render/i.test(p
 
 asked_state.then(async state => state.solving ? follow() : load(true, await asked_facts))
     .catch(error => { by_id('facts').textContent = String(error); });
+// What tests of the page ask for.
 Object.assign(window, {exitance: {words: () => view.words(), exposure: () => shading.uniforms.scale.value as number,
-    size: () => [width(), height()], canvas: () => { paint(); return canvas.toDataURL(); },
-    whole: () => panes.words('exact') === 'exact' && [shading.uniforms.light.value, shading.uniforms.rest.value].every(t => t && (t as THREE.DataTexture).image.width === Math.round(
-        panes.panes(width()).at(-1)!.view_width * renderer.getPixelRatio()))}});
+    size: () => [width(), height()], canvas: () => { paint(); return canvas.toDataURL(); }, whole: () => panes.whole,
+    inside: () => view.inside, look: (words: string) => { view.from_words(words); redraw(); }, round_steps}});

@@ -1,25 +1,28 @@
-// Light at a point and along a line, in numbers.
+// Distances, and light along a line, in numbers.
 import * as THREE from 'three';
-import type {Light, Triple} from './data';
+import {short} from './colours';
 
 export const by_id = <T extends Element = HTMLElement>(id: string) => document.getElementById(id) as unknown as T;
-const short = (x: number) => String(Number(x.toPrecision(4)));
 
 export interface Profile { length: number; values: number[]; delivered: number[]; raw: number[] }
 
-export function point_words(light: Light, at: THREE.Vector3, unit: string): string {
-    const three = (v: Triple) => v.map(short).join('  ');
-    const lines = [`at ${at.toArray().map(x => x.toFixed(3)).join(', ')} m (${unit}: red, green, blue)`, `E ${three(light.irradiance)}`,
-        `direct ${three(light.direct)}`, `reflected ${three(light.indirect)}`];
-    if (light.radiosity) lines.push(`B ${three(light.radiosity)}`);
-    if (light.surface !== undefined)
-        lines.push(`face ${light.surface}${light.line ? ` (line ${light.line})` : ''}, ${light.group || 'no group'}, ` +
-            `${light.material}`, `element ${light.element ?? 'none'}, ${light.links?.length ?? 0} links`);
-    return lines.join('\n');
+/** Makes an element with text and attributes. */
+export function make<K extends keyof HTMLElementTagNameMap>(tag: K, text = '', attributes: Record<string, string> = {}): HTMLElementTagNameMap[K] {
+    const made = document.createElement(tag);
+    if (text) made.textContent = text;
+    for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+    return made;
 }
 
 const series = ['exact', 'delivered', 'raw'] as const;
+const titles = {exact: 'exact', delivered: 'continuous', raw: "method's elements"};
 const values_of = (profile: Profile, name: typeof series[number]) => name === 'exact' ? profile.values : profile[name];
+
+export function line_words(profile: Profile, a: THREE.Vector3, b: THREE.Vector3, unit: string): string {
+    const way = b.clone().sub(a), mean = profile.values.reduce((sum, v) => sum + v, 0) / profile.values.length;
+    return `${profile.length.toFixed(3)} m  (${way.toArray().map(x => x.toFixed(3)).join(', ')} along x, y, z)\n` +
+        `light along it: ${short(Math.min(...profile.values))} to ${short(Math.max(...profile.values))} ${unit}, mean ${short(mean)} ${unit}`;
+}
 
 /** Three curves over the length, with round numbers at the axes. */
 export function show_plot(profile: Profile, unit: string): void {
@@ -40,9 +43,9 @@ export function show_plot(profile: Profile, unit: string): void {
         drawing += `<path class="${name}" d="${path}"/>`;
     }
     by_id('plot').innerHTML = drawing;
-    by_id('plot').setAttribute('aria-label', `Irradiance along ${short(profile.length)} m, ${unit}: from ` +
+    by_id('plot').setAttribute('aria-label', `Light along ${short(profile.length)} m, ${unit}: from ` +
         `${short(Math.min(...profile.values))} to ${short(Math.max(...profile.values))}`);
-    by_id('plot_key').innerHTML = series.map(name => `<svg width="24" height="8" aria-hidden="true"><line class="${name}" x1="0" x2="24" y1="4" y2="4" stroke-width="2"/></svg> ${name}`).join(' &nbsp; ');
+    by_id('plot_key').innerHTML = series.map(name => `<svg width="24" height="8" aria-hidden="true"><line class="${name}" x1="0" x2="24" y1="4" y2="4" stroke-width="2"/></svg> ${titles[name]}`).join(' &nbsp; ');
     by_id('measured').hidden = false;
 }
 
@@ -51,7 +54,7 @@ export function profile_csv(profile: Profile, a: THREE.Vector3, b: THREE.Vector3
         const t = i / (profile.values.length - 1), p = a.clone().lerp(b, t);
         return [t * profile.length, ...p.toArray(), exact, profile.delivered[i], profile.raw[i]].map(v => Number(v.toPrecision(7))).join(',');
     });
-    return `s_m,x_m,y_m,z_m,exact,delivered,raw\n${rows.join('\n')}\n`.replace('exact,', `exact (${unit.replace(',', '')}),`);
+    return `s_m,x_m,y_m,z_m,exact,delivered,raw\n${rows.join('\n')}\n`.replace('exact,', `exact (${unit}),`);
 }
 
 /** Outlines in the scene: of an element, of what is linked to it, of a line that is measured. */

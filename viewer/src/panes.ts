@@ -1,39 +1,42 @@
 // Which light is shown where: one picture, a split one whose dividers move, or three beside one another, by one camera.
-// raw: what the method's elements hold; delivered: the continuous function made of them; exact: direct light exact in
-// every pixel, as `render` draws it.
+// best: the continuous function while one moves, then the exact picture; raw: what the method's elements hold;
+// delivered: the continuous function made of them; exact: direct light exact in every pixel, as `render` draws it.
 import * as THREE from 'three';
-import {load_frame, Newest, unchanged, type Change, type Facts} from './data';
+import {load_frame, Refused, unchanged, type Change, type Facts} from './data';
 import {Elements} from './elements';
 import type {Shading} from './shading';
 import type {Viewpoint} from './camera';
 
-export type Source = 'delivered' | 'raw' | 'exact' | 'method';
+export type Source = 'best' | 'delivered' | 'raw' | 'exact' | 'method';
 export type Arrangement = 'one' | 'split' | 'panes';
 /** Of the canvas, in CSS pixels from its left edge: what is drawn there, and where the camera's picture begins and ends. */
 export interface Pane { source: Source; left: number; right: number; view_left: number; view_width: number }
+export interface Found { hit: THREE.Intersection; outline: THREE.Vector3[]; value: number; group: number }
 
 const order: Source[] = ['raw', 'delivered', 'exact'];
-const still = 120;  // milliseconds without a movement, after which the exact picture is taken in full
-const coarse = 4;   // the picture while one moves has so many times fewer pixels across
+const still = 150;   // milliseconds without a movement, after which the exact picture is taken
+const coarse = 4;    // a compared picture while one moves has so many times fewer pixels across
+const fading = 300;  // milliseconds in which the exact picture appears
 
 export class Panes {
     readonly layers: Record<'delivered' | 'raw' | 'method', Elements>;
     arrangement: Arrangement = 'one';
-    source: Source = 'delivered';
+    source: Source = 'best';
     dividers: [number, number] = [1 / 3, 2 / 3];
     change: Change = unchanged;
     private stage = new THREE.Scene();
     private quad: THREE.Mesh;
     private sheet = new THREE.Scene();
     private sheet_camera = new THREE.OrthographicCamera(-1, 1, 1, -1, 0, 1);
-    private newest = new Newest();
+    private in_flight = false;
     private frame_of = '';
     private moved = 0;
+    private appeared = 0;
     private last_words = '';
     /** What there is of the exact picture of this camera. */
     private exact: 'nothing' | 'coarse' | 'full' = 'nothing';
 
-    constructor(facts: Facts, private shading: Shading, extra: THREE.Object3D, private changed: () => void) {
+    constructor(facts: Facts, private shading: Shading, private extra: THREE.Object3D, private changed: () => void) {
         this.layers = {delivered: new Elements(facts, shading, 'exported'), raw: new Elements(facts, shading, 'raw'),
             method: new Elements(facts, shading, 'method')};
         for (const e of Object.values(this.layers)) this.stage.add(e.whole, e.lines);
@@ -46,18 +49,30 @@ export class Panes {
     /** The sources in sight. */
     sources(): Source[] { return this.arrangement === 'one' ? [this.source] : order; }
 
+    private is_exact(source: Source): boolean { return source === 'exact' || source === 'best'; }
+    private layer(source: Source): Elements { return this.layers[source === 'raw' || source === 'method' ? source : 'delivered']; }
+
+    /** The program's pictures show all faces: there is none where some are hidden, cut away or seen from behind. */
+    private has_exact(): boolean {
+        const {backs, hidden, cut} = this.shading.seen;
+        return backs && hidden.length === 0 && cut === null;
+    }
+
+    /** True if the picture of this camera is as exact as it becomes. */
+    get whole(): boolean { return !this.has_exact() || this.exact === 'full' && performance.now() - this.appeared >= fading; }
+
     /** What is shown of a source, in words. */
     words(source: Source): string {
-        const titles = {raw: 'raw', delivered: 'delivered', exact: 'exact', method: 'reflected'};
-        if (source !== 'exact') return titles[source] + this.layers[source].progress;
-        return titles.exact + {nothing: ': is being drawn', coarse: ': coarse', full: ''}[this.exact];
+        const titles = {raw: "method's elements", delivered: 'continuous', exact: 'exact', method: 'reflected', best: 'exact'};
+        if (!this.is_exact(source)) return titles[source] + this.layer(source).progress;
+        return titles.exact + {nothing: ': being drawn', coarse: ': being drawn', full: ''}[this.exact];
     }
 
     /** Loads what is in sight, the delivered light always: rays of the pointer meet it. */
     async load(): Promise<void> {
         await this.layers.delivered.load(this.change, this.changed);
         for (const source of this.sources())
-            if (source !== 'exact') await this.layers[source].load(this.change, this.changed);
+            if (!this.is_exact(source)) await this.layer(source).load(this.change, this.changed);
     }
 
     async refill(change: Change): Promise<void> {
@@ -69,6 +84,7 @@ export class Panes {
             if (this.sources().includes(source)) await this.layers[source].refill(change);
             else this.layers[source].stale = true;
         }
+        this.drop_frame();
         this.changed();
     }
 
@@ -88,59 +104,100 @@ export class Panes {
     }
 
     draw(renderer: THREE.WebGLRenderer, view: Viewpoint, width: number, height: number, lines: boolean): void {
+        this.shading.see_backs(view.inside);
+        this.shading.leave_room_for_lines(lines || this.extra.children.some(group => group.children.length > 0));
         for (const e of Object.values(this.layers)) e.shade();
         this.quad.material = this.shading.frame;
         renderer.setScissorTest(this.arrangement !== 'one');
         const all = this.panes(width);
         view.resize(all[0].view_width / height);
+        if (this.sources().some(s => this.is_exact(s))) this.ask_frame(view, all[all.length - 1].view_width, height, renderer.getPixelRatio());
         renderer.autoClear = false;
         for (const pane of all) {
             if (pane.right <= pane.left) continue;
             renderer.setViewport(pane.view_left, 0, pane.view_width, height);
             renderer.setScissor(pane.left, 0, pane.right - pane.left, height);
             renderer.clear();
-            const exact = pane.source === 'exact' && this.shading.uniforms.light.value !== null;
-            const layer = this.layers[pane.source === 'exact' ? 'delivered' : pane.source];
-            for (const e of Object.values(this.layers)) {
-                e.whole.visible = e === layer;
-                e.show_lines(lines && e === layer);
-            }
-            if (exact) renderer.render(this.sheet, this.sheet_camera);
-            this.shading.material.colorWrite = !exact;  // of elements below an exact picture depth alone counts
-            renderer.render(this.stage, view.camera);
-            this.shading.material.colorWrite = true;
+            this.draw_pane(renderer, view, pane.source, lines);
         }
-        if (this.sources().includes('exact')) this.ask_frame(view, all[all.length - 1].view_width, height, renderer.getPixelRatio());
     }
 
-    /** Asks for the exact picture of this camera: a coarse one while it moves, a full one when it stands still. */
-    private ask_frame(view: Viewpoint, width: number, height: number, ratio: number): void {
-        const words = view.words() + width + 'x' + height, now = performance.now();
-        if (words !== this.last_words) {
-            if (this.last_words.split('x')[0] !== words.split('x')[0]) this.drop_frame();
-            this.last_words = words, this.moved = now;
+    /** Elements, the exact picture over them where it is there, and lines over both. */
+    private draw_pane(renderer: THREE.WebGLRenderer, view: Viewpoint, source: Source, lines: boolean): void {
+        const layer = this.layer(source);
+        for (const e of Object.values(this.layers)) {
+            e.whole.visible = e === layer;
+            e.show_lines(lines && e === layer);
         }
-        const rests = now - this.moved >= still, full = rests && this.exact !== 'nothing';
-        const scale = full ? ratio : ratio / coarse, size = [width, height].map(x => Math.max(1, Math.round(x * scale)));
-        const wanted = words + size + this.change.dim + this.change.paint;
+        renderer.render(this.stage, view.camera);
+        if (!this.is_exact(source) || this.shading.uniforms.light.value === null) return;
+        const shown = source === 'best' ? Math.min(1, (performance.now() - this.appeared) / fading) : 1;
+        this.shading.uniforms.opacity.value = shown;
+        if (shown < 1) requestAnimationFrame(this.changed);
+        renderer.render(this.sheet, this.sheet_camera);
+        layer.whole.visible = false;
+        renderer.render(this.stage, view.camera);
+    }
+
+    /** A picture of the elements alone from any camera, for tests of what a view would show. */
+    draw_preview(renderer: THREE.WebGLRenderer, camera: THREE.Camera, backs: boolean): void {
+        this.shading.see_backs(backs);
+        for (const e of Object.values(this.layers)) {
+            e.whole.visible = e === this.layers.delivered;
+            e.show_lines(false);
+            e.shade();
+        }
+        renderer.clear();
+        renderer.render(this.stage, camera);
+    }
+
+    /**
+     * Asks for the exact picture of this camera. One that is compared with others is there while the camera moves, too,
+     * but coarse. When the camera rests, one ray a pixel comes first, then four.
+     */
+    private ask_frame(view: Viewpoint, width: number, height: number, ratio: number): void {
+        const {seen} = this.shading;
+        if (!this.has_exact()) return this.drop_frame();
+        const words = JSON.stringify([view.words(), width, height, seen]), now = performance.now();
+        if (words !== this.last_words) {
+            this.drop_frame();
+            this.last_words = words, this.moved = now, this.frame_of = '';
+        }
+        const rests = now - this.moved >= still && !view.dragging, follows = this.arrangement !== 'one';
         if (!rests) window.setTimeout(this.changed, still);
-        if (wanted === this.frame_of || (!full && !this.newest.idle)) return;
+        if (!rests && !follows) return;
+        const full = rests && this.exact !== 'nothing', scale = rests ? ratio : ratio / coarse, samples = full ? 4 : 1;
+        const size = [width, height].map(x => Math.max(1, Math.round(x * scale)));
+        const wanted = words + size + samples + this.change.dim + this.change.paint;
+        if (wanted === this.frame_of || this.exact === 'full' || this.in_flight) return;
         this.frame_of = wanted;
-        const camera = view.numbers(), change = this.change;
-        this.newest.ask(async () => {
-            const frame = await load_frame(camera, size[0], size[1], full ? 4 : 1, change);
-            if (this.last_words !== words) return;
+        void this.take_frame(words, view.numbers(), size, samples, full);
+    }
+
+    private async take_frame(words: string, camera: number[], size: number[], samples: number, full: boolean): Promise<void> {
+        const change = this.change;
+        this.in_flight = true;
+        try {
+            const frame = await load_frame(camera, size[0], size[1], samples, change);
+            if (this.last_words !== words || this.change !== change) return;
             const texture = (data: Float32Array, format: THREE.PixelFormat) => {
                 const t = new THREE.DataTexture(data, frame.width, frame.height, format, THREE.FloatType);
                 t.needsUpdate = true;
                 return t;
             };
+            const first = this.exact === 'nothing';
             this.drop_frame();
+            if (first) this.appeared = performance.now();
             this.shading.uniforms.light.value = texture(frame.light, THREE.RGBAFormat);
             this.shading.uniforms.rest.value = texture(frame.rest, THREE.RGFormat);
             this.exact = full ? 'full' : 'coarse';
             this.changed();
-        });
+        } catch (error) {
+            if (!(error instanceof Refused && error.status === 409)) console.warn(String(error));
+        } finally {
+            this.in_flight = false;
+            this.changed();
+        }
     }
 
     private drop_frame(): void {
@@ -152,13 +209,12 @@ export class Panes {
     }
 
     /** What is under a place of the canvas, in CSS pixels. */
-    hit(x: number, y: number, width: number, height: number, view: Viewpoint): {hit: THREE.Intersection; outline: THREE.Vector3[]} | null {
+    hit(x: number, y: number, width: number, height: number, view: Viewpoint): Found | null {
         const pane = this.panes(width).find(p => x >= p.left && x <= p.right);
         if (!pane) return null;
-        const layer = this.layers[pane.source === 'raw' || pane.source === 'method' ? pane.source : 'delivered'];
-        const ray = new THREE.Raycaster();
+        const layer = this.layer(pane.source), ray = new THREE.Raycaster();
         ray.setFromCamera(new THREE.Vector2(2 * (x - pane.view_left) / pane.view_width - 1, 1 - 2 * y / height), view.camera);
-        const hit = ray.intersectObjects(layer.whole.children)[0];
-        return hit && hit.face ? {hit, outline: layer.outline(hit)} : null;
+        const hit = layer.hit(ray, this.shading.seen);
+        return hit ? {hit, outline: layer.outline(hit), value: layer.value(hit), group: layer.group(hit)} : null;
     }
 }

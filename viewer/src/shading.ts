@@ -1,10 +1,8 @@
-// From light to what is shown: the program's tone curves and its palette, so that pictures agree with `render`.
+// From light to what is shown: the program's tone curves and its palettes, so that pictures agree with `render`.
 import * as THREE from 'three';
-import type {Facts, Triple} from './data';
+import {colour_at, css, most_steps} from './colours';
+import type {Facts, Seen, Triple} from './data';
 
-const viridis = [[68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141], [39, 173, 129],
-    [92, 200, 99], [170, 220, 50], [253, 231, 37]];
-const most_steps = 24;
 /** Sources, lit, penumbra, umbra, no class; as `render --shadow-classes` has them. */
 export const class_colours: [string, Triple][] = [['source', [255, 255, 255]], ['lit', [246, 226, 138]],
     ['penumbra', [176, 122, 150]], ['umbra', [58, 62, 110]], ['no class', [20, 20, 24]]];
@@ -17,10 +15,14 @@ attribute float material;
 attribute float group;
 uniform sampler2D factors;
 uniform float factor_count;
+varying float visible;
 #endif
 #ifdef CLASSES
 attribute float shadow;
 varying float S;
+#endif
+#ifdef CUT
+varying vec3 place;
 #endif
 uniform sampler2D materials;
 uniform float material_count;
@@ -30,12 +32,17 @@ void main() {
     float x = (material + 0.5) / material_count;
     vec3 M = texture2D(materials, vec2(x, 0.75)).rgb;
 #ifdef GROUPS
-    M *= texture2D(factors, vec2((group + 0.5) / factor_count, 0.5)).r;
+    vec4 of_group = texture2D(factors, vec2((group + 0.5) / factor_count, 0.5));
+    M *= of_group.r;
+    visible = of_group.g;
 #endif
     E = irradiance;
     B = M + texture2D(materials, vec2(x, 0.25)).rgb * irradiance;
 #ifdef CLASSES
     S = dot(M, vec3(1.0)) > 0.0 ? 3.0 : shadow;
+#endif
+#ifdef CUT
+    place = position;
 #endif
     gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
 }`;
@@ -56,6 +63,7 @@ vec3 toned(vec3 light) {
 uniform int shown;      // 0 picture, 1 radiosity, 2 irradiance
 uniform bool isolux;
 uniform int step_count;
+uniform float threshold;  // negative: none
 uniform vec3 weights;   // of red, green and blue in one number
 uniform float steps[${most_steps}];
 uniform vec3 colours[${most_steps}];
@@ -69,6 +77,10 @@ vec3 valued(vec3 colour, float value) {
     }
     if (shown > 0) colour = colours[band];
     if (isolux && line >= 0) colour = shown > 0 ? vec3(1.0) : colours[min(line, step_count - 2)];
+    if (threshold >= 0.0) {
+        if (value < threshold) colour = 0.35 * vec3(dot(colour, vec3(0.2126, 0.7152, 0.0722))) + (mod(gl_FragCoord.x + gl_FragCoord.y, 8.0) < 2.0 ? 0.25 : 0.1);
+        if (abs(value - threshold) < 1.5 * width) colour = vec3(1.0, 0.2, 0.6);
+    }
     return colour;
 }
 #endif`;
@@ -76,11 +88,24 @@ vec3 valued(vec3 colour, float value) {
 const fragment = `${tones}
 varying vec3 E;
 varying vec3 B;
+#ifdef GROUPS
+varying float visible;
+#endif
 #ifdef CLASSES
 varying float S;
 uniform vec3 classes[5];
 #endif
+#ifdef CUT
+varying vec3 place;
+uniform vec4 cut;
+#endif
 void main() {
+#ifdef GROUPS
+    if (visible < 0.5) discard;
+#endif
+#ifdef CUT
+    if (dot(cut.xyz, place) > cut.w) discard;
+#endif
 #ifdef CLASSES
     vec3 colour = S > 2.5 && S < 3.5 ? classes[0] : S < 0.5 ? classes[1] : S < 1.5 ? classes[2] : S < 2.5 ? classes[3] : classes[4];
 #else
@@ -96,6 +121,7 @@ const frame_vertex = `varying vec2 at; void main() { at = 0.5 * position.xy + 0.
 const frame_fragment = `${tones}
 uniform sampler2D light;
 uniform sampler2D rest;
+uniform float opacity;
 varying vec2 at;
 void main() {
     vec4 B = texture2D(light, at);
@@ -104,36 +130,8 @@ void main() {
 #ifdef VALUES
     if (B.a > 0.0) colour = valued(colour, shown == 1 ? dot(B.rgb, weights) : E.r);
 #endif
-    gl_FragColor = vec4(colour, B.a + E.g > 0.0 ? 1.0 : 0.0);
+    gl_FragColor = vec4(colour, B.a + E.g > 0.0 ? opacity : 0.0);
 }`;
-
-/** Round steps from lo to hi, as the program chooses them: 1, 2 or 5 times a power of ten, or 1-2-5 steps. */
-export function round_steps(lo: number, hi: number): number[] {
-    const steps: number[] = [];
-    if (!(hi > 0)) return [0, 1];
-    if (hi > 30 * lo) {
-        lo = Math.max(lo, 1e-4 * hi);
-        for (let k = Math.floor(Math.log10(lo)); k <= Math.ceil(Math.log10(hi)); ++k)
-            for (const digit of [1, 2, 5]) steps.push(Number((digit * 10 ** k).toPrecision(1)));
-        while (steps.length > 2 && steps[1] <= lo) steps.shift();
-        while (steps.length > 2 && steps[steps.length - 2] >= hi) steps.pop();
-        return steps.slice(0, most_steps);
-    }
-    lo = Math.min(lo, 0.98 * hi);
-    const raw = (hi - lo) / 9, power = 10 ** Math.floor(Math.log10(raw)), factor = raw / power;
-    const width = power * (factor <= 1 ? 1 : factor <= 2 ? 2 : factor <= 5 ? 5 : 10);
-    const first = Math.floor(lo / width);
-    for (let k = first; k <= Math.max(Math.ceil(hi / width), first + 1); ++k) steps.push(Number((k * width).toPrecision(6)));
-    return steps.slice(0, most_steps);
-}
-
-function colour_at(t: number): THREE.Vector3 {
-    const at = Math.min(Math.max(t, 0), 1) * (viridis.length - 1), i = Math.min(Math.floor(at), viridis.length - 2);
-    const mix = (c: number) => (viridis[i][c] + (viridis[i + 1][c] - viridis[i][c]) * (at - i)) / 255;
-    return new THREE.Vector3(mix(0), mix(1), mix(2));
-}
-
-export const css = (c: Triple) => `rgb(${c.map(x => Math.round(x)).join(', ')})`;
 
 function float_table(width: number, height: number): THREE.DataTexture {
     return new THREE.DataTexture(new Float32Array(4 * width * height), width, height, THREE.RGBAFormat, THREE.FloatType);
@@ -145,12 +143,15 @@ export class Shading {
     material: THREE.ShaderMaterial;
     frame: THREE.ShaderMaterial;
     readonly uniforms: Record<string, THREE.IUniform>;
+    readonly seen: Seen = {backs: true, hidden: [], cut: null};
     private made = new Map<string, THREE.ShaderMaterial>();
     private table: THREE.DataTexture;
     private factors: THREE.DataTexture;
     private grouped = false;
     private shown: Shown = 'picture';
     private isolux = false;
+    private threshold = -1;
+    private under_lines = false;
     steps: number[] = [0, 1];
     /** By material, as painted. */
     reflectances: Triple[] = [];
@@ -161,41 +162,74 @@ export class Shading {
         (this.factors.image.data as unknown as Float32Array).fill(1);
         this.uniforms = {materials: {value: this.table}, material_count: {value: this.table.image.width},
             factors: {value: this.factors}, factor_count: {value: facts.groups.length + 1}, shown: {value: 0},
-            curve: {value: 0}, scale: {value: facts.exposure}, isolux: {value: false}, step_count: {value: 2},
+            curve: {value: 0}, scale: {value: facts.exposure}, isolux: {value: false}, step_count: {value: 2}, threshold: {value: -1},
             steps: {value: new Float32Array(most_steps)}, weights: {value: new THREE.Vector3(...facts.weights)},
             colours: {value: Array.from({length: most_steps}, () => new THREE.Vector3())},
             classes: {value: class_colours.map(([, c]) => new THREE.Vector3(...c).divideScalar(255))},
-            light: {value: null}, rest: {value: null}};
+            light: {value: null}, rest: {value: null}, opacity: {value: 1}, cut: {value: new THREE.Vector4()}};
         this.material = this.make(false), this.frame = this.make(true);
         this.paint(facts.materials.map(m => m.reflectance));
-        this.set_steps([0, 1]);
+        this.set_steps([0, 1], 'viridis');
     }
 
     private make(frame: boolean): THREE.ShaderMaterial {
         const defines: Record<string, string> = {};
-        if (this.shown === 'radiosity' || this.shown === 'irradiance' || this.isolux) defines.VALUES = '1';
+        if (this.shown === 'radiosity' || this.shown === 'irradiance' || this.isolux || this.threshold >= 0) defines.VALUES = '1';
         if (this.shown === 'classes' && !frame) defines.CLASSES = '1';
         if (this.grouped && !frame) defines.GROUPS = '1';
+        if (this.seen.cut && !frame) defines.CUT = '1';
         const key = Object.keys(defines).join() + frame;
         let found = this.made.get(key);
         if (!found) {
             found = new THREE.ShaderMaterial({defines, uniforms: this.uniforms, toneMapped: false,
                 ...(frame ? {vertexShader: frame_vertex, fragmentShader: frame_fragment, depthTest: false, depthWrite: false,
                     transparent: true}
-                    : {vertexShader: vertex, fragmentShader: fragment, side: THREE.DoubleSide, polygonOffset: true,
-                        polygonOffsetFactor: 1, polygonOffsetUnits: 1})});
+                    : {vertexShader: vertex, fragmentShader: fragment, side: THREE.DoubleSide, polygonOffsetFactor: 1, polygonOffsetUnits: 1})});
             this.made.set(key, found);
         }
+        if (!frame) found.side = this.seen.backs ? THREE.DoubleSide : THREE.FrontSide, found.polygonOffset = this.under_lines;
         return found;
     }
 
     private remake(): void { this.material = this.make(false), this.frame = this.make(true); }
 
-    show(shown: Shown, isolux: boolean): void {
-        this.shown = shown, this.isolux = isolux;
+    show(shown: Shown, isolux: boolean, threshold: number): void {
+        this.shown = shown, this.isolux = isolux, this.threshold = threshold;
         this.uniforms.shown.value = shown === 'radiosity' ? 1 : shown === 'irradiance' ? 2 : 0;
         this.uniforms.isolux.value = isolux;
+        this.uniforms.threshold.value = threshold;
         this.remake();
+    }
+
+    /**
+     * Lines lie on faces, which then step back by their slope. Without lines they must not: steep faces would step behind
+     * the backs of their neighbours, which would show as dark dashes along the edges of bodies.
+     */
+    leave_room_for_lines(lines: boolean): void {
+        if (lines === this.under_lines) return;
+        this.under_lines = lines;
+        this.remake();
+    }
+
+    /** Backs of faces are nearly black, or what is behind them is seen. */
+    see_backs(backs: boolean): void {
+        if (backs === this.seen.backs) return;
+        this.seen.backs = backs;
+        this.remake();
+    }
+
+    /** Hides what is beyond a plane (n, d): points x with n . x > d. */
+    cut(plane: number[] | null): void {
+        this.seen.cut = plane;
+        if (plane) (this.uniforms.cut.value as THREE.Vector4).fromArray(plane);
+        this.remake();
+    }
+
+    hide(groups: number[]): void {
+        this.seen.hidden = [...groups];
+        const data = this.factors.image.data as unknown as Float32Array;
+        for (let g = 0; g <= this.facts.groups.length; ++g) data[4 * g + 1] = groups.includes(g) ? 0 : 1;
+        this.use_groups(groups.length > 0);
     }
 
     /** Reflectances in the first row, exitances in the second. */
@@ -211,17 +245,23 @@ export class Shading {
     /** What the exitances of groups are multiplied by; what is in none comes last. */
     dim(factors: number[]): void {
         const data = this.factors.image.data as unknown as Float32Array;
-        this.facts.groups.forEach((_, i) => data.fill(factors[i] ?? 1, 4 * i, 4 * i + 4));
-        this.factors.needsUpdate = true;
-        if (!this.grouped && factors.some(f => f !== 1)) { this.grouped = true; this.remake(); }
+        this.facts.groups.forEach((_, i) => { data[4 * i] = factors[i] ?? 1; });
+        this.use_groups(factors.some(f => f !== 1));
     }
 
-    set_steps(steps: number[]): void {
+    private use_groups(needed: boolean): void {
+        this.factors.needsUpdate = true;
+        if (needed) this.grouped = true;
+        this.remake();
+    }
+
+    set_steps(steps: number[], palette: string): void {
         this.steps = steps;
         const u = this.uniforms, bands = steps.length - 1;
         u.step_count.value = steps.length;
         steps.forEach((s, i) => { u.steps.value[i] = s; });
-        for (let i = 0; i < bands; ++i) u.colours.value[i] = colour_at(bands > 1 ? i / (bands - 1) : 0.5);
+        for (let i = 0; i < bands; ++i)
+            u.colours.value[i] = new THREE.Vector3(...colour_at(palette, bands > 1 ? i / (bands - 1) : 0.5)).divideScalar(255);
     }
 
     /** Colours of bands, or of the lines at their lower ends, from the brightest down, as they stand in a legend. */

@@ -24,17 +24,19 @@ export class WhatIf {
     /** The panel, where the solution keeps what it needs. */
     async show(): Promise<void> {
         this.changes = await load_changes();
+        // What is named alike is dimmed and painted alike, and is one entry.
+        const unique = <T extends {name: string}>(all: T[]) => all.filter((x, i) => all.findIndex(y => y.name === x.name) === i);
+        this.changes = {groups: unique(this.changes.groups), materials: unique(this.changes.materials)};
         const {groups, materials} = this.changes, place = by_id('change');
-        place.hidden = groups.length + materials.length === 0;
-        if (place.hidden) return;
+        by_id('change_section').hidden = groups.length + materials.length === 0;
+        if (by_id('change_section').hidden) return;
         this.factors = groups.map(g => g.factor), this.painted = materials.map(() => null);
         const rows = [...groups.map((g, i) => this.slider(g.name, i)), ...materials.map((m, i) => this.colour(m.name, m.reflectance, i))];
-        const title = Object.assign(document.createElement('h2'), {textContent: 'What if'});
         const reset = Object.assign(document.createElement('button'), {textContent: 'As solved'});
         reset.addEventListener('click', () => { void this.show().then(() => this.ask()); });
         const told = Object.assign(document.createElement('p'), {id: 'change_told'});
         told.setAttribute('role', 'status');
-        place.replaceChildren(title, ...rows, reset, told);
+        place.replaceChildren(...rows, reset, told);
     }
 
     private row(name: string, id: string, ...controls: HTMLElement[]): HTMLElement {
@@ -47,14 +49,14 @@ export class WhatIf {
     private slider(name: string, i: number): HTMLElement {
         const id = `group_${i}`, factor = this.factors[i];
         const input = Object.assign(document.createElement('input'), {type: 'range', id, min: '0', max: '2', step: '0.01', value: String(factor)});
-        const told = Object.assign(document.createElement('output'), {textContent: factor.toFixed(2)});
+        const told = Object.assign(document.createElement('output'), {textContent: `${(100 * factor).toFixed(0)}%`});
         told.setAttribute('for', id);
         input.addEventListener('input', () => {
             this.factors[i] = Number(input.value);
-            told.textContent = this.factors[i].toFixed(2);
+            told.textContent = `${(100 * this.factors[i]).toFixed(0)}%`;
             this.ask();
         });
-        return this.row(name || 'no group', id, input, told);
+        return this.row(name || 'lamps without a group', id, input, told);
     }
 
     private colour(name: string, reflectance: Triple, i: number): HTMLElement {

@@ -1,0 +1,83 @@
+// The range of the colours: two handles on one track, two numbers, linear or logarithmic, palette and threshold.
+import {round_steps, short, spans_ratios, steps_within} from './colours';
+import {by_id} from './measure';
+
+const track = 1000;  // positions of a handle
+
+export class ScaleControl {
+    /** The values that there are; the track goes a little beyond. */
+    private limits: [number, number] = [0, 1];
+    private chosen: [number, number] | null = null;
+    private lo = by_id<HTMLInputElement>('scale_lo');
+    private hi = by_id<HTMLInputElement>('scale_hi');
+    private lo_number = by_id<HTMLInputElement>('scale_lo_number');
+    private hi_number = by_id<HTMLInputElement>('scale_hi_number');
+    private log = by_id<HTMLInputElement>('scale_log');
+    private threshold_number = by_id<HTMLInputElement>('threshold');
+    private log_chosen = false;
+
+    constructor(private changed: () => void) {
+        for (const handle of [this.lo, this.hi]) handle.addEventListener('input', () => this.drag(handle));
+        for (const number of [this.lo_number, this.hi_number]) number.addEventListener('change', () => this.type());
+        this.log.addEventListener('change', () => { this.log_chosen = true; changed(); });
+        for (const id of ['palette', 'threshold']) by_id(id).addEventListener('input', changed);
+        by_id('scale_auto').addEventListener('click', () => { this.chosen = null, this.log_chosen = false; changed(); });
+    }
+
+    get palette(): string { return by_id<HTMLSelectElement>('palette').value; }
+    /** Negative: none. */
+    get threshold(): number { return this.threshold_number.value === '' ? -1 : Math.max(0, Number(this.threshold_number.value)); }
+    get range(): [number, number] { return this.chosen ?? this.limits; }
+
+    /** Steps of the colours for values in a range, and the handles where they belong. */
+    steps(values: [number, number]): number[] {
+        this.limits = values[1] > 0 ? values : [0, 1];
+        const [lo, hi] = this.range;
+        if (!this.log_chosen) this.log.checked = spans_ratios(lo, hi);
+        const steps = this.chosen ? steps_within(this.log.checked ? Math.max(lo, 1e-4 * hi) : lo, hi, this.log.checked)
+            : round_steps(lo, hi, this.log.checked);
+        if (!this.chosen) this.limits = [Math.min(this.limits[0], steps[0]), Math.max(this.limits[1], steps[steps.length - 1])];
+        this.show();
+        return steps;
+    }
+
+    private ends(): [number, number] {
+        const [lo, hi] = this.limits, top = Math.max(1.2 * hi, this.range[1]);
+        return this.log.checked ? [Math.max(Math.min(lo, this.range[0]), 1e-4 * top), top] : [0, top];
+    }
+
+    private value(position: number): number {
+        const [lo, hi] = this.ends(), t = position / track;
+        return Number((this.log.checked ? lo * (hi / lo) ** t : lo + (hi - lo) * t).toPrecision(3));
+    }
+
+    private position(value: number): number {
+        const [lo, hi] = this.ends();
+        return Math.round(track * (this.log.checked ? Math.log(Math.max(value, lo) / lo) / Math.log(hi / lo) : (value - lo) / (hi - lo)));
+    }
+
+    private drag(handle: HTMLInputElement): void {
+        // Handles keep apart by a hundredth of the track.
+        const gap = track / 100;
+        if (handle === this.lo) this.lo.value = String(Math.min(Number(this.lo.value), Number(this.hi.value) - gap));
+        else this.hi.value = String(Math.max(Number(this.hi.value), Number(this.lo.value) + gap));
+        this.chosen = [this.value(Number(this.lo.value)), this.value(Number(this.hi.value))];
+        this.changed();
+    }
+
+    private type(): void {
+        const lo = Number(this.lo_number.value), hi = Number(this.hi_number.value);
+        if (hi > lo && lo >= 0) this.chosen = [lo, hi];
+        this.changed();
+    }
+
+    private show(): void {
+        const [lo, hi] = this.range, a = this.position(lo), b = this.position(hi);
+        this.lo.value = String(a), this.hi.value = String(b);
+        this.lo.setAttribute('aria-valuetext', short(lo)), this.hi.setAttribute('aria-valuetext', short(hi));
+        if (document.activeElement !== this.lo_number) this.lo_number.value = String(Number(lo.toPrecision(4)));
+        if (document.activeElement !== this.hi_number) this.hi_number.value = String(Number(hi.toPrecision(4)));
+        by_id('scale').style.setProperty('--from', `${100 * a / track}%`);
+        by_id('scale').style.setProperty('--to', `${100 * b / track}%`);
+    }
+}
