@@ -3,7 +3,7 @@
 
 mkdocs calls on_files when it builds the site (see mkdocs.yml). The page for C++ describes all headers in include/exitance, as far as
 doxygen finds comments (`///`) in them; without that folder, the headers that the README's example includes. The page for Python
-describes the classes and functions of the modules and stubs (.py, .pyi) in bindings/python that have a docstring.
+describes the classes and functions of the modules and stubs (.py, .pyi) in bindings/python/exitance that have a docstring.
 
     interface_pages.py cpp|python     prints a page"""
 import ast
@@ -101,7 +101,7 @@ def declaration(member):
     if member.get("kind") == "variable" and value is not None and len(inline(value)) < 40:
         text += " " + inline(value)
     text = re.sub(r"\bexitance::(\w+::)*(?=[\w~]+( |\(|$))", "", text, count=1) if "(" in text else text
-    return re.sub(r" ?([<>]) ", r"\1 ", text).replace("exitance::", "").replace("< ", "<").replace(" >", ">")
+    return re.sub(r" ?([<>]) ", r"\1 ", text).replace("exitance::api::", "").replace("exitance::", "").replace("< ", "<").replace(" >", ">")
 
 
 def cell(text):
@@ -129,7 +129,7 @@ def entry(member, level):
 
 
 def class_section(compound):
-    name = compound.findtext("compoundname").removeprefix("exitance::")
+    name = compound.findtext("compoundname").removeprefix("exitance::").removeprefix("api::")
     out = f"\n### {compound.get('kind')} `{name}`\n\n{description(compound)}\n"
     members = [m for m in compound.iter("memberdef") if m.get("prot") == "public"]
     out += values([m for m in members if m.get("kind") == "variable"])
@@ -141,7 +141,7 @@ def class_section(compound):
 
 def cpp_page():
     files, base = headers()
-    out = ["# Interface for C++\n\nThis page is generated from the comments of the headers. Everything is in the namespace `exitance`. "
+    out = ["# Interface for C++\n\nThis page is generated from the comments of the headers. Everything is in the namespace `exitance::api`. "
            "Functions that read files or options return a `Result`: a value, or an `Error` with message, place and hint.\n"]
     with tempfile.TemporaryDirectory() as folder:
         compounds = [compound for root_node in doxygen(files, folder).values() for compound in root_node.iter("compounddef")]
@@ -194,7 +194,7 @@ def python_entries(nodes, level):
 def python_page():
     out = ["# Interface for Python\n\n"]
     folder = root / "bindings/python"
-    files = [p for p in sorted(folder.rglob("*.py*")) if p.suffix in (".py", ".pyi") and "test" not in str(p.relative_to(folder))]
+    files = [p for p in sorted((folder / "exitance").rglob("*.py*")) if p.suffix in (".py", ".pyi")]
     stems = {p.with_suffix("") for p in files if p.suffix == ".pyi"}
     for file in files:
         if file.name == "setup.py" or (file.suffix == ".py" and file.with_suffix("") in stems):

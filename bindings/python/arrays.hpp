@@ -17,7 +17,7 @@ namespace python {
 namespace py = pybind11;
 namespace api = exitance::api;
 
-/// An array of doubles in C order; copies only what is of another type or order.
+/// An array of doubles in C order; arrays of another type or order are copied.
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// Throws the Python exception of an error of the library.

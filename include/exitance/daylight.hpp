@@ -44,8 +44,11 @@ struct Daylight {
 
 /// Computes the daylight of a year at sensors by daylight coefficients: one transport for all sky patches, and exact
 /// direct light of sun and sky. The scene's own lamps are off, and its sky is replaced by the weather. Rays and
-/// elements are added until the requested error is reached. epw      weather file sensors  points and normals Errors:
-/// cannot_read, bad_input for the weather file; usage for options out of range or no sensors; limit after a stop.
+/// elements are added until the requested error is reached.
+/// epw      weather file
+/// sensors  points and normals
+/// Errors: cannot_read, bad_input for the weather file; usage for options out of range or no sensors; limit after a
+/// stop.
 Result<Daylight> daylight(const Scene& scene, const std::string& epw, std::span<const Probe> sensors,
                           const DaylightOptions& options = {}, const Control& control = {});
 

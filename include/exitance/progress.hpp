@@ -43,7 +43,7 @@ class StopRequest {
     std::unique_ptr<State> state_;
 };
 
-/// Where long work reports and is stopped. Both may be null. They must outlive the call.
+/// Receiver of progress and source of stop requests of long work. Both may be null. They must outlive the call.
 struct Control {
     Progress* progress = nullptr;
     StopRequest* stop = nullptr;

@@ -39,7 +39,7 @@ struct Finding {
     enum class Kind { error, warning, repair };
     Kind kind = Kind::warning;
     std::string where;    ///< File and line, or empty.
-    std::string message;  ///< One sentence; for a repair, also what was done.
+    std::string message;  ///< One sentence; for a repair, it includes the change.
     std::string hint;     ///< Suggested action, or empty.
 };
 

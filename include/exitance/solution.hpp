@@ -18,7 +18,7 @@ namespace exitance::api {
 /// give the light of the surface; other points are sensors in the air.
 struct Probe {
     Vec3 point;   ///< Metres.
-    Vec3 normal;  ///< Of any length above 0.
+    Vec3 normal;  ///< Direction of any length above 0.
 };
 
 /// Part of the light that is evaluated: all of it, the light that arrives from emitters without reflection, or the
@@ -78,7 +78,7 @@ class Solution {
     std::string stopped_by() const;
     /// Energy balance of the light.
     Energy energy() const;
-    /// Sentences about what may be wrong with the light.
+    /// Sentences about possible faults of the light.
     std::vector<std::string> warnings() const;
     /// All statistics as JSON: the output of `exitance stats --json`.
     std::string statistics_json() const;

@@ -45,6 +45,8 @@ class Face:
     def group(self) -> int: ...
 
 class Scene:
+    """A checked, immutable scene: polygons with materials, lights, skies. Lengths are in metres."""
+
     def __init__(
         self,
         vertices: ArrayLike,
@@ -82,6 +84,8 @@ class Scene:
     def findings(self) -> list[Finding]: ...
 
 class Mesh:
+    """The light on triangles: read-only views of memory."""
+
     @property
     def vertices(self) -> _Doubles: ...
     @property
@@ -94,6 +98,8 @@ class Mesh:
     def face(self) -> NDArray[np.int32]: ...
 
 class Camera:
+    """A camera; `fov` is in degrees."""
+
     def __init__(
         self,
         eye: ArrayLike,
@@ -114,6 +120,8 @@ class Camera:
     def projection(self) -> str: ...
 
 class Picture:
+    """A picture of a solution."""
+
     @property
     def size(self) -> tuple[int, int]: ...
     @property
@@ -152,6 +160,8 @@ class Chart:
     def faces(self) -> list[int]: ...
 
 class LightMaps:
+    """Irradiance as images that cover all surfaces."""
+
     @property
     def density(self) -> float: ...
     def __len__(self) -> int: ...
@@ -161,8 +171,12 @@ class LightMaps:
     def save(self, folder: _Path) -> None: ...
 
 class Solution:
-    def irradiance(self, points: ArrayLike, normals: ArrayLike, *, component: str = "total") -> _Doubles: ...
-    def radiosity(self, points: ArrayLike, normals: ArrayLike) -> _Doubles: ...
+    """The light of a scene, evaluated anywhere. Direct light is exact, shadows included."""
+
+    def irradiance(self, points: ArrayLike, normals: ArrayLike, *, component: str = "total") -> _Doubles:
+        """Irradiance at points, (n, bands) W/m^2."""
+    def radiosity(self, points: ArrayLike, normals: ArrayLike) -> _Doubles:
+        """Emitted and reflected light at points of surfaces, (n, bands) W/m^2; NaN in the air."""
     @property
     def error(self) -> Union[None, float]: ...
     @property
@@ -195,6 +209,8 @@ class Solution:
     def bake(self, density: float = 0.0, padding: int = 4, progress: _Progress = None) -> LightMaps: ...
 
 class Daylight:
+    """Illuminances of sensors in every hour of a weather file, and their annual figures."""
+
     @property
     def hours(self) -> NDArray[np.int32]: ...
     @property
@@ -208,15 +224,15 @@ class Daylight:
     @property
     def useful(self) -> _Doubles: ...
     @property
-    def daylight_factor_bounds(self) -> _Doubles: ...
-    @property
-    def autonomy_bounds(self) -> _Doubles: ...
-    @property
     def sunny_hours(self) -> _Doubles: ...
     @property
     def spatial_autonomy(self) -> float: ...
     @property
     def sunlight_exposure(self) -> float: ...
+    @property
+    def daylight_factor_bounds(self) -> _Doubles: ...
+    @property
+    def autonomy_bounds(self) -> _Doubles: ...
     @property
     def error_daylight_factor(self) -> float: ...
     @property
@@ -235,9 +251,12 @@ def load(
     epw: Union[None, _Path] = None,
     photometric: Union[None, bool] = None,
     light_groups: bool = False,
-) -> Scene: ...
-def load_solution(path: _Path) -> Solution: ...
-def set_threads(count: int) -> None: ...
+) -> Scene:
+    """Reads the files of one scene, checks and repairs it."""
+def load_solution(path: _Path) -> Solution:
+    """Reads a solution file."""
+def set_threads(count: int) -> None:
+    """Sets the number of threads for all later calls; 0 means all cores."""
 def solve(
     scene: Scene,
     error: Union[None, float] = None,
@@ -249,10 +268,12 @@ def solve(
     threads: Union[None, int] = None,
     progress: _Progress = None,
     **more: Union[None, bool, int, float, str],
-) -> Solution: ...
+) -> Solution:
+    """Computes the light of a scene until its estimated error is below the requested one."""
 def view_factors(
     scene: Scene, error: float = 1e-3, *, smallest: float = 0.0, seed: int = 1, progress: _Progress = None
-) -> Any: ...
+) -> Any:
+    """View factors between the faces of a scene, as a scipy.sparse.csr_array."""
 def daylight(
     scene: Scene,
     epw: _Path,
@@ -264,4 +285,5 @@ def daylight(
     north: float = 0.0,
     ground: float = 0.2,
     progress: _Progress = None,
-) -> Daylight: ...
+) -> Daylight:
+    """Computes the daylight of a year at sensors."""

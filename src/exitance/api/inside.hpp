@@ -28,7 +28,7 @@
 
 namespace exitance::api {
 
-// What is inside the values of the public headers, and the conversion between their types and the engine's.
+// Content of the values of the public headers, and conversions between their types and the engine's.
 
 struct SceneData {
     std::shared_ptr<const exitance::Scene> scene;

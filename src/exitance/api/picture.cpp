@@ -18,7 +18,7 @@ namespace exitance::api {
 struct PictureData {
     exitance::Picture picture;
     Camera camera;
-    LightUnit unit;  ///< Of the scene's light.
+    LightUnit unit;  ///< Unit of the scene's light.
 };
 
 namespace {

@@ -38,7 +38,7 @@ bool StopRequest::requested() const noexcept {
 
 namespace {
 
-int chosen_threads = 0;  ///< Of set_threads(); guarded by turns().
+int chosen_threads = 0;  ///< Argument of set_threads(); guarded by turns().
 
 }  // namespace
 
