@@ -38,7 +38,7 @@ target_compile_options(exitance-python PRIVATE -Wall -Wextra -Werror -O1)  # the
 target_compile_definitions(exitance-python PRIVATE "EXITANCE_VERSION=\"${PROJECT_VERSION}\"")
 target_link_libraries(exitance-python PRIVATE exitance-static fmt::fmt)
 # Only the module's entry is visible, so that other modules may contain other versions of the same libraries.
-target_link_options(exitance-python PRIVATE -Wl,--exclude-libs,ALL -Wl,-z,defs)
+target_link_options(exitance-python PRIVATE -Wl,--exclude-libs,ALL)
 set_target_properties(exitance-python PROPERTIES OUTPUT_NAME _exitance LIBRARY_OUTPUT_DIRECTORY ${python_build}/exitance)
 
 # The files in Python, beside the module.

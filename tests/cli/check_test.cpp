@@ -205,7 +205,10 @@ TEST(ProgramCheck, ATurnedBodyHasTheLightOfOneThatWasRightFromTheBeginning) {
         std::istringstream lines(csv);
         std::string line;
         std::getline(lines, line);
-        while (std::getline(lines, line)) out.push_back(std::stod(line.substr(line.rfind(',') + 1)));
+        while (std::getline(lines, line)) {
+            for (int column = 0; column < 6; ++column) line.erase(0, line.find(',') + 1);  // x,y,z,nx,ny,nz
+            out.push_back(std::stod(line));                                                // E_r
+        }
         return out;
     };
     const std::vector<double> expected = numbers(light(right, {})), turned = numbers(light(wrong, {"--turn-bodies"}));

@@ -27,7 +27,8 @@ std::vector<std::string> pages() {
     return out;
 }
 
-/// Blocks of a page that are indented by four spaces or fenced as `sh`, in the order of the page.
+/// Blocks of a page that are indented by four spaces, blank lines included, or fenced as `sh`, in the order of the
+/// page.
 std::vector<std::string> blocks_of(const std::string& text) {
     std::vector<std::string> out;
     std::istringstream lines(text);
@@ -44,6 +45,8 @@ std::vector<std::string> blocks_of(const std::string& text) {
             block += line + "\n";
         } else if (fence.empty() && line.starts_with("    ")) {
             block += line.substr(4) + "\n";
+        } else if (fence.empty() && line.empty() && !block.empty()) {
+            block += "\n";
         } else {
             close();
         }
@@ -101,6 +104,10 @@ void write_inputs(const TemporaryFolder& folder) {
     write_text(folder / "downlight.ies", downlight);
     write_text(folder / "lights.csv", "file,x,y,z\ndownlight.ies,1.2,1.5,2.7\n");
     write_text(folder / "city.epw", weather_of_a_day());
+    write_text(folder / "office.hbjson", R"({"type": "Model", "properties": {"radiance": {"sensor_grids": [
+        {"identifier": "desk", "sensors": [{"pos": [1, 1, 0.8], "dir": [0, 0, 1]}]}]}},
+        "orphaned_shades": [{"identifier": "floor",
+            "geometry": {"boundary": [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]]}}]})");
     write_text(folder / "desks.pts", "1 1 0.75 0 0 1\n2 1 0.75 0 0 1\n");
     write_text(folder / "desks.csv", "x,y,z,nx,ny,nz\n1,1,0.75,0,0,1\n2,1,0.75,0,0,1\n");
     write_text(folder / "path.csv", "time,ex,ey,ez,tx,ty,tz,fov\n0,1,1,1.6,3,2,1,60\n0.1,1.1,1,1.6,3,2,1,60\n");

@@ -4,7 +4,7 @@
 
 namespace exitance {
 
-/// Returns the RMS error of rho E_dir over all surfaces, W/m^2, that is due to clusters of emitters if light is
+/// Returns the RMS error of rho E_dir over all surfaces, W/m^2, that is due to the noise of rays where direct light is
 /// evaluated at points with this accuracy; 0 if all direct light is exact. Estimated at a few hundred leaves of
 /// `direct`, distributed over their area.
 double clustering_error(const Stage& stage, const DirectProjection& direct, const LightAccuracy& accuracy);

@@ -78,17 +78,20 @@ double interpolant_error(const Stage& stage, const ElementFunction& interpolant,
                 const Vec2 uv = tree.uniform(e, random(i, 1), random(i, 2));
                 const Point x = tree.patch(e).at(uv);
                 if (stage.occluders.is_covered(x, n, region)) continue;
-                const Spectrum direct = stage.place_light.at(x, n, region, point_accuracy(0), workspace).irradiance;
-                const Spectrum exact = light.direct_weight * direct + light.indirect.at(locator.find(region, x));
+                const PlaceLight::Estimate direct = stage.place_light.at(x, n, region, point_accuracy(1), workspace);
+                const Spectrum exact =
+                    light.direct_weight * direct.irradiance + light.indirect.at(locator.find(region, x));
                 const Spectrum counts = is_black ? Spectrum(1.0) : stage.scene.material(region).reflectance;
                 const Spectrum off = counts * (exact - interpolant.at(tree.leaf_at(e, uv)));
-                square[k] = weight * squared(off) / static_cast<double>(bands);
+                // The noise of rays is no error of the interpolant.
+                const Spectrum noise = counts * light.direct_weight * direct.standard_error();
+                square[k] = weight * (squared(off) - squared(noise)) / static_cast<double>(bands);
             }
         },
         [&](std::size_t k) -> double& { return square[k]; }, {"interpolant error"});
     double sum = 0;
     for (const double s : square) sum += s;
-    return std::sqrt(sum / static_cast<double>(square.size()));
+    return std::sqrt(std::max(0.0, sum) / static_cast<double>(square.size()));
 }
 
 }  // namespace exitance

@@ -21,7 +21,7 @@ enum class Component { total, direct, indirect };
 struct Light {
     Spectrum irradiance;      ///< E, W/m^2
     Spectrum radiosity;       ///< B = M + rho E, W/m^2; undefined if `on_surface` is false.
-    Spectrum standard_error;  ///< Of E, by the rays of direct light, W/m^2; 0: exact direct light.
+    Spectrum standard_error;  ///< Standard error of E from the rays of direct light, W/m^2; 0: exact direct light.
     bool on_surface = false;
     bool is_between_sides = false;  ///< True if the point is on a border of several sides, see PlaceFinder.
 };
@@ -34,8 +34,8 @@ struct ProbePoint {
 
 /// How direct light is evaluated at points.
 enum class DirectBy : std::uint8_t {
-    cheaper,       ///< By closed forms or by rays, whichever is cheaper at `point_accuracy()` (PlaceLight).
-    closed_forms,  ///< By closed forms; only light that panes mirror is estimated.
+    cheaper,       ///< Closed forms or rays, whichever is cheaper at `point_accuracy()` (PlaceLight).
+    closed_forms,  ///< Closed forms; only light that panes mirror is estimated.
 };
 
 /// A solution as a function of place: B(x) = M + rho (E_dir(x) + E_ind(x)). Direct light is evaluated from the

@@ -59,8 +59,8 @@ struct ClassicalOptions {
 
     /// True if any option requests a classical form.
     bool any() const {
-        return direct || mesh || gather || certify == false || threshold || multigrid || kernel || refine_gradient || refine ||
-               relaxation || sor_factor || receivers || ambient || snapshots.any();
+        return direct || mesh || gather || certify == false || threshold || multigrid || kernel || refine_gradient ||
+               refine || relaxation || sor_factor || receivers || ambient || snapshots.any();
     }
     bool carried() const { return direct == ClassicalDirect::carried; }
 };

@@ -13,9 +13,9 @@
 namespace exitance {
 namespace {
 
-constexpr double on_plane = 1e-14;  ///< Sine of an angle that may be due to rounding alone.
+constexpr double on_plane = 1e-14;       ///< Sine of an angle that may be due to rounding alone.
 constexpr double work_of_integral = 20;  ///< Work of the integral of a directed radiance over a fragment.
-constexpr double no_width = 1e-13;  ///< Edges seen under a smaller angle count as points.
+constexpr double no_width = 1e-13;       ///< Edges seen under a smaller angle count as points.
 
 using Workspace = VisibilityWorkspace;
 

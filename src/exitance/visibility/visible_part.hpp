@@ -60,8 +60,8 @@ class VisibilityWorkspace {
     std::vector<RegionId> uncovering;  ///< Regions of several pieces already found not to hide the whole source.
     Shaft shaft;
 
-    /// Work done by visible_form_factor() so far, in units of about 0.2 us (a possible blocker, a fragment that is cut).
-    /// Above `most_work` it gives up and returns any value; the work depends on its arguments alone.
+    /// Work done by visible_form_factor() so far, in units of about 0.2 us (a possible blocker, a fragment that is
+    /// cut). Above `most_work` it gives up and returns any value; the work depends on its arguments alone.
     double work = 0, most_work = HUGE_VAL;
     bool gave_up() const { return work > most_work; }
 

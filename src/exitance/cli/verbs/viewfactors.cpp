@@ -216,6 +216,9 @@ class ViewFactorRun {
         if (arguments_.tolerance) {
             warn(facts.unsettled > 0, fmt::format("the entries of {} pairs of faces still disagree by more than {:g}",
                                                   facts.unsettled, *arguments_.tolerance));
+            warn(facts.most_row_sum > 1 + *arguments_.tolerance,
+                 fmt::format("some row adds up to {:.6g}: more than 1 by more than {:g}", facts.most_row_sum,
+                             *arguments_.tolerance));
             warn(facts.check.wrong > 0, fmt::format("{} of {} entries that rays checked are off by more than {:g}",
                                                     facts.check.wrong, facts.check.entries, *arguments_.tolerance));
             return reached ? ExitCode::done : ExitCode::demand_not_reached;

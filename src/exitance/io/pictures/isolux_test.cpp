@@ -40,7 +40,7 @@ TEST(Isolux, LongLinesAreLabelled) {
     draw_isolux(image, picture, {{0, 50, 100}}, "illuminance lx");
     int paper = 0;  // pixels of the label's background, on the line of 50 lx
     for (int y = 0; y < 80; ++y) paper += image.at(94, y)[2] == 24;
-    EXPECT_GT(paper, 5);
+    EXPECT_GT(paper, 3);  // the height of the label
 }
 
 }  // namespace

@@ -171,7 +171,7 @@ TEST(Picture, ShowsTheFunctionUpToNoiseWithManyShadows) {
     const Camera camera{{6, 3, 1.5}, {4, 2, 0.8}, 80};
     const PictureSize size{96, 64};
     const Picture picture = picture_of(s, camera, size, 1);
-    const RadiosityFunction light(s);
+    const RadiosityFunction light(s, DirectBy::closed_forms);
     const CameraRays rays(camera, size);
     double all = 0, miss = 0, count = 0;
     for (int y = 0; y < size.height; y += 3)

@@ -104,7 +104,7 @@ Pilot look(const Stage& stage, const Plan& plan, const DirectProjection& direct)
         PlaceLight::Workspace workspace;
         for (std::size_t i = first; i < last; ++i)
             stage.place_light.at(points[i].x, points[i].n, region[i], {.relative = plan.options.error_target()},
-                               workspace);
+                                 workspace);
     });
     look_across(stage, points, region, out);
     double mean_light = 0;

@@ -291,16 +291,16 @@ TEST_F(GltfFiles, MissingDataAreErrors) {
             if (const auto at = part->find(what); at != part->npos) part->replace(at, what.size(), with);
         return first_error(out);
     };
-    EXPECT_NE(replaced("\"count\":3", "\"count\":400000000").find("not all there"), std::string::npos);
-    EXPECT_NE(replaced("\"count\":3", "\"count\":6148914691236517206").find("not all there"), std::string::npos);
-    EXPECT_NE(replaced("\"byteLength\":36", "\"byteLength\":3600").find("not there"), std::string::npos);
-    EXPECT_NE(replaced("\"byteOffset\":36", "\"byteOffset\":18446744073709551612").find("not there"),
+    EXPECT_NE(replaced("\"count\":3", "\"count\":400000000").find("but there are only"), std::string::npos);
+    EXPECT_NE(replaced("\"count\":3", "\"count\":6148914691236517206").find("but there are only"), std::string::npos);
+    EXPECT_NE(replaced("\"byteLength\":36", "\"byteLength\":3600").find("the file does not have"), std::string::npos);
+    EXPECT_NE(replaced("\"byteOffset\":36", "\"byteOffset\":18446744073709551612").find("the file does not have"),
               std::string::npos);
     EXPECT_NE(replaced("\"POSITION\":0", "\"POSITION\":17").find("accessor 17 of 2"), std::string::npos);
     EXPECT_NE(replaced("5123", "5126").find("whole numbers"), std::string::npos);
-    EXPECT_NE(replaced("\"mesh\":0", "\"mesh\":0,\"children\":[0]").find("none is a root"), std::string::npos);
+    EXPECT_NE(replaced("\"mesh\":0", "\"mesh\":0,\"children\":[0]").find("no root node"), std::string::npos);
     text.more = R"(,"scenes":[{"nodes":[0]}])";
-    EXPECT_NE(replaced("\"mesh\":0", "\"mesh\":0,\"children\":[0]").find("two places"), std::string::npos);
+    EXPECT_NE(replaced("\"mesh\":0", "\"mesh\":0,\"children\":[0]").find("two parents"), std::string::npos);
     EXPECT_NE(replaced("\"mesh\":0", "\"mesh\":0,\"children\":[5]").find("child 5 of 1"), std::string::npos);
     text.data[36] = 7;
     EXPECT_NE(first_error(text).find("vertex 7 of 3"), std::string::npos) << first_error(text);

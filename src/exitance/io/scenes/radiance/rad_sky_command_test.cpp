@@ -227,8 +227,8 @@ TEST(RadSkyCommand, UnsupportedWordsAreNamed) {
     };
     EXPECT_NE(fault("gensky 3 20").find("missing"), std::string::npos);
     EXPECT_NE(fault("gensky 13 20 12").find("'13 20'"), std::string::npos);
-    EXPECT_NE(fault("gensky 3 20 25").find("no time"), std::string::npos);
-    EXPECT_NE(fault("gensky 3 20 12XYZ").find("no time"), std::string::npos);
+    EXPECT_NE(fault("gensky 3 20 25").find("not a time"), std::string::npos);
+    EXPECT_NE(fault("gensky 3 20 12XYZ").find("not a time"), std::string::npos);
     EXPECT_NE(fault("gensky 3 20 12 -q").find("'-q'"), std::string::npos);
     EXPECT_NE(fault("gensky 3 20 12 -a").find("-a needs"), std::string::npos);
     EXPECT_NE(fault("gensky 3 20 12 -W 1 2").find("'-W'"), std::string::npos);
@@ -238,7 +238,7 @@ TEST(RadSkyCommand, UnsupportedWordsAreNamed) {
     EXPECT_NE(fault("gendaylit 3 20 12EST -W 100 10").find("-m"), std::string::npos);
     EXPECT_NE(fault("gendaylit 3 20 24 -W 100 10").find("below 24"), std::string::npos);
     EXPECT_NE(fault("gendaylit 3 20 12 -C -W 1 2").find("--run-commands"), std::string::npos);
-    EXPECT_NE(fault("gensky 2 30 12 -y 2021").find("no date"), std::string::npos);
+    EXPECT_NE(fault("gensky 2 30 12 -y 2021").find("not a date"), std::string::npos);
     EXPECT_EQ(fault("gensky 3 20 12"), "");
 }
 
