@@ -1,6 +1,7 @@
 #include "arrays.hpp"
 
 #include <fmt/format.h>
+#include <pybind11/stl.h>
 
 namespace python {
 namespace {

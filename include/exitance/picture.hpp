@@ -18,7 +18,7 @@ enum class Projection {
     panorama,      ///< All directions, 360 x 180 degrees, zenith on top.
 };
 
-/// A camera.
+/// A camera: its place, its target, its projection and its angle of view.
 struct Camera {
     Vec3 eye, target;  ///< Metres.
     /// Degrees from the left to the right edge; fisheye: across the disc; orthographic: metres; panorama: unused.
