@@ -35,6 +35,7 @@ std::vector<std::string> blocks_of(const std::string& text) {
     std::istringstream lines(text);
     std::string block, fence;
     const auto close = [&] {
+        while (block.ends_with("\n\n")) block.pop_back();
         if (!block.empty()) out.push_back(block);
         block.clear();
     };
