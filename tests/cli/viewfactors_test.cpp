@@ -83,7 +83,7 @@ TEST(ProgramViewFactors, RowErrorsAndTheirCheckAreReported) {
     EXPECT_LE(facts["row_error_checked"], 6e-3);  // the noise of the rays is within R
     EXPECT_GT(facts["entries"], 20);
     EXPECT_EQ(facts["dropped"], 0);
-    // Before closure: rows are only as accurate as their error after closure requires, here 3.5 times 3e-3 per entry.
+    // The defect before closure, which removes most of their noise; `row_error_checked` judges the result.
     EXPECT_LE(facts["closure_defect"], 0.1);
     EXPECT_TRUE(facts["reciprocity_defect"].is_number());
     EXPECT_EQ(read_text(folder / "a.h5"), read_text(folder / "b.h5"));
