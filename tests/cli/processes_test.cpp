@@ -154,18 +154,21 @@ TEST_F(ProgramOfProcesses, CountTheirShareOfSharedMemoryForTheirLimit) {
     const auto under = [&](int mib) {
         return solve("several", {"--error", "0.1", "--memory-limit", std::to_string(mib) + "M"});
     };
-    // The smallest limit with which the scene can be read is too low for the coarsest mesh.
+    // The smallest limit with which the scene can be read is too low for a solve: for its coarsest mesh (exit code 5),
+    // or, when less memory happens to be in use than in the run before, for the requested error (exit code 4).
     const std::regex in_use(R"((\d+) MiB (are )?in use)");
     int limit = 1;
     for (bool is_planned = false; !is_planned;) {
         const Finished tight = run_program(under(limit));
+        if (tight.status == 4) break;
         ASSERT_EQ(tight.status, 5) << tight.err;
         std::smatch found;
         ASSERT_TRUE(std::regex_search(tight.err, found, in_use)) << tight.err;
         is_planned = tight.err.find("needs about") != std::string::npos;
-        limit = is_planned ? std::stoi(found[1]) - 2 : std::max(limit + 1, std::stoi(found[1]));
+        limit = is_planned ? std::stoi(found[1]) : std::max(limit + 1, std::stoi(found[1]));
     }
-    EXPECT_EQ(run_program(under(limit)).status, 5);
+    limit -= 2;  // a margin for the memory in use, which differs from run to run
+    EXPECT_NE(run_program(under(limit)).status, 0);
     const Finished two = run_on(2, under(limit));
     EXPECT_EQ(two.status, 0) << two.err;
     EXPECT_TRUE(light_in(folder, "several") == light_in(folder, "one"));

@@ -158,7 +158,8 @@ void Certifier::Content::plan_checks(std::span<const WeightedSample> places) {
     // other noise.
     const double resolved = (options.summed ? 0.5 : 1) * options.error * mean_reflected;
     const unsigned rays = options.summed ? ResidualSampler::rays_beside_sums : certificate_rays(0);
-    plan = plan_check(check, stage, b, at, hash(options.seed, 3), {rays * resolved * resolved, !options.summed});
+    plan = plan_check(check, stage, b, at, hash(options.seed, 3),
+                      {.tolerated = rays * resolved * resolved, .gather_is_noisy = !options.summed});
 }
 
 /// Returns the mean reflected radiosity of every room as found by the method, W/m^2; one entry if the scene is one

@@ -11,14 +11,23 @@ namespace exitance {
 
 DirectCheck::DirectCheck(const Stage& stage, const PathTracer& paths, const ProjectedDirect& projected,
                          const LightAccuracy& accuracy)
-    : stage_(&stage), paths_(&paths), projected_(projected), accuracy_(accuracy) {}
+    : stage_(&stage), paths_(&paths), projected_(projected), accuracy_(accuracy) {
+    constexpr double diffuse = 5, directed = 100;
+    for (const DirectLight::Emitter& emitter : stage.direct.emitters())
+        closed_form_work_ += emitter.radiance.is_directed() ? directed : diffuse;
+}
 
-Spectrum DirectCheck::difference(bool is_exact, const HitPoint& hit, const Spectrum& projected, RandomStream& random,
-                                 PlaceLight::Workspace& room) const {
+DirectCheck::Difference DirectCheck::exact_difference(const HitPoint& hit, const Spectrum& projected,
+                                                      PlaceLight::Workspace& room) const {
     const Normal& n = stage_->scene.regions()[hit.region].plane.n;
-    const Spectrum direct = is_exact ? stage_->place_light.at(hit.y, n, hit.region, accuracy_, room).irradiance
-                                     : paths_->step({hit.y, n, hit.region}, random).direct;
-    return projected_.weight * (direct - projected);
+    const PlaceLight::Estimate direct = stage_->place_light.at(hit.y, n, hit.region, accuracy_, room);
+    return {projected_.weight * (direct.irradiance - projected),
+            direct.rays > 0 ? static_cast<double>(direct.rays) : closed_form_work_};
+}
+
+Spectrum DirectCheck::sampled_difference(const HitPoint& hit, const Spectrum& projected, RandomStream& random) const {
+    const Normal& n = stage_->scene.regions()[hit.region].plane.n;
+    return projected_.weight * (paths_->step({hit.y, n, hit.region}, random).direct - projected);
 }
 
 Spectrum DirectCheck::missing(const CheckPlan& plan, const GatherWorkspace& gather, std::uint64_t key,
@@ -38,18 +47,11 @@ Spectrum DirectCheck::missing(const CheckPlan& plan, const GatherWorkspace& gath
     for (std::size_t k = 0; k < room.hits.size(); ++k) {
         const Spectrum& rho = stage_->scene.material(room.hits[k].region).reflectance;
         if (max(rho) <= 0) continue;
-        sum +=
-            room.counts[k] * (rho * difference(plan.is_exact, room.hits[k], room.projected[k], random, room.clustered));
+        const Spectrum missing = plan.is_exact ? exact_difference(room.hits[k], room.projected[k], room.clustered).light
+                                               : sampled_difference(room.hits[k], room.projected[k], random);
+        sum += room.counts[k] * (rho * missing);
     }
     return sum / static_cast<double>(gather.hits.size());
-}
-
-double DirectCheck::exact_work() const {
-    constexpr double diffuse = 5, directed = 100;
-    double out = 0;
-    for (const DirectLight::Emitter& emitter : stage_->direct.emitters())
-        out += emitter.radiance.is_directed() ? directed : diffuse;
-    return out;
 }
 
 double DirectCheck::probability(const CheckPlan& plan, const HitPoint& hit) const {
@@ -65,6 +67,7 @@ struct PilotHit {
     double weight = 0;   ///< Weight of the ray in the mean over all rays.
     double step = 0;     ///< Square of the difference found by one step of a path, (W/m^2)^2.
     double exact = -1;   ///< Square of the exact difference, (W/m^2)^2; negative: not evaluated.
+    double work = 0;     ///< Work of the exact difference, in rays.
     double misfit = 0;   ///< Misfit of the projection, in rho E at the receiver, W/m^2.
     double claimed = 0;  ///< Misfit of the projection at the hit, W/m^2.
 };
@@ -96,12 +99,14 @@ PilotFound pilot_at(const DirectCheck& check, const Stage& stage, const Reflecte
         PilotHit& told = out.hits[k];
         told.weight = place.weight / n;
         told.claimed = check.misfit(hit), told.misfit = count * std::sqrt(rho2) * told.claimed;
-        const auto by = [&](bool is_exact) {
-            const Spectrum term = rho * check.difference(is_exact, hit, room.projected[k], random, room.clustered);
+        const auto square_of = [&](const Spectrum& difference) {
+            const Spectrum term = rho * difference;
             return rho2 * mean(term * term);
         };
-        told.step = by(false);
-        if (k == 0) told.exact = by(true);  // exact light may be expensive: only one hit per place
+        told.step = square_of(check.sampled_difference(hit, room.projected[k], random));
+        if (k > 0) continue;  // exact light may be expensive: only one hit per place
+        const DirectCheck::Difference exact = check.exact_difference(hit, room.projected[k], room.clustered);
+        told.exact = square_of(exact.light), told.work = exact.work;
     }
     out.gather =
         place.weight * rho2 * std::max(0.0, (square / n - mean(found.irradiance * found.irradiance)) * n / (n - 1));
@@ -110,7 +115,7 @@ PilotFound pilot_at(const DirectCheck& check, const Stage& stage, const Reflecte
 
 /// Sums over the hits of a pilot.
 struct PilotSums {
-    double gather = 0, step = 0, misfit = 0, exact = 0, exact_weight = 0, weight = 0;
+    double gather = 0, step = 0, misfit = 0, exact = 0, exact_work = 0, exact_weight = 0, weight = 0;
 };
 
 PilotSums sums_of(std::span<const PilotFound> found) {
@@ -120,10 +125,10 @@ PilotSums sums_of(std::span<const PilotFound> found) {
         for (const PilotHit& hit : p.hits) {
             V.weight += hit.weight, V.step += hit.weight * hit.step, V.misfit += hit.weight * hit.misfit;
             if (hit.exact < 0) continue;
-            V.exact_weight += hit.weight, V.exact += hit.weight * hit.exact;
+            V.exact_weight += hit.weight, V.exact += hit.weight * hit.exact, V.exact_work += hit.weight * hit.work;
         }
     }
-    if (V.exact_weight > 0) V.exact *= V.weight / V.exact_weight;
+    if (V.exact_weight > 0) V.exact *= V.weight / V.exact_weight, V.exact_work /= V.exact_weight;
     return V;
 }
 
@@ -147,13 +152,12 @@ CheckPlan plan_check(const DirectCheck& check, const Stage& stage, const Reflect
     const double beside =
         std::max({other.gather_is_noisy ? V.gather : 0, other.tolerated, std::numeric_limits<double>::min()});
     // First option: single steps, with equal probability at all hits.
-    constexpr double min_share = 1.0 / 256;  // finds errors of which the projection has no measure
-    const double step_work = check.paths().rays_per_step(), exact_work = std::max(1.0, check.exact_work());
-    CheckPlan step{false, std::clamp(std::sqrt(V.step / (beside * step_work)), min_share, 1.0)};
+    const double step_work = check.paths().rays_per_step(), exact_work = std::max(1.0, V.exact_work);
+    CheckPlan step{false, std::clamp(std::sqrt(V.step / (beside * step_work)), other.min_share, 1.0)};
     step.variance = V.step / step.share, step.work = step.share * step_work;
     // Second option: exact light, with a probability proportional to the misfit. The variance is smallest if the misfit
     // is correct.
-    CheckPlan exact{true, min_share * std::min(1.0, step_work / exact_work), 1 / std::sqrt(beside * exact_work)};
+    CheckPlan exact{true, other.min_share * std::min(1.0, step_work / exact_work), 1 / std::sqrt(beside * exact_work)};
     double weight = 0;
     for (const PilotFound& p : found)
         for (const PilotHit& hit : p.hits) {

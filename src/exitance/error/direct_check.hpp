@@ -52,16 +52,19 @@ class DirectCheck {
     /// Returns the correction above for the hits in `gather`, W/m^2. `key` selects the random numbers.
     Spectrum missing(const CheckPlan& plan, const GatherWorkspace& gather, std::uint64_t key, Workspace& room) const;
 
-    /// Returns w (E_dir - E_proj) at one hit, W/m^2: exactly, or as one unbiased sample.
-    Spectrum difference(bool is_exact, const HitPoint& hit, const Spectrum& projected, RandomStream& random,
-                        PlaceLight::Workspace& room) const;
+    /// w (E_dir - E_proj) at a hit, W/m^2, and the work of finding it, in rays.
+    struct Difference {
+        Spectrum light;
+        double work = 0;
+    };
+    /// Returns the difference with E_dir as at points of a solution. The work of closed forms is that which
+    /// `DirectLight` states for them; a directed radiance makes them quadratures, about twenty times as expensive.
+    Difference exact_difference(const HitPoint& hit, const Spectrum& projected, PlaceLight::Workspace& room) const;
+    /// Returns an unbiased sample of the difference, by one step of a path.
+    Spectrum sampled_difference(const HitPoint& hit, const Spectrum& projected, RandomStream& random) const;
 
     double probability(const CheckPlan& plan, const HitPoint& hit) const;
     double misfit(const HitPoint& hit) const { return projected_.misfit ? projected_.misfit(hit) : 0; }
-    /// Returns the work of exact direct light at a point, in rays: the cost that `DirectLight` states for diffuse
-    /// emitters, divided by that of a ray. A form factor weighted by a directed radiance is a quadrature, about twenty
-    /// times as expensive.
-    double exact_work() const;
 
     const PathTracer& paths() const { return *paths_; }
     const ProjectedDirect& projected() const { return projected_; }
@@ -71,6 +74,7 @@ class DirectCheck {
     const PathTracer* paths_;
     ProjectedDirect projected_;
     LightAccuracy accuracy_;
+    double closed_form_work_ = 0;  ///< Work of exact light at a point, in rays.
 };
 
 /// A place of the pilot, which predicts variances.
@@ -81,7 +85,10 @@ struct PilotPlace {
 
 /// Other noise, to which that of the checks is compared.
 struct OtherNoise {
-    double tolerated = 0;         ///< Acceptable variance per ray, (W/m^2)^2.
+    double tolerated = 0;  ///< Acceptable variance per ray, (W/m^2)^2.
+    /// Smallest share of hits to check. Errors of which the projection has no measure, and that no ray of the pilot
+    /// met, are found by such checks alone.
+    double min_share = 1.0 / 256;
     bool gather_is_noisy = true;  ///< True if the gather itself is noisy; its variance is then included.
 };
 

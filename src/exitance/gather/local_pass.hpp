@@ -26,6 +26,10 @@ struct LocalPassDemand {
     int max_depth = 8;  ///< Limit on the rounds of refinement.
     /// Light of every room over the mean light: allowed errors are proportional to it. Empty if the scene is one room.
     std::span<const double> light_in = {};
+    /// Light that the body of every region reflects, by region number, W/m^2, and the error that noise and
+    /// interpolation may each have on any element relative to it. Empty: not limited.
+    std::span<const double> light_on = {};
+    double body_error = 0;
     /// b minus the light gathered last, if that is small. Only the change is then gathered, with as few rays as its
     /// noise requires, and added to the present result. Null: b was gathered last, or is unrelated to it.
     const ReflectedLight* change = nullptr;
@@ -109,6 +113,7 @@ class LocalPass {
     void look_between(ElementId e, SampledElement& sampled, const ReflectedLight& b, const LocalPassDemand& demand,
                       Workspace& workspace) const;
     double light_near(ElementId e, const LocalPassDemand& demand) const;
+    double allowed_on_body(ElementId e, const LocalPassDemand& demand) const;
     double allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const;
     double noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
     double tolerated_misfit_squared(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;

@@ -4,6 +4,7 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
 #include "exitance/processes/distributed.hpp"
+#include "exitance/transport/body_views.hpp"
 #include "exitance/transport/direct_fit.hpp"
 
 namespace exitance {
@@ -56,27 +57,37 @@ double estimated_flux_apart(const Stage& stage, const ElementTree& tree, std::sp
     return area > 0 ? flux * stage.area / area : 0;
 }
 
+/// Mean of w E_dir of each room, W/m^2, but at least a hundredth of the scene's; of all surfaces if the scene is one
+/// room.
+std::vector<double> light_by_room(const Stage& stage, const DirectProjection& light,
+                                  const std::vector<ElementId>& leaves) {
+    const std::size_t rooms = stage.rooms.count();
+    std::vector<double> flux(std::max<std::size_t>(1, rooms));
+    double all = 0;
+    for (ElementId e : leaves) {
+        const double own =
+            light.tree.area(e) * mean(light_weight(stage.scene.material(light.tree.region(e))) * light.fit[e].mean);
+        flux[rooms > 0 ? stage.rooms.of(light.tree, e) : 0] += own, all += own;
+    }
+    constexpr double min_share_of_mean = 0.01;
+    for (std::size_t room = 0; room < flux.size(); ++room)
+        flux[room] = std::max(flux[room] / (rooms > 0 ? stage.rooms.area(room) : stage.area),
+                              min_share_of_mean * all / stage.area);
+    return flux;
+}
+
 /// Squared error that an element of each room may have, (W/m^2)^2 m^2; empty if the scene is one room. Each room is
-/// treated as if it were the whole scene, but the mean light that its error is relative to is at least a hundredth of
-/// the scene's mean.
+/// treated as if it were the whole scene.
 std::vector<double> shares_by_room(const Stage& stage, const DirectProjection& light,
                                    const std::vector<ElementId>& leaves, double tolerance) {
     const std::size_t rooms = stage.rooms.count();
     if (rooms == 0) return {};
-    std::vector<double> flux(rooms), elements(rooms);
-    double all = 0;
-    for (ElementId e : leaves) {
-        const std::size_t room = stage.rooms.of(light.tree, e);
-        const double own =
-            light.tree.area(e) * mean(light_weight(stage.scene.material(light.tree.region(e))) * light.fit[e].mean);
-        flux[room] += own, all += own, elements[room] += 1;
-    }
-    std::vector<double> out(rooms);
+    const std::vector<double> light_of = light_by_room(stage, light, leaves);
+    std::vector<double> out(rooms), elements(rooms);
+    for (ElementId e : leaves) elements[stage.rooms.of(light.tree, e)] += 1;
     for (std::size_t room = 0; room < rooms; ++room) {
-        constexpr double min_share_of_mean = 0.01;
-        const double light_there = std::max(flux[room] / stage.rooms.area(room), min_share_of_mean * all / stage.area);
-        out[room] =
-            tolerance * light_there * tolerance * light_there * stage.rooms.area(room) / std::max(1.0, elements[room]);
+        const double allowed = tolerance * light_of[room];
+        out[room] = allowed * allowed * stage.rooms.area(room) / std::max(1.0, elements[room]);
     }
     return out;
 }
@@ -117,6 +128,10 @@ class Projector {
             if (options_.may_give_up && stop_.requested()) return {};
             if (depth == 0 && !many_) share_ = share_of(weighted_flux(stage_, out_.tree, active, out_.fit));
             if (depth == 0) share_in_ = shares_by_room(stage_, out_, active, options_.tolerance);
+            if (depth == 0 && options_.bodies && !stop_.requested())
+                needs_.emplace(stage_, *options_.bodies, out_, options_.body_tolerance,
+                               light_by_room(stage_, out_, active));
+            if (depth > 0 && needs_) needs_->follow(out_.tree);
             if (depth == options_.max_depth || stop_.requested()) break;
             active = cut(active);
         }
@@ -203,20 +218,29 @@ class Projector {
         const double least = is_crowd_ ? share_in_crowd(out_, noise_, share_ * stage_.area / mean_area_) : 0;
         std::vector<ElementId> fresh;
         for (ElementId e : active) {
-            const double error = error_of_shape(out_, noise_, e), allowed = std::max(least, allowed_on(e));
-            if (error <= allowed) continue;
-            if (options_.least_area && out_.tree.area(e) < 2 * *options_.least_area) continue;
             const double area = out_.tree.area(e);
-            const Cut only = sufficient_cut(error / area, out_.fit[e].misfit_along, allowed / area);
+            const double of_bodies = needs_ ? area * needs_->allowed_squared(e) : HUGE_VAL;
+            const double error = error_of_shape(out_, noise_, e),
+                         allowed = std::min(std::max(least, allowed_on(e)), of_bodies);
+            if (error <= allowed && !hides_too_much(e)) continue;
+            if (options_.least_area && area < 2 * *options_.least_area) continue;
+            const Cut only =
+                error > allowed ? sufficient_cut(error / area, out_.fit[e].misfit_along, allowed / area) : Cut::none;
             for (ElementId child : refine_element(out_.tree, e, only)) fresh.push_back(child);
         }
         return fresh;
+    }
+
+    bool hides_too_much(ElementId e) const {
+        return needs_ &&
+               needs_->hides_too_much(e, out_.fit[e], light_weight(stage_.scene.material(out_.tree.region(e))));
     }
 
     const Stage& stage_;
     const DirectProjectionOptions& options_;
     const StopRequest& stop_;
     DirectProjection out_;
+    std::optional<BodyNeeds> needs_;  ///< Set after the first fits.
     double mean_area_ = 0;
     bool many_ = false, is_crowd_ = false;
     double share_ = 0;              ///< Squared error that an element may have if the scene is one room, (W/m^2)^2 m^2.

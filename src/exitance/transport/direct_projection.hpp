@@ -8,6 +8,8 @@
 
 namespace exitance {
 
+class BodyViews;
+
 struct DirectProjectionOptions {
     MeshSize mesh;
     double tolerance = 0;  ///< RMS error of rho E_dir over all surfaces, relative to the mean of rho E_dir.
@@ -17,7 +19,11 @@ struct DirectProjectionOptions {
     /// On a stop request: if true, return an empty tree at once; if false, estimate the remaining elements by rays, so
     /// that there is a result.
     bool may_give_up = false;
-    std::uint64_t seed = 1;  ///< Seed of the rays from small elements in scenes of many elements.
+    /// The surroundings that bodies see, if the light that they receive must be accurate (BodyNeeds); null: only the
+    /// error of the whole matters.
+    const BodyViews* bodies = nullptr;
+    double body_tolerance = 0;  ///< Error by one element, relative to the light that a body reflects.
+    std::uint64_t seed = 1;     ///< Seed of the rays from small elements in scenes of many elements.
 };
 
 /// Exact direct irradiance on one element, and its least-squares polynomial.

@@ -34,8 +34,11 @@ bool is_narrow(const Stage& stage, const ElementTree& tree, ElementId e, double 
 
 }  // namespace
 
+bool is_narrow_leaf(const Stage& stage, const ElementTree& tree, ElementId e) {
+    return is_narrow(stage, tree, e, coplanar * stage.scene.size(), 1);
+}
+
 Field<ElementId, std::uint8_t> find_narrow_leaves(const Stage& stage, const ElementTree& tree) {
-    const double touching = coplanar * stage.scene.size();
     Field<ElementId, std::uint8_t> out(tree.size());
     const std::vector<ElementId> leaves = tree.leaves();
     shared_ranges(
@@ -43,7 +46,7 @@ Field<ElementId, std::uint8_t> find_narrow_leaves(const Stage& stage, const Elem
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
                 if (!stage.is_left_out(tree.region(leaves[i])))
-                    out[leaves[i]] = is_narrow(stage, tree, leaves[i], touching, 1) ? 1 : 0;
+                    out[leaves[i]] = is_narrow_leaf(stage, tree, leaves[i]) ? 1 : 0;
         },
         [&](std::size_t i) -> std::uint8_t& { return out[leaves[i]]; }, {"narrow places"});
     return out;

@@ -12,6 +12,9 @@ namespace exitance {
 /// four rays each.
 Field<ElementId, std::uint8_t> find_narrow_leaves(const Stage& stage, const ElementTree& tree);
 
+/// True for a leaf that find_narrow_leaves() would find. Four rays.
+bool is_narrow_leaf(const Stage& stage, const ElementTree& tree, ElementId e);
+
 struct DirectProjection;
 
 /// Share of the reflected direct light that comes from leaves of the projection's mesh that are more than twice as wide

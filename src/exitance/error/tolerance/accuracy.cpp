@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "exitance/calibration/numbers.hpp"
+#include "exitance/error/body_errors.hpp"
 
 namespace exitance {
 namespace {
@@ -16,6 +17,9 @@ void apply_user_knobs(Knobs& knobs, const SolveOptions& options) {
 }
 
 }  // namespace
+
+/// Share of a body's error that noise, interpolation, and the elements that it sees may each have.
+constexpr double body_error_share = 0.5;  // derived from the sum of their squares, the elements counting twice
 
 Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const SolveOptions& options) {
     namespace c = calibrated;
@@ -38,6 +42,7 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     // acceptable; unless it is itself delivered.
     const bool is_delivered = options.visibility == VisibilityKind::fractional;
     knobs.direct_tolerance = (is_delivered ? c::direct_tolerance_fractional : c::direct_tolerance) * error;
+    knobs.body_error = body_error_share * max_body_errors * error;
     knobs.residual = c::residual_share * error;
     knobs.link_error = c::link_error_share * error;
     // Curved elements may be larger. They are sampled at more points, so that fewer rays per point are sufficient. The
@@ -185,7 +190,7 @@ Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, 
         out.knobs.solve_mesh.edge *= std::sqrt(factor);
         out.knobs.solve_mesh.grading_levels += 1;
         out.knobs.solve_rays.average = std::min(knobs.solve_rays.average / factor, c::most_row_rays);
-        out.knobs.direct_tolerance *= factor;
+        out.knobs.direct_tolerance *= factor, out.knobs.body_error *= factor;
         out.knobs.residual *= factor;
         out.knobs.link_error *= factor;
         method *= factor;

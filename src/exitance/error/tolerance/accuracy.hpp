@@ -11,7 +11,10 @@ struct Knobs {
     MeshSize solve_mesh;          ///< Mesh of the elements on which the method solves.
     RayBudget solve_rays;         ///< Rays per matrix row, if rows are sampled by rays.
     double direct_tolerance = 0;  ///< RMS error of the projected direct light, relative to its mean.
-    double residual = 0;          ///< Residual of the discrete system.
+    /// Error of the projected direct light of one element and, in the local pass, of noise and of interpolation, on any
+    /// body, relative to the light that the body reflects.
+    double body_error = 0;
+    double residual = 0;  ///< Residual of the discrete system.
     std::size_t max_iterations = 1000;
     double link_error = 0;  ///< Error of all links together, relative to the mean reflected radiosity.
     /// Deliver the polynomials of the links, if accurate enough, without a gather afterwards.

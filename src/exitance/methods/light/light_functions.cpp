@@ -278,6 +278,29 @@ std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light) 
     return out;
 }
 
+std::vector<double> light_of_bodies(const Stage& stage, const GlobalLight& light, const SceneBodies& bodies,
+                                    std::span<const double> light_in) {
+    // Smallest light that errors of a body are relative to, derived from the norm of errors by part.
+    constexpr double share_of_room = 0.1;
+    const double mean_light = light.mean_reflected(stage.area);
+    std::vector<double> flux(bodies.all.size()), area(flux.size()), least(flux.size());
+    for (std::size_t i = 0; i < light.reflected.size(); ++i) {
+        const ElementId e = light.numbering.leaves[i];
+        const RegionId region = light.tree.region(e);
+        if (stage.is_left_out(region)) continue;
+        const std::uint32_t body = bodies.of(stage.scene, region);
+        area[body] += light.tree.area(e), flux[body] += light.tree.area(e) * mean(light.reflected[i]);
+        const double of_room = mean_light * (light_in.empty() ? 1 : light_in[stage.rooms.of(light.tree, e)]);
+        least[body] = std::max(least[body], share_of_room * of_room);
+    }
+    std::vector<double> out(stage.scene.regions().size());
+    for (RegionId region : stage.scene.regions().ids()) {
+        const std::uint32_t body = bodies.of(stage.scene, region);
+        out[region.value] = area[body] > 0 ? std::max(flux[body] / area[body], least[body]) : mean_light;
+    }
+    return out;
+}
+
 std::vector<double> allowed_by_room(const Stage& stage, std::span<const double> light_in, double of_all) {
     std::vector<double> out(light_in.begin(), light_in.end());
     // squared budget of the rooms that are not capped, and the area share of the others

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "exitance/evaluate/quick_function.hpp"
+#include "exitance/scene/bodies.hpp"
 #include "exitance/solve/global_light.hpp"
 #include "exitance/transport/direct_projection.hpp"
 
@@ -84,6 +85,11 @@ std::vector<ElementFunction> delivered_functions(const Scene& scene, const Eleme
 /// Reflected light of every room relative to the mean, at least a millionth of the brightest, since errors are relative
 /// to it. Empty if there is only one room.
 std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light);
+
+/// Returns, for every region, the radiosity to which errors of its body are relative, W/m^2: the mean light that the
+/// body reflects, but at least a tenth of its room's. `light_in`: light_by_room().
+std::vector<double> light_of_bodies(const Stage& stage, const GlobalLight& light, const SceneBodies& bodies,
+                                    std::span<const double> light_in);
 
 /// Permitted errors of rooms, in proportion to their light l but capped at c:
 ///

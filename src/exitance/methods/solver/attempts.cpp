@@ -20,6 +20,7 @@
 #include "exitance/solve/conserving_transport.hpp"
 #include "exitance/solve/direct_share.hpp"
 #include "exitance/solve/growth_watch.hpp"
+#include "exitance/transport/body_views.hpp"
 #include "exitance/transport/narrow_places.hpp"
 
 namespace exitance {
@@ -127,14 +128,26 @@ double Solver::not_local(const ErrorParts& parts) const {
     return std::max(parts.method, std::sqrt(std::max(0.0, all * all - local * local)));
 }
 
+const SceneBodies& Solver::bodies() {
+    if (!bodies_) bodies_ = find_bodies(stage_.scene);
+    return *bodies_;
+}
+
 void Solver::project_direct() {
     progress_.phase("direct light");
+    // Share of one element that a body sees: derived from four alike, as around the point below the body's middle.
+    // Their squared errors, with those of noise and of interpolation, sum to that of the body.
+    constexpr double one_of_four = 0.7;
     const Stopwatch watch;
+    std::optional<BodyViews> views;
+    if (holds_bodies()) views.emplace(stage_, bodies(), options_.seed);
     DirectProjection fresh = project_direct_light(stage_,
                                                   {.mesh = knobs_.solve_mesh,
                                                    .tolerance = knobs_.direct_tolerance,
                                                    .least_area = options_.min_area,
                                                    .may_give_up = direct_.tree.size() > 0,
+                                                   .bodies = views ? &*views : nullptr,
+                                                   .body_tolerance = one_of_four * knobs_.body_error,
                                                    .seed = options_.seed},
                                                   stop_);
     if (fresh.tree.size() > 0) {
@@ -349,6 +362,8 @@ Spectrum Solver::direct_share() const {
 ElementFunction Solver::gather(const ReadNextLight& b, std::span<const ElementGather> elements, bool fresh) {
     progress_.phase("gather");
     const double scale = light_->mean_reflected(stage_.area);
+    const std::vector<double> light_on =
+        holds_bodies() ? light_of_bodies(stage_, *light_, bodies(), light_in_) : std::vector<double>();
     if (!local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
     ElementFunction out = local_pass_->gather(b.whole(), fresh,
                                               {.rays = knobs_.gather_rays,
@@ -360,6 +375,8 @@ ElementFunction Solver::gather(const ReadNextLight& b, std::span<const ElementGa
                                                .elements = elements,
                                                .element_share = knobs_.gather_element_share,
                                                .light_in = allowed_in_,
+                                               .light_on = light_on,
+                                               .body_error = knobs_.body_error,
                                                .change = b.change()},
                                               gathered_, progress_, stop_, safe_points());
     statistics().rays += gathered_.rays;

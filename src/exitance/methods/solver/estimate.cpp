@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "exitance/calibration/numbers.hpp"
+#include "exitance/error/body_errors.hpp"
 #include "exitance/error/clustering_error.hpp"
 #include "exitance/error/further_looks.hpp"
 #include "exitance/evaluate/energy.hpp"
@@ -30,8 +32,7 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
                          has_kept_flux(solution_.indirect, stage_.scene, direct_, *light_, solution_.direct_share);
     options.light_in = light_in_, options.allowed_in = allowed_in_;
     options.bounces = options_.bounces;
-    if (!bodies_) bodies_ = find_bodies(stage_.scene);
-    options.bodies = &*bodies_;
+    options.bodies = &bodies();
     if (has_links_) options.places = places_of(stage_, solution_.indirect.tree, options_.importance);
     // With a limited number of reflections, the gathered light has one reflection less than the delivered light.
     std::optional<ElementFunction> older;
@@ -44,7 +45,10 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
         return std::sqrt(direct_.fit[delivered.projected().locator().find(hit.region, hit.y).element].misfit_squared);
     };
     if (!light_->holds_direct) options.projected = {&delivered.projected(), direct_weight, misfit};
-    options.check_rays = statistics().rays / 10;  // a tenth of the rays so far
+    // A tenth of the rays so far, but at least about 30 ms of work, so that small solves know the errors of their
+    // bodies.
+    constexpr std::size_t least_check_rays = 1 << 17;
+    options.check_rays = std::max(statistics().rays / 10, least_check_rays);
     SummedLight summed{.delivered = {}, .gathered = gathered, .share = calibrated::certified_share * options.error};
     if (sums_) {
         for (const ElementFunction& part : delivered_functions(stage_.scene, indirect, direct_, direct_weight, c))
@@ -107,11 +111,10 @@ void Solver::tell_clustering_error() {
 void Solver::warn_of_bodies() {
     const std::optional<double> demand = options_.error_demand();
     if (!demand) return;
-    constexpr double max_ratio = 3;  // times the requested error: limit for a small part of a scene
     const BodyError* worst = nullptr;
     std::size_t wrong = 0;
     for (const BodyError& body : statistics().bodies) {
-        if (!body.error || *body.error <= max_ratio * *demand) continue;
+        if (!body.error || *body.error <= max_body_errors * *demand) continue;
         ++wrong;
         if (!worst || *body.error > *worst->error) worst = &body;
     }

@@ -104,6 +104,9 @@ class Solver {
     Spectrum direct_share() const;
     /// True if the method's light is gathered; false if its elements are delivered.
     bool gathers() const { return !light_->holds_direct && !light_->delivers && !options_.smoothing; }
+    /// True if the light on every body must be accurate, not only that on all surfaces together.
+    bool holds_bodies() const { return options_.error_demand() && options_.importance.empty(); }
+    const SceneBodies& bodies();
     bool refines() const { return gathers() && sums_ && knobs_.refined; }
     /// True if the amount of arriving light is known: because the method conserves light or the scene is closed.
     bool keeps_flux() const;
@@ -175,7 +178,7 @@ class Solver {
     Step step_ = Step::project;
     bool fresh_ = true;                  ///< True if the method solves in this attempt.
     Spectrum share_;                     ///< c of the method's light, see find_direct_share.
-    std::optional<SceneBodies> bodies_;  ///< Bodies whose errors are reported; set before the first use.
+    std::optional<SceneBodies> bodies_;  ///< Use bodies().
     std::vector<double> light_in_;       ///< Light of every room over the mean light; empty if the scene is one room.
     std::vector<double> allowed_in_;     ///< Allowed errors of the rooms (`allowed_by_room`).
     std::string resumed_phase_;

@@ -1,0 +1,190 @@
+#include "exitance/transport/body_views.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/form_factors/met_directions.hpp"
+#include "exitance/mesh/element_locator.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+/// Parts of an element, one around each node of its fit.
+constexpr std::size_t cells_along = 3, cells = cells_along * cells_along;
+std::size_t cell_of(Vec2 uv) {
+    const auto along = [](double u) {
+        return static_cast<std::size_t>(std::clamp(u * cells_along, 0.0, cells_along - 0.5));
+    };
+    return along(uv.x) * cells_along + along(uv.y);
+}
+
+/// Pieces of one body, with the sums of their areas up to and including each.
+struct BodyPieces {
+    std::vector<std::uint32_t> pieces;
+    std::vector<double> area_up_to;
+};
+
+std::vector<BodyPieces> pieces_by_body(const Stage& stage, const SceneBodies& bodies) {
+    std::vector<BodyPieces> out(bodies.all.size());
+    for (std::uint32_t p = 0; p < stage.pieces.size(); ++p) {
+        const RegionId region = stage.pieces[p].region;
+        if (stage.is_left_out(region) || !(max(stage.scene.material(region).reflectance) > 0)) continue;
+        BodyPieces& of = out[bodies.of(stage.scene, region)];
+        of.area_up_to.push_back((of.pieces.empty() ? 0 : of.area_up_to.back()) + stage.pieces[p].patch.area());
+        of.pieces.push_back(p);
+    }
+    return out;
+}
+
+/// Rays from points that are spread evenly over a body, and their hits.
+struct BodyRays {
+    std::vector<Point> origins;
+    std::vector<Vec3> directions;
+    std::vector<RayHit> hits;
+};
+
+void look_from(const Stage& stage, const BodyPieces& body, std::uint32_t number, std::uint64_t seed, BodyRays& w,
+               std::vector<BodyViews::Hit>& out) {
+    constexpr std::uint32_t rays = BodyViews::rays_per_body;
+    if (body.pieces.empty()) return;
+    const ScrambledSobol random(hash(seed, static_cast<std::uint64_t>(Stream::mesh), number));
+    std::uint32_t k = 0;
+    for (std::size_t i = 0; i < body.pieces.size() && k < rays; ++i) {
+        const Piece& piece = stage.pieces[body.pieces[i]];
+        w.origins.clear(), w.directions.clear();
+        for (; k < rays && (k + 0.5) * body.area_up_to.back() <= rays * body.area_up_to[i]; ++k) {
+            w.origins.push_back(piece.patch.at(uniform_in_shape(piece.patch.shape, random(k, 0), random(k, 1))));
+            w.directions.push_back(met_direction(stage.scene, piece.region, stage.scene.regions()[piece.region].plane.n,
+                                                 random(k, 2), random(k, 3)));
+        }
+        if (w.origins.empty()) continue;
+        w.hits.assign(w.origins.size(), {});
+        stage.tracer.nearest(w.origins, w.directions, piece.region, w.hits, Mirrored::followed);
+        const double weight = mean(stage.scene.material(piece.region).reflectance) / rays;
+        for (std::size_t r = 0; r < w.hits.size(); ++r)
+            if (const RayHit& hit = w.hits[r]; !hit.surface.is_none() && hit.front)
+                out.push_back({number, hit.region, place_of(stage.scene, hit, w.origins[r], w.directions[r]),
+                               hit.distance, weight});
+    }
+}
+
+}  // namespace
+
+BodyViews::BodyViews(const Stage& stage, const SceneBodies& bodies, std::uint64_t seed) : bodies_(&bodies) {
+    const std::vector<BodyPieces> pieces = pieces_by_body(stage, bodies);
+    std::vector<std::vector<Hit>> of_body(pieces.size());
+    parallel_ranges(pieces.size(), 1, [&](std::size_t first, std::size_t last) {
+        BodyRays workspace;
+        for (std::size_t b = first; b < last; ++b)
+            look_from(stage, pieces[b], static_cast<std::uint32_t>(b), seed, workspace, of_body[b]);
+    });
+    for (const std::vector<Hit>& hits : of_body) hits_.insert(hits_.end(), hits.begin(), hits.end());
+}
+
+namespace {
+
+/// Direct light that each body reflects itself, mean over its area, W/m^2.
+std::vector<double> own_light(const Stage& stage, const BodyViews& views, const DirectProjection& light) {
+    std::vector<double> flux(views.bodies().all.size()), area(flux.size());
+    for (ElementId e : light.tree.leaves()) {
+        const RegionId region = light.tree.region(e);
+        if (stage.is_left_out(region)) continue;
+        const std::uint32_t body = views.bodies().of(stage.scene, region);
+        area[body] += light.tree.area(e);
+        flux[body] += light.tree.area(e) * mean(stage.scene.material(region).reflectance * light.fit[e].mean);
+    }
+    for (std::size_t b = 0; b < flux.size(); ++b) flux[b] = area[b] > 0 ? flux[b] / area[b] : 0;
+    return flux;
+}
+
+}  // namespace
+
+BodyNeeds::BodyNeeds(const Stage& stage, const BodyViews& views, const DirectProjection& light, double tolerance,
+                     std::span<const double> light_of_room)
+    : views_(views), regions_(stage.scene.regions().size()), at_(views.hits().size()) {
+    // Smallest light that errors of a body are relative to, derived from the norm of errors by part.
+    constexpr double share_of_room = 0.1;
+    follow(light.tree);
+    allowed_ = own_light(stage, views, light);
+    for (std::size_t i = 0; i < at_.size(); ++i) {
+        const BodyViews::Hit& hit = views.hits()[i];
+        allowed_[hit.body] +=
+            hit.weight * mean(stage.scene.material(hit.region).reflectance * light.fit[at_[i].element].mean);
+    }
+    room_light_.assign(allowed_.size(), light_of_room[0]);
+    for (std::size_t b = 0; b < room_light_.size() && stage.rooms.count() > 0; ++b) {
+        const SurfaceId first = views.bodies().all[b].first;
+        const RegionId region = stage.scene.surfaces()[first].region;
+        room_light_[b] = light_of_room[stage.rooms.at(region, centroid(stage.scene.outline(first)))];
+    }
+    for (std::size_t b = 0; b < allowed_.size(); ++b) {
+        const double reference = std::max(allowed_[b], share_of_room * room_light_[b]);
+        allowed_[b] = reference > 0 ? tolerance * reference : unlimited;
+    }
+    find_limits(light.tree);
+}
+
+void BodyNeeds::follow(const ElementTree& tree) {
+    const auto is_known = [&](const ElementTree::Place& at) {
+        return !at.element.is_none() && tree.is_leaf(at.element);
+    };
+    if (!std::all_of(at_.begin(), at_.end(), is_known)) {
+        const ElementLocator locator(tree, regions_);
+        parallel_ranges(at_.size(), 1024, [&](std::size_t first, std::size_t last) {
+            for (std::size_t i = first; i < last; ++i)
+                if (!is_known(at_[i])) at_[i] = locator.find(views_.hits()[i].region, views_.hits()[i].y);
+        });
+    }
+    if (!allowed_.empty()) find_limits(tree);
+}
+
+void BodyNeeds::find_limits(const ElementTree& tree) {
+    /// Weights of the rays of one body that hit an element: of all, and of those from nearer than its width.
+    struct Weights {
+        std::array<double, cells> all{}, near{};
+        bool is_new = true;
+    };
+    most_ = Field<ElementId, Limits>(tree.size());
+    std::vector<Weights> weights_of(tree.size());
+    std::vector<ElementId> seen;
+    const std::span<const BodyViews::Hit> hits = views_.hits();
+    for (std::size_t first = 0, last = 0; first < hits.size(); first = last) {
+        const std::uint32_t body = hits[first].body;
+        seen.clear();
+        for (; last < hits.size() && hits[last].body == body; ++last) {
+            const auto& [e, uv] = at_[last];
+            Weights& weights = weights_of[e.value];
+            if (std::exchange(weights.is_new, false)) seen.push_back(e);
+            weights.all[cell_of(uv)] += hits[last].weight;
+            if (hits[last].distance * hits[last].distance < tree.area(e))
+                weights.near[cell_of(uv)] += hits[last].weight;
+        }
+        const auto lower = [](double& limit, double to) { limit = std::min(limit, to); };
+        for (ElementId e : seen) {
+            const auto [all, near, is_new] = std::exchange(weights_of[e.value], {});
+            Limits& most = most_[e];
+            const double squares = std::inner_product(all.begin(), all.end(), all.begin(), 0.0);
+            lower(most.everywhere, allowed_[body] / std::sqrt(cells * squares));
+            lower(most.in_a_cell, allowed_[body] / *std::max_element(all.begin(), all.end()));
+            lower(most.in_a_near_cell,
+                  allowed_[body] / (room_light_[body] * *std::max_element(near.begin(), near.end())));
+        }
+    }
+}
+
+double BodyNeeds::allowed_squared(ElementId e) const {
+    return e.value < most_.size() ? most_[e].everywhere * most_[e].everywhere : unlimited;
+}
+
+bool BodyNeeds::hides_too_much(ElementId e, const DirectFit& fit, const Spectrum& weight) const {
+    return e.value < most_.size() && (mean(weight * fit.mean) > most_[e].in_a_cell || most_[e].in_a_near_cell < 1);
+}
+
+}  // namespace exitance

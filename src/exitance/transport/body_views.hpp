@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "exitance/scene/bodies.hpp"
+#include "exitance/transport/direct_projection.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+
+/// The surroundings that each body of a scene sees: the hits of cosine-weighted rays from points on it. The share of
+/// a body's rays that hit an element is the form factor from the body to the element. It tells where an error in the
+/// light of a large surface matters to a small body near it, which an average over all surfaces hides.
+class BodyViews {
+  public:
+    /// A ray's hit on the front of a surface.
+    struct Hit {
+        std::uint32_t body;
+        RegionId region;
+        Point y;
+        double distance;  ///< Length of the ray, metres.
+        double weight;    ///< The body's reflectance, mean over bands, over its number of rays.
+    };
+
+    /// Casts `rays_per_body` rays from every body. `bodies` must outlive the object. Deterministic on any number of
+    /// threads.
+    BodyViews(const Stage& stage, const SceneBodies& bodies, std::uint64_t seed);
+
+    std::span<const Hit> hits() const { return hits_; }
+    const SceneBodies& bodies() const { return *bodies_; }
+
+    static constexpr std::uint32_t rays_per_body = 256;
+
+  private:
+    const SceneBodies* bodies_;
+    std::vector<Hit> hits_;  ///< Sorted by body.
+};
+
+/// Errors that the projected direct light may have on each element, so that its light is accurate on every body.
+///
+/// Let m_e be the RMS error of the projection on element e, and w_c = rho_k F_kc the weight of each of nine cells of
+/// the element in the light that body k reflects. That light is wrong by at most m_e sqrt(9 sum of w_c^2) (Cauchy's
+/// inequality), which may be at most `tolerance` times the body's reflected light. Besides the misfit of its
+/// polynomial, an element may have an error that no node of its fit shows: a feature between the nodes, at most a ninth
+/// of its area, which counts where the body sees most of it.
+class BodyNeeds {
+  public:
+    /// `fit`: direct light on the leaves of `tree`. `tolerance`: allowed error by one element, relative to the light
+    /// that a body reflects (once-reflected and direct), but at least a tenth of the mean light of its room.
+    /// `light_of_room`: mean of w E_dir per room, or of all surfaces if the scene is one room, W/m^2.
+    BodyNeeds(const Stage& stage, const BodyViews& views, const DirectProjection& light, double tolerance,
+              std::span<const double> light_of_room);
+
+    /// Allowed mean square of w (E - polynomial) on a leaf, (W/m^2)^2; infinite if no body sees it.
+    double allowed_squared(ElementId e) const;
+    /// True if a feature between the nodes of a leaf's fit may be too large an error for a body.
+    bool hides_too_much(ElementId e, const DirectFit& fit, const Spectrum& weight) const;
+    /// Finds the leaves of `tree` that the rays hit, after some leaves were split.
+    void follow(const ElementTree& tree);
+
+  private:
+    void find_limits(const ElementTree& tree);
+
+    const BodyViews& views_;
+    std::size_t regions_;
+    std::vector<ElementTree::Place> at_;  ///< Place of every hit.
+    std::vector<double> allowed_;         ///< Allowed error of each body, W/m^2; infinite for bodies without light.
+    std::vector<double> room_light_;      ///< Light of each body's room, W/m^2.
+    /// Allowed errors of an element, W/m^2: RMS, and in the ninth of it that a body sees most of.
+    struct Limits {
+        double everywhere = std::numeric_limits<double>::infinity();
+        double in_a_cell = std::numeric_limits<double>::infinity();
+        /// The latter for indirect light at near places, over the mean light of the body's room.
+        double in_a_near_cell = std::numeric_limits<double>::infinity();
+    };
+    Field<ElementId, Limits> most_;
+};
+
+}  // namespace exitance
