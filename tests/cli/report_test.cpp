@@ -66,6 +66,59 @@ TEST(ProgramReport, IsOnePageWithItsNumbersBesideIt) {
     }
 }
 
+TEST(ProgramReport, JudgesRequirementsWithTheErrorOfTheLight) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5", page = folder / "room.html";
+    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    const auto report = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"report", solution, "-o",     page,
+                                       "--size", "64x40",  "--grid", "0.5,0.5,0 3,0,0 0,2,0 0.5"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_program(words);
+    };
+    ASSERT_EQ(report({"-q"}).status, 0);
+    const nlohmann::json plain = nlohmann::json::parse(read_text(folder / "room.json"));
+    const double mean = plain["grids"][0]["mean"], error = plain["statistics"]["relative_error_estimate"];
+    EXPECT_TRUE(plain["requirements"].empty());
+    const auto require = [&](double factor) { return "Em " + std::to_string(factor * mean); };
+    const Finished judged = report({"--require", require(0.9), "--require", require(1 + 0.5 * error), "--require",
+                                    require(1 + 2 * error), "--require", "UGR 19", "--require", "Ez 10", "--title",
+                                    "Room <1>", "--client", "A & B", "--tables", folder / "tables"});
+    ASSERT_EQ(judged.status, 0) << judged.err;
+    const nlohmann::json json = nlohmann::json::parse(read_text(folder / "room.json"));
+    const std::vector<std::string> verdicts{"reached", "reached within the error", "missed", "not measured",
+                                            "not measured"};
+    ASSERT_EQ(json["requirements"].size(), verdicts.size());
+    for (std::size_t i = 0; i < verdicts.size(); ++i) EXPECT_EQ(json["requirements"][i]["verdict"], verdicts[i]) << i;
+    const std::string html = read_text(page);
+    EXPECT_NE(html.find("<h1>Room &lt;1&gt;</h1>"), std::string::npos);
+    EXPECT_NE(html.find("A &amp; B"), std::string::npos);
+    EXPECT_EQ(html.find("--camera"), std::string::npos) << "captions are words, not options";
+    EXPECT_NE(read_text(folder / "tables/requirements.csv").find(",missed\n"), std::string::npos);
+    EXPECT_NE(read_text(folder / "tables/surfaces.csv").find("surface,line,group"), std::string::npos);
+    for (const char* wrong : {"Em", "Em -5", "Em 500 600", "lux 500", "desk: UGR 19", ""})
+        EXPECT_EQ(report({"--require", wrong}).status, 2) << wrong;
+    EXPECT_EQ(run_program({"report", solution, "-o", page, "--require", "Em 500"}).status, 2) << "nothing is measured";
+}
+
+TEST(ProgramReport, PrintsAPdfOrSaysWhatIsMissing) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5", page = folder / "room.html", pdf = folder / "room.pdf";
+    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    const Finished run = run_program({"report", solution, "-o", page, "--size", "64x40", "--pdf", pdf});
+    if (run.status == 0) {
+        EXPECT_EQ(read_text(pdf).substr(0, 5), "%PDF-");
+    } else {
+        EXPECT_EQ(run.status, 5) << run.err;
+        EXPECT_NE(run.err.find("hromium"), std::string::npos) << run.err;
+        EXPECT_FALSE(std::filesystem::exists(pdf));
+    }
+    EXPECT_EQ(
+        run_program({"report", solution, "--tables", folder / "t", "--grid", "0,0,0 1,0,0 0,1,0 0.5", "--pdf", pdf})
+            .status,
+        2);
+}
+
 TEST(ProgramReport, EscapesNamesAndShowsLuxOnRequest) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder), solution = folder / "room.h5", page = folder / "room.html";

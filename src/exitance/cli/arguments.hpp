@@ -130,6 +130,9 @@ struct ReportArguments : CommonArguments {
     double maintenance = 1;
     std::vector<std::string> observers;  ///< Descriptions for find_observers().
     std::string tables;                  ///< Folder for tables; empty: none.
+    std::string pdf;                     ///< The page as PDF; empty: none.
+    ReportHeading heading;
+    std::vector<Requirement> requirements;
     PictureSize size{960, 600};
     UnitArguments unit;
     int threads = 0;

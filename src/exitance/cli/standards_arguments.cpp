@@ -1,6 +1,7 @@
 #include <cstdio>
 
 #include "exitance/cli/option_kinds.hpp"
+#include "exitance/io/report/requirements.hpp"
 
 namespace exitance {
 namespace {
@@ -68,6 +69,30 @@ void declare_standards(CLI::App& app, ReportArguments& arguments) {
            "--tables", arguments.tables,
            "Folder for planes.csv, plane_1.csv, plans with isolux lines (plane_1.svg, .pdf), ..., observers.csv")
         ->type_name("FOLDER");
+    app.add_option_function<std::vector<std::string>>(
+           "--require",
+           [&arguments](const std::vector<std::string>& all) {
+               for (const std::string& words : all) {
+                   Result<Requirement> read = read_requirement(words);
+                   if (!read) throw CLI::ValidationError("--require", read.error().message + " in '" + words + "'");
+                   arguments.requirements.push_back(std::move(*read));
+               }
+           },
+           "Required numbers, judged on the page with the error of the light: 'desk: Em 500, U0 0.6' for planes of a "
+           "name (without a name: all), Ez for cylindrical planes, 'UGR 19' for observers. May be given several times")
+        ->type_name("NUMBERS")
+        ->expected(1)
+        ->take_all();
+    const auto add_text = [&](const char* name, std::string& text, const char* help) {
+        app.add_option(name, text, help)->type_name("TEXT");
+    };
+    add_text("--title", arguments.heading.title, "Title of the page. Default: 'Light in', and the scene's file");
+    add_text("--project", arguments.heading.project, "Project, for the first page");
+    add_text("--client", arguments.heading.client, "Client, for the first page");
+    add_text("--author", arguments.heading.author, "Author, for the first page");
+    add_text("--date", arguments.heading.date, "Date, for the first page");
+    app.add_option("--pdf", arguments.pdf, "The page as PDF (.pdf), printed by Chromium if that is installed")
+        ->type_name("FILE");
 }
 
 void declare_standards(CLI::App& app, DaylightArguments& arguments) {

@@ -11,9 +11,11 @@
 #include "exitance/cli/observers.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/evaluate/surface_levels.hpp"
+#include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/pictures/display.hpp"
 #include "exitance/io/pictures/isolux.hpp"
 #include "exitance/io/pictures/unit_picture.hpp"
+#include "exitance/io/report/report_pdf.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/io/solution/statistics_json.hpp"
 #include "exitance/measure/pictures/timed_picture.hpp"
@@ -74,7 +76,7 @@ std::vector<SurfaceId> largest_faces(const Scene& scene, std::size_t& left_out) 
 
 /// Bakes light maps for the embedded viewer, if the scene is small enough for a page that can be mailed.
 void add_viewer(const RadiosityFunction& light, ReportContent& content, Terminal& terminal, const StopRequest& stop) {
-    constexpr double many_texels = 150000, few_texels = 2000;
+    constexpr double many_texels = 30000, few_texels = 2000;
     constexpr std::size_t most_faces = 20000;
     const Scene& scene = light.solution().scene;
     if (scene.surfaces().size() > most_faces) return;
@@ -125,6 +127,13 @@ std::optional<Error> find_misuse(const ReportArguments& arguments) {
     if (arguments.output.empty() && !arguments.views.empty())
         return Error{ErrorCode::usage, "has no effect without a page, since tables hold no pictures", "--camera",
                      "add a page, -o room.html"};
+    if (!arguments.requirements.empty() && !measures && arguments.observers.empty())
+        return Error{ErrorCode::usage, "has no effect without measuring planes or observers", "--require",
+                     "add --plane 0.75 or --observers auto"};
+    if (!arguments.pdf.empty() && arguments.output.empty())
+        return Error{ErrorCode::usage, "is printed from a page", "--pdf", "add a page, -o room.html"};
+    if (!arguments.pdf.empty() && ending(arguments.pdf) != ".pdf")
+        return Error{ErrorCode::usage, "pages are printed as .pdf", arguments.pdf, "name the output something.pdf"};
     if (arguments.output.empty()) return std::nullopt;
     const bool page = arguments.output.ends_with(".html") || arguments.output.ends_with(".htm");
     if (page) return std::nullopt;
@@ -178,13 +187,15 @@ Result<void> add_page(const ReportArguments& arguments, const RadiosityFunction&
 }
 
 /// Writes page and tables. Fails without a page if a stop left no table finished.
-ExitCode write(const ReportArguments& arguments, const ReportContent& content, Terminal& terminal) {
+ExitCode write(const ReportArguments& arguments, const ReportContent& content, Terminal& terminal,
+               const StopRequest& stop) {
     const bool is_stopped = !content.unfinished.empty();
     if (is_stopped && arguments.output.empty() && content.grids.empty() && content.observers.empty())
         return terminal.fail_stopped("no table was finished");
     Result<void> written;
     if (!arguments.output.empty()) written = write_report(content, arguments.output);
     if (written && !arguments.tables.empty()) written = write_report_tables(content, arguments.tables);
+    if (written && !arguments.pdf.empty()) written = print_page(arguments.output, arguments.pdf, stop);
     if (!written) return terminal.fail(written.error());
     if (!is_stopped) return ExitCode::done;
     terminal.note(
@@ -197,7 +208,11 @@ ExitCode write(const ReportArguments& arguments, const ReportContent& content, T
 /// Runs `exitance report SOLUTION -o PAGE --tables FOLDER`.
 ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
     if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
+    if (!arguments.pdf.empty())
+        if (const Result<void> printer = find_page_printer(arguments.pdf); !printer)
+            return terminal.fail(printer.error());
     ReportContent content;
+    content.heading = arguments.heading, content.requirements = arguments.requirements;
     for (const MeasuringPlane& plane : arguments.planes) {
         Result<GridLight> grid = make_grid(plane);
         if (!grid) return terminal.fail(grid.error());
@@ -219,7 +234,7 @@ ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
         if (const Result<void> added = add_page(arguments, light, content, terminal, stop); !added)
             return terminal.fail(added.error());
     terminal.progress().finish();
-    return write(arguments, content, terminal);
+    return write(arguments, content, terminal, stop);
 }
 
 }  // namespace exitance

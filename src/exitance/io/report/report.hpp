@@ -27,8 +27,25 @@ struct ObserverGlare {
     Glare glare;
 };
 
+/// Requirements on the planes of one name, or on observers; see read_requirement().
+struct Requirement {
+    struct Limit {
+        std::string quantity;  ///< "Em", "U0", "Ez" or "UGR".
+        double value = 0;      ///< lx or W/m^2 for illuminances.
+    };
+    std::string plane;  ///< Empty: all planes.
+    std::vector<Limit> limits;
+};
+
+/// Texts of the first page; empty ones are left out.
+struct ReportHeading {
+    std::string title, project, client, author, date;
+};
+
 /// Content of a report. The solution must outlive it.
 struct ReportContent {
+    ReportHeading heading;
+    std::vector<Requirement> requirements;
     const Solution* solution = nullptr;
     LightUnit unit;  ///< Unit of all light values.
     std::vector<ReportPicture> pictures;
@@ -55,6 +72,8 @@ Result<void> write_report(const ReportContent& content, const std::string& path)
 ///     plane_1.csv, ...     one row per point: position, normal, value
 ///     plane_1.svg, .pdf    a plan to scale with isolines
 ///     observers.csv        one row per observer: position, line of sight, UGR, background, sources (if there are any)
+///     requirements.csv     one row per required number: where, quantity, required, reached, verdict (if there are any)
+///     surfaces.csv         one row per surface: name, material, area, illuminances (if there is a page)
 Result<void> write_report_tables(const ReportContent& content, const std::string& folder);
 
 }  // namespace exitance

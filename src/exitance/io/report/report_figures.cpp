@@ -9,6 +9,7 @@
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/files/base64.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
+#include "exitance/io/report/requirements.hpp"
 
 namespace exitance {
 namespace {
@@ -149,12 +150,23 @@ std::string report_json(const ReportContent& content, const ReportFigures& figur
         "  \"scene\": {{\"file\": {}, \"surfaces\": {}, \"area\": {}, \"size\": {}, \"emitters\": {}, \"lights\": "
         "{}}},\n"
         "  \"error\": {{\"median\": {}, \"error_p99\": {}, \"check_noise\": {}, \"check_points\": {}}},\n"
+        "  \"heading\": {{\"title\": {}, \"project\": {}, \"client\": {}, \"author\": {}, \"date\": {}}},\n"
+        "  \"requirements\": {},\n"
         "  \"pictures\": {},\n  \"grids\": {},\n  \"maintenance\": {},\n  \"observers\": {},\n  \"materials\": {},\n  "
         "\"surfaces\": {},\n"
         "  \"surfaces_left_out\": {},\n  \"unfinished\": {},\n  \"statistics\": {},\n  \"options\": {}\n}}\n",
         program_version, lux ? "lx" : "W/m^2", json_text(scene.file()), scene.surfaces().size(), figure(figures.area),
         point(size), scene.emitters().size(), scene.lights().size(), figure(content.error.median),
-        figure(content.error.p99), figure(content.error.noise), content.error.points,
+        figure(content.error.p99), figure(content.error.noise), content.error.points, json_text(content.heading.title),
+        json_text(content.heading.project), json_text(content.heading.client), json_text(content.heading.author),
+        json_text(content.heading.date),
+        list(judge(content, figures),
+             [](const Judgement& j) {
+                 return fmt::format(
+                     "{{\"where\": {}, \"quantity\": {}, \"required\": {}, \"reached\": {}, \"verdict\": {}}}",
+                     json_text(j.where), json_text(j.quantity), figure(j.required), figure(j.reached),
+                     json_text(words_of(j.verdict)));
+             }),
         list(content.pictures,
              [](const ReportPicture& p) {
                  return fmt::format("{{\"caption\": {}, \"camera\": {}}}", json_text(p.caption), json_text(p.camera));

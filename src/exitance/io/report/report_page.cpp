@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <filesystem>
+#include <utility>
 
 #include "exitance/base/version.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/report/report_figures.hpp"
+#include "exitance/io/report/requirements.hpp"
 
 namespace exitance {
 namespace {
@@ -19,13 +22,15 @@ table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size
 th, td { padding: .15rem .7rem .15rem 0; text-align: right; vertical-align: top; border-bottom: 1px solid #eee; }
 th { border-bottom: 1px solid #999; } td.text, th.text { text-align: left; overflow-wrap: anywhere; }
 .facts td { text-align: left; overflow-wrap: anywhere; } .facts td:first-child { color: #555; white-space: nowrap; }
+.reached { color: #0a6b2d; } .missed { color: #a4161a; font-weight: bold; } .unknown { color: #777; }
 .warning { border-left: .3rem solid #c77700; padding-left: .6rem; margin: .3rem 0; }
 .legend { font-size: .85rem; } .legend span { white-space: nowrap; margin-right: .8rem; }
 .legend i { display: inline-block; width: 1rem; height: .8rem; margin-right: .3rem; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 .plan .line { fill: none; stroke: #fff; stroke-width: 1.5; } .plan text { font: 11px sans-serif; text-anchor: middle; fill: #fff; paint-order: stroke; stroke: #000; stroke-width: 2px; }
 .plan .level { font-weight: bold; font-size: 13px; }
 .wide { overflow-x: auto; } details { margin: .6rem 0; }
-@media print { body { margin: 0; max-width: none; font-size: 10.5pt; } canvas, .viewer { display: none; } h2 { break-after: avoid; } tr { break-inside: avoid; } thead { display: table-header-group; } a { color: inherit; } }
+@page { size: A4; margin: 18mm 16mm; }
+@media print { #surfaces { display: none; } body { margin: 0; max-width: none; font-size: 10.5pt; } canvas, .viewer { display: none; } h2 { break-after: avoid; } tr { break-inside: avoid; } thead { display: table-header-group; } a { color: inherit; } }
 )css";
 
 std::string percent(double share) {
@@ -57,6 +62,42 @@ std::string overview(const ReportContent& content, const ReportFigures& figures)
     return "<table class=\"facts\">\n" + rows + "</table>\n";
 }
 
+/// Facts of the first page that the user gave.
+std::string heading(const ReportHeading& h) {
+    std::string rows;
+    const std::array<std::pair<const char*, const std::string*>, 4> lines{
+        {{"Project", &h.project}, {"Client", &h.client}, {"Author", &h.author}, {"Date", &h.date}}};
+    for (const auto& [name, text] : lines)
+        if (!text->empty()) rows += fact(name, escaped(*text));
+    return rows.empty() ? "" : "<table class=\"facts\">\n" + rows + "</table>\n";
+}
+
+/// Required and measured numbers with verdicts.
+std::string requirements(const ReportContent& content, const ReportFigures& figures) {
+    const std::vector<Judgement> judged = judge(content, figures);
+    if (judged.empty()) return "";
+    std::string html =
+        "<table>\n<thead><tr><th class=\"text\">Where</th><th class=\"text\">Quantity</th><th>Required</th>"
+        "<th>Measured</th><th class=\"text\">Verdict</th></tr></thead>\n";
+    for (const Judgement& j : judged) {
+        const bool is_light = j.quantity == "Em" || j.quantity == "Ez";
+        const std::string unit = is_light ? std::string(" ") + symbol(content.unit) : "";
+        html += fmt::format(
+            "<tr><td class=\"text\">{}</td><td class=\"text\">{}</td><td>{} {:.4g}{}</td><td>{}</td><td class=\"text "
+            "{}\">{}"
+            "</td></tr>\n",
+            escaped(j.where), j.quantity, j.quantity == "UGR" ? "at most" : "at least", j.required, unit,
+            j.verdict == Verdict::not_measured ? "-" : short_figure(j.reached) + unit,
+            j.verdict == Verdict::missed         ? "missed"
+            : j.verdict == Verdict::not_measured ? "unknown"
+                                                 : "reached",
+            words_of(j.verdict));
+    }
+    return html +
+           "</table>\n<p class=\"note\">\"Reached within the error\": the number misses the requirement by less than "
+           "the estimated error of the light.</p>\n";
+}
+
 std::string unfinished(const ReportContent& content) {
     if (content.unfinished.empty()) return "";
     std::string parts;
@@ -71,10 +112,8 @@ Result<std::string> pictures(const ReportContent& content) {
         const Result<std::string> address = data_address(picture.image);
         if (!address) return address.error();
         html += fmt::format(
-            "<figure><img src=\"{}\" alt=\"{}\" width=\"{}\" height=\"{}\"><figcaption>{}<br>--camera '{}'</figcaption>"
-            "</figure>\n",
-            *address, escaped(picture.caption), picture.image.width, picture.image.height, escaped(picture.caption),
-            escaped(picture.camera));
+            "<figure><img src=\"{}\" alt=\"{}\" width=\"{}\" height=\"{}\"><figcaption>{}</figcaption></figure>\n",
+            *address, escaped(picture.caption), picture.image.width, picture.image.height, escaped(picture.caption));
     }
     return html;
 }
@@ -235,13 +274,15 @@ Result<void> write_report(const ReportContent& content, const std::string& path)
     if (!viewer) return viewer.error();
     const std::string json = report_json(content, figures);
     const std::string name = std::filesystem::path(content.solution->scene.file()).filename().string();
+    const std::string title = content.heading.title.empty() ? "Light in " + name : content.heading.title;
     const SolveStatistics& s = content.solution->statistics;
     const std::string page =
         fmt::format(
             "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-            "content=\"width=device-width\">\n<title>Light in {0}</title>\n<style>{1}</style>\n</head>\n<body>\n"
-            "<h1>Light in {0}</h1>\n",
-            escaped(name), style) +
+            "content=\"width=device-width\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n"
+            "<h1>{0}</h1>\n",
+            escaped(title), style) +
+        heading(content.heading) + section("requirements", "Requirements", requirements(content, figures)) +
         overview(content, figures) + unfinished(content) + section("pictures", "Pictures", *shown) +
         (viewer->empty() ? "" : "<div class=\"viewer\">" + section("walk", "Look around", *viewer) + "</div>") +
         section("grids", "Measuring planes", grids(content, figures)) +

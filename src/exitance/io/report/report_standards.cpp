@@ -6,6 +6,7 @@
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/report/isolux_plan.hpp"
+#include "exitance/io/report/requirements.hpp"
 
 namespace exitance {
 namespace {
@@ -64,6 +65,27 @@ std::string observers_csv(const ReportContent& content) {
         text += fmt::format("{},{},{},{},{},{},{},{}\n", quoted(observer.name), triple(observer.eye, ","),
                             triple(observer.view, ","), cell(glare.rating()), figure(glare.background),
                             glare.sources.size(), glare.has_large_source() ? 1 : 0, glare.left_out.size());
+    return text;
+}
+
+std::string requirements_csv(const std::vector<Judgement>& judged) {
+    std::string text = "where,quantity,required,reached,verdict\n";
+    for (const Judgement& j : judged)
+        text += fmt::format("{},{},{:.6g},{},{}\n", quoted(j.where), j.quantity, j.required, cell(j.reached),
+                            words_of(j.verdict));
+    return text;
+}
+
+std::string surfaces_csv(const ReportFigures& figures) {
+    std::string text = "surface,line,group,material,area,points,mean,minimum,maximum,uniformity,radiosity\n";
+    for (const ReportFigures::Face& face : figures.faces) {
+        const Levels& l = face.irradiance;
+        text += fmt::format("{},{},{},{},{},{},", face.surface.value, face.line, quoted(face.group),
+                            quoted(face.material), figure(face.area), l.count);
+        text += l.count == 0 ? ",,,,\n"
+                             : fmt::format("{},{},{},{},{}\n", figure(l.mean), figure(l.least), figure(l.most),
+                                           figure(l.uniformity()), figure(face.radiosity));
+    }
     return text;
 }
 
@@ -160,6 +182,13 @@ Result<void> write_report_tables(const ReportContent& content, const std::string
               write_file(in(name + ".svg"), svg_of(plan)), write_file(in(name + ".pdf"), pdf_of(plan))})
             if (!written) return written;
     }
+    if (!content.requirements.empty())
+        if (const Result<void> written = write_file(in("requirements.csv"), requirements_csv(judge(content, figures)));
+            !written)
+            return written;
+    if (!figures.faces.empty())
+        if (const Result<void> written = write_file(in("surfaces.csv"), surfaces_csv(figures)); !written)
+            return written;
     return content.observers.empty() ? Result<void>() : write_file(in("observers.csv"), observers_csv(content));
 }
 

@@ -1,0 +1,54 @@
+#include "exitance/io/report/report_pdf.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <vector>
+
+#include "exitance/io/files/child_process.hpp"
+
+namespace exitance {
+namespace {
+
+/// The first installed program that prints pages; empty if there is none.
+std::string page_printer() {
+    constexpr std::array<const char*, 4> known{"chromium", "chromium-browser", "google-chrome", "chrome"};
+    const auto found = std::find_if(known.begin(), known.end(), [](const char* name) { return is_program(name); });
+    return found == known.end() ? "" : *found;
+}
+
+}  // namespace
+
+Result<void> find_page_printer(const std::string& path) {
+    if (!page_printer().empty()) return {};
+    return Error{ErrorCode::cannot_write, "a PDF is printed by Chromium, which is not installed", path,
+                 "install the package chromium, or print the page from a browser"};
+}
+
+Result<void> print_page(const std::string& page, const std::string& path, const StopRequest& stop) {
+    namespace fs = std::filesystem;
+    constexpr double most_seconds =
+        120;  // a page takes a few seconds; without a limit a hanging browser would hold the run
+    const fs::path target = fs::absolute(path),
+                   part = target.parent_path() / fmt::format(".{}.part.pdf", target.stem().string());
+    std::vector<std::string> words{page_printer(), "--headless", "--disable-gpu", "--no-pdf-header-footer",
+                                   "--print-to-pdf=" + part.string()};
+    if (geteuid() == 0) words.push_back("--no-sandbox");  // Chromium has none for root
+    words.push_back("file://" + fs::absolute(page).string());
+    const ProgramRun run = run_program(words, "", most_seconds, stop);
+    std::error_code failed;
+    if (run.status == 0 && fs::exists(part)) {
+        fs::rename(part, target, failed);
+        if (!failed) return {};
+    }
+    fs::remove(part, failed);
+    const std::string said = run.err.substr(0, run.err.find('\n'));
+    return Error{ErrorCode::cannot_write,
+                 fmt::format("the browser printed no PDF: {:.200}", said.empty() ? "it said nothing" : said), path,
+                 "the page itself is written; print it from a browser"};
+}
+
+}  // namespace exitance

@@ -1,0 +1,124 @@
+#include "exitance/io/report/requirements.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+namespace exitance {
+namespace {
+
+constexpr std::array<const char*, 4> quantities{"Em", "U0", "Ez", "UGR"};
+
+std::string trimmed(const std::string& text) {
+    const std::size_t first = text.find_first_not_of(' '), last = text.find_last_not_of(' ');
+    return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
+Error misuse(const std::string& words, const std::string& why) {
+    return {ErrorCode::usage, why, "--require '" + words + "'",
+            "for example: --require 'desk: Em 500, U0 0.6' or 'UGR 19'"};
+}
+
+Verdict verdict_on(double reached, double required, double error, bool is_upper_limit) {
+    const double excess = is_upper_limit ? required - reached : reached - required;
+    if (excess >= 0) return Verdict::reached;
+    return -excess <= error ? Verdict::within_error : Verdict::missed;
+}
+
+class Judge {
+  public:
+    Judge(const ReportContent& content, const ReportFigures& figures)
+        : content_(content),
+          figures_(figures),
+          error_(content.solution->statistics.relative_error_estimate.value_or(0)) {}
+
+    void judge_planes(const Requirement& asked, const Requirement::Limit& limit) {
+        const std::size_t before = out_.size();
+        const bool is_cylindrical = limit.quantity == "Ez";
+        for (const ReportFigures::Grid& grid : figures_.grids) {
+            if (grid.light->is_cylindrical != is_cylindrical) continue;
+            if (!asked.plane.empty() && grid.light->name != asked.plane) continue;
+            const bool is_uniformity = limit.quantity == "U0";
+            const double reached = is_uniformity ? grid.levels.uniformity() : grid.levels.mean;
+            // A quotient has the errors of two numbers.
+            const double error = (is_uniformity ? 2 : 1) * error_ * reached;
+            out_.push_back({grid.light->name.empty() ? "plane" : grid.light->name, limit.quantity, limit.value, reached,
+                            verdict_on(reached, limit.value, error, false)});
+        }
+        if (out_.size() == before)
+            out_.push_back({asked.plane.empty() ? "planes" : asked.plane, limit.quantity, limit.value});
+    }
+
+    /// The observer with the highest rating decides.
+    void judge_glare(const Requirement::Limit& limit) {
+        Judgement out{"observers", limit.quantity, limit.value};
+        double worst = -HUGE_VAL;
+        for (const ObserverGlare& o : content_.observers)
+            if (std::isfinite(o.glare.rating()) && o.glare.rating() > worst)
+                worst = o.glare.rating(), out.where = o.observer.name;
+        // Ratings are minus infinity where no source counts.
+        if (!content_.observers.empty())
+            out.reached = std::max(worst, 0.0),
+            out.verdict = verdict_on(out.reached, limit.value, 8 * std::log10(1 + error_), true);
+        out_.push_back(out);
+    }
+
+    std::vector<Judgement> all() {
+        for (const Requirement& asked : content_.requirements)
+            for (const Requirement::Limit& limit : asked.limits)
+                limit.quantity == "UGR" ? judge_glare(limit) : judge_planes(asked, limit);
+        return std::move(out_);
+    }
+
+  private:
+    const ReportContent& content_;
+    const ReportFigures& figures_;
+    double error_;
+    std::vector<Judgement> out_;
+};
+
+}  // namespace
+
+Result<Requirement> read_requirement(const std::string& words) {
+    Requirement out;
+    const std::size_t colon = words.rfind(':');
+    if (colon != std::string::npos) out.plane = trimmed(words.substr(0, colon));
+    std::istringstream items(colon == std::string::npos ? words : words.substr(colon + 1));
+    for (std::string item; std::getline(items, item, ',');) {
+        std::istringstream in(item);
+        Requirement::Limit limit;
+        std::string more;
+        if (!(in >> limit.quantity >> limit.value) || in >> more || !(limit.value > 0) || !std::isfinite(limit.value))
+            return misuse(words, fmt::format("'{}' is not a quantity and a positive number", trimmed(item)));
+        if (std::find(quantities.begin(), quantities.end(), limit.quantity) == quantities.end())
+            return misuse(words, fmt::format("'{}' is not Em, U0, Ez or UGR", limit.quantity));
+        if (limit.quantity == "UGR" && !out.plane.empty())
+            return misuse(words, "UGR is required of observers, which have no plane");
+        out.limits.push_back(limit);
+    }
+    if (out.limits.empty()) return misuse(words, "names no quantity");
+    return out;
+}
+
+std::vector<Judgement> judge(const ReportContent& content, const ReportFigures& figures) {
+    return Judge(content, figures).all();
+}
+
+std::string words_of(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::reached:
+            return "reached";
+        case Verdict::within_error:
+            return "reached within the error";
+        case Verdict::missed:
+            return "missed";
+        case Verdict::not_measured:
+            return "not measured";
+    }
+    return "";
+}
+
+}  // namespace exitance
