@@ -299,13 +299,17 @@ TEST(ViewFactorCatalogue, HasAtLeastAHundredExactConfigurations) {
 /// Concentric spheres of triangles: the inner one is convex, so that all its flux reaches the outer one, and the outer
 /// one's share follows by reciprocity from the areas of the triangles.
 TEST(ViewFactorCatalogue, SpheresOfTrianglesSeeEachOtherByTheirAreas) {
-    for (const auto& [inner, cuts] : {std::pair{0.5, 0}, {0.5, 1}}) {
+    struct Case {
+        double inner;
+        int cuts, number;
+    };
+    for (const auto& [inner, cuts, number] : {Case{0.2, 0, 2}, {0.7, 0, 7}, {0.9, 0, 4}, {0.5, 1, 5}, {0.8, 1, 11}}) {
         Configuration c{"C-137", sphere(inner, cuts, false), {}};
         const std::size_t n = c.faces.size();
         for (const Outline& face : sphere(1, cuts, true)) c.faces.push_back(face);
-        place(c, static_cast<int>(10 * inner));
+        place(c, number);
         Progress progress;
-        const double tolerance = 1e-2;
+        const double tolerance = 1e-3;
         const ViewFactors table = *compute_view_factors(scene_of(c.faces), tolerance, progress, StopRequest());
         double inside = 0, outside = 0, received = 0;
         for (std::size_t i = 0; i < 2 * n; ++i) (i < n ? inside : outside) += table.areas[i];

@@ -1,6 +1,17 @@
 #include "exitance/base/polygon.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace exitance {
+namespace {
+
+/// Share of an outline's largest coordinate below which a corner's distance from a plane may be due to rounding.
+/// Derived from the rounding of a coordinate, 1.1e-16: a remaining edge is at least 500 roundings of its ends long, so
+/// that its direction is accurate to about 1e-2.
+constexpr double in_plane = 1e-13;
+
+}  // namespace
 
 Vec3 area_vector(std::span<const Point> outline) {
     Vec3 sum;
@@ -47,9 +58,17 @@ Point centroid(std::span<const Point> outline) {
 void clip(std::span<const Point> outline, const Plane& plane, std::vector<Point>& out) {
     out.clear();
     const std::size_t m = outline.size();
+    double largest = 0;
+    for (const Point& p : outline) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    // A corner that is in the plane except for rounding stays one corner. Two new ones in its place would be the ends
+    // of an edge with an arbitrary direction.
+    const auto height = [&](const Point& p) {
+        const double h = plane.signed_distance(p);
+        return std::abs(h) <= in_plane * largest ? 0 : h;
+    };
     for (std::size_t i = 0; i < m; ++i) {
         const Point &p = outline[i], &q = outline[(i + 1) % m];
-        const double hp = plane.signed_distance(p), hq = plane.signed_distance(q);
+        const double hp = height(p), hq = height(q);
         if (hp >= 0) out.push_back(p);
         // Interpolate from the lower to the higher corner, so that two faces that share an edge get the same point.
         if ((hp > 0 && hq < 0) || (hp < 0 && hq > 0)) {

@@ -16,6 +16,7 @@
 #include "exitance/io/pictures/tone_map.hpp"
 #include "exitance/io/report/report.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
+#include "exitance/io/view_factors/view_factor_file.hpp"
 #include "exitance/measure/working_plane.hpp"
 #include "exitance/methods/options/solve_request.hpp"
 #include "exitance/scene/photometric_units.hpp"
@@ -182,14 +183,19 @@ struct ViewFactorArguments : CommonArguments {
     std::optional<std::size_t> check;       ///< Rows checked by rays, or entries if `tolerance` is set.
     std::optional<std::size_t> check_rays;  ///< Rays per checked row or entry.
     std::uint64_t seed = 1;
-    bool resume = false;  ///< Continue from the rows that a stopped run kept.
+    bool resume = false;                 ///< Continue from the rows that a stopped run kept.
+    std::optional<FactorFormat> format;  ///< Format of the output; empty: by its ending.
+    bool with_sky = false;               ///< Add columns for the sky and for backs of faces.
+    std::string nodes;       ///< `group`, `material` or a table with the node of every face; empty: faces are rows.
+    std::string zone;        ///< Name of the zone in EnergyPlus; empty: "zone".
+    std::string emissivity;  ///< `kd` or a table: adds exchange factors of grey surfaces; empty: none.
     int threads = 0;
 };
 
 struct HeatArguments : CommonArguments {
     std::string factors, table;  ///< Files with view factors (.h5) and with the thermal state of their surfaces (.csv).
-    std::string output, exchange;        ///< Tables to write; empty: none.
-    std::optional<double> surroundings;  ///< Temperature of the surroundings, K; none: an enclosure.
+    std::string output, exchange, gebhart;  ///< Tables to write; empty: none.
+    std::optional<double> surroundings;     ///< Temperature of the surroundings, K; none: an enclosure.
     int threads = 0;
 };
 

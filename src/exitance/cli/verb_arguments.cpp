@@ -9,6 +9,16 @@ constexpr std::array<std::pair<Component, std::string_view>, 3> component_names{
     {Component::indirect, "indirect"},
 }};
 
+constexpr std::array<std::pair<FactorFormat, std::string_view>, 7> factor_format_names{{
+    {FactorFormat::csv, "csv"},
+    {FactorFormat::vf, "vf"},
+    {FactorFormat::mtx, "mtx"},
+    {FactorFormat::hdf5, "h5"},
+    {FactorFormat::energyplus, "energyplus"},
+    {FactorFormat::openfoam, "openfoam"},
+    {FactorFormat::pairs, "pairs"},
+}};
+
 constexpr std::array<std::pair<ReferenceFormat, std::string_view>, 5> reference_format_names{{
     {ReferenceFormat::man, "man"},
     {ReferenceFormat::markdown, "markdown"},
@@ -210,6 +220,9 @@ void declare(CLI::App& app, HeatArguments& arguments) {
     app.add_option("--exchange", arguments.exchange,
                    "CSV file to write: exchange factors (script F) between all surfaces of given temperature")
         ->type_name("FILE");
+    app.add_option("--gebhart", arguments.gebhart,
+                   "CSV file to write: Gebhart's factors, which are exchange factors divided by the row's emissivity")
+        ->type_name("FILE");
     app.add_option_function<std::string>(
            "--surroundings",
            [&arguments](const std::string& word) {
@@ -225,10 +238,27 @@ void declare(CLI::App& app, HeatArguments& arguments) {
 
 void declare(CLI::App& app, ViewFactorArguments& arguments) {
     declare_scene(app, arguments.scene);
-    app.add_option("-o,--output", arguments.output,
-                   "Matrix to write: .csv, .vf (View3D), or sparse: .mtx (Matrix Market), .h5")
+    app.add_option(
+           "-o,--output", arguments.output,
+           "Matrix to write: .csv, .vf (View3D), .idf (EnergyPlus), or sparse: .mtx (Matrix Market), .h5. A folder "
+           "with --format openfoam")
         ->type_name("FILE")
         ->required();
+    add_choice(app, "--format", factor_format_names, arguments.format,
+               "Format of the output. Default: by its ending; others are csv. pairs: a line from_id,to_id,F per entry");
+    app.add_flag("--sky", arguments.with_sky,
+                 "Add columns for the sky and for backs of faces to csv, mtx and pairs; .h5 always has them");
+    app.add_option("--nodes", arguments.nodes,
+                   "Make one row per node: a group, a material, or as a table (.csv) with the columns face,node says. "
+                   "Default: one row per face")
+        ->type_name("group|material|FILE");
+    app.add_option("--zone", arguments.zone, "Name of the zone or enclosure in EnergyPlus. Default zone")
+        ->type_name("NAME");
+    app.add_option(
+           "--emissivity", arguments.emissivity,
+           "Add exchange factors (script F) and Gebhart's factors of grey surfaces to .h5. kd: emissivities are "
+           "1 - Kd; or a table (.csv) as for heat")
+        ->type_name("kd|FILE");
     const auto add_range = [&app](const char* name, std::optional<double>& value, double least, double most,
                                   const char* help) {
         const auto read = [=, &value](const std::string& word) {

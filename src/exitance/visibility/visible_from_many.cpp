@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "exitance/base/four.hpp"
 
@@ -11,6 +12,9 @@ namespace {
 /// Heights below this, times an edge's length and the square of `reach_`, count as zero.
 constexpr double rounding = 2e-15;
 constexpr double one_line = 1e-12;  ///< Edges closer than this from everywhere count as one line.
+/// Roundings of the largest coordinate that may lie between edges on one line. Derived from the few roundings of each
+/// of the transformations that make and place a model; scanned gaps are far wider.
+constexpr double roundings_on_one_line = 64;
 /// From a point: below this, the intersection of two such edges is lost in rounding.
 constexpr double coincident_from_point = 3e-8;
 constexpr std::size_t max_turning_faces = 64;
@@ -131,13 +135,13 @@ bool VisibleFromMany::add_line(Line line, const ConvexBlocker::Edge& e, bool tur
     const Vec3 &a = points_[from], &b = points_[to];
     line.a = a, line.along = b - a;
     const double scale = norm(line.along) * reach_ * reach_;
-    line.none = rounding * scale, line.tie = coincident_from_point * scale;
+    line.none = rounding * scale, line.tie = std::max(coincident_from_point, 8 * one_line_) * scale;
     line.over = static_cast<std::uint32_t>(tables_.heights.size());
     const auto column = [&](std::size_t i, std::size_t k) { return four::load(&source_columns_[i][k]); };
     const Axis axis(a, line.along);
     const Vec3 &d = axis.along, &m = axis.moment;
     tables_.heights.resize(line.over + corners);
-    const Signs over = add_heights(1, line.over, line.none, one_line * scale,
+    const Signs over = add_heights(1, line.over, line.none, one_line_ * scale,
                                    [&](std::size_t k, four::Real& c, four::Real& u, four::Real& v) {
                                        const four::Real x = column(0, k), y = column(1, k), z = column(2, k);
                                        c = m.x * x + m.y * y + m.z * z;
@@ -150,9 +154,16 @@ bool VisibleFromMany::add_line(Line line, const ConvexBlocker::Edge& e, bool tur
         tables_.heights.resize(line.over);
         return all_out;
     }
-    const std::uint32_t nil = all & ~over.away;  // corners that are on the line from everywhere
-    for (std::size_t s = 0; nil != 0 && s < corners; ++s)
-        if (nil & bit(s)) tables_.heights[line.over + s] = {};
+    // Edges of the source that are on the line from everywhere. A single corner on it keeps its height: rounding it
+    // alone to zero could hide that its edge crosses the line.
+    std::uint32_t on_line = 0;
+    const std::uint32_t nil = all & ~over.away;
+    for (std::size_t s = 0; nil != 0 && s < corners; ++s) {
+        const std::size_t next = s + 1 == corners ? 0 : s + 1;
+        if ((nil & bit(s)) == 0 || (nil & bit(next)) == 0) continue;
+        on_line |= bit(s);
+        tables_.heights[line.over + s] = tables_.heights[line.over + next] = {};
+    }
     tables_.heights.resize(line.over + 3 * corners);
     Signs of_ends[2];
     for (std::size_t end : {0, 1}) {
@@ -170,9 +181,7 @@ bool VisibleFromMany::add_line(Line line, const ConvexBlocker::Edge& e, bool tur
     of_corner[from] |= of_ends[0].above & of_ends[0].below;
     of_corner[to] |= of_ends[1].above & of_ends[1].below;
     // The edge is not drawn if it is outside, or coincides with an edge of the source, which is counted instead.
-    line.is_drawn = (of_ends[0].above | of_ends[1].above) == all;
-    for (std::size_t s = 0; nil != 0 && s < corners; ++s)
-        if ((nil & bit(s)) != 0 && (nil & bit(s + 1 == corners ? 0 : s + 1)) != 0) line.is_drawn = false;
+    line.is_drawn = (of_ends[0].above | of_ends[1].above) == all && on_line == 0;
     tables_.lines.push_back(line);
     edges_.push_back(edge), crossed_.push_back(over.above & over.below);
     return all_out;
@@ -219,7 +228,7 @@ void VisibleFromMany::join(std::size_t k, std::size_t j) {
             const Line &e = tables_.lines[i], &f = tables_.lines[l];
             const Axis axis(f.a, f.along);
             Affine of_a = axis.height(e.a), of_b = axis.height(e.a + e.along);
-            const double nil = one_line * norm(f.along) * reach_ * reach_;
+            const double nil = one_line_ * norm(f.along) * reach_ * reach_;
             if (!signs(of_a, nil, nil).away && !signs(of_b, nil, nil).away)
                 of_a.u = SightTables::on_one_line, of_a.c = dot(e.along, f.along);
             tables_.heights.push_back(of_a), tables_.heights.push_back(of_b);
@@ -256,6 +265,10 @@ VisibleFromMany::Outlook VisibleFromMany::set(const PlaneFrame& frame, std::span
     set_source(source);
     for (const Vec3& p : tables_.corners) box.add(p);
     reach_ = box.diagonal();
+    double largest = 0;
+    for (const Point& p : source) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    one_line_ = std::max(
+        one_line, roundings_on_one_line * std::numeric_limits<double>::epsilon() * largest / std::max(reach_, 1e-300));
     is_crowded_ = source.size() > SightTables::most_corners;
     for (const ConvexBlocker* shape : blockers)
         if (add_blocker(*shape) == Kept::hides_all) return Outlook::hidden;

@@ -72,7 +72,8 @@ class VisibleFromMany {
     std::vector<double> receiver_u_, receiver_v_;  ///< Its corners.
     std::span<const Point> source_;
     std::span<const ConvexBlocker* const> blockers_;
-    double reach_ = 0;  ///< Upper bound of the distance between any two points involved, metres.
+    double reach_ = 0;     ///< Upper bound of the distance between any two points involved, metres.
+    double one_line_ = 0;  ///< Share of `reach_`: edges closer than this from everywhere count as one line.
     SightTables tables_;
     std::vector<std::uint32_t> edges_;    ///< Per line: its edge, as an index into the blocker's edges.
     std::vector<std::uint32_t> crossed_;  ///< Per line, as SeenEdges::edges_over_corners.

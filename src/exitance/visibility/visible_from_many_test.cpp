@@ -138,6 +138,69 @@ TEST(VisibleFromMany, IsExactForCoincidentEdges) {
                     "case " + std::to_string(i));
 }
 
+/// Turns, scales and moves points.
+struct Placement {
+    double angle, scale;
+    Vec3 offset;
+
+    Point operator()(const Point& p) const {
+        const double c = std::cos(angle), s = std::sin(angle);
+        const Vec3 q = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+        return Point(scale * Vec3{q.x, c * q.y - s * q.z, s * q.y + c * q.z} + offset);
+    }
+    Outline operator()(Outline outline) const {
+        for (Point& p : outline) p = (*this)(p);
+        return outline;
+    }
+    ConvexBlocker operator()(ConvexBlocker body) const {
+        body.points = (*this)(body.points);
+        for (std::size_t k = 0; k < body.faces.size(); ++k) {
+            Outline face;
+            for (std::uint32_t i : body.loops[k]) face.push_back(body.points[i]);
+            const Normal n = normalized(area_vector(face));
+            body.faces[k] = {n, dot(n, face[0])};
+        }
+        return body;
+    }
+};
+
+/// A wall and blocks stand on the receiver, so that their lower edges coincide with the horizon of all its points, and
+/// one block touches the wall. Far from the origin they do so up to the rounding of coordinates.
+TEST(VisibleFromMany, EdgesOnTheHorizonMayBeOffByTheRoundingOfCoordinates) {
+    const Outline wall = {{3, -1, 0}, {3, -1, 2}, {3, 1, 2}, {3, 1, 0}};
+    const ConvexBlocker one = box({1.5, -0.5, 0}, {2, 0.25, 0.75}), two = box({2.25, 0, 0}, {3, 0.5, 1});
+    const std::vector<std::vector<const ConvexBlocker*>> cases = {{&one}, {&two}, {&one, &two}};
+    const Outline floor = floor_square(0, 0, 1);
+    for (const auto& blockers : cases)
+        for (int k = 0; k < 40; ++k) {
+            const bool is_far = k % 2 == 1;
+            const Placement place = {0.37 * k, is_far ? 1e-3 : 1.0, is_far ? Vec3{1000, -700, 300} : Vec3{3, -2, 5}};
+            std::vector<ConvexBlocker> bodies;
+            std::vector<const ConvexBlocker*> pointers;
+            for (const ConvexBlocker* b : blockers) bodies.push_back(place(*b));
+            for (const ConvexBlocker& b : bodies) pointers.push_back(&b);
+            const Outline source = place(wall), receiver = place(floor);
+            const PlaneFrame frame(receiver[0], normalized(area_vector(receiver)));
+            std::vector<Vec2> corners, points;
+            for (const Point& p : receiver) corners.push_back(frame.flat(p));
+            std::vector<Point> exact;
+            for (int i = 0; i < 25; ++i) {
+                exact.push_back({-0.93 + 0.44 * (i % 5), -0.91 + 0.43 * (i / 5), 0});
+                points.push_back(frame.flat(place(exact.back())));
+            }
+            VisibleFromMany many;
+            VisibleSource alone;
+            ASSERT_EQ(many.set(frame, corners, source, pointers), VisibleFromMany::Outlook::partly);
+            alone.set(wall, blockers);
+            std::vector<double> F(points.size());
+            std::vector<Seen> seen(points.size());
+            many(points, std::array{points.size()}, F, seen);
+            // A coordinate of 1000 in a model of size 1e-3 has a relative rounding of 1e-10.
+            for (std::size_t i = 0; i < F.size(); ++i)
+                EXPECT_NEAR(F[i], alone(exact[i], {0, 0, 1}, seen[i]), is_far ? 1e-8 : 1e-13) << k << ' ' << i;
+        }
+}
+
 TEST(VisibleFromMany, SupportsSourcesWithManyCorners) {
     Outline disc;
     constexpr int corners = 40;

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "exitance/base/random.hpp"
 #include "exitance/direct/direct_light.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
@@ -247,6 +248,49 @@ TEST(DirectLight, OfManyUnoccludedEmittersIsTheSumOfEach) {
         by_itself += e.exitance[0] * direct.form_factor({{0.3, 0.2, 0}, n, own}, e, scratch);
     for (const ReceiverLight& l : {light, part})
         EXPECT_NEAR(direct.irradiance(l, {0.3, 0.2, 0}, scratch)[0], by_itself, 1e-11);  // accuracy of the batch: 1e-12
+}
+
+/// A corner of a source or of a blocker that is in the receiver's or the source's plane is above or below it by
+/// rounding. The exact coordinates are multiples of 1/64, with both planes parallel to the axes.
+TEST(VisiblePart, CornersInThePlanesOfReceiverAndSourceGiveTheSameLightInAnyPlace) {
+    RandomStream random(5, Stream::mesh);
+    const auto between = [&](double a, double b) { return std::round((a + (b - a) * random.uniform()) * 64) / 64; };
+    VisibilityWorkspace scratch;
+    for (int k = 0; k < 600; ++k) {
+        std::vector<std::vector<Point>> faces = {{{-4, -4, 0}, {3, -4, 0}, {3, 4, 0}, {-4, 4, 0}}};
+        faces.push_back(
+            {{4, between(-1, 1), 0}, {4, between(-3, -1), between(1, 3)}, {4, between(1, 3), between(1, 3)}});
+        if (area_vector(faces.back()).x > 0) std::swap(faces.back()[0], faces.back()[1]);
+        const bool hangs = k % 2 == 1;
+        for (int b = 0; b < 1 + k % 3; ++b) {
+            const double x = between(0, 2.5);
+            faces.push_back({{x, between(-1, 1), 0},
+                             {hangs ? 4 : x + between(-0.5, 0.5), between(-2, 0), between(0.5, 2)},
+                             {x + between(-0.5, 0.5), between(0.25, 2), between(0.5, 2)}});
+        }
+        const double angle = 6 * random.uniform(), scale = std::pow(10, -3 + 4 * random.uniform());
+        const Vec3 offset = k % 5 == 0 ? Vec3{1000, -700, 300} : Vec3{3, -2, 5};
+        const auto place = [&](const Point& p) {
+            const double c = std::cos(angle), s = std::sin(angle);
+            const Vec3 q = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+            return Point(scale * (Vec3{q.x, c * q.y - s * q.z, s * q.y + c * q.z} + offset));
+        };
+        std::vector<Face> exact, placed;
+        for (std::size_t i = 0; i < faces.size(); ++i) {
+            exact.push_back({faces[i], i == 1 ? 1.0 : 0.0});
+            for (Point& p : faces[i]) p = place(p);
+            placed.push_back({faces[i], i == 1 ? 1.0 : 0.0});
+        }
+        const Scene at_origin = test::make(exact), elsewhere = test::make(placed);
+        const Occluders near(at_origin), far(elsewhere);
+        const DirectLight expected(at_origin, near), found(elsewhere, far);
+        const Normal n = normalized(area_vector(faces[0]));
+        for (int i = 0; i < 10; ++i) {
+            const Point x = {between(-4, 3), between(-3, 3), 0};
+            const double E = expected.irradiance(x, {0, 0, 1}, {}, scratch)[0];
+            EXPECT_NEAR(found.irradiance(place(x), n, {}, scratch)[0], E, 1e-10) << k << ' ' << i;
+        }
+    }
 }
 
 }  // namespace

@@ -37,15 +37,34 @@ std::string words_of(const GrayExchange& exchange, const std::vector<ThermalSurf
     return text;
 }
 
+/// Writes the exchange factors and Gebhart's factors that are requested.
+Result<void> write_exchange(const HeatArguments& arguments, const SparseFactors& factors,
+                            const std::vector<ThermalSurface>& surfaces, const StopRequest& stop) {
+    if (arguments.exchange.empty() && arguments.gebhart.empty()) return {};
+    auto f = exchange_factors(factors, surfaces, arguments.surroundings, stop);
+    if (!f) return f.error();
+    if (!arguments.exchange.empty())
+        if (auto written = write_text(arguments.exchange, exchange_csv(factors, surfaces, *f)); !written)
+            return written;
+    if (arguments.gebhart.empty()) return {};
+    for (std::size_t i = 0; i < f->size(); ++i)
+        for (double& value : (*f)[i]) value /= surfaces[i].emissivity;
+    return write_text(arguments.gebhart, exchange_csv(factors, surfaces, *f));
+}
+
 }  // namespace
 
 /// Runs `exitance heat FACTORS --table TABLE`.
 ExitCode run(const HeatArguments& arguments, Terminal& terminal) {
-    for (const std::string& output : {arguments.output, arguments.exchange})
+    for (const std::string& output : {arguments.output, arguments.exchange, arguments.gebhart})
         if (!output.empty() && (is_same_file(output, arguments.factors) || is_same_file(output, arguments.table)))
             return terminal.fail({ErrorCode::usage, "is an input", output, "choose another name for the output"});
-    if (!arguments.output.empty() && arguments.output == arguments.exchange)
-        return terminal.fail({ErrorCode::usage, "is also the file of --output", "--exchange", "choose another name"});
+    if (!arguments.exchange.empty() &&
+        (arguments.exchange == arguments.output || arguments.exchange == arguments.gebhart))
+        return terminal.fail(
+            {ErrorCode::usage, "is also the file of another output", "--exchange", "choose another name"});
+    if (!arguments.gebhart.empty() && arguments.gebhart == arguments.output)
+        return terminal.fail({ErrorCode::usage, "is also the file of --output", "--gebhart", "choose another name"});
     const StopRequest& stop = terminal.limits().stop();
     const Result<SparseFactors> factors = read_view_factors(arguments.factors);
     if (!factors) {
@@ -62,12 +81,8 @@ ExitCode run(const HeatArguments& arguments, Terminal& terminal) {
     if (!arguments.output.empty())
         if (const auto written = write_text(arguments.output, heat_csv(*factors, *surfaces, *exchange)); !written)
             return terminal.fail(written.error());
-    if (!arguments.exchange.empty()) {
-        const auto f = exchange_factors(*factors, *surfaces, arguments.surroundings, stop);
-        if (!f) return terminal.fail(f.error());
-        if (const auto written = write_text(arguments.exchange, exchange_csv(*factors, *surfaces, *f)); !written)
-            return terminal.fail(written.error());
-    }
+    if (const Result<void> written = write_exchange(arguments, *factors, *surfaces, stop); !written)
+        return terminal.fail(written.error());
     if (arguments.json)
         terminal.print(heat_json(*exchange));
     else if (!arguments.quiet)

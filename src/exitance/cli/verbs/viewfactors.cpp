@@ -4,17 +4,17 @@
 #include <cmath>
 #include <filesystem>
 #include <numeric>
+#include <utility>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/verbs.hpp"
+#include "exitance/cli/verbs/factor_output.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
-#include "exitance/io/scenes/view3d.hpp"
 #include "exitance/io/solution/checkpoint_file.hpp"
 #include "exitance/io/view_factors/raw_row_file.hpp"
-#include "exitance/io/view_factors/view_factor_file.hpp"
 #include "exitance/view_factors/entry_factors.hpp"
 #include "exitance/view_factors/ray_check.hpp"
 #include "exitance/view_factors/row_check.hpp"
@@ -90,17 +90,6 @@ std::string words_of(const ViewFactorFacts& facts) {
            (facts.tolerance ? words_of_entries(facts) : words_of_rows(facts));
 }
 
-/// Merges the rows of faces into the surfaces of View3D, which are groups of faces. Faces that only block have no row.
-SparseFactors rows_of_view3d(const Scene& scene, const SparseFactors& table) {
-    std::vector<std::uint32_t> rows;
-    std::size_t count = scene.groups().size();
-    for (GroupId g : scene.groups().ids())
-        if (scene.groups()[g] == view3d_obstructions) --count;
-    for (const Surface& surface : scene.surfaces())
-        rows.push_back(scene.groups()[surface.group] == view3d_obstructions ? no_row : surface.group.value);
-    return merge_rows(table, rows, count);
-}
-
 /// Prints warnings and repairs, except the one about missing light, which view factors do not need.
 void show_findings(const CheckedScene& checked, Terminal& terminal) {
     std::vector<Finding> findings = checked.findings;
@@ -119,11 +108,18 @@ std::string work_of(const ViewFactorArguments& arguments, const Scene& scene) {
 /// One run of the verb, after the scene was read.
 class ViewFactorRun {
   public:
-    ViewFactorRun(const ViewFactorArguments& arguments, const Scene& scene, const StopRequest& stop,
+    ViewFactorRun(const ViewFactorArguments& arguments, const LoadedScene& checked, const StopRequest& stop,
                   const RunLimits& limits, Terminal& terminal)
-        : arguments_(arguments), scene_(scene), stop_(stop), limits_(limits), terminal_(terminal) {}
+        : arguments_(arguments),
+          scene_(*checked.scene),
+          origin_(checked.origin),
+          stop_(stop),
+          limits_(limits),
+          terminal_(terminal) {}
 
     ExitCode operator()() {
+        const Result<std::optional<FactorNodes>> nodes = nodes_of(arguments_, scene_);
+        if (!nodes) return terminal_.fail(nodes.error());
         if (const Result<void> opened = open_work_file(); !opened) return terminal_.fail(opened.error());
         const Stopwatch time;
         SparseFactors table = compute();
@@ -132,10 +128,10 @@ class ViewFactorRun {
         if (facts.finished_rows == 0 && table.size() > 0) return no_rows();
         const bool is_finished = facts.finished_rows == table.size() && table.is_settled;
         if (is_finished) check(table, facts);
-        if (ending(arguments_.scene.files.front()) == ".vs3") table = rows_of_view3d(scene_, table);
         // Finished rows are written even after a stop, hence the new StopRequest.
-        if (const Result<void> written = write_view_factors(arguments_.output, table, StopRequest()); !written)
-            return terminal_.fail(written.error());
+        const Result<void> written =
+            write_factor_output(arguments_, scene_, origin_, *nodes, std::move(table), StopRequest());
+        if (!written) return terminal_.fail(written.error());
         if (is_finished && rows_) rows_->remove();
         show(facts);
         return is_finished ? outcome(facts) : stopped(facts);
@@ -237,6 +233,7 @@ class ViewFactorRun {
 
     const ViewFactorArguments& arguments_;
     const Scene& scene_;
+    const Point origin_;
     const StopRequest& stop_;
     const RunLimits& limits_;
     Terminal& terminal_;
@@ -257,14 +254,16 @@ ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal) {
     for (const char* of_scenes : {".mtl", ".obj", ".gltf", ".glb", ".rad", ".stl", ".ply", ".vs3", ".hbjson"})
         if (ending(arguments.output) == of_scenes)
             return terminal.fail({ErrorCode::usage, "has the ending of a scene's files", arguments.output,
-                                  "view factors are written as .csv, .vf, .mtx or .h5"});
-    if (const Result<AtomicFile> file = AtomicFile::create(arguments.output); !file) return terminal.fail(file.error());
+                                  "view factors are written as .csv, .vf, .idf, .mtx or .h5"});
+    if (const Result<void> fit = check_output_options(arguments); !fit) return terminal.fail(fit.error());
+    if (format_of(arguments) != FactorFormat::openfoam)
+        if (const auto file = AtomicFile::create(arguments.output); !file) return terminal.fail(file.error());
     LoadOptions load = arguments.scene.load;
     load.stop = &stop;
-    const CheckedScene checked = load_scene(arguments.scene.files, load);
+    const LoadedScene checked = load_scene(arguments.scene.files, load);
     show_findings(checked, terminal);
     if (!checked.scene) return terminal.fail(checked);
-    return ViewFactorRun(arguments, *checked.scene, stop, limits, terminal)();
+    return ViewFactorRun(arguments, checked, stop, limits, terminal)();
 }
 
 }  // namespace exitance

@@ -103,10 +103,15 @@ void apply(const std::array<double, 4>& row, ThermalSurface& surface) {
 
 }  // namespace
 
-Result<std::vector<ThermalSurface>> read_thermal_table(const std::string& path, const SparseFactors& factors) {
+std::vector<ThermalSurface> emissivities_of(const SparseFactors& factors) {
     std::vector<ThermalSurface> out(factors.size());
     for (std::size_t i = 0; i < std::min(out.size(), factors.emittances.size()); ++i)
         out[i].emissivity = factors.emittances[i];
+    return out;
+}
+
+Result<std::vector<ThermalSurface>> read_thermal_table(const std::string& path, const SparseFactors& factors) {
+    std::vector<ThermalSurface> out = emissivities_of(factors);
     Result<LineReader> lines = LineReader::open(path);
     if (!lines) return lines.error();
     const Result<std::vector<std::size_t>> columns = read_header(*lines);

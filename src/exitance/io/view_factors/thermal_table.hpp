@@ -15,6 +15,9 @@ namespace exitance {
 /// not exist, values out of range, and a row with both a temperature and a heat.
 Result<std::vector<ThermalSurface>> read_thermal_table(const std::string& path, const SparseFactors& factors);
 
+/// Returns surfaces with the emissivities of the view factors' file, which are 1 - reflectance. They are adiabatic.
+std::vector<ThermalSurface> emissivities_of(const SparseFactors& factors);
+
 /// Formats a heat balance as CSV: `surface,area,emissivity,temperature,radiosity,heat`, one row per surface; m^2, K,
 /// W/m^2 and W. With 17 digits, reading restores the same doubles.
 std::string heat_csv(const SparseFactors& factors, const std::vector<ThermalSurface>& surfaces,
