@@ -118,7 +118,10 @@ struct BakeArguments : CommonArguments {
     double density = 0;       ///< Texels per metre; 0: chosen for the scene.
     std::size_t padding = 4;  ///< Texels around every chart.
     LightMapFormat format;
-    bool light_groups = false;  ///< Also bake separate maps for every light group.
+    std::string uv;                   ///< Set of texture coordinates of the scene's file; empty: charts of our own.
+    std::optional<PictureSize> size;  ///< Texels of each map with `uv`; empty: by density.
+    std::string charts;               ///< PNG file for a picture of the charts with `uv`; empty: none.
+    bool light_groups = false;        ///< Also bake separate maps for every light group.
     int threads = 0;
 };
 
@@ -206,10 +209,11 @@ struct ReferenceArguments : CommonArguments {
 };
 
 /// A verb with its options.
-using Command = std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, MixArguments,
-                             ExportArguments, RenderArguments, BakeArguments, ReportArguments, DaylightArguments,
-                             CheckArguments, GenerateArguments, LuminaireArguments, ExperimentArguments,
-                             ViewFactorArguments, HeatArguments, ViewArguments, ReferenceArguments>;
+using Command =
+    std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, MixArguments, ExportArguments,
+                 RenderArguments, BakeArguments, ReportArguments, DaylightArguments, CheckArguments, GenerateArguments,
+                 LuminaireArguments, ExperimentArguments, ViewFactorArguments, HeatArguments, ViewArguments,
+                 ReferenceArguments>;
 
 /// Text to print instead of running a verb, for --help and --version.
 struct Information {

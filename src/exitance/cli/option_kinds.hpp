@@ -99,6 +99,8 @@ void declare_json(CLI::App& app, CommonArguments& arguments);
 void declare_progress(CLI::App& app, CommonArguments& arguments);
 /// --threads and --progress
 void declare_work(CLI::App& app, CommonArguments& arguments, int& threads);
+/// Reads a size such as "640x400", pixels.
+PictureSize read_size(const std::string& words);
 /// Scene files and the options for reading them.
 void declare_scene(CLI::App& app, SceneArguments& scene);
 /// --unit and --efficacy

@@ -88,8 +88,26 @@ void declare(CLI::App& app, BakeArguments& arguments) {
                    "Folder for lightmaps.json, lightmap_0.exr and .png, ..., scene.glb")
         ->type_name("FOLDER")
         ->required();
-    add_positive(app, "--density", arguments.density, "T",
-                 "Texels per metre. Default 64 (more in small scenes), at most a million texels in total");
+    CLI::Option* density =
+        add_positive(app, "--density", arguments.density, "T",
+                     "Texels per metre. Default 64 (more in small scenes), at most a million texels in total");
+    CLI::Option* uv =
+        app.add_option("--uv", arguments.uv,
+                       "Bake into texture coordinates of the scene's file, which must still exist: TEXCOORD_0 to "
+                       "TEXCOORD_3 (glTF), vt (OBJ), or own: the set that light maps use. Objects share one map "
+                       "unless their charts overlap. Default: charts of exitance's own")
+            ->type_name("SET");
+    app.add_option_function<std::string>(
+           "--size", [&arguments](const std::string& w) { arguments.size = read_size(w); },
+           "Texels of each map with --uv. Default: the power of two that gives --density on average, at most 4096 if "
+           "that is the default, too")
+        ->type_name("WxH")
+        ->needs(uv)
+        ->excludes(density);
+    app.add_option("--charts", arguments.charts,
+                   "Draw the charts of --uv into a PNG file: overlaps in red, mirrored ones in blue")
+        ->type_name("FILE")
+        ->needs(uv);
     add_count(app, "--padding", arguments.padding, 1,
               "Texels around every chart. Default 4. 2^m texels keep charts apart down to mip level m")
         ->check(CLI::Range(1, 256));
@@ -101,10 +119,12 @@ void declare(CLI::App& app, BakeArguments& arguments) {
     CLI::Option* unlit = app.add_flag_callback(
         "--unlit", [&format] { format.material = LightMapMaterial::unlit; },
         "Write tone-mapped light as base colour of the .glb. Default: linear light as emission");
+    unlit->excludes(uv);
     app.add_flag_callback(
            "--moz-lightmap", [&format] { format.material = LightMapMaterial::moz_lightmap; },
            "Write base colours into the .glb, and the light in its extension MOZ_lightmap")
-        ->excludes(unlit);
+        ->excludes(unlit)
+        ->excludes(uv);
     app.add_flag(
         "--light-groups", arguments.light_groups,
         "Also write maps of each light group, undimmed, on the same charts. Needs a solution of solve --light-groups");
