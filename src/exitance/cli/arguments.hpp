@@ -12,6 +12,7 @@
 #include "exitance/cli/run_limits.hpp"
 #include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/io/export/light_map_files.hpp"
+#include "exitance/io/files/light_probe_file.hpp"
 #include "exitance/io/pictures/false_colour.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
 #include "exitance/io/report/report.hpp"
@@ -61,6 +62,14 @@ struct ProbeArguments : CommonArguments {
     UnitArguments unit;
     std::size_t reference_paths = 0;  ///< Unbiased paths per point, traced instead of evaluating the solution; 0: none.
     std::uint64_t seed = 1;
+    int threads = 0;
+};
+
+struct LightProbeArguments : CommonArguments {
+    std::string solution, output;
+    std::optional<ProbeGrid> grid;
+    std::string points;    ///< File of points; empty: `grid`.
+    unsigned rays = 1024;  ///< Rays per probe, a power of two.
     int threads = 0;
 };
 
@@ -213,7 +222,7 @@ using Command =
     std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, MixArguments, ExportArguments,
                  RenderArguments, BakeArguments, ReportArguments, DaylightArguments, CheckArguments, GenerateArguments,
                  LuminaireArguments, ExperimentArguments, ViewFactorArguments, HeatArguments, ViewArguments,
-                 ReferenceArguments>;
+                 ReferenceArguments, LightProbeArguments>;
 
 /// Text to print instead of running a verb, for --help and --version.
 struct Information {

@@ -114,6 +114,7 @@ void declare_standards(CLI::App& app, DaylightArguments& arguments);
 // Declare all options of a verb, except those of declare_common() and declare_limits().
 void declare(CLI::App& app, SolveArguments& arguments);
 void declare(CLI::App& app, ProbeArguments& arguments);
+void declare(CLI::App& app, LightProbeArguments& arguments);
 void declare(CLI::App& app, CompareArguments& arguments);
 void declare(CLI::App& app, StatsArguments& arguments);
 void declare(CLI::App& app, MixArguments& arguments);
