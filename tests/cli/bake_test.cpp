@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <filesystem>
+#include <sstream>
 
 #include "cli/small_scene.hpp"
 
@@ -48,6 +50,58 @@ TEST(ProgramBake, LightGroupsHaveSeparateMaps) {
     EXPECT_NE(read_text(out + "/lightmaps.json").find("\"files\": [\"lightmap_0_0.exr\"]"), std::string::npos);
     EXPECT_TRUE(std::filesystem::exists(out + "/lightmap_0_0.exr"));
     EXPECT_TRUE(std::filesystem::exists(out + "/lightmap_0_0.png"));
+}
+
+/// Gives every face of an OBJ file the same square of texture coordinates.
+void add_places(const std::string& file) {
+    std::istringstream lines(read_text(file));
+    std::string out = "vt 0.1 0.1\nvt 0.9 0.1\nvt 0.9 0.9\nvt 0.1 0.9\n";
+    for (std::string line; std::getline(lines, line);) {
+        int a = 0, b = 0, c = 0, d = 0;
+        if (std::sscanf(line.c_str(), "f %d %d %d %d", &a, &b, &c, &d) == 4)
+            line = "f " + std::to_string(a) + "/1 " + std::to_string(b) + "/2 " + std::to_string(c) + "/3 " +
+                   std::to_string(d) + "/4";
+        out += line + "\n";
+    }
+    write_text(file, out);
+}
+
+TEST(ProgramBake, TextureCoordinatesOfTheFileGiveAMapPerObject) {
+    const TemporaryFolder folder;
+    const std::string scene = write_small_room(folder), solution = folder / "room.h5", out = folder / "maps";
+    ASSERT_EQ(run_program({"solve", scene, "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    const Finished none = run_program({"bake", solution, "-o", out, "--uv", "own"});
+    EXPECT_EQ(none.status, 2);
+    EXPECT_NE(none.err.find("unwrap"), std::string::npos) << none.err;
+    EXPECT_FALSE(std::filesystem::exists(out));
+
+    add_places(scene);
+    ASSERT_EQ(run_program({"solve", scene, "-o", solution, "--error", "0.1", "--light-groups", "-q"}).status, 0);
+    const std::string charts = folder / "charts.png";
+    const Finished run = run_program({"bake", solution, "-o", out, "--uv", "own", "--size", "24x16", "--charts", charts,
+                                      "--light-groups", "--quantity", "radiosity"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    // Floor, ceiling, walls and lamp overlap each other, and the four walls among themselves.
+    EXPECT_NE(run.err.find("8 triangles overlap"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("'walls' (8)"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("a map of its own"), std::string::npos) << run.err;
+    const std::string manifest = read_text(out + "/lightmaps.json");
+    for (const std::string text :
+         {"\"version\": 1", "\"set\": \"vt\"", "\"quantity\": \"radiosity\"", "\"name\": \"walls\", \"map\": 2",
+          "\"overlapping\": 8", "\"width\": 24, \"height\": 16", "\"files\": [\"lightmap_0_0.exr\""})
+        EXPECT_NE(manifest.find(text), std::string::npos) << text << " is not in " << manifest;
+    for (int m = 0; m < 4; ++m) {
+        EXPECT_TRUE(std::filesystem::exists(out + "/lightmap_" + std::to_string(m) + ".exr"));
+        EXPECT_TRUE(std::filesystem::exists(folder / ("charts_" + std::to_string(m) + ".png")));
+    }
+    EXPECT_FALSE(std::filesystem::exists(out + "/scene.glb"));
+
+    EXPECT_EQ(run_program({"bake", solution, "-o", out, "--size", "24x16"}).status, 2);
+    EXPECT_EQ(run_program({"bake", solution, "-o", out, "--uv", "own", "--size", "9x9", "--density", "5"}).status, 2);
+    EXPECT_EQ(run_program({"bake", solution, "-o", out, "--uv", "own", "--unlit"}).status, 2);
+    EXPECT_EQ(run_program({"bake", solution, "-o", out, "--uv", "TEXCOORD_1"}).status, 2);
+    std::filesystem::remove(scene);
+    EXPECT_EQ(run_program({"bake", solution, "-o", out, "--uv", "own"}).status, 3);
 }
 
 TEST(ProgramBake, RejectsInvalidOptions) {

@@ -84,8 +84,8 @@ TEST(ProgramViewFactors, RowErrorsAndTheirCheckAreReported) {
     EXPECT_GT(facts["entries"], 20);
     EXPECT_EQ(facts["dropped"], 0);
     // The defect of the first pass does not depend on the requested error: a pair whose noise closure removes gets only
-    // 4 x 4 rays. Here that is the ceiling with the floor: 0.30 without the lamp, of which 0.86 is visible. Its standard
-    // deviation is 0.30 sqrt(0.86 x 0.14 / 16) = 0.026 at most, and 3.5 of these are 0.09.
+    // 4 x 4 rays. Here that is the ceiling with the floor: 0.30 without the lamp, of which 0.86 is visible. Its
+    // standard deviation is 0.30 sqrt(0.86 x 0.14 / 16) = 0.026 at most, and 3.5 of these are 0.09.
     EXPECT_LE(facts["closure_defect"], 0.09);
     // After the closure, the floor and the lamp's front see nothing but fronts of faces: their rows sum to 1.
     EXPECT_NEAR(facts["row_sum"]["most"].get<double>(), 1, 3e-3);

@@ -12,6 +12,7 @@
 #include "exitance/cli/run_limits.hpp"
 #include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/io/export/light_map_files.hpp"
+#include "exitance/io/files/light_probe_file.hpp"
 #include "exitance/io/pictures/false_colour.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
 #include "exitance/io/report/report.hpp"
@@ -62,6 +63,14 @@ struct ProbeArguments : CommonArguments {
     UnitArguments unit;
     std::size_t reference_paths = 0;  ///< Unbiased paths per point, traced instead of evaluating the solution; 0: none.
     std::uint64_t seed = 1;
+    int threads = 0;
+};
+
+struct LightProbeArguments : CommonArguments {
+    std::string solution, output;
+    std::optional<ProbeGrid> grid;
+    std::string points;    ///< File of points; empty: `grid`.
+    unsigned rays = 1024;  ///< Rays per probe, a power of two.
     int threads = 0;
 };
 
@@ -119,7 +128,10 @@ struct BakeArguments : CommonArguments {
     double density = 0;       ///< Texels per metre; 0: chosen for the scene.
     std::size_t padding = 4;  ///< Texels around every chart.
     LightMapFormat format;
-    bool light_groups = false;  ///< Also bake separate maps for every light group.
+    std::string uv;                   ///< Set of texture coordinates of the scene's file; empty: charts of our own.
+    std::optional<PictureSize> size;  ///< Texels of each map with `uv`; empty: by density.
+    std::string charts;               ///< PNG file for a picture of the charts with `uv`; empty: none.
+    bool light_groups = false;        ///< Also bake separate maps for every light group.
     int threads = 0;
 };
 
@@ -215,10 +227,11 @@ struct ReferenceArguments : CommonArguments {
 };
 
 /// A verb with its options.
-using Command = std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, MixArguments,
-                             ExportArguments, RenderArguments, BakeArguments, ReportArguments, DaylightArguments,
-                             CheckArguments, GenerateArguments, LuminaireArguments, ExperimentArguments,
-                             ViewFactorArguments, HeatArguments, ViewArguments, ReferenceArguments>;
+using Command =
+    std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, MixArguments, ExportArguments,
+                 RenderArguments, BakeArguments, ReportArguments, DaylightArguments, CheckArguments, GenerateArguments,
+                 LuminaireArguments, ExperimentArguments, ViewFactorArguments, HeatArguments, ViewArguments,
+                 ReferenceArguments, LightProbeArguments>;
 
 /// Text to print instead of running a verb, for --help and --version.
 struct Information {

@@ -139,4 +139,14 @@ void declare_scene(CLI::App& app, SceneArguments& scene) {
         ->group("Scene details");
 }
 
+PictureSize read_size(const std::string& words) {
+    std::string blank = words;
+    std::replace(blank.begin(), blank.end(), 'x', ' ');
+    const std::vector<double> n = read_numbers("--size", blank);
+    const bool whole = n.size() == 2 && n[0] == std::floor(n[0]) && n[1] == std::floor(n[1]);
+    if (!whole || std::min(n[0], n[1]) < 1 || std::max(n[0], n[1]) > 16384)
+        throw CLI::ValidationError("--size", fmt::format("'{}' is not a size such as 640x400, at most 16384", words));
+    return {static_cast<int>(n[0]), static_cast<int>(n[1])};
+}
+
 }  // namespace exitance

@@ -99,6 +99,8 @@ void declare_json(CLI::App& app, CommonArguments& arguments);
 void declare_progress(CLI::App& app, CommonArguments& arguments);
 /// --threads and --progress
 void declare_work(CLI::App& app, CommonArguments& arguments, int& threads);
+/// Reads a size such as "640x400", pixels.
+PictureSize read_size(const std::string& words);
 /// Scene files and the options for reading them.
 void declare_scene(CLI::App& app, SceneArguments& scene);
 /// --unit and --efficacy
@@ -112,6 +114,7 @@ void declare_standards(CLI::App& app, DaylightArguments& arguments);
 // Declare all options of a verb, except those of declare_common() and declare_limits().
 void declare(CLI::App& app, SolveArguments& arguments);
 void declare(CLI::App& app, ProbeArguments& arguments);
+void declare(CLI::App& app, LightProbeArguments& arguments);
 void declare(CLI::App& app, CompareArguments& arguments);
 void declare(CLI::App& app, StatsArguments& arguments);
 void declare(CLI::App& app, MixArguments& arguments);

@@ -62,17 +62,6 @@ MeasuringPlane read_plane(std::string words) {
     return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, {n[6], n[7], n[8]}, n[9], n.size() == 11 ? n[10] : 0};
 }
 
-/// Reads a size such as "640x400", pixels.
-PictureSize read_size(const std::string& words) {
-    std::string blank = words;
-    std::replace(blank.begin(), blank.end(), 'x', ' ');
-    const std::vector<double> n = read_numbers("--size", blank);
-    const bool whole = n.size() == 2 && n[0] == std::floor(n[0]) && n[1] == std::floor(n[1]);
-    if (!whole || std::min(n[0], n[1]) < 1 || std::max(n[0], n[1]) > 16384)
-        throw CLI::ValidationError("--size", fmt::format("'{}' is not a size such as 640x400, at most 16384", words));
-    return {static_cast<int>(n[0]), static_cast<int>(n[1])};
-}
-
 /// Reads a range or a kind of scale, such as "0,500", "log" or "1,1000,log".
 void read_scale(std::string words, ScaleChoice& scale) {
     if (words == "log" || words.ends_with(",log")) {

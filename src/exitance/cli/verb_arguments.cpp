@@ -91,6 +91,53 @@ void declare(CLI::App& app, ExportArguments& arguments) {
         ->type_name("ELEMENT");
 }
 
+namespace {
+
+/// Reads a grid of light probes, "ox,oy,oz dx,dy,dz nx,ny,nz".
+ProbeGrid read_probe_grid(const std::string& words) {
+    constexpr double most_probes = 1e8;  ///< derived from 256 bytes per probe: 26 GB
+    const std::vector<double> n = read_numbers("--grid", words);
+    bool is_grid = n.size() == 9;
+    double probes = 1;
+    for (std::size_t k = 6; k < 9 && is_grid; ++k) is_grid = n[k] >= 1 && n[k] == std::floor(n[k]), probes *= n[k];
+    if (!is_grid || probes > most_probes)
+        throw CLI::ValidationError(
+            "--grid", fmt::format("'{}' is not 'ox,oy,oz dx,dy,dz nx,ny,nz' with at most 1e8 points", words));
+    return {{n[0], n[1], n[2]},
+            {n[3], n[4], n[5]},
+            {static_cast<int>(n[6]), static_cast<int>(n[7]), static_cast<int>(n[8])}};
+}
+
+}  // namespace
+
+void declare(CLI::App& app, LightProbeArguments& arguments) {
+    app.add_option("SOLUTION", arguments.solution, "Solution file (.h5), as solve writes it")->required();
+    CLI::Option* grid = app.add_option_function<std::string>(
+                               "--grid", [&arguments](const std::string& w) { arguments.grid = read_probe_grid(w); },
+                               "Grid of probes along the axes: the first point, the distances and the numbers of "
+                               "points; metres")
+                            ->type_name("\"ox,oy,oz dx,dy,dz nx,ny,nz\"");
+    app.add_option("--points", arguments.points, "Points of the probes, metres: CSV with columns x,y,z, or .pts x y z")
+        ->type_name("FILE")
+        ->excludes(grid);
+    app.add_option("-o,--output", arguments.output,
+                   "File to write: .json, or .h5. Every probe has nine coefficients of radiance, their standard "
+                   "errors, and the share of directions in which backs of surfaces are seen")
+        ->type_name("FILE")
+        ->required();
+    app.add_option("--rays", arguments.rays,
+                   "Rays per probe for reflected light, a power of two. Default 1024. Four times as many have about a "
+                   "third of the noise")
+        ->type_name("N")
+        ->check([](const std::string& word) {
+            const double n = read_number("--rays", word);
+            constexpr double least = 64, most = 1 << 20;
+            const bool is_power = n >= least && n <= most && n == std::exp2(std::round(std::log2(n)));
+            return is_power ? std::string() : "must be a power of two from 64 to 1048576, not " + word;
+        });
+    declare_work(app, arguments, arguments.threads);
+}
+
 void declare(CLI::App& app, BakeArguments& arguments) {
     LightMapFormat& format = arguments.format;
     app.add_option("SOLUTION", arguments.solution, "Solution file (.h5), as solve writes it")->required();
@@ -98,8 +145,26 @@ void declare(CLI::App& app, BakeArguments& arguments) {
                    "Folder for lightmaps.json, lightmap_0.exr and .png, ..., scene.glb")
         ->type_name("FOLDER")
         ->required();
-    add_positive(app, "--density", arguments.density, "T",
-                 "Texels per metre. Default 64 (more in small scenes), at most a million texels in total");
+    CLI::Option* density =
+        add_positive(app, "--density", arguments.density, "T",
+                     "Texels per metre. Default 64 (more in small scenes), at most a million texels in total");
+    CLI::Option* uv =
+        app.add_option("--uv", arguments.uv,
+                       "Bake into texture coordinates of the scene's file, which must still exist: TEXCOORD_0 to "
+                       "TEXCOORD_3 (glTF), vt (OBJ), or own: the set that light maps use. Objects share one map "
+                       "unless their charts overlap. Default: charts of exitance's own")
+            ->type_name("SET");
+    app.add_option_function<std::string>(
+           "--size", [&arguments](const std::string& w) { arguments.size = read_size(w); },
+           "Texels of each map with --uv. Default: the power of two that gives --density on average, at most 4096 if "
+           "that is the default, too")
+        ->type_name("WxH")
+        ->needs(uv)
+        ->excludes(density);
+    app.add_option("--charts", arguments.charts,
+                   "Draw the charts of --uv into a PNG file: overlaps in red, mirrored ones in blue")
+        ->type_name("FILE")
+        ->needs(uv);
     add_count(app, "--padding", arguments.padding, 1,
               "Texels around every chart. Default 4. 2^m texels keep charts apart down to mip level m")
         ->check(CLI::Range(1, 256));
@@ -111,10 +176,12 @@ void declare(CLI::App& app, BakeArguments& arguments) {
     CLI::Option* unlit = app.add_flag_callback(
         "--unlit", [&format] { format.material = LightMapMaterial::unlit; },
         "Write tone-mapped light as base colour of the .glb. Default: linear light as emission");
+    unlit->excludes(uv);
     app.add_flag_callback(
            "--moz-lightmap", [&format] { format.material = LightMapMaterial::moz_lightmap; },
            "Write base colours into the .glb, and the light in its extension MOZ_lightmap")
-        ->excludes(unlit);
+        ->excludes(unlit)
+        ->excludes(uv);
     app.add_flag(
         "--light-groups", arguments.light_groups,
         "Also write maps of each light group, undimmed, on the same charts. Needs a solution of solve --light-groups");

@@ -10,6 +10,7 @@ namespace exitance {
 
 ExitCode run(const SolveArguments& arguments, Terminal& terminal);
 ExitCode run(const ProbeArguments& arguments, Terminal& terminal);
+ExitCode run(const LightProbeArguments& arguments, Terminal& terminal);
 ExitCode run(const CompareArguments& arguments, Terminal& terminal);
 ExitCode run(const StatsArguments& arguments, Terminal& terminal);
 ExitCode run(const MixArguments& arguments, Terminal& terminal);

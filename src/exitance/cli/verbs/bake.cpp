@@ -1,22 +1,29 @@
 #include <fmt/format.h>
 
+#include <functional>
+
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/solve/kept_groups.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/export/light_map_files.hpp"
+#include "exitance/io/export/uv_map_files.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/textures/scene_textures.hpp"
+#include "exitance/io/scenes/textures/uv_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/what_if/light_groups/light_groups.hpp"
 
 namespace exitance {
 namespace {
 
+/// Bakes and writes the light of one group, given its number and the solution with that light alone. Returns false if a
+/// stop was requested.
+using BakeGroup = std::function<Result<bool>(const Solution& lit_by_group, std::size_t group)>;
+
 /// Bakes and writes separate maps for every light group. Returns the names of the groups that were finished before a
 /// stop was requested.
-Result<std::vector<std::string>> bake_groups(const BakeArguments& arguments, const Solution& whole,
-                                             const LightGroups& groups, const BakeOptions& options, Progress& progress,
-                                             const StopRequest& stop) {
+Result<std::vector<std::string>> bake_groups(const Solution& whole, const LightGroups& groups, Progress& progress,
+                                             const StopRequest& stop, const BakeGroup& bake) {
     std::vector<std::string> names;
     for (const LightGroup& group : groups.groups) {
         if (stop.requested()) break;
@@ -27,15 +34,82 @@ Result<std::vector<std::string>> bake_groups(const BakeArguments& arguments, con
             change.dim.emplace_back(other.emitters.name, &other == &group ? 1 : 0);
         if (const Result<void> changed = change_light(solution, dimmed, change); !changed) return changed.error();
         progress.phase("group " + group.emitters.name);
-        const Result<LightMaps> maps = bake_light_maps(RadiosityFunction(solution), options, progress, stop);
-        if (!maps) return maps.error();
-        if (stop.requested()) break;
-        const Result<void> written =
-            write_group_light_maps(solution.scene, *maps, names.size(), arguments.format, arguments.output);
-        if (!written) return written.error();
+        const Result<bool> finished = bake(solution, names.size());
+        if (!finished) return finished.error();
+        if (!*finished) break;
         names.push_back(group.emitters.name);
     }
     return names;
+}
+
+/// Notes a stop before all groups were finished. Returns the program's exit code.
+ExitCode end_of_groups(const LightGroups& groups, const std::vector<std::string>& names, Terminal& terminal) {
+    if (names.size() == groups.groups.size()) return ExitCode::done;
+    terminal.note(fmt::format("stopped by the {}: {} of {} light groups have maps of their own",
+                              terminal.limits().reason(), names.size(), groups.groups.size()));
+    return terminal.limits().stopped_code();
+}
+
+template <class Maps, class Size>
+std::string sizes_of(const Maps& maps, const Size& size_of) {
+    std::string sizes;
+    for (const auto& map : maps)
+        sizes += fmt::format("{}{} x {}", sizes.empty() ? "" : ", ", size_of(map).width, size_of(map).height);
+    return sizes;
+}
+
+/// Writes a picture of the charts of every map: FILE.png, or FILE_0.png and so on for several maps. Returns their
+/// names.
+Result<std::vector<std::string>> write_charts(const std::string& file, const UvSet& set, const UvLightMaps& maps) {
+    std::vector<std::string> names;
+    if (file.empty()) return names;
+    const std::string stem = ending(file) == ".png" ? file.substr(0, file.size() - ending(file).size()) : file;
+    for (std::size_t m = 0; m < maps.maps.size(); ++m) {
+        names.push_back(maps.maps.size() == 1 ? stem + ".png" : fmt::format("{}_{}.png", stem, m));
+        const ImageTexts texts{{"Software", "exitance"}};
+        if (const Result<void> written = write_png(names.back(), draw_charts(set, maps, m), texts); !written)
+            return written.error();
+    }
+    return names;
+}
+
+/// Bakes into texture coordinates of the scene's file.
+ExitCode bake_into_uvs(const BakeArguments& arguments, const Solution& solution, const LightGroups& groups,
+                       Terminal& terminal) {
+    const Result<UvSet> set =
+        load_uv_set(solution.scene, find_scene_file(solution.scene, arguments.solution), arguments.uv);
+    if (!set) return terminal.fail(set.error());
+    const Stopwatch watch;
+    UvBakeOptions options;
+    options.density = arguments.density, options.padding = static_cast<int>(arguments.padding);
+    if (arguments.size) options.size = {arguments.size->width, arguments.size->height};
+    auto& progress = terminal.progress();
+    const StopRequest& stop = terminal.limits().keep();
+    const Result<UvLightMaps> maps = bake_uv_light_maps(RadiosityFunction(solution), *set, options, progress, stop);
+    if (!maps) return terminal.fail(maps.error());
+    if (stop.requested()) return terminal.fail_stopped("the light maps are not finished");
+    const auto bake_group = [&](const Solution& lit, std::size_t group) -> Result<bool> {
+        const Result<UvLightMaps> own = bake_uv_light_maps(RadiosityFunction(lit), *set, options, progress, stop);
+        if (!own) return own.error();
+        if (stop.requested()) return false;
+        const Result<void> written = write_uv_pictures(lit.scene, *own, group, arguments.format, arguments.output);
+        return written ? Result<bool>(true) : written.error();
+    };
+    const Result<std::vector<std::string>> names = bake_groups(solution, groups, progress, stop, bake_group);
+    progress.finish();
+    if (!names) return terminal.fail(names.error());
+    Result<void> written = write_uv_pictures(solution.scene, *maps, {}, arguments.format, arguments.output);
+    if (!written) return terminal.fail(written.error());
+    const Result<std::vector<std::string>> charts = write_charts(arguments.charts, *set, *maps);
+    if (!charts) return terminal.fail(charts.error());
+    written = write_uv_manifest(solution.scene, *set, *maps, arguments.format, *names, *charts, arguments.output);
+    if (!written) return terminal.fail(written.error());
+    for (const std::string& warning : chart_warnings(*set, *maps)) terminal.note("warning: " + warning);
+    terminal.note(fmt::format("{} texels on surfaces in {} of {}, in {} {} ({}); {:.1f} s", maps->texels, set->name,
+                              set->file, maps->maps.size(), maps->maps.size() == 1 ? "map" : "maps",
+                              sizes_of(maps->maps, [](const UvLightMap& map) { return map.light.size; }),
+                              watch.seconds()));
+    return end_of_groups(groups, *names, terminal);
 }
 
 }  // namespace
@@ -48,18 +122,25 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
         load_solution(arguments.solution, Rehearsed::not_yet, arguments.light_groups ? &groups : nullptr);
     if (!solution) return terminal.fail(solution.error());
     if (arguments.light_groups && groups.empty()) return terminal.fail(no_light_groups(arguments.solution));
+    if (!arguments.uv.empty()) return bake_into_uvs(arguments, *solution, groups, terminal);
     const RadiosityFunction light(*solution);
     const Stopwatch watch;
     BakeOptions options;
     options.density = arguments.density, options.padding = static_cast<int>(arguments.padding);
-    RunLimits& limits = terminal.limits();
-    const StopRequest& stop = limits.keep();
+    const StopRequest& stop = terminal.limits().keep();
     const Result<LightMaps> maps = bake_light_maps(light, options, terminal.progress(), stop);
     if (!maps) return terminal.fail(maps.error());
     if (stop.requested()) return terminal.fail_stopped("the light maps are not finished");
     options.density = maps->density;  // so that all groups have the same charts
+    const auto bake_group = [&](const Solution& lit, std::size_t group) -> Result<bool> {
+        const Result<LightMaps> own = bake_light_maps(RadiosityFunction(lit), options, terminal.progress(), stop);
+        if (!own) return own.error();
+        if (stop.requested()) return false;
+        const Result<void> written = write_group_light_maps(lit.scene, *own, group, arguments.format, arguments.output);
+        return written ? Result<bool>(true) : written.error();
+    };
     const Result<std::vector<std::string>> names =
-        bake_groups(arguments, *solution, groups, options, terminal.progress(), stop);
+        bake_groups(*solution, groups, terminal.progress(), stop, bake_group);
     terminal.progress().finish();
     if (!names) return terminal.fail(names.error());
     LightMapFormat format = arguments.format;
@@ -69,16 +150,11 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
         terminal.note(fmt::format("{} is missing: scene.glb has no textures", scene_file));
     const Result<void> written = write_light_maps(*solution, *maps, format, *names, arguments.output);
     if (!written) return terminal.fail(written.error());
-    std::string sizes;
-    for (const LightMap& map : maps->maps)
-        sizes += fmt::format("{}{} x {}", sizes.empty() ? "" : ", ", map.size.width, map.size.height);
+    const std::string sizes = sizes_of(maps->maps, [](const LightMap& map) { return map.size; });
     terminal.note(fmt::format("{} texels on surfaces at {} per metre, in {} {} ({}); {:.1f} s", maps->texels,
                               maps->density, maps->maps.size(), maps->maps.size() == 1 ? "map" : "maps", sizes,
                               watch.seconds()));
-    if (names->size() == groups.groups.size()) return ExitCode::done;
-    terminal.note(fmt::format("stopped by the {}: {} of {} light groups have maps of their own", limits.reason(),
-                              names->size(), groups.groups.size()));
-    return limits.stopped_code();
+    return end_of_groups(groups, *names, terminal);
 }
 
 }  // namespace exitance

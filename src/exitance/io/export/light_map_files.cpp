@@ -16,15 +16,6 @@
 namespace exitance {
 namespace {
 
-/// File name without ending: lightmap_0, or lightmap_0_2 for light group 2 only.
-std::string map_stem(std::size_t map, std::optional<std::size_t> group = {}) {
-    return group ? fmt::format("lightmap_{}_{}", map, *group) : fmt::format("lightmap_{}", map);
-}
-
-const char* name_of(LightMapQuantity quantity) {
-    return quantity == LightMapQuantity::irradiance ? "irradiance" : "radiosity";
-}
-
 LinearImage numbers(const Scene& scene, const LightMaps& light, std::size_t m, LightMapQuantity quantity) {
     const LightMap& map = light.maps[m];
     LinearImage image{map.size.width, map.size.height, {}};
@@ -89,11 +80,6 @@ std::string chart_json(const Scene& scene, SurfaceId s, const Chart& chart) {
         triple(chart.du), triple(chart.dv), triple(scene.surfaces()[s].normal));
 }
 
-const char* unit_of(const Scene& scene, LightMapQuantity quantity) {
-    const LightUnit own = own_unit(scene.is_photometric());
-    return quantity == LightMapQuantity::irradiance ? own.irradiance() : own.radiosity();
-}
-
 std::string manifest(const Scene& scene, const LightMaps& light, LightMapQuantity quantity, const ToneMap& tones,
                      std::span<const std::string> groups) {
     std::string text = fmt::format(
@@ -103,13 +89,13 @@ std::string manifest(const Scene& scene, const LightMaps& light, LightMapQuantit
         program_version, name_of(quantity), unit_of(scene, quantity), light.density, light.padding, tones.scale);
     for (std::size_t m = 0; m < light.maps.size(); ++m)
         text += fmt::format("{}\n    {{\"file\": \"{}.exr\", \"preview\": \"{}.png\", \"width\": {}, \"height\": {}}}",
-                            m > 0 ? "," : "", map_stem(m), map_stem(m), light.maps[m].size.width,
+                            m > 0 ? "," : "", light_map_stem(m), light_map_stem(m), light.maps[m].size.width,
                             light.maps[m].size.height);
     if (!groups.empty()) text += "\n  ],\n  \"groups\": [";
     for (std::size_t g = 0; g < groups.size(); ++g) {
         text += fmt::format("{}\n    {{\"name\": {}, \"files\": [", g > 0 ? "," : "", json_text(groups[g]));
         for (std::size_t m = 0; m < light.maps.size(); ++m)
-            text += fmt::format("{}\"{}.exr\"", m > 0 ? ", " : "", map_stem(m, g));
+            text += fmt::format("{}\"{}.exr\"", m > 0 ? ", " : "", light_map_stem(m, g));
         text += "]}";
     }
     text += "\n  ],\n  \"charts\": [";
@@ -127,7 +113,7 @@ Result<void> write_pictures(const Scene& scene, const LightMaps& light, std::opt
     const std::string unit =
         fmt::format("R, G, B: {} in {}", name_of(format.quantity), unit_of(scene, format.quantity));
     for (std::size_t m = 0; m < light.maps.size(); ++m) {
-        const std::string stem = folder + "/" + map_stem(m, group);
+        const std::string stem = folder + "/" + light_map_stem(m, group);
         const LinearImage image = numbers(scene, light, m, format.quantity);
         const ImageFacts facts{{"software", "exitance"}, {"units", unit}};
         if (const Result<void> written = write_exr(stem + ".exr", image, facts, format.precision); !written)
@@ -141,7 +127,22 @@ Result<void> write_pictures(const Scene& scene, const LightMaps& light, std::opt
     return {};
 }
 
-Result<void> make_folder(const std::string& folder) {
+}  // namespace
+
+std::string light_map_stem(std::size_t map, std::optional<std::size_t> group) {
+    return group ? fmt::format("lightmap_{}_{}", map, *group) : fmt::format("lightmap_{}", map);
+}
+
+std::string_view name_of(LightMapQuantity quantity) {
+    return light_map_quantity_names[static_cast<std::size_t>(quantity)].second;
+}
+
+const char* unit_of(const Scene& scene, LightMapQuantity quantity) {
+    const LightUnit own = own_unit(scene.is_photometric());
+    return quantity == LightMapQuantity::irradiance ? own.irradiance() : own.radiosity();
+}
+
+Result<void> make_map_folder(const std::string& folder) {
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);
     if (std::filesystem::is_directory(folder)) return {};
@@ -149,8 +150,6 @@ Result<void> make_folder(const std::string& folder) {
                  "cannot make the folder " + folder + (failed ? ": " + failed.message() : ": a file has its name"),
                  folder, ""};
 }
-
-}  // namespace
 
 Spectrum texel_value(const Scene& scene, const LightMap& map, const Chart& chart, std::size_t index,
                      LightMapQuantity quantity) {
@@ -162,13 +161,13 @@ Spectrum texel_value(const Scene& scene, const LightMap& map, const Chart& chart
 
 Result<void> write_group_light_maps(const Scene& lit_by_group, const LightMaps& light, std::size_t group,
                                     const LightMapFormat& format, const std::string& folder) {
-    if (const Result<void> made = make_folder(folder); !made) return made;
+    if (const Result<void> made = make_map_folder(folder); !made) return made;
     return write_pictures(lit_by_group, light, group, format, folder);
 }
 
 Result<void> write_light_maps(const Solution& solution, const LightMaps& light, const LightMapFormat& format,
                               std::span<const std::string> groups, const std::string& folder) {
-    if (const Result<void> made = make_folder(folder); !made) return made;
+    if (const Result<void> made = make_map_folder(folder); !made) return made;
     const Scene& scene = solution.scene;
     if (const Result<void> written = write_pictures(scene, light, {}, format, folder); !written) return written;
     ToneMap tone = make_tone_map(solution);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -30,6 +31,14 @@ struct LightMapFormat {
     LightMapMaterial material = LightMapMaterial::emissive;
     std::string scene_file;  ///< glTF file with the scene's own textures; empty: none.
 };
+
+/// File name without ending: lightmap_0, or lightmap_0_2 for light group 2 only.
+std::string light_map_stem(std::size_t map, std::optional<std::size_t> group = {});
+/// Unit of a quantity in a scene's maps.
+const char* unit_of(const Scene& scene, LightMapQuantity quantity);
+std::string_view name_of(LightMapQuantity quantity);
+/// Creates a folder for maps if it does not exist.
+Result<void> make_map_folder(const std::string& folder);
 
 /// Writes the maps of one light group, number `group`, in the same charts as those of all light: lightmap_N_G.exr, and
 /// .png with its own exposure. Creates the folder if necessary.

@@ -17,6 +17,7 @@ struct Chart {
     RegionId region;
     Point origin;               ///< Centre of texel (0, 0), in the region's plane, metres.
     Vec3 du, dv;                ///< Vectors from a texel to its right and lower neighbours, metres.
+    double skew = 0;            ///< du . dv, m^2; 0 if texels are rectangles.
     int width = 0, height = 0;  ///< Number of texels that the region's bounding box touches.
     std::uint32_t map = 0;      ///< Index of the map that contains it.
     int x = 0, y = 0;           ///< Position of texel (0, 0) in that map.
@@ -27,7 +28,10 @@ struct Chart {
     /// Position of a point in texels; the inverse of at().
     Vec2 place(const Point& p) const {
         const Vec3 d = p - origin;
-        return {dot(d, du) / squared_norm(du) + 0.5, dot(d, dv) / squared_norm(dv) + 0.5};
+        const double x = dot(d, du), y = dot(d, dv), xx = squared_norm(du), yy = squared_norm(dv);
+        if (skew == 0) return {x / xx + 0.5, y / yy + 0.5};
+        const double area = xx * yy - skew * skew;
+        return {(x * yy - y * skew) / area + 0.5, (y * xx - x * skew) / area + 0.5};
     }
 };
 

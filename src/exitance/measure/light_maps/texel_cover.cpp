@@ -51,6 +51,15 @@ void clip_to_texel(std::vector<Vec2>& polygon, int x, int y, std::vector<Vec2>& 
 
 TexelOutline::TexelOutline(const Chart& chart, const Patch& patch) : corners(patch.is_triangle() ? 3 : 4) {
     for (std::size_t i = 0; i < corners; ++i) corner[i] = chart.place(patch.corner(static_cast<int>(i)));
+    finish();
+}
+
+TexelOutline::TexelOutline(const std::array<Vec2, 3>& triangle) : corners(3) {
+    std::copy(triangle.begin(), triangle.end(), corner.begin());
+    finish();
+}
+
+void TexelOutline::finish() {
     if (cross(corner[1] - corner[0], corner[2] - corner[0]) < 0)
         std::reverse(corner.begin(), corner.begin() + static_cast<std::ptrdiff_t>(corners));
     lo = hi = corner[0];

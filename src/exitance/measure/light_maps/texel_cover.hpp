@@ -12,10 +12,14 @@ namespace exitance {
 /// A triangle or parallelogram in texel positions of a chart (Chart::place), with corners counter-clockwise in (x, y).
 struct TexelOutline {
     TexelOutline(const Chart& chart, const Patch& patch);
+    explicit TexelOutline(const std::array<Vec2, 3>& triangle);
 
     std::array<Vec2, 4> corner;
     std::size_t corners = 0;
     Vec2 lo, hi;
+
+  private:
+    void finish();  ///< Orders the corners and sets the bounding box.
 };
 
 /// Number of points whose mean is a texel's light.

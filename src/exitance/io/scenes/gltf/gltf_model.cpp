@@ -74,4 +74,63 @@ std::optional<Affine> gltf_transform(std::span<const double> matrix, std::span<c
     return m;
 }
 
+namespace {
+
+/// Vertex indices of triangle `t`.
+std::array<std::size_t, 3> vertices_of(const GltfModel::Primitive& p, std::size_t t) {
+    std::array<std::size_t, 3> at = {3 * t, 3 * t + 1, 3 * t + 2};
+    if (p.mode == GltfModel::Mode::strip) at = {t, t + 1 + t % 2, t + 2 - t % 2};
+    if (p.mode == GltfModel::Mode::fan) at = {t + 1, t + 2, 0};
+    if (p.has_indices)
+        for (std::size_t& i : at) i = p.indices.index(i);
+    return at;
+}
+
+class TriangleVisitor {
+  public:
+    TriangleVisitor(const GltfModel& model, const std::function<void(const GltfTriangle&)>& visit)
+        : model_(model), visit_(visit), seen_(model.nodes.size()) {}
+
+    void descend(int number, const Affine& parent, int depth) {
+        constexpr int most_depth = 1000;
+        const auto at = static_cast<std::size_t>(number);
+        if (seen_[at] || depth > most_depth) return;
+        seen_[at] = true;
+        const GltfModel::Node& node = model_.nodes[at];
+        const Affine to_world = parent * node.to_parent;
+        if (node.mesh >= 0)
+            for (const GltfModel::Primitive& p : model_.meshes[static_cast<std::size_t>(node.mesh)].primitives)
+                add(at, p, to_world);
+        for (const int child : node.children) descend(child, to_world, depth + 1);
+    }
+
+  private:
+    void add(std::size_t node, const GltfModel::Primitive& p, const Affine& to_world) {
+        const std::size_t count = p.has_indices ? p.indices.size() : p.positions.size();
+        const std::size_t triangles = p.mode == GltfModel::Mode::triangles ? count / 3 : count < 3 ? 0 : count - 2;
+        const bool is_mirrored = to_world.determinant() < 0;
+        for (std::size_t t = 0; t < triangles; ++t) {
+            GltfTriangle triangle{node, &p, vertices_of(p, t), {}};
+            std::array<std::size_t, 3>& v = triangle.vertices;
+            if (std::max({v[0], v[1], v[2]}) >= p.positions.size()) continue;
+            if (is_mirrored) std::swap(v[1], v[2]);
+            std::array<Point, 3>& corner = triangle.corners;
+            for (std::size_t k = 0; k < 3; ++k) corner[k] = to_world.point(p.positions.point(v[k]));
+            if (norm(cross(corner[1] - corner[0], corner[2] - corner[0])) > 0) visit_(triangle);
+        }
+    }
+
+    const GltfModel& model_;
+    const std::function<void(const GltfTriangle&)>& visit_;
+    std::vector<bool> seen_;
+};
+
+}  // namespace
+
+void for_each_triangle(const GltfModel& model, const std::function<void(const GltfTriangle&)>& visit) {
+    constexpr Affine upright{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}, {}};  // rotates Y up to Z up
+    TriangleVisitor visitor(model, visit);
+    for (const int root : model.roots) visitor.descend(root, upright, 0);
+}
+
 }  // namespace exitance

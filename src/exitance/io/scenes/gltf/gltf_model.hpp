@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -60,7 +61,7 @@ struct GltfModel {
         int accessor = -1;  ///< Accessor of the positions: primitives with the same one share their points.
         int material = -1;
         Mode mode = Mode::triangles;
-        std::array<GltfRows, 2> places;  ///< TEXCOORD_0 and 1 if textures were requested; empty if missing.
+        std::array<GltfRows, 4> places;  ///< TEXCOORD_0 to 3 if textures were requested; empty if missing.
         GltfRows colours;  ///< COLOR_0, which multiplies the base colour; empty if missing or not requested.
     };
     struct Mesh {
@@ -125,6 +126,18 @@ struct GltfModel {
     GltfModel(GltfModel&&) = default;
     GltfModel& operator=(GltfModel&&) = default;
 };
+
+/// A triangle of a glTF scene in the scene's axes (Z up).
+struct GltfTriangle {
+    std::size_t node = 0;
+    const GltfModel::Primitive* primitive = nullptr;
+    std::array<std::size_t, 3> vertices{};  ///< Rows of the primitive.
+    std::array<Point, 3> corners;           ///< Metres.
+};
+
+/// Calls visit(triangle) for every triangle with an area of every node's mesh, in the order in which read_gltf reads
+/// them. Triangles that name missing vertices are omitted.
+void for_each_triangle(const GltfModel& model, const std::function<void(const GltfTriangle&)>& visit);
 
 /// Returns the transform of a node from its matrix (16 numbers, by columns), or from its rotation (a quaternion x, y,
 /// z, w), scale and translation. Empty arguments have no effect. Empty if numbers are not finite or the quaternion is

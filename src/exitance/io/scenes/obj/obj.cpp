@@ -26,8 +26,10 @@ class ObjReader {
         out_.description.file = path;
     }
     ReadScene read();
+    std::vector<ObjPlaces> read_places();
 
   private:
+    void parse();
     void read_point();
     void read_place();
     void read_face();
@@ -69,7 +71,7 @@ class ObjReader {
     std::vector<std::vector<std::uint32_t>> places_of_face_;
 };
 
-ReadScene ObjReader::read() {
+void ObjReader::parse() {
     while (lines_.next()) {
         const std::string_view key = lines_.word();
         if (key == "v")
@@ -86,8 +88,25 @@ ReadScene ObjReader::read() {
             read_libraries();
     }
     check_indices();
+}
+
+ReadScene ObjReader::read() {
+    parse();
     resolve_materials();
     return std::move(out_);
+}
+
+std::vector<ObjPlaces> ObjReader::read_places() {
+    parse();
+    std::vector<ObjPlaces> out;
+    for (std::size_t f = 0; f < out_.description.faces.size(); ++f) {
+        ObjPlaces& face = out.emplace_back();
+        face.line = out_.description.faces[f].line;
+        for (const std::uint32_t c : out_.description.faces[f].corners)
+            face.corners.push_back(out_.description.points[c]);
+        face.places = places_of(f);
+    }
+    return out;
 }
 
 void ObjReader::read_point() {
@@ -317,6 +336,12 @@ ReadScene read_obj(const std::string& path) {
     out.findings.push_back({Finding::Kind::error, path, 0, wide ? "is text in UTF-16" : text.error().message,
                             wide ? "save it as UTF-8 or plain ASCII" : ""});
     return out;
+}
+
+Result<std::vector<ObjPlaces>> read_obj_places(const std::string& path) {
+    const Result<std::string> text = read_whole_file(path);
+    if (!text) return text.error();
+    return ObjReader(path, *text).read_places();
 }
 
 Result<SceneDescription> load_obj(const std::string& path) {

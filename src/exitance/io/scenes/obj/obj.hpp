@@ -29,6 +29,17 @@ struct ReadScene {
 /// reported, with file and line. O(size of the file).
 ReadScene read_obj(const std::string& path);
 
+/// A face of an OBJ file with its texture coordinates.
+struct ObjPlaces {
+    int line = 0;
+    std::vector<Point> corners;  ///< In the file's coordinates.
+    std::vector<Vec2> places;    ///< One per corner, (0, 0) at the picture's upper left; empty if there are none.
+};
+
+/// Reads the readable faces of an OBJ file with their texture coordinates, in the order of the file. Error
+/// (cannot_read): the file cannot be read.
+Result<std::vector<ObjPlaces>> read_obj_places(const std::string& path);
+
 /// Like read_obj(), but returns the first error if there is any.
 Result<SceneDescription> load_obj(const std::string& path);
 

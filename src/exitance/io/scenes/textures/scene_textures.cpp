@@ -11,19 +11,6 @@
 namespace exitance {
 namespace {
 
-/// Rotates Y up to Z up.
-constexpr Affine upright{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}, {}};
-
-/// Vertex indices of triangle `t`.
-std::array<std::size_t, 3> vertices_of(const GltfModel::Primitive& p, std::size_t t) {
-    std::array<std::size_t, 3> at = {3 * t, 3 * t + 1, 3 * t + 2};
-    if (p.mode == GltfModel::Mode::strip) at = {t, t + 1 + t % 2, t + 2 - t % 2};
-    if (p.mode == GltfModel::Mode::fan) at = {t + 1, t + 2, 0};
-    if (p.has_indices)
-        for (std::size_t& i : at) i = p.indices.index(i);
-    return at;
-}
-
 class TextureFinder {
   public:
     TextureFinder(const Scene& scene, const GltfModel& model) : scene_(scene), model_(model), locator_(scene) {}
@@ -32,8 +19,7 @@ class TextureFinder {
         std::size_t corners = 0;
         for (const Surface& s : scene_.surfaces()) corners += s.corner_count;
         for (std::vector<Vec2>& set : out_.places) set.resize(corners);
-        seen_.resize(model_.nodes.size());
-        for (const int root : model_.roots) visit(root, upright, 0);
+        for_each_triangle(model_, [this](const GltfTriangle& triangle) { add(triangle); });
         if (!found_[0] && !found_[1]) return std::nullopt;
         if (!found_[1]) out_.places[1].clear();
         add_pictures();
@@ -41,36 +27,16 @@ class TextureFinder {
     }
 
   private:
-    void visit(int number, const Affine& parent, int depth) {
-        constexpr int most_depth = 1000;
-        const auto at = static_cast<std::size_t>(number);
-        if (seen_[at] || depth > most_depth) return;
-        seen_[at] = true;
-        const GltfModel::Node& node = model_.nodes[at];
-        const Affine to_world = parent * node.to_parent;
-        if (node.mesh >= 0)
-            for (const GltfModel::Primitive& p : model_.meshes[static_cast<std::size_t>(node.mesh)].primitives)
-                add(p, to_world);
-        for (const int child : node.children) visit(child, to_world, depth + 1);
-    }
-
-    void add(const GltfModel::Primitive& p, const Affine& to_world) {
+    void add(const GltfTriangle& triangle) {
+        const GltfModel::Primitive& p = *triangle.primitive;
+        const std::array<Point, 3>& corner = triangle.corners;
         if (p.places[0].size() == 0 && p.places[1].size() == 0) return;
-        const std::size_t count = p.has_indices ? p.indices.size() : p.positions.size();
-        const std::size_t triangles = p.mode == GltfModel::Mode::triangles ? count / 3 : count < 3 ? 0 : count - 2;
-        for (std::size_t t = 0; t < triangles; ++t) {
-            const std::array<std::size_t, 3> v = vertices_of(p, t);
-            if (std::max({v[0], v[1], v[2]}) >= p.positions.size()) continue;
-            std::array<Point, 3> corner;
-            for (std::size_t k = 0; k < 3; ++k) corner[k] = to_world.point(p.positions.point(v[k]));
-            const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-            if (!(norm(normal) > 0)) continue;
-            const Point middle = (corner[0] + corner[1] + corner[2]) / 3;
-            // Faces may have been reversed, or be the back of a double-sided triangle.
-            for (const double side : {1.0, -1.0})
-                if (const SurfaceId s = locator_.find(middle, side * normalized(normal)); !s.is_none())
-                    add_places(p, v, corner, s);
-        }
+        const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
+        const Point middle = (corner[0] + corner[1] + corner[2]) / 3;
+        // Faces may have been reversed, or be the back of a double-sided triangle.
+        for (const double side : {1.0, -1.0})
+            if (const SurfaceId s = locator_.find(middle, side * normalized(normal)); !s.is_none())
+                add_places(p, triangle.vertices, corner, s);
     }
 
     void add_places(const GltfModel::Primitive& p, const std::array<std::size_t, 3>& v,
@@ -136,7 +102,6 @@ class TextureFinder {
     const GltfModel& model_;
     Locator locator_;
     SceneTextures out_;
-    std::vector<bool> seen_;
     bool found_[2] = {false, false};
 };
 

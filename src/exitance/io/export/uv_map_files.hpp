@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "exitance/io/export/light_map_files.hpp"
+#include "exitance/io/pictures/png.hpp"
+#include "exitance/measure/light_maps/uv_light_map.hpp"
+
+namespace exitance {
+
+/// Writes maps in the texture coordinates of a scene's file: lightmap_N.exr and .png, as write_light_maps does, or
+/// lightmap_N_G.exr and .png of light group number `group`. Creates the folder if necessary.
+Result<void> write_uv_pictures(const Scene& scene, const UvLightMaps& light, std::optional<std::size_t> group,
+                               const LightMapFormat& format, const std::string& folder);
+
+/// Writes lightmaps.json: the maps, the objects of each, and what is wrong with their charts.
+/// charts  file names of pictures of the charts, one per map, or empty
+Result<void> write_uv_manifest(const Scene& scene, const UvSet& set, const UvLightMaps& light,
+                               const LightMapFormat& format, std::span<const std::string> groups,
+                               std::span<const std::string> charts, const std::string& folder);
+
+/// Draws the charts of a map: every chart in a colour of its own, mirrored ones in blue, texels of which several
+/// triangles cover the same part in red, and the gutter in a darker colour.
+Image draw_charts(const UvSet& set, const UvLightMaps& light, std::size_t map);
+
+/// Sentences about charts that overlap, are outside of the map, mirrored, collapsed or too close to each other, by
+/// object. Empty if there is nothing to report.
+std::vector<std::string> chart_warnings(const UvSet& set, const UvLightMaps& light);
+
+}  // namespace exitance

@@ -1,0 +1,289 @@
+#include "exitance/io/scenes/textures/uv_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <unordered_map>
+
+#include "exitance/base/triangulation.hpp"
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/gltf/gltf_model.hpp"
+#include "exitance/io/scenes/obj/obj.hpp"
+#include "exitance/scene/locator.hpp"
+
+namespace exitance {
+namespace {
+
+Error no_set(const std::string& path, const std::string& name, const std::string& sets) {
+    return {ErrorCode::usage, fmt::format("{} has no texture coordinates '{}'", path, name), "--uv",
+            sets.empty() ? "unwrap the model in your modeller, or leave --uv out: bake then makes charts of its own"
+                         : "it has " + sets};
+}
+
+/// Error about faces without coordinates, by object; none if there are none.
+Result<void> require_all(const Scene& scene, const Field<SurfaceId, std::uint8_t>& has_places,
+                         const std::string& path) {
+    std::map<std::uint32_t, std::size_t> missing;  // number of faces by group
+    std::size_t count = 0;
+    for (SurfaceId s : scene.surfaces().ids())
+        if (!has_places[s]) ++missing[scene.surfaces()[s].group.value], ++count;
+    if (count == 0) return {};
+    constexpr std::size_t max_names = 5;
+    std::string names;
+    std::size_t listed = 0;
+    for (const auto& [group, faces] : missing) {
+        if (++listed > max_names) break;
+        names +=
+            fmt::format("{}'{}' ({} of its faces)", names.empty() ? "" : ", ", scene.groups()[GroupId(group)], faces);
+    }
+    if (missing.size() > max_names) names += fmt::format(" and {} more objects", missing.size() - max_names);
+    return Error{ErrorCode::bad_input,
+                 fmt::format("{} of {} faces have no texture coordinates: {}", count, scene.surfaces().size(), names),
+                 path, "unwrap these objects in your modeller, or leave --uv out: bake then makes charts of its own"};
+}
+
+/// Makes names differ: the second "lamp" becomes "lamp #2".
+class UniqueNames {
+  public:
+    std::string add(const std::string& name) {
+        std::string out = name.empty() ? "unnamed" : name;
+        for (int k = 2; !taken_.insert(out).second; ++k) out = fmt::format("{} #{}", name, k);
+        return out;
+    }
+
+  private:
+    std::set<std::string> taken_;
+};
+
+/// Matches the triangles of a glTF file with a scene's faces, by position.
+class GltfUvs {
+  public:
+    GltfUvs(const Scene& scene, const GltfModel& model, std::size_t set, const std::string& path)
+        : scene_(scene), model_(model), set_(set), locator_(scene), matched_(scene.surfaces().size()) {
+        out_.file = path, out_.name = fmt::format("TEXCOORD_{}", set);
+        object_of_.resize(model.nodes.size(), -1);
+    }
+
+    Result<UvSet> find() {
+        for_each_triangle(model_, [this](const GltfTriangle& triangle) { add(triangle); });
+        Field<SurfaceId, std::uint8_t> has_places(scene_.surfaces().size());
+        for (SurfaceId s : scene_.surfaces().ids()) {
+            has_places[s] = matched_[s] != Match::none;
+            out_.back_faces += matched_[s] == Match::back;
+        }
+        if (const Result<void> complete = require_all(scene_, has_places, out_.file); !complete)
+            return complete.error();
+        return std::move(out_);
+    }
+
+  private:
+    enum class Match : std::uint8_t { none, back, front };
+
+    void add(const GltfTriangle& triangle) {
+        const GltfRows& places = triangle.primitive->places[set_];
+        if (places.size() == 0) return;
+        UvTriangle out;
+        out.corner = triangle.corners;
+        for (std::size_t k = 0; k < 3; ++k)
+            out.place[k] = {places.at(triangle.vertices[k], 0), places.at(triangle.vertices[k], 1)};
+        const Normal n = normalized(cross(out.corner[1] - out.corner[0], out.corner[2] - out.corner[0]));
+        const Point middle = (out.corner[0] + out.corner[1] + out.corner[2]) / 3;
+        const SurfaceId front = locator_.find(middle, n), back = locator_.find(middle, -1 * n);
+        if (!front.is_none() && !back.is_none() && matched_[back] == Match::none) matched_[back] = Match::back;
+        // A face whose front is missing was turned when it was read.
+        out.surface = front.is_none() ? back : front;
+        if (out.surface.is_none()) return;
+        if (front.is_none()) std::swap(out.corner[1], out.corner[2]), std::swap(out.place[1], out.place[2]);
+        matched_[out.surface] = Match::front;
+        out.object = object_of(triangle.node);
+        out_.triangles.push_back(out);
+    }
+
+    std::uint32_t object_of(std::size_t node) {
+        if (object_of_[node] < 0) {
+            object_of_[node] = static_cast<int>(out_.objects.size());
+            const GltfModel::Node& n = model_.nodes[node];
+            out_.objects.push_back(
+                names_.add(n.name.empty() ? model_.meshes[static_cast<std::size_t>(n.mesh)].name : n.name));
+        }
+        return static_cast<std::uint32_t>(object_of_[node]);
+    }
+
+    const Scene& scene_;
+    const GltfModel& model_;
+    std::size_t set_;
+    Locator locator_;
+    Field<SurfaceId, Match> matched_;
+    std::vector<int> object_of_;  ///< Per node; -1: none yet.
+    UniqueNames names_;
+    UvSet out_;
+};
+
+Result<UvSet> load_gltf_uvs(const Scene& scene, const std::string& path, const std::string& name) {
+    std::vector<Finding> findings;  // reported when the scene was read for solving
+    const Result<GltfModel> model = load_gltf_model(path, findings, true);
+    if (!model) return model.error();
+    std::array<bool, std::tuple_size_v<decltype(GltfModel::Primitive::places)>> has_set{};
+    for (const GltfModel::Mesh& mesh : model->meshes)
+        for (const GltfModel::Primitive& p : mesh.primitives)
+            for (std::size_t set = 0; set < has_set.size(); ++set) has_set[set] |= p.places[set].size() > 0;
+    std::string sets;
+    for (std::size_t set = 0; set < has_set.size(); ++set)
+        if (has_set[set]) sets += fmt::format("{}TEXCOORD_{}", sets.empty() ? "" : ", ", set);
+    std::size_t chosen = has_set.size();
+    for (std::size_t set = 0; set < has_set.size(); ++set)
+        if (has_set[set] && name == fmt::format("TEXCOORD_{}", set)) chosen = set;
+    if (name == "own" && !sets.empty()) chosen = has_set[1] ? 1 : sets.back() - '0';
+    if (chosen == has_set.size()) return no_set(path, name, sets);
+    return GltfUvs(scene, *model, chosen, path).find();
+}
+
+/// Matches a scene's faces with those of its OBJ file, by their lines.
+class ObjUvs {
+  public:
+    ObjUvs(const Scene& scene, std::vector<ObjPlaces> faces, const std::string& path)
+        : scene_(scene), faces_(std::move(faces)), has_places_(scene.surfaces().size()) {
+        for (std::size_t f = 0; f < faces_.size(); ++f) face_of_line_.emplace(faces_[f].line, f);
+        out_.file = path, out_.name = "vt";
+        UniqueNames names;
+        for (const std::string& group : scene.groups()) out_.objects.push_back(names.add(group));
+    }
+
+    Result<UvSet> find() {
+        if (std::all_of(faces_.begin(), faces_.end(), [](const ObjPlaces& face) { return face.places.empty(); }))
+            return no_set(out_.file, out_.name, "");
+        if (!align()) return changed();
+        for (SurfaceId s : scene_.surfaces().ids())
+            if (!add(s)) return changed();
+        if (const Result<void> complete = require_all(scene_, has_places_, out_.file); !complete)
+            return complete.error();
+        return std::move(out_);
+    }
+
+  private:
+    const ObjPlaces* face_of(SurfaceId s) const {
+        const auto face = face_of_line_.find(scene_.surfaces()[s].line);
+        return face == face_of_line_.end() ? nullptr : &faces_[face->second];
+    }
+    Error changed() const {
+        return {ErrorCode::bad_input, "the file's faces are not those of the solution", out_.file,
+                "the file was changed after the solve: solve it again"};
+    }
+
+    /// Finds the unit of length and the upright axis with which the file was read, from the face with the largest
+    /// extent. Returns false if neither axis fits.
+    bool align() {
+        double longest = 0;
+        SurfaceId best;
+        for (SurfaceId s : scene_.surfaces().ids()) {
+            const ObjPlaces* face = face_of(s);
+            if (!face || face->corners.size() != scene_.outline(s).size()) continue;
+            if (const double length = perimeter(scene_.outline(s)); length > longest) longest = length, best = s;
+        }
+        if (best.is_none()) return true;  // all faces were repaired, or have no line
+        const std::vector<Point> corners = face_of(best)->corners;
+        scale_ = perimeter(scene_.outline(best)) / perimeter(corners);
+        // Units of length differ by more than rounding from 1.
+        constexpr double rounding = 1e-6;
+        if (std::abs(scale_ - 1) < rounding) scale_ = 1;
+        for (const bool turns : {false, true}) {
+            turns_ = turns;
+            if (std::all_of(corners.begin(), corners.end(), [&](const Point& c) {
+                    return distance_to_corner(scene_.outline(best), in_scene(c)) < tolerance();
+                }))
+                return true;
+        }
+        return false;
+    }
+
+    static double perimeter(std::span<const Point> outline) {
+        double sum = 0;
+        for (std::size_t i = 0; i < outline.size(); ++i) sum += norm(outline[(i + 1) % outline.size()] - outline[i]);
+        return sum;
+    }
+    static double distance_to_corner(std::span<const Point> outline, const Point& p) {
+        double least = HUGE_VAL;
+        for (const Point& q : outline) least = std::min(least, norm(q - p));
+        return least;
+    }
+    Point in_scene(const Point& p) const { return scale_ * (turns_ ? Point{p.x, -p.z, p.y} : p); }
+    double tolerance() const {
+        constexpr double of_size = 1e-5;  // as Locator
+        return of_size * scene_.size();
+    }
+
+    /// Adds the triangles of a face. Returns false if it does not lie where the file's face does.
+    bool add(SurfaceId s) {
+        const ObjPlaces* face = face_of(s);
+        if (!face || face->places.empty()) return true;
+        std::vector<Point> corners;
+        for (const Point& c : face->corners) corners.push_back(in_scene(c));
+        const std::span<const Point> outline = scene_.outline(s);
+        std::vector<Vec2> places;
+        for (const Point& p : outline) {
+            const std::optional<Vec2> place = place_of(p, corners, face->places);
+            if (!place) return false;
+            places.push_back(*place);
+        }
+        for (const auto& [i, j, k] : triangulate(outline, scene_.surfaces()[s].normal))
+            out_.triangles.push_back({s,
+                                      scene_.surfaces()[s].group.value,
+                                      {outline[i], outline[j], outline[k]},
+                                      {places[i], places[j], places[k]}});
+        has_places_[s] = true;
+        return true;
+    }
+
+    /// Texture coordinates of a corner: those of the file's corner there, or interpolated on the triangle of three of
+    /// its corners that contains the point; none if the point is outside the face.
+    std::optional<Vec2> place_of(const Point& p, std::span<const Point> corners, std::span<const Vec2> places) const {
+        for (std::size_t i = 0; i < corners.size(); ++i)
+            if (norm(corners[i] - p) < tolerance()) return places[i];
+        // A point may be outside by this share of a triangle, because faces that are not planar are flattened.
+        constexpr double outside = 0.01;
+        double best = -outside;
+        std::optional<Vec2> out;
+        for (std::size_t i = 2; i < corners.size(); ++i) {
+            const Vec3 a = corners[i - 1] - corners[0], b = corners[i] - corners[0], d = p - corners[0];
+            const Vec3 n = cross(a, b);
+            const double area = squared_norm(n);
+            if (!(area > 0)) continue;
+            const double s = dot(cross(d, b), n) / area, t = dot(cross(a, d), n) / area;
+            const double least = std::min({s, t, 1 - s - t});
+            if (least <= best) continue;
+            best = least;
+            out = places[0] + s * (places[i - 1] - places[0]) + t * (places[i] - places[0]);
+        }
+        return out;
+    }
+
+    const Scene& scene_;
+    std::vector<ObjPlaces> faces_;
+    std::unordered_map<int, std::size_t> face_of_line_;
+    double scale_ = 1;
+    bool turns_ = false;
+    Field<SurfaceId, std::uint8_t> has_places_;
+    UvSet out_;
+};
+
+}  // namespace
+
+Result<UvSet> load_uv_set(const Scene& scene, const std::string& path, const std::string& name) {
+    if (path.empty())
+        return Error{ErrorCode::cannot_read, "is missing, and texture coordinates are read from it", scene.file(),
+                     "put it in the folder of the solution file"};
+    const std::string kind = ending(path);
+    if (kind == ".glb" || kind == ".gltf") return load_gltf_uvs(scene, path, name);
+    if (kind != ".obj")
+        return Error{ErrorCode::usage, fmt::format("{} files have no texture coordinates", kind), "--uv",
+                     "use glTF or OBJ, or leave --uv out: bake then makes charts of its own"};
+    if (name != "own" && name != "vt" && name != "TEXCOORD_0") return no_set(path, name, "vt");
+    Result<std::vector<ObjPlaces>> faces = read_obj_places(path);
+    if (!faces) return faces.error();
+    return ObjUvs(scene, std::move(*faces), path).find();
+}
+
+}  // namespace exitance

@@ -1,0 +1,70 @@
+#include "exitance/measure/light_maps/tile_baker.hpp"
+
+#include <algorithm>
+
+#include "exitance/evaluate/open_points.hpp"
+
+namespace exitance {
+
+std::vector<ChartTile> cut_into_tiles(std::span<const Chart> charts) {
+    std::vector<ChartTile> tiles;
+    for (std::size_t c = 0; c < charts.size(); ++c)
+        for (int y = 0; y < charts[c].height; y += tile_side)
+            for (int x = 0; x < charts[c].width; x += tile_side)
+                tiles.push_back(
+                    {c, {x, y, std::min(tile_side, charts[c].width - x), std::min(tile_side, charts[c].height - y)}});
+    return tiles;
+}
+
+TileBaker::TileBaker(const RadiosityFunction& light, std::span<const std::vector<TexelOutline>> outlines,
+                     const MeshTexels* mesh, const StopRequest& stop)
+    : stage_(light.stage()),
+      finder_(light.places()),
+      outlines_(outlines),
+      mesh_(mesh),
+      light_(light, texel_points, 0, 1, SpotPoints::mirrored) {
+    if (mesh) light_.use(mesh->light());
+    light_.use(stop);
+}
+
+std::span<const BakedTexel> TileBaker::bake(const ChartTile& tile, const Chart& chart, const LightMap& map) {
+    cutter_.cut(outlines_[tile.chart], tile.rectangle, covers_, places_);
+    integrals_.clear();
+    if (mesh_) mesh_->integrate(tile.chart, tile.rectangle, integrals_);
+    points_.clear(), spots_.clear(), texels_.clear();
+    std::array<std::uint32_t, static_cast<std::size_t>(tile_side * tile_side)> texel_of;
+    for (const TexelCover& cover : covers_) {
+        Spot spot{chart.region, cover.x - tile.rectangle.x, cover.y - tile.rectangle.y,
+                  static_cast<std::uint32_t>(map.index(chart.x + cover.x, chart.y + cover.y)),
+                  static_cast<std::uint32_t>(points_.size())};
+        texel_of[static_cast<std::size_t>(spot.y * tile_side + spot.x)] = static_cast<std::uint32_t>(texels_.size());
+        texels_.push_back({spot.pixel, cover.share, false, {}});
+        add_open_points(chart, cover);
+        spot.count = static_cast<std::uint32_t>(points_.size()) - spot.first;
+        if (!integrals_.empty())
+            spot.meshed =
+                integrals_[static_cast<std::size_t>(spot.y * tile.rectangle.width + spot.x)].mean(cover.share);
+        if (spot.count > 0) spots_.push_back(spot);
+    }
+    light_.evaluate(points_, spots_);
+    for (const Spot& spot : spots_) {
+        BakedTexel& texel = texels_[texel_of[static_cast<std::size_t>(spot.y * tile_side + spot.x)]];
+        texel.is_open = true;
+        for (std::size_t b = 0; b < bands; ++b) texel.irradiance[b] = std::max(0.0, spot.irradiance[b]);
+    }
+    return texels_;
+}
+
+/// Adds the uncovered points of a texel. If the first four are all covered or all uncovered, so are the others.
+void TileBaker::add_open_points(const Chart& chart, const TexelCover& cover) {
+    constexpr std::size_t first_points = 4;
+    const Normal& n = stage_.scene.regions()[chart.region].plane.n;
+    std::size_t found = 0;
+    for (std::size_t k = 0; k < texel_points; ++k) {
+        if (k == first_points && found == 0) return;
+        const Point x = finder_.find(chart.at(places_[cover.first + k]), n).x;
+        if ((k >= first_points && found == k) || is_in_open(stage_, x, n, chart.region)) points_.push_back(x), ++found;
+    }
+}
+
+}  // namespace exitance

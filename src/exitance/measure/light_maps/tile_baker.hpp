@@ -1,0 +1,58 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "exitance/measure/light_maps/light_map.hpp"
+#include "exitance/measure/light_maps/mesh_texels.hpp"
+#include "exitance/measure/light_maps/texel_cover.hpp"
+#include "exitance/measure/pictures/tile_light.hpp"
+
+namespace exitance {
+
+/// A part of a chart that is baked as a unit.
+struct ChartTile {
+    std::size_t chart = 0;
+    Chart::Rectangle rectangle;  ///< In texels of the chart.
+};
+
+std::vector<ChartTile> cut_into_tiles(std::span<const Chart> charts);
+
+/// Light on the part of a texel that a chart covers.
+struct BakedTexel {
+    std::size_t index = 0;  ///< In the map.
+    double share = 0;       ///< Share of the texel that the chart covers, in (0, 1].
+    bool is_open = false;   ///< False: another surface or a body covers that part, so it has no light of its own.
+    Spectrum irradiance;    ///< Mean over the uncovered part, W/m^2; 0 if there is none.
+};
+
+/// Bakes tiles one after the other, as described at bake_light_maps. One per thread; keeps its memory.
+class TileBaker {
+  public:
+    /// outlines  triangles and parallelograms of each chart
+    /// mesh      exact integrals over a discontinuity mesh; null: points only
+    /// All arguments must outlive the object.
+    TileBaker(const RadiosityFunction& light, std::span<const std::vector<TexelOutline>> outlines,
+              const MeshTexels* mesh, const StopRequest& stop);
+
+    /// Returns the texels that the chart covers in a tile. The range is valid until the next call.
+    std::span<const BakedTexel> bake(const ChartTile& tile, const Chart& chart, const LightMap& map);
+
+  private:
+    void add_open_points(const Chart& chart, const TexelCover& cover);
+
+    const Stage& stage_;
+    const PlaceFinder& finder_;
+    std::span<const std::vector<TexelOutline>> outlines_;
+    const MeshTexels* mesh_;
+    TileLight light_;
+    TexelCutter cutter_;
+    std::vector<MeshTexels::Integral> integrals_;
+    std::vector<TexelCover> covers_;
+    std::vector<Vec2> places_;
+    std::vector<Point> points_;
+    std::vector<Spot> spots_;
+    std::vector<BakedTexel> texels_;
+};
+
+}  // namespace exitance
