@@ -116,10 +116,13 @@ double bias_of_patches(const DaylightSetting& setting, const DaylightMatrix& mat
     std::vector<ProbePoint> points;
     for (const std::size_t i : chosen) points.push_back(setting.sensors[i]);
     const SkyPatches fine(2 * setting.division);
-    const DaylightMatrix finer = make_daylight_matrix(setting.scene, points, fine, setting.options, progress);
     const YearSky coarse_sky(setting.patches, hours, setting.site), fine_sky(fine, hours, setting.site);
+    // The comparison needs the sum of the hours alone: one column instead of one for every fine patch.
+    const DaylightMatrix finer = make_daylight_column(setting.scene, points, fine, fine_sky.sum_of_sky(),
+                                                      fine_sky.sum_with_sun(), setting.options, progress);
+    const std::vector<double> as_it_is{1};
     const Linear coarse_light(matrix, coarse_sky.sum_of_sky(), coarse_sky.sum_with_sun()),
-        fine_light(finer, fine_sky.sum_of_sky(), fine_sky.sum_with_sun());
+        fine_light(finer, as_it_is, as_it_is);
     double mean = 0, squares = 0;
     for (std::size_t k = 0; k < chosen.size(); ++k) {
         const Linear::Value a = coarse_light.at(chosen[k]), b = fine_light.at(k);

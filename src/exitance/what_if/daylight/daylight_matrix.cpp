@@ -34,13 +34,24 @@ struct DaylightElements {
     ElementLocator locator;
 };
 
+/// What the columns of a matrix stand for: each a patch of the sky, or one column for all patches under a given sky.
+struct Columns {
+    std::size_t count = 0;
+    std::span<const double> sky, reflected;  ///< Luminances of the patches of the one column; empty for a column each.
+
+    std::size_t of(std::size_t patch) const { return sky.empty() ? patch : 0; }
+    double weight_of_sky(std::size_t patch) const { return sky.empty() ? 1 : sky[patch]; }
+    double weight_of_reflected(std::size_t patch) const { return sky.empty() ? 1 : reflected[patch]; }
+};
+
 /// One replicate: reflected light on the elements, found by rays of its own.
 class MatrixMaker {
   public:
-    MatrixMaker(const Stage& stage, const SkyPatches& patches, const DaylightElements& elements,
+    MatrixMaker(const Stage& stage, const SkyPatches& patches, const Columns& columns, const DaylightElements& elements,
                 const DaylightOptions& options)
         : stage_(stage),
           patches_(patches),
+          columns_(columns),
           options_(options),
           tree_(elements.tree),
           numbering_(elements.numbering),
@@ -68,9 +79,9 @@ class MatrixMaker {
         });
     }
 
-    /// Solves for rho E of every leaf and every patch. Returns the number of sweeps.
+    /// Solves for rho E of every leaf and every column. Returns the number of sweeps.
     std::size_t solve() {
-        const std::size_t n = rows_.size(), m = patches_.size();
+        const std::size_t n = rows_.size(), m = columns_.count;
         std::vector<float> rho(n), fresh(n * m);
         for (std::size_t i = 0; i < n; ++i)
             rho[i] =
@@ -81,7 +92,8 @@ class MatrixMaker {
                 const std::span<float> out(&fresh[i * m], m);
                 std::fill(out.begin(), out.end(), 0.0f);
                 if (rho[i] == 0) return;
-                for (const auto& [patch, share] : rows_[i].patches) out[patch] += static_cast<float>(pi) * share;
+                for (const auto& [patch, share] : rows_[i].patches)
+                    out[columns_.of(patch)] += static_cast<float>(pi * columns_.weight_of_reflected(patch)) * share;
                 add(rows_[i].leaves, out);
                 for (float& v : out) v *= rho[i];
             });
@@ -163,6 +175,7 @@ class MatrixMaker {
 
     const Stage& stage_;
     const SkyPatches& patches_;
+    const Columns& columns_;
     const DaylightOptions options_;
     const ElementTree& tree_;
     const LeafNumbering& numbering_;
@@ -212,7 +225,8 @@ void clip_to(const Cone& cone, std::vector<Vec3>& polygon, std::vector<Vec3>& ro
 /// patches.
 class PatchView {
   public:
-    PatchView(const Stage& stage, const std::vector<Cone>& cones) : stage_(stage), cones_(cones) {}
+    PatchView(const Stage& stage, const std::vector<Cone>& cones, const Columns& columns)
+        : stage_(stage), cones_(cones), columns_(columns) {}
 
     void see(const Receiver& at, const Spectrum& weights, std::span<float> out) {
         std::fill(out.begin(), out.end(), 0.0f);
@@ -230,7 +244,8 @@ class PatchView {
                     if (part_.empty()) continue;
                     const Spectrum F = transmitted_form_factor(occluders, at, piece, part_, {});
                     for (std::size_t b = 0; b < bands; ++b)
-                        out[cone.patch] += static_cast<float>(pi * weights[b] * F[b]);
+                        out[columns_.of(cone.patch)] +=
+                            static_cast<float>(pi * columns_.weight_of_sky(cone.patch) * weights[b] * F[b]);
                 }
             }
         }
@@ -239,6 +254,7 @@ class PatchView {
   private:
     const Stage& stage_;
     const std::vector<Cone>& cones_;
+    const Columns& columns_;
     VisibilityWorkspace scratch_;
     Fragments fragments_;
     std::vector<Vec3> part_, room_;
@@ -252,10 +268,8 @@ DaylightOptions share_of(DaylightOptions options, std::size_t replicate) {
     return options;
 }
 
-}  // namespace
-
-DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
-                                    const DaylightOptions& options, Progress& progress) {
+DaylightMatrix make_columns(Scene scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
+                            const Columns& columns, const DaylightOptions& options, Progress& progress) {
     DistantLight light;
     SkyModel below = uniform_sky();
     below.below = true;
@@ -267,19 +281,19 @@ DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sen
     const DaylightElements elements(stage, options.elements);
     std::vector<MatrixMaker> makers;
     for (std::size_t k = 0; k < daylight_replicates; ++k)
-        makers.emplace_back(stage, patches, elements, share_of(options, k)).cast_rows();
+        makers.emplace_back(stage, patches, columns, elements, share_of(options, k)).cast_rows();
     progress.phase("solve");
     for (MatrixMaker& maker : makers) maker.solve();
     progress.phase("sensors");
     DaylightMatrix out;
-    const std::size_t m = out.patches = patches.size();
+    const std::size_t m = out.patches = columns.count;
     out.direct.resize(sensors.size() * m), out.reflected.resize(sensors.size() * m);
     for (std::vector<float>& replicate : out.replicates) replicate.resize(sensors.size() * m);
     const std::vector<Receiver> places = sensor_places(scene, stage.occluders, sensors);
     const Spectrum weights = luminous_weights();
     const std::vector<Cone> cones = cones_of(patches);
     parallel_ranges(sensors.size(), 4, [&](std::size_t begin, std::size_t end) {
-        PatchView view(stage, cones);
+        PatchView view(stage, cones, columns);
         for (std::size_t i = begin; i < end; ++i) {
             view.see(places[i], weights, std::span(&out.direct[i * m], m));
             for (std::size_t k = 0; k < daylight_replicates; ++k) {
@@ -291,6 +305,20 @@ DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sen
         }
     });
     return out;
+}
+
+}  // namespace
+
+DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
+                                    const DaylightOptions& options, Progress& progress) {
+    return make_columns(std::move(scene), sensors, patches, {patches.size(), {}, {}}, options, progress);
+}
+
+DaylightMatrix make_daylight_column(Scene scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
+                                    std::span<const double> sky, std::span<const double> reflected,
+                                    const DaylightOptions& options, Progress& progress) {
+    EXI_CHECK(sky.size() == patches.size() && reflected.size() == patches.size());
+    return make_columns(std::move(scene), sensors, patches, {1, sky, reflected}, options, progress);
 }
 
 }  // namespace exitance

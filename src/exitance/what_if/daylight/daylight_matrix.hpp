@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "exitance/base/progress.hpp"
@@ -43,6 +44,13 @@ struct DaylightMatrix {
 /// patch at the sensors, and a gather of rho E by rays. The scene's own emitters are off; its light from outside is
 /// replaced by the patches. O(rays + iterations x rays x patches).
 DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
+                                    const DaylightOptions& options, Progress& progress);
+
+/// The product of a daylight matrix with the luminances of all patches, as a matrix with one column: `sky` for light
+/// straight from the patches, `reflected` for light after reflections. Uses the rays of `make_daylight_matrix`, but
+/// solves for one right-hand side only: O(rays x iterations).
+DaylightMatrix make_daylight_column(Scene scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
+                                    std::span<const double> sky, std::span<const double> reflected,
                                     const DaylightOptions& options, Progress& progress);
 
 }  // namespace exitance

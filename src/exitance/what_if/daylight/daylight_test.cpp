@@ -168,6 +168,38 @@ TEST(Daylight, TheToldErrorAndTheIntervalsCoverTheTrueOnes) {
     EXPECT_GE(covered, 21u);  // of 24, for 95%: fewer than 21 happen in one of 30 runs of independent sensors
 }
 
+TEST(Daylight, OneColumnIsTheProductOfTheMatrixWithASky) {
+    // The same rays, so that only rounding to 32 bits and the last sweep of each solve (2e-4) differ. Reflected light
+    // of another sky than the straight light shows a mix-up of the two.
+    const Scene room = scene(true);
+    const std::vector<ProbePoint> sensors = desk_sensors();
+    const SkyPatches patches(2);
+    std::vector<double> sky, reflected;
+    for (std::size_t p = 0; p < patches.size(); ++p)
+        sky.push_back(100 + 7 * double(p % 11)), reflected.push_back(p % 5 == 0 ? 0 : 300 + double(p));
+    const DaylightOptions options{.elements = 300, .rays_an_element = 64, .rays_a_sensor = 256};
+    Progress progress;
+    const DaylightMatrix matrix = make_daylight_matrix(room, sensors, patches, options, progress),
+                         column = make_daylight_column(room, sensors, patches, sky, reflected, options, progress);
+    ASSERT_EQ(column.sensors(), sensors.size());
+    ASSERT_EQ(column.patches, 1u);
+    constexpr double last_sweep = 1e-3;
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+        double straight = 0;
+        std::array<double, daylight_replicates> after{};
+        for (std::size_t p = 0; p < patches.size(); ++p) {
+            straight += sky[p] * double(matrix.direct[i * patches.size() + p]);
+            for (std::size_t k = 0; k < daylight_replicates; ++k)
+                after[k] += reflected[p] * double(matrix.replicates[k][i * patches.size() + p]);
+        }
+        EXPECT_NEAR(double(column.direct[i]), straight, 1e-5 * straight) << i;
+        for (std::size_t k = 0; k < daylight_replicates; ++k) {
+            ASSERT_GT(after[k], 0);
+            EXPECT_NEAR(double(column.replicates[k][i]), after[k], last_sweep * after[k]) << i;
+        }
+    }
+}
+
 TEST(Daylight, ASmallerRequestedErrorIsReached) {
     const Scene room = scene(true);
     DaylightResults results;
