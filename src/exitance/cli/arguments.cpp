@@ -185,6 +185,8 @@ const std::vector<Verb>& verbs() {
         {"viewfactors", "Writes the matrix of view factors between a scene's polygons.",
          "exitance viewfactors room.obj -o room.csv", parse_verb<ViewFactorArguments>,
          facts_of_verb<ViewFactorArguments>, "finished rows are written, with status 4; --resume continues from them"},
+        {"view3d", "Reads and writes files of NIST's View3D, in its place.", "exitance view3d room.vs3 room.vf",
+         parse_verb<View3dArguments>, facts_of_verb<View3dArguments>, "no file is written, with status 5"},
         {"heat", "Solves for the radiative heat between gray surfaces from view factors.",
          "exitance heat room_factors.h5 --table temperatures.csv -o heat.csv", parse_verb<HeatArguments>,
          facts_of_verb<HeatArguments>},

@@ -204,6 +204,12 @@ struct ViewFactorArguments : CommonArguments {
     int threads = 0;
 };
 
+struct View3dArguments : CommonArguments {
+    std::string input, output;
+    std::optional<double> error;  ///< Error of rows; empty: from the file's `eps`.
+    int threads = 0;
+};
+
 struct HeatArguments : CommonArguments {
     std::string factors, table;  ///< Files with view factors (.h5) and with the thermal state of their surfaces (.csv).
     std::string output, exchange, gebhart;  ///< Tables to write; empty: none.
@@ -230,8 +236,8 @@ struct ReferenceArguments : CommonArguments {
 using Command =
     std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, MixArguments, ExportArguments,
                  RenderArguments, BakeArguments, ReportArguments, DaylightArguments, CheckArguments, GenerateArguments,
-                 LuminaireArguments, ExperimentArguments, ViewFactorArguments, HeatArguments, ViewArguments,
-                 ReferenceArguments, LightProbeArguments>;
+                 LuminaireArguments, ExperimentArguments, ViewFactorArguments, View3dArguments, HeatArguments,
+                 ViewArguments, ReferenceArguments, LightProbeArguments>;
 
 /// Text to print instead of running a verb, for --help and --version.
 struct Information {

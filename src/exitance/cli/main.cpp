@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <system_error>
@@ -48,7 +49,10 @@ int main(int argc, char** argv) {
     if (const Result<void> joined = join_processes(); !joined)
         return static_cast<int>(Terminal({}).fail(joined.error()));
     try {
-        const int status = run_program({argv + 1, argv + std::max(argc, 1)});
+        std::vector<std::string> words(argv + 1, argv + std::max(argc, 1));
+        // Called as View3D's program, it takes that program's arguments.
+        if (argc > 0 && std::filesystem::path(argv[0]).filename() == "view3d") words.insert(words.begin(), "view3d");
+        const int status = run_program(words);
         leave_processes();
         return status;
     } catch (const std::system_error& failure) {  // of output that is printed directly

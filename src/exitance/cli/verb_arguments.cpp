@@ -271,6 +271,20 @@ void declare(CLI::App& app, ExperimentArguments& arguments) {
     declare_work(app, arguments, arguments.threads);
 }
 
+void declare(CLI::App& app, View3dArguments& arguments) {
+    app.add_option("IN", arguments.input,
+                   "Input file of View3D (.vs3). Its controls out (0 text, 1 binary), encl and emit count")
+        ->type_name("IN")
+        ->required();
+    app.add_option("OUT", arguments.output, "File with the factors (.vf) to write")->type_name("OUT")->required();
+    app.add_option_function<double>(
+           "--error", [&arguments](double e) { arguments.error = e; },
+           "Error of every row. Default: ten times the file's eps, from 1e-4 to 1e-2")
+        ->type_name("R")
+        ->check(CLI::Range(1e-6, 1.0));
+    declare_work(app, arguments, arguments.threads);
+}
+
 void declare(CLI::App& app, HeatArguments& arguments) {
     app.add_option("FACTORS", arguments.factors, "View factors, written by viewfactors as .h5")
         ->type_name("FACTORS")

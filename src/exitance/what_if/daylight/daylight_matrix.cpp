@@ -34,7 +34,7 @@ struct DaylightElements {
     ElementLocator locator;
 };
 
-/// What the columns of a matrix stand for: each a patch of the sky, or one column for all patches under a given sky.
+/// Meaning of the columns of a matrix: each is a patch of the sky, or one column is the sum of all under a given sky.
 struct Columns {
     std::size_t count = 0;
     std::span<const double> sky, reflected;  ///< Luminances of the patches of the one column; empty for a column each.

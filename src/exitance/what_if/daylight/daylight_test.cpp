@@ -169,7 +169,7 @@ TEST(Daylight, TheToldErrorAndTheIntervalsCoverTheTrueOnes) {
 }
 
 TEST(Daylight, OneColumnIsTheProductOfTheMatrixWithASky) {
-    // The same rays, so that only rounding to 32 bits and the last sweep of each solve (2e-4) differ. Reflected light
+    // Both use equal rays, so that only rounding to 32 bits and the last sweep of each solve (2e-4) differ. Reflected light
     // of another sky than the straight light shows a mix-up of the two.
     const Scene room = scene(true);
     const std::vector<ProbePoint> sensors = desk_sensors();

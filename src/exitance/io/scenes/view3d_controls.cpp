@@ -1,0 +1,45 @@
+#include "exitance/io/scenes/view3d_controls.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <map>
+
+#include "exitance/io/files/text_lines.hpp"
+#include "exitance/io/files/whole_file.hpp"
+
+namespace exitance {
+
+Result<View3dControls> read_view3d_controls(const std::string& path) {
+    const Result<std::string> text = read_whole_file(path);
+    if (!text) return text.error();
+    View3dControls out;
+    double row = 0, col = 0, encl = 0, emit = 0, format = 0;
+    const std::map<std::string, double*> known{{"eps", &out.eps}, {"row", &row},   {"col", &col},
+                                               {"encl", &encl},   {"emit", &emit}, {"out", &format}};
+    for (TextLines lines(*text); lines.next();) {
+        std::string line(lines.rest().substr(0, lines.rest().find_first_of("!/")));
+        std::replace_if(
+            line.begin(), line.end(), [](char c) { return c == ',' || c == '='; }, ' ');
+        TextLines items(line);
+        if (!items.next() || std::tolower(static_cast<unsigned char>(items.word().front())) != 'c') continue;
+        while (!items.rest().empty()) {
+            const auto control = known.find(std::string(items.word()));
+            double value = 0;
+            if (number_of_word(items.word(), value) != NumberKind::finite) break;  // read_view3d() warns of it
+            if (control == known.end()) continue;
+            if (control->second != &out.eps && (value != std::floor(value) || value < 0 || value > 1e6))
+                return Error{ErrorCode::bad_input,
+                             fmt::format("control {}={} is not a number of a choice", control->first, value), path,
+                             "give a whole number"};
+            *control->second = value;
+        }
+    }
+    out.row = static_cast<int>(row), out.col = static_cast<int>(col), out.out = static_cast<int>(format);
+    out.is_enclosure = encl != 0, out.has_emittances = emit != 0;
+    return out;
+}
+
+}  // namespace exitance

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "exitance/base/result.hpp"
+
+namespace exitance {
+
+/// Controls of a View3D input file (.vs3) that concern the result. Other controls steer View3D's integration.
+struct View3dControls {
+    double eps = 1e-4;            ///< Convergence of View3D's integration.
+    int row = 0, col = 0;         ///< The only row and column that View3D computes; 0: all.
+    bool is_enclosure = false;    ///< `encl`: rows are adjusted so that they add up to 1.
+    bool has_emittances = false;  ///< `emit`: the result are exchange factors of the gray surfaces (script F).
+    int out = 0;                  ///< Format of the result; 0: text, 1: binary.
+};
+
+/// Reads the `C` lines of a .vs3 file; the last value of a control counts. Errors: cannot_read, and bad_input for an
+/// integer control whose value is not one.
+Result<View3dControls> read_view3d_controls(const std::string& path);
+
+}  // namespace exitance

@@ -1,0 +1,117 @@
+// `exitance view3d IN OUT` in place of NIST's View3D.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+
+#include "cli/small_scene.hpp"
+
+namespace exitance::test {
+namespace {
+
+/// The inside of a unit cube, with controls and emittance.
+std::string cube(const std::string& controls, const std::string& emittance = "0.9") {
+    std::string text = "T cube\nF 3\n" + controls + "\n";
+    for (int k = 0; k < 8; ++k)
+        text += "V " + std::to_string(k + 1) + " " + std::to_string(k & 1) + " " + std::to_string(k >> 1 & 1) + " " +
+                std::to_string(k >> 2) + "\n";
+    const char* faces[] = {"1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4"};
+    for (int i = 0; i < 6; ++i)
+        text += "S " + std::to_string(i + 1) + " " + faces[i] + " 0 0 " + emittance + " face" + std::to_string(i + 1) +
+                "\n";
+    return text + "E\n";
+}
+
+/// The numbers of a text output after its header.
+std::vector<double> numbers_in(const std::string& text) {
+    std::istringstream in(text.substr(31));
+    std::vector<double> out;
+    for (double value; in >> value;) out.push_back(value);
+    return out;
+}
+
+constexpr double opposite = 0.199825, adjacent = 0.200044;  // exact factors of a cube, to six digits
+
+}  // namespace
+
+TEST(ProgramView3d, WritesWhatView3dWrites) {
+    const TemporaryFolder folder;
+    write_text(folder / "cube.vs3", cube("C out=0 eps=1e-5"));
+    const Finished run = run_program({"view3d", folder / "cube.vs3", folder / "cube.vf"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const std::string text = read_text(folder / "cube.vf");
+    EXPECT_EQ(text.substr(0, 31), "View3D 4.0.0 0 0 0 6          \n");
+    const std::vector<double> numbers = numbers_in(text);
+    ASSERT_EQ(numbers.size(), 6u + 36 + 6);
+    for (std::size_t i = 0; i < 6; ++i) {
+        EXPECT_EQ(numbers[i], 1);
+        EXPECT_EQ(numbers[42 + i], 0.9);
+        for (std::size_t j = 0; j < 6; ++j) {
+            const double exact = i == j ? 0 : i / 2 == j / 2 ? opposite : adjacent;
+            EXPECT_NEAR(numbers[6 + 6 * i + j], exact, 1.5e-6) << i << " " << j;  // both are rounded to six digits
+        }
+    }
+}
+
+TEST(ProgramView3d, WritesBinaryFilesOfTheSameNumbers) {
+    const TemporaryFolder folder;
+    write_text(folder / "cube.vs3", cube("C out=1,encl=1"));
+    ASSERT_EQ(run_program({"view3d", folder / "cube.vs3", folder / "cube.vf"}).status, 0);
+    const std::string bytes = read_text(folder / "cube.vf");
+    ASSERT_EQ(bytes.size(), 32 + 4 * (2 * 6 + 36u));
+    EXPECT_EQ(bytes.substr(0, 32), "View3D 4.0.0 1 1 0 6          \r\n");
+    std::vector<float> numbers((bytes.size() - 32) / 4);
+    std::memcpy(numbers.data(), bytes.data() + 32, 4 * numbers.size());
+    for (std::size_t i = 0; i < 6; ++i) {
+        double sum = 0;
+        for (std::size_t j = 0; j < 6; ++j) sum += double(numbers[6 + 6 * i + j]);
+        EXPECT_NEAR(sum, 1, 1e-6) << "an enclosure's rows add up to 1, up to the rounding of 32 bits";
+    }
+}
+
+TEST(ProgramView3d, EmittancesGiveExchangeFactors) {
+    // In an enclosure of equal emittances e, each row of script F adds up to e.
+    const TemporaryFolder folder;
+    write_text(folder / "cube.vs3", cube("C emit=1 encl=1", "0.4"));
+    const Finished run = run_program({"view3d", folder / "cube.vs3", folder / "cube.vf"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.err.find("is ignored"), std::string::npos) << run.err;
+    const std::vector<double> numbers = numbers_in(read_text(folder / "cube.vf"));
+    for (std::size_t i = 0; i < 6; ++i) {
+        double sum = 0;
+        for (std::size_t j = 0; j < 6; ++j) sum += numbers[6 + 6 * i + j];
+        EXPECT_NEAR(sum, 0.4, 6e-6) << "six numbers of six digits";
+        EXPECT_GT(numbers[6 + 7 * i], 0) << "a face absorbs some of its own light";
+    }
+}
+
+TEST(ProgramView3d, AnswersToTheNameOfView3d) {
+    const TemporaryFolder folder;
+    write_text(folder / "cube.vs3", cube(""));
+    std::filesystem::create_symlink(test::program(), folder / "view3d");
+    const Finished run = RunningProgram({folder / "cube.vs3", folder / "cube.vf"}, {}, folder / "view3d").finish();
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(numbers_in(read_text(folder / "cube.vf")).size(), 48u);
+}
+
+TEST(ProgramView3d, SaysWhatItCannotDo) {
+    const TemporaryFolder folder;
+    const std::string scene = folder / "cube.vs3", out = folder / "cube.vf";
+    write_text(scene, cube("C out=2"));
+    EXPECT_EQ(run_program({"view3d", scene, out}).status, 3);
+    write_text(scene, cube("C out=0.5"));
+    EXPECT_EQ(run_program({"view3d", scene, out}).status, 3);
+    EXPECT_EQ(run_program({"view3d", folder / "none.vs3", out}).status, 3);
+    EXPECT_EQ(run_program({"view3d", folder / "cube.obj", out}).status, 2);
+    write_text(scene, cube(""));
+    EXPECT_EQ(run_program({"view3d", scene, scene}).status, 2);
+    EXPECT_FALSE(std::filesystem::exists(out));
+    write_text(scene, cube("C row=2"));
+    const Finished row = run_program({"view3d", scene, out});
+    EXPECT_EQ(row.status, 0);
+    EXPECT_NE(row.err.find("all rows are computed"), std::string::npos) << row.err;
+}
+
+}  // namespace exitance::test
