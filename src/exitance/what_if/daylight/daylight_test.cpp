@@ -169,8 +169,8 @@ TEST(Daylight, TheToldErrorAndTheIntervalsCoverTheTrueOnes) {
 }
 
 TEST(Daylight, OneColumnIsTheProductOfTheMatrixWithASky) {
-    // Both use equal rays, so that only rounding to 32 bits and the last sweep of each solve (2e-4) differ. Reflected light
-    // of another sky than the straight light shows a mix-up of the two.
+    // Both use equal rays, so that only rounding to 32 bits and the last sweep of each solve (2e-4) differ. Reflected
+    // light of another sky than the straight light shows a mix-up of the two.
     const Scene room = scene(true);
     const std::vector<ProbePoint> sensors = desk_sensors();
     const SkyPatches patches(2);
