@@ -77,10 +77,11 @@ TEST(ProgramLimits, ATimeLimitLeavesACompletePictureOfFewerSamples) {
 TEST(ProgramLimits, ASignalLeavesThePictureSoFar) {
     const TemporaryFolder folder;
     ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
-    RunningProgram program({"render", folder / "s.h5", "-o", folder / "p.png", "--size", "1000x800", "--samples",
-                            "1024", "--camera", "0.5,0.5,0.5 2,0.5,0.4", "--progress", "json"});
+    // The first pass takes some 30 ms, all samples half a minute.
+    RunningProgram program({"render", folder / "s.h5", "-o", folder / "p.png", "--size", "200x160", "--samples", "1024",
+                            "--camera", "0.5,0.5,0.5 2,0.5,0.4", "--progress", "json"});
     ASSERT_TRUE(program.wait_for("\"fraction\":0.0"));
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1000));
     program.send(SIGINT);
     const Finished run = program.finish();
     EXPECT_EQ(run.status, 130) << run.err;
