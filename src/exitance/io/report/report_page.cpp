@@ -87,10 +87,10 @@ std::string requirements(const ReportContent& content, const ReportFigures& figu
             "{}\">{}"
             "</td></tr>\n",
             escaped(j.where), j.quantity, j.quantity == "UGR" ? "at most" : "at least", j.required, unit,
-            j.verdict == Verdict::not_measured ? "-" : short_figure(j.reached) + unit,
-            j.verdict == Verdict::missed         ? "missed"
-            : j.verdict == Verdict::not_measured ? "unknown"
-                                                 : "reached",
+            j.verdict == Fulfilment::not_measured ? "-" : short_figure(j.reached) + unit,
+            j.verdict == Fulfilment::missed         ? "missed"
+            : j.verdict == Fulfilment::not_measured ? "unknown"
+                                                    : "reached",
             words_of(j.verdict));
     }
     return html +

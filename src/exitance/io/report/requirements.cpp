@@ -22,10 +22,10 @@ Error misuse(const std::string& words, const std::string& why) {
             "for example: --require 'desk: Em 500, U0 0.6' or 'UGR 19'"};
 }
 
-Verdict verdict_on(double reached, double required, double error, bool is_upper_limit) {
+Fulfilment verdict_on(double reached, double required, double error, bool is_upper_limit) {
     const double excess = is_upper_limit ? required - reached : reached - required;
-    if (excess >= 0) return Verdict::reached;
-    return -excess <= error ? Verdict::within_error : Verdict::missed;
+    if (excess >= 0) return Fulfilment::reached;
+    return -excess <= error ? Fulfilment::within_error : Fulfilment::missed;
 }
 
 class Judge {
@@ -107,15 +107,15 @@ std::vector<Judgement> judge(const ReportContent& content, const ReportFigures& 
     return Judge(content, figures).all();
 }
 
-std::string words_of(Verdict verdict) {
+std::string words_of(Fulfilment verdict) {
     switch (verdict) {
-        case Verdict::reached:
+        case Fulfilment::reached:
             return "reached";
-        case Verdict::within_error:
+        case Fulfilment::within_error:
             return "reached within the error";
-        case Verdict::missed:
+        case Fulfilment::missed:
             return "missed";
-        case Verdict::not_measured:
+        case Fulfilment::not_measured:
             return "not measured";
     }
     return "";

@@ -10,7 +10,7 @@
 namespace exitance {
 
 /// How a measured number compares with a required one.
-enum class Verdict {
+enum class Fulfilment {
     reached,
     within_error,  ///< The difference to the required number is smaller than the error of the light.
     missed,
@@ -22,7 +22,7 @@ struct Judgement {
     std::string where, quantity;  ///< Plane or observers, and symbol: "Em", "U0", "Ez" or "UGR".
     double required = 0;
     double reached = std::numeric_limits<double>::quiet_NaN();  ///< NaN if not measured.
-    Verdict verdict = Verdict::not_measured;
+    Fulfilment verdict = Fulfilment::not_measured;
 };
 
 /// Parses a requirement such as "desk: Em 500, U0 0.6", "Ez 150" or "UGR 19": a name of planes (without one: all of
@@ -36,6 +36,6 @@ Result<Requirement> read_requirement(const std::string& words);
 std::vector<Judgement> judge(const ReportContent& content, const ReportFigures& figures);
 
 /// Words for the page: "reached", "reached within the error", "missed", "not measured".
-std::string words_of(Verdict verdict);
+std::string words_of(Fulfilment verdict);
 
 }  // namespace exitance
