@@ -72,7 +72,8 @@ Result<std::array<double, 4>> read_row(const LineReader& lines, std::string_view
                                    "the column surface holds numbers from 1, 0 for all, or names of rows");
             value = static_cast<double>(named - names.begin() + 1);
         }
-        if (!value) return lines.error(fmt::format("'{}' is not a number", shown(fields[k])), "");
+        // Empty cells stand for unknown values as NaN does within the table; the word "nan" of a file does not.
+        if (!value || std::isnan(*value)) return lines.error(fmt::format("'{}' is not a number", shown(fields[k])), "");
         row[columns[k]] = *value;
     }
     return row;

@@ -38,7 +38,8 @@ TEST(ThermalTable, WrongColumnsRowsAndValuesAreErrors) {
          {"surface,emissivty\n1,0.5\n", "surface,heat,heat\n1,1,1\n", "surface,heat\n1,1,2\n", "surface,heat\n1\n",
           "surface,temperature,heat\n1,300,5\n", "surface;heat\n1;1\n", "surface,emissivity\n1,0\n",
           "surface,temperature\n1,-1\n", "surface,heat\n1,x\n", "", "surface,heat\n,1\n", "surface,heat\n3,1\n",
-          "surface,heat\n1.5,1\n", "surface,heat\n-1,1\n", "heat\n1\n"})
+          "surface,heat\n1.5,1\n", "surface,heat\n1,nan\n", "surface,emissivity\n0,NaN\n", "surface,heat\n-1,1\n",
+          "heat\n1\n"})
         EXPECT_FALSE(read(text)) << text;
 }
 
