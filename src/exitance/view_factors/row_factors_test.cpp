@@ -193,9 +193,13 @@ TEST(RowFactors, KeepInvariantsOnRandomScenes) {
         RandomStream random(seed, Stream::reference, 1);
         const auto between = [&](double a, double b) { return a + (b - a) * random.uniform(); };
         std::vector<Outline> faces;
-        for (int k = 0; k < 4; ++k)  // in different quadrants, so that boxes do not intersect
-            add_box(faces, {2.0 * (k % 2) + between(0.9, 1.1), 2.0 * (k / 2) + between(0.9, 1.1), between(0, 2)},
-                    {between(0.3, 1.1), between(0.3, 1.1), between(0.3, 1.5)}, between(0, 3), false);
+        for (int k = 0; k < 4; ++k) {  // in different quadrants, so that boxes do not intersect
+            // In statements of their own: compilers evaluate arguments in different orders.
+            const double turn = between(0, 3);
+            const Vec3 size{between(0.3, 1.1), between(0.3, 1.1), between(0.3, 1.5)};
+            const Point centre{2.0 * (k % 2) + between(0.9, 1.1), 2.0 * (k / 2) + between(0.9, 1.1), between(0, 2)};
+            add_box(faces, centre, size, turn, false);
+        }
         const SparseFactors without = factors_of(scene_of(faces), {.error = R});
         std::vector<Outline> more = faces;
         const double at = between(0, 4);  // a screen through the scene
