@@ -24,10 +24,7 @@ double BodyMeasure::standard_error() const {
 }
 
 double BodyMeasure::reference() const {
-    // Smallest reference as a share of the room's light, given by the norm of errors by part: dark bodies are judged as
-    // if they had this light.
-    constexpr double min_share = 0.1;
-    return weight_ > 0 ? std::max(mean_reflected(), min_share * light_ / weight_) : 0;
+    return weight_ > 0 ? std::max(mean_reflected(), least_body_light * light_ / weight_) : 0;
 }
 
 std::optional<double> BodyMeasure::error(double requested) const {

@@ -13,9 +13,6 @@
 
 namespace exitance {
 
-/// Error that each body may have, as a multiple of the error requested for the whole.
-constexpr double max_body_errors = 3;  // given by the norm of errors by part
-
 /// Error of one body, accumulated from points on it.
 class BodyMeasure {
   public:

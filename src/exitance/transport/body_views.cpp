@@ -109,8 +109,6 @@ std::vector<double> own_light(const Stage& stage, const BodyViews& views, const 
 BodyNeeds::BodyNeeds(const Stage& stage, const BodyViews& views, const DirectProjection& light, double tolerance,
                      std::span<const double> light_of_room)
     : views_(views), regions_(stage.scene.regions().size()), at_(views.hits().size()) {
-    // Smallest light that errors of a body are relative to, derived from the norm of errors by part.
-    constexpr double share_of_room = 0.1;
     follow(light.tree);
     allowed_ = own_light(stage, views, light);
     for (std::size_t i = 0; i < at_.size(); ++i) {
@@ -125,7 +123,7 @@ BodyNeeds::BodyNeeds(const Stage& stage, const BodyViews& views, const DirectPro
         room_light_[b] = light_of_room[stage.rooms.at(region, centroid(stage.scene.outline(first)))];
     }
     for (std::size_t b = 0; b < allowed_.size(); ++b) {
-        const double reference = std::max(allowed_[b], share_of_room * room_light_[b]);
+        const double reference = std::max(allowed_[b], least_body_light * room_light_[b]);
         allowed_[b] = reference > 0 ? tolerance * reference : unlimited;
     }
     find_limits(light.tree);
@@ -146,34 +144,31 @@ void BodyNeeds::follow(const ElementTree& tree) {
 }
 
 void BodyNeeds::find_limits(const ElementTree& tree) {
-    /// Weights of the rays of one body that hit an element: of all, and of those from nearer than its width.
-    struct Weights {
-        std::array<double, cells> all{}, near{};
-        bool is_new = true;
-    };
     most_ = Field<ElementId, Limits>(tree.size());
-    std::vector<Weights> weights_of(tree.size());
-    std::vector<ElementId> seen;
     const std::span<const BodyViews::Hit> hits = views_.hits();
-    for (std::size_t first = 0, last = 0; first < hits.size(); first = last) {
+    std::vector<std::uint32_t> of_body;  // hits of one body, those of an element together
+    for (std::uint32_t first = 0, last = 0; first < hits.size(); first = last) {
         const std::uint32_t body = hits[first].body;
-        seen.clear();
-        for (; last < hits.size() && hits[last].body == body; ++last) {
-            const auto& [e, uv] = at_[last];
-            Weights& weights = weights_of[e.value];
-            if (std::exchange(weights.is_new, false)) seen.push_back(e);
-            weights.all[cell_of(uv)] += hits[last].weight;
-            if (hits[last].distance * hits[last].distance < tree.area(e))
-                weights.near[cell_of(uv)] += hits[last].weight;
-        }
-        const auto lower = [](double& limit, double to) { limit = std::min(limit, to); };
-        for (ElementId e : seen) {
-            const auto [all, near, is_new] = std::exchange(weights_of[e.value], {});
-            Limits& most = most_[e];
+        of_body.clear();
+        for (; last < hits.size() && hits[last].body == body; ++last) of_body.push_back(last);
+        std::sort(of_body.begin(), of_body.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return std::pair(at_[a].element.value, a) < std::pair(at_[b].element.value, b);
+        });
+        for (std::size_t k = 0; k < of_body.size();) {
+            const ElementId e = at_[of_body[k]].element;
+            // Weights of the rays that hit the cells of the element: of all, and of those from nearer than its width.
+            std::array<double, cells> all{}, near{};
+            for (; k < of_body.size() && at_[of_body[k]].element == e; ++k) {
+                const BodyViews::Hit& hit = hits[of_body[k]];
+                const std::size_t cell = cell_of(at_[of_body[k]].uv);
+                all[cell] += hit.weight;
+                if (hit.distance * hit.distance < tree.area(e)) near[cell] += hit.weight;
+            }
+            const auto lower = [](double& limit, double to) { limit = std::min(limit, to); };
             const double squares = std::inner_product(all.begin(), all.end(), all.begin(), 0.0);
-            lower(most.everywhere, allowed_[body] / std::sqrt(cells * squares));
-            lower(most.in_a_cell, allowed_[body] / *std::max_element(all.begin(), all.end()));
-            lower(most.in_a_near_cell,
+            lower(most_[e].everywhere, allowed_[body] / std::sqrt(cells * squares));
+            lower(most_[e].in_a_cell, allowed_[body] / *std::max_element(all.begin(), all.end()));
+            lower(most_[e].in_a_near_cell,
                   allowed_[body] / (room_light_[body] * *std::max_element(near.begin(), near.end())));
         }
     }

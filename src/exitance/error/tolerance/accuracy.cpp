@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/error/body_errors.hpp"
+#include "exitance/scene/bodies.hpp"
 
 namespace exitance {
 namespace {

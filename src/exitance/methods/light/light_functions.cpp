@@ -280,8 +280,6 @@ std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light) 
 
 std::vector<double> light_of_bodies(const Stage& stage, const GlobalLight& light, const SceneBodies& bodies,
                                     std::span<const double> light_in) {
-    // Smallest light that errors of a body are relative to, derived from the norm of errors by part.
-    constexpr double share_of_room = 0.1;
     const double mean_light = light.mean_reflected(stage.area);
     std::vector<double> flux(bodies.all.size()), area(flux.size()), least(flux.size());
     for (std::size_t i = 0; i < light.reflected.size(); ++i) {
@@ -291,7 +289,7 @@ std::vector<double> light_of_bodies(const Stage& stage, const GlobalLight& light
         const std::uint32_t body = bodies.of(stage.scene, region);
         area[body] += light.tree.area(e), flux[body] += light.tree.area(e) * mean(light.reflected[i]);
         const double of_room = mean_light * (light_in.empty() ? 1 : light_in[stage.rooms.of(light.tree, e)]);
-        least[body] = std::max(least[body], share_of_room * of_room);
+        least[body] = std::max(least[body], least_body_light * of_room);
     }
     std::vector<double> out(stage.scene.regions().size());
     for (RegionId region : stage.scene.regions().ids()) {

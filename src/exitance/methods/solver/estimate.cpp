@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/error/body_errors.hpp"
 #include "exitance/error/clustering_error.hpp"
 #include "exitance/error/further_looks.hpp"
 #include "exitance/evaluate/energy.hpp"
