@@ -91,13 +91,7 @@ std::string manifest(const Scene& scene, const LightMaps& light, LightMapQuantit
         text += fmt::format("{}\n    {{\"file\": \"{}.exr\", \"preview\": \"{}.png\", \"width\": {}, \"height\": {}}}",
                             m > 0 ? "," : "", light_map_stem(m), light_map_stem(m), light.maps[m].size.width,
                             light.maps[m].size.height);
-    if (!groups.empty()) text += "\n  ],\n  \"groups\": [";
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-        text += fmt::format("{}\n    {{\"name\": {}, \"files\": [", g > 0 ? "," : "", json_text(groups[g]));
-        for (std::size_t m = 0; m < light.maps.size(); ++m)
-            text += fmt::format("{}\"{}.exr\"", m > 0 ? ", " : "", light_map_stem(m, g));
-        text += "]}";
-    }
+    text += groups_json(groups, light.maps.size());
     text += "\n  ],\n  \"charts\": [";
     for (SurfaceId s : scene.surfaces().ids()) {
         const RegionId region = scene.surfaces()[s].region;
@@ -131,6 +125,18 @@ Result<void> write_pictures(const Scene& scene, const LightMaps& light, std::opt
 
 std::string light_map_stem(std::size_t map, std::optional<std::size_t> group) {
     return group ? fmt::format("lightmap_{}_{}", map, *group) : fmt::format("lightmap_{}", map);
+}
+
+std::string groups_json(std::span<const std::string> groups, std::size_t maps) {
+    std::string text;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        text += g > 0 ? "," : "\n  ],\n  \"groups\": [";
+        text += fmt::format("\n    {{\"name\": {}, \"files\": [", json_text(groups[g]));
+        for (std::size_t m = 0; m < maps; ++m)
+            text += fmt::format("{}\"{}.exr\"", m > 0 ? ", " : "", light_map_stem(m, g));
+        text += "]}";
+    }
+    return text;
 }
 
 std::string_view name_of(LightMapQuantity quantity) {

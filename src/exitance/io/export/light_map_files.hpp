@@ -34,6 +34,9 @@ struct LightMapFormat {
 
 /// File name without ending: lightmap_0, or lightmap_0_2 for light group 2 only.
 std::string light_map_stem(std::size_t map, std::optional<std::size_t> group = {});
+/// Formats the end of the list of maps in lightmaps.json and, if there are any, the light groups with the files of
+/// each.
+std::string groups_json(std::span<const std::string> groups, std::size_t maps);
 /// Unit of a quantity in a scene's maps.
 const char* unit_of(const Scene& scene, LightMapQuantity quantity);
 std::string_view name_of(LightMapQuantity quantity);

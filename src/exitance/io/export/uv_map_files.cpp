@@ -116,13 +116,7 @@ Result<void> write_uv_manifest(const Scene& scene, const UvSet& set, const UvLig
             map.density, map.shared_texels, map.close_texels,
             charts.empty() ? std::string() : fmt::format(", \"charts\": {}", json_text(charts[m])));
     }
-    if (!groups.empty()) text += "\n  ],\n  \"groups\": [";
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-        text += fmt::format("{}\n    {{\"name\": {}, \"files\": [", g > 0 ? "," : "", json_text(groups[g]));
-        for (std::size_t m = 0; m < light.maps.size(); ++m)
-            text += fmt::format("{}\"{}.exr\"", m > 0 ? ", " : "", light_map_stem(m, g));
-        text += "]}";
-    }
+    text += groups_json(groups, light.maps.size());
     text += "\n  ],\n  \"objects\": [";
     const char* comma = "\n";
     for (const UvObject& object : light.layout.objects) {
