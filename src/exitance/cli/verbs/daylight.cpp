@@ -80,6 +80,28 @@ std::vector<SensorGrid> grids_of(const std::string& sensors, std::size_t count) 
     return grids;
 }
 
+void warn_of(const Weather& weather, const std::string& file, Progress& progress) {
+    for (const std::string& warning : weather.warnings) progress.warn(fmt::format("{}: {}", file, warning));
+    if (const std::string partial = weather.not_a_year(); !partial.empty())
+        progress.warn(
+            fmt::format("{}: {}: sDA, ASE and the levels of EN 17037 are defined for whole years", file, partial));
+}
+
+/// Prints the results. Returns the exit code: whether every grid has the requested error.
+ExitCode tell(const DaylightResults& results, const DaylightArguments& arguments, Terminal& terminal) {
+    if (arguments.json)
+        terminal.print(values_json(summary_values(results)));
+    else if (!arguments.quiet)
+        terminal.print(as_text(results, arguments.output));
+    const DaylightError error = results.worst_error();
+    if (std::max(error.factor, error.lux_hours) <= arguments.error) return ExitCode::done;
+    terminal.progress().warn(fmt::format(
+        "the error of {:.2g}% is above the requested {:.2g}%{}", 100 * std::max(error.factor, error.lux_hours),
+        100 * arguments.error,
+        results.bias.patches > arguments.error ? ": the patches of the sky are too coarse (--sky-patches)" : ""));
+    return ExitCode::demand_not_reached;
+}
+
 }  // namespace
 
 /// Runs `exitance daylight SCENE --epw WEATHER --points SENSORS -o FOLDER`.
@@ -87,11 +109,7 @@ ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     const Result<Weather> weather = load_epw(arguments.epw);
     if (!weather) return terminal.fail(weather.error());
-    for (const std::string& warning : weather->warnings)
-        terminal.progress().warn(fmt::format("{}: {}", arguments.epw, warning));
-    if (const std::string partial = weather->not_a_year(); !partial.empty())
-        terminal.progress().warn(fmt::format("{}: {}: sDA, ASE and the levels of EN 17037 are defined for whole years",
-                                             arguments.epw, partial));
+    warn_of(*weather, arguments.epw, terminal.progress());
     const std::string sensors = sensor_file(arguments);
     if (sensors.empty())
         return terminal.fail({ErrorCode::usage, "there are no sensors", "--points", "name a file with points"});
@@ -139,17 +157,7 @@ ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
             return terminal.fail(written.error());
     }
     terminal.progress().finish();
-    if (arguments.json)
-        terminal.print(values_json(summary_values(results)));
-    else if (!arguments.quiet)
-        terminal.print(as_text(results, arguments.output));
-    const DaylightError error = results.worst_error();
-    if (std::max(error.factor, error.lux_hours) <= arguments.error) return ExitCode::done;
-    terminal.progress().warn(fmt::format(
-        "the error of {:.2g}% is above the requested {:.2g}%{}", 100 * std::max(error.factor, error.lux_hours),
-        100 * arguments.error,
-        results.bias.patches > arguments.error ? ": the patches of the sky are too coarse (--sky-patches)" : ""));
-    return ExitCode::demand_not_reached;
+    return tell(results, arguments, terminal);
 }
 
 }  // namespace exitance
