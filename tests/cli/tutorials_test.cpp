@@ -46,10 +46,10 @@ TEST_P(Tutorials, RunsAsWritten) {
     EXPECT_TRUE(run.out.ends_with("the end\n")) << run.out << run.err;
 }
 
-TEST_P(Tutorials, ShowsExistingPictures) {
+TEST_P(Tutorials, LinksToExistingPagesAndPictures) {
     const std::string text = read_text(tutorials / (std::string(GetParam()) + ".md"));
     for (std::size_t at = 0; (at = text.find("](", at)) != std::string::npos; ++at) {
-        const std::string target = text.substr(at + 2, text.find(')', at) - at - 2);
+        const std::string target = text.substr(at + 2, text.find_first_of(")#", at) - at - 2);
         EXPECT_TRUE(std::filesystem::exists(tutorials / target)) << target;
     }
 }
