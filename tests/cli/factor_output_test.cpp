@@ -79,6 +79,21 @@ TEST(FactorOutput, NodesAreMeansOfTheirFaces) {
     EXPECT_GT(groups[2][first + 2], 0.2);                                                     // walls see each other
     EXPECT_EQ(rows_with("materials.csv", {"--nodes", "material"}).size(), 2u);
     EXPECT_EQ(run_program({"viewfactors", scene, "-o", folder / "x.csv", "--nodes", folder / "absent.csv"}).status, 3);
+    write_text(folder / "wide.csv", "face,node\n1,floor,2\n");
+    const Finished wide = run_program({"viewfactors", scene, "-o", folder / "x.csv", "--nodes", folder / "wide.csv"});
+    EXPECT_EQ(wide.status, 3);
+    EXPECT_NE(wide.err.find("more than two fields"), std::string::npos) << wide.err;
+}
+
+/// A mistake in the table of emissivities is told before hours of work, and leaves no work file.
+TEST(FactorOutput, EmissivitiesAreReadBeforeTheWork) {
+    const TemporaryFolder folder;
+    write_text(folder / "e.csv", "surface,emissivity\n1,1.5\n");
+    const Finished run =
+        run_program({"viewfactors", write_small_room(folder), "-o", folder / "f.h5", "--emissivity", folder / "e.csv"});
+    EXPECT_EQ(run.status, 3);
+    EXPECT_NE(run.err.find("e.csv:2"), std::string::npos) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "f.h5.rows"));
 }
 
 TEST(FactorOutput, EnergyPlusAndOpenFoamHaveEveryRow) {

@@ -69,6 +69,16 @@ Result<std::optional<FactorNodes>> nodes_of(const ViewFactorArguments& arguments
     return std::optional(std::move(*table));
 }
 
+Result<void> check_emissivities(const ViewFactorArguments& arguments, const Scene& scene,
+                                const std::optional<FactorNodes>& nodes) {
+    if (arguments.emissivity.empty() || arguments.emissivity == "kd") return {};
+    SparseFactors rows;  // only their number and names matter
+    rows.areas.assign(nodes ? nodes->names.size() : scene.surfaces().size(), 1);
+    if (nodes) rows.names = nodes->names;
+    const auto surfaces = read_thermal_table(arguments.emissivity, rows);
+    return surfaces ? Result<void>() : surfaces.error();
+}
+
 Result<void> write_factor_output(const ViewFactorArguments& arguments, const Scene& scene, const Point& scene_origin,
                                  const std::optional<FactorNodes>& nodes, SparseFactors table,
                                  const StopRequest& stop) {

@@ -18,6 +18,10 @@ Result<void> check_output_options(const ViewFactorArguments& arguments);
 /// Errors: those of read_node_table.
 Result<std::optional<FactorNodes>> nodes_of(const ViewFactorArguments& arguments, const Scene& scene);
 
+/// Returns the error of the table that --emissivity names, so that it is known before the view factors are computed.
+Result<void> check_emissivities(const ViewFactorArguments& arguments, const Scene& scene,
+                                const std::optional<FactorNodes>& nodes);
+
 /// Merges the rows of faces into nodes, adds exchange factors if --emissivity is set, and writes the output.
 /// scene_origin: subtracted from the coordinates of the scene's file, metres.
 Result<void> write_factor_output(const ViewFactorArguments& arguments, const Scene& scene, const Point& scene_origin,

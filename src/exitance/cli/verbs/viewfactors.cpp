@@ -120,6 +120,8 @@ class ViewFactorRun {
     ExitCode operator()() {
         const Result<std::optional<FactorNodes>> nodes = nodes_of(arguments_, scene_);
         if (!nodes) return terminal_.fail(nodes.error());
+        if (const Result<void> known = check_emissivities(arguments_, scene_, *nodes); !known)
+            return terminal_.fail(known.error());
         if (const Result<void> opened = open_work_file(); !opened) return terminal_.fail(opened.error());
         const Stopwatch time;
         SparseFactors table = compute();

@@ -92,7 +92,8 @@ Result<Requirement> read_requirement(const std::string& words) {
         Requirement::Limit limit;
         std::string more;
         if (!(in >> limit.quantity >> limit.value) || in >> more || !(limit.value > 0) || !std::isfinite(limit.value))
-            return misuse(words, fmt::format("'{}' is not a quantity and a positive number", trimmed(item)));
+            return misuse(words, fmt::format("'{}' is not a quantity and a positive number{}", trimmed(item),
+                                             more.empty() ? "" : "; separate quantities by commas"));
         if (std::find(quantities.begin(), quantities.end(), limit.quantity) == quantities.end())
             return misuse(words, fmt::format("'{}' is not Em, U0, Ez or UGR", limit.quantity));
         if (limit.quantity == "UGR" && !out.plane.empty())

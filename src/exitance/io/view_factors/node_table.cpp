@@ -76,6 +76,9 @@ Result<FactorNodes> read_node_table(const std::string& path, std::size_t faces) 
         if (!number || *number < 1 || *number > static_cast<long long>(faces))
             return lines->error(fmt::format("there is no face '{}'", shown(face)),
                                 fmt::format("faces are numbered from 1 to {}", faces));
+        const bool is_quoted = line->find('"') != std::string_view::npos;
+        if (!is_quoted && node.find(',') != std::string::npos)
+            return lines->error("a line has more than two fields", hint + "; put a name with a comma in quotes");
         if (node.empty()) return lines->error("the name of the node is missing", hint);
         std::uint32_t& row = nodes.row_of_face[static_cast<std::size_t>(*number - 1)];
         if (row != no_row) return lines->error(fmt::format("face {} has a node already", *number), "name it once");
