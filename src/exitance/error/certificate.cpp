@@ -259,14 +259,13 @@ std::vector<Spectrum> Certifier::Content::late_response() const {
     return one;
 }
 
-/// Estimates the error of each room. The parts of the residual are then averaged over the rooms, each relative to its
-/// allowed error.
+/// Estimates the error of each room.
 void Certifier::Content::judge_rooms(Certificate& out) {
     const std::size_t count = stage.rooms.count();
     const std::vector<double> found = mean_by_room();
     if (count == 0) {
         rooms = {{stage.area, found[0], out.estimate, out.mean_reflected}};
-        out.worst_room = out.of_rooms = out.estimate, out.room_uncertainty = out.uncertainty;
+        out.worst_room = out.estimate, out.room_uncertainty = out.uncertainty;
         return;
     }
     std::vector<std::array<double, batches>> squares(count);
@@ -281,26 +280,20 @@ void Certifier::Content::judge_rooms(Certificate& out) {
         method[s.room] += s.weight * mean((s.r1 - s.local1) * (s.r2 - s.local2));
     }
     rooms.clear();
-    double all = 0, all_local = 0, all_method = 0;
     for (std::size_t room = 0; room < count; ++room) {
         const double light_there = options.light_in[room] * mean_reflected;
         for (double& square : squares[room]) square /= weight[room] > 0 ? weight[room] : 1;
         const BatchMean error(squares[room]);
         const double estimate = std::sqrt(std::max(error.mean, error.standard_error)) / light_there;
         rooms.push_back({stage.rooms.area(room), found[room], estimate, light_there});
-        if (estimate > out.worst_room) {
-            out.worst_room = estimate;
-            out.room_uncertainty = 0.5 * error.standard_error / (estimate * light_there * light_there);
-        }
-        const double allowed = options.allowed_in[room] * mean_reflected, by_allowed = light_there / allowed;
-        const auto relative = [&](double sum) { return told[room] > 0 ? sum / told[room] / (allowed * allowed) : 0; };
-        const double share = 1 / static_cast<double>(count);
-        all += share * estimate * estimate * by_allowed * by_allowed;
-        all_local += share * std::max(0.0, relative(local[room]));
-        all_method += share * std::max(0.0, relative(method[room]));
+        if (estimate <= out.worst_room) continue;
+        out.worst_room = estimate;
+        out.room_uncertainty = 0.5 * error.standard_error / (estimate * light_there * light_there);
+        if (estimate <= out.estimate) continue;
+        out.largest_room = room, out.largest_light = light_there;
+        const auto part = [&](double sum) { return std::sqrt(std::max(0.0, sum / told[room])) / light_there; };
+        if (told[room] > 0) out.local = part(local[room]), out.method = part(method[room]);
     }
-    out.of_rooms = std::sqrt(all);
-    out.local = std::sqrt(all_local), out.method = std::sqrt(all_method);
 }
 
 /// Returns the mean reflected radiosity of the true light, to which errors are relative, W/m^2: that of the method's
@@ -335,7 +328,7 @@ Certificate Certifier::Content::judge() {
         }
         out.rays += s.rays;
     }
-    out.mean_reflected = true_mean(mean_error);
+    out.mean_reflected = out.largest_light = true_mean(mean_error);
     const BatchMean residual(residual_squared), error(error_squared);
     const double upper = std::max(0.0, residual.mean) + student_95 * residual.standard_error;
     out.residual = std::sqrt(std::max(0.0, residual.mean)) / out.mean_reflected;
@@ -374,10 +367,10 @@ void Certifier::Content::check_late(Certificate& out) {
     const LatePaths by_paths(stage, indirect, b, check, options.direct_in_elements);
     const LateMisfit misfit = by_paths.misfit(samples, late, options.seed, options.check_rays / 2);
     out.rays += misfit.rays;
-    if (misfit.mean_square <= 2 * misfit.standard_error) return;
+    if (!misfit.is_significant()) return;
     const double more = std::sqrt(misfit.mean_square) / out.mean_reflected;
     out.estimate = std::hypot(out.estimate, more), out.bound = std::hypot(out.bound, more);
-    if (stage.rooms.count() == 0) out.worst_room = out.of_rooms = rooms[0].error = out.estimate;
+    if (stage.rooms.count() == 0) out.worst_room = rooms[0].error = out.estimate;
 }
 
 void Certifier::Content::tell_p99(Certificate& out) {

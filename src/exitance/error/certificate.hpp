@@ -66,17 +66,19 @@ struct Certificate {
     /// Relative error that 99% of the area does not exceed; empty until `tell_p99` is called.
     std::optional<double> p99 = {};
     double residual = 0;  ///< Relative RMS of the residual r.
-    /// Parts of the residual, relative RMS; 0 if the gathered light is unknown. `local`: delivered light minus an exact
-    /// gather of the light that was gathered (noise of rays and interpolation). `method`: error of the gathered light
-    /// itself (the method's elements). r = local + method.
+    /// Parts of the residual where `largest` is, relative RMS; 0 if the gathered light is unknown. `local`: delivered
+    /// light minus an exact gather of the light that was gathered (noise of rays and interpolation). `method`: error of
+    /// the gathered light itself (the method's elements). r = local + method.
     double local = 0, method = 0;
     double constant = 1;        ///< Ratio of the error bound to ||r||.
     double mean_reflected = 0;  ///< Mean reflected radiosity over surfaces and bands, W/m^2; errors are relative to it.
     std::size_t points = 0, rays = 0;
-    /// For several rooms: the largest estimate of a room, and the root mean square over the rooms, each relative to its
-    /// allowed error. `local` and `method` are then parts of `of_rooms`. For one room, both equal `estimate`.
-    double worst_room = 0, of_rooms = 0;
-    double room_uncertainty = 0;            ///< Standard error of `worst_room`.
+    double worst_room = 0;        ///< Largest estimate of a room; `estimate` if the scene is one room.
+    double room_uncertainty = 0;  ///< Standard error of `worst_room`.
+    /// The room whose estimate is `largest`; empty: that of the whole is. `largest_light`: light to which it is
+    /// relative, W/m^2.
+    std::optional<std::size_t> largest_room = {};
+    double largest_light = 0;
     std::optional<double> worst_body = {};  ///< Largest error of a body; set by `look_at_bodies`.
     /// Returns the larger of the errors of the whole scene and of the worst room.
     double largest() const { return std::max(estimate, worst_room); }

@@ -82,7 +82,7 @@ PilotFound pilot_at(const DirectCheck& check, const Stage& stage, const Reflecte
                     std::uint64_t key, GatherWorkspace& gather, DirectCheck::Workspace& room) {
     PilotFound out;
     const Region& region = stage.scene.regions()[place.at.region];
-    cast_gather(stage, place.at.at, region.plane.n, place.at.region, pilot_rays, key, gather);
+    cast_gather(stage, place.at.at, region.plane.n, place.at.region, pilot_rays, key, b.bright_places(), gather);
     const Gathered found = read_gather(b, gather);
     RandomStream random(key, Stream::certificate);
     room.projected.resize(gather.fronts.size());

@@ -59,16 +59,27 @@ Spectrum LatePaths::sample(const PathTracer::Vertex& x, double a, double b, Rand
 
 LateMisfit LatePaths::misfit(std::span<const ResidualSample> samples, std::span<const Spectrum> late,
                              std::uint64_t seed, std::size_t max_rays) const {
-    constexpr std::size_t max_places = 128;
-    constexpr std::uint32_t min_paths = 4, max_paths = 64;
-    const std::size_t step = (samples.size() + max_places - 1) / max_places,
-                      count = samples.size() / std::max<std::size_t>(1, step);
-    if (count < 2) return {};
+    constexpr double max_places = 128;
+    constexpr std::uint32_t min_paths = 4, max_paths = 64, paths_again = 4 * max_paths;
+    const double places = std::min(max_places, static_cast<double>(samples.size()));
     const double rays_per_path =
         1 + 2 * check_.paths().rays_per_step();  // for two vertices, since most paths are short
     const auto paths = static_cast<std::uint32_t>(
-        std::clamp(static_cast<double>(max_rays) / (2 * rays_per_path * static_cast<double>(count)), 1.0 * min_paths,
-                   1.0 * max_paths));
+        std::clamp(static_cast<double>(max_rays) / (2 * rays_per_path * places), 1.0 * min_paths, 1.0 * max_paths));
+    const LateMisfit first = measure(samples, late, seed, paths);
+    if (!first.is_significant()) return first;
+    LateMisfit again = measure(samples, late, hash(seed), paths_again);
+    again.rays += first.rays;
+    return again;
+}
+
+LateMisfit LatePaths::measure(std::span<const ResidualSample> samples, std::span<const Spectrum> late,
+                              std::uint64_t seed, std::uint32_t paths) const {
+    constexpr std::size_t max_places = 128;
+    const std::size_t step = (samples.size() + max_places - 1) / max_places,
+                      count = samples.size() / std::max<std::size_t>(1, step);
+    if (count < 2) return {};
+    const std::size_t offset = seed % std::max<std::size_t>(1, step);
     struct Found {
         double weight = 0, product = 0;
         std::size_t rays = 0;
@@ -78,7 +89,7 @@ LateMisfit LatePaths::misfit(std::span<const ResidualSample> samples, std::span<
         count, 1,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k) {
-                const ResidualSample& s = samples[k * step + step / 2];
+                const ResidualSample& s = samples[k * step + offset];
                 found[k].weight = s.weight;
                 if (s.is_covered) continue;
                 const Normal& n = stage_.scene.regions()[s.region].plane.n;

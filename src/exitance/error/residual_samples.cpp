@@ -110,7 +110,7 @@ void ResidualSampler::sum_elements(std::uint64_t seed, std::size_t k, const Chec
     if (sample.is_covered || !check_.has_projection()) return;
     for (std::uint64_t which = 1; which <= 2; ++which) {
         const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, which);
-        cast_gather(stage_, x, n, sample.region, rays_beside_sums, key, w.rays);
+        cast_gather(stage_, x, n, sample.region, rays_beside_sums, key, b_.bright_places(), w.rays);
         (which == 1 ? sample.r1 : sample.r2) += reflectance * check_.missing(plan, w.rays, key, w.check);
     }
     sample.rays = 2 * rays_beside_sums;
@@ -154,7 +154,7 @@ Spectrum ResidualSampler::by_rays(const ResidualSample& sample, const CheckPlan&
                                   Workspace& w) const {
     if (sample.is_covered) return {};
     const Region& region = stage_.scene.regions()[sample.region];
-    cast_gather(stage_, point(sample), region.plane.n, sample.region, rays, key, w.rays);
+    cast_gather(stage_, point(sample), region.plane.n, sample.region, rays, key, b_.bright_places(), w.rays);
     const Spectrum arriving = read_gather(b_, w.rays).irradiance + check_.missing(plan, w.rays, key, w.check);
     return stage_.scene.material(sample.region).reflectance * (arriving - sample.delivered);
 }

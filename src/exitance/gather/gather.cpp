@@ -88,10 +88,13 @@ void aim_others(std::span<const GatherPlace> places, std::span<const PortalCell>
 /// Casts `rays` rays from each of the places of a plane, starting at point `first` of their sequences, and finds the
 /// fronts that they hit. Half of them are aimed at openings if that pays and if each quarter has an aimed ray.
 void cast_together(const Stage& stage, std::span<const GatherPlace> places, const Normal& n, RegionId own,
-                   unsigned rays, unsigned first, GatherWorkspace& w) {
+                   unsigned rays, unsigned first, const BrightPlaces* bright, GatherWorkspace& w) {
     constexpr unsigned fewest_aimed = 4;
-    const std::span<const PortalCell> cells =
-        rays >= 2 * fewest_aimed ? PortalAim::candidates(stage, own, places[0].x, n) : std::span<const PortalCell>();
+    std::span<const PortalCell> cells;
+    if (rays >= 2 * fewest_aimed && bright && !own.is_none())
+        cells = PortalAim::candidates(stage, own, bright->of_room(stage.rooms.at(own, places[0].x)), places[0].x, n);
+    else if (rays >= 2 * fewest_aimed)
+        cells = PortalAim::candidates(stage, own, places[0].x, n);
     const std::size_t all = places.size() * rays;
     w.origins.resize(all), w.directions.resize(all), w.hits.resize(all), w.quarter.resize(all);
     const unsigned even = cells.empty() ? rays : rays / 2, from = cells.empty() ? first : first / 2;
@@ -113,9 +116,9 @@ void cast_together(const Stage& stage, std::span<const GatherPlace> places, cons
 }  // namespace
 
 void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays, std::uint64_t key,
-                 GatherWorkspace& workspace) {
+                 const BrightPlaces* bright, GatherWorkspace& workspace) {
     const GatherPlace place{x, key};
-    cast_together(stage, std::span(&place, 1), n, own, rays, 0, workspace);
+    cast_together(stage, std::span(&place, 1), n, own, rays, 0, bright, workspace);
 }
 
 Gathered read_gather(const ReflectedLight& b, GatherWorkspace& w) {
@@ -137,7 +140,7 @@ void grow_together(const Stage& stage, std::span<const GatherPlace> places, cons
     if (places.empty()) return;
     for (unsigned before = growing[0]->rays(); before < rays; before = growing[0]->rays()) {
         const unsigned more = before == 0 ? rays : before;
-        cast_together(stage, places, n, own, more, before, w);
+        cast_together(stage, places, n, own, more, before, b.bright_places(), w);
         const std::span<const QuarterSums> fresh = quarter_sums(b, places.size(), w);
         for (std::size_t i = 0; i < places.size(); ++i) growing[i]->add(fresh[i], more);
     }
@@ -149,7 +152,7 @@ Gathered GrowingGather::gathered() const {
 
 Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays,
                           std::uint64_t key, const ReflectedLight& b, GatherWorkspace& workspace) {
-    cast_gather(stage, x, n, own, rays, key, workspace);
+    cast_gather(stage, x, n, own, rays, key, b.bright_places(), workspace);
     return read_gather(b, workspace);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "exitance/form_factors/hemisphere.hpp"
+#include "exitance/gather/bright_places.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {
@@ -26,6 +27,14 @@ class ReflectedLight {
     virtual ~ReflectedLight() = default;
     /// values[i] = b at hits[i], W/m^2; as many values as hits.
     virtual void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const = 0;
+
+    /// Places at which rays that gather this light are aimed; null: at the openings of the stage only. They change the
+    /// noise, not the expected result. `places` must outlive this.
+    const BrightPlaces* bright_places() const { return bright_places_; }
+    void aim_at(const BrightPlaces& places) { bright_places_ = &places; }
+
+  private:
+    const BrightPlaces* bright_places_ = nullptr;
 };
 
 /// Adapts a function of one point to ReflectedLight.
@@ -85,9 +94,9 @@ Gathered gather_reflected(const Stage& stage, const Point& x, const Normal& n, R
                           std::uint64_t key, const RadiosityAt& b, GatherWorkspace& workspace);
 
 /// The two steps of gather_reflected, for reading several functions with the same rays: cast them, then read b at the
-/// hits.
+/// hits. `bright`: see `ReflectedLight::bright_places`.
 void cast_gather(const Stage& stage, const Point& x, const Normal& n, RegionId own, unsigned rays, std::uint64_t key,
-                 GatherWorkspace& workspace);
+                 const BrightPlaces* bright, GatherWorkspace& workspace);
 Gathered read_gather(const ReflectedLight& b, GatherWorkspace& workspace);
 
 /// A gather that can be continued if its variance is too large: n rays, then the next n, then the next 2 n give the

@@ -33,6 +33,11 @@ double LocalPass::light_near(ElementId e, const LocalPassDemand& demand) const {
     return demand.light_in.empty() ? 1 : demand.light_in[stage_.rooms.of(tree_, e)];
 }
 
+/// Factor on the noise allowed in the room of an element.
+double LocalPass::quiet_in(ElementId e, const LocalPassDemand& demand) const {
+    return demand.noise_in.empty() ? 1 : demand.noise_in[stage_.rooms.of(tree_, e)];
+}
+
 /// RMS error that an element may have for the sake of its body, W/m^2.
 double LocalPass::allowed_on_body(ElementId e, const LocalPassDemand& demand) const {
     if (demand.light_on.empty()) return HUGE_VAL;
@@ -55,7 +60,7 @@ double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const
     const double effort_factor = std::clamp(std::pow(sampled.place_rays / usual_rays, 0.25), 0.5, 2.0);
     const double near = light_near(e, demand), usual_light = far_lighter * near * demand.light;
     const double brightness_factor = usual_light > 0 ? std::sqrt(std::max(1.0, sampled.light / usual_light)) : 1;
-    const double of_all = demand.noise * near * effort_factor * brightness_factor *
+    const double of_all = demand.noise * quiet_in(e, demand) * near * effort_factor * brightness_factor *
                           std::pow(noise_area_ / stage_.counted_area(tree_, e), 0.25);  // given by the same
     const double allowed = std::min(of_all, allowed_on_body(e, demand));
     return allowed > 0 ? std::sqrt(sampled.noise_squared) / allowed : 0;
@@ -125,11 +130,13 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
                             : parent.is_none()         ? 0
                                                        : sampled_[parent].place_rays / 2;
     const bool unlit = stage_.is_left_out(tree_.region(e));  // its area does not count, so the minimum of rays
+    // Rays of a place follow from the noise allowed to the power of -4/3 (`knobs_for_error`).
+    const double allowance = std::pow(quiet_in(e, demand), 4.0 / 3);
     // With very many elements each has so small a share of the light that its noise alone determines its rays.
     constexpr unsigned least_rays = 4;
     const unsigned first = is_crowd_ ? least_rays
                            : unlit   ? std::bit_ceil(demand.rays.least)
-                                     : demand.rays.rays(stage_.counted_area(tree_, e), mean_area_);
+                                     : demand.rays.rays(stage_.counted_area(tree_, e) / allowance, mean_area_);
     unsigned rays = std::max({least_rays, first, before});
     w.growing.assign(places.size(), {});
     for (bool more = false;; rays *= more ? 2 : 1, more = !more) {
@@ -226,6 +233,32 @@ std::vector<ElementId> LocalPass::split_where_needed(const std::vector<ElementId
     return fresh;
 }
 
+/// Sets the errors of the whole and of every room.
+void LocalPass::tell_parts(LocalPassReport& report) const {
+    struct Sum {
+        double area = 0, noise = 0, interpolation = 0;
+
+        void add(double of_area, const SampledElement& s) {
+            area += of_area, noise += of_area * s.noise_squared;
+            interpolation += of_area * (s.misfit_squared - s.noise_in_misfit);
+        }
+        LocalPassReport::Parts root_mean() const {
+            if (!(area > 0)) return {};
+            return {std::sqrt(noise / area), std::sqrt(std::max(0.0, interpolation) / area)};
+        }
+    };
+    Sum whole;
+    std::vector<Sum> rooms(stage_.rooms.count());
+    for (ElementId e : tree_.leaves()) {
+        if (stage_.is_left_out(tree_.region(e))) continue;
+        whole.add(tree_.area(e), sampled_[e]);
+        if (!rooms.empty()) rooms[stage_.rooms.of(tree_, e)].add(tree_.area(e), sampled_[e]);
+    }
+    report.whole = whole.root_mean();
+    report.rooms.clear();
+    for (const Sum& room : rooms) report.rooms.push_back(room.root_mean());
+}
+
 ElementFunction LocalPass::finished(const LocalPassDemand& demand, LocalPassReport& report) const {
     ElementFunction out;
     out.tree = tree_;
@@ -242,16 +275,7 @@ ElementFunction LocalPass::finished(const LocalPassDemand& demand, LocalPassRepo
     // Polynomials that are made continuous overshoot beside steep falls. Irradiance is not negative.
     for (std::array<float, bands>& value : out.values)
         for (float& v : value) v = std::max(0.0f, v);
-    double noise = 0, interpolation = 0;
-    for (ElementId e : tree_.leaves()) {
-        const SampledElement& s = sampled_[e];
-        const double light = light_near(e, demand);
-        const double counted = stage_.counted_area(tree_, e) / (light * light);
-        noise += counted * s.noise_squared;
-        interpolation += counted * (s.misfit_squared - s.noise_in_misfit);
-    }
-    report.noise = std::sqrt(noise / stage_.area);
-    report.interpolation = std::sqrt(std::max(0.0, interpolation) / stage_.area);
+    tell_parts(report);
     return out;
 }
 

@@ -26,6 +26,9 @@ struct LocalPassDemand {
     int max_depth = 8;  ///< Limit on the rounds of refinement.
     /// Light of every room over the mean light: allowed errors are proportional to it. Empty if the scene is one room.
     std::span<const double> light_in = {};
+    /// Factor on the noise allowed in every room, at least 1: rooms that are accurate enough already do not take the
+    /// rays that others need. Empty: 1.
+    std::span<const double> noise_in = {};
     /// Light that the body of every region reflects, by region number, W/m^2, and the error that noise and
     /// interpolation may each have on any element relative to it. Empty: not limited.
     std::span<const double> light_on = {};
@@ -37,10 +40,12 @@ struct LocalPassDemand {
 
 struct LocalPassReport {
     std::size_t rays = 0;
-    /// RMS over the surfaces of the error in rho E_ind due to rays, W/m^2. With several rooms: of the error relative to
-    /// the room's light, all rooms with equal weight, times the mean light.
-    double noise = 0;
-    double interpolation = 0;  ///< Like noise, for the estimated error of interpolation.
+    /// RMS error of rho E_ind over some surfaces, W/m^2, due to rays and, as estimated, to interpolation.
+    struct Parts {
+        double noise = 0, interpolation = 0;
+    };
+    Parts whole;               ///< Errors over all surfaces.
+    std::vector<Parts> rooms;  ///< Errors over each room; empty if the scene is one room.
     /// Data of every leaf before it was made continuous; unused for inner elements.
     struct Leaf {
         double expected_error = 0;  ///< Expected error of rho E_ind, W/m^2.
@@ -113,10 +118,12 @@ class LocalPass {
     void look_between(ElementId e, SampledElement& sampled, const ReflectedLight& b, const LocalPassDemand& demand,
                       Workspace& workspace) const;
     double light_near(ElementId e, const LocalPassDemand& demand) const;
+    double quiet_in(ElementId e, const LocalPassDemand& demand) const;
     double allowed_on_body(ElementId e, const LocalPassDemand& demand) const;
     double allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const;
     double noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
     double tolerated_misfit_squared(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
+    void tell_parts(LocalPassReport& report) const;
     bool is_too_rough(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
     double share_in_crowd(const LocalPassDemand& demand) const;
     std::vector<ElementId> split_where_needed(const std::vector<ElementId>& candidates, const LocalPassDemand& demand);

@@ -54,7 +54,7 @@ TEST_F(OneBrightFace, IsGatheredWithTheReportedError) {
     for (const LocalPassDemand& demand : {coarse, fine}) {
         LocalPassReport report;
         const double truth = error(gather(demand, report));
-        const double told = std::hypot(report.noise, report.interpolation);
+        const double told = std::hypot(report.whole.noise, report.whole.interpolation);
         // Noise is estimated from four quarters of the rays, interpolation from nine nodes: both to about a third.
         EXPECT_LT(truth, 1.5 * told);
         EXPECT_GT(truth, 0.6 * told);
@@ -112,7 +112,7 @@ TEST_F(OneBrightFace, AChangeOfTheLightIsGatheredByFewRays) {
     for (std::array<float, bands>& value : brighter.values)
         for (float& v : value) v /= 1.05F;
     EXPECT_LT(error(brighter), 1.2 * error(dim) + 0.2 * fine.noise);
-    EXPECT_GT(second.noise, 0.9 * first.noise);
+    EXPECT_GT(second.whole.noise, 0.9 * first.whole.noise);
 }
 
 TEST_F(OneBrightFace, InheritsLargerElementsIfStoppedEarly) {
@@ -134,7 +134,7 @@ TEST_F(OneBrightFace, InheritsLargerElementsIfStoppedEarly) {
         if (report.interrupted) continue;
         EXPECT_LT(report.rays, whole.rays);
         EXPECT_LT(error(E), 3 * least);
-        EXPECT_LT(error(E), 1.5 * std::hypot(report.noise, report.interpolation));
+        EXPECT_LT(error(E), 1.5 * std::hypot(report.whole.noise, report.whole.interpolation));
     }
 }
 
@@ -148,7 +148,7 @@ TEST_F(OneBrightFace, MayBeNoisierWhereItIsMuchBrighter) {
     demand.light = 0.002;  // of a room that is dark except for this face's light, which is up to 0.1 elsewhere
     const double truth = error(other.gather(b, true, demand, dim, progress, StopRequest()));
     EXPECT_LT(dim.rays, usual.rays / 2);
-    EXPECT_LT(truth, 1.5 * std::hypot(dim.noise, dim.interpolation));
+    EXPECT_LT(truth, 1.5 * std::hypot(dim.whole.noise, dim.whole.interpolation));
 }
 
 TEST(LocalPass, GathersConstantLightExactly) {
@@ -162,8 +162,8 @@ TEST(LocalPass, GathersConstantLightExactly) {
         pass.gather(PointwiseLight([](RegionId, const Point&) { return Spectrum(2.0); }), true,
                     {.rays = {.average = 16}, .noise = 1e-3, .tolerance = 1e-3}, report, progress, stop);
     for (const auto& value : E.values) EXPECT_NEAR(value[0], 2, 1e-6);  // single precision
-    EXPECT_EQ(report.noise, 0);
-    EXPECT_NEAR(report.interpolation, 0, 1e-12);
+    EXPECT_EQ(report.whole.noise, 0);
+    EXPECT_NEAR(report.whole.interpolation, 0, 1e-12);
 }
 
 }  // namespace

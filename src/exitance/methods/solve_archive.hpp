@@ -55,8 +55,8 @@ void archive(Archive& a, KeptLinks& kept) {
 
 template <class Archive>
 void archive(Archive& a, LocalPassReport& report) {
-    auto& [rays, noise, interpolation, leaves, interrupted] = report;
-    a(rays, noise, interpolation, leaves, interrupted);
+    auto& [rays, whole, rooms, leaves, interrupted] = report;
+    a(rays, whole, rooms, leaves, interrupted);
 }
 
 template <class Archive>

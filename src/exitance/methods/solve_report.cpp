@@ -48,8 +48,8 @@ std::string describe(const Certificate& certificate, const GlobalLight& light, c
         "interpolation {:.3f}%, both as measured {:.3f}%; rays {} + {} + {}",
         light.numbering.leaves.size(), delivered.tree.leaves().size(), certificate.mean_reflected,
         100 * certificate.estimate, 100 * certificate.bound, 100 * certificate.residual, certificate.constant,
-        100 * certificate.method, scale * gathered.noise, scale * gathered.interpolation, 100 * certificate.local,
-        light.rays, gathered.rays, certificate.rays);
+        100 * certificate.method, scale * gathered.whole.noise, scale * gathered.whole.interpolation,
+        100 * certificate.local, light.rays, gathered.rays, certificate.rays);
 }
 
 }  // namespace exitance

@@ -26,8 +26,13 @@ bool can_be_aimed_at(const PortalCell& cell, const Point& x, const Normal& n) {
 
 std::span<const PortalCell> PortalAim::candidates(const Stage& stage, RegionId own, const Point& x, const Normal& n) {
     const LightPortals* portals = stage.rooms.portals();
-    if (!portals || own.is_none() || !stage.scene.behind(own).is_none()) return {};
-    const std::span<const PortalCell> cells = portals->of_room(stage.rooms.at(own, x));
+    if (!portals || own.is_none()) return {};
+    return candidates(stage, own, portals->of_room(stage.rooms.at(own, x)), x, n);
+}
+
+std::span<const PortalCell> PortalAim::candidates(const Stage& stage, RegionId own, std::span<const PortalCell> cells,
+                                                  const Point& x, const Normal& n) {
+    if (cells.empty() || !stage.scene.behind(own).is_none()) return {};
     double worth = 0;
     for (const PortalCell& cell : cells)
         if (can_be_aimed_at(cell, x, n)) worth += form_factor(cell, x, n) * cell.light * cell.light;

@@ -21,6 +21,9 @@ class PortalAim {
   public:
     /// Returns the parallelograms at which rays from x should be aimed; empty if that does not pay.
     static std::span<const PortalCell> candidates(const Stage& stage, RegionId own, const Point& x, const Normal& n);
+    /// Returns `cells`, or nothing if aiming at them does not pay.
+    static std::span<const PortalCell> candidates(const Stage& stage, RegionId own, std::span<const PortalCell> cells,
+                                                  const Point& x, const Normal& n);
 
     /// Prepares aiming from x with normal n. Skips parallelograms that are too near or behind x.
     void set(std::span<const PortalCell> cells, const Point& x, const Normal& n);

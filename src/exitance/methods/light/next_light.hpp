@@ -45,6 +45,8 @@ class ReadNextLight {
 
     const ReflectedLight& whole() const { return whole_; }             ///< b'
     const ReflectedLight* change() const { return change_.if_any(); }  ///< b' - b, or null.
+    /// Places at which rays that gather b' are aimed.
+    void aim_at(const BrightPlaces& places) { whole_.aim_at(places); }
     /// Locator of the method's mesh.
     const ElementLocator& method_mesh() const { return parts_.back().locator(); }
 

@@ -35,6 +35,7 @@ void Solver::solve_indirect_light() {
         const std::optional<double> demand = options_.error_demand();
         if (!demand || has_reached(*demand)) {
             if (has_diverged(light_->report)) return stop_early("divergence");
+            if (demand && refines_bodies(*demand, watch.seconds())) continue;
             if (statistics().stopped_by.empty() || demand)
                 statistics().converged = true, statistics().stopped_by.clear();
             return;
@@ -53,6 +54,8 @@ void Solver::solve_indirect_light() {
                                    next->is_step        ? "refining the delivered elements"
                                    : next->finer.method ? "solving again with finer elements"
                                                         : "refining the gather; the method's light is kept"));
+        keep_noise_of_accurate_rooms(calibrated::attempt_aim * *demand,
+                                     next->finer.knobs.gather_noise / knobs_.gather_noise);
         knobs_ = next->finer.knobs, takes_step_ = next->is_step;
         if (next->finer.method && !takes_step_) light_.reset(), next_ = {}, steps_.not_local = 0;
         if (options_.memory_limit_bytes) {
@@ -60,6 +63,25 @@ void Solver::solve_indirect_light() {
             if (!fits || !*fits) return stop_early("memory limit");
         }
     }
+}
+
+bool Solver::refines_bodies(double demand, double last_seconds) {
+    // An attempt for bodies is made once, or twice if the first one halved what was too much. Others would cost more
+    // than the whole solve, for the sake of bodies whose errors are uncertain themselves.
+    constexpr int most_for_bodies = 2;
+    constexpr double aim = 0.7;  // of the limit, as for the whole: derived from attempt_aim
+    const double limit = max_body_errors * demand, worst = certificate_.worst_body.value_or(0);
+    const bool helps = worst_body_before_ == 0 || worst - limit < 0.5 * (worst_body_before_ - limit);
+    if (!holds_bodies() || !gathers() || sums_ || worst <= limit || !helps || body_attempts_ == most_for_bodies ||
+        attempt_ == most_attempts + shown_ || (options_.error && *options_.error > requested_error_) ||
+        as_first(last_seconds) > seconds_left(stop_))
+        return false;
+    ++body_attempts_, worst_body_before_ = worst;
+    progress_.note(fmt::format("estimated error {:.2f}% of the worst body > {:.2f}%: solving again for bodies",
+                               100 * worst, 100 * limit));
+    knobs_.body_error *= aim * limit / worst;
+    light_.reset(), next_ = {}, steps_.not_local = 0, takes_step_ = false;
+    return true;
 }
 
 bool Solver::lower_error() {
@@ -121,6 +143,15 @@ Solver::NextAttempt Solver::next_attempt(double demand) const {
                     forecast.step_rays, forecast.finer_rays);
     if (out.is_step) out.finer = refined(knobs_, parts, left, margin(certificate_.points) * demand, target, options_);
     return out;
+}
+
+void Solver::keep_noise_of_accurate_rooms(double target, double step) {
+    noise_in_.resize(stage_.rooms.count(), 1);
+    for (std::size_t room = 0; room < noise_in_.size(); ++room) {
+        const bool is_accurate =
+            certificate_.estimate <= target && statistics().rooms[room].error <= target && step < 1;
+        noise_in_[room] = is_accurate ? noise_in_[room] / step : 1;
+    }
 }
 
 double Solver::not_local(const ErrorParts& parts) const {
@@ -196,7 +227,8 @@ void Solver::attempt() {
     for (const ElementFunction& f : found.parts) share_on_node(std::span(f.values));
     const NextLight& gathered_on = next_.parts.empty() ? found : next_;
     steps_.sent = gathers() && keeps_flux() ? arriving_power(stage_.scene, *light_, gathered_on.parts) : Spectrum();
-    const ReadNextLight b(gathered_on, stage_.scene.regions().size());
+    ReadNextLight b(gathered_on, stage_.scene.regions().size());
+    if (gathers() && !sums_) bright_ = find_bright_places(stage_, direct_.tree, b.whole()), b.aim_at(bright_);
     if (b.stands_alone() && !sums_) found = {};
     release_freed_memory();
     if (step_ == Step::gather) {
@@ -375,6 +407,7 @@ ElementFunction Solver::gather(const ReadNextLight& b, std::span<const ElementGa
                                                .elements = elements,
                                                .element_share = knobs_.gather_element_share,
                                                .light_in = allowed_in_,
+                                               .noise_in = noise_in_,
                                                .light_on = light_on,
                                                .body_error = knobs_.body_error,
                                                .change = b.change()},

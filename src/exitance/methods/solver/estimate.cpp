@@ -39,7 +39,8 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
     const ElementFunction& indirect = older ? *older : solution_.indirect;
     const Spectrum c = solution_.direct_share;
     const Spectrum direct_weight = light_->holds_direct ? Spectrum() : Spectrum(1.0) - c;
-    const DeliveredLight delivered(stage_.scene, indirect, direct_, direct_weight, c);
+    DeliveredLight delivered(stage_.scene, indirect, direct_, direct_weight, c);
+    if (!bright_.empty()) delivered.aim_at(bright_);
     const auto misfit = [&](const HitPoint& hit) {
         return std::sqrt(direct_.fit[delivered.projected().locator().find(hit.region, hit.y).element].misfit_squared);
     };
@@ -128,24 +129,19 @@ void Solver::warn_of_bodies() {
         100 * *worst->error, 100 * *demand, wrong > 1 ? fmt::format(", and so is that of {} more", wrong - 1) : ""));
 }
 
+/// Returns the parts of the error where it is largest. If their sum exceeds the whole error, they cancel in part, as
+/// after several refinement steps; they are then scaled down to the whole. Misfit that is hidden by the rays' noise
+/// counts as noise, since a smaller tolerance would not split any elements.
 ErrorParts Solver::error_parts() const {
     if (!gathers()) return {.method = certificate_.largest()};
-    // Scales the mean parts to the error of the worst room, assuming that its parts have the same ratio.
-    const bool has_rooms = stage_.rooms.count() > 0 && certificate_.of_rooms > 0;
-    const double worse = has_rooms ? certificate_.largest() / certificate_.of_rooms : 1;
-    const ErrorParts parts = mean_error_parts();
-    return {worse * parts.method, worse * parts.noise, worse * parts.interpolation};
-}
-
-/// Returns the parts of the error, averaged over the rooms. If their sum exceeds the whole error, they cancel in part,
-/// as after several refinement steps; they are then scaled down to the whole. Misfit that is hidden by the
-/// rays' noise counts as noise, since a smaller tolerance would not split any elements.
-ErrorParts Solver::mean_error_parts() const {
-    const double parts = std::hypot(certificate_.local, certificate_.method);
-    const double cancels = parts > certificate_.of_rooms ? certificate_.of_rooms / parts : 1;
-    const double local = cancels * certificate_.local, noise = gathered_.noise / certificate_.mean_reflected;
+    const std::optional<std::size_t> room = certificate_.largest_room;
+    const LocalPassReport::Parts told =
+        room && *room < gathered_.rooms.size() ? gathered_.rooms[*room] : gathered_.whole;
+    const double parts = std::hypot(certificate_.local, certificate_.method), all = certificate_.largest();
+    const double cancels = parts > all ? all / parts : 1;
+    const double local = cancels * certificate_.local, noise = told.noise / certificate_.largest_light;
     const double misfit = std::sqrt(std::max(0.0, local * local - noise * noise));
-    const double seen = gathered_.interpolation / certificate_.mean_reflected;
+    const double seen = told.interpolation / certificate_.largest_light;
     // If the misfit exceeds the detected interpolation error by this factor, the rays' noise hides it.
     constexpr double min_hidden_ratio = 3;
     return {.method = cancels * certificate_.method,

@@ -52,6 +52,9 @@ class Solver {
     /// number of rays that the new target needs, since it may already satisfy it. Returns true if another attempt is
     /// needed.
     bool lower_error();
+    /// True if another attempt follows because the light of some body is too inaccurate. Then changes the settings for
+    /// it. `last_seconds`: duration of the last attempt.
+    bool refines_bodies(double demand, double last_seconds);
     /// Passes the delivered light to the `show` callback, on the elements of the export.
     void show_light();
 
@@ -80,6 +83,9 @@ class Solver {
     std::optional<NextAttempt> next_in_time(double demand, double last_seconds) const;
     /// Returns the part of the error that is not due to the local pass.
     double not_local(const ErrorParts& parts) const;
+    /// Lets rooms that are accurate enough keep their noise when settings for the others are tightened. `step`: factor
+    /// on the allowed noise.
+    void keep_noise_of_accurate_rooms(double target, double step);
     void take_step();
     /// Returns true if an attempt has delivered light with an error estimate.
     bool has_light() const { return certificate_.points > 0; }
@@ -129,9 +135,7 @@ class Solver {
     void tell_clustering_error();
     /// Warns of the worst body if its error is more than three times the requested one.
     void warn_of_bodies();
-    /// Returns the parts of the estimated error, relative to the mean reflected light.
     ErrorParts error_parts() const;
-    ErrorParts mean_error_parts() const;
 
     // Exported mesh.
     bool makes_discontinuity_mesh() const;
@@ -172,15 +176,19 @@ class Solver {
         std::size_t gather_rays = 0;  ///< Largest number of rays of the gathers of one attempt.
         Spectrum sent;                ///< Arriving power of the light gathered last, W; 0: unknown.
     } steps_;
+    BrightPlaces bright_;  ///< Bright places of the light that is gathered, at which rays are aimed.
     LocalPassReport gathered_;
     Certificate certificate_;
     int attempt_ = 1;
+    int body_attempts_ = 0;         ///< Number of attempts for the sake of bodies.
+    double worst_body_before_ = 0;  ///< `worst_body` before the last of them; 0: there was none.
     Step step_ = Step::project;
     bool fresh_ = true;                  ///< True if the method solves in this attempt.
     Spectrum share_;                     ///< c of the method's light, see find_direct_share.
     std::optional<SceneBodies> bodies_;  ///< Use bodies().
     std::vector<double> light_in_;       ///< Light of every room over the mean light; empty if the scene is one room.
     std::vector<double> allowed_in_;     ///< Allowed errors of the rooms (`allowed_by_room`).
+    std::vector<double> noise_in_;       ///< Factor on the noise of each room (`LocalPassDemand::noise_in`).
     std::string resumed_phase_;
     double mesh_seconds_ = 0;  ///< Time for the discontinuity mesh and its light.
 };

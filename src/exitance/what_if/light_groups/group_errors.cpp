@@ -54,26 +54,27 @@ class GroupsLight {
         return Between{0, corner_weights(patch, patch.coordinates(y))}.of(direct_[g][source].corners);
     }
 
-    /// Adds the reflected light of a front, and the share of its exitance that elements contain.
-    void add(const HitPoint& hit, std::vector<Spectrum>& sums) const {
+    /// Adds the reflected light of a front, and the share of its exitance that elements contain. `weight`: of the ray
+    /// that hit it.
+    void add(const HitPoint& hit, double weight, std::vector<Spectrum>& sums) const {
         const std::uint32_t source = source_at(hit.region, hit.y);
         const ElementTree::Place place = indirect_.find(hit.region, hit.y);
         if (source == TransportLayout::none || place.element.is_none()) return;
         const Material& material = solution_.scene.material(hit.region);
         const std::uint32_t own = group_of_[solution_.scene.regions()[hit.region].material.value];
-        if (own != TransportLayout::none) sums[own] += solution_.direct_share * material.exitance;
+        if (own != TransportLayout::none) sums[own] += weight * solution_.direct_share * material.exitance;
         if (!(max(material.reflectance) > 0)) return;
         const Patch& below = solution_.indirect.tree.patch(place.element);
         const Between at{solution_.indirect.first_value[place.element], corner_weights(below, place.uv)};
         const Spectrum apart = solution_.direct_in_elements ? Spectrum() : Spectrum(1) - solution_.direct_share;
         for (std::size_t g = 0; g < sums.size(); ++g) {
             if (!older_.empty()) {
-                sums[g] += older_[g][source];
+                sums[g] += weight * older_[g][source];
                 continue;
             }
             Spectrum E = at.of(groups_.groups[g].indirect);
             if (!solution_.direct_in_elements) E += apart * direct_at(g, source, hit.y);
-            sums[g] += material.reflectance * E;
+            sums[g] += weight * material.reflectance * E;
         }
     }
 
@@ -125,8 +126,9 @@ void measure(const Stage& stage, const Solution& solution, const LightGroups& gr
                 if (residual.source == TransportLayout::none) continue;
                 const std::uint64_t key =
                     hash(seed, static_cast<std::uint64_t>(Stream::certificate), std::uint64_t(0x6c67), k, which);
-                cast_gather(stage, x, stage.scene.regions()[region].plane.n, region, rays, key, workspace);
-                for (const HitPoint& hit : workspace.fronts) light.add(hit, r);
+                cast_gather(stage, x, stage.scene.regions()[region].plane.n, region, rays, key, nullptr, workspace);
+                for (std::size_t i = 0; i < workspace.fronts.size(); ++i)
+                    light.add(workspace.fronts[i], workspace.counts.empty() ? 1 : workspace.counts[i], r);
                 for (std::size_t g = 0; g < count; ++g) {
                     Spectrum arrives = r[g] / static_cast<double>(rays);
                     if (solution.direct_in_elements) arrives += light.direct_at(g, residual.source, x);

@@ -1,0 +1,186 @@
+#include "exitance/gather/bright_places.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "exitance/gather/gather.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t most_cells = 12;  ///< Parallelograms of a room: every ray is compared with all of them.
+
+/// A leaf that is bright for its room, in the plane coordinates of its region.
+struct BrightLeaf {
+    std::array<Vec2, 4> corners;
+    int corner_count;
+    Vec2 centre;
+    double area, light;  ///< m^2; b over the mean of the room.
+};
+
+/// A rectangle around some bright leaves.
+struct Cover {
+    std::vector<BrightLeaf> leaves;
+    Vec2 lo{HUGE_VAL, HUGE_VAL}, hi{-HUGE_VAL, -HUGE_VAL};
+    double filled = 0;  ///< Area of the leaves, m^2.
+    double flux = 0;    ///< Sum of their area times light.
+
+    void add(const BrightLeaf& leaf) {
+        for (int i = 0; i < leaf.corner_count; ++i) {
+            const Vec2 p = leaf.corners[static_cast<std::size_t>(i)];
+            lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)}, hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
+        }
+        filled += leaf.area, flux += leaf.area * leaf.light;
+        leaves.push_back(leaf);
+    }
+    double area() const { return (hi.x - lo.x) * (hi.y - lo.y); }
+    /// Rays that miss the leaves, times the light for which they are aimed; long rectangles count as if they were
+    /// square, since rays are not aimed at a rectangle that is nearer than its length.
+    double waste() const {
+        const double longer = std::max(hi.x - lo.x, hi.y - lo.y);
+        return leaves.size() > 1 ? (longer * longer - filled) * flux / filled : 0;
+    }
+    /// Two halves of the leaves, divided across the longer side.
+    std::array<Cover, 2> halves() const {
+        const bool along_x = hi.x - lo.x >= hi.y - lo.y;
+        const double middle = along_x ? 0.5 * (lo.x + hi.x) : 0.5 * (lo.y + hi.y);
+        std::array<Cover, 2> out;
+        for (const BrightLeaf& leaf : leaves) out[(along_x ? leaf.centre.x : leaf.centre.y) > middle].add(leaf);
+        return out;
+    }
+};
+
+/// A cover and the plane in which it lies.
+struct PlacedCover {
+    Cover cover;
+    Point origin;
+    Frame frame{Normal{0, 0, 1}};
+
+    PortalCell cell() const {
+        const auto in_space = [&](Vec2 p) { return p.x * frame.u + p.y * frame.v; };
+        const Vec2 size = cover.hi - cover.lo;
+        return {origin + in_space(cover.lo), size.x * frame.u, size.y * frame.v, frame.n, cover.area(),
+                cover.flux / cover.area()};
+    }
+};
+
+/// Light of the leaves of one room.
+struct RoomLight {
+    double area = 0, flux = 0, square = 0;  ///< Sums of area, area b and area b^2.
+    double bright_square = 0;
+    std::map<RegionId, std::vector<ElementId>> bright;  ///< Listed by region, in the order of regions.
+};
+
+/// Frame of a region along an edge of an element, so that elements that follow walls are covered without waste.
+Frame frame_along(const ElementTree& tree, ElementId e, const Normal& n) {
+    const Patch& patch = tree.patch(e);
+    const Vec3 edge = normalized(patch.corner(1) - patch.corner(0));
+    Frame out(n);
+    out.u = edge, out.v = cross(n, edge);
+    return out;
+}
+
+PlacedCover cover_region(const Stage& stage, const ElementTree& tree, RegionId region,
+                         std::span<const ElementId> leaves, const Field<ElementId, double>& light) {
+    const ElementId first = leaves.front();
+    PlacedCover out{{}, tree.patch(first).corner(0), frame_along(tree, first, stage.scene.regions()[region].plane.n)};
+    const auto in_plane = [&](const Point& p) {
+        return Vec2{dot(p - out.origin, out.frame.u), dot(p - out.origin, out.frame.v)};
+    };
+    for (ElementId e : leaves) {
+        const Patch& patch = tree.patch(e);
+        BrightLeaf leaf{{}, patch.corner_count(), in_plane(patch.at(tree.centre(e))), tree.area(e), light[e]};
+        for (int i = 0; i < leaf.corner_count; ++i)
+            leaf.corners[static_cast<std::size_t>(i)] = in_plane(patch.corner(i));
+        out.cover.add(leaf);
+    }
+    return out;
+}
+
+/// Divides the cover with the largest waste until there are enough.
+std::vector<PortalCell> divide(std::vector<PlacedCover> covers) {
+    while (!covers.empty() && covers.size() < most_cells) {
+        const auto worst = std::max_element(covers.begin(), covers.end(), [](const auto& a, const auto& b) {
+            return a.cover.waste() < b.cover.waste();
+        });
+        // A rectangle of two squares, which its leaves fill, is good enough.
+        if (worst->cover.waste() <= 3 * worst->cover.flux) break;
+        auto [one, other] = worst->cover.halves();
+        if (one.leaves.empty() || other.leaves.empty()) break;
+        PlacedCover second{std::move(other), worst->origin, worst->frame};
+        worst->cover = std::move(one);
+        covers.push_back(std::move(second));
+    }
+    std::vector<PortalCell> out;
+    for (const PlacedCover& cover : covers) out.push_back(cover.cell());
+    return out;
+}
+
+/// b on one leaf, W/m^2, mean over the bands.
+struct LeafLight {
+    double mean = 0, largest = 0;
+};
+
+/// Reads b near the corners and at the centre of every leaf, so that leaves at the border of a bright place are known.
+std::vector<LeafLight> light_of_leaves(const ElementTree& tree, std::span<const ElementId> leaves,
+                                       const ReflectedLight& b) {
+    constexpr double inside = 0.1;  // derived from the border between elements: on its side of it
+    constexpr std::array<Vec2, 5> places{
+        {{0.5, 0.5}, {inside, inside}, {1 - inside, inside}, {inside, 1 - inside}, {1 - inside, 1 - inside}}};
+    std::vector<HitPoint> points;
+    for (ElementId e : leaves)
+        for (const Vec2& p : places) points.push_back({tree.region(e), tree.patch(e).at(tree.uniform(e, p.x, p.y))});
+    std::vector<Spectrum> values(points.size());
+    b.read(points, values);
+    std::vector<LeafLight> out(leaves.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        LeafLight& leaf = out[i / places.size()];
+        const double value = mean(values[i]);
+        leaf.mean += value / static_cast<double>(places.size()), leaf.largest = std::max(leaf.largest, value);
+    }
+    return out;
+}
+
+}  // namespace
+
+BrightPlaces find_bright_places(const Stage& stage, const ElementTree& tree, const ReflectedLight& b) {
+    constexpr double bright = 4;  // a sixteenth of the rays for equal noise
+    const std::vector<ElementId> leaves = tree.leaves();
+    const std::vector<LeafLight> values = light_of_leaves(tree, leaves, b);
+    std::vector<RoomLight> rooms(std::max<std::size_t>(1, stage.rooms.count()));
+    std::vector<std::size_t> room_of;
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        RoomLight& room = rooms[room_of.emplace_back(stage.rooms.of(tree, leaves[i]))];
+        const double area = tree.area(leaves[i]), value = values[i].mean;
+        room.area += area, room.flux += area * value, room.square += area * value * value;
+    }
+    Field<ElementId, double> light(tree.size(), 0);
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        RoomLight& room = rooms[room_of[i]];
+        const double usual = room.flux / room.area, value = values[i].mean;
+        if (!(usual > 0) || values[i].largest < bright * usual || stage.is_left_out(tree.region(leaves[i]))) continue;
+        light[leaves[i]] = value / usual;
+        room.bright[tree.region(leaves[i])].push_back(leaves[i]);
+        room.bright_square += tree.area(leaves[i]) * value * value;
+    }
+    std::vector<std::vector<PortalCell>> out(rooms.size());
+    for (std::size_t r = 0; r < rooms.size(); ++r) {
+        if (const LightPortals* portals = stage.rooms.portals()) {
+            const std::span<const PortalCell> cells = portals->of_room(r);
+            out[r].assign(cells.begin(), cells.end());
+        }
+        if (rooms[r].bright_square <= 0.5 * rooms[r].square) continue;
+        std::vector<PlacedCover> covers;
+        for (const auto& [region, of_region] : rooms[r].bright)
+            covers.push_back(cover_region(stage, tree, region, of_region, light));
+        std::stable_sort(covers.begin(), covers.end(), [](const PlacedCover& a, const PlacedCover& c) {
+            return a.cover.flux * a.cover.flux / a.cover.filled > c.cover.flux * c.cover.flux / c.cover.filled;
+        });
+        if (covers.size() > most_cells) covers.resize(most_cells);
+        for (const PortalCell& cell : divide(std::move(covers))) out[r].push_back(cell);
+    }
+    return BrightPlaces(std::move(out));
+}
+
+}  // namespace exitance
