@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "exitance/mesh/element_locator.hpp"
@@ -19,8 +20,11 @@ struct View {
     double breadth = 0;            ///< Sum of the distances to fronts, in sizes of the scene, over the number of rays.
     double variety = 0;            ///< Standard deviation of the logarithm of the visible light, without emitters.
     double blocked = 0;            ///< Share of the rays that hit surfaces much nearer than the target.
+    double planes = 0;             ///< Number of different planes seen: a bare corner has three.
 
-    double quality() const { return lit * breadth * (0.3 + std::min(variety, 1.0)) * (1 - blocked); }
+    double quality() const {
+        return lit * breadth * (0.3 + std::min(variety, 1.0)) * (1 - blocked) * std::log2(1 + planes);
+    }
     /// Quality of a view from outside: dark fronts count little, and backs reduce it, as they hide surfaces behind
     /// them.
     double quality_outside() const {
@@ -55,6 +59,7 @@ class Scout {
         tracer_.nearest(origins, directions, RegionId(), hits);
         const double near = 0.3 * norm(camera.target - camera.eye);
         View view;
+        std::set<RegionId> regions;
         double lit = 0, sum = 0, squares = 0;
         for (std::size_t i = 0; i < hits.size(); ++i) {
             if (hits[i].surface.is_none()) continue;
@@ -62,6 +67,7 @@ class Scout {
                 view.backs += 1;
                 continue;
             }
+            regions.insert(hits[i].region);
             view.fronts += 1, view.breadth += hits[i].distance / solution_.scene.size();
             if (hits[i].distance < near) view.blocked += 1;
             const double light = light_at(hits[i].surface, origins[i] + hits[i].distance * directions[i]);
@@ -69,6 +75,7 @@ class Scout {
             if (light + emitted > least_light_) view.lit += 1;
             if (light > 0) lit += 1, sum += std::log(light), squares += std::log(light) * std::log(light);
         }
+        view.planes = static_cast<double>(regions.size());
         const double all = static_cast<double>(hits.size());
         if (lit > 0) view.variety = std::sqrt(std::max(0.0, squares / lit - sum / lit * (sum / lit)));
         view.fronts /= all, view.backs /= all, view.lit /= all, view.breadth /= all, view.blocked /= all;
@@ -98,14 +105,25 @@ class Scout {
             RayHit hit;
             tracer_.nearest(std::span(&start, 1), std::span<const Vec3>(&n, 1), RegionId(), std::span(&hit, 1));
             const double free = hit.surface.is_none() ? solution_.scene.size() : hit.distance;
-            constexpr double eyes = 1.6;  // eye level above a floor, metres
-            out.push_back(start + (n.z > 0.5 ? std::min(0.6 * free, eyes) : 0.5 * free) * n);
+            out.push_back(at_eye_level(start + 0.5 * free * n));
             if (out.size() == count) break;
         }
         return out;
     }
 
   private:
+    /// The place on the vertical through a point that is at eye level above what is below, or lower if less is free.
+    Point at_eye_level(const Point& p) const {
+        constexpr double eyes = 1.6;  // metres
+        const Vec3 down{0, 0, -1};
+        RayHit floor, ceiling;
+        tracer_.nearest(std::span(&p, 1), std::span<const Vec3>(&down, 1), RegionId(), std::span(&floor, 1));
+        if (floor.surface.is_none()) return p;
+        const Vec3 up = -down;
+        tracer_.nearest(std::span(&p, 1), std::span<const Vec3>(&up, 1), RegionId(), std::span(&ceiling, 1));
+        const double free = floor.distance + (ceiling.surface.is_none() ? eyes : ceiling.distance);
+        return p + (floor.distance - std::min(0.6 * free, eyes)) * down;
+    }
     /// Reflected light, W/m^2; 0 on emitters.
     double light_at(SurfaceId surface, const Point& p) const {
         const Material& material = solution_.scene.material(surface);
