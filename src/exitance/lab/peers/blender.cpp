@@ -3,10 +3,10 @@
 #include <cstdlib>
 
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/files/table.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/lab/peers/peer_scripts.hpp"
 #include "exitance/lab/peers/peers.hpp"
-#include "exitance/lab/study/table.hpp"
 
 namespace exitance {
 namespace {

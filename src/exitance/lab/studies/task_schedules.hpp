@@ -6,7 +6,7 @@
 #include "exitance/base/progress.hpp"
 #include "exitance/base/task_graph.hpp"
 #include "exitance/base/trace.hpp"
-#include "exitance/lab/study/table.hpp"
+#include "exitance/io/files/table.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "exitance/base/progress.hpp"
-#include "exitance/lab/study/table.hpp"
+#include "exitance/io/files/table.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {

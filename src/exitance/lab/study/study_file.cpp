@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <toml++/toml.h>
 #include <algorithm>
 #include <array>
 #include <filesystem>
 #include <set>
 
+#include "exitance/io/files/toml_keys.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/lab/peers/peers.hpp"
 #include "exitance/lab/study/study.hpp"
@@ -25,111 +25,7 @@ constexpr std::array<std::pair<Measure, std::string_view>, 8> measure_names{{
     {Measure::quadratic, "quadratic"},
 }};
 
-/// Exception that is thrown and caught in this file only.
-struct Wrong {
-    Error error;
-};
-
-/// A table of the file: takes keys one by one, and rejects those that are not taken.
-class Keys {
-  public:
-    Keys(const toml::table& table, std::string file) : table_(table), file_(std::move(file)) {}
-
-    [[noreturn]] void fail(const toml::node& at, std::string message, std::string hint = "") const {
-        throw Wrong{{ErrorCode::bad_input, std::move(message), fmt::format("{}:{}", file_, at.source().begin.line),
-                     std::move(hint)}};
-    }
-    const toml::node* find(const std::string& key) {
-        known_.insert(key);
-        return table_.get(key);
-    }
-    template <class T>
-    void take(const std::string& key, T& target) {
-        if (const toml::node* node = find(key)) read(*node, key, target);
-    }
-    template <class T>
-    void need(const std::string& key, T& target) {
-        if (!find(key)) fail(table_, fmt::format("'{}' is missing", key));
-        take(key, target);
-    }
-    void finish() const {
-        for (const auto& [key, node] : table_)
-            if (!known_.contains(std::string(key.str())))
-                fail(node, fmt::format("'{}' is not known here", key.str()),
-                     fmt::format("known are {}", fmt::join(known_, ", ")));
-    }
-    const std::string& file() const { return file_; }
-    const toml::table& table() const { return table_; }
-
-  private:
-    void read(const toml::node& node, const std::string& key, std::string& target) const {
-        const std::optional<std::string> value = node.value_exact<std::string>();
-        if (!value) fail(node, fmt::format("'{}' is not text in quotes", key));
-        target = *value;
-    }
-    void read(const toml::node& node, const std::string& key, bool& target) const {
-        const std::optional<bool> value = node.value_exact<bool>();
-        if (!value) fail(node, fmt::format("'{}' is not true or false", key));
-        target = *value;
-    }
-    void read(const toml::node& node, const std::string& key, double& target) const {
-        const std::optional<double> value = node.is_boolean() ? std::nullopt : node.value<double>();
-        if (!value) fail(node, fmt::format("'{}' is not a number", key));
-        target = *value;
-    }
-    template <class Whole>
-    requires std::same_as<Whole, int> || std::same_as<Whole, std::size_t>
-    void read(const toml::node& node, const std::string& key, Whole& target) const {
-        const std::optional<std::int64_t> value = node.value_exact<std::int64_t>();
-        if (!value || *value < 0 || *value > 1'000'000'000) fail(node, fmt::format("'{}' is not a count", key));
-        target = static_cast<Whole>(*value);
-    }
-    template <class T>
-    void read(const toml::node& node, const std::string& key, std::vector<T>& target) const {
-        const toml::array* array = node.as_array();
-        if (!array) fail(node, fmt::format("'{}' is not a list", key));
-        target.clear();
-        for (const toml::node& entry : *array) read(entry, key, target.emplace_back());
-    }
-    void read(const toml::node& node, const std::string& key, RowFilter& target) const {
-        const toml::table* table = node.as_table();
-        if (!table) fail(node, fmt::format("'{}' is not of the form {{ column = \"text\" }}", key));
-        for (const auto& [column, entry] : *table) {
-            std::vector<std::string>& texts = target[std::string(column.str())];
-            if (entry.is_array())
-                read(entry, key, texts);
-            else
-                read(entry, key, texts.emplace_back());
-        }
-    }
-    void read(const toml::node& node, const std::string& key, std::map<std::string, std::string>& target) const {
-        const toml::table* table = node.as_table();
-        if (!table) fail(node, fmt::format("'{}' is not of the form {{ name = \"text\" }}", key));
-        for (const auto& [name, entry] : *table) read(entry, key, target[std::string(name.str())]);
-    }
-
-    const toml::table& table_;
-    std::string file_;
-    std::set<std::string> known_;
-};
-
-/// Reads the tables `[[key]]`, each by a function.
-template <class T, class Read>
-void take_list(Keys& keys, const std::string& key, std::vector<T>& target, const Read& read) {
-    const toml::node* node = keys.find(key);
-    if (!node) return;
-    const toml::array* array = node->as_array();
-    if (!array) keys.fail(*node, fmt::format("'{}' is not a list of tables: [[{}]]", key, key));
-    for (const toml::node& entry : *array) {
-        const toml::table* table = entry.as_table();
-        if (!table) keys.fail(entry, fmt::format("'{}' is not a list of tables: [[{}]]", key, key));
-        Keys inner(*table, keys.file());
-        read(inner, target.emplace_back());
-        inner.finish();
-    }
-}
-
-void read_scene(Keys& keys, StudyScene& scene) {
+void read_scene(TomlKeys& keys, StudyScene& scene) {
     keys.need("name", scene.name);
     keys.take("generate", scene.generate);
     keys.take("file", scene.file);
@@ -143,7 +39,7 @@ void read_scene(Keys& keys, StudyScene& scene) {
     if (scene.values.empty()) scene.values = scene.quick_values = {0};
 }
 
-void read_row(Keys& keys, StudyRow& row) {
+void read_row(TomlKeys& keys, StudyRow& row) {
     keys.need("label", row.label);
     keys.need("options", row.options);
     keys.take("peer", row.peer);
@@ -158,7 +54,7 @@ void read_row(Keys& keys, StudyRow& row) {
     keys.take("scenes", row.scenes);
 }
 
-void read_plot(Keys& keys, StudyPlot& plot) {
+void read_plot(TomlKeys& keys, StudyPlot& plot) {
     keys.need("name", plot.name);
     keys.need("x", plot.x);
     keys.need("y", plot.y);
@@ -180,14 +76,14 @@ void read_plot(Keys& keys, StudyPlot& plot) {
         keys.fail(keys.table(), fmt::format("'{}' has blanks or slashes: files are named after plots", plot.name));
 }
 
-void read_chosen(Keys& keys, ChosenSolution& of) {
+void read_chosen(TomlKeys& keys, ChosenSolution& of) {
     keys.need("row", of.row);
     keys.take("scene", of.scene);
     keys.take("setting", of.setting);
     keys.take("value", of.value);
 }
 
-void read_line(Keys& keys, StudyLine& line) {
+void read_line(TomlKeys& keys, StudyLine& line) {
     read_chosen(keys, line.of);
     keys.need("name", line.name);
     keys.take("points", line.points);
@@ -203,7 +99,7 @@ void read_line(Keys& keys, StudyLine& line) {
     if (line.points < 2) keys.fail(keys.table(), "a line has two points at least");
 }
 
-void read_picture(Keys& keys, StudyPicture& picture) {
+void read_picture(TomlKeys& keys, StudyPicture& picture) {
     read_chosen(keys, picture.of);
     keys.take("caption", picture.caption);
     keys.take("options", picture.options);
@@ -217,7 +113,7 @@ void read_picture(Keys& keys, StudyPicture& picture) {
                                       : StudyPicture::Shows::halves;
 }
 
-void read_conclusion(Keys& keys, StudyConclusion& conclusion) {
+void read_conclusion(TomlKeys& keys, StudyConclusion& conclusion) {
     keys.need("says", conclusion.says);
     keys.need("y", conclusion.y);
     keys.take("x", conclusion.x);
@@ -243,7 +139,7 @@ void read_conclusion(Keys& keys, StudyConclusion& conclusion) {
     if (along && conclusion.x.empty()) keys.fail(keys.table(), fmt::format("'{}' needs an 'x'", measure));
 }
 
-void read_reference(Keys& keys, StudyReference& reference) {
+void read_reference(TomlKeys& keys, StudyReference& reference) {
     keys.take("file", reference.file);
     keys.take("options", reference.options);
     reference.quick_options = reference.options;
@@ -260,7 +156,7 @@ void read_reference(Keys& keys, StudyReference& reference) {
 
 Study read_study(const toml::table& table, const std::string& file) {
     Study study;
-    Keys keys(table, file);
+    TomlKeys keys(table, file);
     keys.need("title", study.title);
     keys.take("about", study.about);
     keys.take("parameter", study.parameter);
@@ -282,7 +178,7 @@ Study read_study(const toml::table& table, const std::string& file) {
     take_list(keys, "conclusion", study.conclusions, read_conclusion);
     if (const toml::node* reference = keys.find("reference")) {
         if (!reference->is_table()) keys.fail(*reference, "'reference' is not a table: [reference]");
-        Keys inner(*reference->as_table(), file);
+        TomlKeys inner(*reference->as_table(), file);
         read_reference(inner, study.reference);
     }
     keys.finish();
@@ -303,7 +199,7 @@ Result<Study> parse_study(const std::string& text, const std::string& name, cons
         study.name = name, study.text = text;
         study.folder = std::filesystem::path(file).parent_path().string();
         return study;
-    } catch (const Wrong& wrong) {
+    } catch (const WrongToml& wrong) {
         return wrong.error;
     } catch (const toml::parse_error& error) {
         return Error{ErrorCode::bad_input, std::string(error.description()),

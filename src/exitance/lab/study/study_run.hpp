@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "exitance/base/progress.hpp"
+#include "exitance/io/files/table.hpp"
 #include "exitance/lab/study/study.hpp"
-#include "exitance/lab/study/table.hpp"
 
 namespace exitance {
 

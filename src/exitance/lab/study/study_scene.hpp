@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "exitance/base/words.hpp"
 #include "exitance/lab/study/study_run.hpp"
 #include "exitance/reference/reference_points.hpp"
 
@@ -20,10 +21,6 @@ struct StudyStage {
     std::optional<ErrorMeasure> check;  ///< Error against paths, if the reference is a careful solve.
 };
 
-/// Splits text at blanks; words in single or double quotes may contain blanks.
-std::vector<std::string> split_words(const std::string& text);
-/// Replaces "{name}" in `text` for all names.
-std::string filled_in(std::string text, const std::vector<std::pair<std::string, std::string>>& values);
 /// Key of a text, equal on all machines.
 std::uint64_t key_of(std::string_view text);
 

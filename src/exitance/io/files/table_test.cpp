@@ -1,4 +1,4 @@
-#include "exitance/lab/study/table.hpp"
+#include "exitance/io/files/table.hpp"
 
 #include <gtest/gtest.h>
 
