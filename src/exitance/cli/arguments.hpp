@@ -217,6 +217,20 @@ struct HeatArguments : CommonArguments {
     int threads = 0;
 };
 
+/// Numbers of variants, from 1: first to last.
+struct VariantRange {
+    std::size_t first = 1, last = 1;
+};
+
+struct SweepArguments : CommonArguments {
+    std::string plan;
+    bool list = false, collect = false;
+    std::optional<VariantRange> run;   ///< None: --run is not given.
+    std::size_t local = 0;             ///< Variants that are run at a time; 0: --local is not given.
+    std::vector<std::string> outputs;  ///< Files of --collect; empty: both in the folder of the sweep.
+    int threads = 0;
+};
+
 struct ViewArguments : CommonArguments {
     SceneArguments scene;  ///< A scene to solve, or one solution (.h5).
     int port = 0;          ///< Port on 127.0.0.1; 0: any free port.
@@ -237,7 +251,7 @@ using Command =
     std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, MixArguments, ExportArguments,
                  RenderArguments, BakeArguments, ReportArguments, DaylightArguments, CheckArguments, GenerateArguments,
                  LuminaireArguments, ExperimentArguments, ViewFactorArguments, View3dArguments, HeatArguments,
-                 ViewArguments, ReferenceArguments, LightProbeArguments>;
+                 ViewArguments, ReferenceArguments, LightProbeArguments, SweepArguments>;
 
 /// Text to print instead of running a verb, for --help and --version.
 struct Information {

@@ -130,6 +130,7 @@ void declare(CLI::App& app, ExperimentArguments& arguments);
 void declare(CLI::App& app, ViewFactorArguments& arguments);
 void declare(CLI::App& app, View3dArguments& arguments);
 void declare(CLI::App& app, HeatArguments& arguments);
+void declare(CLI::App& app, SweepArguments& arguments);
 void declare(CLI::App& app, ViewArguments& arguments);
 void declare(CLI::App& app, ReferenceArguments& arguments);
 

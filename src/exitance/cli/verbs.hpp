@@ -26,6 +26,7 @@ ExitCode run(const ExperimentArguments& arguments, Terminal& terminal);
 ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal);
 ExitCode run(const View3dArguments& arguments, Terminal& terminal);
 ExitCode run(const HeatArguments& arguments, Terminal& terminal);
+ExitCode run(const SweepArguments& arguments, Terminal& terminal);
 ExitCode run(const ViewArguments& arguments, Terminal& terminal);
 ExitCode run(const ReferenceArguments& arguments, Terminal& terminal);
 

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "exitance/base/progress.hpp"
+#include "exitance/base/result.hpp"
+#include "exitance/sweep/resolved_step.hpp"
+#include "exitance/sweep/step_store.hpp"
+#include "exitance/sweep/sweep_plan.hpp"
+
+namespace exitance {
+
+/// State of a variant, and its steps.
+struct VariantState {
+    enum class Kind { done, running, failed, to_do };
+
+    Kind kind = Kind::to_do;
+    ResolvedVariant variant;
+    std::size_t finished_steps = 0;
+    std::string failure;  ///< Step and reason, if a step failed.
+};
+
+/// Name of a state: "done", "running", "failed" or "to do".
+std::string name_of(VariantState::Kind kind);
+
+/// States of all variants.
+Result<std::vector<VariantState>> sweep_states(const SweepPlan& plan);
+
+/// Result of a run of variants.
+struct SweepReport {
+    std::size_t variants = 0, done = 0;
+    std::size_t steps_run = 0, steps_reused = 0;
+    std::vector<std::string> failures;  ///< One text per failed variant: its number, step and reason.
+};
+
+/// Runs variants (numbers from 0), `jobs` at a time. A step that another variant or another process runs is waited for;
+/// a failed step fails the variants that need it, and the others are run. After a stop is requested, running steps end
+/// without a result. Error: cannot_write, or an error of the plan.
+Result<SweepReport> run_sweep(const SweepPlan& plan, const std::vector<std::size_t>& variants, int jobs,
+                              const StepRunner& runner, Progress& progress, const StopRequest& stop);
+
+/// Folder of a variant's results: links to the files of its steps.
+std::string variant_folder(const SweepPlan& plan, std::size_t index);
+
+}  // namespace exitance
