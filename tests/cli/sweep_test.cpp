@@ -184,6 +184,24 @@ TEST(ProgramSweep, FailuresAreReportedAndTheRestGoesOn) {
         << read_text(folder / "t.csv");
 }
 
+/// The result of a step whose input was edited while it ran may be of either content, so it is not kept.
+TEST(ProgramSweep, AResultOfAnEditedInputIsNotKept) {
+    const TemporaryFolder folder;
+    const std::string plan = write_plan(folder);
+    RunningProgram job({"sweep", plan, "--local", "1"});
+    for (int glances = 0; states_of(plan).find("running") == std::string::npos; ++glances) ASSERT_LT(glances, 2000);
+    write_text(folder / "points.csv", "x,y,z,nx,ny,nz\n3,1,0,0,0,1\n3,2,0,0,0,1\n");
+    const Finished edited = job.finish();
+    if (edited.status != 0) {  // else the edit came before the points were hashed
+        EXPECT_NE(edited.err.find("points.csv changed after its content was hashed"), std::string::npos) << edited.err;
+    }
+    EXPECT_EQ(sweep(plan, {"--local", "1"}).status, 0);
+    const std::string table = table_of(folder);
+    fs::remove_all(folder / "plan.sweep");
+    EXPECT_EQ(sweep(plan, {"--local", "1"}).status, 0);
+    EXPECT_EQ(table_of(folder), table);
+}
+
 TEST(ProgramSweep, AnAcceptedExitStatusIsNoFailure) {
     const TemporaryFolder folder;
     const std::string text = "[[step]]\nrun = \"check broken.obj --json\"\n";

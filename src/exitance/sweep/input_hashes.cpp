@@ -99,14 +99,16 @@ Result<std::string> InputHashes::of(const std::string& path) {
     return at->second = hash.finish();
 }
 
-Result<std::vector<std::string>> InputHashes::of_word(const std::string& word, const std::string& base) {
-    std::vector<std::string> names{word}, out;
+Result<std::vector<HashedFile>> InputHashes::of_word(const std::string& word, const std::string& base) {
+    std::vector<std::string> names{word};
+    std::vector<HashedFile> out;
     if (word.find_first_of("=,; ") != std::string::npos)
         for_each_part(word, "=,; ", [&](std::string_view part) { names.emplace_back(part); });
     for (const std::string& name : names) {
-        const Result<std::string> hash = of((fs::path(base) / name).string());
+        const std::string path = (fs::path(base) / name).string();
+        const Result<std::string> hash = of(path);
         if (!hash) return hash.error();
-        if (!hash->empty()) out.push_back(*hash);
+        if (!hash->empty()) out.push_back({path, *hash});
     }
     return out;
 }

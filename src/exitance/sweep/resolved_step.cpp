@@ -50,7 +50,7 @@ class StepChain {
     Result<Word> connect(const std::string& word, bool is_output, const SweepStep& step) const;
     Result<void> check_output(const std::string& word, const SweepStep& step) const;
     Result<std::string> filled_text(const std::string& path, const std::string& content) const;
-    Result<void> add_inputs(const SweepStep& step, Sha256& hash);
+    Result<void> add_inputs(const SweepStep& step, ResolvedStep& out);
 
     const SweepPlan& plan_;
     const SweepSetting& variant_;
@@ -105,8 +105,8 @@ Result<StepChain::Word> StepChain::connect(const std::string& word, bool is_outp
     return out;
 }
 
-/// Adds the hashes of the files under the key 'inputs' of a step.
-Result<void> StepChain::add_inputs(const SweepStep& step, Sha256& hash) {
+/// Adds the files under the key 'inputs' of a step.
+Result<void> StepChain::add_inputs(const SweepStep& step, ResolvedStep& out) {
     const Result<std::vector<std::string>> patterns = fill_in(plan_, step.inputs, variant_, step.line);
     if (!patterns) return patterns.error();
     for (const std::string& pattern : *patterns) {
@@ -120,7 +120,7 @@ Result<void> StepChain::add_inputs(const SweepStep& step, Sha256& hash) {
         for (const std::string& file : files) {
             const Result<std::string> content = hashes_.of(file);
             if (!content) return content.error();
-            hash.add_text(*content);
+            out.inputs.push_back({file, *content});
         }
     }
     return {};
@@ -129,7 +129,7 @@ Result<void> StepChain::add_inputs(const SweepStep& step, Sha256& hash) {
 Result<void> StepChain::add(const SweepStep& step) {
     const Result<std::vector<std::string>> words = fill_in(plan_, step.words, variant_, step.line);
     if (!words) return words.error();
-    ResolvedStep out{step.name, "", {}, {}, step.accepted, {}};
+    ResolvedStep out{step.name, "", {}, {}, step.accepted, {}, {}};
     Sha256 hash;
     hash.add_text(program_version);
     bool is_output = false;  // the word is the value of -o
@@ -146,13 +146,14 @@ Result<void> StepChain::add(const SweepStep& step) {
         out.outputs.insert(out.outputs.end(), connected->outputs.begin(), connected->outputs.end());
         hash.add_text(connected->hashed);
         if (word.find(own_folder) == std::string::npos) {
-            const Result<std::vector<std::string>> inputs = hashes_.of_word(word, plan_.base);
+            const Result<std::vector<HashedFile>> inputs = hashes_.of_word(word, plan_.base);
             if (!inputs) return inputs.error();
-            for (const std::string& input : *inputs) hash.add_text(input);
+            out.inputs.insert(out.inputs.end(), inputs->begin(), inputs->end());
         }
         is_output = word == "-o" || word == "--output";
     }
-    if (const Result<void> added = add_inputs(step, hash); !added) return added.error();
+    if (const Result<void> added = add_inputs(step, out); !added) return added.error();
+    for (const HashedFile& input : out.inputs) hash.add_text(input.hash);
     // The program writes materials beside a generated scene.
     if (out.words.front() == "generate")
         for (std::size_t i = 0, n = out.outputs.size(); i < n; ++i)
@@ -187,7 +188,7 @@ Result<std::string> StepChain::filled_text(const std::string& path, const std::s
 }
 
 Result<void> StepChain::add_template() {
-    ResolvedStep out{"scene", "", {}, {}, {0}, {}};
+    ResolvedStep out{"scene", "", {}, {}, {0}, {}, {}};
     const auto add = [&](const std::string& path, const std::string& name, bool has_placeholders) -> Result<void> {
         const bool is_known =
             std::any_of(out.texts.begin(), out.texts.end(), [&](const auto& t) { return t.first == name; });

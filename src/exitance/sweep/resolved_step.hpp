@@ -19,6 +19,7 @@ struct ResolvedStep {
     std::vector<std::string> words;    ///< Command with "{dir}/X" for its own files; empty for files from templates.
     std::vector<std::string> outputs;  ///< Its own files: paths below {dir}.
     std::vector<int> accepted;
+    std::vector<HashedFile> inputs;  ///< Files that it reads, apart from those of earlier steps.
     std::vector<std::pair<std::string, std::string>> texts;  ///< Path below {dir} and content of files from templates.
 };
 

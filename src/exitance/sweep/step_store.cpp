@@ -47,6 +47,14 @@ std::string reason_in(const std::string& text, int status) {
     return last.empty() ? fmt::format("it ended with status {}", status) : last;
 }
 
+/// The first input whose content is no longer the one that the key of the step is made of; empty if there is none.
+std::string changed_input(const ResolvedStep& step) {
+    InputHashes hashes;
+    for (const HashedFile& input : step.inputs)
+        if (const Result<std::string> hash = hashes.of(input.path); !hash || *hash != input.hash) return input.path;
+    return "";
+}
+
 /// The command of a step that writes into the folder `work`.
 std::vector<std::string> command_of(const ResolvedStep& step, const std::string& work, const StepRunner& runner) {
     std::vector<std::string> words{runner.program};
@@ -105,6 +113,13 @@ Result<void> StepStore::keep(const ResolvedStep& step, const std::string& work) 
     return cannot_make(path(step), failed);
 }
 
+/// Records the failure of a step.
+Result<StepStore::Outcome> StepStore::fail(const ResolvedStep& step, int status, const std::string& message) const {
+    const StepFailure failure{status, message, fmt::format("{}", fmt::join(step.words, " "))};
+    if (const Result<void> told = write_file(failure_path(step), failure_json(failure)); !told) return told.error();
+    return Outcome::failed;
+}
+
 Result<StepStore::Outcome> StepStore::run_command(const ResolvedStep& step, const std::string& work,
                                                   const StepRunner& runner, const StopRequest& stop) const {
     int status = 0;
@@ -119,14 +134,11 @@ Result<StepStore::Outcome> StepStore::run_command(const ResolvedStep& step, cons
         const std::vector<std::string> words = command_of(step, work, runner);
         const ProgramRun run = run_program(words, runner.base, stop.seconds_left(), stop);
         if (stop.requested()) return Outcome::stopped;
-        if (std::find(step.accepted.begin(), step.accepted.end(), run.status) == step.accepted.end()) {
-            const StepFailure failure{run.status,
-                                      run.status < 0 ? "the program cannot be started" : reason_in(run.err, run.status),
-                                      fmt::format("{}", fmt::join(step.words, " "))};
-            if (const Result<void> told = write_file(failure_path(step), failure_json(failure)); !told)
-                return told.error();
-            return Outcome::failed;
-        }
+        if (std::find(step.accepted.begin(), step.accepted.end(), run.status) == step.accepted.end())
+            return fail(step, run.status,
+                        run.status < 0 ? "the program cannot be started" : reason_in(run.err, run.status));
+        if (const std::string input = changed_input(step); !input.empty())
+            return fail(step, run.status, fmt::format("{} changed after its content was hashed: run it again", input));
         status = run.status;
         for (const auto& [name, text] : {std::pair(output_file, &run.out), std::pair(error_file, &run.err)})
             if (const Result<void> written = write_file((fs::path(work) / name).string(), *text); !written)

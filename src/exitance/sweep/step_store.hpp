@@ -50,6 +50,7 @@ class StepStore {
     std::string failure_path(const ResolvedStep& step) const { return path(step) + ".failed"; }
     std::string unfinished_path(const ResolvedStep& step) const;
     Result<void> keep(const ResolvedStep& step, const std::string& work) const;
+    Result<Outcome> fail(const ResolvedStep& step, int status, const std::string& message) const;
     Result<Outcome> run_command(const ResolvedStep& step, const std::string& work, const StepRunner& runner,
                                 const StopRequest& stop) const;
 

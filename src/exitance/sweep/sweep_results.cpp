@@ -1,6 +1,7 @@
 #include "exitance/sweep/sweep_results.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +36,10 @@ Result<std::vector<std::string>> values_in_csv(const SweepOutput& output, const 
     const Result<Table> table = parse_csv(text, path);
     if (!table) return table.error();
     if (!table->has(output.column))
-        return Error{ErrorCode::bad_input, fmt::format("there is no column '{}'", output.column), path, ""};
+        return Error{
+            ErrorCode::bad_input,
+            fmt::format("there is no column '{}', the columns are {}", output.column, fmt::join(table->columns, ", ")),
+            path, ""};
     if (output.take == SweepOutput::Take::value) {
         if (output.row > table->rows.size())
             return Error{ErrorCode::bad_input,
