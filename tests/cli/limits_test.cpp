@@ -10,9 +10,9 @@
 namespace exitance::test {
 namespace {
 
-const std::vector<std::string> verbs = {"solve",     "probe",      "compare", "stats",      "mix",   "export",
-                                        "render",    "bake",       "report",  "daylight",   "check", "generate",
-                                        "luminaire", "experiment", "view",    "viewfactors"};
+const std::vector<std::string> verbs = {"solve",     "probe",      "compare", "stats",       "mix",   "export",
+                                        "render",    "bake",       "report",  "daylight",    "check", "generate",
+                                        "luminaire", "experiment", "view",    "viewfactors", "sweep"};
 
 std::size_t lines_in(const std::string& text) {
     return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));

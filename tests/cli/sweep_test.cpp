@@ -372,6 +372,13 @@ class ClusterScripts : public testing::Test {
                    {}, "/bin/bash")
             .finish();
     }
+    /// All variants are done, with the table of a sweep on one machine.
+    void expect_finished() {
+        EXPECT_EQ(states_of(plan_), "done,done,done,done");
+        const TemporaryFolder alone;
+        EXPECT_EQ(sweep(write_plan(alone), {"--local", "2"}).status, 0);
+        EXPECT_EQ(table_of(folder_), table_of(alone));
+    }
     TemporaryFolder folder_;
     std::string plan_;
 };
@@ -380,14 +387,14 @@ TEST_F(ClusterScripts, GnuParallelRunsAllVariants) {
     if (!has("parallel")) GTEST_SKIP() << "GNU parallel is not installed: apt-get install parallel";
     const Finished run = run_script("parallel.sh");
     EXPECT_EQ(run.status, 0) << run.out << run.err;
-    EXPECT_EQ(states_of(plan_), "done,done,done,done");
+    expect_finished();
     EXPECT_TRUE(fs::exists(folder_ / "plan.sweep/results.csv"));
 }
 
 TEST_F(ClusterScripts, XargsRunsAllVariants) {
     const Finished run = run_script("xargs.sh");
     EXPECT_EQ(run.status, 0) << run.out << run.err;
-    EXPECT_EQ(states_of(plan_), "done,done,done,done");
+    expect_finished();
     EXPECT_TRUE(fs::exists(folder_ / "plan.sweep/results.csv"));
 }
 
@@ -402,7 +409,7 @@ TEST_F(ClusterScripts, SlurmArrayTasksRunTheirVariants) {
         const Finished run = RunningProgram({"-c", words}, {}, "/bin/bash").finish();
         EXPECT_EQ(run.status, 0) << run.out << run.err;
     }
-    EXPECT_EQ(states_of(plan_), "done,done,done,done");
+    expect_finished();
 }
 
 TEST_F(ClusterScripts, SnakemakeRunsAllVariants) {
@@ -415,7 +422,7 @@ TEST_F(ClusterScripts, SnakemakeRunsAllVariants) {
                        {}, "/bin/bash")
             .finish();
     EXPECT_EQ(run.status, 0) << run.out << run.err;
-    EXPECT_EQ(states_of(plan_), "done,done,done,done");
+    expect_finished();
 }
 
 TEST_F(ClusterScripts, DaskRunsAllVariantsOnTwoWorkers) {
@@ -428,7 +435,7 @@ TEST_F(ClusterScripts, DaskRunsAllVariantsOnTwoWorkers) {
                                         {}, "/bin/bash")
                              .finish();
     EXPECT_EQ(run.status, 0) << run.out << run.err;
-    EXPECT_EQ(states_of(plan_), "done,done,done,done");
+    expect_finished();
 }
 
 }  // namespace exitance::test
