@@ -63,7 +63,7 @@ class Combination {
     /// Distributes the closure defects. Returns the number of rows whose defect is not explained by their variance.
     std::size_t close() {
         const std::size_t n = rows_.size();
-        defect_.assign(n, 0), stiffness_.assign(n, 0), multiplier_.assign(n, 0);
+        defect_.assign(n, 0), stiffness_.assign(n, 0), multiplier_.assign(n, 0), unseen_.assign(n, 0);
         std::size_t unexplained = 0;
         double largest = 0;
         for (std::size_t i = 0; i < n; ++i) {
@@ -73,12 +73,15 @@ class Combination {
             for (std::size_t k = 0; k < row.entries.size(); ++k)
                 sum += exchanges_[i].areas[k], entries += double(exchanges_[i].variances[k]);
             const double d = areas_[i] - sum;
-            const double noise = entries + squared_area * (row.missed_variance + one_ray_variance(row));
+            const double noise = entries + squared_area * (row.missed_variance + unseen_variance(row));
             if (std::abs(d) > max_noise_deviations * std::sqrt(noise) + areas_[i] * row.bound) {
                 ++unexplained;
                 continue;
             }
-            const double variance = entries + squared_area * (row.sky_variance + row.back_variance);
+            // A sky that no ray reached is the only reason for a sum that the entries' own variance does not explain.
+            if (row.sky == 0 && d > max_noise_deviations * std::sqrt(entries) + areas_[i] * row.bound)
+                unseen_[i] = unseen_variance(row);
+            const double variance = entries + squared_area * (row.sky_variance + row.back_variance + unseen_[i]);
             if (variance <= 0) continue;
             defect_[i] = d, stiffness_[i] = variance, largest = std::max(largest, std::abs(d));
         }
@@ -95,19 +98,22 @@ class Combination {
 
     const ExchangeRow& row(std::size_t i) const { return exchanges_[i]; }
     /// Share of the sky, with its part of the closure defect.
-    double sky(std::size_t i) const { return closed_share(i, rows_[i].sky, rows_[i].sky_variance); }
+    double sky(std::size_t i) const { return closed_share(i, rows_[i].sky, rows_[i].sky_variance + unseen_[i]); }
     /// Share of backs of faces, with its part of the closure defect.
     double back(std::size_t i) const { return closed_share(i, rows_[i].back, rows_[i].back_variance); }
     /// Variance of the shares of sky and backs, or none if the row's defect was not distributed.
     std::optional<double> missed_variance(std::size_t i) const {
-        return stiffness_[i] > 0 ? std::optional(rows_[i].sky_variance + rows_[i].back_variance) : std::nullopt;
+        return stiffness_[i] > 0 ? std::optional(rows_[i].sky_variance + rows_[i].back_variance + unseen_[i])
+                                 : std::nullopt;
     }
     void release(std::size_t i) { exchanges_[i] = {}; }
 
   private:
-    /// Squared share of half a ray: the sky may be visible although no ray reached it.
-    static double one_ray_variance(const RawRow& row) {
-        return row.cast_rays > 0 ? std::pow(0.5 / static_cast<double>(row.cast_rays), 2) : 0;
+    /// Variance of the share of a sky that no ray reached. Where nine hits are expected, none is met in one of 8,000
+    /// rows; nine are 3.5 standard deviations of this variance.
+    static double unseen_variance(const RawRow& row) {
+        constexpr double square_of_hits = 6.6;  // derived from (9 / 3.5)^2
+        return row.cast_rays > 0 ? square_of_hits / std::pow(static_cast<double>(row.cast_rays), 2) : 0;
     }
     double closed_share(std::size_t i, double share, double variance) const {
         return std::clamp(share + areas_[i] * variance * multiplier_[i], 0.0, 1.0);
@@ -168,6 +174,7 @@ class Combination {
     const std::vector<double>& areas_;
     std::vector<ExchangeRow> exchanges_;
     std::vector<double> defect_, stiffness_, multiplier_;  ///< m^2, m^4, 1 / m^2.
+    std::vector<double> unseen_;  ///< Variance of the share of a sky that no ray reached; 0: there is none.
 };
 
 /// Computes the reciprocity and closure defects of independently computed rows.

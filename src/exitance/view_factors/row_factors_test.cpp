@@ -187,6 +187,20 @@ TEST(RowFactors, CountTheSkyAndBacksOfFaces) {
     }
 }
 
+/// The sky between two plates of 10 x 10 m, 1 mm apart, is seen by one ray in 5,000: often by none.
+TEST(RowFactors, ShareOfASkyThatNoRayReachesFollowsFromTheSum) {
+    const Outline low = {{0, 0, 0}, {10, 0, 0}, {10, 10, 0}, {0, 10, 0}},
+                  high = {{0, 10, 0.001}, {10, 10, 0.001}, {10, 0, 0.001}, {0, 0, 0.001}};
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        const SparseFactors table = factors_of(scene_of({low, high}), {.error = 1e-3, .seed = seed});
+        EXPECT_EQ(table.unclosed, 0U) << seed;
+        for (std::size_t i = 0; i < 2; ++i) {
+            EXPECT_NEAR(table.sky[i], 2e-4, 2e-6) << seed;  // 2 h / L, less than 1% smaller
+            EXPECT_NEAR(table.row_sums[i] + table.sky[i], 1, 1e-7) << seed;
+        }
+    }
+}
+
 TEST(RowFactors, KeepInvariantsOnRandomScenes) {
     const double R = 3e-3;
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
