@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/calibration/numbers.hpp"
+#include "exitance/direct/small_sources.hpp"
+#include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/gather/path_tracer.hpp"
 #include "exitance/processes/distributed.hpp"
 #include "exitance/scene/other_side.hpp"
@@ -68,6 +71,127 @@ bool is_lit(const Stage& stage, const PathTracer& tracer, const Side& side, unsi
     });
 }
 
+/// A place that a small source lights.
+struct LitPlace {
+    Point x;
+    RegionId region;
+};
+
+/// Finds sides that are lit although no path found light: a patch of sun behind a small window is met by few paths, and
+/// then a whole room of sheets would count as unlit. A side is lit if a small source lights it, or if a path from it
+/// has a vertex that sees a place that a small source lights.
+class LitPlaces {
+  public:
+    LitPlaces(const Stage& stage, std::uint64_t seed) : stage_(stage), seed_(seed) {
+        for (const Piece& piece : stage.pieces) of_region_[piece.region].push_back(&piece.patch);
+    }
+
+    /// Returns, for each of the given sides, 1 if it is lit.
+    std::vector<std::uint8_t> are_lit(std::span<const Side* const> sides) {
+        std::vector<std::vector<Vertex>> paths(sides.size());
+        parallel_ranges(sides.size(), 4, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) paths[i] = vertices_from(*sides[i]);
+        });
+        find_places(paths);
+        std::vector<std::uint8_t> out(sides.size());
+        parallel_ranges(sides.size(), 4, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                out[i] = std::any_of(lit_.begin(), lit_.end(), [&](const LitPlace& place) {
+                    return place.region == sides[i]->region || is_seen(place, paths[i]);
+                });
+        });
+        return out;
+    }
+
+  private:
+    using Vertex = LitPlace;  // a place from which light may come
+
+    const Normal& normal_of(RegionId region) const { return stage_.scene.regions()[region].plane.n; }
+    bool reflects(RegionId region) const { return max(stage_.scene.material(region).reflectance) > 0; }
+
+    /// Places on a side, and the surfaces that a path from each of them meets.
+    std::vector<Vertex> vertices_from(const Side& side) const {
+        constexpr unsigned most_reflections = 4;
+        std::vector<Vertex> out;
+        RandomStream random(seed_, Stream::visibility, side.region.value, 0);
+        for (unsigned i = 0; i < places; ++i) {
+            const double which = random.uniform(), u = random.uniform(), v = random.uniform();
+            Vertex at{side.at(which, u, v), side.region};
+            if (stage_.occluders.is_covered(at.x, normal_of(at.region), at.region)) continue;
+            for (unsigned k = 0; k <= most_reflections; ++k) {
+                out.push_back(at);
+                const double a = random.uniform(), b = random.uniform();
+                const Vec3 w = cosine_direction(Frame(normal_of(at.region)), a, b);
+                RayHit hit;
+                stage_.tracer.nearest(std::span(&w, 1), at.x, at.region, std::span(&hit, 1));
+                if (hit.surface.is_none() || !hit.front || !reflects(hit.region)) break;
+                at = {at.x + hit.distance * w, hit.region};
+            }
+        }
+        return out;
+    }
+
+    /// Finds the lit places of all regions that have a vertex.
+    void find_places(std::span<const std::vector<Vertex>> paths) {
+        std::vector<RegionId> regions;
+        for (const std::vector<Vertex>& path : paths)
+            for (const Vertex& vertex : path) regions.push_back(vertex.region);
+        std::sort(regions.begin(), regions.end());
+        regions.erase(std::unique(regions.begin(), regions.end()), regions.end());
+        std::vector<std::vector<LitPlace>> found(regions.size());
+        parallel_ranges(regions.size(), 4, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) found[i] = places_on(regions[i]);
+        });
+        for (const std::vector<LitPlace>& of_region : found)
+            lit_.insert(lit_.end(), of_region.begin(), of_region.end());
+        constexpr std::size_t most_places = 64;
+        if (lit_.size() <= most_places) return;
+        for (std::size_t i = 0; i < most_places; ++i) lit_[i] = lit_[i * lit_.size() / most_places];
+        lit_.resize(most_places);
+    }
+
+    std::vector<LitPlace> places_on(RegionId region) const {
+        std::vector<LitPlace> out;
+        SmallSources::Workspace room;
+        for (const Patch* patch : of_region_.at(region)) {
+            std::vector<Point> outline;
+            for (int i = 0; i < patch->corner_count(); ++i) outline.push_back(patch->corner(i));
+            for (const Point& x :
+                 SmallSources(stage_.direct).lit_places({outline, normal_of(region), region, {}, {}}, room))
+                out.push_back({x, region});
+        }
+        return out;
+    }
+
+    bool is_seen(const LitPlace& place, std::span<const Vertex> from) const {
+        return reflects(place.region) && std::any_of(from.begin(), from.end(), [&](const Vertex& vertex) {
+                   const Vec3 d = place.x - vertex.x;
+                   if (!(dot(d, normal_of(vertex.region)) > 0 && dot(d, normal_of(place.region)) < 0)) return false;
+                   RayHit hit;
+                   stage_.tracer.nearest(std::span(&d, 1), vertex.x, vertex.region, std::span(&hit, 1));
+                   return hit.region == place.region && hit.front;
+               });
+    }
+
+    const Stage& stage_;
+    std::uint64_t seed_;
+    std::map<RegionId, std::vector<const Patch*>> of_region_;
+    std::vector<LitPlace> lit_;
+};
+
+/// Corrects `unlit` where small sources are the only light. Among thousands of sides none matters by itself.
+void light_seen_sides(const Stage& stage, const std::vector<Side>& sides, std::uint64_t seed,
+                      std::vector<std::uint8_t>& unlit) {
+    constexpr std::size_t most_sides = 4096;
+    std::vector<std::size_t> dark;
+    std::vector<const Side*> dark_sides;
+    for (std::size_t k = 0; k < sides.size(); ++k)
+        if (unlit[k]) dark.push_back(k), dark_sides.push_back(&sides[k]);
+    if (dark.empty() || dark.size() > most_sides) return;
+    const std::vector<std::uint8_t> lit = LitPlaces(stage, seed).are_lit(dark_sides);
+    for (std::size_t i = 0; i < dark.size(); ++i) unlit[dark[i]] = !lit[i];
+}
+
 }  // namespace
 
 Field<RegionId, std::uint8_t> find_unlit_sides(const Stage& stage, std::uint64_t seed, const StopRequest& stop) {
@@ -90,6 +214,7 @@ Field<RegionId, std::uint8_t> find_unlit_sides(const Stage& stage, std::uint64_t
         },
         [&](std::size_t k) -> std::uint8_t& { return unlit[k]; }, {"unlit sides"});
     if (stop.requested()) return {};
+    light_seen_sides(stage, sides, seed, unlit);
     Field<RegionId, std::uint8_t> out(stage.scene.regions().size());
     std::size_t count = 0;
     for (std::size_t k = 0; k < sides.size(); ++k) {

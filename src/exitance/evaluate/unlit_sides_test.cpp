@@ -46,6 +46,39 @@ TEST(UnlitSides, AreNoneInAnOpenBox) {
         EXPECT_EQ(unlit[scene.surfaces()[s].region] != 0, s.value < 12 && s.value % 2 == 1) << s.value;
 }
 
+/// A closed room of sheets with a hole of 5 cm in its ceiling, through which a sun shines on a plate of two sides.
+TEST(UnlitSides, AreNotTheSidesThatSeeAPatchOfSun) {
+    std::vector<Face> faces = test::closed_box({0, 0, 0}, {4, 4, 3});
+    faces.erase(faces.begin() + 1);  // the ceiling
+    const auto ceiling = [&](double x0, double y0, double x1, double y1) {
+        faces.push_back({{{x0, y0, 3}, {x0, y1, 3}, {x1, y1, 3}, {x1, y0, 3}}});
+    };
+    ceiling(0, 0, 4, 2), ceiling(0, 2.05, 4, 4), ceiling(0, 2, 2, 2.05), ceiling(2.05, 2, 4, 2.05);
+    faces.push_back({{{1, 1, 1}, {3, 1, 1}, {3, 3, 1.4}, {1, 3, 1.4}}});
+    std::vector<Face> sheets;
+    for (const Face& face : faces) add_both_sides(sheets, face);
+    SceneDescription d;
+    d.groups = {"all"}, d.materials = {{"grey", Spectrum(0.5), {}}};
+    for (const Face& face : sheets) {
+        d.faces.push_back({{}, 0, 0, 0});
+        for (const Point& p : face.corners) {
+            d.faces.back().corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            d.points.push_back(p);
+        }
+    }
+    const Vec3 sun = normalized(Vec3{0.02, 0.01, 1});
+    d.distant.discs.push_back({sun, 0.005, Spectrum(700.0)});
+    CheckedScene checked = make_scene(std::move(d));
+    ASSERT_TRUE(checked.scene);
+    const Field<RegionId, std::uint8_t> unlit = find_unlit_sides(Stage(*checked.scene), 1, StopRequest());
+    ASSERT_EQ(unlit.size(), checked.scene->regions().size());
+    for (SurfaceId s : checked.scene->surfaces().ids()) {
+        const bool is_plate = s.value >= sheets.size() - 2, inwards = s.value % 2 == 0;
+        const bool is_in_sun = dot(checked.scene->surfaces()[s].normal, sun) > 0;  // if it faces outwards
+        EXPECT_EQ(unlit[checked.scene->surfaces()[s].region] != 0, !is_plate && !inwards && !is_in_sun) << s.value;
+    }
+}
+
 TEST(UnlitSides, AreFoundOnSheetsOnly) {
     std::vector<Face> faces = test::closed_box({0, 0, 0}, {1, 1, 1});
     for (const Face& f : test::closed_box({3, 0, 0}, {1, 1, 1})) faces.push_back(f);

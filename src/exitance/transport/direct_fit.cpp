@@ -76,6 +76,21 @@ NoisyFit fit_estimates(const Stage& stage, const ElementTree& tree, ElementId e,
 
 }  // namespace
 
+void add_missed_light(const DirectLight& direct, const ElementTree& tree, ElementId e, SmallSources::Workspace& room,
+                      DirectFit& fit) {
+    const std::vector<Point> places = places_of(tree, e), outline = tree.outline(e);
+    std::vector<double> weights;
+    for (const WeightedPlace& place : element_rule(tree, e, RuleOrder::fine)) weights.push_back(place.weight);
+    const Scene& scene = direct.occluders().scene();
+    const RegionId region = tree.region(e);
+    const SmallSources::Missed missed =
+        SmallSources(direct).missed({outline, scene.regions()[region].plane.n, region, places, weights}, room);
+    for (Spectrum& corner : fit.corners) corner += missed.irradiance;
+    fit.mean += missed.irradiance, fit.parallel += missed.parallel;
+    const Spectrum error = light_weight(scene.material(region)) * missed.irradiance;
+    fit.misfit_squared = std::max(fit.misfit_squared, squared(error) / static_cast<double>(bands));
+}
+
 NoisyFit fit_all_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
                        DirectFitRoom& room) {
     const RegionId region = tree.region(e);
@@ -83,7 +98,9 @@ NoisyFit fit_all_light(const Stage& stage, const ElementTree& tree, ElementId e,
     const std::vector<Point> places = places_of(tree, e), outline = tree.outline(e);
     stage.place_light.at_places({outline, stage.scene.regions()[region].plane.n, region, places},
                                 accuracy_on(w, allowed), room.place, room.found);
-    return fit_estimates(stage, tree, e, room.found);
+    NoisyFit out = fit_estimates(stage, tree, e, room.found);
+    if (tree.area(e) >= allowed.minor_area) add_missed_light(stage.direct, tree, e, room.small, out.fit);
+    return out;
 }
 
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,

@@ -177,7 +177,8 @@ class Projector {
             share_ * std::min(1.0, stage_.area / (ErrorShare::most_even * out_.tree.area(e))) / mean_area_;
         const double even = allowed_on(e) / out_.tree.area(e);
         if (!is_crowd_) return {even};
-        return {std::max(even, of_area), std::sqrt(share_ / mean_area_) / options_.tolerance};
+        return {std::max(even, of_area), std::sqrt(share_ / mean_area_) / options_.tolerance,
+                stage_.area / ErrorShare::least_count};
     }
 
     /// Number of rays to weak sources. The estimated flux is most accurate if rays are spread evenly over all area.

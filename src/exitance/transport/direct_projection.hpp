@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "exitance/base/progress.hpp"
+#include "exitance/direct/small_sources.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {
@@ -39,7 +40,7 @@ struct DirectFit {
 /// Direct irradiance projected onto elements, for consumers that evaluate it often, such as rays.
 ///
 /// Each leaf of an adaptive mesh holds the least-squares polynomial of exact values at the nodes of a quadrature rule.
-/// Its mean is exact, and shadow edges are resolved to the size of the elements. A method that solves on the same mesh
+/// Its mean is exact, also where the nodes miss a patch of light, and shadow edges are resolved to the size of the elements. A method that solves on the same mesh
 /// gets elements that follow the shadows.
 struct DirectProjection {
     ElementTree tree;
@@ -55,11 +56,17 @@ Spectrum light_weight(const Material& material);
 /// Workspace of one thread.
 struct DirectFitRoom {
     PlaceLight::Workspace place;
+    SmallSources::Workspace small;
     std::vector<PlaceLight::Estimate> found;
 };
 
+/// Adds to a fit what the nodes of its rule miss of small sources (`SmallSources`), so that its mean is right, and
+/// counts it as misfit, so that the element is split until the nodes see it.
+void add_missed_light(const DirectLight& direct, const ElementTree& tree, ElementId e, SmallSources::Workspace& room,
+                      DirectFit& fit);
+
 /// Fits direct light on one element from values at the nodes of its fine rule: exact ones, or by rays where these are
-/// cheaper (`PlaceLight`).
+/// cheaper (`PlaceLight`); and from the mean light of small sources.
 /// `allowed`: largest mean square of w (E - polynomial) due to noise, (W/m^2)^2. Noise that the polynomial keeps counts
 /// as misfit; the rest of it does not.
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,

@@ -7,6 +7,7 @@
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/visibility/edge_sum.hpp"
 #include "exitance/visibility/glazed_part.hpp"
+#include "exitance/visibility/pyramid.hpp"
 #include "exitance/visibility/sky/far_factor.hpp"
 #include "exitance/visibility/window_view.hpp"
 
@@ -15,7 +16,6 @@ namespace {
 
 constexpr double on_plane = 1e-14;       ///< Sine of an angle that may be due to rounding alone.
 constexpr double work_of_integral = 20;  ///< Work of the integral of a directed radiance over a fragment.
-constexpr double no_width = 1e-13;       ///< Edges seen under a smaller angle count as points.
 
 using Workspace = VisibilityWorkspace;
 
@@ -82,23 +82,6 @@ void make_region(const Occluders& occluders, const Receiver& at, PieceId source,
     if (!looks_out_on_faces(occluders, source)) scratch.region.add(above(ns, dot(ns, scratch.source[0]) + slack));
     scratch.region.add(above(at.n, slack));
     for (const Vec3& inward : scratch.source_pyramid) scratch.region.add(above(inward, -slack));
-}
-
-/// Adds the planes of the pyramid over a convex polygon (relative to x). Returns false if the polygon is seen edge-on.
-bool add_pyramid(std::span<const Vec3> polygon, double facing, Workspace& scratch) {
-    const std::size_t first = scratch.planes.size();
-    for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {
-        const Vec3 &a = polygon[i], &b = polygon[i + 1 == m ? 0 : i + 1];
-        const Vec3 normal = cross(b - a, a);
-        const double squared = squared_norm(normal), reach = squared_norm(a) * squared_norm(b);
-        if (squared > no_width * no_width * reach)
-            scratch.planes.push_back(normal * (std::copysign(1.0, facing) / std::sqrt(squared)));
-    }
-    if (scratch.planes.size() < first + 3) {
-        scratch.planes.resize(first);
-        return false;
-    }
-    return true;
 }
 
 /// How much of the source an occluder's pyramid hides.
@@ -172,7 +155,7 @@ Hides add_shadow(const Occluders& occluders, const Receiver& at, const ConvexPie
     if (lowest < 0) clip_in_place(scratch.clipped, at.n, 0, scratch);
     if (scratch.clipped.size() < 3) return Hides::nothing;
     const std::size_t first = scratch.planes.size();
-    if (!add_pyramid(scratch.clipped, facing, scratch)) return Hides::nothing;
+    if (!add_pyramid(scratch.clipped, facing, scratch.planes)) return Hides::nothing;
     const Hides hides = compare(scratch.source, std::span(scratch.planes).subspan(first));
     if (hides == Hides::nothing) scratch.planes.resize(first);
     if (hides != Hides::some) return hides;

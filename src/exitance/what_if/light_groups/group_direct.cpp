@@ -22,7 +22,9 @@ class PartOfLight {
     DirectFit fit(ElementId e, double allowed, DirectFitRoom& room) const {
         const Places at(*this, e);
         place_light_.at_places(at.polygon(), {0, std::sqrt(allowed) / weight(e)}, room.place, room.found);
-        return fit_found(e, room.found);
+        DirectFit out = fit_found(e, room.found);
+        add_missed_light(direct_, tree_, e, room.small, out);
+        return out;
     }
 
     /// Fits the strong emitters exactly and the others by rays.
