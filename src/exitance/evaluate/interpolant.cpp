@@ -1,5 +1,6 @@
 #include "exitance/evaluate/interpolant.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include "exitance/base/parallel.hpp"
@@ -69,17 +70,19 @@ class Interpolation {
         std::array<std::array<float, bands>, 4> corners;
         double misfit_squared = 0;
         std::array<float, 2> misfit_along = {};
+        float noise_squared = 0;  ///< Part of `misfit_squared`.
 
         Fit() = default;
         explicit Fit(const DirectFit& fit)
             : misfit_squared(fit.misfit_squared),
-              misfit_along{static_cast<float>(fit.misfit_along[0]), static_cast<float>(fit.misfit_along[1])} {
+              misfit_along{static_cast<float>(fit.misfit_along[0]), static_cast<float>(fit.misfit_along[1])},
+              noise_squared(static_cast<float>(fit.noise_squared)) {
             for (std::size_t i = 0; i < corners.size(); ++i)
                 for (std::size_t k = 0; k < bands; ++k) corners[i][k] = static_cast<float>(fit.corners[i][k]);
         }
         DirectFit as_direct() const {
             DirectFit out;
-            out.misfit_squared = misfit_squared;
+            out.misfit_squared = misfit_squared, out.noise_squared = static_cast<double>(noise_squared);
             for (std::size_t i = 0; i < corners.size(); ++i)
                 for (std::size_t k = 0; k < bands; ++k) out.corners[i][k] = static_cast<double>(corners[i][k]);
             return out;
@@ -96,7 +99,7 @@ class Interpolation {
         for (Spectrum& corner : out.corners) corner *= direct_weight_;
         out.mean *= direct_weight_;
         const double of_direct = max(direct_weight_ * direct_weight_);
-        out.misfit_squared *= of_direct;
+        out.misfit_squared *= of_direct, out.noise_squared *= of_direct;
         const std::vector<WeightedPlace> rule = element_rule(out_.tree, e, RuleOrder::fine);
         std::vector<Spectrum> value(rule.size());
         for (std::size_t i = 0; i < rule.size(); ++i) {
@@ -111,7 +114,7 @@ class Interpolation {
             out.misfit_squared += rule[i].weight * squared(value[i]) / static_cast<double>(bands);
         }
         const double counts = options_.light_in.empty() ? 1 : relative_weight(e);
-        out.misfit_squared *= counts;
+        out.misfit_squared *= counts, out.noise_squared *= counts;
         const std::array<double, 2> along = misfit_along(out_.tree, e, rule, value, Degree::straight);
         for (std::size_t k = 0; k < 2; ++k) out.misfit_along[k] = counts * (of_direct * out.misfit_along[k] + along[k]);
         return out;
@@ -140,7 +143,10 @@ class Interpolation {
             [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; ++i) {
                     const ElementId e(i);
-                    if (apart.tree.is_leaf(e)) fitted_[e].misfit_squared += squared_step(apart, out, e);
+                    if (!apart.tree.is_leaf(e)) continue;
+                    // Fits with noise differ by it from their mean, which has less noise.
+                    const double step = squared_step(apart, out, e) - static_cast<double>(fitted_[e].noise_squared);
+                    fitted_[e].misfit_squared += std::max(0.0, step);
                 }
             },
             [&](std::size_t i) -> double& { return fitted_[ElementId(i)].misfit_squared; }, {"interpolate"});

@@ -38,11 +38,12 @@ double kept_noise_share(const ElementTree& tree, ElementId e) {
 
 /// Corrects a fit for noise. `noise`: mean square, over the nodes, of the noise of the values times w. A fit with one
 /// degree of freedom per corner keeps a share of the noise; the remaining noise looks like misfit and is subtracted.
-NoisyFit count_noise(const ElementTree& tree, ElementId e, double noise, DirectFit fit) {
+DirectFit count_noise(const ElementTree& tree, ElementId e, double noise, DirectFit fit) {
     const double kept = kept_noise_share(tree, e);
     constexpr double max_noise_factor = 2;  // bound on the square of noise with few degrees of freedom, by its mean
     fit.misfit_squared = std::max(0.0, fit.misfit_squared - max_noise_factor * (1 - kept) * noise) + kept * noise;
-    return {fit, kept * noise};
+    fit.noise_squared = kept * noise;
+    return fit;
 }
 
 std::vector<Point> places_of(const ElementTree& tree, ElementId e) {
@@ -60,8 +61,8 @@ LightAccuracy accuracy_on(double w, const NoiseAllowed& allowed) {
     return {(1 - at_dark) * e / (allowed.mean_light / w), at_dark * e};
 }
 
-NoisyFit fit_estimates(const Stage& stage, const ElementTree& tree, ElementId e,
-                       std::span<const PlaceLight::Estimate> at) {
+DirectFit fit_estimates(const Stage& stage, const ElementTree& tree, ElementId e,
+                        std::span<const PlaceLight::Estimate> at) {
     double noise = 0;
     std::size_t next = 0;
     const DirectFit out = fit_at_places(stage, tree, e, [&](const Point&, Spectrum& parallel) {
@@ -69,7 +70,7 @@ NoisyFit fit_estimates(const Stage& stage, const ElementTree& tree, ElementId e,
         noise += estimate.variance, parallel += estimate.parallel;
         return estimate.irradiance;
     });
-    if (noise <= 0) return {out};
+    if (noise <= 0) return out;
     const double w = mean(light_weight(stage.scene.material(tree.region(e))));
     return count_noise(tree, e, w * w * noise / static_cast<double>(next), out);
 }
@@ -91,21 +92,21 @@ void add_missed_light(const DirectLight& direct, const ElementTree& tree, Elemen
     fit.misfit_squared = std::max(fit.misfit_squared, squared(error) / static_cast<double>(bands));
 }
 
-NoisyFit fit_all_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
-                       DirectFitRoom& room) {
+DirectFit fit_all_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
+                        DirectFitRoom& room) {
     const RegionId region = tree.region(e);
     const double w = mean(light_weight(stage.scene.material(region)));
     const std::vector<Point> places = places_of(tree, e), outline = tree.outline(e);
     stage.place_light.at_places({outline, stage.scene.regions()[region].plane.n, region, places},
                                 accuracy_on(w, allowed), room.place, room.found);
-    NoisyFit out = fit_estimates(stage, tree, e, room.found);
-    if (tree.area(e) >= allowed.minor_area) add_missed_light(stage.direct, tree, e, room.small, out.fit);
+    DirectFit out = fit_estimates(stage, tree, e, room.found);
+    if (tree.area(e) >= allowed.minor_area) add_missed_light(stage.direct, tree, e, room.small, out);
     return out;
 }
 
 DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementId e, double allowed,
                            DirectFitRoom& room) {
-    return fit_all_light(stage, tree, e, {allowed}, room).fit;
+    return fit_all_light(stage, tree, e, {allowed}, room);
 }
 
 namespace {
@@ -140,8 +141,8 @@ Spectrum light_weight(const Material& material) {
     return w;
 }
 
-NoisyFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
-                          unsigned rays, SampledLight& sampled, DirectFitRoom& room) {
+DirectFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
+                           unsigned rays, SampledLight& sampled, DirectFitRoom& room) {
     const RegionId region = tree.region(e);
     // Each source is evaluated, if only approximately. Above this number of sources even that is expensive.
     constexpr std::size_t max_examined = 10000;
@@ -157,11 +158,11 @@ NoisyFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId
         stage.place_light.at_places(on, accuracy, room.place, room.found);
         return fit_estimates(stage, tree, e, room.found);
     }
-    NoisyFit out = fit_estimates(stage, tree, e, room.found);
-    for (Spectrum& corner : out.fit.corners) corner += of.weak;
-    out.fit.mean += of.weak;
+    DirectFit out = fit_estimates(stage, tree, e, room.found);
+    for (Spectrum& corner : out.corners) corner += of.weak;
+    out.mean += of.weak;
     // The error bound of weak sources does not trigger a split; it is added to the error of elements that stay whole.
-    out.fit.misfit_squared = std::max(out.fit.misfit_squared, of.misfit_squared);
+    out.misfit_squared = std::max(out.misfit_squared, of.misfit_squared);
     return out;
 }
 

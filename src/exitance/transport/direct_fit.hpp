@@ -5,13 +5,6 @@
 
 namespace exitance {
 
-/// A fit, and the part of its squared misfit that is noise of rays, (W/m^2)^2. More rays reduce that part, smaller
-/// elements do not.
-struct NoisyFit {
-    DirectFit fit;
-    double noise = 0;
-};
-
 /// Limits on the noise that a fit may keep, if light is estimated by rays (`PlaceLight`).
 struct NoiseAllowed {
     double squared = 0;  ///< Largest mean square of w (E - polynomial) due to noise, (W/m^2)^2; 0: exact light.
@@ -23,14 +16,14 @@ struct NoiseAllowed {
 /// Rays of an element to weak sources. Elements larger than the mean get more.
 constexpr unsigned rays_an_element = 16;
 
-/// Like `fit_direct_light`, with limits on noise and the noise that was kept.
-NoisyFit fit_all_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
-                       DirectFitRoom& room);
+/// Like `fit_direct_light`, with limits on noise.
+DirectFit fit_all_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
+                        DirectFitRoom& room);
 
 /// Like `fit_all_light`, for scenes of many elements: sources that contribute little to this element are only sampled,
 /// by `rays` rays together.
-NoisyFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
-                          unsigned rays, SampledLight& sampled, DirectFitRoom& room);
+DirectFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
+                           unsigned rays, SampledLight& sampled, DirectFitRoom& room);
 
 /// Returns a constant fit from rays alone, for work that is stopped early.
 DirectFit fit_by_rays(const Stage& stage, const ElementTree& tree, ElementId e, SampledLight& sampled);

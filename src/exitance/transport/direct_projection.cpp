@@ -92,16 +92,16 @@ std::vector<double> shares_by_room(const Stage& stage, const DirectProjection& l
     return out;
 }
 
-/// Squared error of an element that smaller elements would remove, (W/m^2)^2 m^2. `noise`: see `NoisyFit`.
-double error_of_shape(const DirectProjection& light, const Field<ElementId, double>& noise, ElementId e) {
-    return light.tree.area(e) * std::max(0.0, light.fit[e].misfit_squared - noise[e]);
+/// Squared error of an element that smaller elements would remove, (W/m^2)^2 m^2, if noise is left out.
+double error_of_shape(const DirectProjection& light, ElementId e) {
+    return light.tree.area(e) * std::max(0.0, light.fit[e].misfit_squared - light.fit[e].noise_squared);
 }
 
 /// Smallest squared error for which a leaf is split, if most elements are whole polygons (`share_of_crowd`). `bound`:
 /// on the sum of the leaves' squared errors. (W/m^2)^2 m^2
-double share_in_crowd(const DirectProjection& light, const Field<ElementId, double>& noise, double bound) {
+double share_in_crowd(const DirectProjection& light, double bound) {
     std::vector<double> errors;
-    for (ElementId e : light.tree.leaves()) errors.push_back(error_of_shape(light, noise, e));
+    for (ElementId e : light.tree.leaves()) errors.push_back(error_of_shape(light, e));
     return share_of_crowd(std::move(errors), bound);
 }
 
@@ -188,10 +188,10 @@ class Projector {
             std::clamp(rays, static_cast<double>(rays_an_element), static_cast<double>(SampledLight::most_rays)));
     }
 
-    NoisyFit fit(ElementId e, int depth, SampledLight& sampled, DirectFitRoom& room) const {
-        if (stop_.requested() && depth > 0) return {inherited_fit(out_.tree, e, out_.fit[out_.tree.parent(e)])};
+    DirectFit fit(ElementId e, int depth, SampledLight& sampled, DirectFitRoom& room) const {
+        if (stop_.requested() && depth > 0) return inherited_fit(out_.tree, e, out_.fit[out_.tree.parent(e)]);
         if (stop_.requested() && stop_.seconds_overdue() < time_for_rays)
-            return {fit_by_rays(stage_, out_.tree, e, sampled)};
+            return fit_by_rays(stage_, out_.tree, e, sampled);
         if (stop_.requested()) return {};  // dark: even rays would take too long
         if (many_) return fit_strong_light(stage_, out_.tree, e, noise_on(e), rays_of(e), sampled, room);
         return fit_all_light(stage_, out_.tree, e, noise_on(e), room);
@@ -207,21 +207,20 @@ class Projector {
                 SampledLight sampled(stage_.direct, stage_.tracer, options_.seed);
                 for (std::size_t i = begin; i < end; ++i) found_[i] = fit(active[i], depth, sampled, room);
             },
-            [&](std::size_t i) -> NoisyFit& { return found_[i]; },
+            [&](std::size_t i) -> DirectFit& { return found_[i]; },
             {"direct light", [&](std::size_t i) { return out_.tree.region(active[i]).value; }});
-        out_.fit.resize(out_.tree.size()), noise_.resize(out_.tree.size());
-        for (std::size_t i = 0; i < active.size(); ++i)
-            out_.fit[active[i]] = found_[i].fit, noise_[active[i]] = is_crowd_ ? found_[i].noise : 0;
+        out_.fit.resize(out_.tree.size());
+        for (std::size_t i = 0; i < active.size(); ++i) out_.fit[active[i]] = found_[i];
     }
 
     /// Splits the elements whose error exceeds their share, and returns the new elements.
     std::vector<ElementId> cut(const std::vector<ElementId>& active) {
-        const double least = is_crowd_ ? share_in_crowd(out_, noise_, share_ * stage_.area / mean_area_) : 0;
+        const double least = is_crowd_ ? share_in_crowd(out_, share_ * stage_.area / mean_area_) : 0;
         std::vector<ElementId> fresh;
         for (ElementId e : active) {
             const double area = out_.tree.area(e);
             const double of_bodies = needs_ ? area * needs_->allowed_squared(e) : HUGE_VAL;
-            const double error = error_of_shape(out_, noise_, e),
+            const double error = is_crowd_ ? error_of_shape(out_, e) : area * out_.fit[e].misfit_squared,
                          allowed = std::min(std::max(least, allowed_on(e)), of_bodies);
             if (error <= allowed && !hides_too_much(e)) continue;
             if (options_.least_area && area < 2 * *options_.least_area) continue;
@@ -246,8 +245,7 @@ class Projector {
     bool many_ = false, is_crowd_ = false;
     double share_ = 0;              ///< Squared error that an element may have if the scene is one room, (W/m^2)^2 m^2.
     std::vector<double> share_in_;  ///< Like `share_`, for each room; used if there are several.
-    std::vector<NoisyFit> found_;
-    Field<ElementId, double> noise_;
+    std::vector<DirectFit> found_;
 };
 
 }  // namespace

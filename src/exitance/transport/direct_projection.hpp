@@ -33,6 +33,8 @@ struct DirectFit {
     Spectrum mean;              ///< W/m^2
     Spectrum parallel;          ///< Part of the mean that is parallel light, W/m^2.
     double misfit_squared = 0;  ///< Mean of (w (E - polynomial))^2, see light_weight().
+    /// Part of it that is noise of rays, (W/m^2)^2: more rays reduce it, smaller elements do not.
+    double noise_squared = 0;
     std::array<double, 2> misfit_along =
         {};  ///< Parts of the misfit that vary along one coordinate only, noise included (basis/misfit_along.hpp).
 };
