@@ -1,5 +1,6 @@
 #include "exitance/direct/place_light.hpp"
 
+#include <bit>
 #include <cmath>
 
 #include "exitance/base/polygon.hpp"
@@ -68,8 +69,16 @@ PlaceLight::Estimate PlaceLight::at(const Point& x, const Normal& n, RegionId ow
         const double of_one = RayLight::rays_for(std::max(accuracy.relative, RayLight::error_of(accuracy.most_rays)));
         const double work =
             most_work_ <= of_one || !(accuracy.absolute > 0) ? of_one : rays_.forecast(x, n, own, accuracy, room);
-        exact = most_work_ <= work ? direct_->irradiance(x, n, own, room.exact)
-                                   : direct_->irradiance_within(x, n, own, work, room.exact);
+        exact = exact_within(x, n, own, work, room);
+        if (!exact) {
+            // In penumbrae rays need more than was forecast. The first ones tell.
+            LightAccuracy first = accuracy;
+            first.most_rays = std::min(accuracy.most_rays, std::bit_ceil(static_cast<unsigned>(work)));
+            const Estimate found = rays_.at(x, n, own, first, room);
+            constexpr double worth_another = 4;  // derived from the cost of trying again: half of what rays then need
+            const double needed = rays_needed(found, accuracy);
+            if (needed > worth_another * work) exact = exact_within(x, n, own, 0.5 * needed, room);
+        }
         if (!exact) return by_rays(x, n, own, accuracy, room);
     } else {
         exact = direct_->irradiance(x, n, own, room.exact);
@@ -77,6 +86,20 @@ PlaceLight::Estimate PlaceLight::at(const Point& x, const Normal& n, RegionId ow
     Estimate out{.irradiance = *exact};
     add_mirrored(x, n, own, accuracy, out);
     return out;
+}
+
+std::optional<Spectrum> PlaceLight::exact_within(const Point& x, const Normal& n, RegionId own, double work,
+                                                 Workspace& room) const {
+    return most_work_ <= work ? direct_->irradiance(x, n, own, room.exact)
+                              : direct_->irradiance_within(x, n, own, work, room.exact);
+}
+
+/// Forecast of the rays that reach an accuracy; stratified rays have a variance of n^(-3/2).
+double PlaceLight::rays_needed(const Estimate& found, const LightAccuracy& accuracy) {
+    const double allowed = accuracy.allowed(mean(found.irradiance));
+    if (found.variance <= allowed * allowed) return 0;
+    const double rays = found.rays * std::pow(found.variance / (allowed * allowed), 2.0 / 3);
+    return std::min<double>(rays, accuracy.most_rays);
 }
 
 /// Work of exact light at one place of a prepared polygon.

@@ -15,9 +15,10 @@ class MirroredLight;
 /// samples (MirroredLight).
 ///
 /// The rays that reach the required accuracy are counted in advance (RayLight::rays_for). At a single place exact light
-/// counts its work while it is computed, and gives up when it exceeds the cost of these rays: a place never costs more
-/// than twice as much as by the cheaper estimator. For places of one polygon the blockers of the whole polygon are
-/// counted, up to the cost of the rays. The choice depends on the places and the accuracy alone.
+/// counts its work while it is computed, and gives up when it exceeds the cost of these rays. If the first
+/// rays then show that many more are needed, as in penumbrae, exact light is tried again, up to half of their cost: a
+/// place never costs more than twice as much as by the cheaper estimator. For places of one polygon the blockers of the
+/// whole polygon are counted, up to the cost of the rays. The choice depends on the places and the accuracy alone.
 class PlaceLight {
   public:
     /// Both must outlive it.
@@ -62,6 +63,9 @@ class PlaceLight {
     bool is_mirrored() const { return mirrored_ != nullptr; }
 
   private:
+    std::optional<Spectrum> exact_within(const Point& x, const Normal& n, RegionId own, double work,
+                                         Workspace& room) const;
+    static double rays_needed(const Estimate& found, const LightAccuracy& accuracy);
     void add_mirrored(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
                       Estimate& out) const;
     bool prepare(const Polygon& on, double work, const std::vector<SourceName>* named, Workspace& room) const;

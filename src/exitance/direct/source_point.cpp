@@ -60,8 +60,12 @@ SeenPolygon::SeenPolygon(std::span<const Point> corners, const Normal& n, double
     const double nearest = nearest_squared(corners, n, x);
     // Relative to the farthest: x is in the polygon, so that directions to it are undefined.
     constexpr double min_squared_ratio = 1e-12;
-    if (farthest <= max_distance_ratio * max_distance_ratio * nearest || nearest <= min_squared_ratio * farthest)
+    if (farthest <= max_distance_ratio * max_distance_ratio * nearest || nearest <= min_squared_ratio * farthest) {
+        for (std::size_t i = 2; i < corners.size(); ++i)
+            area_before_.push_back(area_before_.back() +
+                                   0.5 * norm(cross(corners[i - 1] - corners[0], corners[i] - corners[0])));
         return;
+    }
     const Vec3 a = normalized(corners[0] - x);
     for (std::size_t i = 2; i < corners.size(); ++i) {
         const Vec3 b = normalized(corners[i - 1] - x), c = normalized(corners[i] - x);
@@ -92,9 +96,20 @@ Vec3 SeenPolygon::direction(double s, double t) const {
 }
 
 Point SeenPolygon::at(double s, double t) const {
-    if (triangles_.empty()) return uniform_on(corners_, area_, s, t);
+    if (triangles_.empty()) return uniform_in_area(s, t);
     const Vec3 w = direction(s, t);
     return x_ + (dot(n_, corners_[0] - x_) / dot(n_, w)) * w;
+}
+
+/// Like uniform_on(), in the time of a search: the polygon of the sun's disc has 48 corners.
+Point SeenPolygon::uniform_in_area(double s, double t) const {
+    const double wanted = s * area_before_.back();
+    const auto after = std::upper_bound(area_before_.begin() + 1, area_before_.end() - 1, wanted);
+    const auto k = static_cast<std::size_t>(after - area_before_.begin());  // triangle 0, k, k + 1
+    const double of_triangle = area_before_[k] - area_before_[k - 1];
+    const double share = of_triangle > 0 ? std::min((wanted - area_before_[k - 1]) / of_triangle, 1.0) : 0;
+    const Vec2 uv = uniform_in_shape(Patch::Shape::triangle, share, t);
+    return corners_[0] + uv.x * (corners_[k] - corners_[0]) + uv.y * (corners_[k + 1] - corners_[0]);
 }
 
 double SeenPolygon::weight(const Vec3& d, const Normal& receiver) const {

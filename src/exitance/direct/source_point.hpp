@@ -35,13 +35,15 @@ class SeenPolygon {
         double angle, sine, cosine, solid_angle;
     };
     Vec3 direction(double s, double t) const;
+    Point uniform_in_area(double s, double t) const;
 
     std::span<const Point> corners_;
     Normal n_;
     double area_;
     Point x_;
-    std::vector<Triangle> triangles_;  ///< Empty: sampling uniform in area.
-    double solid_angle_ = 0;           ///< Sum over the triangles, sr.
+    std::vector<Triangle> triangles_;     ///< Empty: sampling uniform in area.
+    std::vector<double> area_before_{0};  ///< Sums of the areas of the fan's triangles, m^2, if uniform in area.
+    double solid_angle_ = 0;              ///< Sum over the triangles, sr.
 };
 
 }  // namespace exitance
