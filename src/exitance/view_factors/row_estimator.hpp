@@ -53,7 +53,7 @@ class RowEstimator {
     double left_of_pair(std::size_t face, std::uint32_t column) const;
     double combined_error(const RawRow& row) const;
     bool may_be_under(std::size_t face, std::size_t other) const;
-    double smallest_candidate(std::size_t face, double variance) const;
+    double smallest_candidate(std::size_t face, double variance);
     void classify(std::size_t face, std::uint32_t round);
     View view_of(std::size_t face, std::size_t other);
     void classify_pair(std::size_t face, Pair& pair, std::uint32_t round);
@@ -76,6 +76,7 @@ class RowEstimator {
     std::vector<Candidate> candidates_;
     bool under_others_ = false;  ///< True if another face may cover part of the face.
     std::vector<RowCaster::Count> pilot_;
+    std::vector<double> seen_by_pilot_;  ///< Scratch of smallest_candidate(), one entry per face; zero between calls.
     std::vector<Pair> pairs_;
     double rest_squares_ = 0;      ///< Sum of the squares of the terms of rest_.
     double missed_ = 0;            ///< Pilot's share of rays that hit no front.
