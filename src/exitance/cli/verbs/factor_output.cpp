@@ -39,6 +39,14 @@ FactorFormat format_of(const ViewFactorArguments& arguments) {
 
 Result<void> check_output_options(const ViewFactorArguments& arguments) {
     const FactorFormat format = format_of(arguments);
+    const std::string& transport = arguments.operator_file;
+    if (!transport.empty() && ending(transport) != ".h5")
+        return usage("--operator", "must end in .h5", "use --operator FILE.h5");
+    if (!transport.empty() && transport == arguments.output)
+        return usage("--operator", "is also the file of --output", "choose another name");
+    if (arguments.output.empty() && (!arguments.nodes.empty() || arguments.with_sky))
+        return usage(arguments.with_sky ? "--sky" : "--nodes", "applies to the matrix of --output only",
+                     "add -o FILE, or leave it out");
     const bool takes_sky = format == FactorFormat::csv || format == FactorFormat::mtx || format == FactorFormat::pairs;
     if (arguments.with_sky && format == FactorFormat::hdf5)
         return usage("--sky", "is not needed for .h5: it always has the shares of the sky and of backs",
