@@ -68,7 +68,8 @@ Result<std::optional<FactorNodes>> nodes_of(const ViewFactorArguments& arguments
         return usage("--nodes", "material does not apply to .vs3 files, which have no materials",
                      "use group or a table");
     // The groups of a .vs3 file are the rows of View3D's result, and one of surfaces that only block.
-    if (is_view3d && (arguments.nodes.empty() || arguments.nodes == "group")) return std::optional(view3d_rows(scene));
+    if (is_view3d && (arguments.nodes.empty() || arguments.nodes == "group"))
+        return std::optional(view3d_rows(scene, arguments.scene.files.front()));
     if (arguments.nodes.empty()) return std::optional<FactorNodes>();
     if (arguments.nodes == "group") return std::optional(nodes_by_group(scene));
     if (arguments.nodes == "material") return std::optional(nodes_by_material(scene));
@@ -94,8 +95,7 @@ Result<void> write_factor_output(const ViewFactorArguments& arguments, const Sce
     options.format = format_of(arguments), options.with_sky = arguments.with_sky, options.origin = scene_origin;
     if (!arguments.zone.empty()) options.zone = arguments.zone;
     if (nodes) {
-        table = merge_rows(table, nodes->row_of_face, nodes->names.size());
-        table.names = nodes->names;
+        table = merge_nodes(table, *nodes);
         for (const std::uint32_t row : nodes->row_of_face)
             options.row_of_face.push_back(row == no_row ? -1 : static_cast<std::int32_t>(row));
     } else if (*options.format == FactorFormat::energyplus) {
