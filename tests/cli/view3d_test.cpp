@@ -128,7 +128,7 @@ TEST(ProgramView3d, AMaskExchangesHeatWithItsBaseOnly) {
         EXPECT_EQ(F(i, 6), 0);
         EXPECT_NEAR(F(i, 0), F(0, i), 1.5e-6);  // equal areas; both are rounded to six digits
     }
-    // By symmetry, each quarter of the floor takes a quarter of the light from the ceiling.
+    // Each quarter of the floor takes a quarter of the light from the ceiling, for reasons of symmetry.
     EXPECT_NEAR(F(1, 0), 0.75 * opposite, 1.5e-6);
     // The floor's exposed part sees the ceiling and the walls only.
     double sum = 0;
