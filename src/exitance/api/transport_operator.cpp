@@ -68,8 +68,7 @@ Result<TransportOperator> transport_operator(const Scene& scene, const ViewFacto
                                              const Control& control) {
     return take_turn<TransportOperator>(control, [&](Run& run) -> Result<TransportOperator> {
         if (const std::optional<Error> misuse = find_misuse(options)) return *misuse;
-        RowFactorOptions in;
-        in.error = table_share * options.error, in.smallest = options.smallest, in.seed = options.seed;
+        const RowFactorOptions in = operator_table_options(options.error, options.smallest, options.seed);
         const exitance::Scene& inside = *scene.data().scene;
         SparseFactors table = compute_row_factors(inside, in, nullptr, run.progress(), run.stop());
         if (run.stop().requested()) return stopped("the computation of the operator");

@@ -48,7 +48,7 @@ Result<GrayExchange> solve_gray_exchange(const SparseFactors& factors, std::span
 
 /// Like the above, for an operator. It uses the mean of F and of its reciprocal A^-1 F^T A, so that all heats add up to
 /// 0 although the operator's nodes are not reciprocal. Entries are merged only if they are small in both directions, so
-/// that this mean has about the operator's error.
+/// that this mean has about the operator's error; rows are closed as those of a table.
 Result<GrayExchange> solve_gray_exchange(const FactorOperator& transport, std::span<const ThermalSurface> surfaces,
                                          std::optional<double> surroundings, const StopRequest& stop);
 

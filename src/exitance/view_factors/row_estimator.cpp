@@ -50,9 +50,11 @@ double cast_rays_for(double share, double variance) {
 
 }  // namespace
 
-RowEstimator::RowEstimator(const RowScene& scene, double error, std::uint64_t seed, const StopRequest& stop)
+RowEstimator::RowEstimator(const RowScene& scene, double error, double missed_error, std::uint64_t seed,
+                           const StopRequest& stop)
     : scene_(scene),
       error_(error),
+      missed_error_(missed_error),
       seed_(seed),
       stop_(stop),
       caster_(scene),
@@ -213,7 +215,7 @@ void RowEstimator::classify(std::size_t face, std::uint32_t round) {
 /// Numbers of samples that reach a variance at the least cost: for variances a^2 n^-r, one more sample must reduce the
 /// variance by the same amount per cost in all estimators.
 RowEstimator::Plan RowEstimator::plan(double variance) {
-    const double for_sky = std::pow(missed_deviation_ / (error_ * error_), 1 / cast_rate);
+    const double for_sky = std::pow(missed_deviation_ / (missed_error_ * missed_error_), 1 / cast_rate);
     const double min_cast = std::max({double(min_batches * min_rays_a_batch), std::min(for_sky, max_sky_rays),
                                       std::min(sky_rays_per_error / error_, min_sky_rays)});
     const auto pair_samples = [&](const Pair& pair, double price) {

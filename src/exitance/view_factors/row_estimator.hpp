@@ -26,7 +26,8 @@ namespace exitance {
 /// object serves one thread.
 class RowEstimator {
   public:
-    RowEstimator(const RowScene& scene, double error, std::uint64_t seed, const StopRequest& stop);
+    /// missed_error  limit on the standard deviations of the shares of the sky and of backs
+    RowEstimator(const RowScene& scene, double error, double missed_error, std::uint64_t seed, const StopRequest& stop);
 
     /// Computes the row of a face; empty if a stop is requested meanwhile.
     /// round  repetitions use other random numbers
@@ -62,7 +63,7 @@ class RowEstimator {
     RawRow measure(std::size_t face, std::uint32_t round, const Plan& plan);
 
     const RowScene& scene_;
-    double error_;
+    double error_, missed_error_;
     std::uint64_t seed_;
     const StopRequest& stop_;
     RowCaster caster_;

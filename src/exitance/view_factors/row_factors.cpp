@@ -109,7 +109,9 @@ class RowRun {
         std::vector<std::optional<RawRow>> made(faces.size());
         parallel_ranges(faces.size(), rows_a_range, [&](std::size_t from, std::size_t to) {
             std::unique_ptr<RowEstimator>& estimator = estimators_[from / rows_a_range];
-            if (!estimator) estimator = std::make_unique<RowEstimator>(*ready_, options_.error, options_.seed, stop_);
+            if (!estimator)
+                estimator = std::make_unique<RowEstimator>(
+                    *ready_, options_.error, options_.missed_error.value_or(options_.error), options_.seed, stop_);
             for (std::size_t k = from; k < to && !stop_.requested(); ++k)
                 made[k] = (*estimator)(faces[k], round, shares_[faces[k]]);
         });

@@ -129,16 +129,22 @@ void show_findings(const CheckedScene& checked, Terminal& terminal) {
     terminal.show(findings);
 }
 
-/// Error of the rows of the table: less than requested if an operator is made of it.
-double table_error(const ViewFactorArguments& arguments) {
+/// Options of the table; its rows have less than the requested error if an operator is made of it.
+RowFactorOptions table_options(const ViewFactorArguments& arguments) {
     const double error = arguments.error.value_or(default_error);
-    return arguments.operator_file.empty() ? error : table_share * error;
+    RowFactorOptions options{.error = error, .smallest = arguments.smallest, .seed = arguments.seed};
+    if (!arguments.operator_file.empty()) options = operator_table_options(error, arguments.smallest, arguments.seed);
+    options.memory_limit_bytes = arguments.limits.memory_limit.value_or(SIZE_MAX);
+    return options;
 }
 
 /// Identifies the computation to which the rows in a work file belong: scene, accuracy and seed.
 std::string work_of(const ViewFactorArguments& arguments, const Scene& scene) {
-    return fmt::format("{} error {} tolerance {} seed {}", scene_fingerprint(scene), table_error(arguments),
-                       arguments.tolerance.value_or(0), arguments.seed);
+    const RowFactorOptions options = table_options(arguments);
+    std::string text = fmt::format("{} error {} tolerance {} seed {}", scene_fingerprint(scene), options.error,
+                                   arguments.tolerance.value_or(0), arguments.seed);
+    if (options.missed_error) text += fmt::format(" sky {}", *options.missed_error);
+    return text;
 }
 
 /// One run of the verb, after the scene was read.
@@ -202,8 +208,7 @@ class ViewFactorRun {
             const EntryFactorOptions options{*arguments_.tolerance, arguments_.smallest, memory};
             return compute_entry_factors(scene_, options, store, terminal_.progress(), stop_);
         }
-        const RowFactorOptions options{table_error(arguments_), arguments_.smallest, arguments_.seed, memory};
-        return compute_row_factors(scene_, options, store, terminal_.progress(), stop_);
+        return compute_row_factors(scene_, table_options(arguments_), store, terminal_.progress(), stop_);
     }
 
     /// The operator of a table, which is moved into it unless the table is an output as well.
