@@ -11,6 +11,7 @@ import sys
 
 CLASS = re.compile(r"^(?:class|struct) (\w+)(?: :[^{]*)? \{$")
 FUNCTION = re.compile(r"\b(\w+)\(")
+OPERATOR = re.compile(r"\boperator\b")
 MEMBER = re.compile(r"(\w+)(?: = [^;]*|\{[^;]*\})?;")
 
 
@@ -32,7 +33,7 @@ def declarations(lines):
             code, _, trailing = text.partition("///< ")
             found = FUNCTION.search(code) or MEMBER.search(code)
             told = comment or ([trailing] if trailing else [])
-            if found and told and "operator" not in code and found.group(1) != owner:
+            if found and told and not OPERATOR.search(code) and found.group(1) != owner:
                 yield owner, found.group(1), told
         comment = []
 

@@ -34,6 +34,43 @@ py::object view_factors(const api::Scene& scene, double error, double smallest, 
         "shape"_a = py::make_tuple(n, n));
 }
 
+/// A scipy.sparse.linalg.LinearOperator with the attribute `transport`.
+py::object linear_operator(api::TransportOperator transport) {
+    const py::object inner = py::cast(std::move(transport));
+    py::object out = py::module_::import("scipy.sparse.linalg").attr("aslinearoperator")(inner);
+    out.attr("transport") = inner;
+    return out;
+}
+
+py::object transport_operator(const api::Scene& scene, double error, std::uint64_t seed, const py::object& progress) {
+    const api::ViewFactorOptions options{error, 0, seed};
+    return linear_operator(run<api::TransportOperator>(
+        progress, [&](const api::Control& control) { return api::transport_operator(scene, options, control); }));
+}
+
+py::object load_transport_operator(const py::object& path) {
+    const std::string file = path_of(path);
+    return linear_operator(without_lock<api::TransportOperator>([&] { return api::load_transport_operator(file); }));
+}
+
+using Product = api::Result<std::vector<double>> (api::TransportOperator::*)(const std::vector<double>&) const;
+
+/// A product with a vector of shape (n,) or (n, 1).
+auto product(Product member) {
+    return [member](const api::TransportOperator& transport, const Doubles& x) {
+        const std::vector<double> values(x.data(), x.data() + x.size());
+        return vector_of(without_lock<std::vector<double>>([&] { return (transport.*member)(values); }));
+    };
+}
+
+/// A property that shows a vector of the operator without a copy, one number per face.
+auto per_face(const std::vector<double>& (api::TransportOperator::*member)() const) {
+    return [member](const py::object& self) {
+        const std::vector<double>& values = (self.cast<const api::TransportOperator&>().*member)();
+        return view_of(values.data(), {static_cast<py::ssize_t>(values.size())}, self);
+    };
+}
+
 api::Daylight daylight(const api::Scene& scene, const py::object& epw, const py::object& sensors,
                        const py::object& normals, double error, int division, double north, double ground,
                        const py::object& progress) {
@@ -71,6 +108,14 @@ seed       seed of the random points
 progress   as for solve()
 returns    scipy.sparse.csr_array (n, n): entry (i, j) is the share of the flux leaving face i that reaches face j)doc";
 
+constexpr const char* transport_arguments = R"doc(
+
+error      limit on the error of products for |x| <= 1
+seed       seed of the random points
+progress   as for solve()
+returns    scipy.sparse.linalg.LinearOperator (n, n): F @ x and F.rmatvec(x); its attribute `transport` is the
+           TransportOperator with areas, errors and save())doc";
+
 constexpr const char* daylight_arguments = R"doc(
 
 sensors    (n, 3) metres
@@ -81,9 +126,41 @@ north      degrees from the y axis to north, clockwise seen from above
 ground     reflectance of the ground
 progress   as for solve())doc";
 
+void add_operator(py::module_& m) {
+    static const std::string doc = std::string(docs::transport_operator) + transport_arguments;
+    using api::TransportOperator;
+    py::class_<TransportOperator>(m, "TransportOperator", docs::TransportOperator::self)
+        .def_property_readonly(
+            "shape", [](const TransportOperator& t) { return py::make_tuple(t.size(), t.size()); }, "(n, n), n faces.")
+        .def_property_readonly(
+            "dtype", [](const TransportOperator&) { return py::dtype::of<double>(); }, "float64")
+        .def("matvec", product(&TransportOperator::apply), "x"_a, docs::TransportOperator::apply)
+        .def("rmatvec", product(&TransportOperator::apply_transposed), "x"_a, docs::TransportOperator::apply_transposed)
+        .def_property_readonly("areas", per_face(&TransportOperator::areas), docs::TransportOperator::areas)
+        .def_property_readonly("emittances", per_face(&TransportOperator::emittances),
+                               docs::TransportOperator::emittances)
+        .def_property_readonly("sky", per_face(&TransportOperator::sky), docs::TransportOperator::sky)
+        .def_property_readonly("back", per_face(&TransportOperator::back), docs::TransportOperator::back)
+        .def_property_readonly("row_errors", per_face(&TransportOperator::row_errors),
+                               docs::TransportOperator::row_errors)
+        .def_property_readonly("closure_defect", &TransportOperator::closure_defect,
+                               docs::TransportOperator::closure_defect)
+        .def(
+            "save",
+            [](const TransportOperator& t, const py::object& path) {
+                const std::string file = path_of(path);
+                without_lock<void>([&] { return t.save(file); });
+            },
+            "path"_a, docs::TransportOperator::save);
+    m.def("transport_operator", &transport_operator, "scene"_a, "error"_a = 1e-2, py::kw_only(), "seed"_a = 1,
+          "progress"_a = py::none(), doc.c_str());
+    m.def("load_transport_operator", &load_transport_operator, "path"_a, docs::load_transport_operator);
+}
+
 }  // namespace
 
 void add_measures(py::module_& m) {
+    add_operator(m);
     static const std::string factors_doc = std::string(docs::view_factors) + view_factor_arguments;
     m.def("view_factors", &view_factors, "scene"_a, "error"_a = 1e-3, py::kw_only(), "smallest"_a = 0.0, "seed"_a = 1,
           "progress"_a = py::none(), factors_doc.c_str());

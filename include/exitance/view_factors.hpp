@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "exitance/progress.hpp"
@@ -33,6 +35,47 @@ struct ViewFactors {
 /// Errors: usage for options out of range; limit after a stop.
 Result<ViewFactors> view_factors(const Scene& scene, const ViewFactorOptions& options = {},
                                  const Control& control = {});
+
+struct TransportOperatorData;
+
+/// Transport between the faces of a scene, for solvers that need products with the matrix F of view factors only. Far
+/// faces share entries, so that it suits 10^5 to 10^6 faces. Products err by at most `error` max |x|; this is at least
+/// 1.3 standard deviations for any x.
+class TransportOperator {
+  public:
+    std::size_t size() const;                       ///< Number of faces.
+    const std::vector<double>& areas() const;       ///< Per face, m^2.
+    const std::vector<double>& emittances() const;  ///< Per face: 1 - reflectance, mean over the bands.
+    const std::vector<double>& sky() const;         ///< Per face: share of its flux that leaves the scene.
+    const std::vector<double>& back() const;        ///< Per face: share that reaches the backs of faces.
+    const std::vector<double>& row_errors() const;  ///< Per face: estimated standard deviation of a product.
+    double closure_defect() const;                  ///< Largest |1 - sum_j F_ij - sky_i - back_i|.
+
+    /// F x: a gathering of values of faces. Same bits on any number of threads.
+    /// Errors: usage if x has not one value per face.
+    Result<std::vector<double>> apply(const std::vector<double>& x) const;
+    /// F^T x, the adjoint. Errors as for apply().
+    Result<std::vector<double>> apply_transposed(const std::vector<double>& x) const;
+    /// Writes an .h5 file, which `exitance heat` reads, too. It appears whole or not at all. Error: cannot_write.
+    Result<void> save(const std::string& path) const;
+
+    /// For the library.
+    explicit TransportOperator(std::shared_ptr<const TransportOperatorData> data) : data_(std::move(data)) {}
+
+  private:
+    std::shared_ptr<const TransportOperatorData> data_;
+};
+
+/// Computes the transport between the faces of a scene: the view factors of each face from rays and closed forms, of
+/// which the small ones are merged in a tree over the faces. `options.error` bounds products for |x| <= 1. Time and
+/// memory grow in proportion to the number of faces. Same bits on any number of threads.
+/// Errors: usage for options out of range; limit after a stop.
+Result<TransportOperator> transport_operator(const Scene& scene, const ViewFactorOptions& options = {1e-2, 0, 1},
+                                             const Control& control = {});
+
+/// Reads a file of TransportOperator::save() or of `exitance viewfactors --operator`.
+/// Errors: cannot_read, bad_input.
+Result<TransportOperator> load_transport_operator(const std::string& path);
 
 /// Writes view factors; the ending selects the format: .vf (View3D), .mtx (Matrix Market), .h5 or .csv. The file
 /// appears whole or not at all. Error: cannot_write.

@@ -1,6 +1,7 @@
 // `exitance view3d IN OUT` in place of NIST's View3D.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -71,6 +72,70 @@ TEST(ProgramView3d, WritesBinaryFilesOfTheSameNumbers) {
     }
 }
 
+/// The lower triangle of A_i F_ij, five numbers in a line.
+TEST(ProgramView3d, WritesExchangeAreasWithNames) {
+    const TemporaryFolder folder;
+    write_text(folder / "cube.vs3", cube("C out=2 eps=1e-5"));
+    const Finished run = run_program({"view3d", folder / "cube.vs3", folder / "cube.vf"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    std::istringstream in(read_text(folder / "cube.vf"));
+    std::string line;
+    std::getline(in, line);
+    EXPECT_EQ(line, "View3D 4.0.0 2 0 0 6          ");
+    std::getline(in, line);
+    EXPECT_EQ(line, "T cube");
+    std::getline(in, line);
+    EXPECT_EQ(line, "!  #     area          emit    name");
+    std::size_t lines = 3;
+    for (int i = 0; i < 6; ++i) {
+        int number = 0;
+        double area = 0, emittance = 0;
+        std::string name;
+        in >> number >> area >> emittance >> name;
+        EXPECT_EQ(number, i + 1);
+        EXPECT_EQ(area, 1);
+        EXPECT_EQ(emittance, 0.9);
+        EXPECT_EQ(name, "face" + std::to_string(i + 1));
+        for (int j = 0; j <= i; ++j) {
+            double exchange = -1;
+            in >> exchange;
+            EXPECT_NEAR(exchange, i == j ? 0 : i / 2 == j / 2 ? opposite : adjacent, 1.5e-6) << i << " " << j;
+        }
+        lines += i < 5 ? 2 : 3;
+    }
+    const std::string text = read_text(folder / "cube.vf");
+    EXPECT_EQ(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')), lines + 1);  // and an empty line
+}
+
+/// A mask on a quarter of the floor faces the floor: it exchanges heat with the floor only, and hides the quarter.
+TEST(ProgramView3d, AMaskExchangesHeatWithItsBaseOnly) {
+    const TemporaryFolder folder;
+    std::string text = cube("C out=0 eps=1e-5");
+    text.insert(text.find("S 1"), "V 9 0.5 0 0\nV 10 0.5 0.5 0\nV 11 0 0.5 0\n");
+    text.replace(text.find("E\n"), 2, "M 7 1 11 10 9 1 0 0.5 mask\nE\n");
+    write_text(folder / "cube.vs3", text);
+    const Finished run = run_program({"view3d", folder / "cube.vs3", folder / "cube.vf"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const std::vector<double> numbers = numbers_in(read_text(folder / "cube.vf"));
+    ASSERT_EQ(numbers.size(), 7u + 49 + 7);
+    const auto F = [&](std::size_t i, std::size_t j) { return numbers[7 + 7 * i + j]; };
+    EXPECT_EQ(numbers[0], 1);     // all of the floor
+    EXPECT_EQ(numbers[6], 0.25);  // the mask
+    EXPECT_EQ(F(6, 0), 1);
+    EXPECT_EQ(F(0, 6), 0.25);
+    for (std::size_t i = 1; i < 6; ++i) {
+        EXPECT_EQ(F(6, i), 0);
+        EXPECT_EQ(F(i, 6), 0);
+        EXPECT_NEAR(F(i, 0), F(0, i), 1.5e-6);  // equal areas; both are rounded to six digits
+    }
+    // Each quarter of the floor takes a quarter of the light from the ceiling, for reasons of symmetry.
+    EXPECT_NEAR(F(1, 0), 0.75 * opposite, 1.5e-6);
+    // The floor's exposed part sees the ceiling and the walls only.
+    double sum = 0;
+    for (std::size_t j = 0; j < 7; ++j) sum += F(0, j);
+    EXPECT_NEAR(sum, 1, 4e-6);  // seven numbers of six digits
+}
+
 TEST(ProgramView3d, EmittancesGiveExchangeFactors) {
     // In an enclosure of equal emittances e, each row of script F adds up to e.
     const TemporaryFolder folder;
@@ -99,7 +164,7 @@ TEST(ProgramView3d, AnswersToTheNameOfView3d) {
 TEST(ProgramView3d, SaysWhatItCannotDo) {
     const TemporaryFolder folder;
     const std::string scene = folder / "cube.vs3", out = folder / "cube.vf";
-    write_text(scene, cube("C out=2"));
+    write_text(scene, cube("C out=3"));
     EXPECT_EQ(run_program({"view3d", scene, out}).status, 3);
     write_text(scene, cube("C out=0.5"));
     EXPECT_EQ(run_program({"view3d", scene, out}).status, 3);

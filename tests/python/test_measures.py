@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import scipy.sparse
+import scipy.sparse.linalg
 
 import exitance as ex
 from conftest import FACES, VERTICES
@@ -25,6 +26,35 @@ def test_view_factors_of_a_cube_are_those_of_the_textbooks():
     # Opposite squares of a cube: 0.1998 [Howell, C-11].
     assert F[0, 1] == pytest.approx(0.19982, abs=1e-3) and F[0, 0] == 0
     assert F.sum(axis=1) == pytest.approx(np.ones(6), abs=2e-3)
+
+
+def test_the_transport_operator_is_a_linear_operator(room, tmp_path):
+    F = ex.transport_operator(room, error=1e-2)
+    assert isinstance(F, scipy.sparse.linalg.LinearOperator) and F.shape == (7, 7)
+    exact = ex.view_factors(room, error=1e-3)
+    x, y = np.arange(7.0) / 6, np.linspace(1, -1, 7)
+    # The error of both, for |x| <= 1.
+    assert np.abs(F @ x - exact @ x).max() < 1e-2 + 3.5e-3
+    assert y @ (F @ x) == pytest.approx(F.rmatvec(y) @ x, rel=1e-12)
+    assert np.allclose(F @ np.stack([x, y], axis=1), np.stack([F @ x, F @ y], axis=1))
+    transport = F.transport
+    assert transport.areas == pytest.approx(room.areas)
+    assert np.allclose(F @ np.ones(7) + transport.sky + transport.back, 1, atol=1e-2)
+    assert transport.closure_defect <= 1e-2 and transport.row_errors.max() <= 1e-2
+    transport.save(tmp_path / "F.h5")
+    assert (ex.load_transport_operator(tmp_path / "F.h5") @ x == F @ x).all()
+    with pytest.raises(ex.UsageError):
+        F.transport.matvec(np.ones(6))
+    with pytest.raises(ex.Error):
+        ex.load_transport_operator(tmp_path / "missing.h5")
+
+
+def test_solvers_of_scipy_take_the_transport_operator(room):
+    F = ex.transport_operator(room, error=1e-2)
+    rho, emitted = 0.5, np.eye(7)[6]
+    system = scipy.sparse.linalg.LinearOperator((7, 7), matvec=lambda b: b - rho * (F @ b))
+    B, status = scipy.sparse.linalg.gmres(system, emitted, tol=1e-10, atol=0)
+    assert status == 0 and np.allclose(B - rho * (F @ B), emitted, atol=1e-8)
 
 
 def write_weather(path, hours=24):

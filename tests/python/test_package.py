@@ -64,7 +64,7 @@ def examples_in(page):
 
 
 @pytest.mark.parametrize("page, index", [("README.md", 0), ("docs/index.md", 0), ("docs/python.md", 0),
-                                         ("docs/python.md", 1), ("docs/python.md", 2)])
+                                         ("docs/python.md", 1), ("docs/python.md", 2), ("docs/python.md", 3)])
 def test_examples_of_the_documentation_run(page, index, tmp_path):
     run_program("generate", "cornell", "-o", tmp_path / "room.obj")
     run = subprocess.run([sys.executable, "-c", examples_in(page)[index]], cwd=tmp_path, capture_output=True, text=True)

@@ -24,6 +24,7 @@
 #include "exitance/solution/solution.hpp"
 #include "exitance/spectrum.hpp"
 #include "exitance/vec.hpp"
+#include "exitance/view_factors.hpp"
 #include "exitance/what_if/light_groups/light_groups.hpp"
 
 namespace exitance::api {
@@ -75,6 +76,9 @@ Finding to_api(const exitance::Finding& finding);
 Result<void> to_api(const exitance::Result<void>& result);
 /// Probes with unit normals. Error (usage): a coordinate is not finite, or a normal has no length.
 Result<std::vector<ProbePoint>> to_engine(std::span<const Probe> probes);
+
+/// The error of options out of range; none if all are within.
+std::optional<Error> find_misuse(const ViewFactorOptions& options);
 
 Error usage(std::string message, std::string where, std::string hint = "");
 /// The error of a call that was stopped before it had a result.

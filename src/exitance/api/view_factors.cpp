@@ -7,13 +7,6 @@
 namespace exitance::api {
 namespace {
 
-/// The error of options out of range; none if all are within.
-std::optional<Error> find_misuse(const ViewFactorOptions& options) {
-    if (!(options.error >= 1e-6 && options.error <= 0.5)) return usage("must be from 1e-6 to 0.5", "error");
-    if (!(options.smallest >= 0 && options.smallest < 1)) return usage("must be from 0 to below 1", "smallest");
-    return std::nullopt;
-}
-
 /// The error of arrays that are not a sparse matrix; none if they are.
 std::optional<Error> find_misfit(const ViewFactors& f) {
     const std::size_t n = f.areas.size();
@@ -27,6 +20,12 @@ std::optional<Error> find_misfit(const ViewFactors& f) {
 }
 
 }  // namespace
+
+std::optional<Error> find_misuse(const ViewFactorOptions& options) {
+    if (!(options.error >= 1e-6 && options.error <= 0.5)) return usage("must be from 1e-6 to 0.5", "error");
+    if (!(options.smallest >= 0 && options.smallest < 1)) return usage("must be from 0 to below 1", "smallest");
+    return std::nullopt;
+}
 
 Result<ViewFactors> view_factors(const Scene& scene, const ViewFactorOptions& options, const Control& control) {
     return take_turn<ViewFactors>(control, [&](Run& run) -> Result<ViewFactors> {

@@ -188,7 +188,8 @@ struct ExperimentArguments : CommonArguments {
 
 struct ViewFactorArguments : CommonArguments {
     SceneArguments scene;
-    std::string output;
+    std::string output;               ///< Matrix to write; may be empty if `operator_file` is not.
+    std::string operator_file;        ///< File for the operator of solvers (.h5); empty: none.
     std::optional<double> error;      ///< Limit on the error of every row; 1e-3 if neither this nor `tolerance` is set.
     std::optional<double> tolerance;  ///< Relative error of every entry above 1e-6; replaces `error`.
     double smallest = 0;              ///< Smaller entries are dropped.

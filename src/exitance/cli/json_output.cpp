@@ -123,7 +123,11 @@ Json json_of(const RayCheck& check) {
 }
 
 Json json_of(const RowCheck& check) {
-    return {{"rows", check.rows.size()}, {"rays", check.rays}, {"wrong", check.wrong}};
+    return {{"rows", check.rows.size()},
+            {"rays", check.rays},
+            {"wrong", check.wrong},
+            {"wrong_sums", check.wrong_sums},
+            {"largest_sum_error", check.sum_error}};
 }
 
 }  // namespace
@@ -163,6 +167,12 @@ std::string view_factors_json(const ViewFactorFacts& facts) {
         json["rows_unclosed"] = facts.unclosed;
         json["check"] = json_of(facts.row_check);
     }
+    if (facts.transport)
+        json["operator"] = {{"entries", facts.transport->entries},
+                            {"node_entries", facts.transport->node_entries},
+                            {"row_error", facts.transport->row_error},
+                            {"closure_defect", facts.transport->closure_defect},
+                            {"product_seconds", facts.transport->product_seconds}};
     return dump(json, 2);
 }
 

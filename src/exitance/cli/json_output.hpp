@@ -45,6 +45,13 @@ std::string check_json(const CheckedScene& checked);
 /// `compare --json`.
 std::string error_json(const ErrorMeasure& error);
 
+/// Facts about the operator that `viewfactors --operator` writes.
+struct OperatorFacts {
+    std::size_t entries = 0, node_entries = 0;
+    double row_error = 0, closure_defect = 0;
+    double product_seconds = 0;  ///< Time of one product F x, seconds of wall time.
+};
+
 /// Facts about a matrix of view factors, for `viewfactors --json` and its summary.
 struct ViewFactorFacts {
     std::size_t surfaces = 0;
@@ -60,7 +67,8 @@ struct ViewFactorFacts {
     double entry_defect = 0;
     std::size_t mended = 0, unsettled = 0;
     RayCheck check;      ///< Check of entries, used with --tolerance.
-    RowCheck row_check;  ///< Check of rows, used without --tolerance.
+    RowCheck row_check;  ///< Check of rows, used without --tolerance; of the operator if there is one.
+    std::optional<OperatorFacts> transport;  ///< With --operator.
 };
 
 /// `heat --json`.

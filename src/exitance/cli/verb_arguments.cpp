@@ -286,7 +286,7 @@ void declare(CLI::App& app, View3dArguments& arguments) {
 }
 
 void declare(CLI::App& app, HeatArguments& arguments) {
-    app.add_option("FACTORS", arguments.factors, "View factors, written by viewfactors as .h5")
+    app.add_option("FACTORS", arguments.factors, "View factors, written by viewfactors as .h5, or an operator")
         ->type_name("FACTORS")
         ->required();
     app.add_option(
@@ -322,9 +322,13 @@ void declare(CLI::App& app, ViewFactorArguments& arguments) {
     app.add_option(
            "-o,--output", arguments.output,
            "Matrix to write: .csv, .vf (View3D), .idf (EnergyPlus), or sparse: .mtx (Matrix Market), .h5. A folder "
-           "with --format openfoam")
-        ->type_name("FILE")
-        ->required();
+           "with --format openfoam. May be left out with --operator")
+        ->type_name("FILE");
+    CLI::Option* const transport =
+        app.add_option("--operator", arguments.operator_file,
+                       "File to write (.h5): an operator for solvers, with products F x and F^T x, in which far faces "
+                       "share entries. Use it for 10^5 to 10^6 faces, with --error 1e-2 or 3e-3")
+            ->type_name("FILE");
     add_choice(app, "--format", factor_format_names, arguments.format,
                "Format of the output. Default: by its ending; others are csv. pairs: a line from_id,to_id,F per entry");
     app.add_flag("--sky", arguments.with_sky,
@@ -355,7 +359,8 @@ void declare(CLI::App& app, ViewFactorArguments& arguments) {
     add_range(
         "--tolerance", arguments.tolerance, 1e-12, 0.1,
         "Relative error of every entry above 1e-6, instead of --error. It is slower; use it if single entries matter")
-        ->excludes(error);
+        ->excludes(error)
+        ->excludes(transport);
     add_positive(app, "--smallest", arguments.smallest, "F", "Leave out entries below F. Default: none");
     add_count(app, "--check", arguments.check, 0,
               "Number of random rows that are checked by ray casting. Default 4. With --tolerance: random entries, "

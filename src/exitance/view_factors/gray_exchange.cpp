@@ -24,24 +24,18 @@ Error wrong(std::string message, std::string hint) {
 /// temperature are known.
 class GraySystem {
   public:
-    GraySystem(const SparseFactors& factors, std::span<const ThermalSurface> surfaces, bool is_enclosure)
-        : surfaces_(surfaces), size_(factors.size()), row_(size_), leak_(size_), known_(size_), diagonal_(size_) {
+    GraySystem(const ExchangeAreas& exchange, const std::vector<double>& areas,
+               std::span<const ThermalSurface> surfaces, bool is_enclosure)
+        : exchange_(exchange),
+          surfaces_(surfaces),
+          size_(exchange.size()),
+          leak_(size_),
+          known_(size_),
+          diagonal_(size_) {
+        area_ = incoming(std::vector<double>(size_, 1));
         for (std::size_t i = 0; i < size_; ++i) {
-            const auto columns = factors.row_columns(i);
-            const auto values = factors.row_values(i);
-            for (std::size_t k = 0; k < columns.size(); ++k) {
-                // The mean of both directions, which agree where the table combines them.
-                const double half = 0.5 * factors.areas[i] * values[k];
-                row_[i].push_back({columns[k], half}),
-                    row_[columns[k]].push_back({static_cast<std::uint32_t>(i), half});
-            }
-        }
-        for (std::size_t i = 0; i < size_; ++i) {
-            double sum = 0;
-            for (const auto& [j, s] : row_[i]) sum += s;
-            area_.push_back(is_enclosure ? sum : factors.areas[i]);
-            leak_[i] = is_enclosure ? 0 : std::max(0.0, factors.areas[i] - sum);
-            if (!is_enclosure) area_[i] = sum + leak_[i];
+            leak_[i] = is_enclosure ? 0 : std::max(0.0, areas[i] - area_[i]);
+            area_[i] += leak_[i];
             known_[i] = surfaces[i].temperature && surfaces[i].emissivity == 1;
             diagonal_[i] = surfaces[i].temperature && !known_[i] ? area_[i] / (1 - surfaces[i].emissivity) : area_[i];
         }
@@ -52,11 +46,11 @@ class GraySystem {
     double leak(std::size_t i) const { return leak_[i]; }
     bool is_known(std::size_t i) const { return known_[i]; }
 
-    /// sum_j S_ij x_j
-    double incoming(std::size_t i, const std::vector<double>& x) const {
-        double sum = 0;
-        for (const auto& [j, s] : row_[i]) sum += s * x[j];
-        return sum;
+    /// S x
+    std::vector<double> incoming(const std::vector<double>& x) const {
+        std::vector<double> y(size_);
+        exchange_.apply(x, y);
+        return y;
     }
 
     struct Solution {
@@ -75,23 +69,25 @@ class GraySystem {
         x.assign(size_, 0);
         for (std::size_t i = 0; i < size_; ++i)
             if (known_[i]) x[i] = emitted[i];
+        const std::vector<double> of_known = incoming(x);
         std::vector<double> r(size_), p(size_), q(size_);
         double scale = 0;
         for (std::size_t i = 0; i < size_; ++i) {
             if (known_[i]) continue;
             const ThermalSurface& s = surfaces_[i];
             const double own = s.temperature ? area_[i] * s.emissivity / (1 - s.emissivity) * emitted[i] : heat[i];
-            r[i] = own + leak_[i] * surroundings + incoming(i, x);  // unknown radiosities are still 0
+            r[i] = own + leak_[i] * surroundings + of_known[i];  // unknown radiosities are still 0
             scale += r[i] * r[i] / diagonal_[i];
             p[i] = r[i] / diagonal_[i];
         }
         double rho = scale;
         for (; rho > tolerance * tolerance * scale && out.iterations < max_iterations; ++out.iterations) {
             if ((out.is_stopped = stop.requested())) break;
+            const std::vector<double> arriving = incoming(p);
             double pq = 0;
             for (std::size_t i = 0; i < size_; ++i) {
                 if (known_[i]) continue;
-                q[i] = diagonal_[i] * p[i] - incoming(i, p);
+                q[i] = diagonal_[i] * p[i] - arriving[i];
                 pq += p[i] * q[i];
             }
             const double alpha = rho / pq;
@@ -110,9 +106,9 @@ class GraySystem {
     }
 
   private:
+    const ExchangeAreas& exchange_;
     std::span<const ThermalSurface> surfaces_;
     std::size_t size_;
-    std::vector<std::vector<std::pair<std::uint32_t, double>>> row_;
     std::vector<double> area_, leak_;
     std::vector<std::uint8_t> known_;
     std::vector<double> diagonal_;
@@ -125,8 +121,9 @@ bool is_determined(const GraySystem& system, std::span<const ThermalSurface> sur
         reached[i] = surfaces[i].temperature || (has_surroundings && system.leak(i) > 0) || !(system.area(i) > 0);
     for (bool grows = true; grows;) {
         grows = false;
+        const std::vector<double> arriving = system.incoming(reached);
         for (std::size_t i = 0; i < system.size(); ++i)
-            if (reached[i] == 0 && system.incoming(i, reached) > 0) reached[i] = 1, grows = true;
+            if (reached[i] == 0 && arriving[i] > 0) reached[i] = 1, grows = true;
     }
     return std::all_of(reached.begin(), reached.end(), [](double r) { return r > 0; });
 }
@@ -180,16 +177,11 @@ Error stopped() {
     return {ErrorCode::limit, "stopped before the heat balance was solved", "", "allow more time"};
 }
 
-}  // namespace
-
-bool is_enclosure(const SparseFactors& factors) {
-    return static_cast<bool>(check_closed(factors));
-}
-
-Result<GrayExchange> solve_gray_exchange(const SparseFactors& factors, std::span<const ThermalSurface> surfaces,
-                                         std::optional<double> surroundings, const StopRequest& stop) {
-    if (const Result<void> checked = check(factors, surfaces, surroundings); !checked) return checked.error();
-    const GraySystem system(factors, surfaces, !surroundings);
+/// The heat balance of surfaces between which heat is exchanged; `factors` are the rows on which `exchange` is based.
+Result<GrayExchange> balance(const ExchangeAreas& exchange, const SparseFactors& factors,
+                             std::span<const ThermalSurface> surfaces, std::optional<double> surroundings,
+                             const StopRequest& stop) {
+    const GraySystem system(exchange, factors.areas, surfaces, !surroundings);
     if (!is_determined(system, surfaces, surroundings.has_value())) return undetermined();
     std::vector<double> emitted, heat;
     for (const ThermalSurface& s : surfaces)
@@ -202,9 +194,10 @@ Result<GrayExchange> solve_gray_exchange(const SparseFactors& factors, std::span
                      .heat = {},
                      .residual = solved.residual,
                      .iterations = solved.iterations};
+    const std::vector<double> arriving = system.incoming(out.radiosity);
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const double J = out.radiosity[i], e = surfaces[i].emissivity;
-        const double Q = system.area(i) * J - system.incoming(i, out.radiosity) - system.leak(i) * sky;
+        const double Q = system.area(i) * J - arriving[i] - system.leak(i) * sky;
         out.heat.push_back(Q);
         out.surroundings += system.leak(i) * (J - sky);
         if (surfaces[i].temperature) {
@@ -220,11 +213,30 @@ Result<GrayExchange> solve_gray_exchange(const SparseFactors& factors, std::span
     return out;
 }
 
+}  // namespace
+
+bool is_enclosure(const SparseFactors& factors) {
+    return static_cast<bool>(check_closed(factors));
+}
+
+Result<GrayExchange> solve_gray_exchange(const SparseFactors& factors, std::span<const ThermalSurface> surfaces,
+                                         std::optional<double> surroundings, const StopRequest& stop) {
+    if (const Result<void> checked = check(factors, surfaces, surroundings); !checked) return checked.error();
+    return balance(TableExchange(factors), factors, surfaces, surroundings, stop);
+}
+
+Result<GrayExchange> solve_gray_exchange(const FactorOperator& transport, std::span<const ThermalSurface> surfaces,
+                                         std::optional<double> surroundings, const StopRequest& stop) {
+    if (const Result<void> checked = check(transport.rows, surfaces, surroundings); !checked) return checked.error();
+    return balance(OperatorExchange(transport), transport.rows, surfaces, surroundings, stop);
+}
+
 Result<std::vector<std::vector<double>>> exchange_factors(const SparseFactors& factors,
                                                           std::span<const ThermalSurface> surfaces,
                                                           std::optional<double> surroundings, const StopRequest& stop) {
     if (const Result<void> checked = check(factors, surfaces, surroundings); !checked) return checked.error();
-    const GraySystem system(factors, surfaces, !surroundings);
+    const TableExchange table(factors);
+    const GraySystem system(table, factors.areas, surfaces, !surroundings);
     if (!is_determined(system, surfaces, surroundings.has_value())) return undetermined();
     const std::size_t n = surfaces.size();
     const std::vector<double> no_heat(n);
@@ -236,10 +248,10 @@ Result<std::vector<std::vector<double>>> exchange_factors(const SparseFactors& f
         emitted[j] = 1;
         const GraySystem::Solution solved = system.solve(emitted, no_heat, 0, stop);
         if (solved.is_stopped) return stopped();
+        const std::vector<double> arriving = system.incoming(solved.radiosity);
         for (std::size_t i = 0; i < n; ++i) {
             if (!surfaces[i].temperature || !(system.area(i) > 0)) continue;
-            const double arriving = system.incoming(i, solved.radiosity) / system.area(i);
-            out[j][i] = surfaces[i].emissivity * arriving * system.area(i) / system.area(j);
+            out[j][i] = surfaces[i].emissivity * arriving[i] / system.area(j);
         }
     }
     return out;

@@ -6,6 +6,7 @@
 
 #include "exitance/base/progress.hpp"
 #include "exitance/base/result.hpp"
+#include "exitance/view_factors/exchange_areas.hpp"
 #include "exitance/view_factors/sparse_factors.hpp"
 
 namespace exitance {
@@ -43,6 +44,12 @@ struct GrayExchange {
 /// ErrorCode::limit if a stop is requested. O(entries) per iteration; iterations grow with the mean number of
 /// reflections. Source: [Hottel54], [Howell20].
 Result<GrayExchange> solve_gray_exchange(const SparseFactors& factors, std::span<const ThermalSurface> surfaces,
+                                         std::optional<double> surroundings, const StopRequest& stop);
+
+/// Like the above, for an operator. It uses the mean of F and of its reciprocal A^-1 F^T A, so that all heats add up to
+/// 0 although the operator's nodes are not reciprocal. Entries are merged only if they are small in both directions, so
+/// that this mean has about the operator's error; rows are closed as those of a table.
+Result<GrayExchange> solve_gray_exchange(const FactorOperator& transport, std::span<const ThermalSurface> surfaces,
                                          std::optional<double> surroundings, const StopRequest& stop);
 
 /// True if the rows of a table add up to 1, up to 1% and three times their errors.

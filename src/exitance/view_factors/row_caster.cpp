@@ -1,6 +1,8 @@
 #include "exitance/view_factors/row_caster.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 #include "exitance/base/random.hpp"
@@ -46,6 +48,22 @@ void RowCaster::trace(std::size_t face, bool under_others) {
     }
 }
 
+/// Orders the points of a block by cells of their directions, so that the rays of a packet are traced together. The
+/// points are stratified, hence each cell of a square grid has as many as a packet.
+void RowCaster::sort_by_direction(std::size_t count) {
+    const auto cells = static_cast<std::size_t>(std::sqrt(static_cast<double>(count / rays_a_packet)));
+    const auto cell_of = [&](std::size_t k) {
+        const auto place = [&](double x) { return static_cast<std::size_t>(x * static_cast<double>(cells)); };
+        const std::size_t row = place(coordinates_[2][k]), column = place(coordinates_[3][k]);
+        return row * cells + (row % 2 == 0 ? column : cells - 1 - column);  // neighbours follow each other
+    };
+    std::array<std::uint16_t, block / rays_a_packet + 1> starts{};
+    for (std::size_t k = 0; k < count; ++k) ++starts[cell_of(k) + 1];
+    for (std::size_t c = 1; c < starts.size(); ++c) starts[c] = static_cast<std::uint16_t>(starts[c] + starts[c - 1]);
+    order_.resize(count);
+    for (std::size_t k = 0; k < count; ++k) order_[starts[cell_of(k)]++] = static_cast<std::uint16_t>(k);
+}
+
 void RowCaster::cast_batch(std::size_t face, bool under_others, std::uint64_t seed) {
     const ScrambledSobol points(seed);
     const FaceSampler& sampler = scene_.samplers[face];
@@ -55,7 +73,8 @@ void RowCaster::cast_batch(std::size_t face, bool under_others, std::uint64_t se
         for (int d = 0; d < 4; ++d)
             points.fill(static_cast<std::uint32_t>(first), d, std::span(coordinates_[d]).first(count));
         origins_.clear(), directions_.clear();
-        for (std::size_t k = 0; k < count; ++k) {
+        sort_by_direction(count);
+        for (const std::uint16_t k : order_) {
             origins_.push_back(sampler(coordinates_[0][k], coordinates_[1][k]));
             directions_.push_back(cosine_direction(frame, coordinates_[2][k], coordinates_[3][k]));
         }

@@ -36,11 +36,13 @@ class RowCaster {
     double missed_variance() const { return variance(missed_); }  ///< Variance of the share of sky and backs together.
 
   private:
+    void sort_by_direction(std::size_t count);
     void cast_batch(std::size_t face, bool under_others, std::uint64_t seed);
     void trace(std::size_t face, bool under_others);
     void finish_batch();
 
-    static constexpr std::size_t block = 1024;  ///< Number of rays traced in one call.
+    static constexpr std::size_t block = 4096;        ///< Number of rays traced in one call.
+    static constexpr std::size_t rays_a_packet = 16;  ///< Size of the packets of RayTracer.
     const RowScene& scene_;
     std::size_t batches_ = 0, rays_a_batch_ = 0;
     std::vector<std::uint32_t> of_batch_;  ///< Hits of every face in the current batch.
@@ -50,6 +52,7 @@ class RowCaster {
     Count sky_{}, back_{}, missed_{};
     std::vector<Count> counts_;
     std::vector<double> coordinates_[4];
+    std::vector<std::uint16_t> order_;  ///< Points of a block in the order in which their rays are traced.
     std::vector<Point> origins_;
     std::vector<Vec3> directions_;
     std::vector<RayHit> found_;

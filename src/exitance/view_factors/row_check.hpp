@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "exitance/base/progress.hpp"
@@ -27,6 +29,7 @@ struct CheckedRow {
     /// Maximum over x of (|sum_j (F - G)_j x_j| - R) in standard errors, for x = 1 and for the indicators of the
     /// groups.
     double largest_sum_excess = 0;
+    double largest_sum_error = 0;  ///< Maximum over x of |sum_j (F - G)_j x_j|, including the noise of the rays.
     /// Excess of the squared error over R^2 in standard errors; negative if it is below.
     double squared_excess(double R) const { return (squared_error - R * R) / squared_error_deviation; }
 };
@@ -35,10 +38,12 @@ struct CheckedRow {
 /// and groups.
 struct RowCheck {
     std::vector<CheckedRow> rows;
-    std::size_t rays = 0;     ///< Rays of all rows together.
-    std::size_t wrong = 0;    ///< Number of rows with an excess above `beyond_noise`.
-    double error = 0;         ///< Root mean squared error of the rows; 0 if noise makes the mean negative.
-    bool is_complete = true;  ///< False if a stop was requested before the last row.
+    std::size_t rays = 0;        ///< Rays of all rows together.
+    std::size_t wrong = 0;       ///< Number of rows with an excess above `beyond_noise`.
+    std::size_t wrong_sums = 0;  ///< Number of rows with such an excess of a sum over the row or a group.
+    double error = 0;            ///< Root mean squared error of the rows; 0 if noise makes the mean negative.
+    double sum_error = 0;        ///< Largest difference of a sum over a row or group, including the noise of the rays.
+    bool is_complete = true;     ///< False if a stop was requested before the last row.
     static constexpr double beyond_noise = 3.5;
 };
 
@@ -50,5 +55,12 @@ std::vector<double> cast_check_rays(const RowScene& ready, std::size_t face, std
 /// ray.
 RowCheck check_rows_by_rays(const Scene& scene, const SparseFactors& table, const RowCheckOptions& options,
                             const StopRequest& stop);
+
+/// Like the above, for rows in any form.
+/// finished  1 for each row that exists
+/// row_of  returns a row, one factor per face; called from several threads
+RowCheck check_rows_by_rays(const Scene& scene, std::span<const std::uint8_t> finished,
+                            const std::function<std::vector<double>(std::size_t)>& row_of,
+                            const RowCheckOptions& options, const StopRequest& stop);
 
 }  // namespace exitance

@@ -50,8 +50,16 @@ double cast_rays_for(double share, double variance) {
 
 }  // namespace
 
-RowEstimator::RowEstimator(const RowScene& scene, double error, std::uint64_t seed, const StopRequest& stop)
-    : scene_(scene), error_(error), seed_(seed), stop_(stop), caster_(scene), sampler_(scene) {}
+RowEstimator::RowEstimator(const RowScene& scene, double error, double missed_error, std::uint64_t seed,
+                           const StopRequest& stop)
+    : scene_(scene),
+      error_(error),
+      missed_error_(missed_error),
+      seed_(seed),
+      stop_(stop),
+      caster_(scene),
+      sampler_(scene),
+      seen_by_pilot_(scene.faces.size()) {}
 
 /// Standard deviation of one shadow ray's estimate. The pilot's visible share is moved away from 0 and 1, since few
 /// rays give no reliable value there.
@@ -105,24 +113,24 @@ void RowEstimator::find_candidates(std::size_t face) {
     const double negligible = 0.1 * pair_cost * cast_rate / cast_rays_for(1, error_ * error_);
     candidates_.clear();
     under_others_ = false;
-    for (std::size_t j = 0; j < scene_.faces.size(); ++j) {
+    scene_.near.visit(x, reach, negligible, [&](std::uint32_t j) {
         const ViewFace& other = scene_.faces[j];
         bool cut = false;
-        if (j == face) continue;
+        if (j == face) return;
         const Vec3 apart = scene_.middles[j] - x;
         const double apart2 = dot(apart, apart), touching = reach + scene_.radii[j];
-        if (apart2 > 4 * touching * touching && other.area < pi * apart2 * negligible) continue;
+        if (apart2 > 4 * touching * touching && other.area < pi * apart2 * negligible) return;
         if (!face_each_other(own, other, scene_.slack, cut)) {
             under_others_ = under_others_ || may_be_under(face, j);
-            continue;
+            return;
         }
         const Vec3& d = apart;
         const double squared = std::max(apart2, 1e-300);
         const double cosines =
             cut ? squared : std::max(0.0, dot(own.plane.n, d)) * std::max(0.0, -dot(other.plane.n, d));
         const double about = cosines / (pi * squared * squared) * other.area;
-        candidates_.push_back({std::min(about, 1.0), static_cast<std::uint32_t>(j)});
-    }
+        candidates_.push_back({std::min(about, 1.0), j});
+    });
     std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
         return a.about > b.about || (a.about == b.about && a.column < b.column);
     });
@@ -130,9 +138,9 @@ void RowEstimator::find_candidates(std::size_t face) {
 
 /// View factor from which candidates are treated individually. Minimizes the estimated cost of treating them and of
 /// casting rays for the others, whose number follows from the pilot's hits of the others.
-double RowEstimator::smallest_candidate(std::size_t face, double variance) const {
+double RowEstimator::smallest_candidate(std::size_t face, double variance) {
     const double n = static_cast<double>(pilot_batches * pilot_rays_a_batch);
-    std::vector<double> seen(scene_.faces.size());
+    std::vector<double>& seen = seen_by_pilot_;
     double left = 1 / n;
     for (const RowCaster::Count& count : pilot_) {
         seen[count.column] = count.hits / n * left_of_cast(face, count.column);
@@ -149,6 +157,7 @@ double RowEstimator::smallest_candidate(std::size_t face, double variance) const
         left -= seen[candidates_[k].column];
         consider(k + 1, candidates_[k].about);
     }
+    for (const RowCaster::Count& count : pilot_) seen[count.column] = 0;
     return best;
 }
 
@@ -206,7 +215,7 @@ void RowEstimator::classify(std::size_t face, std::uint32_t round) {
 /// Numbers of samples that reach a variance at the least cost: for variances a^2 n^-r, one more sample must reduce the
 /// variance by the same amount per cost in all estimators.
 RowEstimator::Plan RowEstimator::plan(double variance) {
-    const double for_sky = std::pow(missed_deviation_ / (error_ * error_), 1 / cast_rate);
+    const double for_sky = std::pow(missed_deviation_ / (missed_error_ * missed_error_), 1 / cast_rate);
     const double min_cast = std::max({double(min_batches * min_rays_a_batch), std::min(for_sky, max_sky_rays),
                                       std::min(sky_rays_per_error / error_, min_sky_rays)});
     const auto pair_samples = [&](const Pair& pair, double price) {

@@ -26,7 +26,8 @@ namespace exitance {
 /// object serves one thread.
 class RowEstimator {
   public:
-    RowEstimator(const RowScene& scene, double error, std::uint64_t seed, const StopRequest& stop);
+    /// missed_error  limit on the standard deviations of the shares of the sky and of backs
+    RowEstimator(const RowScene& scene, double error, double missed_error, std::uint64_t seed, const StopRequest& stop);
 
     /// Computes the row of a face; empty if a stop is requested meanwhile.
     /// round  repetitions use other random numbers
@@ -53,7 +54,7 @@ class RowEstimator {
     double left_of_pair(std::size_t face, std::uint32_t column) const;
     double combined_error(const RawRow& row) const;
     bool may_be_under(std::size_t face, std::size_t other) const;
-    double smallest_candidate(std::size_t face, double variance) const;
+    double smallest_candidate(std::size_t face, double variance);
     void classify(std::size_t face, std::uint32_t round);
     View view_of(std::size_t face, std::size_t other);
     void classify_pair(std::size_t face, Pair& pair, std::uint32_t round);
@@ -62,7 +63,7 @@ class RowEstimator {
     RawRow measure(std::size_t face, std::uint32_t round, const Plan& plan);
 
     const RowScene& scene_;
-    double error_;
+    double error_, missed_error_;
     std::uint64_t seed_;
     const StopRequest& stop_;
     RowCaster caster_;
@@ -76,6 +77,7 @@ class RowEstimator {
     std::vector<Candidate> candidates_;
     bool under_others_ = false;  ///< True if another face may cover part of the face.
     std::vector<RowCaster::Count> pilot_;
+    std::vector<double> seen_by_pilot_;  ///< Scratch of smallest_candidate(), one entry per face; zero between calls.
     std::vector<Pair> pairs_;
     double rest_squares_ = 0;      ///< Sum of the squares of the terms of rest_.
     double missed_ = 0;            ///< Pilot's share of rays that hit no front.

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -16,6 +19,7 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t rows_a_step = 64;  ///< Rows between progress reports and checks of memory.
+constexpr std::size_t rows_a_range = 4;  ///< Rows that one thread computes without interruption.
 
 /// Share of R that rows use in the first pass, as the expected error after combination.
 constexpr double first_share = 1;
@@ -53,11 +57,14 @@ class RowRun {
     }
 
   private:
-    /// Rows whose combined error, without dropped entries, is above R. Sets the share of R that they may use next.
+    /// Rows whose combined error, without dropped entries, is above R, or that miss 1 by more than R with the sky and
+    /// backs of faces: rare events of a distribution with a long tail, which the variance of the row's own samples does
+    /// not show. Sets the share of R that they may use next.
     std::vector<std::size_t> faces_above(const SparseFactors& out) {
         std::vector<std::size_t> faces;
         for (std::size_t i = 0; i < out.size(); ++i) {
-            const double error = out.row_errors[i] - out.dropped[i];
+            const double missing = 1 - out.row_sums[i] - out.dropped[i] - out.sky[i] - out.back[i];
+            const double error = std::max(out.row_errors[i] - out.dropped[i], std::abs(missing));
             if (error <= options_.error) continue;
             shares_[i] *= repeated_share * options_.error / error;
             faces.push_back(i);
@@ -100,10 +107,13 @@ class RowRun {
     /// Computes and keeps a few rows; returns false if a stop request left some out.
     bool compute_step(std::span<const std::size_t> faces, std::uint32_t round) {
         std::vector<std::optional<RawRow>> made(faces.size());
-        parallel_ranges(faces.size(), 4, [&](std::size_t from, std::size_t to) {
-            RowEstimator estimator(*ready_, options_.error, options_.seed, stop_);
+        parallel_ranges(faces.size(), rows_a_range, [&](std::size_t from, std::size_t to) {
+            std::unique_ptr<RowEstimator>& estimator = estimators_[from / rows_a_range];
+            if (!estimator)
+                estimator = std::make_unique<RowEstimator>(
+                    *ready_, options_.error, options_.missed_error.value_or(options_.error), options_.seed, stop_);
             for (std::size_t k = from; k < to && !stop_.requested(); ++k)
-                made[k] = estimator(faces[k], round, shares_[faces[k]]);
+                made[k] = (*estimator)(faces[k], round, shares_[faces[k]]);
         });
         bool all = true;
         for (std::size_t k = 0; k < faces.size(); ++k) {
@@ -126,6 +136,8 @@ class RowRun {
     Progress& progress_;
     const StopRequest& stop_;
     std::optional<RowScene> ready_;
+    /// One for each range of a step: their counters of all faces would take longer to set up than a row.
+    std::array<std::unique_ptr<RowEstimator>, rows_a_step / rows_a_range> estimators_;
     std::vector<RawRow> rows_, resumed_;
     std::vector<double> shares_;  ///< Share of R that each row may use on its own.
     std::vector<std::uint8_t> finished_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "exitance/base/progress.hpp"
 #include "exitance/scene/scene.hpp"
@@ -12,6 +13,9 @@ namespace exitance {
 struct RowFactorOptions {
     double error = 1e-3;  ///< R: limit for every row on sqrt(sum of variances) + sum of bounds.
     double smallest = 0;  ///< Smaller entries are dropped; their sum is added to their row's error.
+    /// Limit on the standard deviations of the shares of the sky and of backs; empty: `error`. If they are off by d, so
+    /// is the row's sum, since rows are closed.
+    std::optional<double> missed_error = {};
     std::uint64_t seed = 1;
     std::size_t memory_limit_bytes = SIZE_MAX;  ///< Computation of rows stops if the process uses more.
 };

@@ -19,6 +19,7 @@ RowScene::RowScene(const Scene& s)
         for (const Point& p : face.outline) radius = std::max(radius, norm(p - middle));
         middles.push_back(middle), radii.push_back(radius);
     }
+    near = NearFaces(faces, middles, radii);
 }
 
 }  // namespace exitance

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "exitance/view_factors/face_sampler.hpp"
+#include "exitance/view_factors/near_faces.hpp"
 #include "exitance/view_factors/view_face.hpp"
 #include "exitance/visibility/occluders.hpp"
 #include "exitance/visibility/rays.hpp"
@@ -21,6 +22,7 @@ struct RowScene {
     std::vector<FaceSampler> samplers;
     std::vector<Point> middles;  ///< Mean of the corners of each face.
     std::vector<double> radii;   ///< Largest distance of a face's corner from its middle, metres.
+    NearFaces near;              ///< Finds the faces that may matter to a face.
     double slack;                ///< Metres; points nearer to a plane than this are in it.
 
     RegionId region(std::size_t face) const {

@@ -39,6 +39,14 @@ FactorFormat format_of(const ViewFactorArguments& arguments) {
 
 Result<void> check_output_options(const ViewFactorArguments& arguments) {
     const FactorFormat format = format_of(arguments);
+    const std::string& transport = arguments.operator_file;
+    if (!transport.empty() && ending(transport) != ".h5")
+        return usage("--operator", "must end in .h5", "use --operator FILE.h5");
+    if (!transport.empty() && transport == arguments.output)
+        return usage("--operator", "is also the file of --output", "choose another name");
+    if (arguments.output.empty() && (!arguments.nodes.empty() || arguments.with_sky))
+        return usage(arguments.with_sky ? "--sky" : "--nodes", "applies to the matrix of --output only",
+                     "add -o FILE, or leave it out");
     const bool takes_sky = format == FactorFormat::csv || format == FactorFormat::mtx || format == FactorFormat::pairs;
     if (arguments.with_sky && format == FactorFormat::hdf5)
         return usage("--sky", "is not needed for .h5: it always has the shares of the sky and of backs",
@@ -60,7 +68,8 @@ Result<std::optional<FactorNodes>> nodes_of(const ViewFactorArguments& arguments
         return usage("--nodes", "material does not apply to .vs3 files, which have no materials",
                      "use group or a table");
     // The groups of a .vs3 file are the rows of View3D's result, and one of surfaces that only block.
-    if (is_view3d && (arguments.nodes.empty() || arguments.nodes == "group")) return std::optional(view3d_rows(scene));
+    if (is_view3d && (arguments.nodes.empty() || arguments.nodes == "group"))
+        return std::optional(view3d_rows(scene, arguments.scene.files.front()));
     if (arguments.nodes.empty()) return std::optional<FactorNodes>();
     if (arguments.nodes == "group") return std::optional(nodes_by_group(scene));
     if (arguments.nodes == "material") return std::optional(nodes_by_material(scene));
@@ -86,8 +95,7 @@ Result<void> write_factor_output(const ViewFactorArguments& arguments, const Sce
     options.format = format_of(arguments), options.with_sky = arguments.with_sky, options.origin = scene_origin;
     if (!arguments.zone.empty()) options.zone = arguments.zone;
     if (nodes) {
-        table = merge_rows(table, nodes->row_of_face, nodes->names.size());
-        table.names = nodes->names;
+        table = merge_nodes(table, *nodes);
         for (const std::uint32_t row : nodes->row_of_face)
             options.row_of_face.push_back(row == no_row ? -1 : static_cast<std::int32_t>(row));
     } else if (*options.format == FactorFormat::energyplus) {

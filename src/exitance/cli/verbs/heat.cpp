@@ -6,8 +6,8 @@
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/view_factors/operator_file.hpp"
 #include "exitance/io/view_factors/thermal_table.hpp"
-#include "exitance/io/view_factors/view_factor_file.hpp"
 
 namespace exitance {
 namespace {
@@ -66,22 +66,30 @@ ExitCode run(const HeatArguments& arguments, Terminal& terminal) {
     if (!arguments.gebhart.empty() && arguments.gebhart == arguments.output)
         return terminal.fail({ErrorCode::usage, "is also the file of --output", "--gebhart", "choose another name"});
     const StopRequest& stop = terminal.limits().stop();
-    const Result<SparseFactors> factors = read_view_factors(arguments.factors);
-    if (!factors) {
-        Error error = factors.error();
+    const auto read = read_factors(arguments.factors);
+    if (!read) {
+        Error error = read.error();
         if (error.code == ErrorCode::bad_input)
-            error.hint = "heat reads the .h5 file of `exitance viewfactors SCENE -o FACTORS.h5`";
+            error.hint =
+                "heat reads the .h5 files of `exitance viewfactors`, of -o FACTORS.h5 or --operator FACTORS.h5";
         return terminal.fail(error);
     }
-    if (const Result<void> whole = check_rows(*factors, arguments.factors); !whole) return terminal.fail(whole.error());
-    const auto surfaces = read_thermal_table(arguments.table, *factors);
+    const FactorOperator* const transport = std::get_if<FactorOperator>(&*read);
+    const SparseFactors& factors = transport ? transport->rows : std::get<SparseFactors>(*read);
+    if (const Result<void> whole = check_rows(factors, arguments.factors); !whole) return terminal.fail(whole.error());
+    if (transport && !(arguments.exchange.empty() && arguments.gebhart.empty()))
+        return terminal.fail({ErrorCode::usage, "is an operator, which has no exchange factors of single surfaces",
+                              arguments.factors, "use the file of `exitance viewfactors SCENE -o FACTORS.h5`"});
+    const auto surfaces = read_thermal_table(arguments.table, factors);
     if (!surfaces) return terminal.fail(surfaces.error());
-    const Result<GrayExchange> exchange = solve_gray_exchange(*factors, *surfaces, arguments.surroundings, stop);
+    const Result<GrayExchange> exchange = transport
+                                              ? solve_gray_exchange(*transport, *surfaces, arguments.surroundings, stop)
+                                              : solve_gray_exchange(factors, *surfaces, arguments.surroundings, stop);
     if (!exchange) return terminal.fail(exchange.error());
     if (!arguments.output.empty())
-        if (const auto written = write_text(arguments.output, heat_csv(*factors, *surfaces, *exchange)); !written)
+        if (const auto written = write_text(arguments.output, heat_csv(factors, *surfaces, *exchange)); !written)
             return terminal.fail(written.error());
-    if (const Result<void> written = write_exchange(arguments, *factors, *surfaces, stop); !written)
+    if (const Result<void> written = write_exchange(arguments, factors, *surfaces, stop); !written)
         return terminal.fail(written.error());
     if (arguments.json)
         terminal.print(heat_json(*exchange));

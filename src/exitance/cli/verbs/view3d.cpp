@@ -78,8 +78,7 @@ ExitCode run(const View3dArguments& arguments, Terminal& terminal) {
     SparseFactors table = compute_row_factors(*loaded.scene, options, nullptr, terminal.progress(), stop);
     if (stop.requested())
         return terminal.fail_stopped("the file would not be whole; `exitance viewfactors` keeps finished rows");
-    const FactorNodes rows = view3d_rows(*loaded.scene);
-    table = merge_rows(table, rows.row_of_face, rows.names.size());
+    table = merge_nodes(table, view3d_rows(*loaded.scene, arguments.input));
     if (controls->is_enclosure) close_rows(table);
     if (controls->has_emittances)
         if (const Result<void> taken = take_exchange_factors(table, stop); !taken) return terminal.fail(taken.error());

@@ -14,6 +14,7 @@
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/solution/checkpoint_file.hpp"
+#include "exitance/io/view_factors/operator_file.hpp"
 #include "exitance/io/view_factors/raw_row_file.hpp"
 #include "exitance/view_factors/entry_factors.hpp"
 #include "exitance/view_factors/ray_check.hpp"
@@ -54,6 +55,11 @@ ViewFactorFacts facts_of(const SparseFactors& table, double seconds) {
     return facts;
 }
 
+/// Checked rows that miss the error: of an operator in its products, of a table also in the sum of squared errors.
+std::size_t wrong_rows(const ViewFactorFacts& facts) {
+    return facts.transport ? facts.row_check.wrong_sums : facts.row_check.wrong;
+}
+
 std::string words_of_rows(const ViewFactorFacts& facts) {
     std::string text = fmt::format("error of rows at most {:.3g} (requested {:g}); {} entries\n", facts.row_error,
                                    facts.error, facts.entries);
@@ -62,11 +68,35 @@ std::string words_of_rows(const ViewFactorFacts& facts) {
     text += fmt::format(
         "rows computed independently: reciprocity defect {:.2g} of a row's largest entry, closure defect {:.2g}\n",
         facts.reciprocity_defect, facts.closure_defect);
+    if (facts.transport)
+        text += fmt::format(
+            "operator: {} entries, {} of them nodes; error of rows at most {:.3g}, closure defect {:.2g}; product "
+            "{:.2g} "
+            "s\n",
+            facts.transport->entries, facts.transport->node_entries, facts.transport->row_error,
+            facts.transport->closure_defect, facts.transport->product_seconds);
     if (!facts.row_check.rows.empty())
-        text += fmt::format("rays: {} random rows, {} rays each: error {:.2g}; {} rows above the error requested\n",
-                            facts.row_check.rows.size(), facts.row_check.rays / facts.row_check.rows.size(),
-                            facts.row_check.error, facts.row_check.wrong);
+        text += fmt::format(
+            "rays: {} random rows, {} rays each: error {:.2g}, sums over rows and groups {:.2g}; {} rows above the "
+            "error "
+            "requested\n",
+            facts.row_check.rows.size(), facts.row_check.rays / facts.row_check.rows.size(), facts.row_check.error,
+            facts.row_check.sum_error, wrong_rows(facts));
     return text;
+}
+
+OperatorFacts facts_of(const FactorOperator& transport) {
+    OperatorFacts facts;
+    facts.entries = transport.rows.entries(), facts.node_entries = transport.node_entries();
+    for (std::size_t i = 0; i < transport.size(); ++i)
+        if (transport.rows.finished[i]) facts.row_error = std::max(facts.row_error, transport.rows.row_errors[i]);
+    facts.closure_defect = transport.closure_defect();
+    const std::vector<double> x(transport.size(), 1);
+    std::vector<double> y(transport.size());
+    const Stopwatch time;
+    transport.apply(x, y);
+    facts.product_seconds = time.seconds();
+    return facts;
 }
 
 std::string words_of_entries(const ViewFactorFacts& facts) {
@@ -99,10 +129,22 @@ void show_findings(const CheckedScene& checked, Terminal& terminal) {
     terminal.show(findings);
 }
 
+/// Options of the table; its rows have less than the requested error if an operator is made of it.
+RowFactorOptions table_options(const ViewFactorArguments& arguments) {
+    const double error = arguments.error.value_or(default_error);
+    RowFactorOptions options{.error = error, .smallest = arguments.smallest, .seed = arguments.seed};
+    if (!arguments.operator_file.empty()) options = operator_table_options(error, arguments.smallest, arguments.seed);
+    options.memory_limit_bytes = arguments.limits.memory_limit.value_or(SIZE_MAX);
+    return options;
+}
+
 /// Identifies the computation to which the rows in a work file belong: scene, accuracy and seed.
 std::string work_of(const ViewFactorArguments& arguments, const Scene& scene) {
-    return fmt::format("{} error {} tolerance {} seed {}", scene_fingerprint(scene),
-                       arguments.error.value_or(default_error), arguments.tolerance.value_or(0), arguments.seed);
+    const RowFactorOptions options = table_options(arguments);
+    std::string text = fmt::format("{} error {} tolerance {} seed {}", scene_fingerprint(scene), options.error,
+                                   arguments.tolerance.value_or(0), arguments.seed);
+    if (options.missed_error) text += fmt::format(" sky {}", *options.missed_error);
+    return text;
 }
 
 /// One run of the verb, after the scene was read.
@@ -118,7 +160,8 @@ class ViewFactorRun {
           terminal_(terminal) {}
 
     ExitCode operator()() {
-        const Result<std::optional<FactorNodes>> nodes = nodes_of(arguments_, scene_);
+        const Result<std::optional<FactorNodes>> nodes =
+            arguments_.output.empty() ? std::optional<FactorNodes>() : nodes_of(arguments_, scene_);
         if (!nodes) return terminal_.fail(nodes.error());
         if (const Result<void> known = check_emissivities(arguments_, scene_, *nodes); !known)
             return terminal_.fail(known.error());
@@ -129,11 +172,14 @@ class ViewFactorRun {
         facts.error = error(), facts.tolerance = arguments_.tolerance, facts.smallest = arguments_.smallest;
         if (facts.finished_rows == 0 && table.size() > 0) return no_rows();
         const bool is_finished = facts.finished_rows == table.size() && table.is_settled;
-        if (is_finished) check(table, facts);
-        // Finished rows are written even after a stop, hence the new StopRequest.
-        const Result<void> written =
-            write_factor_output(arguments_, scene_, origin_, *nodes, std::move(table), StopRequest());
-        if (!written) return terminal_.fail(written.error());
+        std::optional<FactorOperator> transport;
+        if (!arguments_.operator_file.empty()) {
+            transport = make_operator(table);
+            facts.transport = facts_of(*transport);
+        }
+        if (is_finished) check(table, transport, facts);
+        if (const Result<void> written = write(std::move(table), transport, *nodes); !written)
+            return terminal_.fail(written.error());
         if (is_finished && rows_) rows_->remove();
         show(facts);
         return is_finished ? outcome(facts) : stopped(facts);
@@ -145,10 +191,11 @@ class ViewFactorRun {
     /// Opens OUTPUT.rows for finished rows, unless the output exists and is not a regular file.
     Result<void> open_work_file() {
         std::error_code ignored;
-        const std::filesystem::file_status status = std::filesystem::status(arguments_.output, ignored);
+        const std::string& output = arguments_.output.empty() ? arguments_.operator_file : arguments_.output;
+        const std::filesystem::file_status status = std::filesystem::status(output, ignored);
         if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) return {};
-        Result<RawRowFile> file = RawRowFile::open(arguments_.output + ".rows", work_of(arguments_, scene_),
-                                                   arguments_.resume, scene_.surfaces().size());
+        Result<RawRowFile> file = RawRowFile::open(output + ".rows", work_of(arguments_, scene_), arguments_.resume,
+                                                   scene_.surfaces().size());
         if (!file) return file.error();
         rows_.emplace(std::move(*file));
         return {};
@@ -161,11 +208,30 @@ class ViewFactorRun {
             const EntryFactorOptions options{*arguments_.tolerance, arguments_.smallest, memory};
             return compute_entry_factors(scene_, options, store, terminal_.progress(), stop_);
         }
-        const RowFactorOptions options{error(), arguments_.smallest, arguments_.seed, memory};
-        return compute_row_factors(scene_, options, store, terminal_.progress(), stop_);
+        return compute_row_factors(scene_, table_options(arguments_), store, terminal_.progress(), stop_);
     }
 
-    void check(const SparseFactors& table, ViewFactorFacts& facts) {
+    /// The operator of a table, which is moved into it unless the table is an output as well.
+    FactorOperator make_operator(SparseFactors& table) const {
+        terminal_.progress().phase("operator");
+        const std::vector<ViewFace> faces = make_view_faces(scene_);
+        const double node_error = node_share * error();
+        return arguments_.output.empty() ? make_factor_operator(faces, std::move(table), node_error)
+                                         : make_factor_operator(faces, table, node_error);
+    }
+
+    /// Writes the outputs. Finished rows are written even after a stop, hence the new StopRequest.
+    Result<void> write(SparseFactors table, const std::optional<FactorOperator>& transport,
+                       const std::optional<FactorNodes>& nodes) const {
+        if (!arguments_.output.empty())
+            if (const Result<void> written =
+                    write_factor_output(arguments_, scene_, origin_, nodes, std::move(table), StopRequest());
+                !written)
+                return written;
+        return transport ? write_factor_operator(arguments_.operator_file, *transport, StopRequest()) : Result<void>();
+    }
+
+    void check(const SparseFactors& table, const std::optional<FactorOperator>& transport, ViewFactorFacts& facts) {
         terminal_.progress().phase("check by rays");
         if (arguments_.tolerance)
             facts.check = check_by_rays(
@@ -174,13 +240,17 @@ class ViewFactorRun {
                  arguments_.check_rays.value_or(default_rays_an_entry), arguments_.seed, *arguments_.tolerance},
                 stop_);
         else
-            facts.row_check =
-                check_rows_by_rays(scene_, table,
-                                   {.rows = arguments_.check.value_or(default_checked_rows),
-                                    .rays = arguments_.check_rays.value_or(default_rays_a_row(error())) / 2,
-                                    .seed = arguments_.seed,
-                                    .error = error()},
-                                   stop_);
+            facts.row_check = check_rows(table, transport);
+    }
+
+    RowCheck check_rows(const SparseFactors& table, const std::optional<FactorOperator>& transport) const {
+        const RowCheckOptions options{.rows = arguments_.check.value_or(default_checked_rows),
+                                      .rays = arguments_.check_rays.value_or(default_rays_a_row(error())) / 2,
+                                      .seed = arguments_.seed,
+                                      .error = error()};
+        if (!transport) return check_rows_by_rays(scene_, table, options, stop_);
+        return check_rows_by_rays(
+            scene_, transport->rows.finished, [&](std::size_t i) { return transport->dense_row(i); }, options, stop_);
     }
 
     ExitCode no_rows() {
@@ -221,10 +291,14 @@ class ViewFactorRun {
                                                     facts.check.wrong, facts.check.entries, *arguments_.tolerance));
             return reached ? ExitCode::done : ExitCode::demand_not_reached;
         }
-        warn(facts.row_error > error(),
-             fmt::format("the error of some row is {:.3g}, above {:g}", facts.row_error, error()));
-        warn(facts.row_check.wrong > 0, fmt::format("{} of {} rows that rays checked are off by more than {:g}",
-                                                    facts.row_check.wrong, facts.row_check.rows.size(), error()));
+        const double row_error = facts.transport ? facts.transport->row_error : facts.row_error;
+        warn(row_error > error(), fmt::format("the error of some row is {:.3g}, above {:g}", row_error, error()));
+        if (facts.transport)
+            warn(facts.transport->closure_defect > error(),
+                 fmt::format("some row of the operator misses 1 by {:.3g} with the sky and backs of faces, above {:g}",
+                             facts.transport->closure_defect, error()));
+        warn(wrong_rows(facts) > 0, fmt::format("{} of {} rows that rays checked are off by more than {:g}",
+                                                wrong_rows(facts), facts.row_check.rows.size(), error()));
         if (facts.unclosed > 0)
             terminal_.note(
                 fmt::format("warning: {} rows do not add up to 1 with the sky and backs of faces, by more than "
@@ -242,24 +316,37 @@ class ViewFactorRun {
     std::optional<RawRowFile> rows_;
 };
 
+/// Error if the files to write are inputs, cannot be written, or have options or endings that do not fit.
+Result<void> check_outputs(const ViewFactorArguments& arguments) {
+    if (arguments.output.empty() && arguments.operator_file.empty())
+        return Error{ErrorCode::usage, "is required", "--output", "give -o FILE, or --operator FILE.h5"};
+    for (const std::string& output : {arguments.output, arguments.operator_file}) {
+        if (output.empty()) continue;
+        for (const std::string& input : arguments.scene.files)
+            if (is_same_file(output, input))
+                return Error{ErrorCode::usage, "is the scene", output, "choose another name for the output"};
+        for (const char* of_scenes : {".mtl", ".obj", ".gltf", ".glb", ".rad", ".stl", ".ply", ".vs3", ".hbjson"})
+            if (ending(output) == of_scenes)
+                return Error{ErrorCode::usage, "has the ending of a scene's files", output,
+                             "view factors are written as .csv, .vf, .idf, .mtx or .h5"};
+    }
+    if (const Result<void> fit = check_output_options(arguments); !fit) return fit;
+    const bool is_folder = format_of(arguments) == FactorFormat::openfoam;
+    if (!arguments.output.empty() && !is_folder)
+        if (const auto file = AtomicFile::create(arguments.output); !file) return file.error();
+    if (!arguments.operator_file.empty())
+        if (const auto file = AtomicFile::create(arguments.operator_file); !file) return file.error();
+    return {};
+}
+
 }  // namespace
 
-/// Runs `exitance viewfactors SCENE -o MATRIX`.
+/// Runs `exitance viewfactors SCENE -o MATRIX`, or with `--operator FILE`.
 ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal) {
     RunLimits& limits = terminal.limits();
     const StopRequest& stop = limits.keep();
     set_threads(arguments.threads);
-    for (const std::string& input : arguments.scene.files)
-        if (is_same_file(arguments.output, input))
-            return terminal.fail(
-                {ErrorCode::usage, "is the scene", arguments.output, "choose another name for the output"});
-    for (const char* of_scenes : {".mtl", ".obj", ".gltf", ".glb", ".rad", ".stl", ".ply", ".vs3", ".hbjson"})
-        if (ending(arguments.output) == of_scenes)
-            return terminal.fail({ErrorCode::usage, "has the ending of a scene's files", arguments.output,
-                                  "view factors are written as .csv, .vf, .idf, .mtx or .h5"});
-    if (const Result<void> fit = check_output_options(arguments); !fit) return terminal.fail(fit.error());
-    if (format_of(arguments) != FactorFormat::openfoam)
-        if (const auto file = AtomicFile::create(arguments.output); !file) return terminal.fail(file.error());
+    if (const Result<void> fit = check_outputs(arguments); !fit) return terminal.fail(fit.error());
     LoadOptions load = arguments.scene.load;
     load.stop = &stop;
     const LoadedScene checked = load_scene(arguments.scene.files, load);

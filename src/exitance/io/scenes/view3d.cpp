@@ -42,6 +42,9 @@ class View3dReader {
         out_.description.file = path;
     }
 
+    /// The masks of the file, after read().
+    const std::vector<View3dMask>& masks() const { return masks_; }
+
     ReadScene read() {
         for (TextLines lines(text_); lines.next() && !ended_;) read_line(lines);
         if (waiting_) error(pieces_.back().line, "the file ends within this surface");
@@ -155,9 +158,16 @@ class View3dReader {
             return refuse(std::move(piece), "");
         }
         if (kind != 'O') read_facts(items, piece);
-        if (kind == 'M') error(line_, "mask surfaces ('M') are not read", "cut the base up, or leave it out");
+        if (kind == 'M') check_mask(piece);
         if (!planes_) check_shape(piece);
         pieces_.push_back(std::move(piece));
+    }
+
+    /// A mask hides a part of a surface of the result, and is a row of its own.
+    void check_mask(const Piece& piece) {
+        if (piece.base == 0 || pieces_[piece.base - 1].kind != 'S')
+            error(line_, "the base of a mask surface is not a surface of the result", "name it in the column 'base'");
+        if (piece.merged > 0) error(line_, "a mask surface cannot be merged", "set its 'cmb' to 0");
     }
 
     /// Adds an empty piece for a faulty surface, so that the following surfaces keep their numbers.
@@ -251,12 +261,14 @@ class View3dReader {
         if (off > max_bend * size) error(piece.line, fmt::format("quadrangle is {:.3g} m out of plane", off));
     }
 
-    /// Cuts subsurfaces and null surfaces out of their bases: for each edge, the part of the base outside it is kept
-    /// and the rest goes to the next edge.
+    /// Cuts subsurfaces, masks and null surfaces out of their bases: for each edge, the part of the base outside it is
+    /// kept and the rest goes to the next edge.
     void cut_out() {
         for (const Piece& piece : pieces_) {
             if (piece.base == 0 || piece.parts.empty()) continue;
             Piece& base = pieces_[piece.base - 1];
+            if (piece.kind == 'M' && dot(piece.normal, base.normal) > 0)
+                error(piece.line, "a mask surface faces like its base", "order its corners the other way round");
             if (piece.crosses_itself || base.crosses_itself) {
                 error(piece.line, "a quadrangle that crosses itself cannot be cut out, nor have parts cut out",
                       "order its corners counter-clockwise");
@@ -303,19 +315,20 @@ class View3dReader {
         std::vector<std::uint32_t> group(pieces_.size() + 1, 0);
         for (std::size_t k = 1; k <= pieces_.size(); ++k) {
             const Piece& piece = pieces_[k - 1];
-            if (piece.kind != 'S') continue;
+            if (piece.kind != 'S' && piece.kind != 'M') continue;
             if (piece.merged > 0) {
                 group[k] = group[piece.merged];
                 continue;
             }
             group[k] = static_cast<std::uint32_t>(d.groups.size());
+            if (piece.kind == 'M') masks_.push_back({group[k], piece.base > 0 ? group[piece.base] : 0});
             d.groups.push_back(piece.name.empty() ? fmt::format("surface {}", k) : piece.name);
         }
         const auto obstructions = static_cast<std::uint32_t>(d.groups.size());
         d.groups.push_back(view3d_obstructions);
         for (std::size_t k = 1; k <= pieces_.size(); ++k) {
             const Piece& piece = pieces_[k - 1];
-            if (piece.kind != 'S' && piece.kind != 'O') continue;
+            if (piece.kind == 'N') continue;
             for (const Polygon& part : piece.parts) {
                 SceneDescription::Face face;
                 for (const Point& p : part) {
@@ -323,7 +336,7 @@ class View3dReader {
                     d.points.push_back(p);
                 }
                 face.material = material(piece.emittance);
-                face.group = piece.kind == 'S' ? group[k] : obstructions;
+                face.group = piece.kind == 'O' ? obstructions : group[k];
                 face.line = piece.line;
                 d.faces.push_back(std::move(face));
             }
@@ -335,6 +348,7 @@ class View3dReader {
     ReadScene out_;
     std::vector<Point> vertices_;
     std::vector<Piece> pieces_;
+    std::vector<View3dMask> masks_;
     std::map<double, std::uint32_t> materials_;
     bool planes_ = false, ended_ = false;
     bool waiting_ = false;         ///< The last surface is not complete.
@@ -344,6 +358,14 @@ class View3dReader {
 };
 
 }  // namespace
+
+std::vector<View3dMask> read_view3d_masks(const std::string& path) {
+    const Result<std::string> text = read_whole_file(path);
+    if (!text) return {};
+    View3dReader reader(path, *text);
+    reader.read();
+    return reader.masks();
+}
 
 ReadScene read_view3d(const std::string& path) {
     const Result<std::string> text = read_whole_file(path);

@@ -11,6 +11,18 @@
 #include "exitance/io/files/whole_file.hpp"
 
 namespace exitance {
+namespace {
+
+/// The text after the first word of a line.
+std::string title_of(std::string_view line) {
+    const std::size_t word = line.find_first_not_of(" \t");
+    const std::size_t end = line.find_first_of(" \t", word);
+    const std::size_t first = end == std::string_view::npos ? end : line.find_first_not_of(" \t", end);
+    if (first == std::string_view::npos) return "";
+    return std::string(line.substr(first, line.find_last_not_of(" \t\r") + 1 - first));
+}
+
+}  // namespace
 
 Result<View3dControls> read_view3d_controls(const std::string& path) {
     const Result<std::string> text = read_whole_file(path);
@@ -24,7 +36,11 @@ Result<View3dControls> read_view3d_controls(const std::string& path) {
         std::replace_if(
             line.begin(), line.end(), [](char c) { return c == ',' || c == '='; }, ' ');
         TextLines items(line);
-        if (!items.next() || std::tolower(static_cast<unsigned char>(items.word().front())) != 'c') continue;
+        if (!items.next()) continue;
+        const int kind = std::tolower(static_cast<unsigned char>(items.word().front()));
+        if (kind == 't') out.title = title_of(lines.rest());
+        if (kind == 'e' || kind == '*') break;
+        if (kind != 'c') continue;
         while (!items.rest().empty()) {
             const auto control = known.find(std::string(items.word()));
             double value = 0;

@@ -12,11 +12,12 @@ struct View3dControls {
     int row = 0, col = 0;         ///< The only row and column that View3D computes; 0: all.
     bool is_enclosure = false;    ///< `encl`: rows are adjusted so that they add up to 1.
     bool has_emittances = false;  ///< `emit`: the result are exchange factors of the gray surfaces (script F).
-    int out = 0;                  ///< Format of the result; 0: text, 1: binary.
+    int out = 0;                  ///< Format of the result; 0: text, 1: binary, 2: exchange areas with names.
+    std::string title;            ///< Text of the last `T` line.
 };
 
-/// Reads the `C` lines of a .vs3 file; the last value of a control counts. Errors: cannot_read, and bad_input for an
-/// integer control whose value is not one.
+/// Reads the `C` and `T` lines of a .vs3 file; the last value of a control counts. Errors: cannot_read, and bad_input
+/// for an integer control whose value is not one.
 Result<View3dControls> read_view3d_controls(const std::string& path);
 
 }  // namespace exitance

@@ -100,7 +100,8 @@ TEST(View3d, InputThatView3dRejectsIsAnErrorWithItsLine) {
         {"F 3\n" + square + "S 1 1 2 3 4 0 0 .9\nS 2 1 2 3 0 0 1 .9\nS 3 1 2 3 0 0 2 .9\n", 12},  // chained cmb
         {"F 3\n" + square + "V 9 1 1.5 0\nS 1 1 2 9 4 0 0 .9\n", 11},                             // concave
         {"F 3\n" + square + "S 1 1 2 3 99 0 0 .9\n", 10},
-        {"F 3\n" + square + "S 1 1 2 3 4 0 0 .9\nM 2 5 8 7 6 1 0 .9\n", 11},
+        {"F 3\n" + square + "S 1 1 2 3 4 0 0 .9\nM 2 5 6 7 8 1 0 .9\n", 11},  // faces like its base
+        {"F 3\n" + square + "S 1 1 2 3 4 0 0 .9\nM 2 5 8 7 6 0 0 .9\n", 11},  // no base
         {"F 2\n", 1},
         {"F 3a\nS 1 R 0 0 .9\n1 2 3\n", 2},  // ends within a surface
     };

@@ -42,13 +42,53 @@ FactorNodes nodes_by_material(const Scene& scene) {
     return nodes_by(scene, [&](const Surface& s) -> const std::string& { return scene.materials()[s.material].name; });
 }
 
-FactorNodes view3d_rows(const Scene& scene) {
+FactorNodes view3d_rows(const Scene& scene, const std::string& path) {
     FactorNodes nodes;
+    nodes.masks = read_view3d_masks(path);
     for (const GroupId g : scene.groups().ids())
         if (scene.groups()[g] != view3d_obstructions) nodes.names.push_back(scene.groups()[g]);
     for (const Surface& surface : scene.surfaces())
         nodes.row_of_face.push_back(surface.group.value < nodes.names.size() ? surface.group.value : no_row);
     return nodes;
+}
+
+SparseFactors merge_nodes(const SparseFactors& table, const FactorNodes& nodes) {
+    SparseFactors out = merge_rows(table, nodes.row_of_face, nodes.names.size());
+    out.names = nodes.names;
+    apply_masks(out, nodes.masks);
+    return out;
+}
+
+void apply_masks(SparseFactors& table, std::span<const View3dMask> masks) {
+    if (masks.empty()) return;
+    const std::size_t n = table.size();
+    std::vector<std::uint32_t> base_of(n, no_row);
+    std::vector<double> covered(n);
+    std::vector<std::map<std::uint32_t, double>> rows(n);
+    for (const View3dMask& mask : masks) base_of[mask.row] = mask.base, covered[mask.base] += table.areas[mask.row];
+    for (std::size_t i = 0; i < n; ++i) {
+        if (base_of[i] != no_row) {
+            rows[i][base_of[i]] = 1;
+            continue;
+        }
+        const double open = covered[i] > 0 ? table.areas[i] / (table.areas[i] + covered[i]) : 1;
+        for (std::size_t k = table.starts[i]; k < table.starts[i + 1]; ++k)
+            if (base_of[table.columns[k]] == no_row) rows[i][table.columns[k]] = open * table.values[k];
+        for (std::vector<double>* shares : {&table.sky, &table.back, &table.row_errors, &table.dropped})
+            if (!shares->empty()) (*shares)[i] *= open;
+    }
+    for (const View3dMask& mask : masks) {
+        rows[mask.base][mask.row] = table.areas[mask.row] / (table.areas[mask.base] + covered[mask.base]);
+        for (std::vector<double>* shares : {&table.sky, &table.back, &table.row_errors, &table.dropped})
+            if (!shares->empty()) (*shares)[mask.row] = 0;
+    }
+    table.starts = {0}, table.columns.clear(), table.values.clear();
+    for (std::size_t i = 0; i < n; ++i) {
+        table.areas[i] += covered[i], table.row_sums[i] = 0;
+        for (const auto& [column, F] : rows[i])
+            table.columns.push_back(column), table.values.push_back(F), table.row_sums[i] += F;
+        table.starts.push_back(table.values.size());
+    }
 }
 
 Result<FactorNodes> read_node_table(const std::string& path, std::size_t faces) {

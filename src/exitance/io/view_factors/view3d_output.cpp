@@ -38,14 +38,32 @@ std::string binary(const SparseFactors& table, const View3dControls& controls) {
     return bytes;
 }
 
+std::string exchange_areas(const SparseFactors& table, const View3dControls& controls) {
+    constexpr std::size_t numbers_a_line = 5;  // given by View3D
+    std::string text =
+        header(table, controls) + fmt::format("\nT {}\n", controls.title) + "!  #     area          emit    name\n";
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        text += fmt::format("{:4} {:14.6e} {:7.3f}   {}\n", i + 1, table.areas[i], table.emittances[i],
+                            i < table.names.size() ? table.names[i] : "");
+        std::size_t k = table.starts[i];
+        for (std::size_t j = 0; j <= i; ++j) {
+            const bool has_entry = k < table.starts[i + 1] && table.columns[k] == j;
+            text += fmt::format("{:14.6e}", has_entry ? table.areas[i] * table.values[k++] : 0.0);
+            text += (j + 1) % numbers_a_line == 0 ? '\n' : ' ';
+        }
+        if ((i + 1) % numbers_a_line != 0) text += '\n';
+    }
+    return text + '\n';
+}
+
 }  // namespace
 
 Result<std::string> view3d_output(const SparseFactors& table, const View3dControls& controls) {
     if (controls.out == 1) return binary(table, controls);
+    if (controls.out == 2) return exchange_areas(table, controls);
     if (controls.out != 0)
-        return Error{ErrorCode::bad_input,
-                     fmt::format("out={} is not written: its layout is not documented", controls.out), "",
-                     "use out=0 (text) or out=1 (binary), or `exitance viewfactors --format`"};
+        return Error{ErrorCode::bad_input, fmt::format("View3D has no format out={}", controls.out), "",
+                     "use out=0 (text), out=1 (binary) or out=2 (exchange areas), or `exitance viewfactors --format`"};
     std::string text = view_factors_vf(table);
     return text.replace(0, header_size, header(table, controls));
 }

@@ -6,6 +6,7 @@
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/solution/hdf5_file.hpp"
+#include "exitance/io/view_factors/factor_rows_file.hpp"
 #include "exitance/io/view_factors/solver_formats.hpp"
 #include "exitance/io/view_factors/text_format.hpp"
 
@@ -147,26 +148,7 @@ Result<void> write_hdf5(const std::string& path, const SparseFactors& table, con
         file.set_attribute(group, "entry_reciprocity_defect", table.entry_defect);
     else
         file.set_attribute(group, "closure_defect", table.closure_defect);
-    file.write_rows<std::int64_t>(
-        group + "/indptr", table.starts.size(), 1, {"1", "where rows begin in data, and the end"},
-        [&](std::size_t i, std::span<std::int64_t> row) { row[0] = static_cast<std::int64_t>(table.starts[i]); });
-    file.write_rows<std::int32_t>(
-        group + "/indices", table.entries(), 1, {"1", "columns of data, from 0"},
-        [&](std::size_t k, std::span<std::int32_t> row) { row[0] = static_cast<std::int32_t>(table.columns[k]); });
-    file.write(group + "/data", table.values, 1, {"1", "view factors from the row's face to the column's"});
-    file.write(group + "/areas", table.areas, 1, {"m^2", "areas of faces"});
-    file.write(group + "/emittances", table.emittances, 1, {"1", "emittances of faces"});
-    file.write(group + "/row_sums", table.row_sums, 1, {"1", "sums of rows"});
-    file.write(group + "/finished", table.finished, 1, {"1", "1 for rows that were computed"});
-    file.write(group + "/dropped", table.dropped, 1, {"1", "sums of entries of rows left out as too small"});
-    if (!table.row_errors.empty())
-        file.write(group + "/row_errors", table.row_errors, 1,
-                   {"1", "root of the sum of the variances of a row, and bounds of what was integrated or dropped"});
-    if (!table.sky.empty()) {
-        file.write(group + "/sky", table.sky, 1, {"1", "shares of the flux from each row that leave the scene"});
-        file.write(group + "/back", table.back, 1, {"1", "shares that reach backs of faces or start below a face"});
-    }
-    if (!table.names.empty()) file.write_texts(group + "/names", table.names, {"1", "names of rows"});
+    write_factor_rows(file, group, table);
     if (!options.row_of_face.empty())
         file.write_rows<std::int32_t>(group + "/row_of_face", options.row_of_face.size(), 1,
                                       {"1", "row of every face of the scene, from 0; -1: none"},
@@ -200,41 +182,14 @@ std::string view_factors_mtx(const SparseFactors& table) {
 Result<SparseFactors> read_view_factors(const std::string& path) {
     Result<Hdf5Reader> file = Hdf5Reader::open(path);
     if (!file) return file.error();
-    const std::string group = "view_factors/";
-    // Files without a version are of the first one.
-    const std::int64_t version = file->integer_attribute("view_factors", "version").value_or(1);
-    if (version > file_version)
-        return Error{ErrorCode::bad_input,
-                     "is of version " + std::to_string(version) + "; this program reads versions up to " +
-                         std::to_string(file_version),
-                     path, "use the program that wrote it, or compute the view factors again"};
-    SparseFactors table;
-    table.areas = file->read<double>(group + "areas");
-    const std::size_t n = table.size();
-    const auto starts = file->read<std::int64_t>(group + "indptr", 1, n + 1);
-    const auto columns = file->read<std::int32_t>(group + "indices");
-    table.values = file->read<double>(group + "data", 1, columns.size());
-    table.finished = file->read<std::uint8_t>(group + "finished", 1, n);
-    table.emittances = file->read<double>(group + "emittances", 1, n);
-    table.row_sums = file->read<double>(group + "row_sums", 1, n);
-    if (file->has(group + "row_errors")) table.row_errors = file->read<double>(group + "row_errors", 1, n);
-    table.dropped = file->read<double>(group + "dropped", 1, n);
-    if (file->has(group + "sky")) {
-        table.sky = file->read<double>(group + "sky", 1, n);
-        table.back = file->read<double>(group + "back", 1, n);
-    }
-    if (file->has(group + "names")) table.names = file->read_texts(group + "names", n);
-    table.combined = file->integer_attribute("view_factors", "combined").value_or(0) != 0;
-    if (file->failed()) return file->error();
-    const bool is_ascending = std::is_sorted(starts.begin(), starts.end());
-    if (!is_ascending || starts.front() != 0 || starts.back() != static_cast<std::int64_t>(columns.size()))
-        file->fail(group + "indptr", "does not divide the entries into rows");
-    for (std::int32_t column : columns)
-        if (column < 0 || static_cast<std::size_t>(column) >= n)
-            file->fail(group + "indices", "names a face that is not there");
-    if (file->failed()) return file->error();
-    table.starts.assign(starts.begin(), starts.end());
-    table.columns.assign(columns.begin(), columns.end());
+    return read_view_factors(*file, path);
+}
+
+Result<SparseFactors> read_view_factors(Hdf5Reader& file, const std::string& path) {
+    if (const Result<void> known = check_file_version(file, "view_factors", file_version, path); !known)
+        return known.error();
+    SparseFactors table = read_factor_rows(file, "view_factors", 0);
+    if (file.failed()) return file.error();
     return table;
 }
 

@@ -11,6 +11,8 @@
 
 namespace exitance {
 
+class Hdf5Reader;
+
 enum class FactorFormat {
     csv,         ///< A matrix.
     vf,          ///< View3D's text.
@@ -42,6 +44,8 @@ Result<void> write_view_factors(const std::string& path, const SparseFactors& ta
 
 /// Reads a `.h5` file of write_view_factors().
 Result<SparseFactors> read_view_factors(const std::string& path);
+/// Reads an open file; `path` is for messages.
+Result<SparseFactors> read_view_factors(Hdf5Reader& file, const std::string& path);
 
 /// Formats a table as CSV: a header `surface,area,row_sum,F_1,...,F_n`, then one row per face, numbered from 1 in the
 /// order of the scene file. With 17 digits, reading restores the same doubles.
