@@ -168,6 +168,35 @@ TEST(Daylight, TheToldErrorAndTheIntervalsCoverTheTrueOnes) {
     EXPECT_GE(covered, 21u);  // of 24, for 95%: fewer than 21 happen in one of 30 runs of independent sensors
 }
 
+TEST(YearSky, TilesGiveTheBitsOfPlainSums) {
+    // 19 sensors do not fill two tiles of 16. The day is cut so that bright hours do not fill tiles of 4.
+    const SkyPatches patches(1);
+    std::vector<DaylightHour> hours = day();
+    hours.resize(17);
+    const YearSky sky(patches, hours, {.place = {47.4, 8.5, 400}});
+    ASSERT_NE(sky.bright_hours().size() % 4, 0u);
+    constexpr std::size_t sensors = 19;
+    const std::size_t m = patches.size();
+    std::vector<float> coefficients(sensors * m);
+    for (std::size_t k = 0; k < coefficients.size(); ++k) coefficients[k] = 1 / static_cast<float>(1 + k % 997);
+    // Light of one patch in one hour, by a matrix with one coefficient.
+    std::vector<float> luminance(m * hours.size());
+    for (std::size_t p = 0; p < m; ++p) {
+        std::vector<float> one(m, 0), lux(hours.size(), 0);
+        one[p] = 1;
+        sky.add_sky(one, lux);
+        for (std::size_t h = 0; h < hours.size(); ++h) luminance[h * m + p] = lux[h];
+    }
+    std::vector<float> lux(sensors * hours.size(), 1);
+    sky.add_sky(coefficients, lux);
+    for (std::size_t i = 0; i < sensors; ++i)
+        for (std::size_t h = 0; h < hours.size(); ++h) {
+            float sum = 0;
+            for (std::size_t p = 0; p < m; ++p) sum += coefficients[i * m + p] * luminance[h * m + p];
+            EXPECT_EQ(lux[i * hours.size() + h], 1 + sum) << i << ' ' << h;
+        }
+}
+
 TEST(Daylight, OneColumnIsTheProductOfTheMatrixWithASky) {
     // Both use equal rays, so that only rounding to 32 bits and the last sweep of each solve (2e-4) differ. Reflected
     // light of another sky than the straight light shows a mix-up of the two.

@@ -6,6 +6,7 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/direct/beams.hpp"
 #include "exitance/scene/photometric_units.hpp"
+#include "exitance/scene/sky/perez_sky.hpp"
 #include "exitance/what_if/daylight/sensor_places.hpp"
 
 namespace exitance {
@@ -45,7 +46,7 @@ std::vector<std::pair<std::size_t, double>> sun_in_patches(const Normal& sun, co
 }  // namespace
 
 YearSky::YearSky(const SkyPatches& patches, std::span<const DaylightHour> hours, const DaylightSite& site)
-    : patches_(patches.size()), row_(hours.size(), dark), suns_(hours.size()) {
+    : patches_(patches.size()), suns_(hours.size()) {
     sum_of_sky_.assign(patches_, 0), sum_with_sun_.assign(patches_, 0);
     for (std::size_t h = 0; h < hours.size(); ++h) {
         const DaylightHour& hour = hours[h];
@@ -59,7 +60,8 @@ YearSky::YearSky(const SkyPatches& patches, std::span<const DaylightHour> hours,
         sun.illuminance = site.efficacy_direct * direct;
         std::vector<double> sky(patches_, 0);
         if (hour.diffuse_horizontal > 0)
-            sky = luminances(perez_sky({hour.diffuse_horizontal, direct, day}, sun.towards), patches, diffuse_lux);
+            sky = luminances(unscaled_perez_sky({hour.diffuse_horizontal, direct, day}, sun.towards), patches,
+                             diffuse_lux);
         sky[0] = site.ground * (diffuse_lux + sun.illuminance * std::max(0.0, sun.towards.z)) / pi;
         std::vector<double> with_sun = sky;
         if (sun.illuminance > 0) {
@@ -67,24 +69,42 @@ YearSky::YearSky(const SkyPatches& patches, std::span<const DaylightHour> hours,
             for (const auto& [patch, luminance] : sun_in_patches(sun.towards, patches, sun.illuminance))
                 with_sun[patch] += luminance, sun.patches[k++] = patch;
         }
-        row_[h] = static_cast<std::uint32_t>(sky_.size() / patches_);
+        bright_.push_back(h);
         sky_.insert(sky_.end(), sky.begin(), sky.end());
         with_sun_.insert(with_sun_.end(), with_sun.begin(), with_sun.end());
         for (std::size_t p = 0; p < patches_; ++p) sum_of_sky_[p] += sky[p], sum_with_sun_[p] += with_sun[p];
     }
 }
 
+/// Multiplies in tiles of 16 sensors and 4 hours, whose sums stay in registers. Every sum adds the patches in order, so
+/// that the tiles do not change its bits.
 void YearSky::add(std::span<const float> luminances, std::span<const float> coefficients, std::span<float> lux) const {
-    const std::size_t sensors = coefficients.size() / patches_;
+    using Eight = float __attribute__((vector_size(32)));
+    constexpr std::size_t width = 8, tile_sensors = 2 * width, tile_hours = 4;
+    const std::size_t sensors = coefficients.size() / patches_, rows = bright_.size();
     EXI_ASSERT(lux.size() == sensors * hours());
-    for (std::size_t h = 0; h < hours(); ++h) {
-        if (is_dark(h)) continue;
-        const float* const luminance = &luminances[row_[h] * patches_];
-        for (std::size_t i = 0; i < sensors; ++i) {
-            const float* const row = &coefficients[i * patches_];
-            float sum = 0;
-            for (std::size_t p = 0; p < patches_; ++p) sum += row[p] * luminance[p];
-            lux[i * hours() + h] += sum;
+    std::vector<float> columns(patches_ * tile_sensors);  // coefficients of a tile, a row per patch
+    for (std::size_t first = 0; first < sensors; first += tile_sensors) {
+        const std::size_t count = std::min(tile_sensors, sensors - first);
+        for (std::size_t i = 0; i < count; ++i)
+            for (std::size_t p = 0; p < patches_; ++p)
+                columns[p * tile_sensors + i] = coefficients[(first + i) * patches_ + p];
+        for (std::size_t row = 0; row < rows; row += tile_hours) {
+            const std::size_t together = std::min(tile_hours, rows - row);
+            std::array<const float*, tile_hours> luminance{};
+            for (std::size_t k = 0; k < tile_hours; ++k)
+                luminance[k] = &luminances[(row + std::min(k, together - 1)) * patches_];
+            std::array<Eight, 2 * tile_hours> sums{};
+            for (std::size_t p = 0; p < patches_; ++p) {
+                Eight a, b;
+                __builtin_memcpy(&a, &columns[p * tile_sensors], sizeof a);
+                __builtin_memcpy(&b, &columns[p * tile_sensors + width], sizeof b);
+                for (std::size_t k = 0; k < tile_hours; ++k)
+                    sums[2 * k] += a * luminance[k][p], sums[2 * k + 1] += b * luminance[k][p];
+            }
+            for (std::size_t k = 0; k < together; ++k)
+                for (std::size_t i = 0; i < count; ++i)
+                    lux[(first + i) * hours() + bright_[row + k]] += sums[2 * k + i / width][i % width];
         }
     }
 }
