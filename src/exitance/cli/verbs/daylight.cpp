@@ -27,9 +27,9 @@ std::vector<DaylightHour> hours_of(const Weather& weather) {
     return out;
 }
 
-std::string as_text(const DaylightResults& results, const std::string& folder) {
-    const DaylightSummary& s = results.summary;
-    const DaylightProvision::Shares& provision = results.provision.by_illuminance;
+std::string as_text(const DaylightSummary& s, std::size_t hours, const std::string& folder) {
+    const DaylightProvision::Shares& provision = s.provision.by_illuminance;
+    const DaylightError error = worst_of(s.errors);
     constexpr std::array<const char*, 4> levels{"no level", "minimum", "medium", "high"};
     return fmt::format(
         "daylight   {} sensors, {} hours, {} of them occupied\n"
@@ -39,10 +39,9 @@ std::string as_text(const DaylightResults& results, const std::string& folder) {
         "ASE        {:.1f}% of the sensors have 1000 lx of sun in more than 250 hours\n"
         "EN 17037   {}: 300 lx in half of the daylight hours at {:.1f}% of the sensors, 100 lx at {:.1f}%\n"
         "written    {}\n",
-        results.sensors.size(), results.hours.size(), s.occupied_hours, s.mean_daylight_factor,
-        results.intervals.mean_factor.low, results.intervals.mean_factor.high, 100 * results.worst_error().factor,
-        100 * results.worst_error().lux_hours, 100 * s.spatial_autonomy, 100 * results.intervals.spatial_autonomy.low,
-        100 * results.intervals.spatial_autonomy.high, 100 * s.sunlight_exposure,
+        s.sensors, hours, s.occupied_hours, s.mean_daylight_factor, s.mean_factor.low, s.mean_factor.high,
+        100 * error.factor, 100 * error.lux_hours, 100 * s.spatial_autonomy, 100 * s.spatial_autonomy_bounds.low,
+        100 * s.spatial_autonomy_bounds.high, 100 * s.sunlight_exposure,
         levels[static_cast<std::size_t>(provision.level())], 100 * provision.at_target[0],
         100 * provision.at_minimum[0], folder);
 }
@@ -88,17 +87,18 @@ void warn_of(const Weather& weather, const std::string& file, Progress& progress
 }
 
 /// Prints the results. Returns the exit code: whether every grid has the requested error.
-ExitCode tell(const DaylightResults& results, const DaylightArguments& arguments, Terminal& terminal) {
+ExitCode tell(const DaylightTask& task, const DaylightResults& results, const DaylightArguments& arguments,
+              Terminal& terminal) {
     if (arguments.json)
-        terminal.print(values_json(summary_values(results)));
+        terminal.print(values_json(summary_values(task, results)));
     else if (!arguments.quiet)
-        terminal.print(as_text(results, arguments.output));
-    const DaylightError error = results.worst_error();
-    if (std::max(error.factor, error.lux_hours) <= arguments.error) return ExitCode::done;
+        terminal.print(as_text(results.summary, task.hours.size(), arguments.output));
+    const double error = worst_of(results.summary.errors).largest();
+    if (error <= arguments.error) return ExitCode::done;
     terminal.progress().warn(fmt::format(
-        "the error of {:.2g}% is above the requested {:.2g}%{}", 100 * std::max(error.factor, error.lux_hours),
-        100 * arguments.error,
-        results.bias.patches > arguments.error ? ": the patches of the sky are too coarse (--sky-patches)" : ""));
+        "the error of {:.2g}% is above the requested {:.2g}%{}", 100 * error, 100 * arguments.error,
+        results.summary.bias.patches > arguments.error ? ": the patches of the sky are too coarse (--sky-patches)"
+                                                       : ""));
     return ExitCode::demand_not_reached;
 }
 
@@ -127,37 +127,37 @@ ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     const Result<Scene> scene = scene_of(arguments, terminal);
     if (!scene) return terminal.fail(scene.error());
 
-    DaylightResults results;
+    DaylightTask task;
     BorderPoints borders;
     const PlaceFinder places(*scene);
     for (std::size_t i = 0; i < points->size(); ++i) {
-        results.sensors.push_back({points->points[i], points->normals[i]});
+        task.sensors.push_back({points->points[i], points->normals[i]});
         borders.add(places.find(points->points[i], points->normals[i]).is_between_sides);
     }
     borders.tell(terminal);
-    results.hours = hours_of(*weather);
-    const DaylightSite site{.place = weather->place,
-                            .north = arguments.north,
-                            .ground = arguments.ground,
-                            .efficacy_diffuse = efficacy_of_sky,
-                            .efficacy_direct = efficacy_of_sun};
-    results.grids = grids_of(sensors, points->size());
-    if (const Result<void> done = simulate_year(*scene, arguments.division, site, arguments.error, results,
-                                                terminal.progress(), terminal.limits().stop());
-        !done)
-        return terminal.fail(done.error());
-    results.sunlight = sunlight_hours(*scene, results.sensors, site, weather->zone, arguments.sun_day);
+    task.hours = hours_of(*weather);
+    task.site = {.place = weather->place,
+                 .zone = weather->zone,
+                 .north = arguments.north,
+                 .ground = arguments.ground,
+                 .efficacy_diffuse = efficacy_of_sky,
+                 .efficacy_direct = efficacy_of_sun};
+    task.grids = grids_of(sensors, points->size());
+    task.division = arguments.division, task.error = arguments.error, task.sun_day = arguments.sun_day;
+    Result<DaylightResults> found = collect_year(*scene, task, terminal.progress(), terminal.limits().stop());
+    if (!found) return terminal.fail(found.error());
+    DaylightResults& results = *found;
     if (eyes) results.eyes = eyes->points, results.views = views_out(*scene, results.eyes);
     terminal.progress().phase("write");
-    if (const Result<void> written = write_daylight(arguments.output, results); !written)
+    if (const Result<void> written = write_daylight(arguments.output, task, results); !written)
         return terminal.fail(written.error());
     if (ending(sensors) == ".hbjson") {
         const std::string folder = (std::filesystem::path(arguments.output) / "honeybee").string();
-        if (const Result<void> written = write_honeybee_results(folder, results); !written)
+        if (const Result<void> written = write_honeybee_results(folder, task, results); !written)
             return terminal.fail(written.error());
     }
     terminal.progress().finish();
-    return tell(results, arguments, terminal);
+    return tell(task, results, arguments, terminal);
 }
 
 }  // namespace exitance

@@ -18,9 +18,9 @@ namespace exitance {
 ///     view.csv         one row per eye point: position, angle, distance, layers and level of the view (if requested)
 ///     matrix.csv       one row per sensor, one column per sky patch: lx for 1 cd/m^2
 ///     summary.csv      name, value
-Result<void> write_daylight(const std::string& folder, const DaylightResults& results);
+Result<void> write_daylight(const std::string& folder, const DaylightTask& task, const DaylightResults& results);
 
 /// Names and values in summary.csv.
-std::vector<std::pair<std::string, double>> summary_values(const DaylightResults& results);
+std::vector<std::pair<std::string, double>> summary_values(const DaylightTask& task, const DaylightResults& results);
 
 }  // namespace exitance

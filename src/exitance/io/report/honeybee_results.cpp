@@ -21,10 +21,10 @@ double hour_of_year(const DaylightHour& hour) {
 }
 
 /// Indices of the hours in which some sensor receives light.
-std::vector<std::size_t> lit_hours(const DaylightResults& results) {
-    const std::size_t n = results.sensors.size();
+std::vector<std::size_t> lit_hours(const DaylightTask& task, const DaylightResults& results) {
+    const std::size_t n = task.sensors.size();
     std::vector<std::size_t> out;
-    for (std::size_t h = 0; h < results.hours.size(); ++h) {
+    for (std::size_t h = 0; h < task.hours.size(); ++h) {
         const auto row = results.year.illuminance.begin() + static_cast<std::ptrdiff_t>(h * n);
         if (std::any_of(row, row + static_cast<std::ptrdiff_t>(n), [](float v) { return v > 0; })) out.push_back(h);
     }
@@ -54,7 +54,7 @@ Result<void> write_grid(const std::string& path, const DaylightResults& results,
     for (std::size_t i = first; i < first + count; ++i) {
         row.clear();
         for (const std::size_t h : hours)
-            row += fmt::format("{:.5g} ", results.year.illuminance[h * results.sensors.size() + i]);
+            row += fmt::format("{:.5g} ", results.year.illuminance[h * results.year.sensors + i]);
         row += '\n';
         file->write(row);
     }
@@ -63,14 +63,15 @@ Result<void> write_grid(const std::string& path, const DaylightResults& results,
 
 }  // namespace
 
-Result<void> write_honeybee_results(const std::string& folder, const DaylightResults& results) {
+Result<void> write_honeybee_results(const std::string& folder, const DaylightTask& task,
+                                    const DaylightResults& results) {
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
     if (failure) return Error{ErrorCode::cannot_write, "cannot be made: " + failure.message(), folder, ""};
     const auto in = [&](const std::string& name) { return (std::filesystem::path(folder) / name).string(); };
-    const std::vector<std::size_t> hours = lit_hours(results);
+    const std::vector<std::size_t> hours = lit_hours(task, results);
     nlohmann::ordered_json info = nlohmann::ordered_json::array();
-    const std::vector<SensorGrid>& grids = results.grids;
+    const std::vector<SensorGrid>& grids = task.grids;
     const std::vector<std::string> names = file_names(grids);
     std::size_t first = 0;
     for (std::size_t g = 0; g < grids.size(); ++g) {
@@ -85,7 +86,7 @@ Result<void> write_honeybee_results(const std::string& folder, const DaylightRes
                         {"group", ""}});
     }
     std::string times;
-    for (const std::size_t h : hours) times += fmt::format("{:.1f}\n", hour_of_year(results.hours[h]));
+    for (const std::size_t h : hours) times += fmt::format("{:.1f}\n", hour_of_year(task.hours[h]));
     if (const Result<void> written = write_file(in("sun-up-hours.txt"), times); !written) return written.error();
     return write_file(in("grids_info.json"), info.dump(2) + "\n");
 }

@@ -14,6 +14,7 @@ namespace exitance {
 ///     grids_info.json   names and numbers of sensors of the grids
 ///
 /// The folder is created if necessary.
-Result<void> write_honeybee_results(const std::string& folder, const DaylightResults& results);
+Result<void> write_honeybee_results(const std::string& folder, const DaylightTask& task,
+                                    const DaylightResults& results);
 
 }  // namespace exitance

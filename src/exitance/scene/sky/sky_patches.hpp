@@ -40,7 +40,7 @@ class SkyPatches {
     std::vector<Normal> middle_;
     std::vector<double> solid_angle_, horizontal_;
     static constexpr int points_across = 3;  ///< Points per patch in each direction for mean_values().
-    std::vector<Normal> points_;             ///< Of all patches but the ground and the zenith; heights change last.
+    std::vector<Normal> points_;             ///< Points of all patches but the ground and the zenith, patch by patch.
     std::vector<DistantFacet> facets_;
     std::vector<std::uint32_t> patch_of_facet_;
 };

@@ -3,11 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/base/parallel.hpp"
-#include "exitance/direct/beams.hpp"
-#include "exitance/scene/photometric_units.hpp"
 #include "exitance/scene/sky/perez_sky.hpp"
-#include "exitance/what_if/daylight/sensor_places.hpp"
 
 namespace exitance {
 namespace {
@@ -115,43 +111,6 @@ std::vector<double> overcast_luminances(const SkyPatches& patches, double ground
     return out;
 }
 
-DaylightYear daylight_year(const Scene& scene, std::span<const ProbePoint> sensors, const DaylightMatrix& matrix,
-                           const YearSky& sky) {
-    const std::size_t n = sensors.size(), m = matrix.patches, hours = sky.hours();
-    DaylightYear out;
-    out.sensors = n;
-    out.illuminance.assign(hours * n, 0), out.sun.assign(hours * n, 0);
-    const Occluders occluders(scene);
-    const std::vector<Receiver> at = sensor_places(scene, occluders, sensors);
-    constexpr std::size_t block = 16;  // sensors whose coefficients stay in the processor's first cache
-    parallel_for((n + block - 1) / block, 1, [&](std::size_t b) {
-        const std::size_t first = b * block, count = std::min(block, n - first);
-        std::vector<float> lux(count * hours, 0);
-        sky.add_sky(std::span(matrix.direct).subspan(first * m, count * m), lux);
-        sky.add_with_sun(std::span(matrix.reflected).subspan(first * m, count * m), lux);
-        for (std::size_t i = 0; i < count; ++i)
-            for (std::size_t h = 0; h < hours; ++h) out.illuminance[h * n + first + i] = lux[i * hours + h];
-    });
-    parallel_for(hours, 8, [&](std::size_t h) {
-        const YearSky::Sun& shining = sky.sun(h);
-        if (!(shining.illuminance > 0)) return;
-        std::vector<PunctualLight> sun(1);
-        sun[0].kind = PunctualLight::Kind::directional, sun[0].direction = -shining.towards;
-        sun[0].intensity = Spectrum(shining.illuminance);
-        const Beams beams(sun, occluders);
-        for (std::size_t i = 0; i < n; ++i) {
-            // A sensor that sees none of the sun's patches does not see the sun.
-            const auto is_seen = [&](std::size_t patch) { return matrix.direct[i * m + patch] > 0; };
-            if (!(dot(shining.towards, at[i].n) > 0) ||
-                std::none_of(shining.patches.begin(), shining.patches.end(), is_seen))
-                continue;
-            const auto straight = static_cast<float>(luminous_sum(beams.irradiance(at[i])));
-            out.sun[h * n + i] = straight, out.illuminance[h * n + i] += straight;
-        }
-    });
-    return out;
-}
-
 DaylightMetrics metrics_of(double factor, std::span<const float> illuminance, std::span<const float> sun,
                            std::span<const DaylightHour> hours) {
     constexpr double target = 300, sunny = 1000;  // lx
@@ -173,37 +132,6 @@ DaylightMetrics metrics_of(double factor, std::span<const float> illuminance, st
     metrics.autonomy /= occupied;
     for (double& share : metrics.useful) share /= occupied;
     return metrics;
-}
-
-std::vector<DaylightMetrics> daylight_metrics(const DaylightYear& year, const SkyPatches& patches,
-                                              const DaylightMatrix& matrix, std::span<const DaylightHour> hours,
-                                              const DaylightSite& site) {
-    const std::size_t n = year.sensors;
-    const std::vector<double> overcast = overcast_luminances(patches, site.ground);
-    std::vector<DaylightMetrics> out(n);
-    parallel_for(n, 16, [&](std::size_t i) {
-        double factor = 0;
-        for (std::size_t p = 0; p < patches.size(); ++p) factor += overcast[p] * matrix.total(i, p);
-        std::vector<float> illuminance, sun;
-        for (std::size_t h = 0; h < hours.size(); ++h)
-            illuminance.push_back(year.illuminance[h * n + i]), sun.push_back(year.sun[h * n + i]);
-        out[i] = metrics_of(factor, illuminance, sun, hours);
-    });
-    return out;
-}
-
-DaylightSummary summarize(std::span<const DaylightMetrics> metrics, std::span<const DaylightHour> hours) {
-    constexpr double half = 0.5, max_sunny_hours = 250;
-    DaylightSummary out;
-    for (const DaylightHour& hour : hours) out.occupied_hours += is_occupied(hour.hour);
-    for (const DaylightMetrics& m : metrics) {
-        out.mean_daylight_factor += m.daylight_factor;
-        out.spatial_autonomy += m.autonomy >= half;
-        out.sunlight_exposure += m.sunny_hours > max_sunny_hours;
-    }
-    const double n = std::max<double>(1, static_cast<double>(metrics.size()));
-    out.mean_daylight_factor /= n, out.spatial_autonomy /= n, out.sunlight_exposure /= n;
-    return out;
 }
 
 }  // namespace exitance

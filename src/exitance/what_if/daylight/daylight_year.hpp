@@ -20,6 +20,7 @@ struct DaylightHour {
 /// Location, orientation and luminous efficacies.
 struct DaylightSite {
     Place place;
+    double zone = 0;                ///< Time zone, hours ahead of universal time.
     double north = 0;               ///< Degrees clockwise from y.
     double ground = 0.2;            ///< Reflectance of the ground.
     double efficacy_diffuse = 120;  ///< lm/W
@@ -69,13 +70,6 @@ class YearSky {
 /// below it: their light at a sensor is its daylight factor in per cent.
 std::vector<double> overcast_luminances(const SkyPatches& patches, double ground);
 
-/// Illuminances of a year.
-struct DaylightYear {
-    std::size_t sensors = 0;
-    std::vector<float> illuminance;  ///< lx; one row per hour, one column per sensor.
-    std::vector<float> sun;          ///< Direct sunlight contained in `illuminance`, lx.
-};
-
 /// Annual metrics of standards at a sensor; shares are of the occupied hours.
 struct DaylightMetrics {
     double daylight_factor = 0;      ///< Per cent, under the traditional overcast sky.
@@ -84,32 +78,13 @@ struct DaylightMetrics {
     double sunny_hours = 0;          ///< Hours with more than 1000 lx of direct sunlight.
 };
 
-/// Metrics of all sensors, with equal weights.
-struct DaylightSummary {
-    double mean_daylight_factor = 0;  ///< Per cent.
-    double spatial_autonomy = 0;      ///< sDA(300 lx, 50%): share of sensors.
-    double sunlight_exposure = 0;     ///< ASE(1000 lx, 250 h): share of sensors.
-    std::size_t occupied_hours = 0;
-};
-
 /// True from 8 to 18 h on every day.
 constexpr bool is_occupied(int hour) {
     return hour > 8 && hour <= 18;
 }
 
-/// Computes the illuminance of every hour at every sensor. Direct sunlight uses exact visibility; its reflections are
-/// those of the patches around the sun. Hours without light are 0.
-/// `scene`: the scene that the matrix was computed for. About 1 us per sensor and hour of sun.
-DaylightYear daylight_year(const Scene& scene, std::span<const ProbePoint> sensors, const DaylightMatrix& matrix,
-                           const YearSky& sky);
-
 /// Metrics of one sensor from its illuminances in all hours, lx. `factor`: its daylight factor, per cent.
 DaylightMetrics metrics_of(double factor, std::span<const float> illuminance, std::span<const float> sun,
                            std::span<const DaylightHour> hours);
-
-std::vector<DaylightMetrics> daylight_metrics(const DaylightYear& year, const SkyPatches& patches,
-                                              const DaylightMatrix& matrix, std::span<const DaylightHour> hours,
-                                              const DaylightSite& site);
-DaylightSummary summarize(std::span<const DaylightMetrics> metrics, std::span<const DaylightHour> hours);
 
 }  // namespace exitance
