@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
 #include "cli/input_files.hpp"
@@ -175,7 +176,7 @@ TEST(ProgramDaylight, WritesTablesOfAYear) {
     write_text(folder / "p.pts", "3 1.5 0.8 0 0 1\n1 1.5 0.8 0 0 1\n");
     const Finished run = run_program({"daylight", folder / "s.h5", "--epw", folder / "w.epw", "--points",
                                       folder / "p.pts", "-o", folder / "year", "--eyes", folder / "p.pts", "--sun-day",
-                                      "02-01", "--sun-altitude", "10", "--json"});
+                                      "02-01", "--sun-altitude", "10", "--hours", "csv", "--json"});
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_NE(run.out.find("\"sDA_300_50\": 1.0"), std::string::npos) << run.out;
     EXPECT_EQ(lines(read_text(folder / "year/illuminance.csv")), 25u);
@@ -200,6 +201,98 @@ TEST(ProgramDaylight, WritesTablesOfAYear) {
               3);
     EXPECT_EQ(
         run_program({"daylight", folder / "s.h5", "--epw", folder / "w.epw", "--points", folder / "p.pts"}).status, 2);
+}
+
+TEST(ProgramDaylight, PartsGiveTheFilesOfTheWhole) {
+    const TemporaryFolder folder;
+    write_text(folder / "w.epw", weather_of_a_day());
+    std::string points;
+    for (int i = 0; i < 11; ++i) points += "3 " + std::to_string(0.2 + 0.2 * i) + " 0.8 0 0 1\n";
+    write_text(folder / "p.pts", points);
+    std::vector<std::string> words{"daylight", write_court(folder),
+                                   "--epw",    folder / "w.epw",
+                                   "--points", folder / "p.pts",
+                                   "--error",  "0.1",
+                                   "-q",       "-o"};
+    const auto run = [&](const std::string& output, const std::vector<std::string>& more) {
+        std::vector<std::string> all = words;
+        all.push_back(folder / output);
+        all.insert(all.end(), more.begin(), more.end());
+        return run_program(all);
+    };
+    for (const std::string format : {"h5", "csv", "npy"}) {
+        const Finished whole = run("whole", {"--hours", format, "--threads", "1"});
+        ASSERT_EQ(whole.status, 0) << whole.err;
+        if (format == "h5") {
+            EXPECT_EQ(run("parts", {"--merge"}).status, 3) << "no parts";
+            for (const std::string part : {"3/3", "1/3"}) {
+                const Finished ran = run("parts", {"--part", part, "--threads", "2"});
+                ASSERT_EQ(ran.status, 0) << ran.err;
+            }
+            EXPECT_EQ(run("parts", {"--merge"}).status, 3) << "a part is missing";
+            ASSERT_EQ(run("parts", {"--part", "2/3"}).status, 0);
+        }
+        const Finished merged = run("parts", {"--merge", "--hours", format});
+        ASSERT_EQ(merged.status, 0) << merged.err;
+        std::size_t files = 0;
+        for (const auto& entry : std::filesystem::directory_iterator(folder / "whole")) {
+            const std::string name = entry.path().filename().string();
+            EXPECT_EQ(read_text(entry.path()), read_text(folder / ("parts/" + name))) << name;
+            ++files;
+        }
+        EXPECT_GE(files, 5u);
+    }
+    // Parts of other options do not belong to this simulation.
+    EXPECT_EQ(run("parts", {"--merge", "--ground", "0.3"}).status, 3);
+    for (const std::string part : {"0/3", "4/3", "1", "1/3x"})
+        EXPECT_EQ(run("parts", {"--part", part}).status, 2) << part;
+}
+
+/// The scripts of examples/cluster for parts, in a folder with a scene, its weather and its sensors.
+class DaylightScripts : public testing::Test {
+  protected:
+    DaylightScripts() {
+        write_court(folder_);
+        write_text(folder_ / "w.epw", weather_of_a_day());
+        write_text(folder_ / "p.pts", "3 1.5 0.8 0 0 1\n1 1.5 0.8 0 0 1\n2 1 0.8 0 0 1\n");
+        EXPECT_EQ(shell("exitance daylight " + options("whole")).status, 0);
+    }
+    static std::string options(const std::string& output) {
+        return "court.obj --epw w.epw --points p.pts --error 0.1 -o " + output;
+    }
+    Finished shell(const std::string& command) {
+        const std::string path = std::filesystem::path(program()).parent_path().string();
+        return RunningProgram({"-c", "PATH='" + path + "':$PATH; cd '" + (folder_ / "") + "' && " + command}, {},
+                              "/bin/bash")
+            .finish();
+    }
+    static std::string script(const std::string& name) {
+        return "'" + source_folder() + "/examples/cluster/" + name + "' ";
+    }
+    void expect_whole() {
+        for (const std::string name : {"hours.h5", "metrics.csv", "summary.csv"})
+            EXPECT_EQ(read_text(folder_ / ("parts/" + name)), read_text(folder_ / ("whole/" + name))) << name;
+    }
+    TemporaryFolder folder_;
+};
+
+/// Slurm's array tasks, with the variables that Slurm sets, as plain processes.
+TEST_F(DaylightScripts, SlurmArrayTasksRunTheirParts) {
+    for (const std::string task : {"1", "2"}) {
+        const Finished run = shell("SLURM_ARRAY_TASK_ID=" + task + " SLURM_CPUS_PER_TASK=1 bash " +
+                                   script("daylight_array.sh") + "2 " + options("parts"));
+        EXPECT_EQ(run.status, 0) << run.out << run.err;
+    }
+    EXPECT_EQ(shell("exitance daylight --merge " + options("parts")).status, 0);
+    expect_whole();
+}
+
+TEST_F(DaylightScripts, DaskRunsAllPartsOnTwoWorkers) {
+    if (shell("/usr/bin/python3 -c 'import dask.distributed'").status != 0)
+        GTEST_SKIP() << "dask.distributed is not installed: apt-get install python3-distributed";
+    const Finished run = shell("/usr/bin/python3 " + script("dask_daylight.py") + "2 " + options("parts"));
+    EXPECT_EQ(run.status, 0) << run.out << run.err;
+    expect_whole();
 }
 
 }  // namespace exitance::test

@@ -15,6 +15,8 @@
 #include "exitance/io/files/light_probe_file.hpp"
 #include "exitance/io/pictures/false_colour.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
+#include "exitance/io/report/daylight_parts.hpp"
+#include "exitance/io/report/hours_file.hpp"
 #include "exitance/io/report/report.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/view_factors/view_factor_file.hpp"
@@ -160,6 +162,9 @@ struct DaylightArguments : CommonArguments {
     double north = 0, ground = 0.2;
     SunDay sun_day;    ///< Day for which hours of sunlight are counted.
     std::string eyes;  ///< File with points for views out; empty: none.
+    HoursFormat hours = HoursFormat::hdf5;
+    std::optional<DaylightPart> part;  ///< Only these sensors; none: all.
+    bool merge = false;                ///< Write the results of all parts.
     int threads = 0;
 };
 

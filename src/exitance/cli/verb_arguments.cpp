@@ -29,6 +29,24 @@ constexpr std::array<std::pair<ReferenceFormat, std::string_view>, 5> reference_
 
 constexpr std::array<std::pair<int, std::string_view>, 3> patch_counts{{{1, "146"}, {2, "577"}, {4, "2305"}}};
 
+constexpr std::array<std::pair<HoursFormat, std::string_view>, 4> hours_formats{{{HoursFormat::hdf5, "h5"},
+                                                                                 {HoursFormat::hdf5_float, "h5-float"},
+                                                                                 {HoursFormat::npy, "npy"},
+                                                                                 {HoursFormat::csv, "csv"}}};
+
+/// Reads a part of the sensors, such as "3/8".
+DaylightPart read_part(const std::string& word) {
+    constexpr unsigned most_parts = 99'999;  // five digits in the names of folders
+    DaylightPart out;
+    unsigned part = 0, parts = 0;
+    char rest = 0;
+    if (std::sscanf(word.c_str(), "%5u/%5u%c", &part, &parts, &rest) != 2 || part < 1 || part > parts ||
+        parts > most_parts)
+        throw CLI::ValidationError("--part", fmt::format("'{}' is not a part such as 3/8", word));
+    out.part = part, out.parts = parts;
+    return out;
+}
+
 }  // namespace
 
 void declare(CLI::App& app, ProbeArguments& arguments) {
@@ -197,7 +215,7 @@ void declare(CLI::App& app, DaylightArguments& arguments) {
            "Sensors in metres, each with the direction that it faces: CSV x,y,z,nx,ny,nz, .pts x y z dx dy dz, or a "
            "Honeybee model with sensor grids. Default: the grids of the scene, if it is a Honeybee model")
         ->type_name("FILE");
-    app.add_option("-o,--output", arguments.output, "Folder for illuminance.csv, metrics.csv, matrix.csv, summary.csv")
+    app.add_option("-o,--output", arguments.output, "Folder for hours.h5, metrics.csv, matrix.csv, summary.csv")
         ->type_name("FOLDER")
         ->required();
     add_positive(app, "--error", arguments.error, "R",
@@ -205,6 +223,17 @@ void declare(CLI::App& app, DaylightArguments& arguments) {
                  "sensors. Default 0.02")
         ->check(CLI::Range(1e-4, 1.0));
     add_choice(app, "--sky-patches", patch_counts, arguments.division, "Number of patches of the sky. Default 146");
+    add_choice(app, "--hours", hours_formats, arguments.hours,
+               "Format of the illuminances of all hours: hours.h5 with 16 or 32 bits per number, illuminance.npy and "
+               "sun.npy, or illuminance.csv and sun.csv. Default h5");
+    CLI::Option* part = app.add_option_function<std::string>(
+                               "--part", [&arguments](const std::string& w) { arguments.part = read_part(w); },
+                               "Evaluate part K of N of the sensors only, from 1, for --merge. Use it for jobs of a "
+                               "cluster, which share the light in FOLDER/light.h5")
+                            ->type_name("K/N");
+    app.add_flag("--merge", arguments.merge,
+                 "Write the results of all parts in FOLDER; takes the options of the parts except --part")
+        ->excludes(part);
     app.add_option_function<std::string>(
            "--north", [&arguments](const std::string& w) { arguments.north = read_number("--north", w); },
            "Direction of north, degrees clockwise from the y axis as seen from above. Default 0")

@@ -10,8 +10,9 @@
 #include "exitance/io/files/epw_file.hpp"
 #include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/report/daylight_light_file.hpp"
+#include "exitance/io/report/daylight_parts.hpp"
 #include "exitance/io/report/daylight_tables.hpp"
-#include "exitance/io/report/honeybee_results.hpp"
 #include "exitance/io/scenes/honeybee/honeybee_model.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
@@ -86,20 +87,139 @@ void warn_of(const Weather& weather, const std::string& file, Progress& progress
             fmt::format("{}: {}: sDA, ASE and the levels of EN 17037 are defined for whole years", file, partial));
 }
 
+/// A simulation, the eye points for views out, and the files to write.
+struct Request {
+    DaylightTask task;
+    std::vector<Point> eyes;
+    DaylightFormats formats;
+};
+
 /// Prints the results. Returns the exit code: whether every grid has the requested error.
-ExitCode tell(const DaylightTask& task, const DaylightResults& results, const DaylightArguments& arguments,
-              Terminal& terminal) {
+ExitCode tell(const Request& request, const DaylightSummary& summary, std::span<const ViewOut> views,
+              const DaylightArguments& arguments, Terminal& terminal) {
     if (arguments.json)
-        terminal.print(values_json(summary_values(task, results)));
+        terminal.print(values_json(summary_values(request.task, summary, views)));
     else if (!arguments.quiet)
-        terminal.print(as_text(results.summary, task.hours.size(), arguments.output));
-    const double error = worst_of(results.summary.errors).largest();
+        terminal.print(as_text(summary, request.task.hours.size(), arguments.output));
+    const double error = worst_of(summary.errors).largest();
     if (error <= arguments.error) return ExitCode::done;
     terminal.progress().warn(fmt::format(
         "the error of {:.2g}% is above the requested {:.2g}%{}", 100 * error, 100 * arguments.error,
-        results.summary.bias.patches > arguments.error ? ": the patches of the sky are too coarse (--sky-patches)"
-                                                       : ""));
+        summary.bias.patches > arguments.error ? ": the patches of the sky are too coarse (--sky-patches)" : ""));
     return ExitCode::demand_not_reached;
+}
+
+/// Reads weather, sensors and eye points.
+Result<Request> read_request(const DaylightArguments& arguments, const Scene& scene, Terminal& terminal) {
+    const Result<Weather> weather = load_epw(arguments.epw);
+    if (!weather) return weather.error();
+    warn_of(*weather, arguments.epw, terminal.progress());
+    const std::string sensors = sensor_file(arguments);
+    if (sensors.empty()) return Error{ErrorCode::usage, "there are no sensors", "--points", "name a file with points"};
+    const Result<ProbePoints> points = load_probe_points(sensors);
+    if (!points) return points.error();
+    if (points->size() == 0)
+        return Error{ErrorCode::bad_input, "holds no points", sensors, "give one sensor per line: x y z dx dy dz"};
+    Request out;
+    if (!arguments.eyes.empty()) {
+        Result<ProbePoints> eyes = load_probe_points(arguments.eyes);
+        if (!eyes) return eyes.error();
+        out.eyes = std::move(eyes->points);
+    }
+    BorderPoints borders;
+    const PlaceFinder places(scene);
+    for (std::size_t i = 0; i < points->size(); ++i) {
+        out.task.sensors.push_back({points->points[i], points->normals[i]});
+        borders.add(places.find(points->points[i], points->normals[i]).is_between_sides);
+    }
+    borders.tell(terminal);
+    out.task.hours = hours_of(*weather);
+    out.task.site = {.place = weather->place,
+                     .zone = weather->zone,
+                     .north = arguments.north,
+                     .ground = arguments.ground,
+                     .efficacy_diffuse = efficacy_of_sky,
+                     .efficacy_direct = efficacy_of_sun};
+    out.task.grids = grids_of(sensors, points->size());
+    out.task.division = arguments.division, out.task.error = arguments.error;
+    out.task.sun_day = arguments.sun_day;
+    out.formats = {arguments.hours, ending(sensors) == ".hbjson"};
+    return out;
+}
+
+/// Passes the results of all sensors to the files; `pass` calls its argument with every block. Returns the totals.
+template <class Pass>
+Result<DaylightSummary> write_all(const Request& request, const DaylightBias& bias, std::span<const ViewOut> views,
+                                  const std::string& output, const Pass& pass) {
+    Result<DaylightFiles> files = DaylightFiles::create(output, request.task, request.formats);
+    if (!files) return files.error();
+    DaylightTotals totals(request.task.grids, request.task.hours, request.task.site);
+    const Result<void> passed = pass([&](const DaylightBlock& block) {
+        for (const SensorResults& sensor : block.results) totals.add(sensor);
+        return files->add(block);
+    });
+    if (!passed) return passed.error();
+    DaylightSummary summary = totals.summary(bias);
+    if (const Result<void> written = files->finish(summary, request.eyes, views); !written) return written.error();
+    return summary;
+}
+
+/// The light that all parts share.
+std::string light_file(const std::string& output) {
+    return (std::filesystem::path(output) / "light.h5").string();
+}
+
+/// Takes the kept light, or finds it and keeps it.
+Result<void> share_light(DaylightSimulation& simulation, const std::string& fingerprint, const std::string& output) {
+    Result<std::optional<DaylightLight>> kept = read_daylight_light(light_file(output), fingerprint);
+    if (!kept) return kept.error();
+    if (*kept && simulation.take(std::move(**kept))) return {};
+    if (const Result<void> found = simulation.find_light(); !found) return found;
+    return write_daylight_light(light_file(output), fingerprint, simulation.light());
+}
+
+/// Evaluates and writes one part of the sensors.
+Result<void> run_part(const Scene& scene, const Request& request, const DaylightArguments& arguments,
+                      Terminal& terminal) {
+    const std::string fingerprint = fingerprint_of(scene, request.task);
+    const std::string folder = arguments.part->folder(arguments.output);
+    std::error_code failure;
+    std::filesystem::create_directories(folder, failure);
+    DaylightSimulation simulation(scene, request.task, terminal.progress(), terminal.limits().stop());
+    if (const Result<void> shared = share_light(simulation, fingerprint, arguments.output); !shared) return shared;
+    const SensorRange range = sensors_of_part(arguments.part->part, arguments.part->parts, request.task.sensors.size());
+    Result<DaylightPartWriter> writer =
+        DaylightPartWriter::create(folder, request.task, range.count, simulation.light().elements.columns, fingerprint);
+    if (!writer) return writer.error();
+    const auto add = [&](const DaylightBlock& block) -> Result<void> { return writer->add(block), Result<void>(); };
+    if (const Result<void> done = simulation.evaluate(range, add); !done) return done;
+    return writer->finish();
+}
+
+/// Writes the results of all parts, as those of a run of the whole.
+Result<DaylightSummary> merge_parts(const Scene& scene, const Request& request, std::span<const ViewOut> views,
+                                    const std::string& output) {
+    const std::string fingerprint = fingerprint_of(scene, request.task);
+    const Result<std::size_t> parts = count_daylight_parts(output);
+    if (!parts) return parts.error();
+    const Result<std::optional<DaylightLight>> light = read_daylight_light(light_file(output), fingerprint);
+    if (!light) return light.error();
+    if (!*light)
+        return Error{ErrorCode::bad_input, "is missing or belongs to another scene, weather or option",
+                     light_file(output), "run a part again"};
+    return write_all(request, (*light)->bias, views, output, [&](const DaylightSink& sink) {
+        return merge_daylight_parts(output, *parts, request.task, fingerprint, sink);
+    });
+}
+
+/// Evaluates and writes all sensors.
+Result<DaylightSummary> run_whole(const Scene& scene, const Request& request, std::span<const ViewOut> views,
+                                  const DaylightArguments& arguments, Terminal& terminal) {
+    DaylightSimulation simulation(scene, request.task, terminal.progress(), terminal.limits().stop());
+    if (const Result<void> found = simulation.find_light(); !found) return found.error();
+    return write_all(request, simulation.light().bias, views, arguments.output, [&](const DaylightSink& sink) {
+        return simulation.evaluate({0, request.task.sensors.size()}, sink);
+    });
 }
 
 }  // namespace
@@ -107,57 +227,22 @@ ExitCode tell(const DaylightTask& task, const DaylightResults& results, const Da
 /// Runs `exitance daylight SCENE --epw WEATHER --points SENSORS -o FOLDER`.
 ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
-    const Result<Weather> weather = load_epw(arguments.epw);
-    if (!weather) return terminal.fail(weather.error());
-    warn_of(*weather, arguments.epw, terminal.progress());
-    const std::string sensors = sensor_file(arguments);
-    if (sensors.empty())
-        return terminal.fail({ErrorCode::usage, "there are no sensors", "--points", "name a file with points"});
-    const Result<ProbePoints> points = load_probe_points(sensors);
-    if (!points) return terminal.fail(points.error());
-    if (points->size() == 0)
-        return terminal.fail(
-            {ErrorCode::bad_input, "holds no points", sensors, "give one sensor per line: x y z dx dy dz"});
-    std::optional<ProbePoints> eyes;
-    if (!arguments.eyes.empty()) {
-        Result<ProbePoints> read = load_probe_points(arguments.eyes);
-        if (!read) return terminal.fail(read.error());
-        eyes = std::move(*read);
-    }
     const Result<Scene> scene = scene_of(arguments, terminal);
     if (!scene) return terminal.fail(scene.error());
-
-    DaylightTask task;
-    BorderPoints borders;
-    const PlaceFinder places(*scene);
-    for (std::size_t i = 0; i < points->size(); ++i) {
-        task.sensors.push_back({points->points[i], points->normals[i]});
-        borders.add(places.find(points->points[i], points->normals[i]).is_between_sides);
+    const Result<Request> request = read_request(arguments, *scene, terminal);
+    if (!request) return terminal.fail(request.error());
+    if (arguments.part) {
+        const Result<void> done = run_part(*scene, *request, arguments, terminal);
+        if (!done) return terminal.fail(done.error());
+        terminal.progress().finish();
+        return ExitCode::done;
     }
-    borders.tell(terminal);
-    task.hours = hours_of(*weather);
-    task.site = {.place = weather->place,
-                 .zone = weather->zone,
-                 .north = arguments.north,
-                 .ground = arguments.ground,
-                 .efficacy_diffuse = efficacy_of_sky,
-                 .efficacy_direct = efficacy_of_sun};
-    task.grids = grids_of(sensors, points->size());
-    task.division = arguments.division, task.error = arguments.error, task.sun_day = arguments.sun_day;
-    Result<DaylightResults> found = collect_year(*scene, task, terminal.progress(), terminal.limits().stop());
-    if (!found) return terminal.fail(found.error());
-    DaylightResults& results = *found;
-    if (eyes) results.eyes = eyes->points, results.views = views_out(*scene, results.eyes);
-    terminal.progress().phase("write");
-    if (const Result<void> written = write_daylight(arguments.output, task, results); !written)
-        return terminal.fail(written.error());
-    if (ending(sensors) == ".hbjson") {
-        const std::string folder = (std::filesystem::path(arguments.output) / "honeybee").string();
-        if (const Result<void> written = write_honeybee_results(folder, task, results); !written)
-            return terminal.fail(written.error());
-    }
+    const std::vector<ViewOut> views = views_out(*scene, request->eyes);
+    const Result<DaylightSummary> summary = arguments.merge ? merge_parts(*scene, *request, views, arguments.output)
+                                                            : run_whole(*scene, *request, views, arguments, terminal);
+    if (!summary) return terminal.fail(summary.error());
     terminal.progress().finish();
-    return tell(task, results, arguments, terminal);
+    return tell(*request, *summary, views, arguments, terminal);
 }
 
 }  // namespace exitance

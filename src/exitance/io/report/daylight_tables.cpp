@@ -11,56 +11,43 @@
 namespace exitance {
 namespace {
 
-Result<void> write_hours(const std::string& path, const DaylightTask& task, std::span<const float> values) {
-    Result<AtomicFile> file = AtomicFile::create(path);
-    if (!file) return file.error();
-    const std::size_t n = task.sensors.size();
-    fmt::memory_buffer row;
-    const auto out = [&] { return std::back_inserter(row); };
-    fmt::format_to(out(), "month,day,hour");
-    for (std::size_t i = 0; i < n; ++i) fmt::format_to(out(), ",E_{}", i);
-    for (std::size_t h = 0; h < task.hours.size(); ++h) {
-        const DaylightHour& hour = task.hours[h];
-        fmt::format_to(out(), "\n{},{},{}", hour.time.month, hour.time.day, hour.hour);
-        for (std::size_t i = 0; i < n; ++i) {
-            const float v = values[h * n + i];
-            if (v == 0)
-                fmt::format_to(out(), ",0");
-            else
-                fmt::format_to(out(), ",{:.5g}", v);
-        }
-        file->write(std::string_view(row.data(), row.size()));
-        row.clear();
-    }
-    file->write("\n");
-    return file->commit();
+constexpr std::string_view metrics_header =
+    "x,y,z,nx,ny,nz,DF,DA_300,UDI_below_100,UDI_100_300,UDI_300_3000,UDI_above_3000,sun_hours,"
+    "E_half_of_daylight,sunlight_hours,DF_low,DF_high,DA_300_low,DA_300_high,UDI_below_100_low,UDI_below_100_high,"
+    "UDI_100_300_low,UDI_100_300_high,UDI_300_3000_low,UDI_300_3000_high,UDI_above_3000_low,UDI_above_3000_high,"
+    "E_half_of_daylight_low,E_half_of_daylight_high\n";
+
+/// Row of a sensor in metrics.csv.
+std::string metrics_row(const ProbePoint& at, const SensorResults& sensor) {
+    const auto& [x, n] = at;
+    const DaylightMetrics& m = sensor.metrics;
+    const SensorIntervals& s = sensor.intervals;
+    std::string row = fmt::format(
+        "{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},"
+        "{:.6g}",
+        x.x, x.y, x.z, n.x, n.y, n.z, m.daylight_factor, m.autonomy, m.useful[0], m.useful[1], m.useful[2], m.useful[3],
+        m.sunny_hours, sensor.reached, sensor.sunlight);
+    const auto add = [&](const Interval& interval) {
+        row += fmt::format(",{:.6g},{:.6g}", interval.low, interval.high);
+    };
+    add(s.factor), add(s.autonomy);
+    for (const Interval& useful : s.useful) add(useful);
+    add(s.reached);
+    return row + '\n';
 }
 
-Result<void> write_metrics(const std::string& path, const DaylightTask& task, const DaylightResults& results) {
-    std::string text =
-        "x,y,z,nx,ny,nz,DF,DA_300,UDI_below_100,UDI_100_300,UDI_300_3000,UDI_above_3000,sun_hours,"
-        "E_half_of_daylight,sunlight_hours,DF_low,DF_high,DA_300_low,DA_300_high,UDI_below_100_low,UDI_below_100_high,"
-        "UDI_100_300_low,UDI_100_300_high,UDI_300_3000_low,UDI_300_3000_high,UDI_above_3000_low,UDI_above_3000_high,"
-        "E_half_of_daylight_low,E_half_of_daylight_high\n";
-    for (std::size_t i = 0; i < results.sensors.size(); ++i) {
-        const auto& [x, n] = task.sensors[i];
-        const SensorResults& sensor = results.sensors[i];
-        const DaylightMetrics& m = sensor.metrics;
-        const SensorIntervals& s = sensor.intervals;
-        text += fmt::format(
-            "{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},"
-            "{:.6g}",
-            x.x, x.y, x.z, n.x, n.y, n.z, m.daylight_factor, m.autonomy, m.useful[0], m.useful[1], m.useful[2],
-            m.useful[3], m.sunny_hours, sensor.reached, sensor.sunlight);
-        const auto add = [&](const Interval& interval) {
-            text += fmt::format(",{:.6g},{:.6g}", interval.low, interval.high);
-        };
-        add(s.factor), add(s.autonomy);
-        for (const Interval& useful : s.useful) add(useful);
-        add(s.reached);
-        text += '\n';
-    }
-    return write_file(path, text);
+std::string matrix_header(std::size_t patches) {
+    std::string text = "ground";
+    for (std::size_t p = 1; p < patches; ++p) text += fmt::format(",patch_{}", p);
+    return text + '\n';
+}
+
+/// Row of a sensor in matrix.csv.
+std::string matrix_row(const DaylightMatrix& matrix, std::size_t sensor) {
+    std::string text;
+    for (std::size_t p = 0; p < matrix.patches; ++p)
+        fmt::format_to(std::back_inserter(text), "{}{:.6g}", p > 0 ? "," : "", matrix.total(sensor, p));
+    return text + '\n';
 }
 
 /// Quotes a name for CSV.
@@ -78,22 +65,11 @@ Result<void> write_grids(const std::string& path, const DaylightTask& task, cons
     return write_file(path, text);
 }
 
-Result<void> write_matrix(const std::string& path, const DaylightMatrix& matrix) {
-    std::string text = "ground";
-    for (std::size_t p = 1; p < matrix.patches; ++p) text += fmt::format(",patch_{}", p);
-    for (std::size_t i = 0; i < matrix.sensors(); ++i) {
-        text += '\n';
-        for (std::size_t p = 0; p < matrix.patches; ++p)
-            text += fmt::format("{}{:.6g}", p > 0 ? "," : "", matrix.total(i, p));
-    }
-    return write_file(path, text + "\n");
-}
-
-Result<void> write_views(const std::string& path, const DaylightResults& results) {
+Result<void> write_views(const std::string& path, std::span<const Point> eyes, std::span<const ViewOut> views) {
     std::string text = "x,y,z,sight_angle,distance,sky,landscape,ground,level\n";
-    for (std::size_t i = 0; i < results.eyes.size(); ++i) {
-        const Point& x = results.eyes[i];
-        const ViewOut& v = results.views[i];
+    for (std::size_t i = 0; i < eyes.size(); ++i) {
+        const Point& x = eyes[i];
+        const ViewOut& v = views[i];
         text += fmt::format("{:.10g},{:.10g},{:.10g},{:.5g},{:.5g},{:d},{:d},{:d},{}\n", x.x, x.y, x.z, v.sight_angle,
                             v.distance, v.sky, v.landscape, v.ground, v.level());
     }
@@ -101,7 +77,7 @@ Result<void> write_views(const std::string& path, const DaylightResults& results
 }
 
 /// The highest level that at least three quarters of the eye points reach.
-int view_level(const std::vector<ViewOut>& views) {
+int view_level(std::span<const ViewOut> views) {
     constexpr double wanted = 0.75;
     for (int level = 3; level > 0; --level) {
         const auto reached =
@@ -111,8 +87,9 @@ int view_level(const std::vector<ViewOut>& views) {
     return 0;
 }
 
-void add_provision(const DaylightResults& results, std::vector<std::pair<std::string, double>>& out) {
-    const DaylightProvision& p = results.summary.provision;
+void add_provision(const DaylightSummary& summary, std::span<const ViewOut> views,
+                   std::vector<std::pair<std::string, double>>& out) {
+    const DaylightProvision& p = summary.provision;
     out.emplace_back("EN17037_daylight_hours", static_cast<double>(p.hours));
     const auto add = [&](const std::string& way, const DaylightProvision::Shares& shares) {
         for (std::size_t k = 0; k < 3; ++k)
@@ -126,14 +103,14 @@ void add_provision(const DaylightResults& results, std::vector<std::pair<std::st
     add("", p.by_illuminance);
     out.emplace_back("EN17037_median_diffuse", p.median_diffuse);
     add("_factor", p.by_factor);
-    out.emplace_back("EN17037_sunlight_hours_most", results.summary.most_sunlight);
-    if (!results.views.empty()) out.emplace_back("EN17037_view_level", view_level(results.views));
+    out.emplace_back("EN17037_sunlight_hours_most", summary.most_sunlight);
+    if (!views.empty()) out.emplace_back("EN17037_view_level", view_level(views));
 }
 
 }  // namespace
 
-std::vector<std::pair<std::string, double>> summary_values(const DaylightTask& task, const DaylightResults& results) {
-    const DaylightSummary& s = results.summary;
+std::vector<std::pair<std::string, double>> summary_values(const DaylightTask& task, const DaylightSummary& s,
+                                                           std::span<const ViewOut> views) {
     const DaylightError error = worst_of(s.errors);
     std::vector<std::pair<std::string, double>> out{{"sensors", static_cast<double>(s.sensors)},
                                                     {"hours", static_cast<double>(task.hours.size())},
@@ -147,24 +124,61 @@ std::vector<std::pair<std::string, double>> summary_values(const DaylightTask& t
                                                     {"mean_daylight_factor_high", s.mean_factor.high},
                                                     {"sDA_300_50_low", s.spatial_autonomy_bounds.low},
                                                     {"sDA_300_50_high", s.spatial_autonomy_bounds.high}};
-    add_provision(results, out);
+    add_provision(s, views, out);
     return out;
 }
 
-Result<void> write_daylight(const std::string& folder, const DaylightTask& task, const DaylightResults& results) {
+DaylightFiles::DaylightFiles(std::string folder, const DaylightTask& task, std::unique_ptr<HoursFile> hours,
+                             AtomicFile metrics, AtomicFile matrix)
+    : folder_(std::move(folder)),
+      task_(&task),
+      hours_(std::move(hours)),
+      metrics_(std::move(metrics)),
+      matrix_(std::move(matrix)) {
+    metrics_.write(metrics_header);
+}
+
+Result<DaylightFiles> DaylightFiles::create(const std::string& folder, const DaylightTask& task,
+                                            const DaylightFormats& formats) {
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
     if (failure) return Error{ErrorCode::cannot_write, "cannot be made: " + failure.message(), folder, ""};
     const auto in = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
-    std::string summary = "name,value\n";
-    for (const auto& [name, value] : summary_values(task, results)) summary += fmt::format("{},{:.6g}\n", name, value);
+    Result<std::unique_ptr<HoursFile>> hours = make_hours_file(folder, formats.hours, task);
+    if (!hours) return hours.error();
+    Result<AtomicFile> metrics = AtomicFile::create(in("metrics.csv")), matrix = AtomicFile::create(in("matrix.csv"));
+    if (!metrics) return metrics.error();
+    if (!matrix) return matrix.error();
+    DaylightFiles out(folder, task, std::move(*hours), std::move(*metrics), std::move(*matrix));
+    if (formats.honeybee) {
+        Result<HoneybeeResults> honeybee = HoneybeeResults::create(in("honeybee"), task);
+        if (!honeybee) return honeybee.error();
+        out.honeybee_.emplace(std::move(*honeybee));
+    }
+    return out;
+}
+
+Result<void> DaylightFiles::add(const DaylightBlock& block) {
+    if (block.first == 0) matrix_.write(matrix_header(block.matrix.patches));
+    hours_->add(block);
+    for (std::size_t i = 0; i < block.results.size(); ++i) {
+        metrics_.write(metrics_row(task_->sensors[block.first + i], block.results[i]));
+        matrix_.write(matrix_row(block.matrix, i));
+    }
+    return honeybee_ ? honeybee_->add(block) : Result<void>();
+}
+
+Result<void> DaylightFiles::finish(const DaylightSummary& summary, std::span<const Point> eyes,
+                                   std::span<const ViewOut> views) {
+    const auto in = [&](const char* name) { return (std::filesystem::path(folder_) / name).string(); };
+    std::string text = "name,value\n";
+    for (const auto& [name, value] : summary_values(*task_, summary, views))
+        text += fmt::format("{},{:.6g}\n", name, value);
     for (const Result<void>& written :
-         {write_hours(in("illuminance.csv"), task, results.year.illuminance),
-          write_hours(in("sun.csv"), task, results.year.sun), write_metrics(in("metrics.csv"), task, results),
-          write_grids(in("grids.csv"), task, results.summary), write_matrix(in("matrix.csv"), results.matrix),
-          write_file(in("summary.csv"), summary)})
+         {hours_->finish(), metrics_.commit(), matrix_.commit(), honeybee_ ? honeybee_->finish() : Result<void>(),
+          write_grids(in("grids.csv"), *task_, summary), write_file(in("summary.csv"), text)})
         if (!written) return written.error();
-    return results.views.empty() ? Result<void>() : write_views(in("view.csv"), results);
+    return views.empty() ? Result<void>() : write_views(in("view.csv"), eyes, views);
 }
 
 }  // namespace exitance

@@ -1,26 +1,57 @@
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 
 #include "exitance/base/result.hpp"
+#include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/report/honeybee_results.hpp"
+#include "exitance/io/report/hours_file.hpp"
 #include "exitance/what_if/daylight/daylight_results.hpp"
+#include "exitance/what_if/daylight/view_out.hpp"
 
 namespace exitance {
 
-/// Writes CSV tables to a folder, which is created if necessary:
+/// Choice of the files of a daylight simulation.
+struct DaylightFormats {
+    HoursFormat hours = HoursFormat::hdf5;
+    bool honeybee = false;  ///< Also write Honeybee's results folder, honeybee.
+};
+
+/// Writes the results of sensors to a folder as they arrive; every file appears whole or not at all:
 ///
-///     illuminance.csv  month, day, hour, and one column per sensor: lx
-///     sun.csv          the same for direct light of the sun
-///     metrics.csv      one row per sensor: position, DF, DA, UDI, hours of sun, results for EN 17037, and the bounds
-///     of
-///                      these (_low, _high)
-///     grids.csv        one row per grid: name, number of sensors, mean daylight factor, relative RMS errors
-///     view.csv         one row per eye point: position, angle, distance, layers and level of the view (if requested)
-///     matrix.csv       one row per sensor, one column per sky patch: lx for 1 cd/m^2
-///     summary.csv      name, value
-Result<void> write_daylight(const std::string& folder, const DaylightTask& task, const DaylightResults& results);
+///     hours         illuminances of all hours, see make_hours_file()
+///     metrics.csv   one row per sensor: position, DF, DA, UDI, hours of sun, results for EN 17037, and the bounds of
+///                   these (_low, _high)
+///     matrix.csv    one row per sensor, one column per sky patch: lx for 1 cd/m^2
+///     grids.csv     one row per grid: name, number of sensors, mean daylight factor, relative RMS errors
+///     view.csv      one row per eye point: position, angle, distance, layers and level of the view (if requested)
+///     summary.csv   name, value
+class DaylightFiles {
+  public:
+    /// The folder is created if necessary. `task` must outlive this. Error: ErrorCode::cannot_write.
+    static Result<DaylightFiles> create(const std::string& folder, const DaylightTask& task,
+                                        const DaylightFormats& formats);
+
+    /// Adds the sensors that follow those added before.
+    Result<void> add(const DaylightBlock& block);
+    /// Completes the files after the last sensor. `views`: one per eye point, or empty.
+    Result<void> finish(const DaylightSummary& summary, std::span<const Point> eyes, std::span<const ViewOut> views);
+
+  private:
+    DaylightFiles(std::string folder, const DaylightTask& task, std::unique_ptr<HoursFile> hours, AtomicFile metrics,
+                  AtomicFile matrix);
+
+    std::string folder_;
+    const DaylightTask* task_;
+    std::unique_ptr<HoursFile> hours_;
+    AtomicFile metrics_, matrix_;
+    std::optional<HoneybeeResults> honeybee_;
+};
 
 /// Names and values in summary.csv.
-std::vector<std::pair<std::string, double>> summary_values(const DaylightTask& task, const DaylightResults& results);
+std::vector<std::pair<std::string, double>> summary_values(const DaylightTask& task, const DaylightSummary& summary,
+                                                           std::span<const ViewOut> views);
 
 }  // namespace exitance

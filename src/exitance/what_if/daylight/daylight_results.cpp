@@ -16,38 +16,93 @@ Error stopped() {
 
 }  // namespace
 
+struct DaylightSimulation::Data {
+    Data(const Scene& of_scene, const DaylightTask& of_task, Progress& of_progress, const StopRequest& of_stop)
+        : task(of_task),
+          progress(of_progress),
+          stop(of_stop),
+          patches(task.division),
+          finer(task.division < finest_division ? std::make_unique<SkyPatches>(2 * task.division) : nullptr),
+          sky(patches, task.hours, task.site),
+          setting{of_scene, task.sensors, task.grids, patches, finer.get(), task.hours, task.site, sky, seed},
+          transport(of_scene, patches, finer.get(), seed) {}
+
+    static constexpr int finest_division = 4;
+    static constexpr std::uint64_t seed = 1;
+
+    const DaylightTask& task;
+    Progress& progress;
+    const StopRequest& stop;
+    SkyPatches patches;
+    std::unique_ptr<SkyPatches> finer;
+    YearSky sky;
+    DaylightSetting setting;
+    DaylightTransport transport;
+    std::unique_ptr<DaylightSample> sample;  ///< Null if the light was taken.
+    DaylightLight light;
+};
+
+DaylightSimulation::DaylightSimulation(const Scene& scene, const DaylightTask& task, Progress& progress,
+                                       const StopRequest& stop) {
+    progress.phase("rays");
+    data_ = std::make_unique<Data>(scene, task, progress, stop);
+}
+
+DaylightSimulation::~DaylightSimulation() = default;
+
+Result<void> DaylightSimulation::find_light() {
+    Data& d = *data_;
+    d.sample = std::make_unique<DaylightSample>(d.setting, d.transport);
+    d.light = find_daylight_light(d.setting, d.transport, *d.sample, d.task.error, d.progress, d.stop);
+    d.transport.forget_rows();
+    if (d.stop.requested()) return stopped();
+    return {};
+}
+
+bool DaylightSimulation::take(DaylightLight light) {
+    Data& d = *data_;
+    d.transport.make_elements(light.options.elements);
+    if (light.elements.columns != d.patches.size() || light.options.seed != Data::seed) return false;
+    for (const std::vector<float>& replicate : light.elements.reflected)
+        if (replicate.size() != d.transport.leaves() * light.elements.columns) return false;
+    d.light = std::move(light);
+    return true;
+}
+
+const DaylightLight& DaylightSimulation::light() const {
+    return data_->light;
+}
+
+Result<void> DaylightSimulation::evaluate(SensorRange range, const DaylightSink& sink) const {
+    const Data& d = *data_;
+    d.progress.phase("year");
+    const auto sensors = std::span(d.task.sensors).subspan(range.first, range.count);
+    const std::vector<Receiver> places = sensor_places(d.setting.scene, d.transport.stage().occluders, sensors);
+    const DaylightRows rows(d.transport, d.light.elements, d.patches, d.light.options.rays_a_sensor);
+    const SensorYears years(d.setting, d.light.bias, d.task.sun_day);
+    const auto known = [&](std::size_t i) { return d.sample ? d.sample->find(i) : nullptr; };
+    for (std::size_t at = 0; at < places.size(); at += block_sensors) {
+        const auto together = std::span(places).subspan(at, std::min(block_sensors, places.size() - at));
+        const std::size_t first = range.first + at;
+        const DaylightBlock block = years.evaluate(first, together, rows.rows(together, first, known));
+        if (const Result<void> taken = sink(block); !taken) return taken.error();
+        if (d.stop.requested()) return stopped();
+        d.progress.advance(static_cast<double>(at + together.size()) / static_cast<double>(places.size()));
+    }
+    return {};
+}
+
 Result<DaylightSummary> simulate_year(const Scene& scene, const DaylightTask& task, const DaylightSink& sink,
                                       Progress& progress, const StopRequest& stop) {
-    constexpr int finest_division = 4;
-    constexpr std::uint64_t seed = 1;
-    const SkyPatches patches(task.division);
-    std::optional<SkyPatches> finer;
-    if (task.division < finest_division) finer.emplace(2 * task.division);
-    const YearSky sky(patches, task.hours, task.site);
-    const DaylightSetting setting{scene,      task.sensors, task.grids, patches, finer ? &*finer : nullptr,
-                                  task.hours, task.site,    sky,        seed};
-    progress.phase("rays");
-    DaylightTransport transport(scene, patches, setting.finer, seed);
-    DaylightSample sample(setting, transport);
-    const DaylightLight light = find_daylight_light(setting, transport, sample, task.error, progress, stop);
-    transport.forget_rows();
-    if (stop.requested()) return stopped();
-
-    progress.phase("year");
-    const std::vector<Receiver> places = sensor_places(scene, transport.stage().occluders, task.sensors);
-    const DaylightRows rows(transport, light.elements, patches, light.options.rays_a_sensor);
-    const SensorYears years(setting, light.bias, task.sun_day);
+    DaylightSimulation simulation(scene, task, progress, stop);
+    if (const Result<void> found = simulation.find_light(); !found) return found.error();
     DaylightTotals totals(task.grids, task.hours, task.site);
-    for (std::size_t first = 0; first < places.size(); first += block_sensors) {
-        const auto together = std::span(places).subspan(first, std::min(block_sensors, places.size() - first));
-        const DaylightBlock block =
-            years.evaluate(first, together, rows.rows(together, first, [&](std::size_t i) { return sample.find(i); }));
+    const auto add = [&](const DaylightBlock& block) {
         for (const SensorResults& sensor : block.results) totals.add(sensor);
-        if (const Result<void> taken = sink(block); !taken) return taken.error();
-        if (stop.requested()) return stopped();
-        progress.advance(static_cast<double>(first + together.size()) / static_cast<double>(places.size()));
-    }
-    return totals.summary(light.bias);
+        return sink(block);
+    };
+    if (const Result<void> done = simulation.evaluate({0, task.sensors.size()}, add); !done) return done.error();
+    return totals.summary(simulation.light().bias);
 }
 
 Result<DaylightResults> collect_year(const Scene& scene, const DaylightTask& task, Progress& progress,

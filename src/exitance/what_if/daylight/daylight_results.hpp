@@ -1,10 +1,10 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include "exitance/what_if/daylight/daylight_search.hpp"
 #include "exitance/what_if/daylight/daylight_totals.hpp"
-#include "exitance/what_if/daylight/view_out.hpp"
 
 namespace exitance {
 
@@ -22,9 +22,43 @@ struct DaylightTask {
 /// Receives the results of consecutive sensors, in order. An error ends the simulation.
 using DaylightSink = std::function<Result<void>(const DaylightBlock&)>;
 
-/// Finds the light on the elements for the requested error, and evaluates the year at all sensors, block by block.
-/// Memory is that of the elements, of at most 2048 random sensors and of one block of sensors.
-/// Error: ErrorCode::limit after a stop request, or the error of the sink.
+/// Consecutive sensors.
+struct SensorRange {
+    std::size_t first = 0, count = 0;
+};
+/// Returns the sensors of part `part` (from 1) of `parts`. The parts differ by at most one sensor.
+constexpr SensorRange sensors_of_part(std::size_t part, std::size_t parts, std::size_t sensors) {
+    const std::size_t first = sensors * (part - 1) / parts;
+    return {first, sensors * part / parts - first};
+}
+
+/// Computes a year in two steps: the light on the elements, which is common to all sensors and can be kept, and the
+/// results of any sensors. Memory: that of the elements, of at most 2048 random sensors, and of a block of sensors.
+class DaylightSimulation {
+  public:
+    /// All arguments must outlive this.
+    DaylightSimulation(const Scene& scene, const DaylightTask& task, Progress& progress, const StopRequest& stop);
+    ~DaylightSimulation();
+    DaylightSimulation(const DaylightSimulation&) = delete;
+    DaylightSimulation& operator=(const DaylightSimulation&) = delete;
+
+    /// Finds the light for the requested error. Error: ErrorCode::limit after a stop request.
+    Result<void> find_light();
+    /// Takes the light that find_light() has found for an equal scene and task. Returns false if it does not fit them.
+    bool take(DaylightLight light);
+    /// Requires that the light was found or taken.
+    const DaylightLight& light() const;
+
+    /// Passes the results of sensors to `sink`, block by block. The bits of a sensor's results do not depend on the
+    /// range in which it is. Errors: ErrorCode::limit after a stop request, or that of the sink.
+    Result<void> evaluate(SensorRange range, const DaylightSink& sink) const;
+
+  private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+/// Finds the light and evaluates all sensors.
 Result<DaylightSummary> simulate_year(const Scene& scene, const DaylightTask& task, const DaylightSink& sink,
                                       Progress& progress, const StopRequest& stop);
 
@@ -41,8 +75,6 @@ struct DaylightResults {
     DaylightYear year;
     std::vector<SensorResults> sensors;
     DaylightSummary summary;
-    std::vector<Point> eyes;  ///< Eye points whose views out were requested.
-    std::vector<ViewOut> views;
 };
 
 /// Runs simulate_year() and keeps all results. About 75 kB per sensor.

@@ -46,7 +46,7 @@ YearSky::YearSky(const SkyPatches& patches, std::span<const DaylightHour> hours,
     sum_of_sky_.assign(patches_, 0), sum_with_sun_.assign(patches_, 0);
     for (std::size_t h = 0; h < hours.size(); ++h) {
         const DaylightHour& hour = hours[h];
-        if (!(hour.diffuse_horizontal > 0) && !(hour.direct_normal > 0)) continue;
+        if (!has_light(hour)) continue;
         const SunPosition at = sun_position(hour.time, site.place);
         Sun& sun = suns_[h];
         sun.towards = sky_direction(at.altitude, at.azimuth, site.north);

@@ -17,6 +17,11 @@ struct DaylightHour {
     double direct_normal = 0;       ///< W/m^2
 };
 
+/// True if sky or sun give light in an hour.
+constexpr bool has_light(const DaylightHour& hour) {
+    return hour.diffuse_horizontal > 0 || hour.direct_normal > 0;
+}
+
 /// Location, orientation and luminous efficacies.
 struct DaylightSite {
     Place place;

@@ -39,6 +39,21 @@ struct SensorResults {
     SpreadResult factor, autonomy;  ///< Daylight factor and DA(300 lx), for the intervals of all sensors together.
 };
 
+/// Calls f with every number of the results of a sensor, in a fixed order, to store and restore them.
+template <class Results, class F>
+void for_each_number(Results& r, const F& f) {
+    const auto interval = [&](auto& i) { f(i.low), f(i.high); };
+    const auto all = [&](auto& values) {
+        for (auto& v : values) f(v);
+    };
+    const auto spread = [&](auto& s) { f(s.value), f(s.less), f(s.more), all(s.replicates); };
+    f(r.metrics.daylight_factor), f(r.metrics.autonomy), all(r.metrics.useful), f(r.metrics.sunny_hours);
+    f(r.reached), f(r.sunlight);
+    interval(r.intervals.factor), interval(r.intervals.autonomy), interval(r.intervals.reached);
+    for (auto& useful : r.intervals.useful) interval(useful);
+    all(r.linear.factor), all(r.linear.lux_hours), spread(r.factor), spread(r.autonomy);
+}
+
 /// Results of consecutive sensors.
 struct DaylightBlock {
     std::size_t first = 0;                ///< Number of the first sensor.
