@@ -1,7 +1,7 @@
 #include "exitance/daylight.hpp"
 
 #include "exitance/api/inside.hpp"
-#include "exitance/io/files/epw_file.hpp"
+#include "exitance/io/files/wea_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
 #include "exitance/what_if/daylight/daylight_results.hpp"
 
@@ -80,7 +80,7 @@ Result<Daylight> daylight(const Scene& scene, const std::string& epw, std::span<
         if (const std::optional<Error> misuse = find_misuse(sensors, options)) return *misuse;
         const Result<std::vector<ProbePoint>> points = to_engine(sensors);
         if (!points) return points.error();
-        const exitance::Result<Weather> weather = load_epw(epw);
+        const exitance::Result<Weather> weather = load_weather(epw);
         if (!weather) return to_api(weather.error());
         Result<Daylight> out = compute(*scene.data().scene, *weather, *points, options, run);
         if (out) out->warnings = warnings_of(*weather, epw);

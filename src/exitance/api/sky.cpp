@@ -12,7 +12,7 @@ Result<std::optional<ChosenSky>> read_sky(const std::string& words, const std::s
     }
     std::optional<Weather> weather;
     if (!epw.empty()) {
-        exitance::Result<Weather> read = load_epw(epw);
+        exitance::Result<Weather> read = load_weather(epw);
         if (!read) return to_api(read.error());
         weather = std::move(*read);
     }
