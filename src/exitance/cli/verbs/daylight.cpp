@@ -1,14 +1,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <limits>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/border_points.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/io/files/epw_file.hpp"
 #include "exitance/io/files/probe_file.hpp"
+#include "exitance/io/files/radiance_matrix.hpp"
+#include "exitance/io/files/text_table.hpp"
+#include "exitance/io/files/wea_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/report/daylight_light_file.hpp"
 #include "exitance/io/report/daylight_parts.hpp"
@@ -28,21 +33,27 @@ std::vector<DaylightHour> hours_of(const Weather& weather) {
     return out;
 }
 
-std::string as_text(const DaylightSummary& s, std::size_t hours, const std::string& folder) {
+std::string as_text(const DaylightSummary& s, const DaylightTask& task, const std::string& folder) {
     const DaylightProvision::Shares& provision = s.provision.by_illuminance;
     const DaylightError error = worst_of(s.errors);
     constexpr std::array<const char*, 4> levels{"no level", "minimum", "medium", "high"};
+    const std::string told =
+        std::isnan(error.factor)
+            ? "not known: the coefficients were read"
+            : fmt::format("{:.2g}% of the daylight factors, {:.2g}% of the lux hours (RMS, worst grid)",
+                          100 * error.factor, 100 * error.lux_hours);
     return fmt::format(
         "daylight   {} sensors, {} hours, {} of them occupied\n"
         "factor     {:.3g}% in the mean (overcast sky; 95%: {:.3g} to {:.3g}%)\n"
-        "error      {:.2g}% of the daylight factors, {:.2g}% of the lux hours (RMS, worst grid)\n"
-        "sDA        {:.1f}% of the sensors have 300 lx in half of the occupied hours (95%: {:.1f} to {:.1f}%)\n"
+        "error      {}\n"
+        "sDA        {:.1f}% of the sensors have {:g} lx in half of the occupied hours (95%: {:.1f} to {:.1f}%)\n"
+        "cDA        {:.1f}% in the mean; dimmed electric light takes {:.0f} hours at full power\n"
         "ASE        {:.1f}% of the sensors have 1000 lx of sun in more than 250 hours\n"
         "EN 17037   {}: 300 lx in half of the daylight hours at {:.1f}% of the sensors, 100 lx at {:.1f}%\n"
         "written    {}\n",
-        s.sensors, hours, s.occupied_hours, s.mean_daylight_factor, s.mean_factor.low, s.mean_factor.high,
-        100 * error.factor, 100 * error.lux_hours, 100 * s.spatial_autonomy, 100 * s.spatial_autonomy_bounds.low,
-        100 * s.spatial_autonomy_bounds.high, 100 * s.sunlight_exposure,
+        s.sensors, task.hours.size(), s.occupied_hours, s.mean_daylight_factor, s.mean_factor.low, s.mean_factor.high,
+        told, 100 * s.spatial_autonomy, task.criteria.target, 100 * s.spatial_autonomy_bounds.low,
+        100 * s.spatial_autonomy_bounds.high, 100 * s.continuous_autonomy, s.electric_hours, 100 * s.sunlight_exposure,
         levels[static_cast<std::size_t>(provision.level())], 100 * provision.at_target[0],
         100 * provision.at_minimum[0], folder);
 }
@@ -100,18 +111,44 @@ ExitCode tell(const Request& request, const DaylightSummary& summary, std::span<
     if (arguments.json)
         terminal.print(values_json(summary_values(request.task, summary, views)));
     else if (!arguments.quiet)
-        terminal.print(as_text(summary, request.task.hours.size(), arguments.output));
+        terminal.print(as_text(summary, request.task, arguments.output));
     const double error = worst_of(summary.errors).largest();
-    if (error <= arguments.error) return ExitCode::done;
+    if (error <= arguments.error || !arguments.coefficients.empty()) return ExitCode::done;
     terminal.progress().warn(fmt::format(
         "the error of {:.2g}% is above the requested {:.2g}%{}", 100 * error, 100 * arguments.error,
         summary.bias.patches > arguments.error ? ": the patches of the sky are too coarse (--sky-patches)" : ""));
     return ExitCode::demand_not_reached;
 }
 
+/// Reads the occupied hours: a range of every day, a file with a number per hour, or none for the default.
+Result<std::vector<std::uint8_t>> read_occupancy(const std::string& words, const std::vector<DaylightHour>& hours) {
+    std::vector<std::uint8_t> out;
+    if (words.empty()) return out;
+    int from = 0, to = 0;
+    char rest = 0;
+    if (std::sscanf(words.c_str(), "%2d-%2d%c", &from, &to, &rest) == 2) {
+        if (from < 0 || from >= to || to > 24)
+            return Error{ErrorCode::usage, fmt::format("'{}' is not a part of a day such as 8-18", words), "--occupied",
+                         ""};
+        for (const DaylightHour& hour : hours) out.push_back(hour.hour > from && hour.hour <= to);
+        return out;
+    }
+    Result<LineReader> lines = LineReader::open(words);
+    if (!lines) return lines.error();
+    while (const std::optional<std::string_view> line = lines->next_content()) {
+        const std::optional<double> number = parse_number(*line);
+        if (!number) return lines->error("is not a number");
+        out.push_back(*number > 0);
+    }
+    if (lines->failed()) return lines->read_error();
+    if (out.size() != hours.size())
+        return lines->error(fmt::format("has {} numbers for {} hours of the weather", out.size(), hours.size()));
+    return out;
+}
+
 /// Reads weather, sensors and eye points.
 Result<Request> read_request(const DaylightArguments& arguments, const Scene& scene, Terminal& terminal) {
-    const Result<Weather> weather = load_epw(arguments.epw);
+    const Result<Weather> weather = load_weather(arguments.epw);
     if (!weather) return weather.error();
     warn_of(*weather, arguments.epw, terminal.progress());
     const std::string sensors = sensor_file(arguments);
@@ -143,7 +180,11 @@ Result<Request> read_request(const DaylightArguments& arguments, const Scene& sc
     out.task.grids = grids_of(sensors, points->size());
     out.task.division = arguments.division, out.task.error = arguments.error;
     out.task.sun_day = arguments.sun_day;
-    out.formats = {arguments.hours, ending(sensors) == ".hbjson"};
+    out.task.criteria = arguments.criteria;
+    Result<std::vector<std::uint8_t>> occupied = read_occupancy(arguments.occupied, out.task.hours);
+    if (!occupied) return occupied.error();
+    out.task.criteria.occupied = std::move(*occupied);
+    out.formats = {arguments.hours, arguments.matrix, ending(sensors) == ".hbjson"};
     return out;
 }
 
@@ -153,7 +194,7 @@ Result<DaylightSummary> write_all(const Request& request, const DaylightBias& bi
                                   const std::string& output, const Pass& pass) {
     Result<DaylightFiles> files = DaylightFiles::create(output, request.task, request.formats);
     if (!files) return files.error();
-    DaylightTotals totals(request.task.grids, request.task.hours, request.task.site);
+    DaylightTotals totals(request.task.grids, request.task.hours, request.task.site, request.task.criteria);
     const Result<void> passed = pass([&](const DaylightBlock& block) {
         for (const SensorResults& sensor : block.results) totals.add(sensor);
         return files->add(block);
@@ -212,9 +253,42 @@ Result<DaylightSummary> merge_parts(const Scene& scene, const Request& request, 
     });
 }
 
+/// Reads the matrix of another program as daylight coefficients: a row per sensor, a column per patch.
+Result<std::vector<float>> read_coefficients(const std::string& path, const DaylightTask& task) {
+    const Result<RadianceMatrix> matrix = read_radiance_matrix(path);
+    if (!matrix) return matrix.error();
+    const std::size_t patches = SkyPatches::count(static_cast<std::size_t>(task.division));
+    if (matrix->rows != task.sensors.size() || matrix->columns != patches ||
+        (matrix->components != 1 && matrix->components != bands))
+        return Error{ErrorCode::bad_input,
+                     fmt::format("has {} x {} entries of {} components, for {} sensors and {} patches", matrix->rows,
+                                 matrix->columns, matrix->components, task.sensors.size(), patches),
+                     path, "give --sky-patches and --points as for the matrix"};
+    if (matrix->components == 1) return matrix->values;
+    std::vector<float> out;
+    for (std::size_t k = 0; k < matrix->values.size(); k += bands) {
+        Spectrum light;
+        for (std::size_t b = 0; b < bands; ++b) light[b] = double(matrix->values[k + b]);
+        out.push_back(static_cast<float>(luminous_sum(light)));
+    }
+    return out;
+}
+
+/// Evaluates and writes all sensors with given coefficients, whose error is not known.
+Result<DaylightSummary> run_coefficients(const Scene& scene, const Request& request, std::span<const ViewOut> views,
+                                         const DaylightArguments& arguments, Terminal& terminal) {
+    const Result<std::vector<float>> coefficients = read_coefficients(arguments.coefficients, request.task);
+    if (!coefficients) return coefficients.error();
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    return write_all(request, {unknown, unknown, 0}, views, arguments.output, [&](const DaylightSink& sink) {
+        return evaluate_coefficients(scene, request.task, *coefficients, sink, terminal.limits().stop());
+    });
+}
+
 /// Evaluates and writes all sensors.
 Result<DaylightSummary> run_whole(const Scene& scene, const Request& request, std::span<const ViewOut> views,
                                   const DaylightArguments& arguments, Terminal& terminal) {
+    if (!arguments.coefficients.empty()) return run_coefficients(scene, request, views, arguments, terminal);
     DaylightSimulation simulation(scene, request.task, terminal.progress(), terminal.limits().stop());
     if (const Result<void> found = simulation.find_light(); !found) return found.error();
     return write_all(request, simulation.light().bias, views, arguments.output, [&](const DaylightSink& sink) {

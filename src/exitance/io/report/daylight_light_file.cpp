@@ -46,6 +46,9 @@ std::string fingerprint_of(const Scene& scene, const DaylightTask& task) {
     const DaylightSite& s = task.site;
     hash.add(s.place.latitude, s.place.longitude, s.place.elevation, s.place.pressure, s.place.temperature, s.zone,
              s.north, s.ground, s.efficacy_diffuse, s.efficacy_direct);
+    const DaylightCriteria& c = task.criteria;
+    hash.add(c.target, c.useful[0], c.useful[1], c.useful[2], c.dimmed_power);
+    for (std::size_t h = 0; h < task.hours.size(); ++h) hash.add(c.is_occupied(task.hours[h], h));
     hash.add(task.division, task.error);
     if (task.sun_day) hash.add(task.sun_day->month, task.sun_day->day, task.sun_day->least_altitude);
     return hash.finish();

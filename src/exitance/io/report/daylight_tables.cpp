@@ -5,17 +5,32 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <utility>
 
 #include "exitance/io/files/atomic_file.hpp"
 
 namespace exitance {
 namespace {
 
-constexpr std::string_view metrics_header =
-    "x,y,z,nx,ny,nz,DF,DA_300,UDI_below_100,UDI_100_300,UDI_300_3000,UDI_above_3000,sun_hours,"
-    "E_half_of_daylight,sunlight_hours,DF_low,DF_high,DA_300_low,DA_300_high,UDI_below_100_low,UDI_below_100_high,"
-    "UDI_100_300_low,UDI_100_300_high,UDI_300_3000_low,UDI_300_3000_high,UDI_above_3000_low,UDI_above_3000_high,"
-    "E_half_of_daylight_low,E_half_of_daylight_high\n";
+/// Names of the results of DA and UDI, such as DA_300 and UDI_100_300.
+std::vector<std::string> result_names(const DaylightCriteria& criteria) {
+    const auto& [low, middle, high] = criteria.useful;
+    return {fmt::format("DA_{:g}", criteria.target), fmt::format("UDI_below_{:g}", low),
+            fmt::format("UDI_{:g}_{:g}", low, middle), fmt::format("UDI_{:g}_{:g}", middle, high),
+            fmt::format("UDI_above_{:g}", high)};
+}
+
+std::string metrics_header(const DaylightCriteria& criteria) {
+    const std::vector<std::string> names = result_names(criteria);
+    const std::string continuous = fmt::format("cDA_{:g}", criteria.target);
+    std::string out = fmt::format("x,y,z,nx,ny,nz,DF,{},sun_hours,E_half_of_daylight,sunlight_hours,{},electric_hours",
+                                  fmt::join(names, ","), continuous);
+    const auto add = [&](const std::string& name) { out += fmt::format(",{0}_low,{0}_high", name); };
+    add("DF");
+    for (const std::string& name : names) add(name);
+    add("E_half_of_daylight"), add(continuous), add("electric_hours");
+    return out + '\n';
+}
 
 /// Row of a sensor in metrics.csv.
 std::string metrics_row(const ProbePoint& at, const SensorResults& sensor) {
@@ -24,30 +39,75 @@ std::string metrics_row(const ProbePoint& at, const SensorResults& sensor) {
     const SensorIntervals& s = sensor.intervals;
     std::string row = fmt::format(
         "{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},"
-        "{:.6g}",
+        "{:.6g},{:.6g},{:.6g}",
         x.x, x.y, x.z, n.x, n.y, n.z, m.daylight_factor, m.autonomy, m.useful[0], m.useful[1], m.useful[2], m.useful[3],
-        m.sunny_hours, sensor.reached, sensor.sunlight);
+        m.sunny_hours, sensor.reached, sensor.sunlight, m.continuous, m.electric_hours);
     const auto add = [&](const Interval& interval) {
         row += fmt::format(",{:.6g},{:.6g}", interval.low, interval.high);
     };
     add(s.factor), add(s.autonomy);
     for (const Interval& useful : s.useful) add(useful);
-    add(s.reached);
+    add(s.reached), add(s.continuous), add(s.electric_hours);
     return row + '\n';
 }
 
-std::string matrix_header(std::size_t patches) {
-    std::string text = "ground";
-    for (std::size_t p = 1; p < patches; ++p) text += fmt::format(",patch_{}", p);
-    return text + '\n';
-}
+/// matrix.csv
+class CsvMatrix final : public MatrixFile {
+  public:
+    explicit CsvMatrix(AtomicFile file) : file_(std::move(file)) {}
 
-/// Row of a sensor in matrix.csv.
-std::string matrix_row(const DaylightMatrix& matrix, std::size_t sensor) {
-    std::string text;
-    for (std::size_t p = 0; p < matrix.patches; ++p)
-        fmt::format_to(std::back_inserter(text), "{}{:.6g}", p > 0 ? "," : "", matrix.total(sensor, p));
-    return text + '\n';
+    void add(const DaylightMatrix& matrix) override {
+        std::string text;
+        if (std::exchange(is_first_, false)) {
+            text = "ground";
+            for (std::size_t p = 1; p < matrix.patches; ++p) text += fmt::format(",patch_{}", p);
+            text += '\n';
+        }
+        for (std::size_t i = 0; i < matrix.sensors(); ++i)
+            for (std::size_t p = 0; p < matrix.patches; ++p)
+                fmt::format_to(std::back_inserter(text), "{:.6g}{}", matrix.total(i, p),
+                               p + 1 < matrix.patches ? ',' : '\n');
+        file_.write(text);
+    }
+    Result<void> finish() override { return file_.commit(); }
+
+  private:
+    AtomicFile file_;
+    bool is_first_ = true;
+};
+
+/// matrix.mtx
+class RadianceMatrixFile final : public MatrixFile {
+  public:
+    explicit RadianceMatrixFile(RadianceMatrixWriter file) : file_(std::move(file)) {}
+
+    void add(const DaylightMatrix& matrix) override {
+        std::vector<double> row(matrix.patches);
+        for (std::size_t i = 0; i < matrix.sensors(); ++i) {
+            for (std::size_t p = 0; p < matrix.patches; ++p) row[p] = matrix.total(i, p);
+            file_.append_row(row);
+        }
+    }
+    Result<void> finish() override { return file_.commit(); }
+
+  private:
+    RadianceMatrixWriter file_;
+};
+
+Result<std::unique_ptr<MatrixFile>> make_matrix_file(const std::string& folder, const DaylightTask& task,
+                                                     std::optional<MatrixFormat> format) {
+    using Made = std::unique_ptr<MatrixFile>;
+    const std::filesystem::path path(folder);
+    if (!format) {
+        Result<AtomicFile> file = AtomicFile::create((path / "matrix.csv").string());
+        if (!file) return file.error();
+        return Made(std::make_unique<CsvMatrix>(std::move(*file)));
+    }
+    Result<RadianceMatrixWriter> file =
+        RadianceMatrixWriter::create((path / "matrix.mtx").string(), *format, task.sensors.size(),
+                                     SkyPatches::count(static_cast<std::size_t>(task.division)));
+    if (!file) return file.error();
+    return Made(std::make_unique<RadianceMatrixFile>(std::move(*file)));
 }
 
 /// Quotes a name for CSV.
@@ -112,30 +172,33 @@ void add_provision(const DaylightSummary& summary, std::span<const ViewOut> view
 std::vector<std::pair<std::string, double>> summary_values(const DaylightTask& task, const DaylightSummary& s,
                                                            std::span<const ViewOut> views) {
     const DaylightError error = worst_of(s.errors);
+    const std::string sDA = fmt::format("sDA_{:g}_50", task.criteria.target);
     std::vector<std::pair<std::string, double>> out{{"sensors", static_cast<double>(s.sensors)},
                                                     {"hours", static_cast<double>(task.hours.size())},
                                                     {"occupied_hours", static_cast<double>(s.occupied_hours)},
                                                     {"mean_daylight_factor", s.mean_daylight_factor},
-                                                    {"sDA_300_50", s.spatial_autonomy},
+                                                    {sDA, s.spatial_autonomy},
                                                     {"ASE_1000_250", s.sunlight_exposure},
                                                     {"error_daylight_factor", error.factor},
                                                     {"error_lux_hours", error.lux_hours},
                                                     {"mean_daylight_factor_low", s.mean_factor.low},
                                                     {"mean_daylight_factor_high", s.mean_factor.high},
-                                                    {"sDA_300_50_low", s.spatial_autonomy_bounds.low},
-                                                    {"sDA_300_50_high", s.spatial_autonomy_bounds.high}};
+                                                    {sDA + "_low", s.spatial_autonomy_bounds.low},
+                                                    {sDA + "_high", s.spatial_autonomy_bounds.high}};
+    out.emplace_back(fmt::format("mean_cDA_{:g}", task.criteria.target), s.continuous_autonomy);
+    out.emplace_back("mean_electric_hours", s.electric_hours);
     add_provision(s, views, out);
     return out;
 }
 
 DaylightFiles::DaylightFiles(std::string folder, const DaylightTask& task, std::unique_ptr<HoursFile> hours,
-                             AtomicFile metrics, AtomicFile matrix)
+                             AtomicFile metrics, std::unique_ptr<MatrixFile> matrix)
     : folder_(std::move(folder)),
       task_(&task),
       hours_(std::move(hours)),
       metrics_(std::move(metrics)),
       matrix_(std::move(matrix)) {
-    metrics_.write(metrics_header);
+    metrics_.write(metrics_header(task.criteria));
 }
 
 Result<DaylightFiles> DaylightFiles::create(const std::string& folder, const DaylightTask& task,
@@ -146,7 +209,8 @@ Result<DaylightFiles> DaylightFiles::create(const std::string& folder, const Day
     const auto in = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
     Result<std::unique_ptr<HoursFile>> hours = make_hours_file(folder, formats.hours, task);
     if (!hours) return hours.error();
-    Result<AtomicFile> metrics = AtomicFile::create(in("metrics.csv")), matrix = AtomicFile::create(in("matrix.csv"));
+    Result<AtomicFile> metrics = AtomicFile::create(in("metrics.csv"));
+    Result<std::unique_ptr<MatrixFile>> matrix = make_matrix_file(folder, task, formats.matrix);
     if (!metrics) return metrics.error();
     if (!matrix) return matrix.error();
     DaylightFiles out(folder, task, std::move(*hours), std::move(*metrics), std::move(*matrix));
@@ -159,12 +223,9 @@ Result<DaylightFiles> DaylightFiles::create(const std::string& folder, const Day
 }
 
 Result<void> DaylightFiles::add(const DaylightBlock& block) {
-    if (block.first == 0) matrix_.write(matrix_header(block.matrix.patches));
-    hours_->add(block);
-    for (std::size_t i = 0; i < block.results.size(); ++i) {
+    hours_->add(block), matrix_->add(block.matrix);
+    for (std::size_t i = 0; i < block.results.size(); ++i)
         metrics_.write(metrics_row(task_->sensors[block.first + i], block.results[i]));
-        matrix_.write(matrix_row(block.matrix, i));
-    }
     return honeybee_ ? honeybee_->add(block) : Result<void>();
 }
 
@@ -175,7 +236,7 @@ Result<void> DaylightFiles::finish(const DaylightSummary& summary, std::span<con
     for (const auto& [name, value] : summary_values(*task_, summary, views))
         text += fmt::format("{},{:.6g}\n", name, value);
     for (const Result<void>& written :
-         {hours_->finish(), metrics_.commit(), matrix_.commit(), honeybee_ ? honeybee_->finish() : Result<void>(),
+         {hours_->finish(), metrics_.commit(), matrix_->finish(), honeybee_ ? honeybee_->finish() : Result<void>(),
           write_grids(in("grids.csv"), *task_, summary), write_file(in("summary.csv"), text)})
         if (!written) return written.error();
     return views.empty() ? Result<void>() : write_views(in("view.csv"), eyes, views);

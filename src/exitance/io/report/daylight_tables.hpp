@@ -6,6 +6,7 @@
 
 #include "exitance/base/result.hpp"
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/files/radiance_matrix.hpp"
 #include "exitance/io/report/honeybee_results.hpp"
 #include "exitance/io/report/hours_file.hpp"
 #include "exitance/what_if/daylight/daylight_results.hpp"
@@ -16,7 +17,16 @@ namespace exitance {
 /// Choice of the files of a daylight simulation.
 struct DaylightFormats {
     HoursFormat hours = HoursFormat::hdf5;
-    bool honeybee = false;  ///< Also write Honeybee's results folder, honeybee.
+    std::optional<MatrixFormat> matrix;  ///< Radiance's matrix, matrix.mtx; none: matrix.csv.
+    bool honeybee = false;               ///< Also write Honeybee's results folder, honeybee.
+};
+
+/// A file with the daylight coefficients of sensors as they arrive. It appears whole or not at all.
+class MatrixFile {
+  public:
+    virtual ~MatrixFile() = default;
+    virtual void add(const DaylightMatrix& matrix) = 0;
+    virtual Result<void> finish() = 0;
 };
 
 /// Writes the results of sensors to a folder as they arrive; every file appears whole or not at all:
@@ -24,7 +34,7 @@ struct DaylightFormats {
 ///     hours         illuminances of all hours, see make_hours_file()
 ///     metrics.csv   one row per sensor: position, DF, DA, UDI, hours of sun, results for EN 17037, and the bounds of
 ///                   these (_low, _high)
-///     matrix.csv    one row per sensor, one column per sky patch: lx for 1 cd/m^2
+///     matrix.csv    one row per sensor, one column per sky patch: lx for 1 cd/m^2; or matrix.mtx
 ///     grids.csv     one row per grid: name, number of sensors, mean daylight factor, relative RMS errors
 ///     view.csv      one row per eye point: position, angle, distance, layers and level of the view (if requested)
 ///     summary.csv   name, value
@@ -41,16 +51,18 @@ class DaylightFiles {
 
   private:
     DaylightFiles(std::string folder, const DaylightTask& task, std::unique_ptr<HoursFile> hours, AtomicFile metrics,
-                  AtomicFile matrix);
+                  std::unique_ptr<MatrixFile> matrix);
 
     std::string folder_;
     const DaylightTask* task_;
     std::unique_ptr<HoursFile> hours_;
-    AtomicFile metrics_, matrix_;
+    AtomicFile metrics_;
+    std::unique_ptr<MatrixFile> matrix_;
     std::optional<HoneybeeResults> honeybee_;
 };
 
-/// Names and values in summary.csv.
+/// Names and values in summary.csv. Some names contain the target: sDA_300_50, sDA_300_50_low, sDA_300_50_high and
+/// mean_cDA_300 for 300 lx.
 std::vector<std::pair<std::string, double>> summary_values(const DaylightTask& task, const DaylightSummary& summary,
                                                            std::span<const ViewOut> views);
 

@@ -34,13 +34,13 @@ class Hdf5Hours final : public HoursFile {
         for (const DaylightHour& hour : task.hours)
             for (const int v : {hour.time.month, hour.time.day, hour.hour}) times.push_back(v);
         file_.write("hours", times, 3, {"1", "month, day, and end of each hour, 1 to 24"});
-        file_.template write_rows<double>("sensors", sensors, 6, {"m", "position and direction of each sensor"},
-                                          [&](std::size_t i, std::span<double> row) {
-                                              const auto& [x, n] = task.sensors[i];
-                                              std::ranges::copy(std::array{x.x, x.y, x.z, n.x, n.y, n.z}, row.begin());
-                                          });
+        file_.write_rows<double>("sensors", sensors, 6, {"m", "position and direction of each sensor"},
+                                 [&](std::size_t i, std::span<double> row) {
+                                     const auto& [x, n] = task.sensors[i];
+                                     std::ranges::copy(std::array{x.x, x.y, x.z, n.x, n.y, n.z}, row.begin());
+                                 });
         const auto open = [&](const char* name, const char* text) {
-            Hdf5Rows rows = file_.template open_rows<Number>(name, sensors, hours, {"lx", text});
+            Hdf5Rows rows = file_.open_rows<Number>(name, sensors, hours, {"lx", text});
             file_.set_attribute(name, "scale", Stored<Number>::unit);
             return rows;
         };

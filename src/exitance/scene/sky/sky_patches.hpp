@@ -12,6 +12,8 @@ class SkyPatches {
   public:
     explicit SkyPatches(int m);
 
+    /// Number of patches of a division, with the ground.
+    static constexpr std::size_t count(std::size_t m) { return 144 * m * m + 2; }
     std::size_t size() const { return middle_.size(); }  ///< Includes the ground.
     /// Returns the patch that contains a direction (unit vector).
     std::size_t of(const Vec3& w) const;

@@ -7,7 +7,8 @@ namespace exitance {
 
 DaylightError worst_of(std::span<const DaylightError> errors) {
     DaylightError out;
-    for (const DaylightError& e : errors) out = {std::max(out.factor, e.factor), std::max(out.lux_hours, e.lux_hours)};
+    const auto larger = [](double a, double b) { return std::isnan(a) || a >= b ? a : b; };
+    for (const DaylightError& e : errors) out = {larger(out.factor, e.factor), larger(out.lux_hours, e.lux_hours)};
     return out;
 }
 

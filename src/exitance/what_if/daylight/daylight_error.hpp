@@ -20,7 +20,7 @@ struct DaylightError {
     double largest() const { return std::max(factor, lux_hours); }
 };
 
-/// Returns the largest errors of a grid.
+/// Returns the largest errors of a grid; not a number if an error is not known.
 DaylightError worst_of(std::span<const DaylightError> errors);
 
 /// Parts of the error that the spread of the replicates does not show, measured at random sensors; relative to the mean

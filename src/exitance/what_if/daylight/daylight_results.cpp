@@ -24,7 +24,8 @@ struct DaylightSimulation::Data {
           patches(task.division),
           finer(task.division < finest_division ? std::make_unique<SkyPatches>(2 * task.division) : nullptr),
           sky(patches, task.hours, task.site),
-          setting{of_scene, task.sensors, task.grids, patches, finer.get(), task.hours, task.site, sky, seed},
+          setting{of_scene,   task.sensors, task.grids, patches,       finer.get(),
+                  task.hours, task.site,    sky,        task.criteria, seed},
           transport(of_scene, patches, finer.get(), seed) {}
 
     static constexpr int finest_division = 4;
@@ -92,11 +93,33 @@ Result<void> DaylightSimulation::evaluate(SensorRange range, const DaylightSink&
     return {};
 }
 
+Result<void> evaluate_coefficients(const Scene& scene, const DaylightTask& task, std::span<const float> coefficients,
+                                   const DaylightSink& sink, const StopRequest& stop) {
+    const SkyPatches patches(task.division);
+    const YearSky sky(patches, task.hours, task.site);
+    const DaylightSetting setting{scene,      task.sensors, task.grids, patches,       nullptr,
+                                  task.hours, task.site,    sky,        task.criteria, 1};
+    const SensorYears years(setting, {}, task.sun_day);
+    const std::vector<Receiver> places = sensor_places(scene, Occluders(scene), task.sensors);
+    for (std::size_t first = 0; first < places.size(); first += block_sensors) {
+        const std::size_t count = std::min(block_sensors, places.size() - first);
+        DaylightMatrix matrix;
+        matrix.resize(count, patches.size());
+        const auto rows = coefficients.subspan(first * patches.size(), count * patches.size());
+        matrix.reflected.assign(rows.begin(), rows.end());
+        for (std::vector<float>& replicate : matrix.replicates) replicate = matrix.reflected;
+        const DaylightBlock block = years.evaluate(first, std::span(places).subspan(first, count), std::move(matrix));
+        if (const Result<void> taken = sink(block); !taken) return taken.error();
+        if (stop.requested()) return stopped();
+    }
+    return {};
+}
+
 Result<DaylightSummary> simulate_year(const Scene& scene, const DaylightTask& task, const DaylightSink& sink,
                                       Progress& progress, const StopRequest& stop) {
     DaylightSimulation simulation(scene, task, progress, stop);
     if (const Result<void> found = simulation.find_light(); !found) return found.error();
-    DaylightTotals totals(task.grids, task.hours, task.site);
+    DaylightTotals totals(task.grids, task.hours, task.site, task.criteria);
     const auto add = [&](const DaylightBlock& block) {
         for (const SensorResults& sensor : block.results) totals.add(sensor);
         return sink(block);

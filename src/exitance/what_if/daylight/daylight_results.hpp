@@ -14,6 +14,7 @@ struct DaylightTask {
     std::vector<SensorGrid> grids;  ///< Together all sensors, in their order.
     std::vector<DaylightHour> hours;
     DaylightSite site;
+    DaylightCriteria criteria;
     int division = 1;               ///< Parts into which Tregenza's patches are divided in each direction: 1, 2 or 4.
     double error = 0.02;            ///< Requested error of every grid.
     std::optional<SunDay> sun_day;  ///< Day for which hours of sunlight are counted.
@@ -57,6 +58,12 @@ class DaylightSimulation {
     struct Data;
     std::unique_ptr<Data> data_;
 };
+
+/// Evaluates all sensors with daylight coefficients that were computed before, such as by another program: a row per
+/// sensor, lx for 1 cd/m^2 of each patch. The sun is spread over the patches around it, also for its straight light, so
+/// that no direct sunlight is told apart; noise and bias are not known.
+Result<void> evaluate_coefficients(const Scene& scene, const DaylightTask& task, std::span<const float> coefficients,
+                                   const DaylightSink& sink, const StopRequest& stop);
 
 /// Finds the light and evaluates all sensors.
 Result<DaylightSummary> simulate_year(const Scene& scene, const DaylightTask& task, const DaylightSink& sink,

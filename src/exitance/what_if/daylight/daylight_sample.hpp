@@ -16,6 +16,7 @@ struct DaylightSetting {
     std::span<const DaylightHour> hours;
     const DaylightSite& site;
     const YearSky& sky;  ///< Light of the hours in the patches.
+    const DaylightCriteria& criteria;
     std::uint64_t seed = 1;
 };
 

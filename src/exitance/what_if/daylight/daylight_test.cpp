@@ -182,6 +182,27 @@ TEST(Daylight, TheToldErrorAndTheIntervalsCoverTheTrueOnes) {
     EXPECT_GE(covered, 21u);  // of 24, for 95%: fewer than 21 happen in one of 30 runs of independent sensors
 }
 
+TEST(DaylightMetrics, CriteriaChooseHoursAndThresholds) {
+    // Hours that end at 9 to 12, with 50 to 1000 lx; the last one is sunny.
+    std::vector<DaylightHour> hours(4);
+    for (int h = 0; h < 4; ++h) hours[static_cast<std::size_t>(h)].hour = 9 + h;
+    const std::vector<float> lux{50, 250, 500, 1000}, sun{0, 0, 0, 2000};
+    const DaylightMetrics standard = metrics_of(2, lux, sun, hours, {});
+    EXPECT_EQ(standard.autonomy, 0.5);
+    EXPECT_EQ(standard.useful, (std::array<double, 4>{0.25, 0.25, 0.5, 0}));
+    EXPECT_EQ(standard.sunny_hours, 1);
+    EXPECT_NEAR(standard.continuous, (50.0 / 300 + 250.0 / 300 + 2) / 4, 1e-12);
+    EXPECT_NEAR(standard.electric_hours, 250.0 / 300 + 50.0 / 300, 1e-12);
+    const DaylightCriteria criteria{
+        .occupied = {1, 0, 1, 0}, .target = 500, .useful = {40, 400, 500}, .dimmed_power = 0.2};
+    const DaylightMetrics own = metrics_of(2, lux, sun, hours, criteria);
+    EXPECT_EQ(own.autonomy, 0.5);
+    EXPECT_EQ(own.useful, (std::array<double, 4>{0, 0.5, 0, 0.5}));
+    EXPECT_EQ(own.sunny_hours, 0);
+    EXPECT_NEAR(own.continuous, (0.1 + 1) / 2, 1e-12);
+    EXPECT_NEAR(own.electric_hours, (0.2 + 0.8 * 0.9) + 0.2, 1e-12);
+}
+
 TEST(YearSky, TilesGiveTheBitsOfPlainSums) {
     // 19 sensors do not fill two tiles of 16. The day is cut so that bright hours do not fill tiles of 4.
     const SkyPatches patches(1);

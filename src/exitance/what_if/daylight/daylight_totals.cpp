@@ -15,11 +15,11 @@ void for_each_part(SpreadResult& sum, const SpreadResult& value, const F& f) {
 }  // namespace
 
 DaylightTotals::DaylightTotals(std::span<const SensorGrid> grids, std::span<const DaylightHour> hours,
-                               const DaylightSite& site)
+                               const DaylightSite& site, const DaylightCriteria& criteria)
     : grids_(grids.size()), provision_(hours, site) {
     std::size_t end = 0;
     for (const SensorGrid& grid : grids) ends_.push_back(end += grid.count);
-    for (const DaylightHour& hour : hours) sums_.occupied_hours += is_occupied(hour.hour);
+    for (std::size_t h = 0; h < hours.size(); ++h) sums_.occupied_hours += criteria.is_occupied(hours[h], h);
 }
 
 void DaylightTotals::add(const SensorResults& sensor) {
@@ -30,6 +30,7 @@ void DaylightTotals::add(const SensorResults& sensor) {
     sums_.mean_daylight_factor += sensor.metrics.daylight_factor;
     sums_.spatial_autonomy += sensor.metrics.autonomy >= 0.5;
     sums_.sunlight_exposure += sensor.metrics.sunny_hours > max_sunny_hours;
+    sums_.continuous_autonomy += sensor.metrics.continuous, sums_.electric_hours += sensor.metrics.electric_hours;
     sums_.most_sunlight = std::max(sums_.most_sunlight, sensor.sunlight);
     for_each_part(factor_, sensor.factor, [](double& sum, double v) { sum += v; });
     for_each_part(reached_, sensor.autonomy, [](double& count, double v) { count += v >= 0.5; });
@@ -40,6 +41,7 @@ DaylightSummary DaylightTotals::summary(const DaylightBias& bias) const {
     DaylightSummary out = sums_;
     const double n = std::max<double>(1, static_cast<double>(sums_.sensors));
     out.mean_daylight_factor /= n, out.spatial_autonomy /= n, out.sunlight_exposure /= n;
+    out.continuous_autonomy /= n, out.electric_hours /= n;
     SpreadResult factor, reached;
     const auto divide = [n](double& mean, double sum) { mean = sum / n; };
     for_each_part(factor, factor_, divide), for_each_part(reached, reached_, divide);

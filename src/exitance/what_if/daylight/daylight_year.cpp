@@ -112,24 +112,26 @@ std::vector<double> overcast_luminances(const SkyPatches& patches, double ground
 }
 
 DaylightMetrics metrics_of(double factor, std::span<const float> illuminance, std::span<const float> sun,
-                           std::span<const DaylightHour> hours) {
-    constexpr double target = 300, sunny = 1000;  // lx
-    constexpr std::array<double, 3> limits{100, 300, 3000};
+                           std::span<const DaylightHour> hours, const DaylightCriteria& criteria) {
+    constexpr double sunny = 1000;  // lx
+    const auto& limits = criteria.useful;
     DaylightMetrics metrics;
     metrics.daylight_factor = factor;
     double occupied = 0;
     for (std::size_t h = 0; h < illuminance.size(); ++h) {
-        if (!is_occupied(hours[h].hour)) continue;
+        if (!criteria.is_occupied(hours[h], h)) continue;
         const double E = double(illuminance[h]);
         ++occupied;
         metrics.sunny_hours += double(sun[h]) > sunny;
-        metrics.autonomy += E >= target;
+        metrics.autonomy += E >= criteria.target;
+        metrics.continuous += std::min(1.0, E / criteria.target);
         std::size_t k = 0;
         while (k < limits.size() && E >= limits[k]) ++k;
         ++metrics.useful[k];
     }
+    metrics.electric_hours = occupied - (1 - criteria.dimmed_power) * metrics.continuous;
     if (!(occupied > 0)) return metrics;
-    metrics.autonomy /= occupied;
+    metrics.autonomy /= occupied, metrics.continuous /= occupied;
     for (double& share : metrics.useful) share /= occupied;
     return metrics;
 }

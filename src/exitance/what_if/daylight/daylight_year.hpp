@@ -75,21 +75,38 @@ class YearSky {
 /// below it: their light at a sensor is its daylight factor in per cent.
 std::vector<double> overcast_luminances(const SkyPatches& patches, double ground);
 
-/// Annual metrics of standards at a sensor; shares are of the occupied hours.
-struct DaylightMetrics {
-    double daylight_factor = 0;      ///< Per cent, under the traditional overcast sky.
-    double autonomy = 0;             ///< DA(300 lx)
-    std::array<double, 4> useful{};  ///< UDI: below 100 lx, 100 to 300, 300 to 3000, above.
-    double sunny_hours = 0;          ///< Hours with more than 1000 lx of direct sunlight.
-};
-
 /// True from 8 to 18 h on every day.
-constexpr bool is_occupied(int hour) {
+constexpr bool is_working_hour(int hour) {
     return hour > 8 && hour <= 18;
 }
 
+/// Occupied hours, and the illuminances that count. The defaults are those of LM-83 and of common use.
+struct DaylightCriteria {
+    std::vector<std::uint8_t> occupied;            ///< 1 for each occupied hour, else 0; empty: is_working_hour().
+    double target = 300;                           ///< Illuminance of DA, sDA and of the dimmed electric light, lx.
+    std::array<double, 3> useful{100, 300, 3000};  ///< Limits of UDI, lx, ascending.
+    double dimmed_power = 0;  ///< Power of electric light that is dimmed to nothing, as a share of its full power.
+
+    /// `hour`: the hour with index `h` of the year.
+    bool is_occupied(const DaylightHour& hour, std::size_t h) const {
+        return occupied.empty() ? is_working_hour(hour.hour) : occupied[h] != 0;
+    }
+};
+
+/// Annual metrics of standards at a sensor; shares are of the occupied hours.
+struct DaylightMetrics {
+    double daylight_factor = 0;  ///< Per cent, under the traditional overcast sky.
+    double autonomy = 0;         ///< DA: share of the hours with the target illuminance.
+    double continuous = 0;       ///< Continuous DA: mean of the shares of the target that each hour reaches.
+    /// Hours at full power that electric light takes which the sensor dims: power p + (1 - p) max(0, 1 - E / target) in
+    /// every occupied hour, with p = DaylightCriteria::dimmed_power.
+    double electric_hours = 0;
+    std::array<double, 4> useful{};  ///< UDI: below the first limit, between the limits, above the last.
+    double sunny_hours = 0;          ///< Hours with more than 1000 lx of direct sunlight.
+};
+
 /// Metrics of one sensor from its illuminances in all hours, lx. `factor`: its daylight factor, per cent.
 DaylightMetrics metrics_of(double factor, std::span<const float> illuminance, std::span<const float> sun,
-                           std::span<const DaylightHour> hours);
+                           std::span<const DaylightHour> hours, const DaylightCriteria& criteria);
 
 }  // namespace exitance

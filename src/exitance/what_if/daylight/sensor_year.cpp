@@ -23,7 +23,14 @@ Interval of_share(const Interval& i) {
 }
 
 /// Index of the first value in the results of a sensor.
-enum Result : std::size_t { factor_result = 0, autonomy_result = 1, useful_result = 2, reached_result = 6 };
+enum Result : std::size_t {
+    factor_result = 0,
+    autonomy_result = 1,
+    useful_result = 2,
+    reached_result = 6,
+    continuous_result = 7,
+    electric_result = 8
+};
 
 }  // namespace
 
@@ -67,17 +74,13 @@ void SensorYears::add_sun(const Receiver& at, std::span<const float> direct, std
 
 SensorYears::Results SensorYears::results_of(double factor, std::span<const float> lux,
                                              std::span<const float> sun) const {
-    const DaylightMetrics m = metrics_of(factor, lux, sun, setting_.hours);
+    const DaylightMetrics m = metrics_of(factor, lux, sun, setting_.hours, setting_.criteria);
     std::vector<double> in_daylight;
     in_daylight.reserve(daylight_hours_.size());
     for (const std::size_t h : daylight_hours_) in_daylight.push_back(double(lux[h]));
-    return {m.daylight_factor,
-            m.autonomy,
-            m.useful[0],
-            m.useful[1],
-            m.useful[2],
-            m.useful[3],
-            reached_by_half(std::move(in_daylight))};
+    const double reached = reached_by_half(std::move(in_daylight));
+    return {m.daylight_factor, m.autonomy, m.useful[0],  m.useful[1],     m.useful[2],
+            m.useful[3],       reached,    m.continuous, m.electric_hours};
 }
 
 void SensorYears::finish(const std::array<SpreadResult, result_count>& spread, SensorResults& out) const {
@@ -87,7 +90,8 @@ void SensorYears::finish(const std::array<SpreadResult, result_count>& spread, S
     out.factor = spread[factor_result], out.autonomy = spread[autonomy_result];
     SensorIntervals& s = out.intervals;
     s.factor = {std::max(0.0, interval[factor_result].low), interval[factor_result].high};
-    s.autonomy = of_share(interval[autonomy_result]);
+    s.autonomy = of_share(interval[autonomy_result]), s.continuous = of_share(interval[continuous_result]);
+    s.electric_hours = {std::max(0.0, interval[electric_result].low), interval[electric_result].high};
     for (std::size_t k = 0; k < s.useful.size(); ++k) s.useful[k] = of_share(interval[useful_result + k]);
     s.reached = {std::max(0.0, interval[reached_result].low), interval[reached_result].high};
 }
@@ -140,7 +144,7 @@ void SensorYears::evaluate_tile(std::size_t first, std::size_t count, std::span<
     for (std::size_t i = 0; i < count; ++i) {
         SensorResults& out = block.results[first + i];
         out.metrics = metrics_of(spread[i][factor_result].value, illuminance.subspan(i * hours, hours),
-                                 sun.subspan(i * hours, hours), setting_.hours);
+                                 sun.subspan(i * hours, hours), setting_.hours, setting_.criteria);
         finish(spread[i], out);
     }
 }

@@ -15,7 +15,9 @@ struct Interval {
 /// Bounds of the results of one sensor.
 struct SensorIntervals {
     Interval factor;                 ///< Daylight factor, per cent.
-    Interval autonomy;               ///< DA(300 lx)
+    Interval autonomy;               ///< DA
+    Interval continuous;             ///< Continuous DA
+    Interval electric_hours;         ///< Hours at full power of dimmed electric light.
     std::array<Interval, 4> useful;  ///< UDI
     Interval reached;                ///< Illuminance reached in half of the daylight hours, lx.
 };
@@ -36,7 +38,7 @@ struct SensorResults {
     double sunlight = 0;  ///< Hours of direct sunlight on a cloudless day.
     SensorIntervals intervals;
     LinearResults linear;
-    SpreadResult factor, autonomy;  ///< Daylight factor and DA(300 lx), for the intervals of all sensors together.
+    SpreadResult factor, autonomy;  ///< Daylight factor and DA, for the intervals of all sensors together.
 };
 
 /// Calls f with every number of the results of a sensor, in a fixed order, to store and restore them.
@@ -47,9 +49,11 @@ void for_each_number(Results& r, const F& f) {
         for (auto& v : values) f(v);
     };
     const auto spread = [&](auto& s) { f(s.value), f(s.less), f(s.more), all(s.replicates); };
-    f(r.metrics.daylight_factor), f(r.metrics.autonomy), all(r.metrics.useful), f(r.metrics.sunny_hours);
+    f(r.metrics.daylight_factor), f(r.metrics.autonomy), f(r.metrics.continuous), f(r.metrics.electric_hours);
+    all(r.metrics.useful), f(r.metrics.sunny_hours);
     f(r.reached), f(r.sunlight);
-    interval(r.intervals.factor), interval(r.intervals.autonomy), interval(r.intervals.reached);
+    interval(r.intervals.factor), interval(r.intervals.autonomy), interval(r.intervals.continuous);
+    interval(r.intervals.electric_hours), interval(r.intervals.reached);
     for (auto& useful : r.intervals.useful) interval(useful);
     all(r.linear.factor), all(r.linear.lux_hours), spread(r.factor), spread(r.autonomy);
 }
@@ -75,7 +79,7 @@ class SensorYears {
     DaylightBlock evaluate(std::size_t first, std::span<const Receiver> places, DaylightMatrix matrix) const;
 
   private:
-    static constexpr std::size_t result_count = 7;
+    static constexpr std::size_t result_count = 9;
     using Results = std::array<double, result_count>;
 
     void add_sun(const Receiver& at, std::span<const float> direct, std::span<float> sun) const;
