@@ -1,6 +1,7 @@
 #include "exitance/api/sky.hpp"
 
 #include "exitance/api/inside.hpp"
+#include "exitance/io/files/wea_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
 
 namespace exitance::api {
