@@ -210,7 +210,7 @@ double DaylightSample::bias_of_elements(double error, Progress& progress, const 
     for (const std::size_t k : for_bias_) points.push_back(setting_.sensors[sensors_[k].number]);
     PooledPaths exact(std::move(scene), points);
     const double n = static_cast<double>(points.size());
-    constexpr std::size_t first_paths = 1024, most_paths = 65'536;
+    constexpr std::size_t first_paths = 1024, most_paths = std::size_t{1} << 22;
     for (;;) {
         // A stopped run has no result, and the caller discards the bias.
         if (!exact.add(std::max(first_paths, exact.paths()), setting_.seed, progress, stop)) return 0;
