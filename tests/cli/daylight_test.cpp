@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 
 #include "cli/input_files.hpp"
@@ -175,7 +176,7 @@ TEST(ProgramDaylight, WritesTablesOfAYear) {
     write_text(folder / "p.pts", "3 1.5 0.8 0 0 1\n1 1.5 0.8 0 0 1\n");
     const Finished run = run_program({"daylight", folder / "s.h5", "--epw", folder / "w.epw", "--points",
                                       folder / "p.pts", "-o", folder / "year", "--eyes", folder / "p.pts", "--sun-day",
-                                      "02-01", "--sun-altitude", "10", "--json"});
+                                      "02-01", "--sun-altitude", "10", "--hours", "csv", "--json"});
     ASSERT_EQ(run.status, 0) << run.err;
     EXPECT_NE(run.out.find("\"sDA_300_50\": 1.0"), std::string::npos) << run.out;
     EXPECT_EQ(lines(read_text(folder / "year/illuminance.csv")), 25u);
@@ -187,7 +188,7 @@ TEST(ProgramDaylight, WritesTablesOfAYear) {
     // EN 17037: 12 of the 24 hours are daylight hours, and half of these have more than 750 lx through the open half.
     EXPECT_NE(run.out.find("\"EN17037_daylight_hours\": 12.0"), std::string::npos) << run.out;
     EXPECT_NE(run.out.find("\"EN17037_level\": 3.0"), std::string::npos) << run.out;
-    EXPECT_TRUE(first_line_of(read_text(folder / "year/metrics.csv")).ends_with(",E_half_of_daylight_high"));
+    EXPECT_TRUE(first_line_of(read_text(folder / "year/metrics.csv")).ends_with(",electric_hours_high"));
     EXPECT_EQ(lines(read_text(folder / "year/grids.csv")), 2u);
     EXPECT_EQ(lines(read_text(folder / "year/view.csv")), 3u);
     EXPECT_EQ(run_program({"daylight", folder / "s.h5", "--epw", folder / "w.epw", "--points", folder / "p.pts", "-o",
@@ -200,6 +201,177 @@ TEST(ProgramDaylight, WritesTablesOfAYear) {
               3);
     EXPECT_EQ(
         run_program({"daylight", folder / "s.h5", "--epw", folder / "w.epw", "--points", folder / "p.pts"}).status, 2);
+}
+
+TEST(ProgramDaylight, PartsGiveTheFilesOfTheWhole) {
+    const TemporaryFolder folder;
+    write_text(folder / "w.epw", weather_of_a_day());
+    std::string points;
+    for (int i = 0; i < 11; ++i) points += "3 " + std::to_string(0.2 + 0.2 * i) + " 0.8 0 0 1\n";
+    write_text(folder / "p.pts", points);
+    std::vector<std::string> words{"daylight", write_court(folder),
+                                   "--epw",    folder / "w.epw",
+                                   "--points", folder / "p.pts",
+                                   "--error",  "0.1",
+                                   "-q",       "-o"};
+    const auto run = [&](const std::string& output, const std::vector<std::string>& more) {
+        std::vector<std::string> all = words;
+        all.push_back(folder / output);
+        all.insert(all.end(), more.begin(), more.end());
+        return run_program(all);
+    };
+    for (const std::string format : {"h5", "csv", "npy"}) {
+        const Finished whole = run("whole", {"--hours", format, "--threads", "1"});
+        ASSERT_EQ(whole.status, 0) << whole.err;
+        if (format == "h5") {
+            EXPECT_EQ(run("parts", {"--merge"}).status, 3) << "no parts";
+            for (const std::string part : {"3/3", "1/3"}) {
+                const Finished ran = run("parts", {"--part", part, "--threads", "2"});
+                ASSERT_EQ(ran.status, 0) << ran.err;
+            }
+            EXPECT_EQ(run("parts", {"--merge"}).status, 3) << "a part is missing";
+            ASSERT_EQ(run("parts", {"--part", "2/3"}).status, 0);
+        }
+        const Finished merged = run("parts", {"--merge", "--hours", format});
+        ASSERT_EQ(merged.status, 0) << merged.err;
+        std::size_t files = 0;
+        for (const auto& entry : std::filesystem::directory_iterator(folder / "whole")) {
+            const std::string name = entry.path().filename().string();
+            EXPECT_EQ(read_text(entry.path()), read_text(folder / ("parts/" + name))) << name;
+            ++files;
+        }
+        EXPECT_GE(files, 5u);
+    }
+    // Parts of other options do not belong to this simulation.
+    EXPECT_EQ(run("parts", {"--merge", "--ground", "0.3"}).status, 3);
+    for (const std::string part : {"0/3", "4/3", "1", "1/3x"})
+        EXPECT_EQ(run("parts", {"--part", part}).status, 2) << part;
+}
+
+namespace {
+
+/// Value of a name in summary.csv.
+double summary_value(const std::string& folder, const std::string& name) {
+    const std::string text = read_text(folder + "/summary.csv");
+    const std::size_t at = text.find("\n" + name + ",");
+    EXPECT_NE(at, std::string::npos) << name << " in " << text;
+    return at == std::string::npos ? -1 : std::stod(text.substr(at + name.size() + 2));
+}
+
+}  // namespace
+
+TEST(ProgramDaylight, RadiancesMatricesAreWrittenAndRead) {
+    const TemporaryFolder folder;
+    const std::string scene = write_court(folder);
+    write_text(folder / "w.epw", weather_of_a_day());
+    write_text(folder / "p.pts", "3 1.5 0.8 0 0 1\n1 1.5 0.8 0 0 1\n2 1 0.8 0 0 1\n");
+    const auto run = [&](const std::string& output, const std::vector<std::string>& more) {
+        std::vector<std::string> words{
+            "daylight", scene, "--epw", folder / "w.epw", "--points", folder / "p.pts", "--error",
+            "0.1",      "-q",  "-o",    folder / output};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_program(words);
+    };
+    for (const std::string format : {"ascii", "float", "double"}) {
+        ASSERT_EQ(run("ours", {"--matrix", format}).status, 0);
+        const std::string matrix = folder / "ours/matrix.mtx";
+        EXPECT_EQ(read_text(matrix).find("#?RADIANCE\nexitance daylight\nNROWS=3\nNCOLS=146\nNCOMP=3\n"), 0u);
+        const Finished read = run("theirs", {"--coefficients", matrix, "--json"});
+        ASSERT_EQ(read.status, 0) << read.err;
+        EXPECT_NE(read.out.find("\"error_lux_hours\": null"), std::string::npos) << read.out;
+        // Daylight factors depend on the coefficients alone, which ascii rounds to seven digits.
+        const double factor = summary_value(folder / "ours", "mean_daylight_factor");
+        EXPECT_NEAR(summary_value(folder / "theirs", "mean_daylight_factor"), factor, 1e-5 * factor);
+    }
+    EXPECT_EQ(run("theirs", {"--coefficients", folder / "ours/matrix.mtx", "--sky-patches", "577"}).status, 3);
+    EXPECT_EQ(run("theirs", {"--coefficients", folder / "ours/matrix.mtx", "--part", "1/2"}).status, 2);
+}
+
+TEST(ProgramDaylight, WeaFilesOccupancyAndThresholds) {
+    const TemporaryFolder folder;
+    const std::string scene = write_court(folder);
+    write_text(folder / "w.epw", weather_of_a_day());
+    write_text(folder / "p.pts", "3 1.5 0.8 0 0 1\n1 1.5 0.8 0 0 1\n");
+    std::string wea =
+                    "place Town\nlatitude 47\nlongitude -8\ntime_zone -15\nsite_elevation 400\n"
+                    "weather_data_file_units 1\n",
+                occupied;
+    for (int h = 0; h < 24; ++h) {
+        wea += "6 21 " + std::to_string(h) + ".5 " + (h > 6 && h < 19 ? "500 120" : "0 0") + "\n";
+        occupied += h == 11 || h == 12 ? "1\n" : "0\n";
+    }
+    write_text(folder / "w.wea", wea), write_text(folder / "noon.csv", occupied);
+    const auto run = [&](const std::string& output, const std::vector<std::string>& more) {
+        std::vector<std::string> words{
+            "daylight", scene, "--epw", folder / "w.wea", "--points", folder / "p.pts", "--error",
+            "0.1",      "-q",  "-o",    folder / output};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_program(words).status;
+    };
+    ASSERT_EQ(run("a", {}), 0);
+    EXPECT_EQ(summary_value(folder / "a", "occupied_hours"), 10);
+    ASSERT_EQ(run("b", {"--occupied", folder / "noon.csv", "--target", "500", "--useful", "50,500,2000",
+                        "--dimmed-power", "0.25"}),
+              0);
+    EXPECT_EQ(summary_value(folder / "b", "occupied_hours"), 2);
+    EXPECT_EQ(summary_value(folder / "b", "sDA_500_50"), 1);
+    EXPECT_EQ(summary_value(folder / "b", "mean_cDA_500"), 1);
+    EXPECT_EQ(summary_value(folder / "b", "mean_electric_hours"), 0.5);  // two hours at a quarter of the power
+    EXPECT_NE(first_line_of(read_text(folder / "b/metrics.csv")).find(",DA_500,UDI_below_50,UDI_50_500,UDI_500_2000,"),
+              std::string::npos);
+    ASSERT_EQ(run("c", {"--occupied", "11-13"}), 0);
+    EXPECT_EQ(summary_value(folder / "c", "occupied_hours"), 2);
+    EXPECT_EQ(run("d", {"--occupied", "13-11"}), 2);
+    write_text(folder / "noon.csv", "1\n0\n");
+    EXPECT_EQ(run("d", {"--occupied", folder / "noon.csv"}), 3);
+    EXPECT_EQ(run("d", {"--useful", "300,100,3000"}), 2);
+}
+
+/// The scripts of examples/cluster for parts, in a folder with a scene, its weather and its sensors.
+class DaylightScripts : public testing::Test {
+  protected:
+    DaylightScripts() {
+        write_court(folder_);
+        write_text(folder_ / "w.epw", weather_of_a_day());
+        write_text(folder_ / "p.pts", "3 1.5 0.8 0 0 1\n1 1.5 0.8 0 0 1\n2 1 0.8 0 0 1\n");
+        EXPECT_EQ(shell("exitance daylight " + options("whole")).status, 0);
+    }
+    static std::string options(const std::string& output) {
+        return "court.obj --epw w.epw --points p.pts --error 0.1 -o " + output;
+    }
+    Finished shell(const std::string& command) {
+        const std::string path = std::filesystem::path(program()).parent_path().string();
+        return RunningProgram({"-c", "PATH='" + path + "':$PATH; cd '" + (folder_ / "") + "' && " + command}, {},
+                              "/bin/bash")
+            .finish();
+    }
+    static std::string script(const std::string& name) {
+        return "'" + source_folder() + "/examples/cluster/" + name + "' ";
+    }
+    void expect_whole() {
+        for (const std::string name : {"hours.h5", "metrics.csv", "summary.csv"})
+            EXPECT_EQ(read_text(folder_ / ("parts/" + name)), read_text(folder_ / ("whole/" + name))) << name;
+    }
+    TemporaryFolder folder_;
+};
+
+/// Slurm's array tasks, with the variables that Slurm sets, as plain processes.
+TEST_F(DaylightScripts, SlurmArrayTasksRunTheirParts) {
+    for (const std::string task : {"1", "2"}) {
+        const Finished run = shell("SLURM_ARRAY_TASK_ID=" + task + " SLURM_CPUS_PER_TASK=1 bash " +
+                                   script("daylight_array.sh") + "2 " + options("parts"));
+        EXPECT_EQ(run.status, 0) << run.out << run.err;
+    }
+    EXPECT_EQ(shell("exitance daylight --merge " + options("parts")).status, 0);
+    expect_whole();
+}
+
+TEST_F(DaylightScripts, DaskRunsAllPartsOnTwoWorkers) {
+    if (shell("/usr/bin/python3 -c 'import dask.distributed'").status != 0)
+        GTEST_SKIP() << "dask.distributed is not installed: apt-get install python3-distributed";
+    const Finished run = shell("/usr/bin/python3 " + script("dask_daylight.py") + "2 " + options("parts"));
+    EXPECT_EQ(run.status, 0) << run.out << run.err;
+    expect_whole();
 }
 
 }  // namespace exitance::test

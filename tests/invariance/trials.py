@@ -394,7 +394,7 @@ class Daylight:
                 for b in range(3):
                     out.write(",".join(map(files.number, (*(corner + (a + 0.5) / 4 * u + (b + 0.5) / 3 * v), *up))) + "\n")
         ran = program("daylight", path, "--epw", epw, "--points", sensors, "-o", folder, f"--north={files.number(copy.scene.north)}",
-                      "--threads", 1, "-q")
+                      "--hours", "csv", "--threads", 1, "-q")
         if ran.returncode != 0:
             return refused(ran, program)
         with open(os.path.join(folder, "illuminance.csv")) as text:

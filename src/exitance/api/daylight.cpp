@@ -1,7 +1,7 @@
 #include "exitance/daylight.hpp"
 
 #include "exitance/api/inside.hpp"
-#include "exitance/io/files/epw_file.hpp"
+#include "exitance/io/files/wea_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
 #include "exitance/what_if/daylight/daylight_results.hpp"
 
@@ -28,13 +28,13 @@ std::vector<std::string> warnings_of(const Weather& weather, const std::string& 
 }
 
 void add_metrics(const DaylightResults& results, Daylight& out) {
-    for (const DaylightMetrics& m : results.metrics) {
+    for (const SensorResults& sensor : results.sensors) {
+        const DaylightMetrics& m = sensor.metrics;
         out.daylight_factor.push_back(m.daylight_factor);
         out.autonomy.push_back(m.autonomy);
         out.useful.push_back(m.useful);
         out.sunny_hours.push_back(m.sunny_hours);
-    }
-    for (const SensorIntervals& s : results.intervals.sensors) {
+        const SensorIntervals& s = sensor.intervals;
         out.daylight_factor_bounds.push_back({s.factor.low, s.factor.high});
         out.autonomy_bounds.push_back({s.autonomy.low, s.autonomy.high});
     }
@@ -42,29 +42,32 @@ void add_metrics(const DaylightResults& results, Daylight& out) {
 
 Result<Daylight> compute(const exitance::Scene& scene, const Weather& weather, std::span<const ProbePoint> sensors,
                          const DaylightOptions& options, Run& run) {
-    DaylightResults results;
-    results.sensors.assign(sensors.begin(), sensors.end());
-    results.grids = {{"", sensors.size()}};
+    DaylightTask task;
+    task.sensors.assign(sensors.begin(), sensors.end());
+    task.grids = {{"", sensors.size()}};
+    task.division = options.division, task.error = options.error;
     Daylight out;
     for (const WeatherHour& hour : weather.hours) {
-        results.hours.push_back({hour.middle(weather.zone), hour.hour, hour.diffuse_horizontal, hour.direct_normal});
+        task.hours.push_back({hour.middle(weather.zone), hour.hour, hour.diffuse_horizontal, hour.direct_normal});
         out.hours.push_back({hour.month, hour.day, hour.hour});
     }
-    const DaylightSite site{.place = weather.place,
-                            .north = options.north,
-                            .ground = options.ground,
-                            .efficacy_diffuse = efficacy_of_sky,
-                            .efficacy_direct = efficacy_of_sun};
-    if (!simulate_year(scene, options.division, site, options.error, results, run.progress(), run.stop()))
-        return stopped("the computation of daylight");
+    task.site = {.place = weather.place,
+                 .zone = weather.zone,
+                 .north = options.north,
+                 .ground = options.ground,
+                 .efficacy_diffuse = efficacy_of_sky,
+                 .efficacy_direct = efficacy_of_sun};
+    exitance::Result<DaylightResults> found = collect_year(scene, task, run.progress(), run.stop());
+    if (!found) return stopped("the computation of daylight");
+    DaylightResults& results = *found;
     add_metrics(results, out);
     out.sensors = results.year.sensors;
     out.illuminance = std::move(results.year.illuminance), out.sun = std::move(results.year.sun);
     out.spatial_autonomy = results.summary.spatial_autonomy;
     out.sunlight_exposure = results.summary.sunlight_exposure;
-    const DaylightError error = results.worst_error();
+    const DaylightError error = worst_of(results.summary.errors);
     out.error_daylight_factor = error.factor, out.error_lux_hours = error.lux_hours;
-    if (std::max(error.factor, error.lux_hours) > options.error)
+    if (error.largest() > options.error)
         out.warnings.push_back("the error is above the requested one: finer patches of the sky may be needed");
     return out;
 }
@@ -77,7 +80,7 @@ Result<Daylight> daylight(const Scene& scene, const std::string& epw, std::span<
         if (const std::optional<Error> misuse = find_misuse(sensors, options)) return *misuse;
         const Result<std::vector<ProbePoint>> points = to_engine(sensors);
         if (!points) return points.error();
-        const exitance::Result<Weather> weather = load_epw(epw);
+        const exitance::Result<Weather> weather = load_weather(epw);
         if (!weather) return to_api(weather.error());
         Result<Daylight> out = compute(*scene.data().scene, *weather, *points, options, run);
         if (out) out->warnings = warnings_of(*weather, epw);

@@ -1,6 +1,7 @@
 #include "exitance/api/sky.hpp"
 
 #include "exitance/api/inside.hpp"
+#include "exitance/io/files/wea_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
 
 namespace exitance::api {
@@ -12,7 +13,7 @@ Result<std::optional<ChosenSky>> read_sky(const std::string& words, const std::s
     }
     std::optional<Weather> weather;
     if (!epw.empty()) {
-        exitance::Result<Weather> read = load_epw(epw);
+        exitance::Result<Weather> read = load_weather(epw);
         if (!read) return to_api(read.error());
         weather = std::move(*read);
     }

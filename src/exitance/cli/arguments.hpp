@@ -13,8 +13,11 @@
 #include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/io/export/light_map_files.hpp"
 #include "exitance/io/files/light_probe_file.hpp"
+#include "exitance/io/files/radiance_matrix.hpp"
 #include "exitance/io/pictures/false_colour.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
+#include "exitance/io/report/daylight_parts.hpp"
+#include "exitance/io/report/hours_file.hpp"
 #include "exitance/io/report/report.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/view_factors/view_factor_file.hpp"
@@ -158,8 +161,15 @@ struct DaylightArguments : CommonArguments {
     double error = 0.02;  ///< Requested relative RMS error of every grid.
     int division = 1;     ///< Parts into which Tregenza's sky patches are divided in each direction: 1, 2 or 4.
     double north = 0, ground = 0.2;
-    SunDay sun_day;    ///< Day for which hours of sunlight are counted.
-    std::string eyes;  ///< File with points for views out; empty: none.
+    SunDay sun_day;                      ///< Day for which hours of sunlight are counted.
+    std::string eyes;                    ///< File with points for views out; empty: none.
+    std::string occupied;                ///< "8-18", or a file with a number per hour; empty: 8 to 18 h.
+    DaylightCriteria criteria;           ///< Occupied hours are read from `occupied`.
+    std::string coefficients;            ///< Radiance matrix to evaluate; empty: none.
+    std::optional<MatrixFormat> matrix;  ///< Format of matrix.mtx; none: matrix.csv.
+    HoursFormat hours = HoursFormat::hdf5;
+    std::optional<DaylightPart> part;  ///< Only these sensors; none: all.
+    bool merge = false;                ///< Write the results of all parts.
     int threads = 0;
 };
 

@@ -109,7 +109,6 @@ void declare_unit(CLI::App& app, UnitArguments& unit);
 // Declare the options for quantities of lighting standards: --plane, --cylindrical, --maintenance, --observers and
 // --tables of `report`; --eyes, --sun-day and --sun-altitude of `daylight`.
 void declare_standards(CLI::App& app, ReportArguments& arguments);
-void declare_standards(CLI::App& app, DaylightArguments& arguments);
 
 // Declare all options of a verb, except those of declare_common() and declare_limits().
 void declare(CLI::App& app, SolveArguments& arguments);

@@ -95,33 +95,4 @@ void declare_standards(CLI::App& app, ReportArguments& arguments) {
         ->type_name("FILE");
 }
 
-void declare_standards(CLI::App& app, DaylightArguments& arguments) {
-    app.add_option("--eyes", arguments.eyes,
-                   "Places from which views out are assessed by EN 17037 (points as for --points, directions ignored); "
-                   "written to view.csv")
-        ->type_name("FILE");
-    app.add_option_function<std::string>(
-           "--sun-day",
-           [&arguments](const std::string& w) {
-               constexpr std::array<int, 12> days{31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-               int month = 0, day = 0;
-               char rest = 0;
-               if (std::sscanf(w.c_str(), "%2d-%2d%c", &month, &day, &rest) != 2 || month < 1 || month > 12 ||
-                   day < 1 || day > days[static_cast<std::size_t>(month - 1)])
-                   throw CLI::ValidationError("--sun-day", fmt::format("'{}' is not a day such as 03-21", w));
-               arguments.sun_day.month = month, arguments.sun_day.day = day;
-           },
-           "Cloudless day whose hours of sunlight are counted, MM-DD. Default 03-21")
-        ->type_name("DAY");
-    app.add_option_function<std::string>(
-           "--sun-altitude",
-           [&arguments](const std::string& w) {
-               arguments.sun_day.least_altitude = read_number("--sun-altitude", w);
-               if (!(arguments.sun_day.least_altitude >= 0 && arguments.sun_day.least_altitude < 90))
-                   throw CLI::ValidationError("--sun-altitude", fmt::format("must be from 0 to 90, not {}", w));
-           },
-           "Lowest altitude of the sun that counts for these hours, degrees. Default 0")
-        ->type_name("DEGREES");
-}
-
 }  // namespace exitance

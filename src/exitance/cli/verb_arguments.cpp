@@ -27,8 +27,6 @@ constexpr std::array<std::pair<ReferenceFormat, std::string_view>, 5> reference_
     {ReferenceFormat::list, "list"},
 }};
 
-constexpr std::array<std::pair<int, std::string_view>, 3> patch_counts{{{1, "146"}, {2, "577"}, {4, "2305"}}};
-
 }  // namespace
 
 void declare(CLI::App& app, ProbeArguments& arguments) {
@@ -185,41 +183,6 @@ void declare(CLI::App& app, BakeArguments& arguments) {
     app.add_flag(
         "--light-groups", arguments.light_groups,
         "Also write maps of each light group, undimmed, on the same charts. Needs a solution of solve --light-groups");
-    declare_work(app, arguments, arguments.threads);
-}
-
-void declare(CLI::App& app, DaylightArguments& arguments) {
-    declare_scene(app, arguments.scene);
-    app.get_option("SCENE")->description("Scene, or a solution (.h5) of it, whose own light is ignored");
-    app.add_option("--epw", arguments.epw, "Weather of a year (EnergyPlus .epw)")->type_name("FILE")->required();
-    app.add_option(
-           "--points", arguments.points,
-           "Sensors in metres, each with the direction that it faces: CSV x,y,z,nx,ny,nz, .pts x y z dx dy dz, or a "
-           "Honeybee model with sensor grids. Default: the grids of the scene, if it is a Honeybee model")
-        ->type_name("FILE");
-    app.add_option("-o,--output", arguments.output, "Folder for illuminance.csv, metrics.csv, matrix.csv, summary.csv")
-        ->type_name("FOLDER")
-        ->required();
-    add_positive(app, "--error", arguments.error, "R",
-                 "Requested relative RMS error of the daylight factors and the annual lux hours of every grid of "
-                 "sensors. Default 0.02")
-        ->check(CLI::Range(1e-4, 1.0));
-    add_choice(app, "--sky-patches", patch_counts, arguments.division, "Number of patches of the sky. Default 146");
-    app.add_option_function<std::string>(
-           "--north", [&arguments](const std::string& w) { arguments.north = read_number("--north", w); },
-           "Direction of north, degrees clockwise from the y axis as seen from above. Default 0")
-        ->type_name("DEGREES");
-    app.add_option_function<std::string>(
-           "--ground",
-           [&arguments](const std::string& w) {
-               arguments.ground = read_number("--ground", w);
-               if (!(arguments.ground >= 0 && arguments.ground <= 1))
-                   throw CLI::ValidationError("--ground", fmt::format("must be from 0 to 1, not {}", w));
-           },
-           "Reflectance of the ground beneath the scene. Default 0.2")
-        ->type_name("R");
-    declare_standards(app, arguments);
-    declare_json(app, arguments);
     declare_work(app, arguments, arguments.threads);
 }
 

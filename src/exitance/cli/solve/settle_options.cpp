@@ -7,6 +7,7 @@
 #include "exitance/cli/processes.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/probe_file.hpp"
+#include "exitance/io/files/wea_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
 #include "exitance/methods/options/support.hpp"
 #include "exitance/processes/distributed.hpp"
@@ -55,7 +56,7 @@ Result<void> read_sky(SolveArguments& arguments) {
     if (arguments.sky.empty()) return {};
     std::optional<Weather> weather;
     if (!arguments.epw.empty()) {
-        Result<Weather> read = load_epw(arguments.epw);
+        Result<Weather> read = load_weather(arguments.epw);
         if (!read) return read.error();
         weather = std::move(*read);
     }

@@ -1,17 +1,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <limits>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/border_points.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/io/files/epw_file.hpp"
 #include "exitance/io/files/probe_file.hpp"
+#include "exitance/io/files/radiance_matrix.hpp"
+#include "exitance/io/files/text_table.hpp"
+#include "exitance/io/files/wea_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/report/daylight_light_file.hpp"
+#include "exitance/io/report/daylight_parts.hpp"
 #include "exitance/io/report/daylight_tables.hpp"
-#include "exitance/io/report/honeybee_results.hpp"
 #include "exitance/io/scenes/honeybee/honeybee_model.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
@@ -27,22 +33,27 @@ std::vector<DaylightHour> hours_of(const Weather& weather) {
     return out;
 }
 
-std::string as_text(const DaylightResults& results, const std::string& folder) {
-    const DaylightSummary& s = results.summary;
-    const DaylightProvision::Shares& provision = results.provision.by_illuminance;
+std::string as_text(const DaylightSummary& s, const DaylightTask& task, const std::string& folder) {
+    const DaylightProvision::Shares& provision = s.provision.by_illuminance;
+    const DaylightError error = worst_of(s.errors);
     constexpr std::array<const char*, 4> levels{"no level", "minimum", "medium", "high"};
+    const std::string told =
+        std::isnan(error.factor)
+            ? "not known: the coefficients were read"
+            : fmt::format("{:.2g}% of the daylight factors, {:.2g}% of the lux hours (RMS, worst grid)",
+                          100 * error.factor, 100 * error.lux_hours);
     return fmt::format(
         "daylight   {} sensors, {} hours, {} of them occupied\n"
         "factor     {:.3g}% in the mean (overcast sky; 95%: {:.3g} to {:.3g}%)\n"
-        "error      {:.2g}% of the daylight factors, {:.2g}% of the lux hours (RMS, worst grid)\n"
-        "sDA        {:.1f}% of the sensors have 300 lx in half of the occupied hours (95%: {:.1f} to {:.1f}%)\n"
+        "error      {}\n"
+        "sDA        {:.1f}% of the sensors have {:g} lx in half of the occupied hours (95%: {:.1f} to {:.1f}%)\n"
+        "cDA        {:.1f}% in the mean; dimmed electric light takes {:.0f} hours at full power\n"
         "ASE        {:.1f}% of the sensors have 1000 lx of sun in more than 250 hours\n"
         "EN 17037   {}: 300 lx in half of the daylight hours at {:.1f}% of the sensors, 100 lx at {:.1f}%\n"
         "written    {}\n",
-        results.sensors.size(), results.hours.size(), s.occupied_hours, s.mean_daylight_factor,
-        results.intervals.mean_factor.low, results.intervals.mean_factor.high, 100 * results.worst_error().factor,
-        100 * results.worst_error().lux_hours, 100 * s.spatial_autonomy, 100 * results.intervals.spatial_autonomy.low,
-        100 * results.intervals.spatial_autonomy.high, 100 * s.sunlight_exposure,
+        s.sensors, task.hours.size(), s.occupied_hours, s.mean_daylight_factor, s.mean_factor.low, s.mean_factor.high,
+        told, 100 * s.spatial_autonomy, task.criteria.target, 100 * s.spatial_autonomy_bounds.low,
+        100 * s.spatial_autonomy_bounds.high, 100 * s.continuous_autonomy, s.electric_hours, 100 * s.sunlight_exposure,
         levels[static_cast<std::size_t>(provision.level())], 100 * provision.at_target[0],
         100 * provision.at_minimum[0], folder);
 }
@@ -87,19 +98,202 @@ void warn_of(const Weather& weather, const std::string& file, Progress& progress
             fmt::format("{}: {}: sDA, ASE and the levels of EN 17037 are defined for whole years", file, partial));
 }
 
+/// A simulation, the eye points for views out, and the files to write.
+struct Request {
+    DaylightTask task;
+    std::vector<Point> eyes;
+    DaylightFormats formats;
+};
+
 /// Prints the results. Returns the exit code: whether every grid has the requested error.
-ExitCode tell(const DaylightResults& results, const DaylightArguments& arguments, Terminal& terminal) {
+ExitCode tell(const Request& request, const DaylightSummary& summary, std::span<const ViewOut> views,
+              const DaylightArguments& arguments, Terminal& terminal) {
     if (arguments.json)
-        terminal.print(values_json(summary_values(results)));
+        terminal.print(values_json(summary_values(request.task, summary, views)));
     else if (!arguments.quiet)
-        terminal.print(as_text(results, arguments.output));
-    const DaylightError error = results.worst_error();
-    if (std::max(error.factor, error.lux_hours) <= arguments.error) return ExitCode::done;
+        terminal.print(as_text(summary, request.task, arguments.output));
+    const double error = worst_of(summary.errors).largest();
+    if (error <= arguments.error || !arguments.coefficients.empty()) return ExitCode::done;
     terminal.progress().warn(fmt::format(
-        "the error of {:.2g}% is above the requested {:.2g}%{}", 100 * std::max(error.factor, error.lux_hours),
-        100 * arguments.error,
-        results.bias.patches > arguments.error ? ": the patches of the sky are too coarse (--sky-patches)" : ""));
+        "the error of {:.2g}% is above the requested {:.2g}%{}", 100 * error, 100 * arguments.error,
+        summary.bias.patches > arguments.error ? ": the patches of the sky are too coarse (--sky-patches)" : ""));
     return ExitCode::demand_not_reached;
+}
+
+/// Reads the occupied hours: a range of every day, a file with a number per hour, or none for the default.
+Result<std::vector<std::uint8_t>> read_occupancy(const std::string& words, const std::vector<DaylightHour>& hours) {
+    std::vector<std::uint8_t> out;
+    if (words.empty()) return out;
+    int from = 0, to = 0;
+    char rest = 0;
+    if (std::sscanf(words.c_str(), "%2d-%2d%c", &from, &to, &rest) == 2) {
+        if (from < 0 || from >= to || to > 24)
+            return Error{ErrorCode::usage, fmt::format("'{}' is not a part of a day such as 8-18", words), "--occupied",
+                         ""};
+        for (const DaylightHour& hour : hours) out.push_back(hour.hour > from && hour.hour <= to);
+        return out;
+    }
+    Result<LineReader> lines = LineReader::open(words);
+    if (!lines) return lines.error();
+    while (const std::optional<std::string_view> line = lines->next_content()) {
+        const std::optional<double> number = parse_number(*line);
+        if (!number) return lines->error("is not a number");
+        out.push_back(*number > 0);
+    }
+    if (lines->failed()) return lines->read_error();
+    if (out.size() != hours.size())
+        return lines->error(fmt::format("has {} numbers for {} hours of the weather", out.size(), hours.size()));
+    return out;
+}
+
+/// Reads weather, sensors and eye points.
+Result<Request> read_request(const DaylightArguments& arguments, const Scene& scene, Terminal& terminal) {
+    const Result<Weather> weather = load_weather(arguments.epw);
+    if (!weather) return weather.error();
+    warn_of(*weather, arguments.epw, terminal.progress());
+    const std::string sensors = sensor_file(arguments);
+    if (sensors.empty()) return Error{ErrorCode::usage, "there are no sensors", "--points", "name a file with points"};
+    const Result<ProbePoints> points = load_probe_points(sensors);
+    if (!points) return points.error();
+    if (points->size() == 0)
+        return Error{ErrorCode::bad_input, "holds no points", sensors, "give one sensor per line: x y z dx dy dz"};
+    Request out;
+    if (!arguments.eyes.empty()) {
+        Result<ProbePoints> eyes = load_probe_points(arguments.eyes);
+        if (!eyes) return eyes.error();
+        out.eyes = std::move(eyes->points);
+    }
+    BorderPoints borders;
+    const PlaceFinder places(scene);
+    for (std::size_t i = 0; i < points->size(); ++i) {
+        out.task.sensors.push_back({points->points[i], points->normals[i]});
+        borders.add(places.find(points->points[i], points->normals[i]).is_between_sides);
+    }
+    borders.tell(terminal);
+    out.task.hours = hours_of(*weather);
+    out.task.site = {.place = weather->place,
+                     .zone = weather->zone,
+                     .north = arguments.north,
+                     .ground = arguments.ground,
+                     .efficacy_diffuse = efficacy_of_sky,
+                     .efficacy_direct = efficacy_of_sun};
+    out.task.grids = grids_of(sensors, points->size());
+    out.task.division = arguments.division, out.task.error = arguments.error;
+    out.task.sun_day = arguments.sun_day;
+    out.task.criteria = arguments.criteria;
+    Result<std::vector<std::uint8_t>> occupied = read_occupancy(arguments.occupied, out.task.hours);
+    if (!occupied) return occupied.error();
+    out.task.criteria.occupied = std::move(*occupied);
+    out.formats = {arguments.hours, arguments.matrix, ending(sensors) == ".hbjson"};
+    return out;
+}
+
+/// Passes the results of all sensors to the files; `pass` calls its argument with every block. Returns the totals.
+template <class Pass>
+Result<DaylightSummary> write_all(const Request& request, const DaylightBias& bias, std::span<const ViewOut> views,
+                                  const std::string& output, const Pass& pass) {
+    Result<DaylightFiles> files = DaylightFiles::create(output, request.task, request.formats);
+    if (!files) return files.error();
+    DaylightTotals totals(request.task.grids, request.task.hours, request.task.site, request.task.criteria);
+    const Result<void> passed = pass([&](const DaylightBlock& block) {
+        for (const SensorResults& sensor : block.results) totals.add(sensor);
+        return files->add(block);
+    });
+    if (!passed) return passed.error();
+    DaylightSummary summary = totals.summary(bias);
+    if (const Result<void> written = files->finish(summary, request.eyes, views); !written) return written.error();
+    return summary;
+}
+
+/// The light that all parts share.
+std::string light_file(const std::string& output) {
+    return (std::filesystem::path(output) / "light.h5").string();
+}
+
+/// Takes the kept light, or finds it and keeps it.
+Result<void> share_light(DaylightSimulation& simulation, const std::string& fingerprint, const std::string& output) {
+    Result<std::optional<DaylightLight>> kept = read_daylight_light(light_file(output), fingerprint);
+    if (!kept) return kept.error();
+    if (*kept && simulation.take(std::move(**kept))) return {};
+    if (const Result<void> found = simulation.find_light(); !found) return found;
+    return write_daylight_light(light_file(output), fingerprint, simulation.light());
+}
+
+/// Evaluates and writes one part of the sensors.
+Result<void> run_part(const Scene& scene, const Request& request, const DaylightArguments& arguments,
+                      Terminal& terminal) {
+    const std::string fingerprint = fingerprint_of(scene, request.task);
+    const std::string folder = arguments.part->folder(arguments.output);
+    std::error_code failure;
+    std::filesystem::create_directories(folder, failure);
+    DaylightSimulation simulation(scene, request.task, terminal.progress(), terminal.limits().stop());
+    if (const Result<void> shared = share_light(simulation, fingerprint, arguments.output); !shared) return shared;
+    const SensorRange range = sensors_of_part(arguments.part->part, arguments.part->parts, request.task.sensors.size());
+    Result<DaylightPartWriter> writer =
+        DaylightPartWriter::create(folder, request.task, range.count, simulation.light().elements.columns, fingerprint);
+    if (!writer) return writer.error();
+    const auto add = [&](const DaylightBlock& block) -> Result<void> { return writer->add(block), Result<void>(); };
+    if (const Result<void> done = simulation.evaluate(range, add); !done) return done;
+    return writer->finish();
+}
+
+/// Writes the results of all parts, as those of a run of the whole.
+Result<DaylightSummary> merge_parts(const Scene& scene, const Request& request, std::span<const ViewOut> views,
+                                    const std::string& output) {
+    const std::string fingerprint = fingerprint_of(scene, request.task);
+    const Result<std::size_t> parts = count_daylight_parts(output);
+    if (!parts) return parts.error();
+    const Result<std::optional<DaylightLight>> light = read_daylight_light(light_file(output), fingerprint);
+    if (!light) return light.error();
+    if (!*light)
+        return Error{ErrorCode::bad_input, "is missing or belongs to another scene, weather or option",
+                     light_file(output), "run a part again"};
+    return write_all(request, (*light)->bias, views, output, [&](const DaylightSink& sink) {
+        return merge_daylight_parts(output, *parts, request.task, fingerprint, sink);
+    });
+}
+
+/// Reads the matrix of another program as daylight coefficients: a row per sensor, a column per patch.
+Result<std::vector<float>> read_coefficients(const std::string& path, const DaylightTask& task) {
+    const Result<RadianceMatrix> matrix = read_radiance_matrix(path);
+    if (!matrix) return matrix.error();
+    const std::size_t patches = SkyPatches::count(static_cast<std::size_t>(task.division));
+    if (matrix->rows != task.sensors.size() || matrix->columns != patches ||
+        (matrix->components != 1 && matrix->components != bands))
+        return Error{ErrorCode::bad_input,
+                     fmt::format("has {} x {} entries of {} components, for {} sensors and {} patches", matrix->rows,
+                                 matrix->columns, matrix->components, task.sensors.size(), patches),
+                     path, "give --sky-patches and --points as for the matrix"};
+    if (matrix->components == 1) return matrix->values;
+    std::vector<float> out;
+    for (std::size_t k = 0; k < matrix->values.size(); k += bands) {
+        Spectrum light;
+        for (std::size_t b = 0; b < bands; ++b) light[b] = double(matrix->values[k + b]);
+        out.push_back(static_cast<float>(luminous_sum(light)));
+    }
+    return out;
+}
+
+/// Evaluates and writes all sensors with given coefficients, whose error is not known.
+Result<DaylightSummary> run_coefficients(const Scene& scene, const Request& request, std::span<const ViewOut> views,
+                                         const DaylightArguments& arguments, Terminal& terminal) {
+    const Result<std::vector<float>> coefficients = read_coefficients(arguments.coefficients, request.task);
+    if (!coefficients) return coefficients.error();
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    return write_all(request, {unknown, unknown, 0}, views, arguments.output, [&](const DaylightSink& sink) {
+        return evaluate_coefficients(scene, request.task, *coefficients, sink, terminal.limits().stop());
+    });
+}
+
+/// Evaluates and writes all sensors.
+Result<DaylightSummary> run_whole(const Scene& scene, const Request& request, std::span<const ViewOut> views,
+                                  const DaylightArguments& arguments, Terminal& terminal) {
+    if (!arguments.coefficients.empty()) return run_coefficients(scene, request, views, arguments, terminal);
+    DaylightSimulation simulation(scene, request.task, terminal.progress(), terminal.limits().stop());
+    if (const Result<void> found = simulation.find_light(); !found) return found.error();
+    return write_all(request, simulation.light().bias, views, arguments.output, [&](const DaylightSink& sink) {
+        return simulation.evaluate({0, request.task.sensors.size()}, sink);
+    });
 }
 
 }  // namespace
@@ -107,57 +301,22 @@ ExitCode tell(const DaylightResults& results, const DaylightArguments& arguments
 /// Runs `exitance daylight SCENE --epw WEATHER --points SENSORS -o FOLDER`.
 ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
-    const Result<Weather> weather = load_epw(arguments.epw);
-    if (!weather) return terminal.fail(weather.error());
-    warn_of(*weather, arguments.epw, terminal.progress());
-    const std::string sensors = sensor_file(arguments);
-    if (sensors.empty())
-        return terminal.fail({ErrorCode::usage, "there are no sensors", "--points", "name a file with points"});
-    const Result<ProbePoints> points = load_probe_points(sensors);
-    if (!points) return terminal.fail(points.error());
-    if (points->size() == 0)
-        return terminal.fail(
-            {ErrorCode::bad_input, "holds no points", sensors, "give one sensor per line: x y z dx dy dz"});
-    std::optional<ProbePoints> eyes;
-    if (!arguments.eyes.empty()) {
-        Result<ProbePoints> read = load_probe_points(arguments.eyes);
-        if (!read) return terminal.fail(read.error());
-        eyes = std::move(*read);
-    }
     const Result<Scene> scene = scene_of(arguments, terminal);
     if (!scene) return terminal.fail(scene.error());
-
-    DaylightResults results;
-    BorderPoints borders;
-    const PlaceFinder places(*scene);
-    for (std::size_t i = 0; i < points->size(); ++i) {
-        results.sensors.push_back({points->points[i], points->normals[i]});
-        borders.add(places.find(points->points[i], points->normals[i]).is_between_sides);
+    const Result<Request> request = read_request(arguments, *scene, terminal);
+    if (!request) return terminal.fail(request.error());
+    if (arguments.part) {
+        const Result<void> done = run_part(*scene, *request, arguments, terminal);
+        if (!done) return terminal.fail(done.error());
+        terminal.progress().finish();
+        return ExitCode::done;
     }
-    borders.tell(terminal);
-    results.hours = hours_of(*weather);
-    const DaylightSite site{.place = weather->place,
-                            .north = arguments.north,
-                            .ground = arguments.ground,
-                            .efficacy_diffuse = efficacy_of_sky,
-                            .efficacy_direct = efficacy_of_sun};
-    results.grids = grids_of(sensors, points->size());
-    if (const Result<void> done = simulate_year(*scene, arguments.division, site, arguments.error, results,
-                                                terminal.progress(), terminal.limits().stop());
-        !done)
-        return terminal.fail(done.error());
-    results.sunlight = sunlight_hours(*scene, results.sensors, site, weather->zone, arguments.sun_day);
-    if (eyes) results.eyes = eyes->points, results.views = views_out(*scene, results.eyes);
-    terminal.progress().phase("write");
-    if (const Result<void> written = write_daylight(arguments.output, results); !written)
-        return terminal.fail(written.error());
-    if (ending(sensors) == ".hbjson") {
-        const std::string folder = (std::filesystem::path(arguments.output) / "honeybee").string();
-        if (const Result<void> written = write_honeybee_results(folder, results); !written)
-            return terminal.fail(written.error());
-    }
+    const std::vector<ViewOut> views = views_out(*scene, request->eyes);
+    const Result<DaylightSummary> summary = arguments.merge ? merge_parts(*scene, *request, views, arguments.output)
+                                                            : run_whole(*scene, *request, views, arguments, terminal);
+    if (!summary) return terminal.fail(summary.error());
     terminal.progress().finish();
-    return tell(results, arguments, terminal);
+    return tell(*request, *summary, views, arguments, terminal);
 }
 
 }  // namespace exitance

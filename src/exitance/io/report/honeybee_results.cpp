@@ -6,9 +6,8 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
-
-#include "exitance/io/files/atomic_file.hpp"
 
 namespace exitance {
 namespace {
@@ -18,17 +17,6 @@ double hour_of_year(const DaylightHour& hour) {
     constexpr std::array<int, 12> days_before{0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334};
     const int day = days_before[static_cast<std::size_t>(hour.time.month - 1)] + hour.time.day - 1;
     return 24 * day + hour.hour - 0.5;
-}
-
-/// Indices of the hours in which some sensor receives light.
-std::vector<std::size_t> lit_hours(const DaylightResults& results) {
-    const std::size_t n = results.sensors.size();
-    std::vector<std::size_t> out;
-    for (std::size_t h = 0; h < results.hours.size(); ++h) {
-        const auto row = results.year.illuminance.begin() + static_cast<std::ptrdiff_t>(h * n);
-        if (std::any_of(row, row + static_cast<std::ptrdiff_t>(n), [](float v) { return v > 0; })) out.push_back(h);
-    }
-    return out;
 }
 
 /// Names of files for the grids: identifiers with other characters than Honeybee's, and those that were used before,
@@ -46,48 +34,70 @@ std::vector<std::string> file_names(std::span<const SensorGrid> grids) {
     return out;
 }
 
-Result<void> write_grid(const std::string& path, const DaylightResults& results, const std::vector<std::size_t>& hours,
-                        std::size_t first, std::size_t count) {
-    Result<AtomicFile> file = AtomicFile::create(path);
-    if (!file) return file.error();
-    std::string row;
-    for (std::size_t i = first; i < first + count; ++i) {
-        row.clear();
-        for (const std::size_t h : hours)
-            row += fmt::format("{:.5g} ", results.year.illuminance[h * results.sensors.size() + i]);
-        row += '\n';
-        file->write(row);
-    }
-    return file->commit();
-}
-
 }  // namespace
 
-Result<void> write_honeybee_results(const std::string& folder, const DaylightResults& results) {
+HoneybeeResults::HoneybeeResults(std::string folder, const DaylightTask& task)
+    : folder_(std::move(folder)), task_(&task), names_(file_names(task.grids)) {
+    for (std::size_t h = 0; h < task.hours.size(); ++h)
+        if (has_light(task.hours[h])) lit_.push_back(h);
+}
+
+Result<HoneybeeResults> HoneybeeResults::create(const std::string& folder, const DaylightTask& task) {
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
     if (failure) return Error{ErrorCode::cannot_write, "cannot be made: " + failure.message(), folder, ""};
-    const auto in = [&](const std::string& name) { return (std::filesystem::path(folder) / name).string(); };
-    const std::vector<std::size_t> hours = lit_hours(results);
-    nlohmann::ordered_json info = nlohmann::ordered_json::array();
-    const std::vector<SensorGrid>& grids = results.grids;
-    const std::vector<std::string> names = file_names(grids);
-    std::size_t first = 0;
-    for (std::size_t g = 0; g < grids.size(); ++g) {
-        const std::size_t count = grids[g].count;
-        const Result<void> written = write_grid(in(names[g] + ".ill"), results, hours, first, count);
-        if (!written) return written.error();
-        first += count;
-        info.push_back({{"name", names[g]},
-                        {"identifier", grids[g].name},
-                        {"full_id", names[g]},
-                        {"count", count},
-                        {"group", ""}});
+    return HoneybeeResults(folder, task);
+}
+
+std::string HoneybeeResults::path(const std::string& name) const {
+    return (std::filesystem::path(folder_) / name).string();
+}
+
+/// Opens the file of the next grid, and completes those of grids without sensors.
+Result<void> HoneybeeResults::open_grid() {
+    while (!file_ && grid_ < names_.size()) {
+        Result<AtomicFile> file = AtomicFile::create(path(names_[grid_] + ".ill"));
+        if (!file) return file.error();
+        if (task_->grids[grid_].count > 0) {
+            file_.emplace(std::move(*file));
+        } else {
+            if (const Result<void> written = file->commit(); !written) return written;
+            ++grid_;
+        }
     }
+    return {};
+}
+
+Result<void> HoneybeeResults::add(const DaylightBlock& block) {
+    const std::size_t hours = task_->hours.size();
+    std::string row;
+    for (std::size_t i = 0; i < block.results.size(); ++i) {
+        if (const Result<void> opened = open_grid(); !opened) return opened;
+        row.clear();
+        for (const std::size_t h : lit_)
+            fmt::format_to(std::back_inserter(row), "{:.5g} ", block.illuminance[i * hours + h]);
+        row += '\n';
+        file_->write(row);
+        if (++rows_ < task_->grids[grid_].count) continue;
+        if (const Result<void> written = file_->commit(); !written) return written;
+        file_.reset(), rows_ = 0, ++grid_;
+    }
+    return {};
+}
+
+Result<void> HoneybeeResults::finish() {
+    if (const Result<void> opened = open_grid(); !opened) return opened;
+    nlohmann::ordered_json info = nlohmann::ordered_json::array();
+    for (std::size_t g = 0; g < names_.size(); ++g)
+        info.push_back({{"name", names_[g]},
+                        {"identifier", task_->grids[g].name},
+                        {"full_id", names_[g]},
+                        {"count", task_->grids[g].count},
+                        {"group", ""}});
     std::string times;
-    for (const std::size_t h : hours) times += fmt::format("{:.1f}\n", hour_of_year(results.hours[h]));
-    if (const Result<void> written = write_file(in("sun-up-hours.txt"), times); !written) return written.error();
-    return write_file(in("grids_info.json"), info.dump(2) + "\n");
+    for (const std::size_t h : lit_) times += fmt::format("{:.1f}\n", hour_of_year(task_->hours[h]));
+    if (const Result<void> written = write_file(path("sun-up-hours.txt"), times); !written) return written.error();
+    return write_file(path("grids_info.json"), info.dump(2) + "\n");
 }
 
 }  // namespace exitance

@@ -9,6 +9,7 @@
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "support/run.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace exitance {
 namespace {
@@ -123,6 +124,40 @@ TEST(Hdf5Chunks, AreReportedIfDamaged) {
         failed += in->failed() ? 1 : 0;
     }
     EXPECT_GE(failed, places - 2) << "some bytes may be nobody's";
+}
+
+TEST(Hdf5Rows, RowsOfSeveralSetsAreAppendedInAnyPortions) {
+    const TemporaryFolder folder;
+    constexpr std::size_t rows = 300, columns = 2000;
+    std::vector<float> values(rows * columns);
+    std::vector<Half> halves;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+        values[k] = static_cast<float>(k % 3001) / 7;
+        halves.push_back(to_half(values[k]));
+    }
+    {
+        Hdf5Writer file(folder / "a.h5");
+        Hdf5Rows whole = file.open_rows<float>("whole", rows, columns, label),
+                 half = file.open_rows<Half>("half", rows, columns, label),
+                 small = file.open_rows<Half>("small", 2, 3, label);
+        for (std::size_t row = 0, step = 1; row < rows; row += step, step = std::min(2 * step, rows - row)) {
+            file.append(whole, std::span<const float>(values).subspan(row * columns, step * columns));
+            file.append(half, std::span<const Half>(halves).subspan(row * columns, step * columns));
+        }
+        for (const std::size_t row : {0, 1}) file.append(small, std::span<const Half>(halves).subspan(3 * row, 3));
+        file.write("at once", values, columns, label);
+        ASSERT_TRUE(file.commit());
+    }
+    Result<Hdf5Reader> read = Hdf5Reader::open(folder / "a.h5");
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->read<float>("whole", columns), values);
+    EXPECT_EQ(read->read<float>("at once", columns), values);
+    // The library's own conversion of 16-bit numbers checks the description of their type.
+    const std::vector<float> converted = read->read<float>("half", columns), few = read->read<float>("small", 3);
+    ASSERT_EQ(converted.size(), halves.size());
+    for (std::size_t k = 0; k < halves.size(); ++k) EXPECT_EQ(converted[k], to_float(halves[k])) << k;
+    ASSERT_EQ(few.size(), 6u);
+    for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(few[k], to_float(halves[k])) << k;
 }
 
 }  // namespace

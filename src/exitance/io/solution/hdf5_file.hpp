@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "exitance/base/half.hpp"
 #include "exitance/base/result.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/rehearsal.hpp"
@@ -16,7 +17,7 @@
 namespace exitance {
 
 /// Number types of data sets.
-enum class Hdf5Type { uint8, int32, uint32, int64, float32, float64, uint16 };
+enum class Hdf5Type { uint8, int32, uint32, int64, float32, float64, uint16, float16 };
 
 template <class T>
 constexpr Hdf5Type hdf5_type() {
@@ -25,6 +26,7 @@ constexpr Hdf5Type hdf5_type() {
     if constexpr (std::is_same_v<T, std::int32_t>) return Hdf5Type::int32;
     if constexpr (std::is_same_v<T, std::uint32_t>) return Hdf5Type::uint32;
     if constexpr (std::is_same_v<T, std::int64_t>) return Hdf5Type::int64;
+    if constexpr (std::is_same_v<T, Half>) return Hdf5Type::float16;
     if constexpr (std::is_same_v<T, float>) return Hdf5Type::float32;
     if constexpr (std::is_same_v<T, double>) return Hdf5Type::float64;
 }
@@ -33,6 +35,16 @@ constexpr Hdf5Type hdf5_type() {
 struct Hdf5Label {
     const char* units;      ///< "m", "W/m^2" (see `Hdf5Writer::use_lumens`), or "1" for dimensionless numbers.
     const char* long_name;  ///< Description in a few words.
+};
+
+/// A data set whose rows arrive one after the other, see Hdf5Writer::open_rows().
+struct Hdf5Rows {
+    std::int64_t set = -1;  ///< Handle of the library.
+    std::string name;
+    Hdf5Type type = Hdf5Type::float32;
+    std::size_t rows = 0, columns = 0;
+    std::size_t written = 0;         ///< Rows in the file.
+    std::vector<std::byte> pending;  ///< Rows that do not fill the chunks that are packed together.
 };
 
 /// Writes an HDF5 file, which appears whole or not at all (see AtomicFile). Data are written as they arrive, in little
@@ -73,6 +85,16 @@ class Hdf5Writer {
             for (std::size_t i = 0; i < count; ++i) make(first + i, std::span<T>(values + i * columns, columns));
         });
     }
+    /// Creates a data set whose rows append() adds later; several sets may be open at a time. Memory: 4 MB per set.
+    template <class T>
+    Hdf5Rows open_rows(const std::string& name, std::size_t rows, std::size_t columns, Hdf5Label label) {
+        return open_rows(name, hdf5_type<T>(), rows, columns, label);
+    }
+    /// Adds whole rows of the set's type. All rows must be added before commit().
+    template <class T>
+    void append(Hdf5Rows& set, std::span<const T> values) {
+        append(set, std::as_bytes(values));
+    }
     void write_text(const std::string& name, std::string_view text, Hdf5Label label);
     /// Pads the texts to the length of the longest.
     void write_texts(const std::string& name, const std::vector<std::string>& texts, Hdf5Label label);
@@ -94,6 +116,9 @@ class Hdf5Writer {
     using MakeBlock = std::function<void(std::size_t first, std::size_t count, void* out)>;
     void write_blocks(const std::string& name, Hdf5Type type, std::size_t rows, std::size_t columns, Hdf5Label label,
                       const MakeBlock& make);
+    Hdf5Rows open_rows(const std::string& name, Hdf5Type type, std::size_t rows, std::size_t columns, Hdf5Label label);
+    void append(Hdf5Rows& set, std::span<const std::byte> rows);
+    void flush(Hdf5Rows& set);
     bool write_chunks(std::int64_t set, Hdf5Type type, std::size_t rows, std::size_t columns, const MakeBlock& make);
     void write_numbers(const std::string& name, const void* data, Hdf5Type type, std::size_t rows, std::size_t columns,
                        Hdf5Label label);

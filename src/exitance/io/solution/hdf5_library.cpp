@@ -19,8 +19,26 @@ Hdf5Handle::~Hdf5Handle() {
     if (id_ >= 0) H5Idec_ref(id_);
 }
 
+namespace {
+
+/// Type of 16-bit floating-point numbers (IEEE 754 binary16), little-endian, in memory and in files.
+std::int64_t half_type() {
+    static const hid_t type = [] {
+        const hid_t half = H5Tcopy(H5T_IEEE_F32LE);
+        H5Tset_fields(half, 15, 10, 5, 0, 10);  // sign, exponent and its bits, mantissa and its bits
+        H5Tset_size(half, sizeof(Half));
+        H5Tset_ebias(half, 15);
+        return half;
+    }();
+    return type;
+}
+
+}  // namespace
+
 std::int64_t hdf5_native_type(Hdf5Type type) {
     switch (type) {
+        case Hdf5Type::float16:
+            return half_type();
         case Hdf5Type::uint8:
             return H5T_NATIVE_UINT8;
         case Hdf5Type::uint16:
@@ -41,6 +59,8 @@ std::int64_t hdf5_native_type(Hdf5Type type) {
 
 std::int64_t hdf5_stored_type(Hdf5Type type) {
     switch (type) {
+        case Hdf5Type::float16:
+            return half_type();
         case Hdf5Type::uint8:
             return H5T_STD_U8LE;
         case Hdf5Type::uint16:
@@ -81,7 +101,7 @@ bool is_plain_number(std::int64_t type) {
     if (H5Tget_class(type) == H5T_INTEGER) return H5Tget_precision(type) == 8 * H5Tget_size(type);
     for (const hid_t known : {H5T_IEEE_F32LE, H5T_IEEE_F64LE, H5T_IEEE_F32BE, H5T_IEEE_F64BE})
         if (H5Tequal(type, known) > 0) return true;
-    return false;
+    return H5Tequal(type, half_type()) > 0;
 }
 
 bool holds_really(std::int64_t set, std::size_t item_bytes, std::size_t items, std::uint64_t file_bytes) {

@@ -71,7 +71,7 @@ std::optional<std::size_t> Hdf5Reader::open_numbers(const std::string& name, Hdf
     if (set_ >= 0) H5Idec_ref(set_);
     set_ = *set, set_name_ = name;
     const Hdf5Handle space(H5Dget_space(set_)), held(H5Dget_type(set_));
-    const bool fraction = type == Hdf5Type::float32 || type == Hdf5Type::float64;
+    const bool fraction = type == Hdf5Type::float16 || type == Hdf5Type::float32 || type == Hdf5Type::float64;
     if (H5Tget_class(held) != (fraction ? H5T_FLOAT : H5T_INTEGER) || !is_plain_number(held))
         return fail(name, fraction ? "does not hold fractions" : "does not hold integers"), std::nullopt;
     const int rank = H5Sget_simple_extent_ndims(space), wanted = columns == 1 ? 1 : 2;

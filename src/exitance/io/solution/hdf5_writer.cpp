@@ -56,6 +56,23 @@ hid_t group_creation(hid_t of_class) {
     return creation;
 }
 
+/// Packs chunks with all threads and writes them in order. `data`: rows from `row` on, whole chunks but for the last
+/// rows of the set; is padded with zeros.
+bool write_packed(std::int64_t set, const Hdf5Filters& filters, std::size_t row, std::size_t together,
+                  std::size_t chunk_size, std::vector<std::byte>& data) {
+    const std::size_t count = (data.size() + chunk_size - 1) / chunk_size;
+    data.resize(count * chunk_size, std::byte{0});
+    std::array<std::vector<std::byte>, hdf5_chunks_together> packed;
+    parallel_for(count, 1,
+                 [&](std::size_t k) { filters.pack(std::span(data).subspan(k * chunk_size, chunk_size), packed[k]); },
+                 {"pack"});
+    for (std::size_t k = 0; k < count; ++k) {
+        const std::array<hsize_t, 2> at{row + k * together, 0};
+        if (H5Dwrite_chunk(set, H5P_DEFAULT, 0, at.data(), packed[k].size(), packed[k].data()) < 0) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 Hdf5Writer::Hdf5Writer(const std::string& path) : path_(path), output_(AtomicFile::create(path)) {
@@ -130,29 +147,61 @@ void Hdf5Writer::write_set(const std::string& name, const void* data, std::int64
     describe(name, label);
 }
 
-/// Computes the rows of a few chunks at a time, packs them with all threads, and writes them in order.
+/// Computes the rows of a few chunks at a time and writes them.
 bool Hdf5Writer::write_chunks(std::int64_t set, Hdf5Type type, std::size_t rows, std::size_t columns,
                               const MakeBlock& make) {
     const Hdf5Filters filters = filters_of(type);
-    const std::size_t row_bytes = columns * filters.item_bytes, together = rows_of_chunk(row_bytes, rows),
-                      chunks = (rows + together - 1) / together, chunk_bytes = together * row_bytes;
-    std::vector<std::byte> made(std::min(chunks, hdf5_chunks_together) * chunk_bytes);
-    std::array<std::vector<std::byte>, hdf5_chunks_together> packed;
-    for (std::size_t first = 0; first < chunks; first += hdf5_chunks_together) {
-        const std::size_t count = std::min(hdf5_chunks_together, chunks - first), row = first * together,
-                          made_rows = std::min(rows - row, count * together);
+    const std::size_t row_bytes = columns * filters.item_bytes, together = rows_of_chunk(row_bytes, rows);
+    std::vector<std::byte> made;
+    for (std::size_t row = 0; row < rows; row += hdf5_chunks_together * together) {
+        const std::size_t made_rows = std::min(rows - row, hdf5_chunks_together * together);
+        made.resize(made_rows * row_bytes);
         make(row, made_rows, made.data());
-        std::fill(made.begin() + static_cast<std::ptrdiff_t>(made_rows * row_bytes), made.end(), std::byte{0});
-        parallel_for(
-            count, 1,
-            [&](std::size_t k) { filters.pack(std::span(made).subspan(k * chunk_bytes, chunk_bytes), packed[k]); },
-            {"pack"});
-        for (std::size_t k = 0; k < count; ++k) {
-            const std::array<hsize_t, 2> at{row + k * together, 0};
-            if (H5Dwrite_chunk(set, H5P_DEFAULT, 0, at.data(), packed[k].size(), packed[k].data()) < 0) return false;
-        }
+        if (!write_packed(set, filters, row, together, together * row_bytes, made)) return false;
     }
     return true;
+}
+
+Hdf5Rows Hdf5Writer::open_rows(const std::string& name, Hdf5Type type, std::size_t rows, std::size_t columns,
+                               Hdf5Label label) {
+    Hdf5Rows out;
+    out.name = name, out.type = type, out.rows = rows, out.columns = columns;
+    if (!failure_.empty()) return out;
+    const std::array<std::size_t, 2> extent = {rows, columns};
+    out.set = make_set(name, hdf5_stored_type(type), std::span(extent).first(columns == 1 ? 1 : 2),
+                       H5Tget_size(hdf5_native_type(type)));
+    if (out.set < 0)
+        fail("data set " + name);
+    else
+        describe(name, label);
+    return out;
+}
+
+void Hdf5Writer::append(Hdf5Rows& set, std::span<const std::byte> rows) {
+    if (set.set < 0 || !failure_.empty()) return;
+    const std::size_t row_bytes = set.columns * H5Tget_size(hdf5_native_type(set.type)),
+                      at_once = hdf5_chunks_together * rows_of_chunk(row_bytes, set.rows) * row_bytes;
+    while (!rows.empty()) {
+        const std::size_t taken = std::min(rows.size(), at_once - set.pending.size());
+        set.pending.insert(set.pending.end(), rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(taken));
+        rows = rows.subspan(taken);
+        const bool is_complete = set.written * row_bytes + set.pending.size() == set.rows * row_bytes;
+        if (set.pending.size() == at_once || is_complete) flush(set);
+    }
+}
+
+/// Writes the pending rows, and closes the set after its last row.
+void Hdf5Writer::flush(Hdf5Rows& set) {
+    const Hdf5Filters filters = filters_of(set.type);
+    const std::size_t row_bytes = set.columns * filters.item_bytes, count = set.pending.size() / row_bytes;
+    const bool is_small = set.rows * row_bytes < min_compressed_bytes;
+    const std::size_t together = rows_of_chunk(row_bytes, set.rows);
+    const bool done =
+        is_small ? H5Dwrite(set.set, hdf5_native_type(set.type), H5S_ALL, H5S_ALL, H5P_DEFAULT, set.pending.data()) >= 0
+                 : write_packed(set.set, filters, set.written, together, together * row_bytes, set.pending);
+    if (!done) fail("data set " + set.name);
+    set.written += count, set.pending.clear();
+    if (set.written == set.rows) H5Idec_ref(std::exchange(set.set, -1));
 }
 
 void Hdf5Writer::write_blocks(const std::string& name, Hdf5Type type, std::size_t rows, std::size_t columns,

@@ -118,17 +118,23 @@ constexpr double perez_table[8][5][4] = {
 
 }  // namespace
 
+bool is_product(const SkyModel& sky) {
+    return !sky.intermediate && !sky.blends_ground;
+}
+
+double gradation(const SkyModel& sky, double z) {
+    return 1 + (sky.a != 0 ? sky.a * std::exp(sky.b / std::max(z, min_cosine)) : 0) + sky.g * z;
+}
+
+double indicatrix(const SkyModel& sky, double cos_gamma) {
+    return sky.f0 + (sky.c != 0 ? sky.c * std::exp(sky.d * std::acos(cos_gamma)) : 0) +
+           (sky.e != 0 ? sky.e * cos_gamma * cos_gamma : 0);
+}
+
 double SkyModel::value(const Vec3& w) const {
-    const double z = std::max(w.z, min_cosine), cos_gamma = std::clamp(dot(w, sun), -1.0, 1.0);
-    double out = 0;
-    if (intermediate) {
-        out = f0 * intermediate_value(w.z, std::acos(cos_gamma), sun.z);
-    } else {
-        const double phi = 1 + (a != 0 ? a * std::exp(b / z) : 0) + g * w.z;
-        const double f =
-            f0 + (c != 0 ? c * std::exp(d * std::acos(cos_gamma)) : 0) + (e != 0 ? e * cos_gamma * cos_gamma : 0);
-        out = phi * f;
-    }
+    const double cos_gamma = std::clamp(dot(w, sun), -1.0, 1.0);
+    double out = intermediate ? f0 * intermediate_value(w.z, std::acos(cos_gamma), sun.z)
+                              : gradation(*this, w.z) * indicatrix(*this, cos_gamma);
     if (blends_ground) {
         const double base = w.z + 1.01, square = base * base, fourth = square * square;
         const double weight = fourth * fourth * square;
@@ -221,16 +227,10 @@ PerezState perez_state(const PerezInput& input, const Normal& sun) {
     return out;
 }
 
-SkyModel perez_sky(const PerezInput& input, const Normal& direction) {
-    Normal sun = direction;
-    if (sun.z < 0) {
-        const double across = std::hypot(sun.x, sun.y);
-        sun = across > 0 ? Normal{sun.x / across, sun.y / across, 0} : Normal{0, 1, 0};
-    }
-    return perez_sky_of(perez_state(input, sun), sun);
-}
+namespace {
 
-SkyModel perez_sky_of(const PerezState& state, const Normal& sun) {
+/// Returns Perez' sky with scale 1.
+SkyModel unscaled_perez_sky_of(const PerezState& state, const Normal& sun) {
     static constexpr std::array<double, 7> bins{1.065, 1.230, 1.500, 1.950, 2.800, 4.500, 6.200};
     const double clearness = state.clearness;
     double brightness = state.brightness;
@@ -250,8 +250,32 @@ SkyModel perez_sky_of(const PerezState& state, const Normal& sun) {
         sky.d = -std::exp(brightness * (kd[0] + kd[1] * zenith)) + kd[2] + brightness * kd[3];
     }
     sky.sun = sun;
+    return sky;
+}
+
+/// Returns the direction to a sun that is not below the horizon.
+Normal raised(const Normal& sun) {
+    if (!(sun.z < 0)) return sun;
+    const double across = std::hypot(sun.x, sun.y);
+    return across > 0 ? Normal{sun.x / across, sun.y / across, 0} : Normal{0, 1, 0};
+}
+
+}  // namespace
+
+SkyModel perez_sky_of(const PerezState& state, const Normal& sun) {
+    SkyModel sky = unscaled_perez_sky_of(state, sun);
     sky.normalize();
     return sky;
+}
+
+SkyModel perez_sky(const PerezInput& input, const Normal& direction) {
+    const Normal sun = raised(direction);
+    return perez_sky_of(perez_state(input, sun), sun);
+}
+
+SkyModel unscaled_perez_sky(const PerezInput& input, const Normal& direction) {
+    const Normal sun = raised(direction);
+    return unscaled_perez_sky_of(perez_state(input, sun), sun);
 }
 
 }  // namespace exitance

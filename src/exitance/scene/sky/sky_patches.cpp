@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "exitance/scene/sky/perez_sky.hpp"
+
 namespace exitance {
 namespace {
 
@@ -37,6 +39,7 @@ SkyPatches::SkyPatches(int m) {
     first_.push_back(middle_.size());
     middle_.push_back({0, 0, 1}), solid_angle_.push_back(2 * pi * (1 - std::sin(altitude(in_row_.size()))));
     horizontal_.push_back(pi * squared(std::cos(altitude(in_row_.size()))));
+    make_points();
     make_facets();
 }
 
@@ -87,20 +90,39 @@ void SkyPatches::make_facets() {
     add(std::move(cap), first_.back());
 }
 
+void SkyPatches::make_points() {
+    for (std::size_t row = 0; row < in_row_.size(); ++row)
+        for (std::size_t k = 0; k < in_row_[row]; ++k)
+            for (int i = 0; i < points_across; ++i)
+                for (int j = 0; j < points_across; ++j)
+                    points_.push_back(direction(altitude(row) + (i + 0.5) / points_across * height_,
+                                                2 * pi * (static_cast<double>(k) + (j - 1) / (1.0 * points_across)) /
+                                                    static_cast<double>(in_row_[row])));
+}
+
 std::vector<double> SkyPatches::mean_values(const SkyModel& sky) const {
     std::vector<double> out(size());
-    for (std::size_t row = 0; row < in_row_.size(); ++row)
-        for (std::size_t k = 0; k < in_row_[row]; ++k) {
-            double sum = 0, weight = 0;
-            for (int i = 0; i < 3; ++i)
-                for (int j = 0; j < 3; ++j) {
-                    const double h = altitude(row) + (i + 0.5) / 3 * height_, w = std::cos(h);
-                    const double a =
-                        2 * pi * (static_cast<double>(k) + (j - 1) / 3.0) / static_cast<double>(in_row_[row]);
-                    sum += w * sky.value(direction(h, a)), weight += w;
-                }
-            out[first_[row] + k] = sum / weight;
+    const bool product = is_product(sky);
+    auto point = points_.begin();
+    for (std::size_t row = 0; row < in_row_.size(); ++row) {
+        std::array<double, points_across> phi{}, weight{};  // of the heights of the points
+        double all = 0;
+        for (std::size_t i = 0; i < points_across; ++i) {
+            const double h = altitude(row) + (static_cast<double>(i) + 0.5) / points_across * height_;
+            weight[i] = std::cos(h), phi[i] = gradation(sky, std::sin(h));
+            for (int j = 0; j < points_across; ++j) all += weight[i];
         }
+        for (std::size_t k = 0; k < in_row_[row]; ++k) {
+            double sum = 0;
+            for (std::size_t i = 0; i < points_across; ++i)
+                for (int j = 0; j < points_across; ++j, ++point)
+                    sum +=
+                        weight[i] *
+                        (product ? std::max(0.0, phi[i] * indicatrix(sky, std::clamp(dot(*point, sky.sun), -1.0, 1.0)))
+                                 : sky.value(*point));
+            out[first_[row] + k] = sum / all;
+        }
+    }
     out[first_.back()] = sky.value({0, 0, 1});
     return out;
 }

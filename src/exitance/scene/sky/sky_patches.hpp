@@ -12,6 +12,8 @@ class SkyPatches {
   public:
     explicit SkyPatches(int m);
 
+    /// Number of patches of a division, with the ground.
+    static constexpr std::size_t count(std::size_t m) { return 144 * m * m + 2; }
     std::size_t size() const { return middle_.size(); }  ///< Includes the ground.
     /// Returns the patch that contains a direction (unit vector).
     std::size_t of(const Vec3& w) const;
@@ -25,11 +27,13 @@ class SkyPatches {
     const std::vector<DistantFacet>& facets() const { return facets_; }
     const std::vector<std::uint32_t>& patch_of_facet() const { return patch_of_facet_; }
 
-    /// Returns the mean of value() over each patch above the ground, by 3 x 3 points; 0 for the ground.
+    /// Returns the mean of value() over each patch above the ground, by 3 x 3 points; 0 for the ground. About 20 ns per
+    /// point.
     std::vector<double> mean_values(const SkyModel& sky) const;
 
   private:
     void make_facets();
+    void make_points();
     double altitude(std::size_t row) const { return static_cast<double>(row) * height_; }  ///< Lower border, radians.
 
     double height_;                    ///< Height of a row, radians.
@@ -37,6 +41,8 @@ class SkyPatches {
     std::vector<std::size_t> in_row_;  ///< Number of patches per row.
     std::vector<Normal> middle_;
     std::vector<double> solid_angle_, horizontal_;
+    static constexpr int points_across = 3;  ///< Points per patch in each direction for mean_values().
+    std::vector<Normal> points_;             ///< Points of all patches but the ground and the zenith, patch by patch.
     std::vector<DistantFacet> facets_;
     std::vector<std::uint32_t> patch_of_facet_;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "exitance/base/random.hpp"
+#include "exitance/scene/sky/perez_sky.hpp"
 
 namespace exitance {
 
@@ -12,6 +13,7 @@ TEST(SkyPatches, HaveThePublishedNumberAndCoverTheSky) {
     for (const auto& [m, count] : {std::pair{1, 145u}, {2, 577u}, {4, 2305u}}) {
         const SkyPatches patches(m);
         EXPECT_EQ(patches.size(), count + 1);  // and one for the ground
+        EXPECT_EQ(patches.size(), SkyPatches::count(static_cast<std::size_t>(m)));
         double solid_angle = 0;
         for (std::size_t p = 1; p < patches.size(); ++p) {
             solid_angle += patches.solid_angle(p);
@@ -53,6 +55,16 @@ TEST(SkyPatches, MeansOfASkyGiveItsIrradiance) {
     for (std::size_t p = 1; p < patches.size(); ++p) horizontal += means[p] * patches.horizontal(p);
     // The mean ignores that cosine and sky vary together within a patch.
     EXPECT_NEAR(horizontal * sky.scale / pi, 1, 2e-3);
+}
+
+TEST(SkyPatches, UnscaledSkiesDifferFromScaledOnesByTheirScale) {
+    const PerezInput input{120, 500, 100};
+    const Normal sun{0.6, 0, 0.8};
+    const SkyModel scaled = perez_sky(input, sun), unscaled = unscaled_perez_sky(input, sun);
+    EXPECT_EQ(unscaled.scale, 1);
+    const SkyPatches patches(1);
+    const std::vector<double> a = patches.mean_values(scaled), b = patches.mean_values(unscaled);
+    for (std::size_t p = 0; p < patches.size(); ++p) EXPECT_EQ(a[p], b[p]);
 }
 
 }  // namespace exitance

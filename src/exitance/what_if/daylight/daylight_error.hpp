@@ -1,9 +1,7 @@
 #pragma once
 
-#include <span>
-#include <vector>
+#include <string>
 
-#include "exitance/base/progress.hpp"
 #include "exitance/what_if/daylight/daylight_year.hpp"
 
 namespace exitance {
@@ -18,7 +16,12 @@ struct SensorGrid {
 struct DaylightError {
     double factor = 0;     ///< Error of the daylight factors.
     double lux_hours = 0;  ///< Error of the sums of the illuminances of all hours.
+
+    double largest() const { return std::max(factor, lux_hours); }
 };
+
+/// Returns the largest errors of a grid; not a number if an error is not known.
+DaylightError worst_of(std::span<const DaylightError> errors);
 
 /// Parts of the error that the spread of the replicates does not show, measured at random sensors; relative to the mean
 /// there.
@@ -28,27 +31,36 @@ struct DaylightBias {
     /// Difference of the light of random hours to that with the next finer patches, without straight sunlight.
     double patches = 0;
     std::size_t sensors = 0;  ///< Number of sensors at which these were measured.
+
+    double total() const { return std::hypot(elements, patches); }
 };
 
-/// Setting of one computation of a daylight matrix.
-struct DaylightSetting {
-    const Scene& scene;
-    std::span<const ProbePoint> sensors;
-    int division = 1;           ///< Parts into which Tregenza's patches are divided in each direction: 1, 2 or 4.
-    const SkyPatches& patches;  ///< The patches of this division.
-    std::span<const DaylightHour> hours;
-    const DaylightSite& site;
-    const YearSky& sky;  ///< Light of the hours in these patches.
-    DaylightOptions options;
+/// A result of each replicate.
+using Replicates = std::array<double, daylight_replicates>;
+
+/// Mean of the replicates, and variance of this mean.
+struct ReplicateMean {
+    double mean = 0, variance = 0;
+};
+ReplicateMean mean_of(const Replicates& values);
+
+/// Results of a sensor that are linear in its coefficients, and for which errors are estimated.
+struct LinearResults {
+    Replicates factor{};     ///< Daylight factor, per cent.
+    Replicates lux_hours{};  ///< Light of all hours, lx h, without straight sunlight.
 };
 
-/// Measures the bias at up to 32 random sensors. `accuracy`: paths are traced until their standard error is a third of
-/// this share of the mean.
-DaylightBias measure_daylight_bias(const DaylightSetting& setting, const DaylightMatrix& matrix, double accuracy,
-                                   Progress& progress, const StopRequest& stop);
+/// Collects the errors of a grid from its sensors.
+class GridErrorSum {
+  public:
+    void add(const LinearResults& sensor);
+    /// Standard error of the mean of the replicates, RMS over the sensors, and the bias.
+    DaylightError error(const DaylightBias& bias) const;
+    double mean_factor() const { return count_ > 0 ? factor_.mean / static_cast<double>(count_) : 0; }
 
-/// Error of each grid: the standard error of the mean of the replicates, and the bias.
-std::vector<DaylightError> daylight_errors(const DaylightSetting& setting, const DaylightMatrix& matrix,
-                                           const DaylightBias& bias, std::span<const SensorGrid> grids);
+  private:
+    std::size_t count_ = 0;
+    ReplicateMean factor_, lux_hours_;  ///< Sums over the sensors.
+};
 
 }  // namespace exitance

@@ -1,18 +1,12 @@
 #pragma once
 
-#include <array>
-#include <span>
-#include <vector>
+#include <optional>
 
 #include "exitance/base/progress.hpp"
-#include "exitance/evaluate/radiosity_function.hpp"
-#include "exitance/scene/sky/sky_patches.hpp"
+#include "exitance/what_if/daylight/daylight_transport.hpp"
+#include "exitance/what_if/daylight/visible_patches.hpp"
 
 namespace exitance {
-
-/// Number of independent estimates of reflected light. Each uses its share of the rays, from the transport to the
-/// sensors, so that the spread of any result of them is the noise of that result.
-constexpr std::size_t daylight_replicates = 8;
 
 /// Settings of a daylight matrix. Rays are those of all replicates together.
 struct DaylightOptions {
@@ -30,27 +24,52 @@ struct DaylightMatrix {
     std::vector<float> reflected;  ///< Light after at least one reflection: the mean of the replicates.
     std::array<std::vector<float>, daylight_replicates> replicates;  ///< Independent estimates of it.
 
+    void resize(std::size_t sensors, std::size_t patch_count);
     std::size_t sensors() const { return patches > 0 ? direct.size() / patches : 0; }
     double total(std::size_t sensor, std::size_t patch) const {
         return double(direct[sensor * patches + patch]) + double(reflected[sensor * patches + patch]);
     }
 };
 
-/// Computes a daylight matrix with one transport and one right-hand side per patch:
-///
-///     E = S + F rho E,     S: light of patches on elements, F: transport between elements, both by the same rays,
-///
-/// by Jacobi iteration over all columns at once, for each replicate. Then computes the exact visible part of every
-/// patch at the sensors, and a gather of rho E by rays. The scene's own emitters are off; its light from outside is
-/// replaced by the patches. O(rays + iterations x rays x patches).
-DaylightMatrix make_daylight_matrix(Scene scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
-                                    const DaylightOptions& options, Progress& progress);
+/// A sensor whose rays were cast and whose visible patches were found before.
+struct KnownSensor {
+    SensorRays rays;
+    std::vector<float> direct;  ///< Irradiance by every patch with luminance 1.
+};
 
-/// The product of a daylight matrix with the luminances of all patches, as a matrix with one column: `sky` for light
-/// straight from the patches, `reflected` for light after reflections. Uses the rays of `make_daylight_matrix`, but
-/// solves for one right-hand side only: O(rays x iterations).
-DaylightMatrix make_daylight_column(Scene scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
-                                    std::span<const double> sky, std::span<const double> reflected,
+/// Computes rows of a daylight matrix: the exact visible part of every patch at a sensor, and a gather of reflected
+/// light by rays.
+class DaylightRows {
+  public:
+    /// `light`: a column per patch. All must outlive this.
+    DaylightRows(const DaylightTransport& transport, const ElementLight& light, const SkyPatches& patches,
+                 unsigned rays_a_sensor)
+        : transport_(transport),
+          light_(light),
+          visible_(transport.stage().occluders, patches),
+          rays_a_sensor_(rays_a_sensor) {}
+
+    /// Computes the rows of consecutive sensors, of which `first` is the number of the first. `known`: returns what is
+    /// known of a sensor, or null. O(sensors x (rays + patches)).
+    template <class Known>
+    DaylightMatrix rows(std::span<const Receiver> sensors, std::size_t first, const Known& known) const {
+        std::vector<const KnownSensor*> found;
+        for (std::size_t i = 0; i < sensors.size(); ++i) found.push_back(known(first + i));
+        return rows_of(sensors, first, found);
+    }
+
+  private:
+    DaylightMatrix rows_of(std::span<const Receiver> sensors, std::size_t first,
+                           std::span<const KnownSensor* const> known) const;
+
+    const DaylightTransport& transport_;
+    const ElementLight& light_;
+    VisiblePatches visible_;
+    unsigned rays_a_sensor_;
+};
+
+/// Computes the daylight matrix of all sensors.
+DaylightMatrix make_daylight_matrix(const Scene& scene, std::span<const ProbePoint> sensors, const SkyPatches& patches,
                                     const DaylightOptions& options, Progress& progress);
 
 }  // namespace exitance

@@ -5,23 +5,13 @@
 #include <functional>
 #include <numeric>
 
-#include "exitance/base/parallel.hpp"
 #include "exitance/direct/beams.hpp"
-#include "exitance/what_if/daylight/sensor_places.hpp"
 
 namespace exitance {
 namespace {
 
-DaylightProvision::Shares shares_of(std::span<const double> lux) {
-    DaylightProvision::Shares out;
-    const double n = std::max<double>(1, static_cast<double>(lux.size()));
-    for (const double E : lux)
-        for (std::size_t level = 0; level < 3; ++level) {
-            out.at_target[level] += (E >= DaylightProvision::targets[level]) / n;
-            out.at_minimum[level] += (E >= DaylightProvision::minimums[level]) / n;
-        }
-    return out;
-}
+constexpr int steps_per_hour = 30;  ///< For the hours of sunlight.
+constexpr int year = 2021;          ///< Year of the cloudless day.
 
 }  // namespace
 
@@ -53,50 +43,54 @@ int DaylightProvision::Shares::level() const {
     return out;
 }
 
-DaylightProvision daylight_provision(const DaylightYear& year, std::span<const DaylightMetrics> metrics,
-                                     std::span<const DaylightHour> hours, const DaylightSite& site) {
-    DaylightProvision out;
+ProvisionCount::ProvisionCount(std::span<const DaylightHour> hours, const DaylightSite& site) {
     const std::vector<std::size_t> lit = daylight_hours(hours);
-    out.hours = lit.size();
+    hours_ = lit.size();
     std::vector<double> diffuse;
     for (const std::size_t h : lit) diffuse.push_back(site.efficacy_diffuse * hours[h].diffuse_horizontal);
-    out.median_diffuse = reached_by_half(std::move(diffuse));
-    out.reached.resize(year.sensors);
-    std::vector<double> by_factor(year.sensors);
-    parallel_for(year.sensors, 16, [&](std::size_t i) {
-        std::vector<double> lux;
-        for (const std::size_t h : lit) lux.push_back(double(year.illuminance[h * year.sensors + i]));
-        out.reached[i] = reached_by_half(std::move(lux));
-        by_factor[i] = metrics[i].daylight_factor / 100 * out.median_diffuse;
-    });
-    out.by_illuminance = shares_of(out.reached), out.by_factor = shares_of(by_factor);
+    median_diffuse_ = reached_by_half(std::move(diffuse));
+}
+
+void ProvisionCount::count(double lux, DaylightProvision::Shares& counts) {
+    for (std::size_t level = 0; level < 3; ++level) {
+        counts.at_target[level] += lux >= DaylightProvision::targets[level];
+        counts.at_minimum[level] += lux >= DaylightProvision::minimums[level];
+    }
+}
+
+void ProvisionCount::add(double reached, double factor) {
+    ++sensors_;
+    count(reached, by_illuminance_), count(factor / 100 * median_diffuse_, by_factor_);
+}
+
+DaylightProvision ProvisionCount::provision() const {
+    DaylightProvision out{hours_, by_illuminance_, median_diffuse_, by_factor_};
+    const double n = std::max<double>(1, static_cast<double>(sensors_));
+    for (DaylightProvision::Shares* const shares : {&out.by_illuminance, &out.by_factor})
+        for (std::size_t level = 0; level < 3; ++level) shares->at_target[level] /= n, shares->at_minimum[level] /= n;
     return out;
 }
 
-std::vector<double> sunlight_hours(const Scene& scene, std::span<const ProbePoint> sensors, const DaylightSite& site,
-                                   double zone, const SunDay& day) {
-    constexpr int steps_per_hour = 30, year = 2021;
-    std::vector<Normal> suns;
+SunlightHours::SunlightHours(const Occluders& occluders, const DaylightSite& site, const SunDay& day)
+    : occluders_(occluders) {
     for (int step = 0; step < 24 * steps_per_hour; ++step) {
         const double hour = (step + 0.5) / steps_per_hour;
-        const SunPosition at = sun_position({year, day.month, day.day, hour, zone}, site.place);
+        const SunPosition at = sun_position({year, day.month, day.day, hour, site.zone}, site.place);
         if (at.altitude > std::max(0.0, day.least_altitude))
-            suns.push_back(sky_direction(at.altitude, at.azimuth, site.north));
+            suns_.push_back(sky_direction(at.altitude, at.azimuth, site.north));
     }
-    const Occluders occluders(scene);
-    const std::vector<Receiver> places = sensor_places(scene, occluders, sensors);
-    std::vector<double> out(sensors.size());
-    parallel_for(sensors.size(), 1, [&](std::size_t i) {
-        for (const Normal& sun : suns) {
-            Receiver at = places[i];
-            if (!at.own.is_none() && dot(sun, at.n) <= 0) continue;
-            at.n = sun;
-            std::vector<PunctualLight> light(1);
-            light[0].kind = PunctualLight::Kind::directional, light[0].direction = -sun;
-            light[0].intensity = Spectrum(1);
-            if (max(Beams(light, occluders).irradiance(at)) > 0) out[i] += 1.0 / steps_per_hour;
-        }
-    });
+}
+
+double SunlightHours::at(const Receiver& sensor) const {
+    double out = 0;
+    std::vector<PunctualLight> light(1);
+    light[0].kind = PunctualLight::Kind::directional, light[0].intensity = Spectrum(1);
+    const Beams beams(light, occluders_);
+    for (const Normal& sun : suns_) {
+        if (!sensor.own.is_none() && dot(sun, sensor.n) <= 0) continue;
+        light[0].direction = -sun;
+        if (max(beams.irradiance({sensor.x, sun, sensor.own})) > 0) out += 1.0 / steps_per_hour;
+    }
     return out;
 }
 

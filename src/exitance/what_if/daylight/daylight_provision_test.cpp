@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "exitance/what_if/daylight/sensor_places.hpp"
 #include "exitance/what_if/daylight/view_out.hpp"
 #include "support/built_scene.hpp"
 
@@ -17,21 +18,16 @@ std::vector<DaylightHour> hours() {
 
 TEST(DaylightProvision, LevelsAgreeWithTheStandard) {
     // Twenty sensors. In half of the daylight hours, eleven reach 400 lx, eight 120 lx and one 90 lx.
-    DaylightYear year;
-    year.sensors = 20;
-    year.illuminance.assign(8 * 20, 0), year.sun = year.illuminance;
+    ProvisionCount count(hours(), {});
     for (std::size_t i = 0; i < 20; ++i) {
-        const float lux = i < 11 ? 400 : i < 19 ? 120 : 90;
-        year.illuminance[3 * 20 + i] = lux,
-                                  year.illuminance[5 * 20 + i] = 2 * lux;  // two of the four hours of daylight
-        year.illuminance[0 * 20 + i] = 9999;                               // an hour of the night, which must not count
+        const double lux = i < 11 ? 400 : i < 19 ? 120 : 90;
+        const double reached = reached_by_half({0, lux, 0, 2 * lux});  // two of the four hours of daylight
+        EXPECT_EQ(reached, lux);
+        count.add(reached, 5);
     }
-    std::vector<DaylightMetrics> metrics(20);
-    for (DaylightMetrics& m : metrics) m.daylight_factor = 5;
-    const DaylightProvision p = daylight_provision(year, metrics, hours(), {});
+    EXPECT_EQ(daylight_hours(hours()), (std::vector<std::size_t>{5, 4, 3, 2}));
+    const DaylightProvision p = count.provision();
     EXPECT_EQ(p.hours, 4u);
-    EXPECT_EQ(p.reached[0], 400);
-    EXPECT_EQ(p.reached[19], 90);
     EXPECT_NEAR(p.by_illuminance.at_target[0], 0.55, 1e-12);
     EXPECT_NEAR(p.by_illuminance.at_minimum[0], 0.95, 1e-12);
     EXPECT_EQ(p.by_illuminance.level(), 1);
@@ -87,16 +83,20 @@ TEST(ViewOut, AnglesDistancesAndLayersAgreeWithTheWindow) {
 
 TEST(SunlightHours, AgreeWithTheSunThroughAWindow) {
     // The window faces south: in front of it the sun is visible all day, deeper in the room for shorter times.
-    const DaylightSite site{.place = {47.4, 8.5, 400}};
+    const DaylightSite site{.place = {47.4, 8.5, 400}, .zone = 1};
+    const Scene room = porch(true);
+    const Occluders occluders(room);
     const std::vector<ProbePoint> sensors{{{2, -1, 1}, {0, 0, 1}}, {{2, 3.9, 0.1}, {0, 0, 1}}, {{2, 1, 0}, {0, 0, 1}}};
-    const std::vector<double> hours = sunlight_hours(porch(true), sensors, site, 1, {});
+    const std::vector<Receiver> places = sensor_places(room, occluders, sensors);
+    const SunlightHours sunlight(occluders, site, {}), high(occluders, site, {3, 21, 40});
+    std::vector<double> hours;
+    for (const Receiver& place : places) hours.push_back(sunlight.at(place));
     EXPECT_NEAR(hours[0], 12.15, 0.1);  // the whole day of the equinox
     EXPECT_GT(hours[2], 1);
     EXPECT_LT(hours[1], hours[2]);
-    const std::vector<double> high = sunlight_hours(porch(true), sensors, site, 1, {3, 21, 40});
     // cos H = (sin 39.98 - sin 47.4 sin 0.43) / (cos 47.4 cos 0.43): H = 19.8 degrees on either side of noon, where
     // 0.43 is the declination, and refraction raises the sun by 0.02.
-    EXPECT_NEAR(high[0], 2 * 19.8 / 15, 0.05);
+    EXPECT_NEAR(high.at(places[0]), 2 * 19.8 / 15, 0.05);
 }
 
 }  // namespace

@@ -1,41 +1,91 @@
 #pragma once
 
-#include "exitance/what_if/daylight/daylight_intervals.hpp"
-#include "exitance/what_if/daylight/view_out.hpp"
+#include <functional>
+#include <memory>
+
+#include "exitance/what_if/daylight/daylight_search.hpp"
+#include "exitance/what_if/daylight/daylight_totals.hpp"
 
 namespace exitance {
 
-/// Results of a daylight simulation over a year.
-struct DaylightResults {
+/// A daylight simulation over a year: what to compute.
+struct DaylightTask {
     std::vector<ProbePoint> sensors;
     std::vector<SensorGrid> grids;  ///< Together all sensors, in their order.
     std::vector<DaylightHour> hours;
-    DaylightMatrix matrix;
-    DaylightBias bias;
-    std::vector<DaylightError> errors;  ///< One per grid.
-    DaylightYear year;
-    std::vector<DaylightMetrics> metrics;
-    DaylightIntervals intervals;
-    DaylightSummary summary;
-    DaylightProvision provision;
-    std::vector<double> sunlight;  ///< Hours of direct sunlight at each sensor on a cloudless day.
-    std::vector<Point> eyes;       ///< Eye points whose views out were requested.
-    std::vector<ViewOut> views;
-
-    /// The largest errors of a grid.
-    DaylightError worst_error() const {
-        DaylightError out;
-        for (const DaylightError& e : errors)
-            out = {std::max(out.factor, e.factor), std::max(out.lux_hours, e.lux_hours)};
-        return out;
-    }
+    DaylightSite site;
+    DaylightCriteria criteria;
+    int division = 1;               ///< Parts into which Tregenza's patches are divided in each direction: 1, 2 or 4.
+    double error = 0.02;            ///< Requested error of every grid.
+    std::optional<SunDay> sun_day;  ///< Day for which hours of sunlight are counted.
 };
 
-/// Computes the matrix, with as many rays and elements as the requested error of every grid needs, then the year, its
-/// metrics and their intervals. `results`: sensors, grids and hours are given, the rest is computed, except sunlight
-/// and views. `error`: for every grid, of the daylight factors and of the lux hours. After 7 computations of the
-/// matrix, each with four times the rays or elements, the last counts. Error: ErrorCode::limit after a stop request.
-Result<void> simulate_year(const Scene& scene, int division, const DaylightSite& site, double error,
-                           DaylightResults& results, Progress& progress, const StopRequest& stop);
+/// Receives the results of consecutive sensors, in order. An error ends the simulation.
+using DaylightSink = std::function<Result<void>(const DaylightBlock&)>;
+
+/// Consecutive sensors.
+struct SensorRange {
+    std::size_t first = 0, count = 0;
+};
+/// Returns the sensors of part `part` (from 1) of `parts`. The parts differ by at most one sensor.
+constexpr SensorRange sensors_of_part(std::size_t part, std::size_t parts, std::size_t sensors) {
+    const std::size_t first = sensors * (part - 1) / parts;
+    return {first, sensors * part / parts - first};
+}
+
+/// Computes a year in two steps: the light on the elements, which is common to all sensors and can be kept, and the
+/// results of any sensors. Memory: that of the elements, of at most 2048 random sensors, and of a block of sensors.
+class DaylightSimulation {
+  public:
+    /// All arguments must outlive this.
+    DaylightSimulation(const Scene& scene, const DaylightTask& task, Progress& progress, const StopRequest& stop);
+    ~DaylightSimulation();
+    DaylightSimulation(const DaylightSimulation&) = delete;
+    DaylightSimulation& operator=(const DaylightSimulation&) = delete;
+
+    /// Finds the light for the requested error. Error: ErrorCode::limit after a stop request.
+    Result<void> find_light();
+    /// Takes the light that find_light() has found for an equal scene and task. Returns false if it does not fit them.
+    bool take(DaylightLight light);
+    /// Requires that the light was found or taken.
+    const DaylightLight& light() const;
+
+    /// Passes the results of sensors to `sink`, block by block. The bits of a sensor's results do not depend on the
+    /// range in which it is. Errors: ErrorCode::limit after a stop request, or that of the sink.
+    Result<void> evaluate(SensorRange range, const DaylightSink& sink) const;
+
+  private:
+    struct Data;
+    std::unique_ptr<Data> data_;
+};
+
+/// Evaluates all sensors with daylight coefficients that were computed before, such as by another program: a row per
+/// sensor, lx for 1 cd/m^2 of each patch. The sun is spread over the patches around it, also for its straight light, so
+/// that no direct sunlight is told apart; noise and bias are not known.
+Result<void> evaluate_coefficients(const Scene& scene, const DaylightTask& task, std::span<const float> coefficients,
+                                   const DaylightSink& sink, const StopRequest& stop);
+
+/// Finds the light and evaluates all sensors.
+Result<DaylightSummary> simulate_year(const Scene& scene, const DaylightTask& task, const DaylightSink& sink,
+                                      Progress& progress, const StopRequest& stop);
+
+/// Illuminances of a year.
+struct DaylightYear {
+    std::size_t sensors = 0;
+    std::vector<float> illuminance;  ///< lx; one row per hour, one column per sensor.
+    std::vector<float> sun;          ///< Direct sunlight contained in `illuminance`, lx.
+};
+
+/// All results of a simulation in memory.
+struct DaylightResults {
+    DaylightMatrix matrix;
+    DaylightYear year;
+    std::vector<SensorResults> sensors;
+    DaylightSummary summary;
+};
+
+/// Runs simulate_year() and keeps all results. About 75 kB per sensor.
+Result<DaylightResults> collect_year(const Scene& scene, const DaylightTask& task, Progress& progress,
+                                     const StopRequest& stop);
 
 }  // namespace exitance

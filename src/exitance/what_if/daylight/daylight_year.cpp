@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/base/parallel.hpp"
-#include "exitance/direct/beams.hpp"
-#include "exitance/scene/photometric_units.hpp"
-#include "exitance/what_if/daylight/sensor_places.hpp"
+#include "exitance/scene/sky/perez_sky.hpp"
 
 namespace exitance {
 namespace {
@@ -45,11 +42,11 @@ std::vector<std::pair<std::size_t, double>> sun_in_patches(const Normal& sun, co
 }  // namespace
 
 YearSky::YearSky(const SkyPatches& patches, std::span<const DaylightHour> hours, const DaylightSite& site)
-    : patches_(patches.size()), row_(hours.size(), dark), suns_(hours.size()) {
+    : patches_(patches.size()), suns_(hours.size()) {
     sum_of_sky_.assign(patches_, 0), sum_with_sun_.assign(patches_, 0);
     for (std::size_t h = 0; h < hours.size(); ++h) {
         const DaylightHour& hour = hours[h];
-        if (!(hour.diffuse_horizontal > 0) && !(hour.direct_normal > 0)) continue;
+        if (!has_light(hour)) continue;
         const SunPosition at = sun_position(hour.time, site.place);
         Sun& sun = suns_[h];
         sun.towards = sky_direction(at.altitude, at.azimuth, site.north);
@@ -59,7 +56,8 @@ YearSky::YearSky(const SkyPatches& patches, std::span<const DaylightHour> hours,
         sun.illuminance = site.efficacy_direct * direct;
         std::vector<double> sky(patches_, 0);
         if (hour.diffuse_horizontal > 0)
-            sky = luminances(perez_sky({hour.diffuse_horizontal, direct, day}, sun.towards), patches, diffuse_lux);
+            sky = luminances(unscaled_perez_sky({hour.diffuse_horizontal, direct, day}, sun.towards), patches,
+                             diffuse_lux);
         sky[0] = site.ground * (diffuse_lux + sun.illuminance * std::max(0.0, sun.towards.z)) / pi;
         std::vector<double> with_sun = sky;
         if (sun.illuminance > 0) {
@@ -67,24 +65,42 @@ YearSky::YearSky(const SkyPatches& patches, std::span<const DaylightHour> hours,
             for (const auto& [patch, luminance] : sun_in_patches(sun.towards, patches, sun.illuminance))
                 with_sun[patch] += luminance, sun.patches[k++] = patch;
         }
-        row_[h] = static_cast<std::uint32_t>(sky_.size() / patches_);
+        bright_.push_back(h);
         sky_.insert(sky_.end(), sky.begin(), sky.end());
         with_sun_.insert(with_sun_.end(), with_sun.begin(), with_sun.end());
         for (std::size_t p = 0; p < patches_; ++p) sum_of_sky_[p] += sky[p], sum_with_sun_[p] += with_sun[p];
     }
 }
 
+/// Multiplies in tiles of 16 sensors and 4 hours, whose sums stay in registers. Every sum adds the patches in order, so
+/// that the tiles do not change its bits.
 void YearSky::add(std::span<const float> luminances, std::span<const float> coefficients, std::span<float> lux) const {
-    const std::size_t sensors = coefficients.size() / patches_;
+    using Eight = float __attribute__((vector_size(32)));
+    constexpr std::size_t width = 8, tile_sensors = 2 * width, tile_hours = 4;
+    const std::size_t sensors = coefficients.size() / patches_, rows = bright_.size();
     EXI_ASSERT(lux.size() == sensors * hours());
-    for (std::size_t h = 0; h < hours(); ++h) {
-        if (is_dark(h)) continue;
-        const float* const luminance = &luminances[row_[h] * patches_];
-        for (std::size_t i = 0; i < sensors; ++i) {
-            const float* const row = &coefficients[i * patches_];
-            float sum = 0;
-            for (std::size_t p = 0; p < patches_; ++p) sum += row[p] * luminance[p];
-            lux[i * hours() + h] += sum;
+    std::vector<float> columns(patches_ * tile_sensors);  // coefficients of a tile, a row per patch
+    for (std::size_t first = 0; first < sensors; first += tile_sensors) {
+        const std::size_t count = std::min(tile_sensors, sensors - first);
+        for (std::size_t i = 0; i < count; ++i)
+            for (std::size_t p = 0; p < patches_; ++p)
+                columns[p * tile_sensors + i] = coefficients[(first + i) * patches_ + p];
+        for (std::size_t row = 0; row < rows; row += tile_hours) {
+            const std::size_t together = std::min(tile_hours, rows - row);
+            std::array<const float*, tile_hours> luminance{};
+            for (std::size_t k = 0; k < tile_hours; ++k)
+                luminance[k] = &luminances[(row + std::min(k, together - 1)) * patches_];
+            std::array<Eight, 2 * tile_hours> sums{};
+            for (std::size_t p = 0; p < patches_; ++p) {
+                Eight a, b;
+                __builtin_memcpy(&a, &columns[p * tile_sensors], sizeof a);
+                __builtin_memcpy(&b, &columns[p * tile_sensors + width], sizeof b);
+                for (std::size_t k = 0; k < tile_hours; ++k)
+                    sums[2 * k] += a * luminance[k][p], sums[2 * k + 1] += b * luminance[k][p];
+            }
+            for (std::size_t k = 0; k < together; ++k)
+                for (std::size_t i = 0; i < count; ++i)
+                    lux[(first + i) * hours() + bright_[row + k]] += sums[2 * k + i / width][i % width];
         }
     }
 }
@@ -95,95 +111,29 @@ std::vector<double> overcast_luminances(const SkyPatches& patches, double ground
     return out;
 }
 
-DaylightYear daylight_year(const Scene& scene, std::span<const ProbePoint> sensors, const DaylightMatrix& matrix,
-                           const YearSky& sky) {
-    const std::size_t n = sensors.size(), m = matrix.patches, hours = sky.hours();
-    DaylightYear out;
-    out.sensors = n;
-    out.illuminance.assign(hours * n, 0), out.sun.assign(hours * n, 0);
-    const Occluders occluders(scene);
-    const std::vector<Receiver> at = sensor_places(scene, occluders, sensors);
-    constexpr std::size_t block = 16;  // sensors whose coefficients stay in the processor's first cache
-    parallel_for((n + block - 1) / block, 1, [&](std::size_t b) {
-        const std::size_t first = b * block, count = std::min(block, n - first);
-        std::vector<float> lux(count * hours, 0);
-        sky.add_sky(std::span(matrix.direct).subspan(first * m, count * m), lux);
-        sky.add_with_sun(std::span(matrix.reflected).subspan(first * m, count * m), lux);
-        for (std::size_t i = 0; i < count; ++i)
-            for (std::size_t h = 0; h < hours; ++h) out.illuminance[h * n + first + i] = lux[i * hours + h];
-    });
-    parallel_for(hours, 8, [&](std::size_t h) {
-        const YearSky::Sun& shining = sky.sun(h);
-        if (!(shining.illuminance > 0)) return;
-        std::vector<PunctualLight> sun(1);
-        sun[0].kind = PunctualLight::Kind::directional, sun[0].direction = -shining.towards;
-        sun[0].intensity = Spectrum(shining.illuminance);
-        const Beams beams(sun, occluders);
-        for (std::size_t i = 0; i < n; ++i) {
-            // A sensor that sees none of the sun's patches does not see the sun.
-            const auto is_seen = [&](std::size_t patch) { return matrix.direct[i * m + patch] > 0; };
-            if (!(dot(shining.towards, at[i].n) > 0) ||
-                std::none_of(shining.patches.begin(), shining.patches.end(), is_seen))
-                continue;
-            const auto straight = static_cast<float>(luminous_sum(beams.irradiance(at[i])));
-            out.sun[h * n + i] = straight, out.illuminance[h * n + i] += straight;
-        }
-    });
-    return out;
-}
-
 DaylightMetrics metrics_of(double factor, std::span<const float> illuminance, std::span<const float> sun,
-                           std::span<const DaylightHour> hours) {
-    constexpr double target = 300, sunny = 1000;  // lx
-    constexpr std::array<double, 3> limits{100, 300, 3000};
+                           std::span<const DaylightHour> hours, const DaylightCriteria& criteria) {
+    constexpr double sunny = 1000;  // lx
+    const auto& limits = criteria.useful;
     DaylightMetrics metrics;
     metrics.daylight_factor = factor;
     double occupied = 0;
     for (std::size_t h = 0; h < illuminance.size(); ++h) {
-        if (!is_occupied(hours[h].hour)) continue;
+        if (!criteria.is_occupied(hours[h], h)) continue;
         const double E = double(illuminance[h]);
         ++occupied;
         metrics.sunny_hours += double(sun[h]) > sunny;
-        metrics.autonomy += E >= target;
+        metrics.autonomy += E >= criteria.target;
+        metrics.continuous += std::min(1.0, E / criteria.target);
         std::size_t k = 0;
         while (k < limits.size() && E >= limits[k]) ++k;
         ++metrics.useful[k];
     }
+    metrics.electric_hours = occupied - (1 - criteria.dimmed_power) * metrics.continuous;
     if (!(occupied > 0)) return metrics;
-    metrics.autonomy /= occupied;
+    metrics.autonomy /= occupied, metrics.continuous /= occupied;
     for (double& share : metrics.useful) share /= occupied;
     return metrics;
-}
-
-std::vector<DaylightMetrics> daylight_metrics(const DaylightYear& year, const SkyPatches& patches,
-                                              const DaylightMatrix& matrix, std::span<const DaylightHour> hours,
-                                              const DaylightSite& site) {
-    const std::size_t n = year.sensors;
-    const std::vector<double> overcast = overcast_luminances(patches, site.ground);
-    std::vector<DaylightMetrics> out(n);
-    parallel_for(n, 16, [&](std::size_t i) {
-        double factor = 0;
-        for (std::size_t p = 0; p < patches.size(); ++p) factor += overcast[p] * matrix.total(i, p);
-        std::vector<float> illuminance, sun;
-        for (std::size_t h = 0; h < hours.size(); ++h)
-            illuminance.push_back(year.illuminance[h * n + i]), sun.push_back(year.sun[h * n + i]);
-        out[i] = metrics_of(factor, illuminance, sun, hours);
-    });
-    return out;
-}
-
-DaylightSummary summarize(std::span<const DaylightMetrics> metrics, std::span<const DaylightHour> hours) {
-    constexpr double half = 0.5, max_sunny_hours = 250;
-    DaylightSummary out;
-    for (const DaylightHour& hour : hours) out.occupied_hours += is_occupied(hour.hour);
-    for (const DaylightMetrics& m : metrics) {
-        out.mean_daylight_factor += m.daylight_factor;
-        out.spatial_autonomy += m.autonomy >= half;
-        out.sunlight_exposure += m.sunny_hours > max_sunny_hours;
-    }
-    const double n = std::max<double>(1, static_cast<double>(metrics.size()));
-    out.mean_daylight_factor /= n, out.spatial_autonomy /= n, out.sunlight_exposure /= n;
-    return out;
 }
 
 }  // namespace exitance

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "exitance/what_if/daylight/daylight_sample.hpp"
+
+namespace exitance {
+
+/// Light of the patches of the sky on the elements of a scene: all that sensors need to receive it.
+struct DaylightLight {
+    DaylightOptions options;  ///< Rays and elements with which it was found; rays of sensors must be as many.
+    DaylightBias bias;
+    ElementLight elements;  ///< A column per patch.
+};
+
+/// Finds the light on the elements, with as many rays and elements as the requested error of every grid needs: first
+/// adds rays, until the noise leaves room for the bias, then elements. The errors are estimated at `sample`. Ends after
+/// 7 attempts, or after a stop request, when the result must be discarded. error  requested relative RMS error of the
+/// daylight factors and of the lux hours of every grid
+DaylightLight find_daylight_light(const DaylightSetting& setting, DaylightTransport& transport, DaylightSample& sample,
+                                  double error, Progress& progress, const StopRequest& stop);
+
+}  // namespace exitance

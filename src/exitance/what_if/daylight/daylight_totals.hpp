@@ -1,0 +1,43 @@
+#pragma once
+
+#include "exitance/what_if/daylight/sensor_year.hpp"
+
+namespace exitance {
+
+/// Results of all sensors of a year together, with equal weights.
+struct DaylightSummary {
+    std::size_t sensors = 0;
+    double mean_daylight_factor = 0;  ///< Per cent.
+    double spatial_autonomy = 0;      ///< sDA(target, 50%): share of sensors.
+    double sunlight_exposure = 0;     ///< ASE(1000 lx, 250 h): share of sensors.
+    std::size_t occupied_hours = 0;
+    double continuous_autonomy = 0;    ///< Mean of the sensors.
+    double electric_hours = 0;         ///< Hours at full power of dimmed electric light, mean of the sensors.
+    Interval mean_factor;              ///< 95% interval of the mean daylight factor, per cent.
+    Interval spatial_autonomy_bounds;  ///< 95% interval of sDA.
+    double most_sunlight = 0;          ///< Largest number of hours of sunlight on the cloudless day.
+    DaylightProvision provision;
+    DaylightBias bias;
+    std::vector<DaylightError> errors;  ///< One per grid.
+    std::vector<double> grid_factors;   ///< Mean daylight factor of every grid, per cent.
+};
+
+/// Collects the results of sensors, in their order. O(1) memory per grid.
+class DaylightTotals {
+  public:
+    DaylightTotals(std::span<const SensorGrid> grids, std::span<const DaylightHour> hours, const DaylightSite& site,
+                   const DaylightCriteria& criteria);
+
+    void add(const SensorResults& sensor);
+    DaylightSummary summary(const DaylightBias& bias) const;
+
+  private:
+    std::vector<std::size_t> ends_;  ///< Number of the sensor after the last of every grid.
+    std::vector<GridErrorSum> grids_;
+    std::size_t grid_ = 0;           ///< Grid of the next sensor.
+    DaylightSummary sums_;           ///< Sums and counts of sensors.
+    SpreadResult factor_, reached_;  ///< Sum of the daylight factors; number of sensors with DA of at least one half.
+    ProvisionCount provision_;
+};
+
+}  // namespace exitance

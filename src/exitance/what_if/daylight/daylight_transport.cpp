@@ -1,0 +1,225 @@
+#include "exitance/what_if/daylight/daylight_transport.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/form_factors/met_directions.hpp"
+#include "exitance/mesh/element_locator.hpp"
+#include "exitance/scene/photometric_units.hpp"
+#include "exitance/transport/ray_rows.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t max_sweeps = 200;
+constexpr double max_change = 2e-4;  ///< Relative RMS change of the last sweep.
+
+/// Returns the scene under a sky and a ground of radiance 1, which stand for all patches.
+Scene under_patches(Scene scene) {
+    DistantLight light;
+    SkyModel below = uniform_sky();
+    below.below = true;
+    light.domes = {{uniform_sky(), Spectrum(pi)}, {below, Spectrum(pi)}};
+    scene.put_under(std::move(light));
+    return scene;
+}
+
+/// Adds places that rays have reached to the counts of earlier ones. Sorts `numbers`.
+void add_ends(std::vector<std::uint32_t>& numbers, std::vector<RayCounts::End>& ends) {
+    std::sort(numbers.begin(), numbers.end());
+    std::vector<RayCounts::End> merged;
+    merged.reserve(ends.size() + numbers.size());
+    auto earlier = ends.begin();
+    for (const std::uint32_t number : numbers) {
+        while (earlier != ends.end() && earlier->number <= number) merged.push_back(*earlier++);
+        if (merged.empty() || merged.back().number != number) merged.push_back({number, 0});
+        ++merged.back().count;
+    }
+    merged.insert(merged.end(), earlier, ends.end());
+    merged.shrink_to_fit();
+    ends = std::move(merged);
+}
+
+}  // namespace
+
+SkyColumns SkyColumns::of_patches(std::size_t patches) {
+    SkyColumns out;
+    out.unit_patches_ = patches;
+    return out;
+}
+
+void SkyColumns::add_light(const RayCounts& ends, std::span<float> out) const {
+    const double each = pi / std::max<double>(1, ends.rays);
+    if (unit_patches_ > 0)
+        for (const auto& [patch, count] : ends.patches) out[patch] += static_cast<float>(each * count);
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+        for (const auto& [patch, count] : columns_[c].is_finer ? ends.finer : ends.patches)
+            out[c] += static_cast<float>(each * columns_[c].luminances[patch] * count);
+}
+
+void ElementLight::gather(std::size_t replicate, const RayCounts& ends, std::span<float> out) const {
+    const float* const rows = reflected[replicate].data();
+    std::fill(out.begin(), out.end(), 0.0f);
+    for (const auto& [leaf, count] : ends.leaves) {
+        const float share = static_cast<float>(count) / static_cast<float>(ends.rays);
+        const float* const from = rows + leaf * columns;
+        for (std::size_t k = 0; k < columns; ++k) out[k] += share * from[k];
+    }
+}
+
+struct DaylightTransport::Elements {
+    Elements(const Stage& stage, double count)
+        : tree(stage.make_elements({.edge = edge_for_elements(stage.pieces, static_cast<std::size_t>(count))})),
+          numbering(tree),
+          locator(tree, stage.scene.regions().size()) {}
+
+    ElementTree tree;
+    LeafNumbering numbering;
+    ElementLocator locator;
+};
+
+void DaylightTransport::Deleter::operator()(Elements* elements) const {
+    delete elements;
+}
+
+/// Arrays for casting, kept from row to row.
+struct DaylightTransport::Found {
+    std::vector<Point> origins;
+    std::vector<Vec3> directions;
+    std::vector<RayHit> hits;
+    std::vector<std::uint32_t> leaves, patches, finer;
+};
+
+DaylightTransport::DaylightTransport(Scene scene, const SkyPatches& patches, const SkyPatches* finer,
+                                     std::uint64_t seed)
+    : scene_(under_patches(std::move(scene))), stage_(scene_), patches_(patches), finer_(finer) {
+    for (std::size_t k = 0; k < daylight_replicates; ++k) seeds_[k] = hash(seed, k);
+    stage_.rooms = find_light_rooms(stage_, seed, StopRequest());
+}
+
+void DaylightTransport::make_elements(double count) {
+    elements_.reset(new Elements(stage_, count));
+    forget_rows();
+}
+
+std::size_t DaylightTransport::leaves() const {
+    return elements_->numbering.leaves.size();
+}
+
+void DaylightTransport::forget_rows() {
+    for (std::vector<RayCounts>& rows : rows_) rows = {};
+}
+
+/// Casts the rays from `ends.rays` to `until` of a sequence. `sides`: the region if rays leave a diffusing pane from
+/// both sides, otherwise none. `place`: their origin for two numbers in [0, 1).
+template <class Place>
+void DaylightTransport::cast(std::uint32_t until, std::uint64_t key, RegionId own, RegionId sides, const Normal& n,
+                             const Place& place, Found& found, RayCounts& ends) const {
+    if (ends.rays >= until) return;
+    const ScrambledSobol points(key);
+    found.origins.clear(), found.directions.clear();
+    found.leaves.clear(), found.patches.clear(), found.finer.clear();
+    for (std::uint32_t k = ends.rays; k < until; ++k) {
+        found.origins.push_back(place(points(k, 2), points(k, 3)));
+        found.directions.push_back(met_direction(scene_, sides, n, points(k, 0), points(k, 1)));
+    }
+    found.hits.resize(found.origins.size());
+    stage_.tracer.nearest(found.origins, found.directions, own, found.hits, Mirrored::followed);
+    for (std::size_t k = 0; k < found.hits.size(); ++k) {
+        const RayHit& hit = found.hits[k];
+        if (hit.surface.is_none()) {
+            const Vec3 towards = normalized(arriving(scene_, hit, found.directions[k]));
+            found.patches.push_back(static_cast<std::uint32_t>(patches_.of(towards)));
+            if (finer_) found.finer.push_back(static_cast<std::uint32_t>(finer_->of(towards)));
+        } else if (hit.front) {
+            const std::uint32_t leaf =
+                elements_->locator.find_leaf(hit.region, place_of(scene_, hit, found.origins[k], found.directions[k]))
+                    .leaf;
+            if (leaf != ElementLocator::no_leaf) found.leaves.push_back(leaf);
+        }
+    }
+    add_ends(found.leaves, ends.leaves), add_ends(found.patches, ends.patches), add_ends(found.finer, ends.finer);
+    ends.rays = until;
+}
+
+void DaylightTransport::cast_rows(double rays_an_element) {
+    const ElementTree& tree = elements_->tree;
+    const LeafNumbering& numbering = elements_->numbering;
+    const std::vector<double> area = leaf_areas(tree, numbering);
+    double all = 0;
+    for (const double a : area) all += a;
+    const double mean = all / static_cast<double>(area.size());
+    // A replicate has few rays of its own; more than its share would make small elements expensive.
+    const RayBudget budget{.average = rays_an_element / static_cast<double>(daylight_replicates), .least = 2};
+    for (std::size_t replicate = 0; replicate < daylight_replicates; ++replicate) {
+        std::vector<RayCounts>& rows = rows_[replicate];
+        rows.resize(area.size());
+        parallel_ranges(area.size(), 16, [&](std::size_t begin, std::size_t end) {
+            Found found;
+            for (std::size_t i = begin; i < end; ++i) {
+                const ElementId e = numbering.leaves[i];
+                const Patch& patch = tree.patch(e);
+                const std::uint64_t key = hash(seeds_[replicate], static_cast<std::uint64_t>(Stream::rows), i);
+                cast(
+                    budget.rays(area[i], mean), key, tree.region(e), tree.region(e),
+                    scene_.regions()[tree.region(e)].plane.n,
+                    [&](double u, double v) { return patch.at(tree.uniform(e, u, v)); }, found, rows[i]);
+            }
+        });
+    }
+}
+
+ElementLight DaylightTransport::solve(const SkyColumns& columns) const {
+    ElementLight out;
+    out.columns = columns.count();
+    for (std::size_t k = 0; k < daylight_replicates; ++k) out.reflected[k] = solve_replicate(rows_[k], columns);
+    return out;
+}
+
+std::vector<float> DaylightTransport::solve_replicate(const std::vector<RayCounts>& rows,
+                                                      const SkyColumns& columns) const {
+    const std::size_t n = rows.size(), m = columns.count();
+    ElementLight light;
+    light.columns = m;
+    std::vector<float>& reflected = light.reflected[0];
+    std::vector<float> rho(n), fresh(n * m);
+    for (std::size_t i = 0; i < n; ++i) {
+        const RegionId region = elements_->tree.region(elements_->numbering.leaves[i]);
+        rho[i] = static_cast<float>(luminous_sum(scene_.material(region).reflectance));
+    }
+    reflected.assign(n * m, 0);
+    for (std::size_t sweep = 1; sweep <= max_sweeps; ++sweep) {
+        parallel_for(n, 16, [&](std::size_t i) {
+            const std::span<float> out(&fresh[i * m], m);
+            std::fill(out.begin(), out.end(), 0.0f);
+            if (rho[i] == 0) return;
+            light.gather(0, rows[i], out);
+            columns.add_light(rows[i], out);
+            for (float& v : out) v *= rho[i];
+        });
+        struct Norms {
+            double change = 0, size = 0;
+            Norms& operator+=(const Norms& o) { return change += o.change, size += o.size, *this; }
+        };
+        const Norms norms = parallel_sum<Norms>(n * m, [&](std::size_t k) {
+            const double change = double(fresh[k]) - double(reflected[k]);
+            return Norms{change * change, double(fresh[k]) * double(fresh[k])};
+        });
+        reflected.swap(fresh);
+        if (norms.change <= max_change * max_change * norms.size) break;
+    }
+    return std::move(reflected);
+}
+
+void DaylightTransport::cast_sensor(const Receiver& sensor, std::size_t number, unsigned rays, SensorRays& out) const {
+    Found found;
+    for (std::size_t k = 0; k < daylight_replicates; ++k)
+        cast(
+            std::max<unsigned>(1, rays / daylight_replicates),
+            hash(seeds_[k], static_cast<std::uint64_t>(Stream::gather), number), sensor.own, RegionId(), sensor.n,
+            [&](double, double) { return sensor.x; }, found, out[k]);
+}
+
+}  // namespace exitance

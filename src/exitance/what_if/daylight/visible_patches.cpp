@@ -1,0 +1,59 @@
+#include "exitance/what_if/daylight/visible_patches.hpp"
+
+#include <algorithm>
+
+#include "exitance/scene/photometric_units.hpp"
+
+namespace exitance {
+
+VisiblePatches::VisiblePatches(const Occluders& occluders, const SkyPatches& patches) : occluders_(occluders) {
+    for (std::size_t i = 0; i < patches.facets().size(); ++i) {
+        const std::vector<Vec3>& corners = patches.facets()[i].corners;
+        Cone cone{{}, patches.patch_of_facet()[i], patches.patch_of_facet()[i] == 0};
+        for (std::size_t k = 0; k < corners.size(); ++k)
+            cone.inward.push_back(normalized(cross(corners[k + 1 == corners.size() ? 0 : k + 1], corners[k])));
+        cones_.push_back(std::move(cone));
+    }
+}
+
+/// Clips a convex polygon to a cone, in place; empty if they do not overlap.
+void VisiblePatches::clip_to(const Cone& cone, std::vector<Vec3>& polygon, std::vector<Vec3>& rest) {
+    for (const Vec3& n : cone.inward)
+        if (std::all_of(polygon.begin(), polygon.end(), [&](const Vec3& r) { return dot(n, r) <= 0; }))
+            return polygon.clear();
+    for (const Vec3& n : cone.inward) {
+        rest.clear();
+        for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {
+            const Vec3 &p = polygon[i], &q = polygon[i + 1 == m ? 0 : i + 1];
+            const double a = dot(n, p), b = dot(n, q);
+            if (a >= 0) rest.push_back(p);
+            if ((a > 0 && b < 0) || (a < 0 && b > 0)) rest.push_back(p + (a / (a - b)) * (q - p));
+        }
+        polygon.swap(rest);
+        if (polygon.size() < 3) return polygon.clear();
+    }
+}
+
+void VisiblePatches::irradiance(const Receiver& at, Workspace& workspace, std::span<float> out) const {
+    auto& [visibility, fragments, part, rest] = workspace;
+    const Spectrum weights = luminous_weights();
+    std::fill(out.begin(), out.end(), 0.0f);
+    for (const PieceId piece : occluders_.distant_pieces()) {
+        visible_fragments(occluders_, at, piece, {}, visibility, fragments);
+        for (const std::vector<Vec3>& fragment : fragments) {
+            double lowest = 0;
+            for (const Vec3& r : fragment) lowest = std::min(lowest, r.z / norm(r));
+            constexpr double rounding = 1e-9;
+            for (const Cone& cone : cones_) {
+                if (cone.below != (lowest < -rounding)) continue;
+                part = fragment;
+                clip_to(cone, part, rest);
+                if (part.empty()) continue;
+                const Spectrum F = transmitted_form_factor(occluders_, at, piece, part, {});
+                for (std::size_t b = 0; b < bands; ++b) out[cone.patch] += static_cast<float>(pi * weights[b] * F[b]);
+            }
+        }
+    }
+}
+
+}  // namespace exitance

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "exitance/scene/sky/sky_patches.hpp"
+#include "exitance/visibility/glazed_part.hpp"
+
+namespace exitance {
+
+/// Exact visible part of every patch of the sky at a sensor: the visible parts of the sky and of the ground below it,
+/// clipped to the patches.
+class VisiblePatches {
+  public:
+    /// `occluders`: of a scene with a sky and a ground, each of one piece or more. Must outlive this.
+    VisiblePatches(const Occluders& occluders, const SkyPatches& patches);
+
+    /// Arrays for irradiance(): one object per thread, reused.
+    struct Workspace {
+        VisibilityWorkspace visibility;
+        Fragments fragments;
+        std::vector<Vec3> part, rest;
+    };
+    /// Computes the irradiance at a sensor by every patch with luminance 1, also through panes: one value per patch.
+    /// Bands are weighted by luminous_weights(). O(patches x visible parts).
+    void irradiance(const Receiver& at, Workspace& workspace, std::span<float> out) const;
+
+  private:
+    /// Directions of a facet of a patch, bounded by planes through the sensor.
+    struct Cone {
+        std::vector<Vec3> inward;
+        std::uint32_t patch = 0;
+        bool below = false;
+    };
+    static void clip_to(const Cone& cone, std::vector<Vec3>& polygon, std::vector<Vec3>& rest);
+
+    const Occluders& occluders_;
+    std::vector<Cone> cones_;
+};
+
+}  // namespace exitance
