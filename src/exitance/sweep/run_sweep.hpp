@@ -18,7 +18,7 @@ struct VariantState {
     Kind kind = Kind::to_do;
     ResolvedVariant variant;
     std::size_t finished_steps = 0;
-    std::string failure;  ///< Step and reason, if a step failed.
+    std::string failure;  ///< Step, reason and folder, if a step failed or its result is damaged.
 };
 
 /// Name of a state: "done", "running", "failed" or "to do".
@@ -31,7 +31,8 @@ Result<std::vector<VariantState>> sweep_states(const SweepPlan& plan);
 struct SweepReport {
     std::size_t variants = 0, done = 0;
     std::size_t steps_run = 0, steps_reused = 0;
-    std::vector<std::string> failures;  ///< One text per failed variant: its number, step and reason.
+    std::vector<std::string> failures;  ///< One text per failed variant: its number, step, reason and folder.
+    std::vector<std::string> warnings;  ///< Damaged results that were replaced.
 };
 
 /// Runs variants (numbers from 0), `jobs` at a time. A step that another variant or another process runs is waited for;

@@ -48,7 +48,9 @@ std::optional<StepFailure> parse_failure(const std::string& text) {
 std::string variant_json(const SweepPlan& plan, std::size_t index, const ResolvedVariant& variant) {
     Json steps = Json::object();
     for (const ResolvedStep& step : variant.steps) steps[step.name] = step.key;
-    return dump({{"variant", index + 1}, {"parameters", parameters_of(plan, index)}, {"steps", steps}}) + '\n';
+    return dump(
+               {{"variant", index + 1}, {"parameters", parameters_of(plan, index)}, {"steps", steps}}) +
+           '\n';
 }
 
 std::string sweep_json(const SweepPlan& plan, const std::vector<VariantState>& states) {
@@ -72,7 +74,8 @@ std::string sweep_report_json(const SweepReport& report) {
                  {"failed", report.failures.size()},
                  {"steps_run", report.steps_run},
                  {"steps_reused", report.steps_reused},
-                 {"failures", report.failures}});
+                 {"failures", report.failures},
+                 {"warnings", report.warnings}});
 }
 
 std::optional<std::string> json_value(const std::string& text, const std::string& key) {
