@@ -137,8 +137,11 @@ Result<void> SweepQueue::begin(SweepJob& job) {
 
 /// Takes the steps of a variant, up to the first one that another thread or process runs.
 Result<SweepQueue::Advance> SweepQueue::advance(SweepJob& job) {
-    if (job.variant.steps.empty())
+    if (job.variant.steps.empty()) {
         if (const Result<void> begun = begin(job); !begun) return begun.error();
+        // If a step fails, no results of older parameters or inputs may look like those of this variant.
+        remove_if_stale(plan_, job.index, job.variant);
+    }
     for (; job.next < job.variant.steps.size(); ++job.next) {
         const ResolvedStep& step = job.variant.steps[job.next];
         if (stop_.requested()) return Advance::stopped;
@@ -229,7 +232,19 @@ Result<SweepReport> run_sweep(const SweepPlan& plan, const std::vector<std::size
     while (!ended.wait_for(lock, progress_interval, [&] { return running == 0; })) progress.advance(queue.fraction());
     lock.unlock();
     threads.clear();
+    if (variants.size() == plan.variants.size()) remove_extra_variants(plan);
     return queue.report();
+}
+
+Result<void> update_variant_folders(const SweepPlan& plan, const std::vector<VariantState>& states) {
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        if (states[i].kind != VariantState::Kind::done)
+            remove_if_stale(plan, i, states[i].variant);
+        else if (const Result<void> linked = link_variant(plan, i, states[i].variant); !linked)
+            return linked.error();
+    }
+    remove_extra_variants(plan);
+    return {};
 }
 
 }  // namespace exitance

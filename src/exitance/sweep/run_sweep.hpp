@@ -37,9 +37,15 @@ struct SweepReport {
 
 /// Runs variants (numbers from 0), `jobs` at a time. A step that another variant or another process runs is waited for;
 /// a failed step fails the variants that need it, and the others are run. After a stop is requested, running steps end
-/// without a result. Error: cannot_write, or an error of the plan.
+/// without a result. Folders of variants that the plan no longer has are removed if all variants are run. Error:
+/// cannot_write, or an error of the plan.
 Result<SweepReport> run_sweep(const SweepPlan& plan, const std::vector<std::size_t>& variants, int jobs,
                               const StepRunner& runner, Progress& progress, const StopRequest& stop);
+
+/// Makes the folders of all variants agree with their states: links the files of finished variants, and removes folders
+/// of other parameters or inputs and of variants that the plan no longer has. Files of the user stay. Error:
+/// cannot_write.
+Result<void> update_variant_folders(const SweepPlan& plan, const std::vector<VariantState>& states);
 
 /// Folder of a variant's results: links to the files of its steps.
 std::string variant_folder(const SweepPlan& plan, std::size_t index);

@@ -127,6 +127,8 @@ ExitCode run_variants(const SweepPlan& plan, const SweepArguments& arguments, Te
 ExitCode collect(const SweepPlan& plan, const SweepArguments& arguments, Terminal& terminal) {
     const Result<std::vector<VariantState>> states = sweep_states(plan);
     if (!states) return terminal.fail(states.error());
+    if (const Result<void> updated = update_variant_folders(plan, *states); !updated)
+        terminal.note(fmt::format("warning: {}: {}", updated.error().where, updated.error().message));
     const SweepResults results = collect_results(plan, *states);
     std::vector<std::string> outputs = arguments.outputs;
     std::error_code failed;
