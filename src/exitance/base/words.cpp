@@ -1,9 +1,10 @@
 #include "exitance/base/words.hpp"
 
 namespace exitance {
+namespace {
 
-std::vector<std::string> split_words(const std::string& text) {
-    std::vector<std::string> words;
+/// Appends the words of `text` to `words`. Returns the quote that is not closed, or 0.
+char scan_words(const std::string& text, std::vector<std::string>& words) {
     bool in_word = false;
     char quote = 0;
     for (const char c : text) {
@@ -20,7 +21,50 @@ std::vector<std::string> split_words(const std::string& text) {
         else
             words.back() += c;
     }
+    return quote;
+}
+
+std::string shell_word(const std::string& word) {
+    constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
+    if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+    std::string out = "'";
+    for (const char c : word) {
+        if (c == '\'')
+            out += "'\\''";
+        else
+            out += c;
+    }
+    out += '\'';
+    return out;
+}
+
+}  // namespace
+
+std::vector<std::string> split_words(const std::string& text) {
+    std::vector<std::string> words;
+    scan_words(text, words);
     return words;
+}
+
+char open_quote(const std::string& text) {
+    std::vector<std::string> unused;
+    return scan_words(text, unused);
+}
+
+std::string shell_text(const std::vector<std::string>& words) {
+    std::string out;
+    for (const std::string& word : words) {
+        if (!out.empty()) out += ' ';
+        out += shell_word(word);
+    }
+    return out;
+}
+
+std::string_view without_blanks(std::string_view text) {
+    constexpr std::string_view blanks = " \t\r\n";
+    const std::size_t first = text.find_first_not_of(blanks);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
 std::string filled_in(std::string text, const std::vector<std::pair<std::string, std::string>>& values) {

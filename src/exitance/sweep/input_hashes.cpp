@@ -6,6 +6,7 @@
 #include <set>
 #include <string_view>
 
+#include "exitance/base/words.hpp"
 #include "exitance/io/files/sha256.hpp"
 #include "exitance/io/files/whole_file.hpp"
 
@@ -36,12 +37,6 @@ void for_each_part(std::string_view text, std::string_view limits, const Use& us
         if (end > at) use(text.substr(at, end - at));
         at = end + 1;
     }
-}
-
-std::string_view without_blanks(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t\r");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
 /// Texts in a file that may be names of files: words, texts in quotes, and the rest of a line after its first word.

@@ -1,15 +1,18 @@
 #include "exitance/sweep/resolved_step.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glob.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <optional>
 
 #include "exitance/base/version.hpp"
 #include "exitance/io/files/sha256.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/sweep/sweep_template.hpp"
 
 namespace exitance {
 namespace {
@@ -18,6 +21,9 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t key_digits = 40;  ///< 160 bits of SHA-256 name the folder of a step.
 constexpr std::string_view own_folder = "{dir}";
+/// Names of the files that the sweep itself writes into folders of steps and variants.
+constexpr std::array<std::string_view, 5> reserved_names{"status.txt", "stdout.txt", "stderr.txt", "failure.json",
+                                                         "variant.json"};
 
 Error plan_error(const SweepPlan& plan, int line, std::string message, std::string hint = "") {
     return {ErrorCode::bad_input, std::move(message), fmt::format("{}:{}", plan.path, line), std::move(hint)};
@@ -26,6 +32,21 @@ Error plan_error(const SweepPlan& plan, int line, std::string message, std::stri
 /// True if `path` is `folder` or below it.
 bool is_in(const std::string& path, const std::string& folder) {
     return path == folder || (path.starts_with(folder) && path[folder.size()] == '/');
+}
+
+/// True for "-o" and for short options that end with it, such as "-vo".
+bool is_short_output(const std::string& word) {
+    return word.size() > 1 && word.front() == '-' && word.find_first_not_of("qv", 1) == word.size() - 1 &&
+           word.back() == 'o';
+}
+
+/// The value of an option such as --output=FILE or -oFILE in one word.
+std::optional<std::string> attached_output(const std::string& word) {
+    constexpr std::string_view long_name = "--output=";
+    if (word.starts_with(long_name)) return word.substr(long_name.size());
+    const std::size_t letter = word.starts_with('-') ? word.find_first_not_of("qv", 1) : std::string::npos;
+    if (letter == std::string::npos || word[letter] != 'o' || letter + 1 == word.size()) return std::nullopt;
+    return word.substr(letter + 1);
 }
 
 /// The steps of a variant as they are resolved, and which of them makes which file.
@@ -49,7 +70,10 @@ class StepChain {
     };
     Result<Word> connect(const std::string& word, bool is_output, const SweepStep& step) const;
     Result<void> check_output(const std::string& word, const SweepStep& step) const;
-    Result<std::string> filled_text(const std::string& path, const std::string& content) const;
+    /// True if a step makes the file `path` below {dir}, apart from files in folders that it makes.
+    bool has_file(const std::string& path) const;
+    std::size_t path_end(const std::string& word, std::size_t begin, bool is_output) const;
+    Result<std::string> checked_path(const std::string& text, const SweepStep& step) const;
     Result<void> add_inputs(const SweepStep& step, ResolvedStep& out);
 
     const SweepPlan& plan_;
@@ -67,12 +91,47 @@ std::optional<std::size_t> StepChain::maker_of(const std::string& path) const {
     return std::nullopt;
 }
 
-/// Error unless the word after -o is a path below {dir}, or standard output.
+/// Error unless the value of -o is a path below {dir}, or standard output.
 Result<void> StepChain::check_output(const std::string& word, const SweepStep& step) const {
-    if (word == "-" || (word.starts_with("{dir}/") && word.size() > own_folder.size() + 1)) return {};
+    if (word == "-") return {};
+    if (word.starts_with("{dir}/") && !path_in_folder(word.substr(own_folder.size())).empty()) return {};
     return plan_error(plan_, step.line,
                       fmt::format("'run' of step '{}' writes {}, which is not below {{dir}}", step.name, word),
                       "write into the variant's folder, such as -o {dir}/room.h5");
+}
+
+bool StepChain::has_file(const std::string& path) const {
+    return std::any_of(steps.begin(), steps.end(), [&](const ResolvedStep& step) {
+        const auto is_text = [&](const auto& text) { return text.first == path; };
+        return std::find(step.outputs.begin(), step.outputs.end(), path) != step.outputs.end() ||
+               std::any_of(step.texts.begin(), step.texts.end(), is_text);
+    });
+}
+
+/// End of the path whose "{dir}" ends at `begin` of a word. The value of -o is one path. Elsewhere commas and
+/// semicolons separate paths, and so do blanks, unless an earlier step makes a file with such a name.
+std::size_t StepChain::path_end(const std::string& word, std::size_t begin, bool is_output) const {
+    if (is_output) return word.size();
+    const std::size_t last = std::min(word.find(own_folder, begin), word.size());
+    for (std::size_t end = last; end != std::string::npos && end > begin; end = word.find_last_of(",; ", end - 1))
+        if (has_file(path_in_folder(word.substr(begin, end - begin)))) return end;
+    return std::min(word.find_first_of(",;", begin), last);
+}
+
+/// The path below {dir} that is written as `text`, such as "/light.csv", in the command of a step.
+Result<std::string> StepChain::checked_path(const std::string& text, const SweepStep& step) const {
+    const std::string path = text.starts_with('/') ? path_in_folder(text) : "";
+    if (path.empty())
+        return plan_error(
+            plan_, step.line,
+            fmt::format("'run' of step '{}' has {{dir}}{}, which is not a file below {{dir}}", step.name, text),
+            "name a file in it, such as {dir}/room.h5");
+    const auto is_reserved = std::find(reserved_names.begin(), reserved_names.end(), path) != reserved_names.end();
+    if (is_reserved || path.find(own_folder) != std::string::npos)
+        return plan_error(plan_, step.line,
+                          fmt::format("'run' of step '{}' has {{dir}}{}, a name that is not possible", step.name, text),
+                          fmt::format("choose another name than {}", fmt::join(reserved_names, ", ")));
+    return path;
 }
 
 Result<StepChain::Word> StepChain::connect(const std::string& word, bool is_output, const SweepStep& step) const {
@@ -81,24 +140,22 @@ Result<StepChain::Word> StepChain::connect(const std::string& word, bool is_outp
         const std::size_t begin = std::min(word.find(own_folder, at), word.size());
         out.command += word.substr(at, begin - at), out.hashed += word.substr(at, begin - at);
         if (begin == word.size()) break;
-        const std::size_t end = std::min(word.find_first_of(",; ", begin), word.size());
-        const std::size_t path_begin = begin + own_folder.size() + 1;
-        if (path_begin >= end || word[path_begin - 1] != '/')
-            return plan_error(plan_, step.line, fmt::format("'run' of step '{}' has {{dir}} without a file", step.name),
-                              "name a file in it, such as {dir}/room.h5");
-        const std::string path = word.substr(path_begin, end - path_begin);
-        const std::optional<std::size_t> maker = maker_of(path);
+        const std::size_t text_begin = begin + own_folder.size(), end = path_end(word, text_begin, is_output);
+        const Result<std::string> path = checked_path(word.substr(text_begin, end - text_begin), step);
+        if (!path) return path.error();
+        const std::optional<std::size_t> maker = maker_of(*path);
         if (maker && is_output)
             return plan_error(plan_, step.line,
-                              fmt::format("step '{}' writes {{dir}}/{}, which is a file of step '{}'", step.name, path,
+                              fmt::format("step '{}' writes {{dir}}/{}, which is a file of step '{}'", step.name, *path,
                                           steps[*maker].name),
                               "choose another name: finished steps never change");
         if (maker) {
-            out.command += (fs::path(step_folder(plan_)) / steps[*maker].key / path).string();
-            out.hashed += fmt::format("{}/{}", steps[*maker].key, path);
+            out.command += (fs::path(step_folder(plan_)) / steps[*maker].key / *path).string();
+            out.hashed += fmt::format("{}/{}", steps[*maker].key, *path);
         } else {
-            out.command += word.substr(begin, end - begin), out.hashed += word.substr(begin, end - begin);
-            out.outputs.push_back(path);
+            const std::string own = fmt::format("{}/{}", own_folder, *path);
+            out.command += own, out.hashed += own;
+            out.outputs.push_back(*path);
         }
         at = end;
     }
@@ -134,13 +191,10 @@ Result<void> StepChain::add(const SweepStep& step) {
     hash.add_text(program_version);
     bool is_output = false;  // the word is the value of -o
     for (const std::string& word : *words) {
-        if (is_output)
-            if (const Result<void> below = check_output(word, step); !below) return below.error();
-        if (word.starts_with("--output=")) {
-            if (const Result<void> below = check_output(word.substr(word.find('=') + 1), step); !below)
-                return below.error();
-        }
-        const Result<Word> connected = connect(word, is_output || word.starts_with("--output="), step);
+        const std::optional<std::string> output = is_output ? word : attached_output(word);
+        if (output)
+            if (const Result<void> below = check_output(*output, step); !below) return below.error();
+        const Result<Word> connected = connect(word, output.has_value(), step);
         if (!connected) return connected.error();
         out.words.push_back(connected->command);
         out.outputs.insert(out.outputs.end(), connected->outputs.begin(), connected->outputs.end());
@@ -150,7 +204,7 @@ Result<void> StepChain::add(const SweepStep& step) {
             if (!inputs) return inputs.error();
             out.inputs.insert(out.inputs.end(), inputs->begin(), inputs->end());
         }
-        is_output = word == "-o" || word == "--output";
+        is_output = !is_output && (word == "--output" || is_short_output(word));
     }
     if (const Result<void> added = add_inputs(step, out); !added) return added.error();
     for (const HashedFile& input : out.inputs) hash.add_text(input.hash);
@@ -163,30 +217,6 @@ Result<void> StepChain::add(const SweepStep& step) {
     return {};
 }
 
-/// Replaces "{{name}}" in a template by the values of the variant.
-Result<std::string> StepChain::filled_text(const std::string& path, const std::string& content) const {
-    std::string out;
-    int line = 1;
-    for (std::size_t at = 0; at < content.size();) {
-        const std::size_t begin = std::min(content.find("{{", at), content.size());
-        out += content.substr(at, begin - at);
-        line += static_cast<int>(std::count(content.begin() + static_cast<std::ptrdiff_t>(at),
-                                            content.begin() + static_cast<std::ptrdiff_t>(begin), '\n'));
-        if (begin == content.size()) break;
-        const std::size_t end = content.find("}}", begin);
-        const std::string name = end == std::string::npos ? "" : content.substr(begin + 2, end - begin - 2);
-        const auto value =
-            std::find_if(variant_.begin(), variant_.end(), [&](const auto& v) { return v.first == name; });
-        if (value == variant_.end())
-            return Error{ErrorCode::bad_input,
-                         fmt::format("there is no parameter '{}' for this placeholder", name.substr(0, 40)),
-                         fmt::format("{}:{}", path, line), fmt::format("parameters are in the plan {}", plan_.path)};
-        out += text_of(value->second);
-        at = end + 2;
-    }
-    return out;
-}
-
 Result<void> StepChain::add_template() {
     ResolvedStep out{"scene", "", {}, {}, {0}, {}, {}};
     const auto add = [&](const std::string& path, const std::string& name, bool has_placeholders) -> Result<void> {
@@ -195,7 +225,8 @@ Result<void> StepChain::add_template() {
         if (is_known) return {};
         const Result<std::string> content = read_whole_file(path);
         if (!content) return content.error();
-        const Result<std::string> filled = has_placeholders ? filled_text(path, *content) : *content;
+        const Result<std::string> filled =
+            has_placeholders ? fill_in_template(plan_, variant_, path, *content) : *content;
         if (!filled) return filled.error();
         out.texts.emplace_back(name, *filled);
         return {};

@@ -115,6 +115,71 @@ TEST(ResolvedSteps, TemplatesOfEqualTextsShareAllSteps) {
     EXPECT_EQ(wrong.error().where, (folder / "room.obj") + ":2");
 }
 
+TEST(ResolvedSteps, NamesOfFilesMayHaveBlanksAndCommas) {
+    const Result<SweepPlan> plan = parse_sweep_plan(
+        "[[step]]\nrun = \"solve a.obj -o '{dir}/my room, big.h5'\"\n[[step]]\nrun = \"mix '{dir}/my room, big.h5' -o "
+        "{dir}/b.h5\"\n[[step]]\nrun = \"probe {dir}/b.h5 --points '{dir}/my room, big.h5,{dir}/b.h5' "
+        "--output='{dir}/my "
+        "light.csv'\"\n[[output]]\nname = \"E\"\nfile = \"my light.csv\"\ncolumn = \"E_g\"\n",
+        "/p/plan.toml");
+    ASSERT_TRUE(plan) << plan.error().message;
+    InputHashes hashes;
+    const Result<ResolvedVariant> variant = resolve_variant(*plan, 0, hashes);
+    ASSERT_TRUE(variant) << variant.error().message;
+    const std::vector<ResolvedStep>& steps = variant->steps;
+    EXPECT_EQ(steps[0].outputs, (std::vector<std::string>{"my room, big.h5"}));
+    const std::string folder = "/p/plan.sweep/steps/", room = folder + steps[0].key + "/my room, big.h5";
+    EXPECT_EQ(steps[1].words[1], room);
+    EXPECT_EQ(steps[2].words[3], room + "," + folder + steps[1].key + "/b.h5");
+    EXPECT_EQ(steps[2].outputs, (std::vector<std::string>{"my light.csv"}));
+    EXPECT_EQ(variant->output_steps, (std::vector<std::size_t>{2}));
+}
+
+TEST(ResolvedSteps, OutputsOutsideOfTheFolderAreErrorsInAllSpellings) {
+    for (const char* const output :
+         {"-o {dir}/../r.h5", "-o {dir}/a/../../x", "--output={dir}/..", "-o{dir}/../r.h5", "-o /r.h5", "-o/r.h5",
+          "-vo r.h5", "--output r.h5", "-o {dir}/.", "-o {dir}//", "--output=r.h5"})
+        EXPECT_NE(
+            error_of("[[step]]\nrun = \"solve a.obj " + std::string(output) + "\"\n").find("which is not below {dir}"),
+            std::string::npos)
+            << output;
+    EXPECT_EQ(error_of("[[step]]\nrun = \"check a.obj --picture {dir}/../p.csv\"\n"),
+              "plan.toml:2: 'run' of step 'check' has {dir}/../p.csv, which is not a file below {dir}");
+    EXPECT_EQ(error_of("[[step]]\nrun = \"check a.obj --picture {dir}.csv\"\n"),
+              "plan.toml:2: 'run' of step 'check' has {dir}.csv, which is not a file below {dir}");
+    EXPECT_EQ(
+        error_of(
+            "[[step]]\nrun = \"solve a.obj -o {dir}/a.h5\"\n[[step]]\nrun = \"mix {dir}/a.h5 -o {dir}/b/.././a.h5\"\n"),
+        "plan.toml:4: step 'mix' writes {dir}/a.h5, which is a file of step 'solve'");
+    EXPECT_EQ(error_of("[[step]]\nrun = \"solve a.obj -o {dir}/status.txt\"\n"),
+              "plan.toml:2: 'run' of step 'solve' has {dir}/status.txt, a name that is not possible");
+    EXPECT_EQ(error_of("[[step]]\nrun = \"solve a.obj -o -\"\n"), "");
+}
+
+TEST(ResolvedSteps, PlaceholdersOfTemplatesMayHaveBlanks) {
+    const TemporaryFolder folder;
+    const std::string text = "[scene]\ntemplate = \"a.obj\"\n[[vary]]\nwall = 0.5\n[[step]]\nrun = \"check {scene}\"\n";
+    const Result<SweepPlan> plan = parse_sweep_plan(text, folder / "plan.toml");
+    InputHashes hashes;
+    write(folder / "a.obj", "v {{ wall }} {{\twall}} {{wall}}\n");
+    const Result<ResolvedVariant> variant = resolve_variant(*plan, 0, hashes);
+    ASSERT_TRUE(variant) << variant.error().message;
+    EXPECT_EQ(variant->steps[0].texts[0].second, "v 0.5 0.5 0.5\n");
+    write(folder / "a.obj", "v {{wall}}\nv {{ wal }}\n");
+    const Result<ResolvedVariant> misspelled = resolve_variant(*plan, 0, hashes);
+    ASSERT_FALSE(misspelled);
+    EXPECT_EQ(misspelled.error().hint, "did you mean {{wall}}?");
+    EXPECT_EQ(misspelled.error().where, (folder / "a.obj") + ":2");
+    write(folder / "a.obj", "v {{wall\nv }}\n");
+    const Result<ResolvedVariant> open = resolve_variant(*plan, 0, hashes);
+    ASSERT_FALSE(open);
+    EXPECT_EQ(open.error().message, "'{{' is not followed by a name and '}}'");
+    write(folder / "a.obj", "v {{wall} {{wall}}\n");
+    const Result<ResolvedVariant> single = resolve_variant(*plan, 0, hashes);
+    ASSERT_FALSE(single);
+    EXPECT_EQ(single.error().message, open.error().message);
+}
+
 TEST(ResolvedSteps, ErrorsNameTheLineOfTheStep) {
     EXPECT_EQ(error_of("\n[[step]]\nrun = \"solve a.obj -o {dri}/a.h5\"\n"),
               "plan.toml:3: there is no parameter 'dri' for the placeholder {dri}");

@@ -19,6 +19,18 @@ namespace {
 constexpr std::chrono::milliseconds wait_for_others{50};  ///< Interval at which steps of other processes are checked.
 constexpr std::chrono::milliseconds progress_interval{100};
 
+/// Step, reason and folder of a failure.
+std::string failure_text(const StepStore& store, const ResolvedStep& step) {
+    const std::optional<StepFailure> failure = store.failure(step);
+    if (!failure) return fmt::format("{}: it failed", step.name);
+    return fmt::format("{}: {}; see {}", step.name, failure->message, store.failure_path(step));
+}
+
+/// Step, damage and folder of a step that was finished.
+std::string damage_text(const StepStore& store, const ResolvedStep& step, const std::string& damage) {
+    return fmt::format("{}: its result in {} is damaged: {}", step.name, store.path(step), damage);
+}
+
 VariantState state_of(const StepStore& store, ResolvedVariant variant) {
     VariantState out;
     const std::vector<ResolvedStep>& steps = variant.steps;
@@ -31,7 +43,9 @@ VariantState state_of(const StepStore& store, ResolvedVariant variant) {
             out.kind = VariantState::Kind::running;
         } else if (const std::optional<StepFailure> failure = store.failure(next)) {
             out.kind = VariantState::Kind::failed;
-            out.failure = fmt::format("{}: {}", next.name, failure->message);
+            out.failure = failure_text(store, next);
+        } else if (const std::string damage = store.damage(next); !damage.empty()) {
+            out.failure = fmt::format("{}; the next run repeats it", damage_text(store, next, damage));
         }
     }
     out.variant = std::move(variant);
@@ -67,7 +81,7 @@ class SweepQueue {
     Result<void> begin(SweepJob& job);
     bool has_failed(const ResolvedStep& step) const;
     void add_failure(std::size_t index, const ResolvedStep& step);
-    void count(StepStore::Outcome outcome);
+    void count(StepStore::Outcome outcome, const ResolvedStep& step, const std::string& damage);
     std::optional<SweepJob> take();
 
     const SweepPlan& plan_;
@@ -100,15 +114,16 @@ bool SweepQueue::has_failed(const ResolvedStep& step) const {
 }
 
 void SweepQueue::add_failure(std::size_t index, const ResolvedStep& step) {
-    const std::optional<StepFailure> failure = store_.failure(step);
+    const std::string text = failure_text(store_, step);
     const std::lock_guard lock(mutex_);
     failed_.insert(step.key);
-    report_.failures.push_back(
-        fmt::format("variant {}: {}: {}", index + 1, step.name, failure ? failure->message : "it failed"));
+    report_.failures.push_back(fmt::format("variant {}: {}", index + 1, text));
 }
 
-void SweepQueue::count(StepStore::Outcome outcome) {
+void SweepQueue::count(StepStore::Outcome outcome, const ResolvedStep& step, const std::string& damage) {
     const std::lock_guard lock(mutex_);
+    if (outcome == StepStore::Outcome::finished && !damage.empty())
+        report_.warnings.push_back(fmt::format("{}; it was run again", damage_text(store_, step, damage)));
     ++(outcome == StepStore::Outcome::finished ? report_.steps_run : report_.steps_reused);
 }
 
@@ -122,18 +137,22 @@ Result<void> SweepQueue::begin(SweepJob& job) {
 
 /// Takes the steps of a variant, up to the first one that another thread or process runs.
 Result<SweepQueue::Advance> SweepQueue::advance(SweepJob& job) {
-    if (job.variant.steps.empty())
+    if (job.variant.steps.empty()) {
         if (const Result<void> begun = begin(job); !begun) return begun.error();
+        // If a step fails, no results of older parameters or inputs may look like those of this variant.
+        remove_if_stale(plan_, job.index, job.variant);
+    }
     for (; job.next < job.variant.steps.size(); ++job.next) {
         const ResolvedStep& step = job.variant.steps[job.next];
         if (stop_.requested()) return Advance::stopped;
         if (has_failed(step)) return add_failure(job.index, step), Advance::failed;
+        const std::string damage = store_.damage(step);
         const Result<StepStore::Outcome> outcome = store_.run(step, runner_, stop_);
         if (!outcome) return outcome.error();
         if (*outcome == StepStore::Outcome::busy) return Advance::busy;
         if (*outcome == StepStore::Outcome::stopped) return Advance::stopped;
         if (*outcome == StepStore::Outcome::failed) return add_failure(job.index, step), Advance::failed;
-        count(*outcome);
+        count(*outcome, step, damage);
     }
     if (const Result<void> linked = link_variant(plan_, job.index, job.variant); !linked) return linked.error();
     return Advance::done;
@@ -213,7 +232,19 @@ Result<SweepReport> run_sweep(const SweepPlan& plan, const std::vector<std::size
     while (!ended.wait_for(lock, progress_interval, [&] { return running == 0; })) progress.advance(queue.fraction());
     lock.unlock();
     threads.clear();
+    if (variants.size() == plan.variants.size()) remove_extra_variants(plan);
     return queue.report();
+}
+
+Result<void> update_variant_folders(const SweepPlan& plan, const std::vector<VariantState>& states) {
+    for (std::size_t i = 0; i < states.size(); ++i) {
+        if (states[i].kind != VariantState::Kind::done)
+            remove_if_stale(plan, i, states[i].variant);
+        else if (const Result<void> linked = link_variant(plan, i, states[i].variant); !linked)
+            return linked.error();
+    }
+    remove_extra_variants(plan);
+    return {};
 }
 
 }  // namespace exitance

@@ -17,6 +17,8 @@
 #include <sstream>
 #include <utility>
 
+#include "exitance/io/files/write_error.hpp"
+
 namespace exitance {
 namespace {
 
@@ -185,9 +187,7 @@ Result<std::optional<StepLock>> StepLock::take(const std::string& path, const st
         const LockOwner owner = this_process();
         const int status = create_lock(path, owner);
         if (status == 0) return std::optional(StepLock(path, owner.token, renewal));
-        if (status != EEXIST)
-            return Error{ErrorCode::cannot_write, fmt::format("cannot be written: {}", std::strerror(status)), path,
-                         ""};
+        if (status != EEXIST) return cannot_write(path, status);
         const std::string content = text_in(path);
         struct stat present;
         if (::stat(path.c_str(), &present) != 0) continue;  // released in between

@@ -1,14 +1,16 @@
 #include "exitance/sweep/step_store.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
 
+#include "exitance/base/words.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/child_process.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/files/write_error.hpp"
+#include "exitance/sweep/step_record.hpp"
 #include "exitance/sweep/sweep_json.hpp"
 
 namespace exitance {
@@ -16,20 +18,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char *status_file = "status.txt", *output_file = "stdout.txt", *error_file = "stderr.txt";
+constexpr const char *output_file = "stdout.txt", *error_file = "stderr.txt", *failure_file = "failure.json";
 constexpr int max_replacements = 3;  ///< Attempts to replace a folder that other processes write, too.
-
-Error cannot_make(const std::string& path, const std::error_code& reason) {
-    return {ErrorCode::cannot_write, fmt::format("cannot be written: {}", reason.message()), path,
-            "check the space on the disk and the permissions"};
-}
 
 /// Makes the folder of the file `path` below `work`.
 Result<void> make_parent(const std::string& work, const std::string& path) {
     std::error_code failed;
     const fs::path parent = (fs::path(work) / path).parent_path();
     fs::create_directories(parent, failed);
-    if (failed) return cannot_make(parent.string(), failed);
+    if (failed) return cannot_write(parent.string(), failed.value());
     return {};
 }
 
@@ -56,19 +53,32 @@ std::string changed_input(const ResolvedStep& step) {
 }
 
 /// The command of a step that writes into the folder `work`.
-std::vector<std::string> command_of(const ResolvedStep& step, const std::string& work, const StepRunner& runner) {
-    std::vector<std::string> words{runner.program};
-    for (std::string word : step.words) {
-        static const std::string mark = "{dir}";
-        for (std::size_t at = word.find(mark); at != std::string::npos; at = word.find(mark, at + work.size()))
-            word.replace(at, mark.size(), work);
-        words.push_back(std::move(word));
-    }
+std::vector<std::string> command_of(const ResolvedStep& step, const std::string& program, const std::string& work,
+                                    const StepRunner& runner) {
+    std::vector<std::string> words{program};
+    for (const std::string& word : step.words) words.push_back(filled_in(word, {{"dir", work}}));
     const bool chooses_threads =
         std::any_of(words.begin(), words.end(), [](const std::string& word) { return word.starts_with("--threads"); });
     if (runner.threads > 0 && !chooses_threads && runner.threaded.contains(step.words.front()))
         words.insert(words.end(), {"--threads", std::to_string(runner.threads)});
     return words;
+}
+
+/// Replaces the folder `from` in a text of a program by `to`, another folder in the same one. The name of `from` is
+/// unique, so that its path is found however it is written.
+std::string with_folder(std::string text, const std::string& from, const std::string& to) {
+    const std::string before = fs::path(from).filename().string(), now = fs::path(to).filename().string();
+    for (std::size_t at = text.find(before); at != std::string::npos; at = text.find(before, at + now.size()))
+        text.replace(at, before.size(), now);
+    return text;
+}
+
+/// Reason for which a run of a step's command has failed; empty if it has not.
+std::string failure_of(const ResolvedStep& step, const ProgramRun& run) {
+    if (std::find(step.accepted.begin(), step.accepted.end(), run.status) == step.accepted.end())
+        return run.status < 0 ? "the program cannot be started" : reason_in(run.err, run.status);
+    const std::string input = changed_input(step);
+    return input.empty() ? "" : fmt::format("{} changed after its content was hashed: run it again", input);
 }
 
 }  // namespace
@@ -83,10 +93,14 @@ std::string StepStore::unfinished_path(const ResolvedStep& step) const {
 }
 
 bool StepStore::is_finished(const ResolvedStep& step) const {
-    const Result<std::string> status = read_whole_file((fs::path(path(step)) / status_file).string());
-    if (!status) return false;
-    const int number = std::atoi(status->c_str());
-    return std::find(step.accepted.begin(), step.accepted.end(), number) != step.accepted.end();
+    const std::optional<StepCondition> condition = step_condition(path(step));
+    return condition && condition->damage.empty() &&
+           std::find(step.accepted.begin(), step.accepted.end(), condition->status) != step.accepted.end();
+}
+
+std::string StepStore::damage(const ResolvedStep& step) const {
+    const std::optional<StepCondition> condition = step_condition(path(step));
+    return condition ? condition->damage : "";
 }
 
 bool StepStore::is_running(const ResolvedStep& step) const {
@@ -94,13 +108,13 @@ bool StepStore::is_running(const ResolvedStep& step) const {
 }
 
 std::optional<StepFailure> StepStore::failure(const ResolvedStep& step) const {
-    const Result<std::string> text = read_whole_file(failure_path(step));
+    const Result<std::string> text = read_whole_file((fs::path(failure_path(step)) / failure_file).string());
     if (!text) return std::nullopt;
     return parse_failure(*text);
 }
 
 /// Renames the finished folder `work` to its final name. A folder of that name was finished by another process whose
-/// lock was lost, or with an exit status that is no longer accepted.
+/// lock was lost, or with an exit status that is no longer accepted, or is damaged.
 Result<void> StepStore::keep(const ResolvedStep& step, const std::string& work) const {
     std::error_code failed;
     for (int attempt = 0; attempt < max_replacements; ++attempt) {
@@ -110,19 +124,23 @@ Result<void> StepStore::keep(const ResolvedStep& step, const std::string& work) 
         std::error_code ignored;
         fs::remove_all(path(step), ignored);
     }
-    return cannot_make(path(step), failed);
+    return cannot_write(path(step), failed.value());
 }
 
-/// Records the failure of a step.
-Result<StepStore::Outcome> StepStore::fail(const ResolvedStep& step, int status, const std::string& message) const {
-    const StepFailure failure{status, message, fmt::format("{}", fmt::join(step.words, " "))};
-    if (const Result<void> told = write_file(failure_path(step), failure_json(failure)); !told) return told.error();
+/// Keeps the folder `work` of a failed step with the reason.
+Result<StepStore::Outcome> StepStore::fail(const ResolvedStep& step, const std::string& work,
+                                           const StepFailure& failure) const {
+    const Result<void> told = write_file((fs::path(work) / failure_file).string(), failure_json(failure));
+    if (!told) return told.error();
+    std::error_code failed;
+    fs::remove_all(failure_path(step), failed);
+    fs::rename(work, failure_path(step), failed);
+    if (failed) return cannot_write(failure_path(step), failed.value());
     return Outcome::failed;
 }
 
-Result<StepStore::Outcome> StepStore::run_command(const ResolvedStep& step, const std::string& work,
-                                                  const StepRunner& runner, const StopRequest& stop) const {
-    int status = 0;
+/// Writes the files from templates, and the folders of the files that the command writes.
+Result<void> StepStore::prepare(const ResolvedStep& step, const std::string& work) const {
     for (const auto& [name, content] : step.texts) {
         if (const Result<void> made = make_parent(work, name); !made) return made.error();
         if (const Result<void> written = write_file((fs::path(work) / name).string(), content); !written)
@@ -130,22 +148,31 @@ Result<StepStore::Outcome> StepStore::run_command(const ResolvedStep& step, cons
     }
     for (const std::string& output : step.outputs)
         if (const Result<void> made = make_parent(work, output); !made) return made.error();
+    return {};
+}
+
+Result<StepStore::Outcome> StepStore::run_command(const ResolvedStep& step, const std::string& work,
+                                                  const StepRunner& runner, const StopRequest& stop) const {
+    int status = 0;
+    if (const Result<void> prepared = prepare(step, work); !prepared) return prepared.error();
     if (!step.words.empty()) {
-        const std::vector<std::string> words = command_of(step, work, runner);
-        const ProgramRun run = run_program(words, runner.base, stop.seconds_left(), stop);
+        const ProgramRun run =
+            run_program(command_of(step, runner.program, work, runner), runner.base, stop.seconds_left(), stop);
         if (stop.requested()) return Outcome::stopped;
-        if (std::find(step.accepted.begin(), step.accepted.end(), run.status) == step.accepted.end())
-            return fail(step, run.status,
-                        run.status < 0 ? "the program cannot be started" : reason_in(run.err, run.status));
-        if (const std::string input = changed_input(step); !input.empty())
-            return fail(step, run.status, fmt::format("{} changed after its content was hashed: run it again", input));
-        status = run.status;
+        const std::string failure = failure_of(step, run);
+        const std::string final_path = failure.empty() ? path(step) : failure_path(step);
         for (const auto& [name, text] : {std::pair(output_file, &run.out), std::pair(error_file, &run.err)})
-            if (const Result<void> written = write_file((fs::path(work) / name).string(), *text); !written)
+            if (const Result<void> written =
+                    write_file((fs::path(work) / name).string(), with_folder(*text, work, final_path));
+                !written)
                 return written.error();
+        if (!failure.empty())
+            return fail(step, work,
+                        {run.status, with_folder(failure, work, final_path),
+                         shell_text(command_of(step, "exitance", final_path, runner))});
+        status = run.status;
     }
-    const std::string last = (fs::path(work) / status_file).string();
-    if (const Result<void> written = write_file(last, fmt::format("{}\n", status)); !written) return written.error();
+    if (const Result<void> written = write_step_record(work, status); !written) return written.error();
     if (const Result<void> kept = keep(step, work); !kept) return kept.error();
     return Outcome::finished;
 }
@@ -154,18 +181,21 @@ Result<StepStore::Outcome> StepStore::run(const ResolvedStep& step, const StepRu
     if (is_finished(step)) return Outcome::was_finished;
     std::error_code failed;
     fs::create_directories(folder_, failed);
-    if (failed) return cannot_make(folder_, failed);
+    if (failed) return cannot_write(folder_, failed.value());
     const Result<std::optional<StepLock>> lock = StepLock::take(lock_path(step), unfinished_path(step), renewal_);
     if (!lock) return lock.error();
     if (!*lock) return Outcome::busy;
     if (is_finished(step)) return Outcome::was_finished;
-    fs::remove(failure_path(step), failed);
+    fs::remove_all(failure_path(step), failed);
     const std::string work = fmt::format("{}.{}", unfinished_path(step), (*lock)->token());
     fs::create_directories(work, failed);
-    if (failed) return cannot_make(work, failed);
-    const Result<Outcome> outcome = run_command(step, work, runner, stop);
+    if (failed) return cannot_write(path(step), failed.value());
+    Result<Outcome> outcome = run_command(step, work, runner, stop);
     fs::remove_all(work, failed);
-    return outcome;
+    if (outcome) return outcome;
+    Error error = outcome.error();
+    error.where = with_folder(error.where, work, path(step));
+    return error;
 }
 
 }  // namespace exitance

@@ -48,7 +48,19 @@ std::optional<StepFailure> parse_failure(const std::string& text) {
 std::string variant_json(const SweepPlan& plan, std::size_t index, const ResolvedVariant& variant) {
     Json steps = Json::object();
     for (const ResolvedStep& step : variant.steps) steps[step.name] = step.key;
-    return dump({{"variant", index + 1}, {"parameters", parameters_of(plan, index)}, {"steps", steps}}) + '\n';
+    const std::string file = std::filesystem::path(plan.path).filename().string();
+    return dump(
+               {{"plan", file}, {"variant", index + 1}, {"parameters", parameters_of(plan, index)}, {"steps", steps}}) +
+           '\n';
+}
+
+std::optional<VariantRecord> parse_variant(const std::string& text) {
+    const Json json = Json::parse(text, nullptr, false);
+    if (!json.is_object() || !json.contains("variant") || !json["variant"].is_number_unsigned() ||
+        !json.contains("steps") || !json["steps"].is_object())
+        return std::nullopt;
+    const bool has_plan = json.contains("plan") && json["plan"].is_string();
+    return VariantRecord{json["variant"].get<std::size_t>(), has_plan ? json["plan"].get<std::string>() : ""};
 }
 
 std::string sweep_json(const SweepPlan& plan, const std::vector<VariantState>& states) {
@@ -72,7 +84,8 @@ std::string sweep_report_json(const SweepReport& report) {
                  {"failed", report.failures.size()},
                  {"steps_run", report.steps_run},
                  {"steps_reused", report.steps_reused},
-                 {"failures", report.failures}});
+                 {"failures", report.failures},
+                 {"warnings", report.warnings}});
 }
 
 std::optional<std::string> json_value(const std::string& text, const std::string& key) {

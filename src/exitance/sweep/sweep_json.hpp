@@ -11,8 +11,15 @@ namespace exitance {
 std::string failure_json(const StepFailure& failure);
 std::optional<StepFailure> parse_failure(const std::string& text);
 
-/// Parameters of a variant, and the keys of its steps.
+/// Record of a variant in its folder: the file of the plan, the parameters, and the keys of the steps.
 std::string variant_json(const SweepPlan& plan, std::size_t index, const ResolvedVariant& variant);
+/// Parts of the record of a variant, by which its folder is recognised.
+struct VariantRecord {
+    std::size_t number = 0;  ///< From 1.
+    std::string plan;        ///< Name of the plan's file; empty if the record has none.
+};
+/// Parses the record of a variant; empty if the text is none.
+std::optional<VariantRecord> parse_variant(const std::string& text);
 
 /// `sweep PLAN --list --json`.
 std::string sweep_json(const SweepPlan& plan, const std::vector<VariantState>& states);

@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "exitance/base/nearest.hpp"
+#include "exitance/base/words.hpp"
 
 namespace exitance {
 namespace {
@@ -71,6 +73,26 @@ Result<std::string> fill_in_word(const SweepPlan& plan, const std::string& word,
 
 std::string text_of(const SweepValue& value) {
     return fmt::format("{}", fmt::join(value, " "));
+}
+
+std::string with_plain_placeholders(const std::string& text) {
+    std::string out;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = text[at] == '{' ? text.find('}', at) : std::string::npos;
+        const std::string_view name =
+            end == std::string::npos ? "" : without_blanks(std::string_view(text).substr(at + 1, end - at - 1));
+        if (is_name(name))
+            out += fmt::format("{{{}}}", name), at = end + 1;
+        else
+            out += text[at++];
+    }
+    return out;
+}
+
+std::string path_in_folder(const std::string& path) {
+    std::string out = std::filesystem::path(path).relative_path().lexically_normal().string();
+    if (out.ends_with('/')) out.pop_back();
+    return out == "." || out == ".." || out.starts_with("../") ? "" : out;
 }
 
 Result<std::vector<std::string>> fill_in(const SweepPlan& plan, const std::vector<std::string>& words,

@@ -68,6 +68,11 @@ Result<SweepPlan> load_sweep_plan(const std::string& path);
 /// Text of a value in tables: its words, joined by blanks.
 std::string text_of(const SweepValue& value);
 
+/// Removes the blanks within placeholders: "{ name }" becomes "{name}".
+std::string with_plain_placeholders(const std::string& text);
+/// Shortest spelling of a path below {dir}: "a/../b//c/" becomes "b/c". Empty if the path leaves {dir} or is {dir}.
+std::string path_in_folder(const std::string& path);
+
 /// Replaces placeholders "{name}" by the values of a variant. "{dir}" and "{scene}" stay. A word that is a single
 /// placeholder becomes as many words as its value has. Error: bad_input for an unknown name, at the line `line`.
 Result<std::vector<std::string>> fill_in(const SweepPlan& plan, const std::vector<std::string>& words,

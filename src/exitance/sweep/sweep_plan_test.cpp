@@ -78,6 +78,85 @@ TEST(SweepPlan, PlaceholdersKeepWordsTogetherAndListsBecomeSeveralWords) {
     EXPECT_EQ(filled(1), (std::vector<std::string>{"solve", "a.obj", "--sky", "sun, high", "-o", "{dir}/a.h5"}));
 }
 
+TEST(SweepPlan, PlaceholdersMayHaveBlanks) {
+    const Result<SweepPlan> plan = parse_sweep_plan(
+        "[[vary]]\nm = [1, 2]\n[[step]]\nrun = \"solve a{ m }.obj -o '{ dir }/a b.h5' {no name}\"\ninputs = [\"{ m "
+        "}.bin\"]\n",
+        "plan.toml");
+    ASSERT_TRUE(plan) << plan.error().message;
+    EXPECT_EQ(plan->steps[0].words,
+              (std::vector<std::string>{"solve", "a{m}.obj", "-o", "{dir}/a b.h5", "{no", "name}"}));
+    EXPECT_EQ(plan->steps[0].inputs, (std::vector<std::string>{"{m}.bin"}));
+}
+
+TEST(SweepPlan, QuotesThatAreNotClosedAreErrors) {
+    EXPECT_EQ(error_of("[[step]]\nrun = \"check 'a.obj\"\n"),
+              "plan.toml:2: the command has a quote ' that is not closed");
+    EXPECT_EQ(error_of("[scene]\ngenerate = 'office \"nx=1'\n" + step),
+              "plan.toml:2: the command has a quote \" that is not closed");
+    EXPECT_EQ(error_of("[[step]]\nrun = \"check \\\"it's.obj\\\"\"\n"), "");
+}
+
+TEST(SweepPlan, SingleTablesInPlaceOfListsAreErrorsThatNameTheBrackets) {
+    EXPECT_EQ(error_of("[step]\nrun = \"check a.obj\"\n"),
+              "plan.toml:1: 'step' is a list of tables, so [step] must be [[step]]");
+    EXPECT_EQ(error_of("[vary]\na = 1\n" + step),
+              "plan.toml:1: 'vary' is a list of tables, so [vary] must be [[vary]]");
+    EXPECT_EQ(error_of(step + "[output]\nname = \"e\"\n"),
+              "plan.toml:3: 'output' is a list of tables, so [output] must be [[output]]");
+    EXPECT_EQ(error_of("[[scene]]\nfiles = \"a.obj\"\n" + step), "plan.toml:1: 'scene' is not a table");
+    const Result<SweepPlan> repeated = parse_sweep_plan("[step]\nrun = \"check\"\n[step]\nrun = \"check\"\n", "p");
+    ASSERT_FALSE(repeated);
+    EXPECT_EQ(repeated.error().hint, "a plan may have several such tables: write each as [[step]], not as [step]");
+    const Result<SweepPlan> mixed = parse_sweep_plan("[step]\nrun = \"check\"\n[[step]]\nrun = \"check\"\n", "p");
+    ASSERT_FALSE(mixed);
+    EXPECT_EQ(mixed.error().hint, repeated.error().hint);
+}
+
+TEST(SweepPlan, TablesMayEndInBlankLinesAndHaveEachColumnOnce) {
+    const TemporaryFolder folder;
+    const std::string text = "[[vary]]\ntable = \"rows.csv\"\n" + step;
+    std::ofstream(folder / "rows.csv") << "\xef\xbb\xbfwall,lamp\r\n0.2,1\r\n\r\n";
+    const Result<SweepPlan> plan = parse_sweep_plan(text, folder / "plan.toml");
+    ASSERT_TRUE(plan) << plan.error().message;
+    EXPECT_EQ(plan->variants, (std::vector<SweepSetting>{{{"wall", {"0.2"}}, {"lamp", {"1"}}}}));
+    std::ofstream(folder / "rows.csv") << "wall,lamp,wall\n0.2,1,0.3\n";
+    const Result<SweepPlan> twice = parse_sweep_plan(text, folder / "plan.toml");
+    ASSERT_FALSE(twice);
+    EXPECT_EQ(twice.error().message, "the table rows.csv has 2 columns 'wall'");
+}
+
+TEST(SweepPlan, NamesOfFoldersAreShortEnoughForFileSystems) {
+    const Result<SweepPlan> plan = parse_sweep_plan(step, std::string(250, 'n') + ".toml");
+    ASSERT_FALSE(plan);
+    EXPECT_EQ(plan.error().message.find("the name of the folder of the results has 256 bytes, and 255 are possible"),
+              0u);
+    EXPECT_NE(plan.error().hint.find("'folder'"), std::string::npos);
+    EXPECT_TRUE(parse_sweep_plan("folder = \"short\"\n" + step, std::string(250, 'n') + ".toml"));
+}
+
+TEST(SweepPlan, ColumnsOfResultsHaveDifferentNames) {
+    const auto output = [](const std::string& name, const std::string& take) {
+        return "[[output]]\nname = \"" + name + "\"\nfile = \"e.csv\"\ncolumn = \"E\"\ntake = \"" + take + "\"\n";
+    };
+    EXPECT_EQ(error_of(step + output("E", "mean") + output("E", "max")),
+              "plan.toml:8: two columns would be called 'E'");
+    EXPECT_EQ(error_of(step + output("E_1", "mean") + output("E", "all")),
+              "plan.toml:8: the columns of the outputs 'E_1' and 'E' would have equal names");
+    EXPECT_EQ(error_of(step + output("E", "all") + output("E_2", "mean")),
+              "plan.toml:8: the columns of the outputs 'E' and 'E_2' would have equal names");
+    EXPECT_EQ(error_of(step + output("E", "all") + output("E_mean", "mean")), "");
+}
+
+TEST(SweepPlan, PathsBelowTheFolderHaveOneSpelling) {
+    EXPECT_EQ(path_in_folder("a/../b//c/"), "b/c");
+    EXPECT_EQ(path_in_folder("//etc/x"), "etc/x");
+    for (const char* const path : {"..", "../x", "a/../../x", "a/..", ".", "", "/"})
+        EXPECT_EQ(path_in_folder(path), "");
+    EXPECT_EQ(error_of(step + "[[output]]\nname = \"e\"\nfile = \"../e.csv\"\ncolumn = \"E\"\n"),
+              "plan.toml:5: '../e.csv' is not below {dir}");
+}
+
 TEST(SweepPlan, ErrorsNameTheLineAndTheKey) {
     EXPECT_EQ(error_of("titel = \"x\"\n" + step), "plan.toml:1: 'titel' is not known here");
     EXPECT_EQ(error_of(step + "[[step]]\nname = \"b\"\n"), "plan.toml:3: 'run' is missing");

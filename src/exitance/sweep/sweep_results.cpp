@@ -40,6 +40,10 @@ Result<std::vector<std::string>> values_in_csv(const SweepOutput& output, const 
             ErrorCode::bad_input,
             fmt::format("there is no column '{}', the columns are {}", output.column, fmt::join(table->columns, ", ")),
             path, ""};
+    if (table->count(output.column) > 1)
+        return Error{ErrorCode::bad_input,
+                     fmt::format("there are {} columns '{}'", table->count(output.column), output.column), path,
+                     "rename one of them"};
     if (output.take == SweepOutput::Take::value) {
         if (output.row > table->rows.size())
             return Error{ErrorCode::bad_input,

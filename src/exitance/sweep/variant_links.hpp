@@ -7,7 +7,12 @@
 namespace exitance {
 
 /// Makes the folder of a finished variant: links to the files of its steps, `STEP.stdout.txt` for what they print, and
-/// `variant.json`. The folder appears whole; an older one is replaced if the variant has changed. Error: cannot_write.
+/// `variant.json`. The folder appears whole; an older one is replaced if the variant has changed or a link is broken.
+/// Files that the user put into it stay. Error: cannot_write.
 Result<void> link_variant(const SweepPlan& plan, std::size_t index, const ResolvedVariant& variant);
+/// Removes the folder of a variant if it was made for other parameters or inputs. Files of the user stay.
+void remove_if_stale(const SweepPlan& plan, std::size_t index, const ResolvedVariant& variant);
+/// Removes folders that this plan made for variants that it no longer has. Files of the user stay.
+void remove_extra_variants(const SweepPlan& plan);
 
 }  // namespace exitance

@@ -6,6 +6,8 @@
 
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/files/write_error.hpp"
+#include "exitance/sweep/plan_warnings.hpp"
 #include "exitance/sweep/run_sweep.hpp"
 #include "exitance/sweep/sweep_json.hpp"
 #include "exitance/sweep/sweep_plan.hpp"
@@ -35,6 +37,15 @@ Result<void> check_commands(const SweepPlan& plan) {
                      where, error.hint};
     }
     return {};
+}
+
+/// Shows the first 20 warnings. `others` describes the rest, after its number.
+void show_warnings(const std::vector<std::string>& warnings, std::string_view others, Terminal& terminal) {
+    constexpr std::size_t max_warnings = 20;
+    for (std::size_t i = 0; i < std::min(max_warnings, warnings.size()); ++i)
+        terminal.note(fmt::format("warning: {}", warnings[i]));
+    if (warnings.size() > max_warnings)
+        terminal.note(fmt::format("warning: {} more {}", warnings.size() - max_warnings, others));
 }
 
 StepRunner runner_for(const SweepPlan& plan, const SweepArguments& arguments) {
@@ -97,6 +108,7 @@ ExitCode run_variants(const SweepPlan& plan, const SweepArguments& arguments, Te
     terminal.progress().finish();
     if (!report && limits.signal()) return *limits.signal();
     if (!report) return terminal.fail(report.error());
+    show_warnings(report->warnings, "results were damaged", terminal);
     for (const std::string& failure : report->failures) terminal.fail({ErrorCode::failure, failure, "", ""});
     if (arguments.json)
         terminal.print(sweep_report_json(*report));
@@ -115,11 +127,14 @@ ExitCode run_variants(const SweepPlan& plan, const SweepArguments& arguments, Te
 ExitCode collect(const SweepPlan& plan, const SweepArguments& arguments, Terminal& terminal) {
     const Result<std::vector<VariantState>> states = sweep_states(plan);
     if (!states) return terminal.fail(states.error());
+    if (const Result<void> updated = update_variant_folders(plan, *states); !updated)
+        terminal.note(fmt::format("warning: {}: {}", updated.error().where, updated.error().message));
     const SweepResults results = collect_results(plan, *states);
     std::vector<std::string> outputs = arguments.outputs;
     std::error_code failed;
     if (outputs.empty()) {
         std::filesystem::create_directories(plan.folder, failed);
+        if (failed) return terminal.fail(cannot_write(plan.folder, failed.value()));
         for (const char* const name : {"results.csv", "results.h5"})
             outputs.push_back((std::filesystem::path(plan.folder) / name).string());
     }
@@ -129,11 +144,7 @@ ExitCode collect(const SweepPlan& plan, const SweepArguments& arguments, Termina
         if (!written) return terminal.fail(written.error());
         terminal.note(fmt::format("{}: {} variants", output, results.rows));
     }
-    constexpr std::size_t max_warnings = 20;
-    for (std::size_t i = 0; i < std::min(max_warnings, results.problems.size()); ++i)
-        terminal.note("warning: " + results.problems[i]);
-    if (results.problems.size() > max_warnings)
-        terminal.note(fmt::format("warning: {} more values are missing", results.problems.size() - max_warnings));
+    show_warnings(results.problems, "values are missing", terminal);
     return results.problems.empty() ? ExitCode::done : ExitCode::demand_not_reached;
 }
 
@@ -162,6 +173,9 @@ ExitCode run(const SweepArguments& arguments, Terminal& terminal) {
     const Result<SweepPlan> plan = load_sweep_plan(arguments.plan);
     if (!plan) return terminal.fail(plan.error());
     if (const Result<void> checked = check_commands(*plan); !checked) return terminal.fail(checked.error());
+    const Result<std::vector<std::string>> warnings = plan_warnings(*plan);
+    if (!warnings) return terminal.fail(warnings.error());
+    show_warnings(*warnings, "likely mistakes are in the plan", terminal);
     if (arguments.list) return list_variants(*plan, arguments, terminal);
     const ExitCode code = runs ? run_variants(*plan, arguments, terminal) : ExitCode::done;
     const bool is_stopped = terminal.limits().signal().has_value() || terminal.limits().stop().requested();

@@ -13,18 +13,12 @@
 #include <cstring>
 #include <utility>
 
+#include "exitance/io/files/write_error.hpp"
+
 namespace exitance {
 namespace {
 
 constexpr std::size_t buffer_bytes = 1 << 18;
-
-Error cannot_write(const std::string& path, int error) {
-    std::string hint;
-    if (error == ENOENT) hint = "make the folder first";
-    if (error == EISDIR) hint = "name a file in it";
-    if (error == ENOSPC) hint = "free some space, or write to another disk";
-    return {ErrorCode::cannot_write, std::string("cannot be written: ") + std::strerror(error), path, hint};
-}
 
 /// Resolves symbolic links, so that renaming replaces the file and not the link.
 std::string resolved(const std::string& path) {

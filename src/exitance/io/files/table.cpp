@@ -32,7 +32,15 @@ std::string quoted(const std::string& text) {
     return out;
 }
 
+/// Returns the bytes of the line at `at`, with its end, if it has blanks only; 0 if it has other characters.
+std::size_t blank_line_size(const std::string& text, std::size_t at) {
+    const std::size_t end = std::min(text.find_first_not_of(" \t\r", at), text.size());
+    if (end == text.size()) return end - at;
+    return text[end] == '\n' ? end + 1 - at : 0;
+}
+
 /// Returns the fields of the line at `at`, which is advanced to the next line; quoted fields may contain line ends.
+/// Empty if a quote is not closed.
 std::vector<std::string> next_fields(const std::string& text, std::size_t& at) {
     std::vector<std::string> fields(1);
     bool in_quotes = false;
@@ -49,6 +57,7 @@ std::vector<std::string> next_fields(const std::string& text, std::size_t& at) {
         else if (in_quotes || c != '\r')
             fields.back() += c;
     }
+    if (in_quotes) return {};
     return fields;
 }
 
@@ -56,6 +65,10 @@ std::vector<std::string> next_fields(const std::string& text, std::size_t& at) {
 
 bool Table::has(std::string_view column) const {
     return place(columns, column).has_value();
+}
+
+std::size_t Table::count(std::string_view column) const {
+    return static_cast<std::size_t>(std::count(columns.begin(), columns.end(), column));
 }
 
 const std::string& Table::text(std::size_t row, std::string_view column) const {
@@ -103,7 +116,9 @@ Result<void> write_csv(const std::string& path, const Table& table, const std::v
     for (std::size_t row = 0; row < table.rows.size(); ++row) {
         for (std::size_t i = 0; i < names.size(); ++i) {
             if (i > 0) file->write(",");
-            file->write(quoted(table.text(row, names[i])));
+            const std::string field = quoted(table.text(row, names[i]));
+            // A line without any character would be skipped by readers.
+            file->write(field.empty() && names.size() == 1 ? "\"\"" : field);
         }
         file->write("\n");
     }
@@ -118,16 +133,30 @@ Result<Table> read_csv(const std::string& path) {
 
 Result<Table> parse_csv(const std::string& text, const std::string& where) {
     Table table;
-    std::size_t at = 0;
-    table.columns = next_fields(text, at);
-    for (int line = 2; at < text.size(); ++line) {
+    bool has_columns = false;
+    int line = 1;
+    for (std::size_t at = text.starts_with("\xef\xbb\xbf") ? 3 : 0; at < text.size();) {
+        const std::size_t begin = at;
+        const std::string here = fmt::format("{}:{}", where, line);
+        if (const std::size_t blank = blank_line_size(text, at); blank > 0) {
+            at += blank, ++line;
+            continue;
+        }
         std::vector<std::string> fields = next_fields(text, at);
-        if (fields.size() != table.columns.size())
+        line += static_cast<int>(std::count(text.begin() + static_cast<std::ptrdiff_t>(begin),
+                                            text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+        if (fields.empty())
+            return Error{ErrorCode::bad_input, "a quote is not closed", here,
+                         "close it, and write a quote within quotes twice"};
+        if (has_columns && fields.size() != table.columns.size())
             return Error{
                 ErrorCode::bad_input,
-                fmt::format("row has {} fields where there are {} columns", fields.size(), table.columns.size()),
-                fmt::format("{}:{}", where, line), ""};
-        table.rows.push_back(std::move(fields));
+                fmt::format("row has {} fields where there are {} columns", fields.size(), table.columns.size()), here,
+                "separate fields by commas, and put a field with a comma into double quotes"};
+        if (has_columns)
+            table.rows.push_back(std::move(fields));
+        else
+            table.columns = std::move(fields), has_columns = true;
     }
     return table;
 }

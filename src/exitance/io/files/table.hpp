@@ -14,6 +14,8 @@ struct Table {
     std::vector<std::vector<std::string>> rows;
 
     bool has(std::string_view column) const;
+    /// Number of columns of this name. text() and number() return fields of the first one.
+    std::size_t count(std::string_view column) const;
     /// Returns a field; empty if there is no such column.
     const std::string& text(std::size_t row, std::string_view column) const;
     /// Returns a field as a number; NaN if it is none.
@@ -28,11 +30,13 @@ struct Table {
 /// Formats a number for CSV files of studies: 7 digits; empty if not finite.
 std::string field(double value);
 
-/// Writes some columns of a table (empty: all) as CSV; fields with commas, quotes or line ends are quoted.
+/// Writes some columns of a table (empty: all) as CSV. Fields with commas, quotes or line ends are quoted, and so is an
+/// empty field that is alone in its line.
 Result<void> write_csv(const std::string& path, const Table& table, const std::vector<std::string>& columns = {});
-/// Parses CSV text; the first line names the columns. Error: bad_input, if a row has too few or too many fields.
+/// Parses CSV text; the first line names the columns. Lines of blanks and a byte order mark are skipped. Error:
+/// bad_input, if a row has too few or too many fields or a quote is not closed.
 Result<Table> parse_csv(const std::string& text, const std::string& where);
-/// Reads a file written by write_csv. Error: cannot_read, or bad_input, if a row has too few or too many fields.
+/// Reads a CSV file, by parse_csv(). Error: cannot_read or bad_input.
 Result<Table> read_csv(const std::string& path);
 
 }  // namespace exitance

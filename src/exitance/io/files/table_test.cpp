@@ -43,6 +43,43 @@ TEST(Table, ARowWithTooFewFieldsIsAnError) {
     EXPECT_EQ(table.error().where, "t.csv:3");
 }
 
+TEST(Table, LinesOfBlanksAndAByteOrderMarkAreSkipped) {
+    const Result<Table> table = parse_csv(
+        "\xef\xbb\xbf"
+        "a,b\r\n1,2\r\n\r\n3,\"4\n5\"\n \t\n\n",
+        "t.csv");
+    ASSERT_TRUE(table) << table.error().message;
+    EXPECT_EQ(table->columns, (std::vector<std::string>{"a", "b"}));
+    EXPECT_EQ(table->rows, (std::vector<std::vector<std::string>>{{"1", "2"}, {"3", "4\n5"}}));
+    const Result<Table> single = parse_csv("a\n1\n\"\"\n\n", "t.csv");
+    ASSERT_TRUE(single) << single.error().message;
+    EXPECT_EQ(single->rows, (std::vector<std::vector<std::string>>{{"1"}, {""}}));
+}
+
+TEST(Table, AnEmptyFieldAloneInItsLineIsKept) {
+    const TemporaryFolder folder;
+    const Table table{{"a"}, {{"1"}, {""}, {"2"}, {""}}};
+    ASSERT_TRUE(write_csv(folder / "t.csv", table));
+    const Result<Table> read = read_csv(folder / "t.csv");
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(read->rows, table.rows);
+}
+
+TEST(Table, AnOpenQuoteIsAnErrorThatNamesItsLine) {
+    const Result<Table> table = parse_csv("a,b\n\"1\n2\",3\n\"4,5\n6,7\n", "t.csv");
+    ASSERT_FALSE(table);
+    EXPECT_EQ(table.error().where, "t.csv:4");
+    EXPECT_EQ(table.error().message, "a quote is not closed");
+}
+
+TEST(Table, ColumnsOfOneNameAreCounted) {
+    const Result<Table> table = parse_csv("a,b,a\n1,2,3\n", "t.csv");
+    ASSERT_TRUE(table);
+    EXPECT_EQ(table->count("a"), 2u);
+    EXPECT_EQ(table->count("b"), 1u);
+    EXPECT_EQ(table->count("c"), 0u);
+}
+
 TEST(Table, AppendsByTheNamesOfColumns) {
     Table table{{"a", "b"}, {{"1", "2"}}};
     table.append(Table{{"b", "c"}, {{"3", "4"}}});

@@ -108,20 +108,31 @@ class TomlKeys {
     std::set<std::string> known_;
 };
 
-/// Reads the tables `[[key]]`, each by a function.
-template <class T, class Read>
-void take_list(TomlKeys& keys, const std::string& key, std::vector<T>& target, const Read& read) {
+/// Calls read(TomlKeys&) for each of the tables `[[key]]`.
+template <class Read>
+void for_each_table(TomlKeys& keys, const std::string& key, const Read& read) {
     const toml::node* node = keys.find(key);
     if (!node) return;
+    const std::string hint = fmt::format("write [[{}]] above each of them", key);
+    if (node->is_table())
+        keys.fail(*node, fmt::format("'{0}' is a list of tables, so [{0}] must be [[{0}]]", key), hint);
     const toml::array* array = node->as_array();
-    if (!array) keys.fail(*node, fmt::format("'{}' is not a list of tables: [[{}]]", key, key));
+    if (!array) keys.fail(*node, fmt::format("'{}' is not a list of tables: [[{}]]", key, key), hint);
     for (const toml::node& entry : *array) {
         const toml::table* table = entry.as_table();
-        if (!table) keys.fail(entry, fmt::format("'{}' is not a list of tables: [[{}]]", key, key));
+        if (!table) keys.fail(entry, fmt::format("'{}' is not a list of tables: [[{}]]", key, key), hint);
         TomlKeys inner(*table, keys.file());
+        read(inner);
+    }
+}
+
+/// Reads the tables `[[key]]` into a list, each by read(TomlKeys&, T&).
+template <class T, class Read>
+void take_list(TomlKeys& keys, const std::string& key, std::vector<T>& target, const Read& read) {
+    for_each_table(keys, key, [&](TomlKeys& inner) {
         read(inner, target.emplace_back());
         inner.finish();
-    }
+    });
 }
 
 }  // namespace exitance

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "exitance/base/result.hpp"
+
+namespace exitance {
+
+/// Error for a file or folder that cannot be written. `error` is an errno, which decides the hint.
+Error cannot_write(const std::string& path, int error);
+
+}  // namespace exitance
