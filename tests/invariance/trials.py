@@ -375,7 +375,8 @@ class Mixed:
 
 
 class Daylight:
-    """`daylight`: two days of weather. Reflected light is gathered with 2048 rays: an error of at most 2.2% of it at a sensor."""
+    """`daylight`: two days of weather. Reflected light is gathered with 2048 rays: an error of at most 2.2% of it at a sensor.
+    Patches of the sky do not turn with the scene; with 577 of them their error in so few hours is below the 2% requested."""
     name, cuts, needs_light = "daylight", True, True
 
     def run(self, program, copy, points, context):
@@ -394,7 +395,7 @@ class Daylight:
                 for b in range(3):
                     out.write(",".join(map(files.number, (*(corner + (a + 0.5) / 4 * u + (b + 0.5) / 3 * v), *up))) + "\n")
         ran = program("daylight", path, "--epw", epw, "--points", sensors, "-o", folder, f"--north={files.number(copy.scene.north)}",
-                      "--hours", "csv", "--threads", 1, "-q")
+                      "--hours", "csv", "--sky-patches", 577, "--threads", 1, "-q")
         if ran.returncode != 0:
             return refused(ran, program)
         with open(os.path.join(folder, "illuminance.csv")) as text:
