@@ -75,9 +75,9 @@ PlaceLight::Estimate PlaceLight::at(const Point& x, const Normal& n, RegionId ow
             LightAccuracy first = accuracy;
             first.most_rays = std::min(accuracy.most_rays, std::bit_ceil(static_cast<unsigned>(work)));
             const Estimate found = rays_.at(x, n, own, first, room);
-            constexpr double worth_another = 4;  // derived from the cost of trying again: half of what rays then need
+            constexpr double worth_another = 4;  // derived from the cost of trying again: a quarter of what rays need
             const double needed = rays_needed(found, accuracy);
-            if (needed > worth_another * work) exact = exact_within(x, n, own, 0.5 * needed, room);
+            if (needed > worth_another * work) exact = exact_within(x, n, own, needed / worth_another, room);
         }
         if (!exact) return by_rays(x, n, own, accuracy, room);
     } else {

@@ -34,6 +34,13 @@ double largest(const std::vector<Spectrum>& values) {
     return out;
 }
 
+/// Accuracy of exact light at checked hits. Half of the error of the solution adds a quarter to the square of what a
+/// check finds where the projection is as wrong as the solution, and less where checks are needed: where it is worse.
+LightAccuracy check_accuracy(double error) {
+    constexpr double least = 2e-4, most = 0.1;  // derived from the range of errors that can be requested
+    return {.relative = std::clamp(0.5 * error, least, most)};
+}
+
 /// Returns the residual for the solves of unit light, which is tighter: the light missing in them makes bounds too
 /// small.
 double constant_residual() {
@@ -98,7 +105,7 @@ struct Certifier::Content {
           area(leaf_areas(light.tree, light.numbering)),
           H(rows(options.seed + 1)),
           paths(stage),
-          check(stage, paths, options.projected, point_accuracy(options.error)) {
+          check(stage, paths, options.projected, check_accuracy(options.error)) {
         if (stage.rooms.count() > 0) other_H.emplace(rows(hash(options.seed + 1)));
         share_on_node(std::span(rho)), share_on_node(std::span(area));
         if (mean_reflected <= 0) return;

@@ -32,8 +32,8 @@ struct CheckPlan {
 ///
 /// with n the number of rays and q(y) the probability that y is checked. The projection serves as a control variate:
 /// the corrected gather is unbiased for any projection. E_dir is estimated in one of two ways: by one step of a path (1
-/// to 3 rays), with equal probability at all hits; or as at points of a solution (exactly, or with clusters to a tenth
-/// of the solution's error), with a probability that grows with the misfit measured by the projection.
+/// to 3 rays), with equal probability at all hits; or as at points of a solution (exactly, or by rays to half of
+/// the solution's error), with a probability that grows with the misfit measured by the projection.
 class DirectCheck {
   public:
     /// `accuracy`: accuracy of exact light in scenes with many emitters. All other arguments must outlive the check.
