@@ -284,6 +284,15 @@ TEST(ProgramDaylight, RadiancesMatricesAreWrittenAndRead) {
         EXPECT_NEAR(summary_value(folder / "theirs", "mean_daylight_factor"), factor, 1e-5 * factor);
     }
     EXPECT_EQ(run("theirs", {"--coefficients", folder / "ours/matrix.mtx", "--sky-patches", "577"}).status, 3);
+    ASSERT_EQ(run("ours", {"--matrix", "ascii"}).status, 0);
+    const std::string good = read_text(folder / "ours/matrix.mtx");
+    const std::size_t first = good.find_first_not_of("\n", good.find("\n\n")), end = good.find_first_of(" \t", first);
+    for (const std::string number : {"nan", "-5", "inf"}) {
+        write_text(folder / "bad.mtx", good.substr(0, first) + number + good.substr(end));
+        const Finished refused = run("theirs", {"--coefficients", folder / "bad.mtx"});
+        EXPECT_EQ(refused.status, 3) << number;
+        EXPECT_NE(refused.err.find("in row 1, column 1"), std::string::npos) << refused.err;
+    }
     EXPECT_EQ(run("theirs", {"--coefficients", folder / "ours/matrix.mtx", "--part", "1/2"}).status, 2);
 }
 
@@ -321,7 +330,15 @@ TEST(ProgramDaylight, WeaFilesOccupancyAndThresholds) {
               std::string::npos);
     ASSERT_EQ(run("c", {"--occupied", "11-13"}), 0);
     EXPECT_EQ(summary_value(folder / "c", "occupied_hours"), 2);
-    EXPECT_EQ(run("d", {"--occupied", "13-11"}), 2);
+    ASSERT_EQ(run("d", {"--occupied", "13-11"}), 0);  // over midnight
+    EXPECT_EQ(summary_value(folder / "d", "occupied_hours"), 22);
+    EXPECT_EQ(run("e", {"--occupied", "13-13"}), 2);
+    for (const std::string number : {"0\n", "nan\n", "-1\n"}) {
+        std::string hours;
+        for (int h = 0; h < 24; ++h) hours += number;
+        write_text(folder / "hours.csv", hours);
+        EXPECT_EQ(run("e", {"--occupied", folder / "hours.csv"}), 3) << number;
+    }
     write_text(folder / "noon.csv", "1\n0\n");
     EXPECT_EQ(run("d", {"--occupied", folder / "noon.csv"}), 3);
     EXPECT_EQ(run("d", {"--useful", "300,100,3000"}), 2);

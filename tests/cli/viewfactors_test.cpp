@@ -21,6 +21,27 @@ std::vector<std::string> fields_of(const std::string& line) {
 
 }  // namespace
 
+TEST(ProgramViewFactors, ClearGlassChangesNothing) {
+    const TemporaryFolder folder;
+    write_text(folder / "two.mtl", "newmtl grey\nKd 0.5 0.5 0.5\nnewmtl glass\nKd 0 0 0\nd 0.2\n");
+    const std::string squares =
+        "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+        "usemtl grey\nf 1 2 3 4\nf 8 7 6 5\n";
+    write_text(folder / "open.obj", squares);
+    write_text(folder / "glazed.obj", squares +
+                                          "v -1 -1 0.5\nv 2 -1 0.5\nv 2 2 0.5\nv -1 2 0.5\n"
+                                          "usemtl glass\nf 9 10 11 12\n");
+    for (const std::string error : {"1e-1", "1e-2"}) {
+        const auto table_of = [&](const std::string& scene) {
+            const Finished run = run_program(
+                {"viewfactors", folder / (scene + ".obj"), "--sky", "--error", error, "-o", folder / "F.csv"});
+            EXPECT_EQ(run.status, 0) << run.err;
+            return read_text(folder / "F.csv");
+        };
+        EXPECT_EQ(table_of("glazed"), table_of("open")) << error;
+    }
+}
+
 TEST(ProgramViewFactors, TheTableHasARowAFaceAndClosedRoomsSumToOne) {
     const TemporaryFolder folder;
     const Finished run = run_program({"viewfactors", write_small_room(folder), "-o", folder / "room.csv"});

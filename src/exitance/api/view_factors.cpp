@@ -30,6 +30,8 @@ std::optional<Error> find_misuse(const ViewFactorOptions& options) {
 Result<ViewFactors> view_factors(const Scene& scene, const ViewFactorOptions& options, const Control& control) {
     return take_turn<ViewFactors>(control, [&](Run& run) -> Result<ViewFactors> {
         if (const std::optional<Error> misuse = find_misuse(options)) return *misuse;
+        if (!scene.data().scene->panes().empty())
+            return usage("has clear glass, which stops some of the rays", "scene", "leave its panes out");
         RowFactorOptions in;
         in.error = options.error, in.smallest = options.smallest, in.seed = options.seed;
         SparseFactors table = compute_row_factors(*scene.data().scene, in, nullptr, run.progress(), run.stop());

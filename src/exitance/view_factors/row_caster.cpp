@@ -9,8 +9,12 @@
 
 namespace exitance {
 
-RowCaster::RowCaster(const RowScene& scene)
-    : scene_(scene), of_batch_(scene.faces.size()), hits_(scene.faces.size()), squares_(scene.faces.size()) {
+RowCaster::RowCaster(const RowScene& scene, const StopRequest& stop)
+    : scene_(scene),
+      stop_(stop),
+      of_batch_(scene.faces.size()),
+      hits_(scene.faces.size()),
+      squares_(scene.faces.size()) {
     for (auto& column : coordinates_) column.resize(block);
     origins_.reserve(block), directions_.reserve(block), found_.resize(block);
 }
@@ -68,7 +72,7 @@ void RowCaster::cast_batch(std::size_t face, bool under_others, std::uint64_t se
     const ScrambledSobol points(seed);
     const FaceSampler& sampler = scene_.samplers[face];
     const Frame frame(sampler.normal());
-    for (std::size_t first = 0; first < rays_a_batch_; first += block) {
+    for (std::size_t first = 0; first < rays_a_batch_ && !stop_.requested(); first += block) {
         const std::size_t count = std::min(block, rays_a_batch_ - first);
         for (int d = 0; d < 4; ++d)
             points.fill(static_cast<std::uint32_t>(first), d, std::span(coordinates_[d]).first(count));
@@ -99,7 +103,7 @@ void RowCaster::cast(std::size_t face, std::size_t batches, std::size_t rays_a_b
                      std::uint64_t seed) {
     batches_ = batches, rays_a_batch_ = rays_a_batch;
     counts_.clear(), sky_ = back_ = missed_ = {};
-    for (std::size_t b = 0; b < batches; ++b) {
+    for (std::size_t b = 0; b < batches && !stop_.requested(); ++b) {
         cast_batch(face, under_others, hash(seed, b));
         finish_batch();
     }

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "exitance/base/progress.hpp"
 #include "exitance/view_factors/row_scene.hpp"
 
 namespace exitance {
@@ -16,7 +17,8 @@ namespace exitance {
 /// batches gives the variances. One object serves one thread.
 class RowCaster {
   public:
-    explicit RowCaster(const RowScene& scene);
+    /// `stop`: ends casting; counts are then incomplete.
+    RowCaster(const RowScene& scene, const StopRequest& stop);
 
     struct Count {
         std::uint32_t column;
@@ -44,6 +46,7 @@ class RowCaster {
     static constexpr std::size_t block = 4096;        ///< Number of rays traced in one call.
     static constexpr std::size_t rays_a_packet = 16;  ///< Size of the packets of RayTracer.
     const RowScene& scene_;
+    const StopRequest& stop_;
     std::size_t batches_ = 0, rays_a_batch_ = 0;
     std::vector<std::uint32_t> of_batch_;  ///< Hits of every face in the current batch.
     std::vector<double> hits_, squares_;   ///< Sums over batches, for every face.

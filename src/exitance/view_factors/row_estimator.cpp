@@ -57,7 +57,7 @@ RowEstimator::RowEstimator(const RowScene& scene, double error, double missed_er
       missed_error_(missed_error),
       seed_(seed),
       stop_(stop),
-      caster_(scene),
+      caster_(scene, stop),
       sampler_(scene),
       seen_by_pilot_(scene.faces.size()) {}
 
@@ -306,6 +306,7 @@ std::optional<RawRow> RowEstimator::operator()(std::size_t face, std::uint32_t r
         if (stop_.requested()) return {};
         const std::uint64_t key = hash(round, static_cast<std::uint64_t>(attempt));
         row = measure(face, static_cast<std::uint32_t>(key), plan(aim * aim));
+        if (stop_.requested()) return {};
         row.round = round;
         const double error = combined_error(row);
         if (error <= wanted) break;

@@ -27,6 +27,9 @@ constexpr double first_share = 1;
 /// error that would suffice if all variance were their own.
 constexpr double repeated_share = 0.75;
 constexpr std::uint32_t max_repeats = 4;
+/// A row that misses 1 by far is not a matter of chance alone, and more rays would not help: no repeat takes more than
+/// about 16 times as many, derived from errors that fall with the root of their number.
+constexpr double least_factor = 0.25;
 
 class RowRun {
   public:
@@ -66,7 +69,7 @@ class RowRun {
             const double missing = 1 - out.row_sums[i] - out.dropped[i] - out.sky[i] - out.back[i];
             const double error = std::max(out.row_errors[i] - out.dropped[i], std::abs(missing));
             if (error <= options_.error) continue;
-            shares_[i] *= repeated_share * options_.error / error;
+            shares_[i] *= std::max(least_factor, repeated_share * options_.error / error);
             faces.push_back(i);
         }
         return faces;

@@ -127,22 +127,25 @@ Result<std::vector<std::uint8_t>> read_occupancy(const std::string& words, const
     int from = 0, to = 0;
     char rest = 0;
     if (std::sscanf(words.c_str(), "%2d-%2d%c", &from, &to, &rest) == 2) {
-        if (from < 0 || from >= to || to > 24)
+        if (from < 0 || from == to || from > 24 || to > 24)
             return Error{ErrorCode::usage, fmt::format("'{}' is not a part of a day such as 8-18", words), "--occupied",
-                         ""};
-        for (const DaylightHour& hour : hours) out.push_back(hour.hour > from && hour.hour <= to);
+                         "give two full hours from 0 to 24; 22-6 lasts over midnight"};
+        for (const DaylightHour& hour : hours)
+            out.push_back(from < to ? hour.hour > from && hour.hour <= to : hour.hour > from || hour.hour <= to);
         return out;
     }
     Result<LineReader> lines = LineReader::open(words);
     if (!lines) return lines.error();
     while (const std::optional<std::string_view> line = lines->next_content()) {
         const std::optional<double> number = parse_number(*line);
-        if (!number) return lines->error("is not a number");
+        if (!number || !(*number >= 0)) return lines->error("is not a number from 0");
         out.push_back(*number > 0);
     }
     if (lines->failed()) return lines->read_error();
     if (out.size() != hours.size())
         return lines->error(fmt::format("has {} numbers for {} hours of the weather", out.size(), hours.size()));
+    if (std::find(out.begin(), out.end(), 1) == out.end())
+        return Error{ErrorCode::bad_input, "has no occupied hour", words, "give a number above 0 for occupied hours"};
     return out;
 }
 
@@ -264,6 +267,14 @@ Result<std::vector<float>> read_coefficients(const std::string& path, const Dayl
                      fmt::format("has {} x {} entries of {} components, for {} sensors and {} patches", matrix->rows,
                                  matrix->columns, matrix->components, task.sensors.size(), patches),
                      path, "give --sky-patches and --points as for the matrix"};
+    for (std::size_t k = 0; k < matrix->values.size(); ++k)
+        if (!(matrix->values[k] >= 0 && std::isfinite(matrix->values[k]))) {
+            const std::size_t entry = k / matrix->components;
+            return Error{ErrorCode::bad_input,
+                         fmt::format("has {} in row {}, column {}: coefficients are numbers from 0", matrix->values[k],
+                                     entry / matrix->columns + 1, entry % matrix->columns + 1),
+                         path, "write the matrix again"};
+        }
     if (matrix->components == 1) return matrix->values;
     std::vector<float> out;
     for (std::size_t k = 0; k < matrix->values.size(); k += bands) {

@@ -348,7 +348,7 @@ ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     if (const Result<void> fit = check_outputs(arguments); !fit) return terminal.fail(fit.error());
     LoadOptions load = arguments.scene.load;
-    load.stop = &stop;
+    load.stop = &stop, load.without_panes = true;
     const LoadedScene checked = load_scene(arguments.scene.files, load);
     show_findings(checked, terminal);
     if (!checked.scene) return terminal.fail(checked);

@@ -264,6 +264,7 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
     if (options.sky) give_sky(*options.sky, read);
     add_luminaires(read, options);
     judge_darkening(read);
+    if (options.without_panes && !read.description.faces.empty()) read.description.panes.clear();
     if (options.light_groups) part_emitters_by_group(read.description);
     SceneLines lines = std::move(read.lines);
     std::vector<Spectrum> deviation = std::move(read.reflectance_deviation);

@@ -39,7 +39,8 @@ struct LoadOptions {
     /// Length unit and upright axis of files that do not define them; empty: metres, Z up.
     std::optional<double> metres_per_unit = {};
     std::optional<bool> y_is_up = {};
-    std::string lod = {};  ///< Level of detail to read from .city.json files; empty: the highest.
+    bool without_panes = false;  ///< Leaves clear glass out, for view factors, which it does not change.
+    std::string lod = {};        ///< Level of detail to read from .city.json files; empty: the highest.
 };
 
 /// A scene with the map from face lines to files. Line numbers of several files are numbered consecutively.
