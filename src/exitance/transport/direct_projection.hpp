@@ -42,8 +42,8 @@ struct DirectFit {
 /// Direct irradiance projected onto elements, for consumers that evaluate it often, such as rays.
 ///
 /// Each leaf of an adaptive mesh holds the least-squares polynomial of exact values at the nodes of a quadrature rule.
-/// Its mean is exact, also where the nodes miss a patch of light, and shadow edges are resolved to the size of the elements. A method that solves on the same mesh
-/// gets elements that follow the shadows.
+/// Its mean is exact, also where the nodes miss a patch of light, and shadow edges are resolved to the size of the
+/// elements. A method that solves on the same mesh gets elements that follow the shadows.
 struct DirectProjection {
     ElementTree tree;
     Field<ElementId, DirectFit> fit;  ///< Fit of every leaf. An inner element keeps its fit from before it was split.
