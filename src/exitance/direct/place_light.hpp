@@ -16,7 +16,7 @@ class MirroredLight;
 ///
 /// The rays that reach the required accuracy are counted in advance (RayLight::rays_for). At a single place exact light
 /// counts its work while it is computed, and gives up when it exceeds the cost of these rays. If the first
-/// rays then show that many more are needed, as in penumbrae, exact light is tried again, up to half of their cost: a
+/// rays then show that many more are needed, as in penumbrae, exact light is tried again, up to a quarter of it: a
 /// place never costs more than twice as much as by the cheaper estimator. For places of one polygon the blockers of the
 /// whole polygon are counted, up to the cost of the rays. The choice depends on the places and the accuracy alone.
 class PlaceLight {

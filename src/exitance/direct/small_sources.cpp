@@ -34,10 +34,6 @@ double distance_to_box(const Point& x, std::span<const Point> corners) {
     return norm(max(max(box.lo - x, x - box.hi), Vec3{}));
 }
 
-double radius_of(std::span<const Point> corners, const Point& centre) {
-    return distance_to_farthest(centre, corners);
-}
-
 }  // namespace
 
 /// A source, reduced to its centre.
@@ -105,7 +101,7 @@ bool SmallSources::is_sharp(const ReceiverLight::Source& source, const Polygon& 
     const Occluders& occluders = direct_->occluders();
     const std::span<const Point> corners = occluders.corners(source.piece);
     const Point centre = centroid(corners), middle = centroid(on.outline);
-    const double width = 2 * radius_of(corners, centre), most = most_penumbra * extent_of(on.outline);
+    const double width = 2 * distance_to_farthest(centre, corners), most = most_penumbra * extent_of(on.outline);
     const bool is_far = direct_->looks_far(source.emitter);
     if (!is_far && width > most) return false;
     const double reach = distance_to_farthest(centre, on.outline);
@@ -142,7 +138,7 @@ void SmallSources::prepare(const Polygon& on, Workspace& room) const {
         if (!direct_->looks_far(e) && 2 * emitter.radius > most && emitter.pieces.size() == 1) continue;
         for (const PieceId piece : emitter.pieces) {
             const std::span<const Point> corners = occluders.corners(piece);
-            if (direct_->looks_far(e) || 2 * radius_of(corners, centroid(corners)) <= most)
+            if (direct_->looks_far(e) || 2 * distance_to_farthest(centroid(corners), corners) <= most)
                 room.named_.push_back({e, piece});
         }
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "exitance/base/parallel.hpp"
@@ -96,9 +97,9 @@ class LitPlaces {
         std::vector<std::uint8_t> out(sides.size());
         parallel_ranges(sides.size(), 4, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                out[i] = std::any_of(lit_.begin(), lit_.end(), [&](const LitPlace& place) {
-                    return place.region == sides[i]->region || is_seen(place, paths[i]);
-                });
+                out[i] = lit_regions_.contains(sides[i]->region) ||
+                         std::any_of(lit_.begin(), lit_.end(),
+                                     [&](const LitPlace& place) { return is_seen(place, paths[i]); });
         });
         return out;
     }
@@ -131,7 +132,7 @@ class LitPlaces {
         return out;
     }
 
-    /// Finds the lit places of all regions that have a vertex.
+    /// Finds the lit places of all regions that have a vertex, and keeps enough of them to test what sees them.
     void find_places(std::span<const std::vector<Vertex>> paths) {
         std::vector<RegionId> regions;
         for (const std::vector<Vertex>& path : paths)
@@ -144,6 +145,7 @@ class LitPlaces {
         });
         for (const std::vector<LitPlace>& of_region : found)
             lit_.insert(lit_.end(), of_region.begin(), of_region.end());
+        for (const LitPlace& place : lit_) lit_regions_.insert(place.region);
         constexpr std::size_t most_places = 64;
         if (lit_.size() <= most_places) return;
         for (std::size_t i = 0; i < most_places; ++i) lit_[i] = lit_[i * lit_.size() / most_places];
@@ -177,17 +179,23 @@ class LitPlaces {
     std::uint64_t seed_;
     std::map<RegionId, std::vector<const Patch*>> of_region_;
     std::vector<LitPlace> lit_;
+    std::set<RegionId> lit_regions_;
 };
 
-/// Corrects `unlit` where small sources are the only light. Among thousands of sides none matters by itself.
+/// Corrects `unlit` where small sources are the only light. Of thousands of sides the largest are examined: they hold
+/// the area by which errors are judged.
 void light_seen_sides(const Stage& stage, const std::vector<Side>& sides, std::uint64_t seed,
                       std::vector<std::uint8_t>& unlit) {
     constexpr std::size_t most_sides = 4096;
     std::vector<std::size_t> dark;
-    std::vector<const Side*> dark_sides;
     for (std::size_t k = 0; k < sides.size(); ++k)
-        if (unlit[k]) dark.push_back(k), dark_sides.push_back(&sides[k]);
-    if (dark.empty() || dark.size() > most_sides) return;
+        if (unlit[k]) dark.push_back(k);
+    std::stable_sort(dark.begin(), dark.end(),
+                     [&](std::size_t a, std::size_t b) { return sides[a].area > sides[b].area; });
+    dark.resize(std::min(dark.size(), most_sides));
+    if (dark.empty()) return;
+    std::vector<const Side*> dark_sides;
+    for (const std::size_t k : dark) dark_sides.push_back(&sides[k]);
     const std::vector<std::uint8_t> lit = LitPlaces(stage, seed).are_lit(dark_sides);
     for (std::size_t i = 0; i < dark.size(); ++i) unlit[dark[i]] = !lit[i];
 }
