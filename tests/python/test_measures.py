@@ -28,6 +28,16 @@ def test_view_factors_of_a_cube_are_those_of_the_textbooks():
     assert F.sum(axis=1) == pytest.approx(np.ones(6), abs=2e-3)
 
 
+def test_scenes_with_clear_glass_are_refused(tmp_path):
+    (tmp_path / "s.mtl").write_text("newmtl grey\nKd 0.5 0.5 0.5\nnewmtl glass\nKd 0 0 0\nd 0.2\n")
+    (tmp_path / "s.obj").write_text("mtllib s.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\n"
+                                    "usemtl grey\nf 1 2 3\nusemtl glass\nf 4 5 6\n")
+    scene = ex.load(tmp_path / "s.obj")
+    for of in ex.view_factors, ex.transport_operator:
+        with pytest.raises(ex.UsageError, match="glass"):
+            of(scene, error=1e-2)
+
+
 def test_the_transport_operator_is_a_linear_operator(room, tmp_path):
     F = ex.transport_operator(room, error=1e-2)
     assert isinstance(F, scipy.sparse.linalg.LinearOperator) and F.shape == (7, 7)

@@ -78,7 +78,7 @@ Result<void> to_api(const exitance::Result<void>& result);
 Result<std::vector<ProbePoint>> to_engine(std::span<const Probe> probes);
 
 /// The error of options out of range; none if all are within.
-std::optional<Error> find_misuse(const ViewFactorOptions& options);
+std::optional<Error> find_misuse(const Scene& scene, const ViewFactorOptions& options);
 
 Error usage(std::string message, std::string where, std::string hint = "");
 /// The error of a call that was stopped before it had a result.

@@ -17,6 +17,17 @@ TransportOperator wrapped(FactorOperator transport) {
         std::make_shared<const TransportOperatorData>(TransportOperatorData{std::move(transport)}));
 }
 
+using Product = void (FactorOperator::*)(std::span<const double>, std::span<double>) const;
+
+Result<std::vector<double>> product(const FactorOperator& F, Product by, const std::vector<double>& x) {
+    return take_turn<std::vector<double>>([&]() -> Result<std::vector<double>> {
+        if (x.size() != F.size()) return usage("must have one value per face", "x");
+        std::vector<double> y(F.size());
+        (F.*by)(x, y);
+        return y;
+    });
+}
+
 }  // namespace
 
 std::size_t TransportOperator::size() const {
@@ -42,21 +53,11 @@ double TransportOperator::closure_defect() const {
 }
 
 Result<std::vector<double>> TransportOperator::apply(const std::vector<double>& x) const {
-    return take_turn<std::vector<double>>([&]() -> Result<std::vector<double>> {
-        if (x.size() != size()) return usage("must have one value per face", "x");
-        std::vector<double> y(size());
-        data_->transport.apply(x, y);
-        return y;
-    });
+    return product(data_->transport, &FactorOperator::apply, x);
 }
 
 Result<std::vector<double>> TransportOperator::apply_transposed(const std::vector<double>& x) const {
-    return take_turn<std::vector<double>>([&]() -> Result<std::vector<double>> {
-        if (x.size() != size()) return usage("must have one value per face", "x");
-        std::vector<double> y(size());
-        data_->transport.apply_transposed(x, y);
-        return y;
-    });
+    return product(data_->transport, &FactorOperator::apply_transposed, x);
 }
 
 Result<void> TransportOperator::save(const std::string& path) const {
@@ -67,7 +68,7 @@ Result<void> TransportOperator::save(const std::string& path) const {
 Result<TransportOperator> transport_operator(const Scene& scene, const ViewFactorOptions& options,
                                              const Control& control) {
     return take_turn<TransportOperator>(control, [&](Run& run) -> Result<TransportOperator> {
-        if (const std::optional<Error> misuse = find_misuse(options)) return *misuse;
+        if (const std::optional<Error> misuse = find_misuse(scene, options)) return *misuse;
         const RowFactorOptions in = operator_table_options(options.error, options.smallest, options.seed);
         const exitance::Scene& inside = *scene.data().scene;
         SparseFactors table = compute_row_factors(inside, in, nullptr, run.progress(), run.stop());

@@ -21,17 +21,17 @@ std::optional<Error> find_misfit(const ViewFactors& f) {
 
 }  // namespace
 
-std::optional<Error> find_misuse(const ViewFactorOptions& options) {
+std::optional<Error> find_misuse(const Scene& scene, const ViewFactorOptions& options) {
     if (!(options.error >= 1e-6 && options.error <= 0.5)) return usage("must be from 1e-6 to 0.5", "error");
     if (!(options.smallest >= 0 && options.smallest < 1)) return usage("must be from 0 to below 1", "smallest");
+    if (!scene.data().scene->panes().empty())
+        return usage("has clear glass, which stops some of the rays", "scene", "leave its panes out");
     return std::nullopt;
 }
 
 Result<ViewFactors> view_factors(const Scene& scene, const ViewFactorOptions& options, const Control& control) {
     return take_turn<ViewFactors>(control, [&](Run& run) -> Result<ViewFactors> {
-        if (const std::optional<Error> misuse = find_misuse(options)) return *misuse;
-        if (!scene.data().scene->panes().empty())
-            return usage("has clear glass, which stops some of the rays", "scene", "leave its panes out");
+        if (const std::optional<Error> misuse = find_misuse(scene, options)) return *misuse;
         RowFactorOptions in;
         in.error = options.error, in.smallest = options.smallest, in.seed = options.seed;
         SparseFactors table = compute_row_factors(*scene.data().scene, in, nullptr, run.progress(), run.stop());

@@ -32,6 +32,19 @@ DaylightPart read_part(const std::string& word) {
     return out;
 }
 
+/// Declares an option whose value is a number from 0 to 1. `unit`: its type in the help.
+template <class Target>
+void add_share(CLI::App& app, const std::string& name, Target& target, const std::string& unit,
+               const std::string& help) {
+    const auto read = [name, &target](const std::string& word) {
+        const double value = read_number(name, word);
+        if (!(value >= 0 && value <= 1))
+            throw CLI::ValidationError(name, fmt::format("must be from 0 to 1, not {}", word));
+        target = value;
+    };
+    app.add_option_function<std::string>(name, read, help)->type_name(unit);
+}
+
 /// Options of occupancy, thresholds and electric light.
 void declare_criteria(CLI::App& app, DaylightArguments& arguments) {
     DaylightCriteria& criteria = arguments.criteria;
@@ -52,15 +65,8 @@ void declare_criteria(CLI::App& app, DaylightArguments& arguments) {
            },
            "Limits of UDI, ascending. Default 100,300,3000")
         ->type_name("LX,LX,LX");
-    app.add_option_function<std::string>(
-           "--dimmed-power",
-           [&criteria](const std::string& w) {
-               criteria.dimmed_power = read_number("--dimmed-power", w);
-               if (!(criteria.dimmed_power >= 0 && criteria.dimmed_power <= 1))
-                   throw CLI::ValidationError("--dimmed-power", fmt::format("must be from 0 to 1, not {}", w));
-           },
-           "Power of electric light that daylight dims completely, as a share of its full power. Default 0")
-        ->type_name("SHARE");
+    add_share(app, "--dimmed-power", criteria.dimmed_power, "SHARE",
+              "Power of electric light that daylight dims completely, as a share of its full power. Default 0");
 }
 
 /// Options of the files to write, and of parts.
@@ -140,15 +146,7 @@ void declare(CLI::App& app, DaylightArguments& arguments) {
            "--north", [&arguments](const std::string& w) { arguments.north = read_number("--north", w); },
            "Direction of north, degrees clockwise from the y axis as seen from above. Default 0")
         ->type_name("DEGREES");
-    app.add_option_function<std::string>(
-           "--ground",
-           [&arguments](const std::string& w) {
-               arguments.ground = read_number("--ground", w);
-               if (!(arguments.ground >= 0 && arguments.ground <= 1))
-                   throw CLI::ValidationError("--ground", fmt::format("must be from 0 to 1, not {}", w));
-           },
-           "Reflectance of the ground beneath the scene. Default 0.2")
-        ->type_name("R");
+    add_share(app, "--ground", arguments.ground, "R", "Reflectance of the ground beneath the scene. Default 0.2");
     declare_files(app, arguments);
     declare_criteria(app, arguments);
     declare_en_17037(app, arguments);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <sstream>
@@ -14,6 +15,18 @@ namespace exitance {
 namespace {
 
 constexpr double degrees_per_hour = 15;  ///< Turn of the Earth, degrees.
+
+/// A line with a number: its key and the range of the number.
+struct WeaNumber {
+    std::string_view key;
+    double least, most;
+};
+/// Angles are degrees west, as in `gendaylit`; the elevation is in metres.
+constexpr std::array<WeaNumber, 5> numbers{{{"latitude", -90, 90},
+                                            {"longitude", -180, 180},
+                                            {"time_zone", -15 * degrees_per_hour, 13 * degrees_per_hour},
+                                            {"site_elevation", -1000, 9999.9},
+                                            {"weather_data_file_units", 1, 2}}};
 
 class WeaReader {
   public:
@@ -40,13 +53,15 @@ class WeaReader {
             std::getline(words >> std::ws, out_.city);
             return {};
         }
-        static constexpr std::array<std::string_view, 5> known{"latitude", "longitude", "time_zone", "site_elevation",
-                                                               "weather_data_file_units"};
-        if (std::find(known.begin(), known.end(), key) == known.end()) return take_hour(line);
+        const auto known =
+            std::find_if(numbers.begin(), numbers.end(), [&](const WeaNumber& n) { return n.key == key; });
+        if (known == numbers.end()) return take_hour(line);
         std::string value;
         words >> value;
         const std::optional<double> number = parse_number(value);
-        if (!number) return lines_.error(fmt::format("'{}' is not the number of {}", value, key));
+        if (!number || !(*number >= known->least && *number <= known->most))
+            return lines_.error(fmt::format("'{}' is not the number of {}", value, key),
+                                fmt::format("a number from {:g} to {:g}", known->least, known->most));
         keys_[key] = *number;
         return {};
     }

@@ -49,6 +49,14 @@ TEST(WeaFile, MalformedFilesAreErrors) {
           header + units + "6 31 11.5 1 1\n", header + units + "6 21 25 1 1\n", header + units + "6 21 11.5 700\n",
           header + units + "6 21 11.5 0 0\n"})
         EXPECT_FALSE(read(text)) << text;
+    const auto with = [&](std::string key, const std::string& value) {
+        const std::size_t at = header.find(key + ' ') + key.size() + 1;
+        return header.substr(0, at) + value + header.substr(header.find('\n', at)) + units + light;
+    };
+    ASSERT_TRUE(read(with("latitude", "-90")));
+    for (const std::string key : {"latitude", "longitude", "time_zone", "site_elevation"})
+        for (const std::string value : {"447000", "-447000", "nan", "here"})
+            EXPECT_FALSE(read(with(key, value))) << key << ' ' << value;
 }
 
 }  // namespace exitance

@@ -62,10 +62,11 @@ class Hdf5Hours final : public HoursFile {
     Hdf5Rows illuminance_, sun_;
 };
 
-/// illuminance.npy and sun.npy
-class NpyHours final : public HoursFile {
+/// Two files, of illuminance and of direct sunlight in it.
+template <class File>
+class TwoFiles final : public HoursFile {
   public:
-    NpyHours(NpyWriter illuminance, NpyWriter sun) : illuminance_(std::move(illuminance)), sun_(std::move(sun)) {}
+    TwoFiles(File illuminance, File sun) : illuminance_(std::move(illuminance)), sun_(std::move(sun)) {}
 
     void add(const DaylightBlock& block) override { illuminance_.append(block.illuminance), sun_.append(block.sun); }
     Result<void> finish() override {
@@ -74,7 +75,7 @@ class NpyHours final : public HoursFile {
     }
 
   private:
-    NpyWriter illuminance_, sun_;
+    File illuminance_, sun_;
 };
 
 /// A table with a row per hour and a column per sensor. Rows of sensors are kept in a temporary file until the last has
@@ -84,12 +85,12 @@ class HoursTable {
     HoursTable(AtomicFile table, AtomicFile rows, const DaylightTask& task)
         : table_(std::move(table)), rows_(std::move(rows)), task_(task) {}
 
-    void add(std::span<const float> lux) {
+    void append(std::span<const float> lux) {
         rows_.write_at(place_, std::as_bytes(lux));
         place_ += lux.size_bytes();
     }
 
-    Result<void> finish() {
+    Result<void> commit() {
         constexpr std::size_t slab_numbers = std::size_t{1} << 24;  // 64 MB
         const std::size_t n = task_.sensors.size(), hours = task_.hours.size(),
                           together = std::clamp<std::size_t>(slab_numbers / std::max<std::size_t>(n, 1), 1, hours);
@@ -130,21 +131,6 @@ class HoursTable {
     std::size_t place_ = 0;  ///< End of `rows_`, bytes.
 };
 
-/// illuminance.csv and sun.csv
-class CsvHours final : public HoursFile {
-  public:
-    CsvHours(HoursTable illuminance, HoursTable sun) : illuminance_(std::move(illuminance)), sun_(std::move(sun)) {}
-
-    void add(const DaylightBlock& block) override { illuminance_.add(block.illuminance), sun_.add(block.sun); }
-    Result<void> finish() override {
-        const Result<void> written = illuminance_.finish();
-        return written ? sun_.finish() : written;
-    }
-
-  private:
-    HoursTable illuminance_, sun_;
-};
-
 Result<HoursTable> make_table(const std::string& path, const DaylightTask& task) {
     Result<AtomicFile> table = AtomicFile::create(path);
     if (!table) return table.error();
@@ -168,12 +154,12 @@ Result<std::unique_ptr<HoursFile>> make_hours_file(const std::string& folder, Ho
         Result<NpyWriter> illuminance = make("illuminance.npy"), sun = make("sun.npy");
         if (!illuminance) return illuminance.error();
         if (!sun) return sun.error();
-        return Made(std::make_unique<NpyHours>(std::move(*illuminance), std::move(*sun)));
+        return Made(std::make_unique<TwoFiles<NpyWriter>>(std::move(*illuminance), std::move(*sun)));
     }
     Result<HoursTable> illuminance = make_table(in("illuminance.csv"), task), sun = make_table(in("sun.csv"), task);
     if (!illuminance) return illuminance.error();
     if (!sun) return sun.error();
-    return Made(std::make_unique<CsvHours>(std::move(*illuminance), std::move(*sun)));
+    return Made(std::make_unique<TwoFiles<HoursTable>>(std::move(*illuminance), std::move(*sun)));
 }
 
 }  // namespace exitance
