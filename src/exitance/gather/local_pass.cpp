@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "exitance/base/error_share.hpp"
 #include "exitance/base/parallel.hpp"
@@ -38,10 +39,37 @@ double LocalPass::quiet_in(ElementId e, const LocalPassDemand& demand) const {
     return demand.noise_in.empty() ? 1 : demand.noise_in[stage_.rooms.of(tree_, e)];
 }
 
-/// RMS error that an element may have for the sake of its body, W/m^2.
-double LocalPass::allowed_on_body(ElementId e, const LocalPassDemand& demand) const {
-    if (demand.light_on.empty()) return HUGE_VAL;
-    return demand.body_error * demand.light_on[tree_.region(e).value];
+std::uint32_t LocalPass::body_of(ElementId e, const LocalPassDemand& demand) const {
+    return demand.bodies->of(stage_.scene, tree_.region(e));
+}
+
+/// Divides the error of every body among its present elements: misfit evenly, noise such that it takes the fewest rays.
+void LocalPass::divide_among_bodies(const LocalPassDemand& demand) {
+    if (!demand.bodies) return;
+    std::vector<std::vector<double>> areas(demand.bodies->all.size());
+    for (ElementId e : tree_.leaves()) areas[body_of(e, demand)].push_back(stage_.counted_area(tree_, e));
+    const bool is_first = mean_area_of_.empty();
+    noise_area_of_.clear();
+    for (const std::vector<double>& of : areas) {
+        const double sum = std::accumulate(of.begin(), of.end(), 0.0);
+        if (is_first) mean_area_of_.push_back(of.empty() ? 0 : sum / static_cast<double>(of.size()));
+        noise_area_of_.push_back(sum > 0 ? even_noise_area(of) : 0);
+    }
+}
+
+/// RMS noise that an element may have for the sake of its body, W/m^2.
+double LocalPass::noise_for_body(ElementId e, const LocalPassDemand& demand) const {
+    if (!demand.bodies) return HUGE_VAL;
+    const std::uint32_t body = body_of(e, demand);
+    const double even = noise_area_of_[body] / stage_.counted_area(tree_, e);
+    return demand.allowed_on_body[body] * std::sqrt(std::sqrt(even));
+}
+
+/// RMS misfit that an element may have for the sake of its body, W/m^2.
+double LocalPass::misfit_for_body(ElementId e, const LocalPassDemand& demand) const {
+    if (!demand.bodies) return HUGE_VAL;
+    const std::uint32_t body = body_of(e, demand);
+    return demand.allowed_on_body[body] * std::sqrt(mean_area_of_[body] / stage_.counted_area(tree_, e));
 }
 
 /// Noise of an element over the allowed noise. Three factors adjust the allowance:
@@ -62,7 +90,7 @@ double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const
     const double brightness_factor = usual_light > 0 ? std::sqrt(std::max(1.0, sampled.light / usual_light)) : 1;
     const double of_all = demand.noise * quiet_in(e, demand) * near * effort_factor * brightness_factor *
                           std::pow(noise_area_ / stage_.counted_area(tree_, e), 0.25);  // given by the same
-    const double allowed = std::min(of_all, allowed_on_body(e, demand));
+    const double allowed = std::min(of_all, noise_for_body(e, demand));
     return allowed > 0 ? std::sqrt(sampled.noise_squared) / allowed : 0;
 }
 
@@ -72,7 +100,7 @@ double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const
 double LocalPass::allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const {
     const double counted = stage_.counted_area(tree_, e), near = light_near(e, demand);
     const double even = demand.tolerance * near * std::sqrt(mean_area_ / counted);
-    const double share = std::min(std::max(even, near * std::sqrt(least_share_ / counted)), allowed_on_body(e, demand));
+    const double share = std::min(std::max(even, near * std::sqrt(least_share_ / counted)), misfit_for_body(e, demand));
     if (demand.elements.empty() || demand.relative_tolerance == 0) return share;
     return std::min(share, std::max(demand.relative_tolerance * light, calibrated::minor_misfit * demand.tolerance));
 }
@@ -340,6 +368,7 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
     std::size_t rays_before = 0;  // of `active`, if only the change is gathered
     const bool resumed = safe_points.resume([&](auto& a) { a(active, depth, begun, report.rays, rays_before); });
     if (!resumed && depth == change) rays_before = rays_of(active);
+    divide_among_bodies(demand);
     if (!resumed && known && depth == 0) active = to_gather_again(std::move(active), demand);
     // With very many elements, the allowed misfit of each follows from the misfits of all in the first round.
     const auto may_cut = [&](int at) { return at < demand.max_depth && !(is_crowd_ && at == 0); };
@@ -380,6 +409,7 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
         if (depth == demand.max_depth || stop.requested()) break;
         if (depth != change && is_crowd_) least_share_ = share_in_crowd(demand);
         active = depth == change ? to_gather_again(std::move(active), demand) : split_where_needed(active, demand);
+        divide_among_bodies(demand);
     }
     tree_.shrink_to_fit(), sampled_.shrink_to_fit();
     share_on_node(tree_), share_on_node(sampled_.span());

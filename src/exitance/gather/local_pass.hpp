@@ -5,6 +5,7 @@
 #include "exitance/gather/gather.hpp"
 #include "exitance/gather/sampled_element.hpp"
 #include "exitance/mesh/element_tree_archive.hpp"
+#include "exitance/scene/bodies.hpp"
 #include "exitance/solution/solution.hpp"
 #include "exitance/transport/ray_rows.hpp"
 
@@ -29,10 +30,9 @@ struct LocalPassDemand {
     /// Factor on the noise allowed in every room, at least 1: rooms that are accurate enough already do not take the
     /// rays that others need. Empty: 1.
     std::span<const double> noise_in = {};
-    /// Light that the body of every region reflects, by region number, W/m^2, and the error that noise and
-    /// interpolation may each have on any element relative to it. Empty: not limited.
-    std::span<const double> light_on = {};
-    double body_error = 0;
+    /// RMS error that noise and interpolation may each have on every body, W/m^2. Not limited without bodies.
+    const SceneBodies* bodies = nullptr;
+    std::span<const double> allowed_on_body = {};
     /// b minus the light gathered last, if that is small. Only the change is then gathered, with as few rays as its
     /// noise requires, and added to the present result. Null: b was gathered last, or is unrelated to it.
     const ReflectedLight* change = nullptr;
@@ -83,7 +83,7 @@ class LocalPass {
     /// Archives mesh and gathers for checkpoints.
     template <class Archive>
     void archive_state(Archive& a) {
-        a(tree_, sampled_, mean_area_, noise_area_, is_crowd_, least_share_, spread_);
+        a(tree_, sampled_, mean_area_, noise_area_, mean_area_of_, is_crowd_, least_share_, spread_);
     }
 
   private:
@@ -119,7 +119,10 @@ class LocalPass {
                       Workspace& workspace) const;
     double light_near(ElementId e, const LocalPassDemand& demand) const;
     double quiet_in(ElementId e, const LocalPassDemand& demand) const;
-    double allowed_on_body(ElementId e, const LocalPassDemand& demand) const;
+    std::uint32_t body_of(ElementId e, const LocalPassDemand& demand) const;
+    void divide_among_bodies(const LocalPassDemand& demand);
+    double noise_for_body(ElementId e, const LocalPassDemand& demand) const;
+    double misfit_for_body(ElementId e, const LocalPassDemand& demand) const;
     double allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const;
     double noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
     double tolerated_misfit_squared(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
@@ -139,6 +142,8 @@ class LocalPass {
     Field<ElementId, SampledElement> sampled_;
     double mean_area_ = 0;
     double noise_area_ = 0;  ///< Like mean_area_, for allotting noise.
+    /// Mean area of the first elements of every body, and the `even_noise_area` of its present ones, m^2.
+    std::vector<double> mean_area_of_, noise_area_of_;
     bool is_crowd_ = false;  ///< True if most elements are whole polygons (`ErrorShare`).
     /// Squared misfit allowed on any element over the squared light of its room, m^2; 0 unless is_crowd_.
     double least_share_ = 0;

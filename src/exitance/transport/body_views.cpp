@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "exitance/base/parallel.hpp"
@@ -106,8 +105,8 @@ std::vector<double> own_light(const Stage& stage, const BodyViews& views, const 
 
 }  // namespace
 
-BodyNeeds::BodyNeeds(const Stage& stage, const BodyViews& views, const DirectProjection& light, double tolerance,
-                     std::span<const double> light_of_room)
+BodyNeeds::BodyNeeds(const Stage& stage, const BodyViews& views, const DirectProjection& light,
+                     std::span<const double> tolerance, std::span<const double> light_of_room)
     : views_(views), regions_(stage.scene.regions().size()), at_(views.hits().size()) {
     follow(light.tree);
     allowed_ = own_light(stage, views, light);
@@ -124,7 +123,7 @@ BodyNeeds::BodyNeeds(const Stage& stage, const BodyViews& views, const DirectPro
     }
     for (std::size_t b = 0; b < allowed_.size(); ++b) {
         const double reference = std::max(allowed_[b], least_body_light * room_light_[b]);
-        allowed_[b] = reference > 0 ? tolerance * reference : unlimited;
+        allowed_[b] = reference > 0 ? tolerance[b] * reference : unlimited;
     }
     find_limits(light.tree);
 }
@@ -143,6 +142,21 @@ void BodyNeeds::follow(const ElementTree& tree) {
     if (!allowed_.empty()) find_limits(tree);
 }
 
+namespace {
+
+/// Unbiased estimate of the square of a form factor times reflectances, from the rays of a body that hit a cell: pairs
+/// of different rays. A single ray shows nothing of a cell's size; its own square would demand elements without end.
+class SquaredWeight {
+  public:
+    void add(double weight) { sum_ += weight, squares_ += weight * weight; }
+    double value() const { return std::max(0.0, sum_ * sum_ - squares_); }
+
+  private:
+    double sum_ = 0, squares_ = 0;
+};
+
+}  // namespace
+
 void BodyNeeds::find_limits(const ElementTree& tree) {
     most_ = Field<ElementId, Limits>(tree.size());
     const std::span<const BodyViews::Hit> hits = views_.hits();
@@ -156,20 +170,25 @@ void BodyNeeds::find_limits(const ElementTree& tree) {
         });
         for (std::size_t k = 0; k < of_body.size();) {
             const ElementId e = at_[of_body[k]].element;
-            // Weights of the rays that hit the cells of the element: of all, and of those from nearer than its width.
-            std::array<double, cells> all{}, near{};
+            // Rays that hit the cells of the element: all, and those from nearer than its width.
+            std::array<SquaredWeight, cells> all{}, near{};
             for (; k < of_body.size() && at_[of_body[k]].element == e; ++k) {
                 const BodyViews::Hit& hit = hits[of_body[k]];
                 const std::size_t cell = cell_of(at_[of_body[k]].uv);
-                all[cell] += hit.weight;
-                if (hit.distance * hit.distance < tree.area(e)) near[cell] += hit.weight;
+                all[cell].add(hit.weight);
+                if (hit.distance * hit.distance < tree.area(e)) near[cell].add(hit.weight);
             }
             const auto lower = [](double& limit, double to) { limit = std::min(limit, to); };
-            const double squares = std::inner_product(all.begin(), all.end(), all.begin(), 0.0);
+            const auto largest = [](const std::array<SquaredWeight, cells>& of) {
+                double out = 0;
+                for (const SquaredWeight& w : of) out = std::max(out, w.value());
+                return std::sqrt(out);
+            };
+            double squares = 0;
+            for (const SquaredWeight& w : all) squares += w.value();
             lower(most_[e].everywhere, allowed_[body] / std::sqrt(cells * squares));
-            lower(most_[e].in_a_cell, allowed_[body] / *std::max_element(all.begin(), all.end()));
-            lower(most_[e].in_a_near_cell,
-                  allowed_[body] / (room_light_[body] * *std::max_element(near.begin(), near.end())));
+            lower(most_[e].in_a_cell, allowed_[body] / largest(all));
+            lower(most_[e].in_a_near_cell, allowed_[body] / (room_light_[body] * largest(near)));
         }
     }
 }

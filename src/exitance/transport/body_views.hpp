@@ -32,7 +32,8 @@ class BodyViews {
     std::span<const Hit> hits() const { return hits_; }
     const SceneBodies& bodies() const { return *bodies_; }
 
-    static constexpr std::uint32_t rays_per_body = 256;
+    /// Derived from tolerances of 2%: ten rays hit a cell that has such a share of what a body sees.
+    static constexpr std::uint32_t rays_per_body = 512;
 
   private:
     const SceneBodies* bodies_;
@@ -48,11 +49,12 @@ class BodyViews {
 /// of its area, which counts where the body sees most of it.
 class BodyNeeds {
   public:
-    /// `fit`: direct light on the leaves of `tree`. `tolerance`: allowed error by one element, relative to the light
-    /// that a body reflects (once-reflected and direct), but at least a tenth of the mean light of its room.
+    /// `fit`: direct light on the leaves of `tree`. `tolerance`: for every body, the allowed error by one element,
+    /// relative to the light that the body reflects (once-reflected and direct), but at least a tenth of the mean light
+    /// of its room.
     /// `light_of_room`: mean of w E_dir per room, or of all surfaces if the scene is one room, W/m^2.
-    BodyNeeds(const Stage& stage, const BodyViews& views, const DirectProjection& light, double tolerance,
-              std::span<const double> light_of_room);
+    BodyNeeds(const Stage& stage, const BodyViews& views, const DirectProjection& light,
+              std::span<const double> tolerance, std::span<const double> light_of_room);
 
     /// Allowed mean square of w (E - polynomial) on a leaf, (W/m^2)^2; infinite if no body sees it.
     double allowed_squared(ElementId e) const;

@@ -38,11 +38,12 @@ double worst_of_bodies(const Scene& scene, double body_tolerance) {
     const Stage stage(scene);
     const SceneBodies bodies = find_bodies(scene);
     const BodyViews views(stage, bodies, 1), others(stage, bodies, 2);
+    const std::vector<double> tolerance(bodies.all.size(), body_tolerance);
     const DirectProjection light = project_direct_light(stage,
                                                         {.mesh = {100, 0},
                                                          .tolerance = 0.08,
                                                          .bodies = body_tolerance > 0 ? &views : nullptr,
-                                                         .body_tolerance = body_tolerance},
+                                                         .body_tolerance = tolerance},
                                                         {});
     const ElementLocator locator(light.tree, scene.regions().size());
     std::vector<double> exact(bodies.all.size()), projected(bodies.all.size());

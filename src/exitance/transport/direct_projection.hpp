@@ -23,7 +23,8 @@ struct DirectProjectionOptions {
     /// The surroundings that bodies see, if the light that they receive must be accurate (BodyNeeds); null: only the
     /// error of the whole matters.
     const BodyViews* bodies = nullptr;
-    double body_tolerance = 0;  ///< Error by one element, relative to the light that a body reflects.
+    /// Error by one element, for every body, relative to the light that the body reflects.
+    std::span<const double> body_tolerance = {};
     std::uint64_t seed = 1;     ///< Seed of the rays from small elements in scenes of many elements.
 };
 

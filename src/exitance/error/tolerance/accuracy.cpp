@@ -190,7 +190,7 @@ Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, 
         out.knobs.solve_mesh.edge *= std::sqrt(factor);
         out.knobs.solve_mesh.grading_levels += 1;
         out.knobs.solve_rays.average = std::min(knobs.solve_rays.average / factor, c::most_row_rays);
-        out.knobs.direct_tolerance *= factor, out.knobs.body_error *= factor;
+        out.knobs.direct_tolerance *= factor;
         out.knobs.residual *= factor;
         out.knobs.link_error *= factor;
         method *= factor;

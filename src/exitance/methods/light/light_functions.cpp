@@ -291,11 +291,9 @@ std::vector<double> light_of_bodies(const Stage& stage, const GlobalLight& light
         const double of_room = mean_light * (light_in.empty() ? 1 : light_in[stage.rooms.of(light.tree, e)]);
         least[body] = std::max(least[body], least_body_light * of_room);
     }
-    std::vector<double> out(stage.scene.regions().size());
-    for (RegionId region : stage.scene.regions().ids()) {
-        const std::uint32_t body = bodies.of(stage.scene, region);
-        out[region.value] = area[body] > 0 ? std::max(flux[body] / area[body], least[body]) : mean_light;
-    }
+    std::vector<double> out(bodies.all.size(), mean_light);
+    for (std::size_t body = 0; body < out.size(); ++body)
+        if (area[body] > 0) out[body] = std::max(flux[body] / area[body], least[body]);
     return out;
 }
 

@@ -86,8 +86,8 @@ std::vector<ElementFunction> delivered_functions(const Scene& scene, const Eleme
 /// to it. Empty if there is only one room.
 std::vector<double> light_by_room(const Stage& stage, const GlobalLight& light);
 
-/// Returns, for every region, the radiosity to which errors of its body are relative, W/m^2: the mean light that the
-/// body reflects, but at least a tenth of its room's. `light_in`: light_by_room().
+/// Returns, for every body, the radiosity to which its error is relative, W/m^2: the mean light that the body reflects,
+/// but at least a tenth of its room's. `light_in`: light_by_room().
 std::vector<double> light_of_bodies(const Stage& stage, const GlobalLight& light, const SceneBodies& bodies,
                                     std::span<const double> light_in);
 

@@ -69,7 +69,6 @@ bool Solver::refines_bodies(double demand, double last_seconds) {
     // An attempt for bodies is made once, or twice if the first one halved what was too much. Others would cost more
     // than the whole solve, for the sake of bodies whose errors are uncertain themselves.
     constexpr int most_for_bodies = 2;
-    constexpr double aim = 0.7;  // of the limit, as for the whole: derived from attempt_aim
     const double limit = max_body_errors * demand, worst = certificate_.worst_body.value_or(0);
     const bool helps = worst_body_before_ == 0 || worst - limit < 0.5 * (worst_body_before_ - limit);
     if (!holds_bodies() || !gathers() || sums_ || worst <= limit || !helps || body_attempts_ == most_for_bodies ||
@@ -77,11 +76,24 @@ bool Solver::refines_bodies(double demand, double last_seconds) {
         as_first(last_seconds) > seconds_left(stop_))
         return false;
     ++body_attempts_, worst_body_before_ = worst;
-    progress_.note(fmt::format("estimated error {:.2f}% of the worst body > {:.2f}%: solving again for bodies",
-                               100 * worst, 100 * limit));
-    knobs_.body_error *= aim * limit / worst;
-    light_.reset(), next_ = {}, steps_.not_local = 0, takes_step_ = false;
+    // A refinement step keeps what is accurate enough. Beside near surfaces, it replaces the method's elements by the
+    // delivered ones, which are finer there. Errors of the direct light that bodies see need a new solve.
+    takes_step_ = body_attempts_ == 1 && plan_.may_refine_delivered && light_->on_projection;
+    tighten_bodies(limit);
+    if (!takes_step_) light_.reset(), next_ = {}, steps_.not_local = 0;
+    progress_.note(fmt::format("estimated error {:.2f}% of the worst body > {:.2f}%: {}", 100 * worst, 100 * limit,
+                               takes_step_ ? "refining the delivered elements"
+                                           : "solving again with finer elements where such bodies see them"));
     return true;
+}
+
+void Solver::tighten_bodies(double limit) {
+    constexpr double aim = 0.7;  // of the limit, as for the whole: derived from attempt_aim
+    for (const BodyError& body : statistics().bodies) {
+        if (!body.error || *body.error <= limit) continue;
+        BodyShares& shares = body_shares_[bodies().body[body.first]];
+        (takes_step_ ? shares.gathered : shares.seen) *= aim * limit / *body.error;
+    }
 }
 
 bool Solver::lower_error() {
@@ -171,14 +183,20 @@ void Solver::project_direct() {
     constexpr double one_of_four = 0.7;
     const Stopwatch watch;
     std::optional<BodyViews> views;
-    if (holds_bodies()) views.emplace(stage_, bodies(), options_.seed);
+    std::vector<double> tolerance_of;
+    if (holds_bodies()) {
+        views.emplace(stage_, bodies(), options_.seed);
+        body_shares_.resize(bodies().all.size());
+        for (const BodyShares& share : body_shares_)
+            tolerance_of.push_back(one_of_four * share.seen * knobs_.body_error);
+    }
     DirectProjection fresh = project_direct_light(stage_,
                                                   {.mesh = knobs_.solve_mesh,
                                                    .tolerance = knobs_.direct_tolerance,
                                                    .least_area = options_.min_area,
                                                    .may_give_up = direct_.tree.size() > 0,
                                                    .bodies = views ? &*views : nullptr,
-                                                   .body_tolerance = one_of_four * knobs_.body_error,
+                                                   .body_tolerance = tolerance_of,
                                                    .seed = options_.seed},
                                                   stop_);
     if (fresh.tree.size() > 0) {
@@ -394,8 +412,12 @@ Spectrum Solver::direct_share() const {
 ElementFunction Solver::gather(const ReadNextLight& b, std::span<const ElementGather> elements, bool fresh) {
     progress_.phase("gather");
     const double scale = light_->mean_reflected(stage_.area);
-    const std::vector<double> light_on =
-        holds_bodies() ? light_of_bodies(stage_, *light_, bodies(), light_in_) : std::vector<double>();
+    std::vector<double> allowed_on_body;
+    if (holds_bodies()) {
+        allowed_on_body = light_of_bodies(stage_, *light_, bodies(), light_in_);
+        for (std::size_t i = 0; i < allowed_on_body.size(); ++i)
+            allowed_on_body[i] *= body_shares_[i].gathered * knobs_.body_error;
+    }
     if (!local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
     ElementFunction out = local_pass_->gather(b.whole(), fresh,
                                               {.rays = knobs_.gather_rays,
@@ -408,8 +430,8 @@ ElementFunction Solver::gather(const ReadNextLight& b, std::span<const ElementGa
                                                .element_share = knobs_.gather_element_share,
                                                .light_in = allowed_in_,
                                                .noise_in = noise_in_,
-                                               .light_on = light_on,
-                                               .body_error = knobs_.body_error,
+                                               .bodies = holds_bodies() ? &bodies() : nullptr,
+                                               .allowed_on_body = allowed_on_body,
                                                .change = b.change()},
                                               gathered_, progress_, stop_, safe_points());
     statistics().rays += gathered_.rays;

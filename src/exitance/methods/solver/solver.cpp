@@ -91,9 +91,9 @@ void Solver::archive_state(Archive& a, std::string& phase) {
     a(attempt_, step_, fresh_, share_, knobs_, direct_, unscaled_, light_, refined_, gathered_, certificate_, phase,
       steps_);
     next_.archive_state(a);
-    a(body_attempts_, worst_body_before_, light_in_, allowed_in_, noise_in_, solution_.indirect, solution_.links,
-      solution_.own_form, solution_.delivers_own_form, solution_.direct_share, solution_.direct_in_elements,
-      solution_.statistics);
+    a(body_attempts_, worst_body_before_, body_shares_, light_in_, allowed_in_, noise_in_, solution_.indirect,
+      solution_.links, solution_.own_form, solution_.delivers_own_form, solution_.direct_share,
+      solution_.direct_in_elements, solution_.statistics);
     bool has_local_pass = local_pass_.has_value();
     a(has_local_pass);
     if (has_local_pass && !local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);

@@ -55,6 +55,9 @@ class Solver {
     /// True if another attempt follows because the light of some body is too inaccurate. Then changes the settings for
     /// it. `last_seconds`: duration of the last attempt.
     bool refines_bodies(double demand, double last_seconds);
+    /// Reduces the errors allowed on the bodies whose error exceeds `limit`: of the light gathered on them before a
+    /// refinement step, of the direct light that they see before a new solve.
+    void tighten_bodies(double limit);
     /// Passes the delivered light to the `show` callback, on the elements of the export.
     void show_light();
 
@@ -182,6 +185,11 @@ class Solver {
     int attempt_ = 1;
     int body_attempts_ = 0;         ///< Number of attempts for the sake of bodies.
     double worst_body_before_ = 0;  ///< `worst_body` before the last of them; 0: there was none.
+    /// Factors on the errors that bodies may have due to the light gathered on them and to the direct light they see.
+    struct BodyShares {
+        double gathered = 1, seen = 1;
+    };
+    std::vector<BodyShares> body_shares_;  ///< One per body, if bodies must be accurate.
     Step step_ = Step::project;
     bool fresh_ = true;                  ///< True if the method solves in this attempt.
     Spectrum share_;                     ///< c of the method's light, see find_direct_share.
