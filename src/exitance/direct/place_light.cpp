@@ -65,11 +65,12 @@ PlaceLight::Estimate PlaceLight::by_rays(const Point& x, const Normal& n, Region
 PlaceLight::Estimate PlaceLight::at(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
                                     Workspace& room) const {
     std::optional<Spectrum> exact;
+    double tried = 0;
     if (accuracy.relative > 0 || accuracy.absolute > 0) {
         const double of_one = RayLight::rays_for(std::max(accuracy.relative, RayLight::error_of(accuracy.most_rays)));
         const double work =
             most_work_ <= of_one || !(accuracy.absolute > 0) ? of_one : rays_.forecast(x, n, own, accuracy, room);
-        exact = exact_within(x, n, own, work, room);
+        exact = exact_within(x, n, own, work, room), tried = work_of(room, work);
         if (!exact) {
             // In penumbrae rays need more than was forecast. The first ones tell.
             LightAccuracy first = accuracy;
@@ -77,15 +78,28 @@ PlaceLight::Estimate PlaceLight::at(const Point& x, const Normal& n, RegionId ow
             const Estimate found = rays_.at(x, n, own, first, room);
             constexpr double worth_another = 4;  // derived from the cost of trying again: a quarter of what rays need
             const double needed = rays_needed(found, accuracy);
-            if (needed > worth_another * work) exact = exact_within(x, n, own, needed / worth_another, room);
+            tried += static_cast<double>(found.rays);
+            if (needed > worth_another * work) {
+                exact = exact_within(x, n, own, needed / worth_another, room);
+                tried += work_of(room, needed / worth_another);
+            }
         }
-        if (!exact) return by_rays(x, n, own, accuracy, room);
+        if (!exact) {
+            Estimate out = by_rays(x, n, own, accuracy, room);
+            out.work = tried;
+            return out;
+        }
     } else {
         exact = direct_->irradiance(x, n, own, room.exact);
     }
-    Estimate out{.irradiance = *exact};
+    Estimate out{.irradiance = *exact, .work = tried};
     add_mirrored(x, n, own, accuracy, out);
     return out;
+}
+
+/// Work of the last call of exact_within(), at most `limit`.
+double PlaceLight::work_of(const Workspace& room, double limit) const {
+    return std::min(limit, most_work_ <= limit ? most_work_ : room.exact.work);
 }
 
 std::optional<Spectrum> PlaceLight::exact_within(const Point& x, const Normal& n, RegionId own, double work,

@@ -65,6 +65,7 @@ class PlaceLight {
   private:
     std::optional<Spectrum> exact_within(const Point& x, const Normal& n, RegionId own, double work,
                                          Workspace& room) const;
+    double work_of(const Workspace& room, double limit) const;
     static double rays_needed(const Estimate& found, const LightAccuracy& accuracy);
     void add_mirrored(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
                       Estimate& out) const;

@@ -39,6 +39,7 @@ class RayLight {
         Spectrum parallel = {};    ///< The part of it from sky and sun.
         double variance = 0;       ///< Variance of the mean over bands, (W/m^2)^2; 0: exact.
         std::size_t rays = 0;      ///< Number of rays cast.
+        double work = 0;           ///< Work of closed forms, whether they gave the result or not, in rays.
 
         Spectrum standard_error() const;  ///< Per band, in proportion to the light of the band, W/m^2.
     };

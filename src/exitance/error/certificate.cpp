@@ -136,6 +136,8 @@ struct Certifier::Content {
     std::vector<Spectrum> late_response() const;
     void balance(std::span<const Spectrum> residuals, std::span<Spectrum> errors) const;
     double true_mean(double mean_error) const;
+    bool is_rough(const ResidualSample& s, double share, double light) const;
+    RoughPlace rough_place(const ResidualSample& s) const;
     Certificate judge();
     void judge_rooms(Certificate& out);
     std::vector<double> mean_by_room() const;
@@ -276,7 +278,7 @@ void Certifier::Content::judge_rooms(Certificate& out) {
         return;
     }
     std::vector<std::array<double, batches>> squares(count);
-    std::vector<double> weight(count), told(count), local(count), method(count);
+    std::vector<double> weight(count), told(count), local(count), method(count), rough(count);
     for (std::size_t k = 0; k < samples.size(); ++k) {
         const ResidualSample& s = samples[k];
         squares[s.room][k % batches] += s.weight * batches * s.squared;
@@ -286,6 +288,11 @@ void Certifier::Content::judge_rooms(Certificate& out) {
         local[s.room] += s.weight * mean(s.local1 * s.local2);
         method[s.room] += s.weight * mean((s.r1 - s.local1) * (s.r2 - s.local2));
     }
+    for (const ResidualSample& s : samples)
+        if (told[s.room] > 0 && is_rough(s, s.weight / told[s.room], options.light_in[s.room] * mean_reflected)) {
+            rough[s.room] += s.weight * mean(s.local1 * s.local2);
+            out.rough_places.push_back(rough_place(s));
+        }
     rooms.clear();
     for (std::size_t room = 0; room < count; ++room) {
         const double light_there = options.light_in[room] * mean_reflected;
@@ -299,7 +306,8 @@ void Certifier::Content::judge_rooms(Certificate& out) {
         if (estimate <= out.estimate) continue;
         out.largest_room = room, out.largest_light = light_there;
         const auto part = [&](double sum) { return std::sqrt(std::max(0.0, sum / told[room])) / light_there; };
-        if (told[room] > 0) out.local = part(local[room]), out.method = part(method[room]);
+        if (told[room] > 0)
+            out.local = part(local[room]), out.method = part(method[room]), out.rough = part(rough[room]);
     }
 }
 
@@ -311,6 +319,19 @@ double Certifier::Content::true_mean(double mean_error) const {
                                                       // tenth is below its own uncertainty
     if (!options.direct_in_elements || std::abs(mean_error) <= ignored * mean_reflected) return mean_reflected;
     return std::max(mean_reflected + mean_error, min_share * mean_reflected);
+}
+
+/// True if the local pass's error at one point, with this share of all weight, is a notable part of the whole allowed
+/// error. `light`: to which the error is relative, W/m^2.
+bool Certifier::Content::is_rough(const ResidualSample& s, double share, double light) const {
+    // Derived from the initial number of points: forty times what a point of an even error at the limit has.
+    constexpr double notable = 1.0 / 32;
+    const double allowed = options.error * light;
+    return s.tells_local && share * mean(s.local1 * s.local2) > notable * allowed * allowed;
+}
+
+RoughPlace Certifier::Content::rough_place(const ResidualSample& s) const {
+    return {s.region, indirect.tree.patch(s.place.element).at(s.place.uv)};
 }
 
 Certificate Certifier::Content::judge() {
@@ -336,12 +357,19 @@ Certificate Certifier::Content::judge() {
         out.rays += s.rays;
     }
     out.mean_reflected = out.largest_light = true_mean(mean_error);
+    double rough_squared = 0;
+    for (const ResidualSample& s : samples)
+        if (told > 0 && is_rough(s, s.weight / told / static_cast<double>(looks), mean_reflected)) {
+            rough_squared += s.weight / static_cast<double>(looks) * mean(s.local1 * s.local2);
+            if (stage.rooms.count() == 0) out.rough_places.push_back(rough_place(s));
+        }
     const BatchMean residual(residual_squared), error(error_squared);
     const double upper = std::max(0.0, residual.mean) + student_95 * residual.standard_error;
     out.residual = std::sqrt(std::max(0.0, residual.mean)) / out.mean_reflected;
     if (options.gathered) {
         out.local = std::sqrt(std::max(0.0, local_squared / told)) / out.mean_reflected;
         out.method = std::sqrt(std::max(0.0, method_squared / told)) / out.mean_reflected;
+        out.rough = std::sqrt(std::max(0.0, rough_squared / told)) / out.mean_reflected;
     }
     // The estimate is at least as large as its own uncertainty.
     out.estimate = std::sqrt(std::max(error.mean, error.standard_error)) / out.mean_reflected;

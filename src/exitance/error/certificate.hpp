@@ -6,6 +6,7 @@
 
 #include "exitance/error/direct_check.hpp"
 #include "exitance/gather/local_pass.hpp"
+#include "exitance/gather/rough_places.hpp"
 #include "exitance/scene/bodies.hpp"
 #include "exitance/solution/solution.hpp"
 #include "exitance/solve/global_light.hpp"
@@ -70,6 +71,9 @@ struct Certificate {
     /// light minus an exact gather of the light that was gathered (noise of rays and interpolation). `method`: error of
     /// the gathered light itself (the method's elements). r = local + method.
     double local = 0, method = 0;
+    /// Part of `local` at single points that have a notable share of the allowed error, and these points.
+    double rough = 0;
+    std::vector<RoughPlace> rough_places = {};
     double constant = 1;        ///< Ratio of the error bound to ||r||.
     double mean_reflected = 0;  ///< Mean reflected radiosity over surfaces and bands, W/m^2; errors are relative to it.
     std::size_t points = 0, rays = 0;

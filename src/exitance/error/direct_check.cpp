@@ -21,8 +21,8 @@ DirectCheck::Difference DirectCheck::exact_difference(const HitPoint& hit, const
                                                       PlaceLight::Workspace& room) const {
     const Normal& n = stage_->scene.regions()[hit.region].plane.n;
     const PlaceLight::Estimate direct = stage_->place_light.at(hit.y, n, hit.region, accuracy_, room);
-    return {projected_.weight * (direct.irradiance - projected),
-            direct.rays > 0 ? static_cast<double>(direct.rays) : closed_form_work_};
+    const double of_forms = direct.rays > 0 ? direct.work : std::max(direct.work, closed_form_work_);
+    return {projected_.weight * (direct.irradiance - projected), static_cast<double>(direct.rays) + of_forms};
 }
 
 Spectrum DirectCheck::sampled_difference(const HitPoint& hit, const Spectrum& projected, RandomStream& random) const {

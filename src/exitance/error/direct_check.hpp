@@ -57,8 +57,8 @@ class DirectCheck {
         Spectrum light;
         double work = 0;
     };
-    /// Returns the difference with E_dir as at points of a solution. The work of closed forms is that which
-    /// `DirectLight` states for them; a directed radiance makes them quadratures, about twenty times as expensive.
+    /// Returns the difference with E_dir as at points of a solution. The work of closed forms grows with the blockers
+    /// that were cut from the emitters; a directed radiance makes them quadratures, about twenty times as expensive.
     Difference exact_difference(const HitPoint& hit, const Spectrum& projected, PlaceLight::Workspace& room) const;
     /// Returns an unbiased sample of the difference, by one step of a path.
     Spectrum sampled_difference(const HitPoint& hit, const Spectrum& projected, RandomStream& random) const;
@@ -74,7 +74,7 @@ class DirectCheck {
     const PathTracer* paths_;
     ProjectedDirect projected_;
     LightAccuracy accuracy_;
-    double closed_form_work_ = 0;  ///< Work of exact light at a point, in rays.
+    double closed_form_work_ = 0;  ///< Least work of exact light at a point, in rays.
 };
 
 /// A place of the pilot, which predicts variances.

@@ -174,7 +174,8 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
         out.rays = cast;
         if (may_cut && is_too_rough(e, out, demand)) return out;
         if (noise_excess(e, out, demand) <= calibrated::tolerated_noise || 2 * rays > demand.rays.most) {
-            if (may_cut && demand.elements.empty()) look_between(e, out, b, demand, w);
+            if (may_cut && demand.elements.empty())
+                is_suspect(e) ? look_closely(e, out, b, demand, w) : look_between(e, out, b, demand, w);
             return out;
         }
     }
@@ -367,8 +368,9 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
     std::size_t begun = 0;        // elements of `active` that a resumed run has gathered
     std::size_t rays_before = 0;  // of `active`, if only the change is gathered
     const bool resumed = safe_points.resume([&](auto& a) { a(active, depth, begun, report.rays, rays_before); });
-    if (!resumed && depth == change) rays_before = rays_of(active);
     divide_among_bodies(demand);
+    if (!resumed && known) report.rays += follow_rough_places(b, demand);
+    if (!resumed && depth == change) rays_before = rays_of(active);
     if (!resumed && known && depth == 0) active = to_gather_again(std::move(active), demand);
     // With very many elements, the allowed misfit of each follows from the misfits of all in the first round.
     const auto may_cut = [&](int at) { return at < demand.max_depth && !(is_crowd_ && at == 0); };

@@ -3,6 +3,7 @@
 #include "exitance/base/checkpoint.hpp"
 #include "exitance/gather/element_gather.hpp"
 #include "exitance/gather/gather.hpp"
+#include "exitance/gather/rough_places.hpp"
 #include "exitance/gather/sampled_element.hpp"
 #include "exitance/mesh/element_tree_archive.hpp"
 #include "exitance/scene/bodies.hpp"
@@ -36,6 +37,8 @@ struct LocalPassDemand {
     /// b minus the light gathered last, if that is small. Only the change is then gathered, with as few rays as its
     /// noise requires, and added to the present result. Null: b was gathered last, or is unrelated to it.
     const ReflectedLight* change = nullptr;
+    /// Places at which the light gathered last was found to miss features. They are followed and refined.
+    std::span<const RoughPlace> rough_places = {};
 };
 
 struct LocalPassReport {
@@ -83,7 +86,7 @@ class LocalPass {
     /// Archives mesh and gathers for checkpoints.
     template <class Archive>
     void archive_state(Archive& a) {
-        a(tree_, sampled_, mean_area_, noise_area_, mean_area_of_, is_crowd_, least_share_, spread_);
+        a(tree_, sampled_, mean_area_, noise_area_, mean_area_of_, is_crowd_, least_share_, spread_, suspect_);
     }
 
   private:
@@ -117,6 +120,11 @@ class LocalPass {
                        bool more, const LocalPassDemand& demand, Workspace& workspace) const;
     void look_between(ElementId e, SampledElement& sampled, const ReflectedLight& b, const LocalPassDemand& demand,
                       Workspace& workspace) const;
+    bool is_suspect(ElementId e) const;
+    void look_closely(ElementId e, SampledElement& sampled, const ReflectedLight& b, const LocalPassDemand& demand,
+                      Workspace& workspace) const;
+    std::vector<ElementId> beside(ElementId e, const ElementLocator& locator) const;
+    std::size_t follow_rough_places(const ReflectedLight& b, const LocalPassDemand& demand);
     double light_near(ElementId e, const LocalPassDemand& demand) const;
     double quiet_in(ElementId e, const LocalPassDemand& demand) const;
     std::uint32_t body_of(ElementId e, const LocalPassDemand& demand) const;
@@ -148,6 +156,7 @@ class LocalPass {
     /// Squared misfit allowed on any element over the squared light of its room, m^2; 0 unless is_crowd_.
     double least_share_ = 0;
     Spread spread_;
+    Field<ElementId, std::uint8_t> suspect_;  ///< Elements that were looked at closely; their parts are, too.
 };
 
 }  // namespace exitance

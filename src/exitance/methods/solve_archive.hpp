@@ -1,6 +1,7 @@
 #pragma once
 
 #include "exitance/base/archive.hpp"
+#include "exitance/error/certificate.hpp"
 #include "exitance/gather/local_pass.hpp"
 #include "exitance/mesh/element_tree_archive.hpp"
 #include "exitance/solution/solution.hpp"
@@ -57,6 +58,14 @@ template <class Archive>
 void archive(Archive& a, LocalPassReport& report) {
     auto& [rays, whole, rooms, leaves, interrupted] = report;
     a(rays, whole, rooms, leaves, interrupted);
+}
+
+template <class Archive>
+void archive(Archive& a, Certificate& certificate) {
+    auto& [estimate, uncertainty, bound, p99, residual, local, method, rough, rough_places, constant, mean_reflected,
+           points, rays, worst_room, room_uncertainty, largest_room, largest_light, worst_body] = certificate;
+    a(estimate, uncertainty, bound, p99, residual, local, method, rough, rough_places, constant, mean_reflected);
+    a(points, rays, worst_room, room_uncertainty, largest_room, largest_light, worst_body);
 }
 
 template <class Archive>

@@ -135,6 +135,8 @@ std::optional<Solver::NextAttempt> Solver::next_in_time(double demand, double la
 
 Solver::NextAttempt Solver::next_attempt(double demand) const {
     const double target = calibrated::attempt_aim * demand;
+    const double all = certificate_.largest(), rough = certificate_.rough;
+    if (all * all - rough * rough <= target * target) return {.finer = {.knobs = knobs_}};
     const ErrorParts parts = error_parts();
     NextAttempt out{.finer = tightened(knobs_, parts, target, options_)};
     const Tightened& finer = out.finer;
@@ -158,6 +160,7 @@ Solver::NextAttempt Solver::next_attempt(double demand) const {
 }
 
 void Solver::keep_noise_of_accurate_rooms(double target, double step) {
+    if (step == 1) return;
     noise_in_.resize(stage_.rooms.count(), 1);
     for (std::size_t room = 0; room < noise_in_.size(); ++room) {
         const bool is_accurate =
@@ -432,7 +435,8 @@ ElementFunction Solver::gather(const ReadNextLight& b, std::span<const ElementGa
                                                .noise_in = noise_in_,
                                                .bodies = holds_bodies() ? &bodies() : nullptr,
                                                .allowed_on_body = allowed_on_body,
-                                               .change = b.change()},
+                                               .change = b.change(),
+                                               .rough_places = certificate_.rough_places},
                                               gathered_, progress_, stop_, safe_points());
     statistics().rays += gathered_.rays;
     return out;

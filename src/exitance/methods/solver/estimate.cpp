@@ -131,7 +131,8 @@ void Solver::warn_of_bodies() {
 
 /// Returns the parts of the error where it is largest. If their sum exceeds the whole error, they cancel in part, as
 /// after several refinement steps; they are then scaled down to the whole. Misfit that is hidden by the rays' noise
-/// counts as noise, since a smaller tolerance would not split any elements.
+/// counts as noise, since a smaller tolerance would not split any elements. Error at rough places counts as neither:
+/// the local pass refines these in any case.
 ErrorParts Solver::error_parts() const {
     if (!gathers()) return {.method = certificate_.largest()};
     const std::optional<std::size_t> room = certificate_.largest_room;
@@ -139,7 +140,8 @@ ErrorParts Solver::error_parts() const {
         room && *room < gathered_.rooms.size() ? gathered_.rooms[*room] : gathered_.whole;
     const double parts = std::hypot(certificate_.local, certificate_.method), all = certificate_.largest();
     const double cancels = parts > all ? all / parts : 1;
-    const double local = cancels * certificate_.local, noise = told.noise / certificate_.largest_light;
+    const double spread = std::sqrt(std::max(0.0, std::pow(certificate_.local, 2) - std::pow(certificate_.rough, 2)));
+    const double local = cancels * spread, noise = told.noise / certificate_.largest_light;
     const double misfit = std::sqrt(std::max(0.0, local * local - noise * noise));
     const double seen = told.interpolation / certificate_.largest_light;
     // If the misfit exceeds the detected interpolation error by this factor, the rays' noise hides it.
