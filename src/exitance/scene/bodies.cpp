@@ -18,8 +18,10 @@ void join_by_edges(const Scene& scene, DisjointSets& sets) {
     std::vector<Point> corners;
     for (SurfaceId s : scene.surfaces().ids())
         corners.insert(corners.end(), scene.outline(s).begin(), scene.outline(s).end());
-    // Uses the tolerance of the findings about edges.
-    const std::vector<std::uint32_t> place = weld(corners, 1e-8 * scene.size());
+    // Derived from the tolerance of planes, 1e-5: joining nearly coplanar faces moves the corners of each by up to
+    // that.
+    constexpr double moved = 2e-5;
+    const std::vector<std::uint32_t> place = weld(corners, moved * scene.size());
     struct Edge {
         std::uint32_t low, high, face;
         auto operator<=>(const Edge&) const = default;

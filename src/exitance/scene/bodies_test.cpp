@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace exitance {
 namespace {
@@ -45,6 +46,26 @@ TEST(Bodies, AreFacesThatShareEdges) {
     EXPECT_NEAR(bodies.all[1].area, 24, 1e-12);
     EXPECT_NEAR(norm(bodies.all[1].centre - Point{4, 1, 1}), 0, 1e-12);
     for (SurfaceId s : scene.surfaces().ids()) EXPECT_EQ(bodies.body[s], s.value / 6);
+}
+
+TEST(Bodies, OfNearlyFlatMeshesAreWhole) {
+    // A sheet of triangles with bumps of some thousandths of a millimetre per metre, as of a scanned surface. Some of
+    // them count as coplanar and are moved into one plane, apart from the others.
+    for (const double scale : {1.0, 1e-3, 1e3}) {
+        SceneDescription d = with_groups({"default"});
+        constexpr std::uint32_t n = 24;
+        for (std::uint32_t i = 0; i <= n; ++i)
+            for (std::uint32_t k = 0; k <= n; ++k)
+                d.points.push_back(scale * Vec3{1.0 * i / n, 1.0 * k / n, 2e-5 * std::sin(1.7 * i + 2.9 * k * k)} +
+                                   Point{});
+        for (std::uint32_t i = 0; i < n; ++i)
+            for (std::uint32_t k = 0; k < n; ++k) {
+                const std::uint32_t a = i * (n + 1) + k, b = a + n + 1;
+                d.faces.push_back({{a, b, b + 1}, 0, 0, 0});
+                d.faces.push_back({{a, b + 1, a + 1}, 0, 0, 0});
+            }
+        EXPECT_EQ(find_bodies(made(std::move(d))).all.size(), 1u) << scale;
+    }
 }
 
 TEST(Bodies, AreFacesOfOneNamedObject) {
