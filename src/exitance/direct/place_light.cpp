@@ -14,6 +14,9 @@ namespace {
 constexpr double work_of_shaft = 10;     ///< Search for the blockers between a polygon and a source.
 constexpr double work_of_blocker = 6;    ///< A blocker that is clipped from a source, if there are many fragments.
 constexpr double work_of_integral = 20;  ///< Integral of a directed radiance over a fragment.
+/// Rays needed, over the work that exact light was allowed, above which it is tried again with a quarter of them:
+/// derived from the cost of trying in vain, at most a quarter of that of the rays.
+constexpr double worth_another = 4;
 
 }  // namespace
 
@@ -73,12 +76,7 @@ PlaceLight::Estimate PlaceLight::at(const Point& x, const Normal& n, RegionId ow
         exact = exact_within(x, n, own, work, room), tried = work_of(room, work);
         if (!exact) {
             // In penumbrae rays need more than was forecast. The first ones tell.
-            LightAccuracy first = accuracy;
-            first.most_rays = std::min(accuracy.most_rays, std::bit_ceil(static_cast<unsigned>(work)));
-            const Estimate found = rays_.at(x, n, own, first, room);
-            constexpr double worth_another = 4;  // derived from the cost of trying again: a quarter of what rays need
-            const double needed = rays_needed(found, accuracy);
-            tried += static_cast<double>(found.rays);
+            const double needed = rays_needed_at(x, n, own, work, accuracy, room, tried);
             if (needed > worth_another * work) {
                 exact = exact_within(x, n, own, needed / worth_another, room);
                 tried += work_of(room, needed / worth_another);
@@ -108,8 +106,14 @@ std::optional<Spectrum> PlaceLight::exact_within(const Point& x, const Normal& n
                               : direct_->irradiance_within(x, n, own, work, room.exact);
 }
 
-/// Forecast of the rays that reach an accuracy; stratified rays have a variance of n^(-3/2).
-double PlaceLight::rays_needed(const Estimate& found, const LightAccuracy& accuracy) {
+/// Returns how many rays a place needs, by about as many of them as `work`, and adds these to `tried`. Stratified rays
+/// have a variance of n^(-3/2).
+double PlaceLight::rays_needed_at(const Point& x, const Normal& n, RegionId own, double work,
+                                  const LightAccuracy& accuracy, Workspace& room, double& tried) const {
+    LightAccuracy first = accuracy;
+    first.most_rays = std::min(accuracy.most_rays, std::bit_ceil(static_cast<unsigned>(std::max(1.0, work))));
+    const Estimate found = rays_.at(x, n, own, first, room);
+    tried += static_cast<double>(found.rays);
     const double allowed = accuracy.allowed(mean(found.irradiance));
     if (found.variance <= allowed * allowed) return 0;
     const double rays = found.rays * std::pow(found.variance / (allowed * allowed), 2.0 / 3);
@@ -142,14 +146,26 @@ bool PlaceLight::prepare(const Polygon& on, double work, const std::vector<Sourc
     return !room.light_.has_crowded() && exact_work(room.light_) <= work;
 }
 
+/// Work that a place by rays is forecast to take, less the share of each place in finding the blockers.
+double PlaceLight::forecast_work(const Polygon& on, const std::vector<SourceName>* named, const LightAccuracy& accuracy,
+                                 Workspace& room) const {
+    if (!(accuracy.relative > 0 || accuracy.absolute > 0)) return HUGE_VAL;
+    return rays_.forecast(centroid(on.outline), on.n, on.own, accuracy, room) - preparing_a_place(on, named);
+}
+
+double PlaceLight::preparing_a_place(const Polygon& on, const std::vector<SourceName>* named) const {
+    const double preparing = named ? work_of_shaft * static_cast<double>(named->size()) : preparing_;
+    return preparing / static_cast<double>(on.places.size());
+}
+
 bool PlaceLight::exact_at_places(const Polygon& on, const std::vector<SourceName>* named, const LightAccuracy& accuracy,
                                  Workspace& room, std::vector<Estimate>& out) const {
-    double work = HUGE_VAL;
-    if (accuracy.relative > 0 || accuracy.absolute > 0) {
-        const double preparing = named ? work_of_shaft * static_cast<double>(named->size()) : preparing_;
-        work = rays_.forecast(centroid(on.outline), on.n, on.own, accuracy, room) -
-               preparing / static_cast<double>(on.places.size());
-    }
+    return exact_within(on, named, forecast_work(on, named, accuracy, room), accuracy, room, out);
+}
+
+/// Computes exact light at the places if each takes at most `work`.
+bool PlaceLight::exact_within(const Polygon& on, const std::vector<SourceName>* named, double work,
+                              const LightAccuracy& accuracy, Workspace& room, std::vector<Estimate>& out) const {
     if (work <= 0 || !prepare(on, work, named, room)) return false;
     out.assign(on.places.size(), {});
     for (std::size_t i = 0; i < out.size() && !room.light_.is_dark(); ++i)
@@ -160,7 +176,14 @@ bool PlaceLight::exact_at_places(const Polygon& on, const std::vector<SourceName
 
 void PlaceLight::at_places(const Polygon& on, const LightAccuracy& accuracy, Workspace& room,
                            std::vector<Estimate>& out) const {
-    if (exact_at_places(on, nullptr, accuracy, room, out)) return;
+    const double work = forecast_work(on, nullptr, accuracy, room);
+    if (exact_within(on, nullptr, work, accuracy, room, out)) return;
+    // In penumbrae, and where little of the light arrives, rays need more than was forecast. The first ones tell.
+    double tried = 0;
+    const double needed = rays_needed_at(on.places[on.places.size() / 2], on.n, on.own, work, accuracy, room, tried);
+    if (needed > worth_another * work &&
+        exact_within(on, nullptr, needed / worth_another - preparing_a_place(on, nullptr), accuracy, room, out))
+        return;
     out.clear();
     for (const Point& x : on.places) out.push_back(by_rays(x, on.n, on.own, accuracy, room));
 }

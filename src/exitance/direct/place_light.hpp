@@ -18,7 +18,8 @@ class MirroredLight;
 /// counts its work while it is computed, and gives up when it exceeds the cost of these rays. If the first
 /// rays then show that many more are needed, as in penumbrae, exact light is tried again, up to a quarter of it: a
 /// place never costs more than twice as much as by the cheaper estimator. For places of one polygon the blockers of the
-/// whole polygon are counted, up to the cost of the rays. The choice depends on the places and the accuracy alone.
+/// whole polygon are counted, up to the cost of the rays; the rays of its middle place tell whether exact light is
+/// tried again. The choice depends on the places and the accuracy alone.
 class PlaceLight {
   public:
     /// Both must outlive it.
@@ -66,7 +67,13 @@ class PlaceLight {
     std::optional<Spectrum> exact_within(const Point& x, const Normal& n, RegionId own, double work,
                                          Workspace& room) const;
     double work_of(const Workspace& room, double limit) const;
-    static double rays_needed(const Estimate& found, const LightAccuracy& accuracy);
+    bool exact_within(const Polygon& on, const std::vector<SourceName>* named, double work,
+                      const LightAccuracy& accuracy, Workspace& room, std::vector<Estimate>& out) const;
+    double forecast_work(const Polygon& on, const std::vector<SourceName>* named, const LightAccuracy& accuracy,
+                         Workspace& room) const;
+    double preparing_a_place(const Polygon& on, const std::vector<SourceName>* named) const;
+    double rays_needed_at(const Point& x, const Normal& n, RegionId own, double work, const LightAccuracy& accuracy,
+                          Workspace& room, double& tried) const;
     void add_mirrored(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
                       Estimate& out) const;
     bool prepare(const Polygon& on, double work, const std::vector<SourceName>* named, Workspace& room) const;
