@@ -67,4 +67,14 @@ Result<std::vector<Observer>> find_observers(const std::string& words, const Sce
     return std::vector<Observer>{{words, {n[0], n[1], n[2]}, normalized(view)}};
 }
 
+Result<std::vector<Observer>> find_observers(const std::vector<std::string>& all, const Scene& scene) {
+    std::vector<Observer> out;
+    for (const std::string& words : all) {
+        const Result<std::vector<Observer>> some = find_observers(words, scene);
+        if (!some) return some.error();
+        out.insert(out.end(), some->begin(), some->end());
+    }
+    return out;
+}
+
 }  // namespace exitance

@@ -12,4 +12,7 @@ namespace exitance {
 /// or the name of a table (CSV x,y,z,dx,dy,dz), in metres. Error: words or rows that describe no observer.
 Result<std::vector<Observer>> find_observers(const std::string& words, const Scene& scene);
 
+/// Returns the observers of all words, in order.
+Result<std::vector<Observer>> find_observers(const std::vector<std::string>& all, const Scene& scene);
+
 }  // namespace exitance
