@@ -21,10 +21,10 @@ DaylightGlare find_daylight_glare(const RadiosityFunction& light, const Observer
     const Observer observer = off_walls(light, at);
     const ProbePoint plane{observer.eye, observer.view};
     DaylightGlare out;
-    out.vertical_illuminance =
-        lux(light.at(std::span(&plane, 1), Component::direct)[0].irradiance) + indirect_at_eye(light, observer, lux);
     const Receiver eye{observer.eye, observer.view, RegionId()};
     const FieldOfView view(light, eye, lux);
+    out.vertical_illuminance =
+        lux(light.at(std::span(&plane, 1), Component::direct)[0].irradiance) + view.reflected_illuminance();
     out.mean_luminance = view.mean_luminance();
     out.threshold = threshold.luminance(out.mean_luminance);
     out.sources = join_glare_parts(observer.view, view.brighter_than(out.threshold));

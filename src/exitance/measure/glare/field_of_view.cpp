@@ -47,13 +47,41 @@ FieldOfView::FieldOfView(const RadiosityFunction& light, const Receiver& eye, co
     for (const std::string& group : light.solution().scene.groups()) names_.push_back(group);
     add_surfaces(), add_sky(), add_lights();
     evaluate(surfaces_);
+    add_up();
+    constexpr double negligible_share = 1e-4;
+    const double negligible = negligible_share * 2 * pi * mean_;
+    surfaces_ = refined(std::move(surfaces_), [&](const SurfaceTriangle& t) { return t.variation() > negligible; });
+    add_up();
+}
+
+/// Sums over the parts: the mean luminance, and reflected light.
+void FieldOfView::add_up() {
     double sum = 0;
     for (const GlarePart& part : apart_) sum += part.luminance * part.solid_angle;
+    reflected_ = 0;
     for (const SurfaceTriangle& t : surfaces_) {
         const std::array<ViewTriangle, 4> quarters = t.shape.quarters();
-        for (std::size_t k = 0; k < 4; ++k) sum += t.luminance[k] * quarters[k].solid_angle();
+        for (std::size_t k = 0; k < 4; ++k) {
+            const double angle = quarters[k].solid_angle();
+            sum += t.luminance[k] * angle;
+            reflected_ += t.reflected[k] * angle * std::max(0.0, dot(quarters[k].middle(), eye_.n));
+        }
     }
     mean_ = sum / (2 * pi);
+}
+
+bool FieldOfView::SurfaceTriangle::varies(double threshold) const {
+    const auto above = std::count_if(luminance.begin(), luminance.end(), [&](double L) { return L > threshold; });
+    return above > 0 && above < 4;
+}
+
+bool FieldOfView::SurfaceTriangle::is_coarse() const {
+    return shape.extent() > 2 * fine_extent;
+}
+
+double FieldOfView::SurfaceTriangle::variation() const {
+    const auto [least, most] = std::minmax_element(luminance.begin(), luminance.end());
+    return (*most - *least) * shape.solid_angle();
 }
 
 std::uint32_t FieldOfView::origin_of(const std::string& name) {
@@ -69,7 +97,7 @@ void FieldOfView::add_surfaces() {
         for (const PieceId piece : occluders.pieces(region)) pieces.push_back(piece);
     const std::vector<std::vector<ViewTriangle>> found = visible_triangles(occluders, eye_, pieces, coarse_extent);
     for (std::size_t i = 0; i < pieces.size(); ++i)
-        for (const ViewTriangle& t : found[i]) surfaces_.push_back({t, occluders.pieces()[pieces[i]].surface, {}});
+        for (const ViewTriangle& t : found[i]) surfaces_.push_back({t, occluders.pieces()[pieces[i]].surface, {}, {}});
 }
 
 void FieldOfView::add_sky() {
@@ -105,16 +133,6 @@ void FieldOfView::add_lights() {
     }
 }
 
-/// Luminance towards the eye of a surface at y, cd/m^2.
-double FieldOfView::luminance_of(SurfaceId s, const Light& there, const Point& y) const {
-    if (!there.on_surface) return 0;
-    const Scene& scene = light_.solution().scene;
-    const Spectrum M = scene.material(s).exitance;
-    const RelativeRadiance relative = scene.relative_radiance(scene.surfaces()[s].region);
-    const Spectrum B = there.radiosity - M + relative.towards(eye_.x, y) * M;
-    return lux_(transmission_between(scene.panes(), eye_.x, y) * B) / pi;
-}
-
 /// Evaluates the luminance of every quarter in its middle.
 void FieldOfView::evaluate(std::vector<SurfaceTriangle>& triangles) const {
     const Scene& scene = light_.solution().scene;
@@ -127,9 +145,34 @@ void FieldOfView::evaluate(std::vector<SurfaceTriangle>& triangles) const {
         }
     }
     const std::vector<Light> there = light_.at(points);
-    for (std::size_t i = 0; i < triangles.size(); ++i)
-        for (std::size_t k = 0; k < 4; ++k)
-            triangles[i].luminance[k] = luminance_of(triangles[i].surface, there[4 * i + k], points[4 * i + k].x);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (!there[i].on_surface) continue;
+        SurfaceTriangle& t = triangles[i / 4];
+        const Spectrum M = scene.material(t.surface).exitance;
+        const RelativeRadiance relative = scene.relative_radiance(scene.surfaces()[t.surface].region);
+        const Spectrum passing = transmission_between(scene.panes(), eye_.x, points[i].x) / pi;
+        t.reflected[i % 4] = lux_(passing * (there[i].radiosity - M));
+        t.luminance[i % 4] = t.reflected[i % 4] + lux_(passing * (relative.towards(eye_.x, points[i].x) * M));
+    }
+}
+
+/// Cuts triangles into their quarters until none is to be cut or all are fine.
+template <class IsToCut>
+std::vector<FieldOfView::SurfaceTriangle> FieldOfView::refined(std::vector<SurfaceTriangle> triangles,
+                                                               const IsToCut& is_to_cut) const {
+    std::vector<SurfaceTriangle> out, next;
+    while (!triangles.empty()) {
+        next.clear();
+        for (const SurfaceTriangle& t : triangles) {
+            if (!t.is_coarse() || !is_to_cut(t))
+                out.push_back(t);
+            else
+                for (const ViewTriangle& quarter : t.shape.quarters()) next.push_back({quarter, t.surface, {}, {}});
+        }
+        evaluate(next);
+        triangles.swap(next);
+    }
+    return out;
 }
 
 GlarePart FieldOfView::part_of(const ViewTriangle& t, SurfaceId s, double luminance) const {
@@ -149,23 +192,9 @@ std::vector<GlarePart> FieldOfView::brighter_than(double threshold) const {
         if (part.luminance > threshold && part.solid_angle > 0) out.push_back(part);
     };
     for (const GlarePart& part : apart_) add(part);
-    std::vector<SurfaceTriangle> now = surfaces_, next;
-    while (!now.empty()) {
-        next.clear();
-        for (const SurfaceTriangle& t : now) {
-            const auto above =
-                std::count_if(t.luminance.begin(), t.luminance.end(), [&](double L) { return L > threshold; });
-            const bool is_divided = above > 0 && above < 4 && t.shape.extent() > 2 * fine_extent;
-            const std::array<ViewTriangle, 4> quarters = t.shape.quarters();
-            for (std::size_t k = 0; k < 4; ++k) {
-                if (is_divided)
-                    next.push_back({quarters[k], t.surface, {}});
-                else
-                    add(part_of(quarters[k], t.surface, t.luminance[k]));
-            }
-        }
-        evaluate(next);
-        now.swap(next);
+    for (const SurfaceTriangle& t : refined(surfaces_, [&](const SurfaceTriangle& t) { return t.varies(threshold); })) {
+        const std::array<ViewTriangle, 4> quarters = t.shape.quarters();
+        for (std::size_t k = 0; k < 4; ++k) add(part_of(quarters[k], t.surface, t.luminance[k]));
     }
     return out;
 }
