@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/input_files.hpp"
@@ -68,6 +70,34 @@ TEST(ProgramGlare, RefusesWrongInput) {
         EXPECT_EQ(run_program({"glare", sky, "--observers", "0,0,1.2 0,1,0", "--threshold", threshold}).status, 2)
             << threshold;
     EXPECT_EQ(run_program({"glare", folder / "none.h5", "--observers", "0,0,1.2 0,1,0"}).status, 3);
+}
+
+TEST(ProgramGlare, OfAYearIsWrittenPerViewAndHour) {
+    const TemporaryFolder folder;
+    const std::string scene = write_small_room(folder);
+    write_text(folder / "day.epw", weather_of_a_day());
+    write_text(folder / "p.csv", "x,y,z,nx,ny,nz\n10,1,0.75,0,0,1\n");
+    write_text(folder / "v.csv", "x,y,z,dx,dy,dz\n10,1,1.2,0,1,0\n12,1,1.2,,,\n");
+    const auto daylight = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"daylight", scene, "--epw", folder / "day.epw", "--points", folder / "p.csv", "-o",
+                                   folder / "year", "-q", "--error", "0.3"});
+        return run_program(more);
+    };
+    const Finished run = daylight({"--views", folder / "v.csv", "--hours", "csv", "--json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const nlohmann::json facts = nlohmann::json::parse(run.out);
+    EXPECT_EQ(facts["EN17037_glare_views"], 9);
+    EXPECT_EQ(facts["EN17037_glare_level"], 0) << "in the open, glare is intolerable";
+    const std::string views = read_text(folder / "year/glare.csv"), hours = read_text(folder / "year/glare_hours.csv");
+    EXPECT_EQ(std::count(views.begin(), views.end(), '\n'), 10);
+    EXPECT_EQ(std::count(hours.begin(), hours.end(), '\n'), 25);
+    EXPECT_NE(hours.find("6,21,1,0,0,0,0,0,0,0,0,0\n"), std::string::npos) << "no light at night";
+    EXPECT_EQ(daylight({"--views", folder / "v.csv"}).status, 0);
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(folder / "year/glare_hours.npy")));
+    EXPECT_EQ(daylight({"--views", folder / "v.csv", "--part", "1/2"}).status, 2);
+    EXPECT_EQ(daylight({"--views", folder / "none.csv"}).status, 3);
+    write_text(folder / "bad.csv", "x,y,z,dx,dy,dz\n10,1,1.2,0,0,0\n");
+    EXPECT_EQ(daylight({"--views", folder / "bad.csv"}).status, 3);
 }
 
 }  // namespace exitance::test

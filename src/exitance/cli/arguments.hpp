@@ -172,6 +172,7 @@ struct DaylightArguments : CommonArguments {
     double north = 0, ground = 0.2;
     SunDay sun_day;                      ///< Day for which hours of sunlight are counted.
     std::string eyes;                    ///< File with points for views out; empty: none.
+    std::string views;                   ///< File with views for glare; empty: none.
     std::string occupied;                ///< "8-18", or a file with a number per hour; empty: 8 to 18 h.
     DaylightCriteria criteria;           ///< Occupied hours are read from `occupied`.
     std::string coefficients;            ///< Radiance matrix to evaluate; empty: none.

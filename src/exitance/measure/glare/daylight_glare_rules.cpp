@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "exitance/measure/glare/glare_rules.hpp"
+#include "exitance/measure/glare/near_directions.hpp"
 
 namespace exitance {
 namespace {
-
-constexpr double joining_angle = 0.1;  ///< Largest step between parts of one source, radians [Wienold24].
 
 /// Index of Guth's formula beside the line of sight, tau = 90 degrees, at an angle beta below it [Iwata10].
 double position_below(double ahead, double aside, double above) {
@@ -18,51 +16,6 @@ double position_below(double ahead, double aside, double above) {
     const double beta = std::atan2(off * std::sqrt(1 + stretch * cosine * cosine), ahead) / degree;
     return std::exp(6.49e-3 * beta + 21e-5 * beta * beta);  // [Iwata10]
 }
-
-/// Sets of parts that are joined step by step.
-class PartSets {
-  public:
-    explicit PartSets(std::size_t count) : root_(count) { std::iota(root_.begin(), root_.end(), std::size_t{0}); }
-    std::size_t find(std::size_t i) {
-        while (root_[i] != i) i = root_[i] = root_[root_[i]];
-        return i;
-    }
-    void join(std::size_t a, std::size_t b) {
-        a = find(a), b = find(b);
-        root_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::size_t> root_;
-};
-
-/// Cells of a grid over directions, with an edge of the joining angle: only parts of adjacent cells can be joined.
-class DirectionGrid {
-  public:
-    explicit DirectionGrid(std::span<const GlarePart> parts) {
-        for (std::size_t i = 0; i < parts.size(); ++i) entries_.push_back({key(parts[i].towards, 0, 0, 0), i});
-        std::sort(entries_.begin(), entries_.end());
-    }
-    /// Calls visit(index) for the parts in the cell of a direction and the cells around it.
-    template <class Visit>
-    void visit_near(const Normal& d, const Visit& visit) const {
-        for (int x = -1; x <= 1; ++x)
-            for (int y = -1; y <= 1; ++y)
-                for (int z = -1; z <= 1; ++z) {
-                    const int at = key(d, x, y, z);
-                    auto entry = std::lower_bound(entries_.begin(), entries_.end(), std::pair{at, std::size_t{0}});
-                    for (; entry != entries_.end() && entry->first == at; ++entry) visit(entry->second);
-                }
-    }
-
-  private:
-    static int key(const Normal& d, int x, int y, int z) {
-        constexpr int across = 32;  // more than 2 / joining_angle cells
-        const auto cell = [](double v) { return static_cast<int>(std::floor((v + 1) / joining_angle)) + 2; };
-        return ((cell(d.x) + x) * across + cell(d.y) + y) * across + cell(d.z) + z;
-    }
-    std::vector<std::pair<int, std::size_t>> entries_;
-};
 
 bool is_peak(const GlarePart& part) {
     return part.luminance >= peak_luminance;
@@ -104,16 +57,15 @@ double daylight_position(const Normal& view, const Vec3& d) {
 }
 
 std::vector<DaylightGlareSource> join_glare_parts(const Normal& view, std::span<const GlarePart> parts) {
-    const DirectionGrid grid(parts);
-    PartSets sets(parts.size());
-    const double nearest = std::cos(joining_angle);
-    for (std::size_t i = 0; i < parts.size(); ++i)
-        grid.visit_near(parts[i].towards, [&](std::size_t k) {
-            if (k < i && is_peak(parts[i]) == is_peak(parts[k]) && dot(parts[i].towards, parts[k].towards) >= nearest)
-                sets.join(i, k);
-        });
+    std::vector<Normal> directions;
+    for (const GlarePart& part : parts) directions.push_back(part.towards);
+    JoinedSets sets;
+    sets.resize(parts.size());
+    for (std::uint32_t i = 0; i < parts.size(); ++i) sets.start(i);
+    for (const auto& [i, k] : near_pairs(directions, glare_joining_angle))
+        if (is_peak(parts[i]) == is_peak(parts[k])) sets.join(i, k);
     std::vector<std::vector<std::size_t>> members(parts.size());
-    for (std::size_t i = 0; i < parts.size(); ++i) members[sets.find(i)].push_back(i);
+    for (std::uint32_t i = 0; i < parts.size(); ++i) members[sets.find(i)].push_back(i);
     std::vector<DaylightGlareSource> out;
     for (const std::vector<std::size_t>& some : members)
         if (!some.empty()) out.push_back(source_of(view, parts, some));

@@ -48,6 +48,12 @@ struct DaylightGlareSource {
 /// Luminance above which parts are a source of their own, such as the sun in a bright sky, cd/m^2 [Wienold24].
 inline constexpr double peak_luminance = 50'000;
 
+/// Solid angle of the sun's disc of 0.533 degrees, sr; derived from 2 pi (1 - cos 0.2665 degrees).
+inline constexpr double sun_disc_solid_angle = 6.797e-5;
+
+/// Largest step between parts of one source, radians [Wienold24].
+inline constexpr double glare_joining_angle = 0.1;
+
 /// Joins parts above the threshold to sources, in descending order of their term. Two parts belong to one source if a
 /// chain of parts with steps of at most 0.1 rad connects them, as in evalglare (where the option -r is twice this
 /// angle) [Wienold24]. Parts above `peak_luminance` form sources of their own. The result does not depend on the order

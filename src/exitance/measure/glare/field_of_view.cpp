@@ -15,25 +15,6 @@ namespace {
 
 constexpr double coarse_extent = 0.1, fine_extent = 0.0125, sky_extent = 0.02;  ///< Radians.
 
-/// Solid angle of the disc of a sun without extent, sr: 0.533 degrees across, as the suns of skies.
-constexpr double sun_solid_angle = 6.796e-5;
-
-/// Triangles of the visible part of each piece, one list per piece.
-std::vector<std::vector<ViewTriangle>> visible_triangles(const Occluders& occluders, const Receiver& eye,
-                                                         std::span<const PieceId> pieces, double max_extent) {
-    std::vector<std::vector<ViewTriangle>> out(pieces.size());
-    parallel_ranges(pieces.size(), 16, [&](std::size_t begin, std::size_t end) {
-        VisibilityWorkspace workspace;
-        Fragments fragments;
-        for (std::size_t i = begin; i < end; ++i) {
-            fragments.clear();
-            visible_fragments(occluders, eye, pieces[i], {}, workspace, fragments);
-            for (const std::vector<Vec3>& fragment : fragments) add_view_triangles(fragment, max_extent, out[i]);
-        }
-    });
-    return out;
-}
-
 /// True if a surface is a face of the cube that represents a luminaire without extent.
 bool is_point_opening(const Surface& surface) {
     constexpr double rounding = 1e-6;
@@ -128,7 +109,7 @@ void FieldOfView::add_lights() {
         const std::vector<PunctualLight> one{lamp};
         const double illuminance = lux_(Beams(one, light_.stage().occluders).irradiance({eye_.x, towards, RegionId()}));
         if (!(illuminance > 0)) continue;
-        const double angle = lamp.is_directional() ? sun_solid_angle : small_source_area / dot(d, d);
+        const double angle = lamp.is_directional() ? sun_disc_solid_angle : small_source_area / dot(d, d);
         apart_.push_back({towards, illuminance / angle, angle, origin_of(lamp.name.empty() ? "light" : lamp.name)});
     }
 }

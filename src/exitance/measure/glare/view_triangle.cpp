@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/parallel.hpp"
+#include "exitance/visibility/glazed_part.hpp"
+
 namespace exitance {
 namespace {
 
@@ -56,6 +59,21 @@ void add_view_triangles(std::span<const Vec3> polygon, double max_extent, std::v
         const ViewTriangle whole{{polygon[0], polygon[k - 1], polygon[k]}};
         if (whole.solid_angle() > 0) cut(whole, max_extent, 0, out);
     }
+}
+
+std::vector<std::vector<ViewTriangle>> visible_triangles(const Occluders& occluders, const Receiver& eye,
+                                                         std::span<const PieceId> pieces, double max_extent) {
+    std::vector<std::vector<ViewTriangle>> out(pieces.size());
+    parallel_ranges(pieces.size(), 16, [&](std::size_t begin, std::size_t end) {
+        VisibilityWorkspace workspace;
+        Fragments fragments;
+        for (std::size_t i = begin; i < end; ++i) {
+            fragments.clear();
+            visible_fragments(occluders, eye, pieces[i], {}, workspace, fragments);
+            for (const std::vector<Vec3>& fragment : fragments) add_view_triangles(fragment, max_extent, out[i]);
+        }
+    });
+    return out;
 }
 
 }  // namespace exitance

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "exitance/base/vec.hpp"
+#include "exitance/visibility/visible_part.hpp"
 
 namespace exitance {
 
@@ -29,5 +30,9 @@ struct ViewTriangle {
 /// Divides a convex polygon, given by its corners from the eye, into triangles of at most this extent, and appends them
 /// to `out`. Triangles without area are omitted.
 void add_view_triangles(std::span<const Vec3> polygon, double max_extent, std::vector<ViewTriangle>& out);
+
+/// Returns triangles of at most this extent that cover the visible part of each piece, one list per piece.
+std::vector<std::vector<ViewTriangle>> visible_triangles(const Occluders& occluders, const Receiver& eye,
+                                                         std::span<const PieceId> pieces, double max_extent);
 
 }  // namespace exitance
