@@ -95,6 +95,7 @@ TEST(JsonKeys, OfOtherVerbsAreDocumented) {
     expect_documented(
         printed({"heat", folder / "f.h5", "--table", folder / "t.csv", "--surroundings", "300", "--json"}), "heat");
     expect_documented(printed({"luminaire", folder / "d.ies", "--json"}), "luminaire");
+    expect_documented(printed({"glare", solution, "--observers", "1,1,1.2 1,0.5,0.3", "--json"}), "glare");
     expect_documented(printed({"daylight", solution, "--epw", folder / "day.epw", "--points", folder / "p.csv", "-o",
                                folder / "year", "--json"}),
                       "daylight");
@@ -108,7 +109,7 @@ TEST(JsonKeys, DocumentedOnesAreWrittenSomewhere) {
             sources += read_text(entry.path());
     std::size_t count = 0;
     for (const std::string row :
-         {"solve", "check", "compare", "solve --dry-run", "viewfactors", "heat", "luminaire", "daylight"})
+         {"solve", "check", "compare", "solve --dry-run", "viewfactors", "heat", "luminaire", "glare", "daylight"})
         for (const std::string& key : documented(row)) {
             if (key.starts_with("T_")) continue;  // the program composes these names
             ++count;

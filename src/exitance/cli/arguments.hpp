@@ -21,6 +21,7 @@
 #include "exitance/io/report/report.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/view_factors/view_factor_file.hpp"
+#include "exitance/measure/glare/daylight_glare_rules.hpp"
 #include "exitance/measure/working_plane.hpp"
 #include "exitance/methods/options/solve_request.hpp"
 #include "exitance/scene/photometric_units.hpp"
@@ -154,6 +155,14 @@ struct ReportArguments : CommonArguments {
     int threads = 0;
 };
 
+struct GlareArguments : CommonArguments {
+    std::string solution;
+    std::vector<std::string> observers;  ///< Descriptions for find_observers().
+    GlareThreshold threshold;
+    std::optional<double> efficacy;  ///< Luminous efficacy of light given in watts, lm/W; none: 179.
+    int threads = 0;
+};
+
 struct DaylightArguments : CommonArguments {
     SceneArguments scene;  ///< A scene, or one solution (.h5) of it.
     std::string epw, output;
@@ -163,6 +172,7 @@ struct DaylightArguments : CommonArguments {
     double north = 0, ground = 0.2;
     SunDay sun_day;                      ///< Day for which hours of sunlight are counted.
     std::string eyes;                    ///< File with points for views out; empty: none.
+    std::string views;                   ///< File with views for glare; empty: none.
     std::string occupied;                ///< "8-18", or a file with a number per hour; empty: 8 to 18 h.
     DaylightCriteria criteria;           ///< Occupied hours are read from `occupied`.
     std::string coefficients;            ///< Radiance matrix to evaluate; empty: none.
@@ -262,7 +272,7 @@ using Command =
     std::variant<SolveArguments, ProbeArguments, CompareArguments, StatsArguments, MixArguments, ExportArguments,
                  RenderArguments, BakeArguments, ReportArguments, DaylightArguments, CheckArguments, GenerateArguments,
                  LuminaireArguments, ExperimentArguments, ViewFactorArguments, View3dArguments, HeatArguments,
-                 ViewArguments, ReferenceArguments, LightProbeArguments, SweepArguments>;
+                 ViewArguments, ReferenceArguments, LightProbeArguments, SweepArguments, GlareArguments>;
 
 /// Text to print instead of running a verb, for --help and --version.
 struct Information {

@@ -99,6 +99,13 @@ void declare_en_17037(CLI::App& app, DaylightArguments& arguments) {
                    "Places from which views out are assessed by EN 17037 (points as for --points, directions ignored); "
                    "written to view.csv")
         ->type_name("FILE");
+    CLI::Option* views =
+        app.add_option(
+               "--views", arguments.views,
+               "Views at which daylight glare (DGP) is evaluated in every hour: CSV x,y,z,dx,dy,dz, or x,y,z for "
+               "eight directions each; written to glare.csv and glare_hours.npy")
+            ->type_name("FILE");
+    for (const char* other : {"--coefficients", "--part", "--merge"}) views->excludes(app.get_option(other));
     app.add_option_function<std::string>(
            "--sun-day",
            [&arguments](const std::string& w) {

@@ -176,6 +176,36 @@ std::string view_factors_json(const ViewFactorFacts& facts) {
     return dump(json, 2);
 }
 
+std::string glare_json(std::span<const Observer> observers, std::span<const DaylightGlare> glare,
+                       std::optional<double> error) {
+    const auto triple = [](const auto& v) { return Json::array({v.x, v.y, v.z}); };
+    Json list = Json::array();
+    for (std::size_t i = 0; i < observers.size(); ++i) {
+        const DaylightGlare& g = glare[i];
+        Json sources = Json::array();
+        for (std::size_t k = 0; k < g.sources.size(); ++k) {
+            const DaylightGlareSource& s = g.sources[k];
+            sources.push_back({{"name", g.names[k]},
+                               {"luminance", s.luminance},
+                               {"solid_angle", s.solid_angle},
+                               {"position_index", s.position},
+                               {"direction", triple(s.towards)}});
+        }
+        list.push_back({{"eye", triple(observers[i].eye)},
+                        {"direction", triple(observers[i].view)},
+                        {"DGP", g.probability()},
+                        {"DGP_low", error ? Json(g.probability_with(1 - *error)) : Json(nullptr)},
+                        {"DGP_high", error ? Json(g.probability_with(1 + *error)) : Json(nullptr)},
+                        {"class", glare_class(g.probability())},
+                        {"vertical_illuminance", g.vertical_illuminance},
+                        {"low_light_factor", low_light_factor(g.vertical_illuminance)},
+                        {"mean_luminance", g.mean_luminance},
+                        {"threshold", g.threshold},
+                        {"sources", std::move(sources)}});
+    }
+    return dump(Json{{"observers", std::move(list)}, {"error", value_or_null(error)}}, 2);
+}
+
 std::string values_json(const std::vector<std::pair<std::string, double>>& values) {
     Json json;
     for (const auto& [name, value] : values) json[name] = value;

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/lab/classical/classical.hpp"
+#include "exitance/measure/glare/daylight_glare.hpp"
 #include "exitance/methods/options/solve_request.hpp"
 #include "exitance/methods/plan/forecast.hpp"
 #include "exitance/reference/compare.hpp"
@@ -76,6 +78,10 @@ std::string heat_json(const GrayExchange& exchange);
 
 /// `viewfactors --json`.
 std::string view_factors_json(const ViewFactorFacts& facts);
+
+/// `glare --json`: one entry per observer. `error`: relative error of the light, if known.
+std::string glare_json(std::span<const Observer> observers, std::span<const DaylightGlare> glare,
+                       std::optional<double> error);
 
 /// JSON object of named numbers, for `daylight --json`.
 std::string values_json(const std::vector<std::pair<std::string, double>>& values);

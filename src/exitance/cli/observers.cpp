@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <sstream>
 
 #include "exitance/io/files/text_table.hpp"
@@ -31,18 +32,33 @@ Result<std::vector<Observer>> standard_observers(const Scene& scene) {
     return out;
 }
 
-Result<std::vector<Observer>> load_observers(const std::string& path) {
-    Result<NumberTable> table = NumberTable::open(path, {"x", "y", "z", "dx", "dy", "dz"});
+/// Eight directions every 45 degrees, clockwise from y.
+constexpr std::array<Vec3, 8> around_the_horizon{
+    {{0, 1, 0}, {1, 1, 0}, {1, 0, 0}, {1, -1, 0}, {0, -1, 0}, {-1, -1, 0}, {-1, 0, 0}, {-1, 1, 0}}};
+
+/// Reads rows with an eye and a direction. `around`: rows without a direction are eight views.
+Result<std::vector<Observer>> load_table(const std::string& path, bool around) {
+    std::vector<std::string> eye{"x", "y", "z"}, direction{"dx", "dy", "dz"};
+    if (!around) eye.insert(eye.end(), direction.begin(), direction.end()), direction.clear();
+    Result<NumberTable> table = NumberTable::open(path, eye, direction);
     if (!table) return table.error();
     std::vector<Observer> out;
-    for (std::array<double, 6> row;;) {
+    const auto add = [&](const Point& x, const Normal& view) {
+        out.push_back({fmt::format("{}", out.size() + 1), x, view});
+    };
+    for (std::array<double, 6> row{};;) {
         const Result<bool> more = table->next(row);
         if (!more) return more.error();
         if (!*more) break;
+        const Point x{row[0], row[1], row[2]};
         const Vec3 view{row[3], row[4], row[5]};
+        if (std::isnan(view.x) && std::isnan(view.y) && std::isnan(view.z)) {
+            for (const Vec3& way : around_the_horizon) add(x, normalized(way));
+            continue;
+        }
         if (!(norm(view) > 0))
             return table->lines().error("has a line of sight without a direction", "dx, dy, dz must not all be 0");
-        out.push_back({fmt::format("{}", out.size() + 1), {row[0], row[1], row[2]}, normalized(view)});
+        add(x, normalized(view));
     }
     if (out.empty())
         return Error{ErrorCode::bad_input, "holds no observers", path,
@@ -54,7 +70,7 @@ Result<std::vector<Observer>> load_observers(const std::string& path) {
 
 Result<std::vector<Observer>> find_observers(const std::string& words, const Scene& scene) {
     if (words == "auto") return standard_observers(scene);
-    if (words.find_first_not_of("0123456789.,+-eE ") != std::string::npos) return load_observers(words);
+    if (words.find_first_not_of("0123456789.,+-eE ") != std::string::npos) return load_table(words, false);
     std::string blank = words;
     std::replace(blank.begin(), blank.end(), ',', ' ');
     std::istringstream in(blank);
@@ -65,6 +81,20 @@ Result<std::vector<Observer>> find_observers(const std::string& words, const Sce
         return Error{ErrorCode::usage, fmt::format("'{}' is not 'x,y,z dx,dy,dz'", words), "--observers",
                      "an eye in metres and the direction in which it looks"};
     return std::vector<Observer>{{words, {n[0], n[1], n[2]}, normalized(view)}};
+}
+
+Result<std::vector<Observer>> load_views(const std::string& path) {
+    return load_table(path, true);
+}
+
+Result<std::vector<Observer>> find_observers(const std::vector<std::string>& all, const Scene& scene) {
+    std::vector<Observer> out;
+    for (const std::string& words : all) {
+        const Result<std::vector<Observer>> some = find_observers(words, scene);
+        if (!some) return some.error();
+        out.insert(out.end(), some->begin(), some->end());
+    }
+    return out;
 }
 
 }  // namespace exitance

@@ -12,4 +12,11 @@ namespace exitance {
 /// or the name of a table (CSV x,y,z,dx,dy,dz), in metres. Error: words or rows that describe no observer.
 Result<std::vector<Observer>> find_observers(const std::string& words, const Scene& scene);
 
+/// Reads a table of views (CSV x,y,z,dx,dy,dz, metres). Rows without a direction are eight views each, every 45 degrees
+/// around the horizon.
+Result<std::vector<Observer>> load_views(const std::string& path);
+
+/// Returns the observers of all words, in order.
+Result<std::vector<Observer>> find_observers(const std::vector<std::string>& all, const Scene& scene);
+
 }  // namespace exitance

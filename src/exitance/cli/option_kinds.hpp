@@ -107,7 +107,7 @@ void declare_scene(CLI::App& app, SceneArguments& scene);
 void declare_unit(CLI::App& app, UnitArguments& unit);
 
 // Declare the options for quantities of lighting standards: --plane, --cylindrical, --maintenance, --observers and
-// --tables of `report`; --eyes, --sun-day and --sun-altitude of `daylight`.
+// --tables of `report`; --observers of `glare`; --eyes, --sun-day and --sun-altitude of `daylight`.
 void declare_standards(CLI::App& app, ReportArguments& arguments);
 
 // Declare all options of a verb, except those of declare_common() and declare_limits().
@@ -121,6 +121,7 @@ void declare(CLI::App& app, ExportArguments& arguments);
 void declare(CLI::App& app, RenderArguments& arguments);
 void declare(CLI::App& app, BakeArguments& arguments);
 void declare(CLI::App& app, ReportArguments& arguments);
+void declare(CLI::App& app, GlareArguments& arguments);
 void declare(CLI::App& app, DaylightArguments& arguments);
 void declare(CLI::App& app, CheckArguments& arguments);
 void declare(CLI::App& app, GenerateArguments& arguments);

@@ -47,7 +47,40 @@ CLI::Option* add_planes(CLI::App& app, const std::string& name, std::vector<Plan
         ->take_all();
 }
 
+CLI::Option* add_observers(CLI::App& app, std::vector<std::string>& observers, const std::string& help) {
+    return app.add_option("--observers", observers, help)->type_name("OBSERVERS")->expected(1)->take_all();
+}
+
+/// Reads a threshold of glare, such as "2000" (cd/m^2) or "5x" (times the mean luminance).
+GlareThreshold read_threshold(const std::string& word) {
+    GlareThreshold out;
+    out.is_multiple = word.ends_with('x');
+    out.value = read_number("--threshold", out.is_multiple ? word.substr(0, word.size() - 1) : word);
+    if (!(out.value > 0))
+        throw CLI::ValidationError(
+            "--threshold", fmt::format("'{}' is neither a luminance such as 2000 nor a multiple such as 5x", word));
+    return out;
+}
+
 }  // namespace
+
+void declare(CLI::App& app, GlareArguments& arguments) {
+    app.add_option("SOLUTION", arguments.solution, "Solution file (.h5), as solve writes it")->required();
+    add_observers(
+        app, arguments.observers,
+        "Observers: 'x,y,z dx,dy,dz' (eye and line of sight), a table (CSV x,y,z,dx,dy,dz), or auto: at 1.2 m "
+        "in the middle of each wall. May be given several times")
+        ->required();
+    app.add_option_function<std::string>(
+           "--threshold", [&arguments](const std::string& word) { arguments.threshold = read_threshold(word); },
+           "Luminance above which what is seen is a source of glare: cd/m^2, or 5x for 5 times the mean luminance in "
+           "view. Default 2000")
+        ->type_name("LUMINANCE");
+    add_positive(app, "--efficacy", arguments.efficacy, "LM/W",
+                 "Luminous efficacy of light in watts. Default 179 lm/W");
+    declare_json(app, arguments);
+    declare_work(app, arguments, arguments.threads);
+}
 
 void declare_standards(CLI::App& app, ReportArguments& arguments) {
     add_planes(app, "--plane", arguments.working_planes, false,
@@ -59,12 +92,9 @@ void declare_standards(CLI::App& app, ReportArguments& arguments) {
     add_positive(app, "--maintenance", arguments.maintenance, "FACTOR",
                  "Maintenance factor of light on planes, at most 1. Default 1")
         ->check(CLI::Range(0.0, 1.0));
-    app.add_option("--observers", arguments.observers,
-                   "Observers for glare (UGR): 'x,y,z dx,dy,dz' (eye and line of sight), a table (CSV x,y,z,dx,dy,dz), "
-                   "or auto: at 1.2 m in the middle of each wall. May be given several times")
-        ->type_name("OBSERVERS")
-        ->expected(1)
-        ->take_all();
+    add_observers(app, arguments.observers,
+                  "Observers for glare (UGR): 'x,y,z dx,dy,dz' (eye and line of sight), a table (CSV x,y,z,dx,dy,dz), "
+                  "or auto: at 1.2 m in the middle of each wall. May be given several times");
     app.add_option(
            "--tables", arguments.tables,
            "Folder for planes.csv, plane_1.csv, plans with isolux lines (plane_1.svg, .pdf), ..., observers.csv")

@@ -18,6 +18,7 @@ ExitCode run(const ExportArguments& arguments, Terminal& terminal);
 ExitCode run(const RenderArguments& arguments, Terminal& terminal);
 ExitCode run(const BakeArguments& arguments, Terminal& terminal);
 ExitCode run(const ReportArguments& arguments, Terminal& terminal);
+ExitCode run(const GlareArguments& arguments, Terminal& terminal);
 ExitCode run(const DaylightArguments& arguments, Terminal& terminal);
 ExitCode run(const CheckArguments& arguments, Terminal& terminal);
 ExitCode run(const GenerateArguments& arguments, Terminal& terminal);

@@ -9,6 +9,7 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/border_points.hpp"
 #include "exitance/cli/json_output.hpp"
+#include "exitance/cli/observers.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/files/radiance_matrix.hpp"
@@ -18,6 +19,7 @@
 #include "exitance/io/report/daylight_light_file.hpp"
 #include "exitance/io/report/daylight_parts.hpp"
 #include "exitance/io/report/daylight_tables.hpp"
+#include "exitance/io/report/glare_tables.hpp"
 #include "exitance/io/scenes/honeybee/honeybee_model.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
@@ -102,6 +104,7 @@ void warn_of(const Weather& weather, const std::string& file, Progress& progress
 struct Request {
     DaylightTask task;
     std::vector<Point> eyes;
+    std::vector<ProbePoint> views;  ///< For glare.
     DaylightFormats formats;
 };
 
@@ -166,6 +169,11 @@ Result<Request> read_request(const DaylightArguments& arguments, const Scene& sc
         if (!eyes) return eyes.error();
         out.eyes = std::move(eyes->points);
     }
+    if (!arguments.views.empty()) {
+        const Result<std::vector<Observer>> views = load_views(arguments.views);
+        if (!views) return views.error();
+        for (const Observer& view : *views) out.views.push_back({view.eye, view.view});
+    }
     BorderPoints borders;
     const PlaceFinder places(scene);
     for (std::size_t i = 0; i < points->size(); ++i) {
@@ -194,7 +202,8 @@ Result<Request> read_request(const DaylightArguments& arguments, const Scene& sc
 /// Passes the results of all sensors to the files; `pass` calls its argument with every block. Returns the totals.
 template <class Pass>
 Result<DaylightSummary> write_all(const Request& request, const DaylightBias& bias, std::span<const ViewOut> views,
-                                  const std::string& output, const Pass& pass) {
+                                  const std::string& output, const Pass& pass,
+                                  const std::optional<GlareSummary>& glare = {}) {
     Result<DaylightFiles> files = DaylightFiles::create(output, request.task, request.formats);
     if (!files) return files.error();
     DaylightTotals totals(request.task.grids, request.task.hours, request.task.site, request.task.criteria);
@@ -204,6 +213,7 @@ Result<DaylightSummary> write_all(const Request& request, const DaylightBias& bi
     });
     if (!passed) return passed.error();
     DaylightSummary summary = totals.summary(bias);
+    summary.glare = glare;
     if (const Result<void> written = files->finish(summary, request.eyes, views); !written) return written.error();
     return summary;
 }
@@ -296,15 +306,33 @@ Result<DaylightSummary> run_coefficients(const Scene& scene, const Request& requ
     });
 }
 
+/// Evaluates and writes daylight glare at the views.
+Result<GlareSummary> write_year_of_glare(const DaylightSimulation& simulation, const Request& request,
+                                         const DaylightArguments& arguments) {
+    const Result<std::vector<GlareYear>> years = simulation.glare(request.views, GlareThreshold().value);
+    if (!years) return years.error();
+    const Result<void> written =
+        write_glare(arguments.output, request.views, *years, request.task.hours, request.formats.hours);
+    if (!written) return written.error();
+    return summary_of(*years);
+}
+
 /// Evaluates and writes all sensors.
 Result<DaylightSummary> run_whole(const Scene& scene, const Request& request, std::span<const ViewOut> views,
                                   const DaylightArguments& arguments, Terminal& terminal) {
     if (!arguments.coefficients.empty()) return run_coefficients(scene, request, views, arguments, terminal);
     DaylightSimulation simulation(scene, request.task, terminal.progress(), terminal.limits().stop());
     if (const Result<void> found = simulation.find_light(); !found) return found.error();
-    return write_all(request, simulation.light().bias, views, arguments.output, [&](const DaylightSink& sink) {
+    std::optional<GlareSummary> glare;
+    if (!request.views.empty()) {
+        const Result<GlareSummary> written = write_year_of_glare(simulation, request, arguments);
+        if (!written) return written.error();
+        glare = *written;
+    }
+    const auto pass = [&](const DaylightSink& sink) {
         return simulation.evaluate({0, request.task.sensors.size()}, sink);
-    });
+    };
+    return write_all(request, simulation.light().bias, views, arguments.output, pass, glare);
 }
 
 }  // namespace

@@ -105,16 +105,6 @@ Result<void> add_working_planes(const ReportArguments& arguments, const Scene& s
     return {};
 }
 
-Result<std::vector<Observer>> all_observers(const ReportArguments& arguments, const Scene& scene) {
-    std::vector<Observer> out;
-    for (const std::string& words : arguments.observers) {
-        const Result<std::vector<Observer>> some = find_observers(words, scene);
-        if (!some) return some.error();
-        out.insert(out.end(), some->begin(), some->end());
-    }
-    return out;
-}
-
 std::optional<Error> find_misuse(const ReportArguments& arguments) {
     if (arguments.output.empty() && arguments.tables.empty())
         return Error{ErrorCode::usage, "no output is given", "report", "name a page, -o room.html, or --tables FOLDER"};
@@ -223,7 +213,7 @@ ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
     if (!solution) return terminal.fail(solution.error());
     if (const Result<void> added = add_working_planes(arguments, solution->scene, content.grids); !added)
         return terminal.fail(added.error());
-    const Result<std::vector<Observer>> observers = all_observers(arguments, solution->scene);
+    const Result<std::vector<Observer>> observers = find_observers(arguments.observers, solution->scene);
     if (!observers) return terminal.fail(observers.error());
     const RadiosityFunction light(*solution);
     content.solution = &*solution, content.unit = unit_of(arguments.unit, solution->scene, terminal);

@@ -165,6 +165,14 @@ void add_provision(const DaylightSummary& summary, std::span<const ViewOut> view
     add("_factor", p.by_factor);
     out.emplace_back("EN17037_sunlight_hours_most", summary.most_sunlight);
     if (!views.empty()) out.emplace_back("EN17037_view_level", view_level(views));
+    if (!summary.glare) return;
+    const GlareSummary& glare = *summary.glare;
+    out.emplace_back("EN17037_glare_views", static_cast<double>(glare.views));
+    out.emplace_back("EN17037_glare_minimum", glare.at_level[0]);
+    out.emplace_back("EN17037_glare_medium", glare.at_level[1]);
+    out.emplace_back("EN17037_glare_high", glare.at_level[2]);
+    out.emplace_back("EN17037_glare_level", glare.level);
+    out.emplace_back("EN17037_glare_worst", glare.worst);
 }
 
 }  // namespace

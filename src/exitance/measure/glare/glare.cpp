@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "exitance/base/triangulation.hpp"
+#include "exitance/measure/glare/eye_light.hpp"
+#include "exitance/measure/glare/view_triangle.hpp"
 #include "exitance/scene/point_opening.hpp"
 #include "exitance/transport/stage.hpp"
 
@@ -20,13 +22,6 @@ struct Piece {
     Point middle;
     double area = 0, solid_angle = 0;
 };
-
-/// Solid angle of a triangle from the origin, 0 or more. Source: [VanOosterom83].
-double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
-    const double la = norm(a), lb = norm(b), lc = norm(c);
-    const double below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-    return std::abs(2 * std::atan2(dot(a, cross(b, c)), below));
-}
 
 void cut(const Point& eye, const Point& a, const Point& b, const Point& c, int depth, std::vector<Piece>& out) {
     constexpr double fine = 2e-4;  // sr
@@ -177,26 +172,6 @@ class Eye {
     const LightUnit& lux_;
 };
 
-/// Indirect illuminance perpendicular to the line of sight: the mean over several points near the eye, each with its
-/// own rays. Points beyond a wall are replaced by the eye.
-double indirect_at_eye(const RadiosityFunction& light, const Observer& observer, const LightUnit& lux) {
-    constexpr int places = 8;
-    constexpr double step = 1e-3;  // metres
-    const Frame frame(observer.view);
-    std::vector<ProbePoint> points;
-    for (int i = 0; i < places; ++i) {
-        const double a = 2 * pi * i / places;
-        const Point x = observer.eye + step * frame.to_world(std::cos(a), std::sin(a), 0);
-        bool blocked = false;
-        light.stage().tracer.occluded(std::span(&observer.eye, 1), std::span(&x, 1), RegionId(), RegionId(),
-                                      std::span(&blocked, 1));
-        points.push_back({blocked ? observer.eye : x, observer.view});
-    }
-    double sum = 0;
-    for (const Light& there : light.at(points, Component::indirect)) sum += lux(there.irradiance) / places;
-    return sum;
-}
-
 }  // namespace
 
 double Glare::rating() const {
@@ -212,11 +187,7 @@ bool Glare::has_large_source() const {
 
 Glare find_glare(const RadiosityFunction& light, const Observer& at, const LightUnit& lux) {
     const Scene& scene = light.solution().scene;
-    Observer observer = at;
-    const MeasuredPlace place = light.places().find(at.eye, at.view);
-    observer.eye = place.x;
-    // Moves an eye on a wall away from it: otherwise rays would hit the wall at distance zero.
-    if (!place.region.is_none()) observer.eye += light.places().step() * scene.regions()[place.region].plane.n;
+    const Observer observer = off_walls(light, at);
     const Eye eye(light, observer, lux);
     Glare out;
     const auto add = [&](GlareSource source) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "exitance/scene/place_finder.hpp"
 #include "exitance/what_if/daylight/sensor_places.hpp"
 
 namespace exitance {
@@ -91,6 +92,29 @@ Result<void> DaylightSimulation::evaluate(SensorRange range, const DaylightSink&
         d.progress.advance(static_cast<double>(at + together.size()) / static_cast<double>(places.size()));
     }
     return {};
+}
+
+Result<std::vector<GlareYear>> DaylightSimulation::glare(std::span<const ProbePoint> views, double threshold) const {
+    const Data& d = *data_;
+    d.progress.phase("glare");
+    std::vector<Receiver> eyes = sensor_places(d.setting.scene, d.transport.stage().occluders, views);
+    const PlaceFinder places(d.setting.scene);
+    for (Receiver& eye : eyes)  // rays from an eye on a wall would end there
+        if (!eye.own.is_none()) eye.x += places.step() * d.setting.scene.regions()[eye.own].plane.n, eye.own = {};
+    const DaylightRows rows(d.transport, d.light.elements, d.patches, d.light.options.rays_a_sensor);
+    const SensorYears years(d.setting, d.light.bias, {});
+    const GlareYears glare(d.setting, d.transport, d.light.elements, threshold);
+    std::vector<GlareYear> out;
+    for (std::size_t at = 0; at < eyes.size(); at += block_sensors) {
+        const auto together = std::span(eyes).subspan(at, std::min(block_sensors, eyes.size() - at));
+        const std::size_t first = d.task.sensors.size() + at;  // random points other than those of the sensors
+        const auto unknown = [](std::size_t) -> const KnownSensor* { return nullptr; };
+        const DaylightBlock block = years.evaluate(first, together, rows.rows(together, first, unknown));
+        for (GlareYear& year : glare.evaluate(together, block)) out.push_back(std::move(year));
+        if (d.stop.requested()) return stopped();
+        d.progress.advance(static_cast<double>(out.size()) / static_cast<double>(eyes.size()));
+    }
+    return out;
 }
 
 Result<void> evaluate_coefficients(const Scene& scene, const DaylightTask& task, std::span<const float> coefficients,

@@ -5,6 +5,7 @@
 
 #include "exitance/what_if/daylight/daylight_search.hpp"
 #include "exitance/what_if/daylight/daylight_totals.hpp"
+#include "exitance/what_if/daylight/glare_year.hpp"
 
 namespace exitance {
 
@@ -53,6 +54,10 @@ class DaylightSimulation {
     /// Passes the results of sensors to `sink`, block by block. The bits of a sensor's results do not depend on the
     /// range in which it is. Errors: ErrorCode::limit after a stop request, or that of the sink.
     Result<void> evaluate(SensorRange range, const DaylightSink& sink) const;
+
+    /// Returns the daylight glare of the year at views: eyes (metres) with their lines of sight. `threshold`: luminance
+    /// of sources, cd/m^2. Error: ErrorCode::limit after a stop request.
+    Result<std::vector<GlareYear>> glare(std::span<const ProbePoint> views, double threshold) const;
 
   private:
     struct Data;

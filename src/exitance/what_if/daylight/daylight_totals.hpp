@@ -4,6 +4,14 @@
 
 namespace exitance {
 
+/// Protection from glare by EN 17037 at the views of a year.
+struct GlareSummary {
+    std::size_t views = 0;
+    std::array<double, 3> at_level{};  ///< Shares of the views that reach the levels minimum, medium and high.
+    int level = 0;                     ///< Level that all views reach.
+    double worst = 0;                  ///< Largest DGP of a view that 5% of the occupied hours exceed.
+};
+
 /// Results of all sensors of a year together, with equal weights.
 struct DaylightSummary {
     std::size_t sensors = 0;
@@ -20,6 +28,7 @@ struct DaylightSummary {
     DaylightBias bias;
     std::vector<DaylightError> errors;  ///< One per grid.
     std::vector<double> grid_factors;   ///< Mean daylight factor of every grid, per cent.
+    std::optional<GlareSummary> glare;  ///< None without views.
 };
 
 /// Collects the results of sensors, in their order. O(1) memory per grid.

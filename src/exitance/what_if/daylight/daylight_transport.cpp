@@ -108,6 +108,19 @@ std::size_t DaylightTransport::leaves() const {
     return elements_->numbering.leaves.size();
 }
 
+std::optional<std::size_t> DaylightTransport::leaf_at(RegionId region, const Point& x) const {
+    const std::uint32_t leaf = elements_->locator.find_leaf(region, x).leaf;
+    if (leaf == ElementLocator::no_leaf) return std::nullopt;
+    return leaf;
+}
+
+Receiver DaylightTransport::leaf_centre(std::size_t leaf) const {
+    const ElementTree& tree = elements_->tree;
+    const ElementId e = elements_->numbering.leaves[leaf];
+    const RegionId region = tree.region(e);
+    return {tree.patch(e).at(tree.centre(e)), scene_.regions()[region].plane.n, region};
+}
+
 void DaylightTransport::forget_rows() {
     for (std::vector<RayCounts>& rows : rows_) rows = {};
 }

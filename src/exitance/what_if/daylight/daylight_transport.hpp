@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -78,6 +79,10 @@ class DaylightTransport {
     /// Meshes the scene with about `count` elements and discards all rays. Deterministic.
     void make_elements(double count);
     std::size_t leaves() const;
+    /// Returns the number of the leaf of a region that contains a point (metres); none beside the elements.
+    std::optional<std::size_t> leaf_at(RegionId region, const Point& x) const;
+    /// Returns the centre of a leaf.
+    Receiver leaf_centre(std::size_t leaf) const;
     /// Casts rays until all replicates together have this average number per element. O(new rays).
     void cast_rows(double rays_an_element);
     /// Frees the memory of the rays of elements.

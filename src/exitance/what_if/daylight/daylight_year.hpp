@@ -60,6 +60,10 @@ class YearSky {
     const Sun& sun(std::size_t hour) const { return suns_[hour]; }
     /// Indices of the hours with light, ascending.
     const std::vector<std::size_t>& bright_hours() const { return bright_; }
+    /// Luminances of the patches by the sky alone in the hour bright_hours()[k], cd/m^2.
+    std::span<const float> sky_luminances(std::size_t k) const {
+        return std::span(sky_).subspan(k * patches_, patches_);
+    }
 
   private:
     void add(std::span<const float> luminances, std::span<const float> coefficients, std::span<float> lux) const;
