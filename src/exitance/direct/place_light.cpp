@@ -1,5 +1,6 @@
 #include "exitance/direct/place_light.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -14,6 +15,10 @@ namespace {
 constexpr double work_of_shaft = 10;     ///< Search for the blockers between a polygon and a source.
 constexpr double work_of_blocker = 6;    ///< A blocker that is clipped from a source, if there are many fragments.
 constexpr double work_of_integral = 20;  ///< Integral of a directed radiance over a fragment.
+
+/// Limit on the rays of a place of a polygon below a sky from a picture. derived from RayLight::error_of(), 0.3% of the
+/// light of a half-hidden sky: elements average over many places.
+constexpr unsigned max_rays_to_picture = 1024;
 
 }  // namespace
 
@@ -109,7 +114,9 @@ double PlaceLight::exact_work(const ReceiverLight& light) const {
         if (source.in_batch || source.far_factor >= 0) continue;
         const double blockers = source.count;
         work += 1 + work_of_blocker * blockers;
-        if (direct_->emitters()[source.emitter].radiance.is_directed()) work += work_of_integral * (1 + blockers);
+        const RelativeRadiance& radiance = direct_->emitters()[source.emitter].radiance;
+        if (radiance.is_directed()) work += work_of_integral * (1 + blockers);
+        if (radiance.is_picture()) return HUGE_VAL;  // rays of any number are faster
     }
     return light.behind.empty() ? work : work + exact_work(light.behind[0]);
 }
@@ -125,7 +132,8 @@ bool PlaceLight::prepare(const Polygon& on, double work, const std::vector<Sourc
         direct_->prepare(on.outline, on.n, on.own, *named, room.light_, room.exact, worth);
     else
         direct_->prepare(on.outline, on.n, on.own, room.light_, room.exact, worth);
-    return !room.light_.has_crowded() && exact_work(room.light_) <= work;
+    const double of_one = exact_work(room.light_);
+    return !room.light_.has_crowded() && of_one <= work && of_one < HUGE_VAL;
 }
 
 bool PlaceLight::exact_at_places(const Polygon& on, const std::vector<SourceName>* named, const LightAccuracy& accuracy,
@@ -148,7 +156,11 @@ void PlaceLight::at_places(const Polygon& on, const LightAccuracy& accuracy, Wor
                            std::vector<Estimate>& out) const {
     if (exact_at_places(on, nullptr, accuracy, room, out)) return;
     out.clear();
-    for (const Point& x : on.places) out.push_back(by_rays(x, on.n, on.own, accuracy, room));
+    LightAccuracy limited = accuracy;
+    if (std::any_of(direct_->emitters().begin(), direct_->emitters().end(),
+                    [](const DirectLight::Emitter& emitter) { return emitter.radiance.is_picture(); }))
+        limited.most_rays = std::min(limited.most_rays, max_rays_to_picture);
+    for (const Point& x : on.places) out.push_back(by_rays(x, on.n, on.own, limited, room));
 }
 
 }  // namespace exitance
