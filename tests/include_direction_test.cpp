@@ -44,7 +44,7 @@ const std::vector<Door> doors{
     {"FreeType", std::regex("ft2build\\.h"), {"io/pictures/text.cpp"}},
     {"libjpeg", std::regex("jpeglib\\.h"), {"io/scenes/textures/jpeg_mean.cpp"}},
     {"tinygltf", std::regex("tiny_gltf\\.h"), {"io/scenes/gltf/gltf.cpp", "io/scenes/gltf/gltf_parse.cpp"}},
-    {"OpenEXR", std::regex("OpenEXR/.*|Imf.*"), {"io/pictures/exr.cpp"}},
+    {"OpenEXR", std::regex("OpenEXR/.*|Imf.*"), {"io/pictures/exr.cpp", "io/pictures/read_exr.cpp"}},
     {"CLI11", std::regex("CLI/.*"), {"cli/option_kinds.hpp"}},
     {"cpp-httplib", std::regex("httplib\\.h"), {"cli/view/view_server.cpp"}},
     {"MPI", std::regex("mpi\\.h"), {"processes/distributed.cpp"}},

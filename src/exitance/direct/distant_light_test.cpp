@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "exitance/scene/sky/directional_picture.hpp"
 #include "exitance/scene/sky/sun_position.hpp"
 #include "exitance/transport/stage.hpp"
 
@@ -65,6 +66,52 @@ TEST(DistantLight, OpenGroundHasTheIrradianceOfEverySky) {
         EXPECT_NEAR(light_at(stage, {1, 2, 0}, {0, 0, 1}, first), 100, 0.1) << type;
         EXPECT_NEAR(light_at(stage, {1, 2, 3}, {0, 0, 1}, RegionId()), 100, 0.1) << type;
     }
+}
+
+TEST(DistantLight, GroundBesideAWallHasTheLightOfThePixelsThatItSees) {
+    // A glow, a sun of 1.5 degrees above it, blue and brown stripes; a wall hides a fifth of the sky and not the sun.
+    const Normal sun = normalized(Vec3{-1, 0.3, 0.9});
+    DirectionalPicture picture{512, 256, {}};
+    Spectrum open, beside;
+    constexpr std::size_t parts = 4;  // per side of a pixel, for the reference
+    for (std::size_t i = 0; i < picture.width * picture.height; ++i) {
+        const auto row = static_cast<double>(i / picture.width), column = static_cast<double>(i % picture.width);
+        const auto towards = [&](double down, double along) {
+            const double altitude = pi * (0.5 - (row + down) / 256), azimuth = pi * (1 - 2 * (column + along) / 512);
+            return Vec3{std::cos(altitude) * std::cos(azimuth), std::cos(altitude) * std::sin(azimuth),
+                        std::sin(altitude)};
+        };
+        const Vec3 middle = towards(0.5, 0.5);
+        Spectrum L(middle.z < 0 ? 3 : 10 + 40 * std::exp(-10 * (1 - dot(middle, sun))));
+        L[bands - 1] *= 1.5 + std::sin(30 * middle.x);
+        if (dot(middle, sun) > std::cos(0.75 * pi / 180)) L += Spectrum(2e5);
+        for (const double value : L.value) picture.radiance.push_back(static_cast<float>(value));
+        for (std::size_t k = 0; k < parts * parts; ++k) {
+            const Vec3 w =
+                towards((static_cast<double>(k / parts) + 0.5) / parts, (static_cast<double>(k % parts) + 0.5) / parts);
+            if (w.z <= 0) continue;
+            const double dw = std::sqrt(1 - w.z * w.z) * (pi / 256) * (pi / 256) / (parts * parts);
+            open += w.z * dw * L;
+            const bool is_hidden = w.x > 0 && std::abs(w.y) < 4 * w.x && w.z < 3 * w.x;
+            if (!is_hidden) beside += w.z * dw * L;
+        }
+    }
+    const DistantLight light = light_of_picture(picture, 0);
+    EXPECT_EQ(light.discs.size(), 1U);
+    const Scene scene = under(light, {ground, {{{1, -4, 0}, {1, -4, 3}, {1, 4, 3}, {1, 4, 0}}}});
+    const Stage stage(scene);
+    DirectLight::Workspace exact;
+    PlaceLight::Workspace room;
+    const auto compare = [](const Spectrum& found, const Spectrum& expected, double tolerance) {
+        for (const std::size_t band : {std::size_t(0), bands - 1})
+            EXPECT_NEAR(found[band], expected[band], tolerance * expected[band]);
+    };
+    // Above the wall nothing hides the sky. Cells of 2.8 degrees keep the light of a horizontal plane.
+    compare(stage.direct.irradiance({0, 0, 4}, {0, 0, 1}, RegionId(), exact), open, 3e-3);
+    compare(stage.direct.irradiance({0, 0, 0}, {0, 0, 1}, first, exact), beside, 5e-3);  // blurred where the wall ends
+    const PlaceLight::Estimate by_rays =
+        stage.place_light.by_rays({0, 0, 0}, {0, 0, 1}, first, {.relative = 2e-3, .most_rays = 1 << 16}, room);
+    compare(by_rays.irradiance, beside, 1e-2);
 }
 
 TEST(DistantLight, AWallGetsHalfOfAUniformSkyAndTheGroundHidesItsGlow) {

@@ -1,5 +1,6 @@
 #include "exitance/direct/place_light.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -17,6 +18,10 @@ constexpr double work_of_integral = 20;  ///< Integral of a directed radiance ov
 /// Rays needed, over the work that exact light was allowed, above which it is tried again with a quarter of them:
 /// derived from the cost of trying in vain, at most a quarter of that of the rays.
 constexpr double worth_another = 4;
+
+/// Limit on the rays of a place of a polygon below a sky from a picture. derived from RayLight::error_of(), 0.3% of the
+/// light of a half-hidden sky: elements average over many places.
+constexpr unsigned max_rays_to_picture = 1024;
 
 }  // namespace
 
@@ -127,7 +132,9 @@ double PlaceLight::exact_work(const ReceiverLight& light) const {
         if (source.in_batch || source.far_factor >= 0) continue;
         const double blockers = source.count;
         work += 1 + work_of_blocker * blockers;
-        if (direct_->emitters()[source.emitter].radiance.is_directed()) work += work_of_integral * (1 + blockers);
+        const RelativeRadiance& radiance = direct_->emitters()[source.emitter].radiance;
+        if (radiance.is_directed()) work += work_of_integral * (1 + blockers);
+        if (radiance.is_picture()) return HUGE_VAL;  // rays of any number are faster
     }
     return light.behind.empty() ? work : work + exact_work(light.behind[0]);
 }
@@ -143,7 +150,8 @@ bool PlaceLight::prepare(const Polygon& on, double work, const std::vector<Sourc
         direct_->prepare(on.outline, on.n, on.own, *named, room.light_, room.exact, worth);
     else
         direct_->prepare(on.outline, on.n, on.own, room.light_, room.exact, worth);
-    return !room.light_.has_crowded() && exact_work(room.light_) <= work;
+    const double of_one = exact_work(room.light_);
+    return !room.light_.has_crowded() && of_one <= work && of_one < HUGE_VAL;
 }
 
 /// Work that a place by rays is forecast to take, less the share of each place in finding the blockers.
@@ -185,7 +193,11 @@ void PlaceLight::at_places(const Polygon& on, const LightAccuracy& accuracy, Wor
         exact_within(on, nullptr, needed / worth_another - preparing_a_place(on, nullptr), accuracy, room, out))
         return;
     out.clear();
-    for (const Point& x : on.places) out.push_back(by_rays(x, on.n, on.own, accuracy, room));
+    LightAccuracy limited = accuracy;
+    if (std::any_of(direct_->emitters().begin(), direct_->emitters().end(),
+                    [](const DirectLight::Emitter& emitter) { return emitter.radiance.is_picture(); }))
+        limited.most_rays = std::min(limited.most_rays, max_rays_to_picture);
+    for (const Point& x : on.places) out.push_back(by_rays(x, on.n, on.own, limited, room));
 }
 
 }  // namespace exitance

@@ -10,8 +10,18 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t cells_per_dome = 256;
-constexpr int rule = 2;  ///< Gauss points per side of a cell.
+constexpr std::size_t cells_of_formula = 256;   ///< Per half of the directions.
+constexpr std::size_t cells_of_picture = 2048;  ///< Per half if a sky is a picture: cells of about 3 degrees.
+
+bool has_picture(const DistantLight& light) {
+    return std::any_of(light.domes.begin(), light.domes.end(),
+                       [](const auto& d) { return d.model.picture != nullptr; });
+}
+
+/// Returns the Gauss points of a cell. A picture, which is linear between points 2.8 degrees apart, needs more.
+std::span<const PlanarNode> cell_rule(const DistantLight& light) {
+    return square_rule(has_picture(light) ? 4 : 2);
+}
 
 Vec3 direction_at(double z, double turn) {
     const double r = std::sqrt(std::max(0.0, 1 - z * z)), angle = 2 * pi * turn;
@@ -33,7 +43,7 @@ void SkyTree::look_at(std::uint32_t number, const DistantLight& light, Leaf& lea
         }
     double least = HUGE_VAL, most = 0;
     leaf.flux = 0;
-    for (const PlanarNode& at : square_rule(rule)) {
+    for (const PlanarNode& at : cell_rule(light)) {
         const double L =
             mean(light.radiosity(direction_at(node.z0 + at.at.x * dz, node.turn0 + at.at.y * turns), false));
         least = std::min(least, L), most = std::max(most, L);
@@ -79,7 +89,8 @@ SkyTree::SkyTree(const DistantLight& light) {
         split(0, true);  // at the horizon, where domes end
     else
         add(0);
-    const std::size_t most = cells_per_dome * (is_above && is_below ? 2 : 1);
+    const std::size_t most =
+        (has_picture(light) ? cells_of_picture : cells_of_formula) * (is_above && is_below ? 2 : 1);
     while (cells < most) {
         const std::uint32_t number = open.top().node;
         open.pop();
@@ -99,7 +110,7 @@ void SkyTree::make_leaves(const DistantLight& light) {
         double priority = 0;
         look_at(i, light, leaves_.emplace_back(), priority);
         const double dz = node.z1 - node.z0, turns = node.turn1 - node.turn0;
-        for (const PlanarNode& at : square_rule(rule)) {
+        for (const PlanarNode& at : cell_rule(light)) {
             const Vec3 w = direction_at(node.z0 + at.at.x * dz, node.turn0 + at.at.y * turns);
             samples_.push_back({w, 2 * dz * turns * at.weight * light.radiosity(w, false)});
         }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "exitance/base/random.hpp"
+#include "exitance/scene/sky/sky_picture.hpp"
 #include "exitance/scene/sky/sun_position.hpp"
 
 namespace exitance {
@@ -31,9 +32,20 @@ double irradiance(const DistantLight& light, const Normal& n) {
     return sum * 4 / (rows * columns);  // L dw: radiosity / pi times 4 pi / count
 }
 
+/// Clouds of a few degrees, and lamps of one cell.
+SkyModel picture_of_clouds() {
+    RandomStream random(1, Stream::mesh);
+    std::vector<double> values(SkyPicture::size);
+    for (double& value : values) value = 1 + random.uniform() + (random.uniform() < 0.003 ? 20 : 0);
+    SkyModel out;
+    out.picture = std::make_shared<const SkyPicture>(std::move(values));
+    return out;
+}
+
 std::vector<SkyModel> skies() {
     const Normal sun = sky_direction(35, 200);
-    std::vector<SkyModel> out = {uniform_sky(), overcast_sky(), cie_sky(12, sun), perez_sky({90, 700, 100}, sun)};
+    std::vector<SkyModel> out = {uniform_sky(), overcast_sky(), cie_sky(12, sun), perez_sky({90, 700, 100}, sun),
+                                 picture_of_clouds()};
     for (SkyModel& sky : out) EXPECT_TRUE(sky.normalize());
     return out;
 }

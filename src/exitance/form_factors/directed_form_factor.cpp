@@ -89,6 +89,8 @@ class DirectedIntegral {
         if (depth == max_bisections || !looks_wider(t, widest_)) {
             Sums one, three, six;
             add_three(t, 2.0 / 3, 1, three);
+            if (p_.is_picture() && !looks_wider(t, p_.smooth_width()))
+                return three.mean() * std::max(0.0, contour_sum(n_, t));
             if (!looks_wider(t, 0.5 * widest_)) {
                 add((t[0] + t[1] + t[2]) / 3, 1, one);
                 if (std::abs(three.mean() - one.mean()) <=

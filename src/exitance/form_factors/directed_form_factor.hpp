@@ -21,6 +21,12 @@ namespace exitance {
 /// Relative error at most 1e-3, typically 2e-4; relative to the mean of p where p is less than a fiftieth of it. About
 /// 60 ns per point. A far quadrangle needs 20 points, an opening of 1 m at 0.5 m distance 400 to 5000, depending on its
 /// profile.
+/// A picture of the sky has features of one size everywhere: triangles are one cell wide, with three points each.
 double directed_form_factor(const Normal& n, std::span<const Vec3> corners, const RelativeRadiance& p);
+
+/// Work of directed_form_factor() for a facet of a sky from a picture that blockers cut, in units of a ray. derived
+/// from the number of rays of a place, at most 8,192: rays are always preferred, since fragments need a triangle per
+/// cell.
+constexpr double work_of_picture = 10000;
 
 }  // namespace exitance

@@ -79,6 +79,7 @@ class SkyWindow;
 /// Implemented in scene/sky/sky_window.hpp, for light that is seen through a window.
 double relative_radiance(const SkyWindow& window, const Vec3& w);
 double smooth_width(const SkyWindow& window);
+bool shows_picture(const SkyWindow& window);
 
 /// Radiance of a face by direction, relative to a diffuse face of the same flux:
 ///
@@ -96,6 +97,8 @@ class RelativeRadiance {
     RelativeRadiance(const SkyWindow& window, const Normal& n) : window_(&window), n_(n) {}
 
     bool is_directed() const { return profile_ != nullptr || sky_ != nullptr || window_ != nullptr; }
+    /// True if the radiance comes from a picture of the sky: it varies over a few degrees everywhere.
+    bool is_picture() const { return window_ ? shows_picture(*window_) : sky_ && sky_->picture; }
     /// True if the radiance is discontinuous at the horizon.
     bool breaks_at_horizon() const { return window_ != nullptr; }
     /// Returns p in direction w, a unit vector in front of the face.

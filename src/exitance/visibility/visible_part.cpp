@@ -216,6 +216,7 @@ double finish(const Occluders& occluders, PieceId source, const Normal& n, std::
         if (scratch.shadows.empty()) return whole_form_factor(occluders, source, n, scratch, light.radiance);
         if (!cut_lit(cut, scratch)) return 0;
         scratch.work += work_of_integral * static_cast<double>(scratch.lit.size());
+        if (light.radiance.is_picture()) scratch.work += work_of_picture;
         return scratch.gave_up() ? 0 : scratch.lit.form_factor(n, light.radiance, scratch.clipped);
     }
     if (scratch.shadows.empty()) return std::max(0.0, contour_sum(n, scratch.source));

@@ -11,6 +11,7 @@
 
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/text_table.hpp"
+#include "exitance/io/scenes/sky_picture_words.hpp"
 
 namespace exitance {
 namespace {
@@ -173,10 +174,14 @@ DistantLight make_light(const SkyModel& sky, const Normal& sun, double diffuse, 
 std::string sky_help() {
     std::string names;
     for (const Named& n : numbers) names += fmt::format("{}{}", names.empty() ? "" : ", ", n.name);
-    return fmt::format("kinds: uniform, overcast, clear, cie1 to cie15, perez; names: time, {}", names);
+    return fmt::format("kinds: uniform, overcast, clear, cie1 to cie15, perez, image=FILE; names: time, {}", names);
 }
 
 Result<ChosenSky> parse_sky(const std::string& text, const Weather* weather) {
+    if (is_picture_sky(text)) {
+        if (weather) return wrong("a weather file does not apply to a picture", "leave out the weather file (--epw)");
+        return parse_picture_sky(text);
+    }
     const Result<Words> read = read_words(text);
     if (!read) return read.error();
     const Words& words = *read;

@@ -12,6 +12,7 @@
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/processes/distributed.hpp"
+#include "exitance/scene/sky/sky_picture.hpp"
 
 namespace exitance {
 namespace {
@@ -94,6 +95,8 @@ std::string scene_fingerprint(const Scene& scene) {
         for (const double v : {m.a, m.b, m.g, m.f0, m.c, m.d, m.e, m.ground, m.scale}) all.add(v);
         all.add(m.sun), all.add(dome.irradiance);
         all.add(m.intermediate + 2.0 * m.blends_ground + 4.0 * m.below);
+        if (m.picture)
+            for (const double v : m.picture->values()) all.add(v);
     }
     for (const DistantLight::Disc& disc : scene.distant().discs)
         all.add(disc.towards), all.add(disc.half_angle), all.add(disc.irradiance);

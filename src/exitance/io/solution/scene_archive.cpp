@@ -1,5 +1,6 @@
 #include "exitance/base/archive.hpp"
 #include "exitance/io/solution/solution_groups.hpp"
+#include "exitance/scene/sky/sky_picture.hpp"
 
 namespace exitance {
 namespace {
@@ -45,6 +46,17 @@ void archive(Archive& a, PunctualLight& l) {
 template <class Archive>
 void archive(Archive& a, Pane& p) {
     a(p.corners, p.n, p.transmissivity, p.index, p.line);
+}
+
+template <class Archive>
+void archive(Archive& a, DistantLight::Dome& dome) {
+    SkyModel& m = dome.model;
+    a(m.a, m.b, m.g, m.f0, m.c, m.d, m.e, m.sun, m.intermediate, m.ground, m.blends_ground, m.below, m.scale);
+    std::vector<double> picture;
+    if (m.picture) picture.assign(m.picture->values().begin(), m.picture->values().end());
+    a(picture, dome.irradiance);
+    if constexpr (Archive::reads)
+        if (picture.size() == SkyPicture::size) m.picture = std::make_shared<const SkyPicture>(std::move(picture));
 }
 
 template <class Archive>

@@ -1,12 +1,40 @@
 #include "exitance/io/solution/sky_group.hpp"
 
 #include "exitance/io/solution/stored_columns.hpp"
+#include "exitance/scene/sky/sky_picture.hpp"
 
 namespace exitance {
 namespace {
 
 constexpr std::size_t numbers = 9;  ///< Numbers per sky.
-enum Flags : std::uint8_t { intermediate = 1, blends_ground = 2, below = 4, all_flags = 7 };
+enum Flags : std::uint8_t { intermediate = 1, blends_ground = 2, below = 4, picture = 8, all_flags = 15 };
+
+/// Writes the tables of all skies from pictures, one after another.
+void write_pictures(Hdf5Writer& file, const std::string& name, const DistantLight& light) {
+    std::vector<double> values;
+    for (const DistantLight::Dome& dome : light.domes)
+        if (dome.model.picture)
+            values.insert(values.end(), dome.model.picture->values().begin(), dome.model.picture->values().end());
+    if (values.empty()) return;
+    file.write(name, values, SkyPicture::columns,
+               {"1",
+                "radiance of each sky from a picture, up to its factor: 64 rows from straight down to the zenith, "
+                "columns from +x counter-clockwise"});
+}
+
+/// Reads the tables of write_pictures() into the domes that `kind` marks.
+void read_pictures(Columns& in, std::span<const std::uint8_t> kind, Hdf5Reader& file, DistantLight& light) {
+    std::size_t count = 0, next = 0;
+    for (const std::uint8_t k : kind) count += (k & picture) != 0;
+    if (count == 0) return;
+    const auto values = in.read<double>("sky_picture", SkyPicture::columns, count * SkyPicture::rows);
+    for (std::size_t i = 0; i < kind.size() && !file.failed(); ++i) {
+        if (!(kind[i] & picture)) continue;
+        const auto first = values.begin() + static_cast<std::ptrdiff_t>(next++ * SkyPicture::size);
+        light.domes[i].model.picture = std::make_shared<const SkyPicture>(
+            std::vector<double>(first, first + static_cast<std::ptrdiff_t>(SkyPicture::size)));
+    }
+}
 
 }  // namespace
 
@@ -22,20 +50,24 @@ void write_sky(Hdf5Writer& file, const std::string& group, const DistantLight& l
                    {"1",
                     "a, b, g, f0, c, d, e of a sky, what the ground's is where both blend, and a factor: pi L / E "
                     "= factor (1 + a exp(b / cos Z) + g cos Z) (f0 + c exp(d gamma) + e cos^2 gamma)"});
-        file.write(
-            in("sky_kind"),
-            column<std::uint8_t>(light.domes,
-                                 [](const DistantLight::Dome& d) {
-                                     return (d.model.intermediate ? intermediate : 0) +
-                                            (d.model.blends_ground ? blends_ground : 0) + (d.model.below ? below : 0);
-                                 }),
-            1, {"1", "1: the intermediate sky; 2: sky and ground blend; 4: below the horizon; or sums of these"});
+        file.write(in("sky_kind"),
+                   column<std::uint8_t>(light.domes,
+                                        [](const DistantLight::Dome& d) {
+                                            return (d.model.intermediate ? intermediate : 0) +
+                                                   (d.model.blends_ground ? blends_ground : 0) +
+                                                   (d.model.below ? below : 0) + (d.model.picture ? picture : 0);
+                                        }),
+                   1,
+                   {"1",
+                    "1: the intermediate sky; 2: sky and ground blend; 4: below the horizon; 8: from a picture; or "
+                    "sums of these"});
         file.write(in("sky_sun"),
                    flat(column<Vec3>(light.domes, [](const DistantLight::Dome& d) { return d.model.sun; })), 3,
                    {"1", "towards the sun that a sky goes by"});
         file.write(in("sky_irradiance"), spectra(light.domes, [](const DistantLight::Dome& d) { return d.irradiance; }),
                    bands, {"W/m^2", "irradiance of a horizontal plane by a sky"});
     }
+    write_pictures(file, in("sky_picture"), light);
     if (light.discs.empty()) return;
     file.write(in("sun_direction"),
                flat(column<Vec3>(light.discs, [](const DistantLight::Disc& d) { return d.towards; })), 3,
@@ -65,6 +97,7 @@ DistantLight read_sky(Hdf5Reader& file, const std::string& group) {
             if (kind[i] > all_flags) file.fail(group + "/sky_kind", "holds an unknown kind of sky");
             out.domes.push_back({m, spectrum(irradiance, i)});
         }
+        if (!file.failed()) read_pictures(in, kind, file, out);
     }
     if (file.has(group + "/sun_direction")) {
         const auto half_angle = in.read<double>("sun_half_angle");

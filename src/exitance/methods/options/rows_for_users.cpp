@@ -134,8 +134,9 @@ std::vector<OptionRow> rows_of_scene_and_limits() {
     return {
         {.name = "--sky",
          .value = text("SKY", at(&R::sky)),
-         .does = "Light from outside: uniform, overcast, clear, cie1 to cie15 or perez with its parameters, such as "
-                 "'perez,lat=47.4,lon=8.5,time=06-21T12:00,dni=700,dhi=120'",
+         .does =
+             "Light from outside: uniform, overcast, clear, cie1 to cie15 or perez with its parameters, such as "
+             "'perez,lat=47.4,lon=8.5,time=06-21T12:00,dni=700,dhi=120', or a picture: image=FILE.hdr,rotation=DEGREES",
          .when = "See docs/daylight.md",
          .group = group::scene,
          .section = "-"},

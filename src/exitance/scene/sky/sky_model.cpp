@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "exitance/scene/sky/perez_sky.hpp"
+#include "exitance/scene/sky/sky_picture.hpp"
 
 namespace exitance {
 namespace {
@@ -119,7 +120,7 @@ constexpr double perez_table[8][5][4] = {
 }  // namespace
 
 bool is_product(const SkyModel& sky) {
-    return !sky.intermediate && !sky.blends_ground;
+    return !sky.intermediate && !sky.blends_ground && !sky.picture;
 }
 
 double gradation(const SkyModel& sky, double z) {
@@ -132,6 +133,7 @@ double indicatrix(const SkyModel& sky, double cos_gamma) {
 }
 
 double SkyModel::value(const Vec3& w) const {
+    if (picture) return picture->value(w, below);
     const double cos_gamma = std::clamp(dot(w, sun), -1.0, 1.0);
     double out = intermediate ? f0 * intermediate_value(w.z, std::acos(cos_gamma), sun.z)
                               : gradation(*this, w.z) * indicatrix(*this, cos_gamma);
@@ -144,6 +146,7 @@ double SkyModel::value(const Vec3& w) const {
 }
 
 double SkyModel::smooth_width(const Vec3& w) const {
+    if (picture) return SkyPicture::cell_angle;
     constexpr double near_sun = 50 * pi / 180, share = 1.5;
     double width = max_smooth_width;
     if (c != 0 && dot(w, sun) > std::cos(near_sun) && d < 0) width = std::min(width, share / -d);
@@ -164,10 +167,12 @@ bool SkyModel::is_sane() const {
     constexpr double largest = 1e6;
     for (const double v : {a, b, g, f0, c, d, e, ground})
         if (!(std::abs(v) <= largest)) return false;
+    if (picture && !SkyPicture::are_sane(picture->values())) return false;
     return std::abs(norm(sun) - 1) < 1e-6 && scale > 0 && scale <= 1e30;
 }
 
 double horizontal_mean(const SkyModel& sky) {
+    if (sky.picture) return sky.picture->horizontal_mean(sky.below);
     return sky.is_uniform() ? std::max(0.0, sky.f0) : CosineMean(sky)();
 }
 

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "exitance/base/vec.hpp"
 
 namespace exitance {
+
+class SkyPicture;
 
 /// The directional radiance of a sky, up to a factor; z is up.
 ///
@@ -13,7 +16,7 @@ namespace exitance {
 ///
 /// Z is the angle from the zenith, gamma that from the sun. The CIE general sky has f0 = 1 - c exp(d pi / 2) and g = 0,
 /// Perez' all-weather sky f0 = 1, the traditional overcast sky a = 0 and g = 2. cos Z is at least 0.01; negative L is
-/// replaced by 0. Source: [Darula02], [Perez93].
+/// replaced by 0. Source: [Darula02], [Perez93]. A sky from a picture takes L from the picture instead.
 struct SkyModel {
     double a = 0, b = -1, g = 0;
     double f0 = 1, c = 0, d = -1, e = 0;
@@ -26,8 +29,12 @@ struct SkyModel {
     bool below = false;  ///< The model fills the half below the horizon.
     /// Factor for which the cosine-weighted mean of relative() over its half of the directions is 1.
     double scale = 1;
+    /// Replaces the formula if not null: the radiance of one band in every direction. Immutable and shared by copies.
+    std::shared_ptr<const SkyPicture> picture = {};
 
-    bool is_uniform() const { return a == 0 && g == 0 && c == 0 && e == 0 && !intermediate && !blends_ground; }
+    bool is_uniform() const {
+        return a == 0 && g == 0 && c == 0 && e == 0 && !intermediate && !blends_ground && !picture;
+    }
     /// Returns L in direction w, a unit vector.
     double value(const Vec3& w) const;
     double relative(const Vec3& w) const { return scale * value(w); }

@@ -22,11 +22,15 @@ double smooth_width(const SkyWindow& window) {
     return window.smooth_width();
 }
 
+bool shows_picture(const SkyWindow& window) {
+    return window.shows_picture();
+}
+
 SkyWindow::Half::Half(const SkyModel& model, double irradiance)
     : sky(&model),
       scale(irradiance),
       is_uniform(model.is_uniform()),
-      has_tables(!model.intermediate && !model.blends_ground) {
+      has_tables(!model.intermediate && !model.blends_ground && !model.picture) {
     if (is_uniform || !has_tables) return;
     // The factors of `SkyModel::value`, each evaluated with the other one constant.
     SkyModel height = model, sun = model;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -25,6 +26,11 @@ class SkyWindow {
     /// Returns pi times the mean radiance over directions, W/m^2.
     double reference() const { return reference_; }
     bool is_dark() const { return !(reference_ > 0); }
+    /// True if a sky in it is a picture.
+    bool shows_picture() const {
+        return std::any_of(halves_.begin(), halves_.end(),
+                           [](const Half& half) { return half.sky->picture != nullptr; });
+    }
     /// Returns the angle over which it is smooth except at the horizon, radians.
     double smooth_width() const { return width_; }
 

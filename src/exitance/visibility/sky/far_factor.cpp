@@ -12,9 +12,9 @@ namespace exitance {
 namespace {
 
 auto values_of(const SkyModel& sky) {
-    static_assert(sizeof(SkyModel) == 14 * sizeof(double), "a member that is new belongs into this list");
+    static_assert(sizeof(SkyModel) == 16 * sizeof(double), "a member that is new belongs into this list");
     return std::tie(sky.a, sky.b, sky.g, sky.f0, sky.c, sky.d, sky.e, sky.sun, sky.intermediate, sky.ground,
-                    sky.blends_ground, sky.below, sky.scale);
+                    sky.blends_ground, sky.below, sky.scale, sky.picture);
 }
 
 /// The sky models of a scene and the placement of the sky's parts, for exact comparison.
