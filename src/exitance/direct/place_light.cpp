@@ -186,17 +186,17 @@ void PlaceLight::at_places(const Polygon& on, const LightAccuracy& accuracy, Wor
                            std::vector<Estimate>& out) const {
     const double work = forecast_work(on, nullptr, accuracy, room);
     if (exact_within(on, nullptr, work, accuracy, room, out)) return;
-    // In penumbrae, and where little of the light arrives, rays need more than was forecast. The first ones tell.
-    double tried = 0;
-    const double needed = rays_needed_at(on.places[on.places.size() / 2], on.n, on.own, work, accuracy, room, tried);
-    if (needed > worth_another * work &&
-        exact_within(on, nullptr, needed / worth_another - preparing_a_place(on, nullptr), accuracy, room, out))
-        return;
-    out.clear();
     LightAccuracy limited = accuracy;
     if (std::any_of(direct_->emitters().begin(), direct_->emitters().end(),
                     [](const DirectLight::Emitter& emitter) { return emitter.radiance.is_picture(); }))
         limited.most_rays = std::min(limited.most_rays, max_rays_to_picture);
+    // In penumbrae, and where little of the light arrives, rays need more than was forecast. The first ones tell.
+    double tried = 0;
+    const double needed = rays_needed_at(on.places[on.places.size() / 2], on.n, on.own, work, limited, room, tried);
+    if (needed > worth_another * work &&
+        exact_within(on, nullptr, needed / worth_another - preparing_a_place(on, nullptr), accuracy, room, out))
+        return;
+    out.clear();
     for (const Point& x : on.places) out.push_back(by_rays(x, on.n, on.own, limited, room));
 }
 

@@ -25,6 +25,8 @@ class Interpolation {
           direct_weight_(Spectrum(1.0) - direct_share),
           options_(options) {
         out_.tree = direct.tree;
+        const auto elements = static_cast<double>(direct.tree.size() + indirect.tree.size());
+        max_elements_ = std::max(options.always_allowed, static_cast<std::size_t>(options.max_growth * elements));
     }
 
     /// After a stop request, remaining leaves are restricted from their parents.
@@ -49,8 +51,7 @@ class Interpolation {
             locator_.reset();  // frees memory for the next step
             double misfit = error();
             report.interrupted = stop.requested();
-            const bool last =
-                round == options_.max_depth || report.interrupted || out_.tree.size() > options_.max_elements;
+            const bool last = round == options_.max_depth || report.interrupted || out_.tree.size() >= max_elements_;
             if (misfit <= options_.tolerance || last) {
                 ElementFunction continuous = join(stop);
                 misfit = error();
@@ -189,15 +190,27 @@ class Interpolation {
         return std::sqrt(sum / stage_.area);
     }
 
-    /// Splits the leaves whose squared error exceeds an even share of the allowed one; returns the new leaves.
+    /// Splits the leaves whose squared error exceeds an even share of the allowed one, the largest errors first if
+    /// there would be too many elements; returns the new leaves.
     std::vector<ElementId> split_largest(double error) {
         const std::vector<ElementId> leaves = out_.tree.leaves();
         const double allowed = options_.tolerance * options_.tolerance * stage_.area;
         const double share =
             allowed / static_cast<double>(leaves.size()) * std::min(1.0, 2 * options_.tolerance / error);
+        const auto error_of = [&](ElementId e) { return out_.tree.area(e) * fitted_[e].misfit_squared; };
+        std::vector<ElementId> rough;
+        for (ElementId e : leaves)
+            if (error_of(e) > share) rough.push_back(e);
+        constexpr std::size_t most_parts = 4;  // of one leaf
+        const std::size_t room = (max_elements_ - std::min(max_elements_, out_.tree.size())) / most_parts + 1;
+        if (rough.size() > room) {
+            std::stable_sort(rough.begin(), rough.end(),
+                             [&](ElementId a, ElementId b) { return error_of(a) > error_of(b); });
+            rough.resize(room);
+            std::sort(rough.begin(), rough.end());
+        }
         std::vector<ElementId> fresh;
-        for (ElementId e : leaves) {
-            if (out_.tree.area(e) * fitted_[e].misfit_squared <= share) continue;
+        for (ElementId e : rough) {
             const auto& [u, v] = fitted_[e].misfit_along;
             const Cut only = sufficient_cut(fitted_[e].misfit_squared, {u, v}, share / out_.tree.area(e));
             for (ElementId child : refine_element(out_.tree, e, only)) fresh.push_back(child);
@@ -212,6 +225,7 @@ class Interpolation {
     const InterpolantOptions& options_;
     /// Locates elements of the indirect light; set only while leaves are fitted.
     std::optional<ElementLocator> locator_;
+    std::size_t max_elements_ = 0;
     ElementFunction out_;
     Field<ElementId, Fit> fitted_;
 };

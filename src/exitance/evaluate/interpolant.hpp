@@ -9,7 +9,10 @@ namespace exitance {
 struct InterpolantOptions {
     double tolerance = 0;  ///< Required RMS error of rho E over all surfaces, W/m^2.
     int max_depth = 12;    ///< Limit on the rounds of refinement.
-    std::size_t max_elements = 2'000'000;
+    /// Elements of the result over those of the direct and indirect light together, and the number that is allowed in
+    /// any case. Sharp borders of sunlight would be cut without end; the error that remains is reported.
+    double max_growth = 4;
+    std::size_t always_allowed = 20'000;
     std::span<const double> light_in = {};  ///< See LocalPassDemand: allowed errors are proportional to it.
     std::uint64_t seed = 1;                 ///< Selects the places at which the error is measured.
 };
@@ -22,7 +25,8 @@ struct InterpolantReport {
 /// Direct and indirect irradiance together on plain elements, for files and other uses without exact direct light.
 /// Adds, on each leaf of the direct projection, the projected direct light (less the share of it that `indirect`
 /// contains) and the least-squares polynomial of the indirect light. Leaves are split while their total misfit exceeds
-/// the tolerance, those with the largest shares first. The result is continuous except at discontinuities of the light
+/// the tolerance, those with the largest shares first, and while the elements are not too many. The result is
+/// continuous except at discontinuities of the light
 /// (`nearest_continuous`). O(elements x nodes), plus exact direct light for new leaves.
 ElementFunction make_interpolant(const Stage& stage, const DirectProjection& direct, const ElementFunction& indirect,
                                  const Spectrum& direct_share, const InterpolantOptions& options,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "exitance/base/random.hpp"
 #include "exitance/mesh/element_locator.hpp"
@@ -54,6 +55,15 @@ std::size_t count_of_places(std::size_t leaves) {
     return std::max(min_places, leaves / leaves_a_place);
 }
 
+/// Returns the mean of the values, but at least its standard error: what the noise of rays may hide.
+double mean_or_uncertainty(const std::vector<double>& values) {
+    const auto count = static_cast<double>(values.size());
+    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+    double spread = 0;
+    for (const double value : values) spread += (value - mean) * (value - mean);
+    return std::max(mean, std::sqrt(spread / (count * (count - 1))));
+}
+
 }  // namespace
 
 double interpolant_error(const Stage& stage, const ElementFunction& interpolant,
@@ -89,9 +99,7 @@ double interpolant_error(const Stage& stage, const ElementFunction& interpolant,
             }
         },
         [&](std::size_t k) -> double& { return square[k]; }, {"interpolant error"});
-    double sum = 0;
-    for (const double s : square) sum += s;
-    return std::sqrt(std::max(0.0, sum) / static_cast<double>(square.size()));
+    return std::sqrt(mean_or_uncertainty(square));
 }
 
 }  // namespace exitance

@@ -24,7 +24,8 @@ struct InterpolatedLeaf {
 ///
 /// Light is compared at places that no fit has seen: the residual of a fit at its own places leaves out what the fit
 /// adapted to, and shadow edges between them. Places are stratified over the leaves, half by area and half by the
-/// expected square. Standard error of the square: a tenth or so. O(places) exact direct light.
+/// expected square. Standard error of the square: a tenth or so; the result is at least what it may hide. O(places)
+/// exact direct light.
 double interpolant_error(const Stage& stage, const ElementFunction& interpolant,
                          std::span<const InterpolatedLeaf> leaves, const InterpolatedLight& light, std::uint64_t seed);
 

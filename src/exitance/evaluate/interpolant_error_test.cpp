@@ -52,6 +52,19 @@ TEST_P(InterpolantErrorOf, DirectLightIsReportedAsItIs) {
     EXPECT_NEAR(*solution.statistics.relative_error_estimate_interpolant, error, 0.2 * error);
 }
 
+TEST(InterpolantError, IsReportedWhereSharpSunlightNeedsTooManyElements) {
+    // Elements that follow the borders of the columns' shadows to this error would be hundreds of thousands.
+    const Scene scene = built_scene("colonnade", {{"columns", "2"}, {"rot", "31.7,0.3,0.5,1"}});
+    const Solution solution =
+        solved(scene, {.method = Method::matrix, .bounces = 0, .error = 0.05, .error_interpolant = 1e-4});
+    EXPECT_LT(solution.interpolant.tree.leaves().size(),
+              40'000u);  // 20,000 elements, most of them as fans of triangles
+    const double error = error_of_export(solution);
+    EXPECT_GT(error, 1e-3);
+    // Most of the error is on a hundredth of the area: its square is known to a third.
+    EXPECT_NEAR(*solution.statistics.relative_error_estimate_interpolant, error, 0.3 * error);
+}
+
 TEST(InterpolantError, FindsLightThatAFitAtItsPlacesDoesNotSee) {
     // Half of a square of 1 m^2 is off by 1 W/m^2, and the fit knows of no error.
     const Scene scene = box_scene(1, 1, 1, 0.5, 1);
