@@ -112,6 +112,11 @@ void write_inputs(const TemporaryFolder& folder) {
             "geometry": {"boundary": [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]]}}]})");
     write_text(folder / "desks.pts", "1 1 0.75 0 0 1\n2 1 0.75 0 0 1\n");
     write_text(folder / "desks.csv", "x,y,z,nx,ny,nz\n1,1,0.75,0,0,1\n2,1,0.75,0,0,1\n");
+    write_text(folder / "seats.csv", "x,y,z,dx,dy,dz\n1,1,1.2,0,1,0\n");
+    // A picture of 32 x 16 grey pixels: three mantissas and the exponent of each.
+    std::string grey = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16 +X 32\n";
+    for (int i = 0; i < 32 * 16; ++i) grey += "\x40\x40\x40\x84";
+    write_text(folder / "harbour.hdr", grey);
     write_text(folder / "path.csv", "time,ex,ey,ez,tx,ty,tz,fov\n0,1,1,1.6,3,2,1,60\n0.1,1.1,1,1.6,3,2,1,60\n");
     const std::vector<std::vector<std::string>> scenes{{"room", "office", "nx=1", "ny=1"},
                                                        {"office", "office", "nx=1", "ny=1", "nfurn=2"},
