@@ -136,7 +136,7 @@ struct Certifier::Content {
     std::vector<Spectrum> late_response() const;
     void balance(std::span<const Spectrum> residuals, std::span<Spectrum> errors) const;
     double true_mean(double mean_error) const;
-    bool is_rough(const ResidualSample& s, double share, double light) const;
+    bool is_rough(const ResidualSample& s, double share, double light, double all) const;
     RoughPlace rough_place(const ResidualSample& s) const;
     Certificate judge();
     void judge_rooms(Certificate& out);
@@ -289,7 +289,8 @@ void Certifier::Content::judge_rooms(Certificate& out) {
         method[s.room] += s.weight * mean((s.r1 - s.local1) * (s.r2 - s.local2));
     }
     for (const ResidualSample& s : samples)
-        if (told[s.room] > 0 && is_rough(s, s.weight / told[s.room], options.light_in[s.room] * mean_reflected)) {
+        if (told[s.room] > 0 && is_rough(s, s.weight / told[s.room], options.light_in[s.room] * mean_reflected,
+                                         local[s.room] / told[s.room])) {
             rough[s.room] += s.weight * mean(s.local1 * s.local2);
             out.rough_places.push_back(rough_place(s));
         }
@@ -322,12 +323,12 @@ double Certifier::Content::true_mean(double mean_error) const {
 }
 
 /// True if the local pass's error at one point, with this share of all weight, is a notable part of the whole allowed
-/// error. `light`: to which the error is relative, W/m^2.
-bool Certifier::Content::is_rough(const ResidualSample& s, double share, double light) const {
-    // Derived from the initial number of points: forty times what a point of an even error at the limit has.
+/// error and of its own mean square `all`, (W/m^2)^2. `light`: to which the error is relative, W/m^2.
+bool Certifier::Content::is_rough(const ResidualSample& s, double share, double light, double all) const {
+    // Derived from the initial number of points: forty times what a point of an even error has.
     constexpr double notable = 1.0 / 32;
     const double allowed = options.error * light;
-    return s.tells_local && share * mean(s.local1 * s.local2) > notable * allowed * allowed;
+    return s.tells_local && share * mean(s.local1 * s.local2) > notable * std::max(allowed * allowed, all);
 }
 
 RoughPlace Certifier::Content::rough_place(const ResidualSample& s) const {
@@ -359,7 +360,8 @@ Certificate Certifier::Content::judge() {
     out.mean_reflected = out.largest_light = true_mean(mean_error);
     double rough_squared = 0;
     for (const ResidualSample& s : samples)
-        if (told > 0 && is_rough(s, s.weight / told / static_cast<double>(looks), mean_reflected)) {
+        if (told > 0 &&
+            is_rough(s, s.weight / told / static_cast<double>(looks), mean_reflected, local_squared / told)) {
             rough_squared += s.weight / static_cast<double>(looks) * mean(s.local1 * s.local2);
             if (stage.rooms.count() == 0) out.rough_places.push_back(rough_place(s));
         }
