@@ -99,15 +99,15 @@ RayLight::RayLight(const DirectLight& direct, const RayTracer& tracer)
 Spectrum RayLight::Part::light() const {
     Spectrum all, arrived;
     for (const Block& b : blocks) all += b.all, arrived += b.arrived;
-    if (kind == Kind::others) return arrived / static_cast<double>(rays);
+    if (counts_weights()) return arrived / static_cast<double>(rays);
     Spectrum out;
     for (std::size_t b = 0; b < bands; ++b) out[b] = all[b] > 0 ? open[b] * arrived[b] / all[b] : 0;
     return out;
 }
 
 /// Variance of the mean over bands, from the spread of eighths of the rays, each of which is stratified (of quarters,
-/// if there are few rays).
-double RayLight::Part::variance() const {
+/// if there are few rays), and from the share of the light in features that no ray has met.
+double RayLight::Part::variance(double missed_share) const {
     std::array<double, 8> all{}, arrived{};
     const std::size_t count = std::min<std::size_t>(all.size(), blocks.size());
     for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -117,13 +117,46 @@ double RayLight::Part::variance() const {
     const double L = mean(open), n = rays, groups = static_cast<double>(count);
     const double whole = std::accumulate(all.begin(), all.end(), 0.0);
     const double part = std::accumulate(arrived.begin(), arrived.end(), 0.0);
-    if (!(whole > 0)) return std::pow(half_hidden * L, 2) / (kind == Kind::others ? n * n : 1);
+    if (!(whole > 0)) return std::pow(half_hidden * L, 2) / (counts_weights() ? n * n : 1);
     double squares = 0;
     for (std::size_t q = 0; q < count; ++q)
-        squares += std::pow(kind == Kind::others ? arrived[q] - part / groups : arrived[q] - part / whole * all[q], 2);
-    const double scale = kind == Kind::others ? 1 / n : L / whole;
-    const double missed = half_hidden * L / n;
+        squares += std::pow(counts_weights() ? arrived[q] - part / groups : arrived[q] - part / whole * all[q], 2);
+    const double scale = counts_weights() ? 1 / n : L / whole;
+    const double missed = half_hidden * L * missed_share;
     return groups / (groups - 1) * squares * scale * scale + missed * missed;
+}
+
+std::uint64_t RayLight::Part::sequence() const {
+    switch (kind) {
+        case Kind::sky:
+            return 0;
+        case Kind::openings:
+            return ~std::uint64_t{0};
+        case Kind::others:
+            return 2;
+        case Kind::piece:
+            break;
+    }
+    return source.piece.value + 2ull;
+}
+
+const SkyOpenings& RayLight::openings() const {
+    std::call_once(searched_, [this] {
+        std::vector<SkyOpenings::Sun> suns;
+        for (const Disc& disc : discs_) suns.push_back({&disc.seen, direct_->occluders().middle()});
+        openings_ = std::make_unique<const SkyOpenings>(direct_->occluders(), *tracer_, sky_, suns);
+    });
+    return *openings_;
+}
+
+/// Variance of a part. If none of its rays has arrived, the scene's other places tell how much light they may miss.
+double RayLight::variance(const Part& part) const {
+    double missed_share = 1.0 / part.rays;
+    const bool is_sky = part.kind == Part::Kind::sky, is_sun = part.kind == Part::Kind::piece && part.is_sun;
+    if ((is_sky || is_sun) && std::all_of(part.blocks.begin(), part.blocks.end(),
+                                          [](const Part::Block& block) { return !(max(block.arrived) > 0); }))
+        missed_share = is_sky ? openings().hidden_sky(part.rays) : openings().hidden_sun(part.rays);
+    return part.variance(missed_share);
 }
 
 /// Unoccluded light of a piece of an emitter.
@@ -146,6 +179,7 @@ void RayLight::add_discs(const Receiver& at, Workspace& room) const {
                                    .source = discs_[i].name,
                                    .open = room.disc_light_[i],
                                    .seen = &discs_[i].seen,
+                                   .is_sun = true,
                                    .from = direct_->occluders().middle()});
 }
 
@@ -161,13 +195,29 @@ void RayLight::add_piece(const Receiver& at, const DirectLight::SourceName& sour
                            .from = at.x});
 }
 
+/// Adds the light of the sky through openings, unless it is too little to matter.
+void RayLight::add_openings(const Receiver& at, const LightAccuracy& accuracy, Workspace& room) const {
+    openings().choose(at.x, at.n, room.cells_);
+    Spectrum light;
+    for (const PortalCell& cell : room.cells_) {
+        const Vec3 w = normalized(cell.corner + 0.5 * (cell.u + cell.v) - at.x);
+        light += PortalAim::form_factor(cell, at.x, at.n) * direct_->scene().distant().radiosity(w, false);
+    }
+    if (mean(light) <= accuracy.allowed(min_share * mean(room.aim_.open))) room.cells_.clear();
+    room.portals_.set(room.cells_, at.x, at.n);
+    if (!room.cells_.empty()) room.parts_.push_back({.kind = Part::Kind::openings, .open = light});
+}
+
 /// Finds the parts of the light at a receiver and the numbers of their first rays. Returns the unoccluded light, mean
 /// over bands.
 double RayLight::find_parts(const Receiver& at, const LightAccuracy& accuracy, Workspace& room) const {
     room.parts_.clear(), room.seen_.clear();
     if (!sky_.empty() && !direct_->occluders().enclosure().holds(at.own)) {
         sky_.aim(at.n, room.aim_);
-        if (room.aim_.weight[0] > 0) room.parts_.push_back({.kind = Part::Kind::sky, .open = room.aim_.open});
+        if (room.aim_.weight[0] > 0) {
+            room.parts_.push_back({.kind = Part::Kind::sky, .open = room.aim_.open});
+            add_openings(at, accuracy, room);
+        }
     }
     add_discs(at, room);
     tree_.cut(at, accuracy.relative / 2, accuracy.absolute / 2, room.cut_);
@@ -201,8 +251,7 @@ double RayLight::find_parts(const Receiver& at, const LightAccuracy& accuracy, W
 void RayLight::add_rays(const Receiver& at, Part& part, std::uint32_t last, std::uint64_t key, Workspace& room) const {
     const auto number = static_cast<std::uint32_t>(&part - room.parts_.data());
     const std::size_t count = last - part.rays;
-    const ScrambledSobol places(hash(
-        key, part.kind == Part::Kind::piece ? part.source.piece.value + 2ull : static_cast<std::uint64_t>(part.kind)));
+    const ScrambledSobol places(hash(key, part.sequence()));
     room.s_.resize(count), room.t_.resize(count), room.u_.resize(count);
     places.fill(part.rays, 0, room.s_), places.fill(part.rays, 1, room.t_);
     if (part.kind == Part::Kind::others) places.fill(part.rays, 2, room.u_);
@@ -239,8 +288,16 @@ void RayLight::add_rays(const Receiver& at, Part& part, std::uint32_t last, std:
             const SkyTree::Direction to = sky_.direction(room.aim_, s, t);
             const double cosine = dot(at.n, to.w);
             if (cosine <= 0) continue;
-            const Spectrum light = occluders.scene().distant().radiosity(to.w, false);
-            add(i, at.x + reach * to.w, RegionId(), cosine / (pi * to.density) * light, true, PieceId());
+            const Spectrum weight = cosine / (pi * to.density) * occluders.scene().distant().radiosity(to.w, false);
+            if (room.portals_.is_aimed_at(to.w))
+                part.blocks[i / part.block].all += weight;  // counts in the light through openings
+            else
+                add(i, at.x + reach * to.w, RegionId(), weight, true, PieceId());
+        } else if (part.kind == Part::Kind::openings) {
+            const PortalAim::Ray ray = room.portals_.aimed(s, t);
+            if (!(ray.weight > 0)) continue;
+            const Spectrum light = occluders.scene().distant().radiosity(ray.direction, false);
+            add(i, at.x + reach * ray.direction, RegionId(), ray.weight * light, true, PieceId());
         } else if (part.kind == Part::Kind::piece) {
             const Point y = part.seen->at(s, t);
             add_towards(i, part.source, y, part.from, part.seen->weight(y - part.from, at.n));
@@ -324,7 +381,7 @@ RayLight::Estimate RayLight::on_side(const Point& x, const Normal& n, RegionId o
         out = Estimate();
         double rates = 0;  // sum of c^(2/5), c the variance of one ray
         for (const Part& part : room.parts_) {
-            const double variance = part.variance();
+            const double variance = this->variance(part);
             out.irradiance += part.light(), out.variance += variance, out.rays += part.rays;
             rates += std::pow(variance * std::pow(part.rays, 1.5), 0.4);
         }
@@ -337,7 +394,7 @@ RayLight::Estimate RayLight::on_side(const Point& x, const Normal& n, RegionId o
         grows = false;
         const double scale = std::pow(rates / limit, 2.0 / 3);
         for (Part& part : room.parts_) {
-            const double wanted = scale * std::pow(part.variance() * std::pow(part.rays, 1.5), 0.4);
+            const double wanted = scale * std::pow(variance(part) * std::pow(part.rays, 1.5), 0.4);
             const std::uint32_t rays =
                 power_of_two(wanted, 1, std::min(fastest_growth * part.rays, accuracy.most_rays));
             if (rays <= part.rays) continue;
@@ -347,16 +404,33 @@ RayLight::Estimate RayLight::on_side(const Point& x, const Normal& n, RegionId o
     }
     for (const Part& part : room.parts_)
         out.parallel += part.kind == Part::Kind::others ? part.distant / static_cast<double>(part.rays)
-                        : part.kind == Part::Kind::sky || direct_->is_distant(part.source.emitter) ? part.light()
-                                                                                                   : Spectrum();
+                        : part.kind != Part::Kind::piece || direct_->is_distant(part.source.emitter) ? part.light()
+                                                                                                     : Spectrum();
     if (!direct_->beams().empty()) out.irradiance += direct_->beams().irradiance(at, &out.parallel);
     return out;
+}
+
+/// Returns the unoccluded light of all parts but those of sky and sun that probably pass by the openings, W/m^2.
+double RayLight::light_through_openings(const Workspace& room) const {
+    double sum = 0;
+    for (const Part& part : room.parts_) {
+        double share = 1;
+        if (part.kind == Part::Kind::sky)
+            share = openings().hidden_sky(least_pilot);
+        else if (part.is_sun && !room.portals_.is_aimed_at(part.seen->at(0.5, 0.5) - part.from))
+            share = openings().hidden_sun(least_pilot);
+        sum += share * mean(part.open);
+    }
+    return sum;
 }
 
 double RayLight::forecast(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
                           Workspace& room) const {
     constexpr double work_of_place = 20;  // choosing the parts, measured in rays
-    const double open = find_parts(direct_->receiver(x, n, own), accuracy, room);
+    double open = find_parts(direct_->receiver(x, n, own), accuracy, room);
+    if (std::any_of(room.parts_.begin(), room.parts_.end(),
+                    [](const Part& part) { return part.kind == Part::Kind::openings; }))
+        open = light_through_openings(room);
     const double rays = open > 0 ? rays_for(std::max(accuracy.allowed(open) / open, 1e-9)) : 0;
     return work_of_place + std::clamp(rays, 1.0 * least_pilot, 1.0 * accuracy.most_rays);
 }

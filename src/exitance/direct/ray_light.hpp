@@ -2,25 +2,29 @@
 
 #include <deque>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "exitance/direct/emitter_tree.hpp"
 #include "exitance/direct/light_accuracy.hpp"
+#include "exitance/direct/sky_openings.hpp"
 #include "exitance/direct/sky_tree.hpp"
 #include "exitance/direct/source_point.hpp"
+#include "exitance/visibility/portal_aim.hpp"
 #include "exitance/visibility/rays.hpp"
 
 namespace exitance {
 
 /// Direct light at a place by rays, for scenes in which exact visible parts are too expensive: thousands of faces under
-/// a sky, thousands of emitters, or many blockers. The light is a sum over parts: the sky, strong emitters and discs of
-/// the sun one by one, and all other emitters together.
+/// a sky, thousands of emitters, or many blockers. The light is a sum over parts: the sky, the sky seen through
+/// openings of rooms, strong emitters and discs of the sun one by one, and all other emitters together.
 ///
 ///     E = sum over parts of  L sum over rays of w_i V_i / sum over rays of w_i,    w_i = (radiance cos) / density,
 ///
 /// where L is the light of the part without occlusion. Rays to the sky have the density of radiance times cosine
-/// (SkyTree), rays to an emitter that of its area or solid angle (SeenPolygon), rays to the other emitters choose one
-/// by a cut through the tree of emitters [Walter05]; there the mean of w V is used, since L is not known exactly. The
+/// (SkyTree), rays to an emitter that of its area or solid angle (SeenPolygon), rays to openings lead to uniform points
+/// of them (PortalAim), rays to the other emitters choose one by a cut through the tree of emitters [Walter05]; for
+/// openings and other emitters the mean of w V is used, since L is not known exactly. The
 /// mean over many places is the exact light. Rays are points of a scrambled Sobol sequence, so that the error falls
 /// about as n^(-3/4) where light is cut by edges. The sequence depends on the coordinates of the place alone: every
 /// caller gets the same light there.
@@ -66,7 +70,11 @@ class RayLight {
     struct Part;
     Estimate on_side(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
                      Workspace& room) const;
+    const SkyOpenings& openings() const;
     double find_parts(const Receiver& at, const LightAccuracy& accuracy, Workspace& room) const;
+    void add_openings(const Receiver& at, const LightAccuracy& accuracy, Workspace& room) const;
+    double variance(const Part& part) const;
+    double light_through_openings(const Workspace& room) const;
     void add_discs(const Receiver& at, Workspace& room) const;
     void add_piece(const Receiver& at, const DirectLight::SourceName& source, Workspace& room) const;
     Spectrum open_light(const Receiver& at, const DirectLight::SourceName& source, Workspace& room) const;
@@ -84,16 +92,19 @@ class RayLight {
         SeenPolygon seen;
     };
     std::vector<Disc> discs_;
+    mutable std::once_flag searched_;  ///< For openings(), which is made when it is needed first.
+    mutable std::unique_ptr<const SkyOpenings> openings_;
     double size_ = 0;           ///< m
     bool is_coloured_ = false;  ///< True if a pane's transmission differs between bands.
 };
 
 /// A source of light that has its own rays.
 struct RayLight::Part {
-    enum class Kind : std::uint8_t { sky, piece, others } kind = Kind::sky;
+    enum class Kind : std::uint8_t { sky, openings, piece, others } kind = Kind::sky;
     DirectLight::SourceName source = {};  ///< For a piece.
-    Spectrum open;                        ///< Light without occlusion, W/m^2; for `others` an estimate.
+    Spectrum open;                        ///< Light without occlusion, W/m^2; for `openings`, `others` an estimate.
     const SeenPolygon* seen = nullptr;    ///< For a piece.
+    bool is_sun = false;                  ///< A disc of the sun.
     Point from = {};                      ///< Viewpoint of a piece: the place, or the scene's middle for the sun.
     std::uint32_t rays = 0;               ///< Rays cast so far: a power of two.
     std::uint32_t block = 1;              ///< Rays per block.
@@ -104,8 +115,11 @@ struct RayLight::Part {
     std::vector<Block> blocks = {};
     Spectrum distant = {};  ///< Sum over arriving rays from outside; `others` only.
 
+    /// True if the mean of the rays' weights is the light; otherwise only their ratio matters.
+    bool counts_weights() const { return kind == Kind::openings || kind == Kind::others; }
     Spectrum light() const;
-    double variance() const;
+    double variance(double missed_share) const;
+    std::uint64_t sequence() const;  ///< Distinguishes the random numbers of parts.
 };
 
 /// Temporary storage; one per thread, for one RayLight.
@@ -124,6 +138,8 @@ class RayLight::Workspace {
     std::vector<Part> parts_;
     std::deque<SeenPolygon> seen_;
     SkyTree::Aim aim_;
+    std::vector<PortalCell> cells_;  ///< Openings at which rays are aimed.
+    PortalAim portals_;
     Normal disc_normal_;                ///< Normal of the receiver for which
     std::vector<Spectrum> disc_light_;  ///< the unoccluded light of each disc is known; empty: none.
     EmitterTree::Cut cut_;

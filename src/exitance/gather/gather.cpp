@@ -3,7 +3,7 @@
 #include <bit>
 
 #include "exitance/form_factors/met_directions.hpp"
-#include "exitance/transport/portal_aim.hpp"
+#include "exitance/transport/light_portals.hpp"
 
 namespace exitance {
 
@@ -92,9 +92,9 @@ void cast_together(const Stage& stage, std::span<const GatherPlace> places, cons
     constexpr unsigned fewest_aimed = 4;
     std::span<const PortalCell> cells;
     if (rays >= 2 * fewest_aimed && bright && !own.is_none())
-        cells = PortalAim::candidates(stage, own, bright->of_room(stage.rooms.at(own, places[0].x)), places[0].x, n);
+        cells = worth_aiming(stage, own, bright->of_room(stage.rooms.at(own, places[0].x)), places[0].x, n);
     else if (rays >= 2 * fewest_aimed)
-        cells = PortalAim::candidates(stage, own, places[0].x, n);
+        cells = portals_worth_aiming(stage, own, places[0].x, n);
     const std::size_t all = places.size() * rays;
     w.origins.resize(all), w.directions.resize(all), w.hits.resize(all), w.quarter.resize(all);
     const unsigned even = cells.empty() ? rays : rays / 2, from = cells.empty() ? first : first / 2;

@@ -4,7 +4,7 @@
 
 #include "exitance/base/random.hpp"
 #include "exitance/form_factors/met_directions.hpp"
-#include "exitance/transport/portal_aim.hpp"
+#include "exitance/transport/light_portals.hpp"
 
 namespace exitance {
 
@@ -40,7 +40,7 @@ void ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> 
 /// Aims the second half of the rays at openings if that pays at `centre`, and sets the rays' weights.
 void ElementRays::aim(RegionId region, const Normal& n, const Point& centre, std::span<float> counts) {
     std::fill(counts.begin(), counts.end(), 1.0f);
-    const std::span<const PortalCell> cells = PortalAim::candidates(stage_, region, centre, n);
+    const std::span<const PortalCell> cells = portals_worth_aiming(stage_, region, centre, n);
     if (cells.empty()) return;
     PortalAim aim;
     const std::size_t half = counts.size() / 2;

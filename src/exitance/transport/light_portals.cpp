@@ -158,39 +158,6 @@ std::vector<Vec2> PortalFinder::open_points(std::size_t room, std::size_t other,
     return out;
 }
 
-/// A rectangle in a plane.
-struct Rectangle {
-    Vec2 lo, hi;   ///< Corners, in coordinates rotated by `angle`.
-    double angle;  ///< radians
-
-    double area() const { return (hi.x - lo.x) * (hi.y - lo.y); }
-};
-
-Vec2 turned(Vec2 p, double angle) {
-    const double c = std::cos(angle), s = std::sin(angle);
-    return {c * p.x + s * p.y, c * p.y - s * p.x};
-}
-
-/// Smallest rectangle around some points, among 48 orientations. Enlarged by 3% per side, about the margin that as many
-/// random points leave.
-Rectangle smallest_around(const std::vector<Vec2>& points) {
-    constexpr int angles = 48;
-    constexpr double wider = 0.03;
-    Rectangle best{{0, 0}, {HUGE_VAL, HUGE_VAL}, 0};
-    for (int i = 0; i < angles; ++i) {
-        Rectangle r{{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}, 0.5 * pi * i / angles};
-        for (const Vec2& p : points) {
-            const Vec2 q = turned(p, r.angle);
-            r.lo = {std::min(r.lo.x, q.x), std::min(r.lo.y, q.y)},
-            r.hi = {std::max(r.hi.x, q.x), std::max(r.hi.y, q.y)};
-        }
-        if (r.area() < best.area()) best = r;
-    }
-    const Vec2 more = wider * (best.hi - best.lo);
-    best.lo = best.lo - more, best.hi = best.hi + more;
-    return best;
-}
-
 PortalCell PortalFinder::opening(std::size_t room, const Way& way) const {
     constexpr std::size_t min_points = 8;  // number of points from which a rectangle can be found
     const Point at = middle(room, way);
@@ -214,22 +181,7 @@ PortalCell PortalFinder::opening(std::size_t room, const Way& way) const {
         reach = 0;
         for (const Vec2& p : open) reach = std::max({reach, std::abs(p.x), std::abs(p.y)});
     }
-    const Rectangle r = smallest_around(open);
-    const Vec2 x = turned({1, 0}, -r.angle), y = turned({0, 1}, -r.angle), lo = turned(r.lo, -r.angle);
-    const auto in_space = [&](Vec2 p) { return p.x * frame.u + p.y * frame.v; };
-    return {at + in_space(lo), in_space((r.hi.x - r.lo.x) * x), in_space((r.hi.y - r.lo.y) * y), frame.n, r.area()};
-}
-
-/// True if a ray passes through a parallelogram, or beside it by less than half of its size. Such a ray belongs to the
-/// same opening, even if it ends within it.
-bool passes(const Way& way, const PortalCell& cell) {
-    const Vec3 d = way.to - way.from;
-    const double t = dot(cell.corner - way.from, cell.n) / dot(d, cell.n);
-    if (!std::isfinite(t)) return false;
-    const Vec3 at = way.from + t * d - cell.corner;
-    const double s = dot(at, cell.u) / squared_norm(cell.u), r = dot(at, cell.v) / squared_norm(cell.v);
-    constexpr double beside = 0.5;
-    return std::max(std::abs(s - 0.5), std::abs(r - 0.5)) < 0.5 + beside;
+    return rectangle_around(at, frame, open);
 }
 
 /// Irradiance of the coarse elements from all sources, including those without emitting polygons: the mean over some
@@ -284,26 +236,6 @@ std::vector<double> coarse_light(const Stage& stage, const LightRooms& rooms, co
     return light;
 }
 
-namespace {
-
-/// Splits an opening along its longer side into pieces that are about as long as wide, since rays are not aimed at
-/// pieces that are nearer than their length. Adds them to `cells`.
-void add_cells(const PortalCell& opening, double light, std::vector<PortalCell>& cells) {
-    constexpr double most_pieces = 8;
-    PortalCell piece = opening;
-    piece.light = light;
-    Vec3& longer = squared_norm(piece.u) > squared_norm(piece.v) ? piece.u : piece.v;
-    const Vec3& shorter = &longer == &piece.u ? piece.v : piece.u;
-    const double pieces = std::clamp(std::round(norm(longer) / norm(shorter)), 1.0, most_pieces);
-    longer *= 1 / pieces, piece.area /= pieces;
-    for (int k = 0; k < static_cast<int>(pieces) && cells.size() < most_cells; ++k) {
-        cells.push_back(piece);
-        piece.corner += longer;
-    }
-}
-
-}  // namespace
-
 bool LightPortals::empty() const {
     return std::all_of(by_room_.begin(), by_room_.end(), [](const auto& cells) { return cells.empty(); });
 }
@@ -322,19 +254,36 @@ std::shared_ptr<const LightPortals> find_light_portals(const Stage& stage, const
             const Way way = ways.back();
             ways.pop_back();
             if (openings[way.into] == most_openings) continue;
-            const PortalCell found = finder.opening(room, way);
+            PortalCell found = finder.opening(room, way);
             if (!(found.area > 0)) continue;
             ++openings[way.into];
-            std::erase_if(ways, [&](const Way& other) { return other.into == way.into && passes(other, found); });
+            std::erase_if(ways, [&](const Way& other) {
+                return other.into == way.into && passes_near(other.from, other.to - other.from, found);
+            });
             const std::size_t darker = light[room] < light[way.into] ? room : way.into;
             const double share = found.area / rooms.area(darker), bright = std::max(light[room], light[way.into]);
             // The ratio of light is limited by the light that comes in through the opening.
             const double more = bright > 0 ? bright / std::max(light[darker], share * bright) : 0;
-            if (is_worth_aiming(share, more)) add_cells(found, more, by_room[darker]);
+            found.light = more;
+            if (is_worth_aiming(share, more)) add_portal_cells(found, most_cells, by_room[darker]);
         }
     }
     auto out = std::make_shared<const LightPortals>(std::move(by_room));
     return out->empty() ? nullptr : out;
+}
+
+std::span<const PortalCell> portals_worth_aiming(const Stage& stage, RegionId own, const Point& x, const Normal& n) {
+    const LightPortals* portals = stage.rooms.portals();
+    if (!portals || own.is_none()) return {};
+    return worth_aiming(stage, own, portals->of_room(stage.rooms.at(own, x)), x, n);
+}
+
+std::span<const PortalCell> worth_aiming(const Stage& stage, RegionId own, std::span<const PortalCell> cells,
+                                         const Point& x, const Normal& n) {
+    if (cells.empty() || !stage.scene.behind(own).is_none()) return {};
+    double worth = 0;
+    for (const PortalCell& cell : cells) worth += PortalAim::form_factor(cell, x, n) * cell.light * cell.light;
+    return worth > 1 ? cells : std::span<const PortalCell>();
 }
 
 }  // namespace exitance

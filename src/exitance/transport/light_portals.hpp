@@ -3,17 +3,9 @@
 #include <vector>
 
 #include "exitance/transport/light_rooms.hpp"
+#include "exitance/visibility/portal_aim.hpp"
 
 namespace exitance {
-
-/// A parallelogram that covers all or part of an opening into a brighter room.
-struct PortalCell {
-    Point corner;  ///< Its points are corner + s u + t v, s and t in [0, 1).
-    Vec3 u, v;     ///< Edges, perpendicular to each other.
-    Normal n;      ///< Normal of its plane.
-    double area = 0;
-    double light = 0;  ///< Approximate ratio of the reflected light of the room behind it to that of the room in front.
-};
 
 /// Openings between rooms, listed by the room whose rays are aimed at them.
 class LightPortals {
@@ -47,5 +39,11 @@ std::shared_ptr<const LightPortals> find_light_portals(const Stage& stage, const
                                                        const ElementTree& tree, const LeafNumbering& numbering,
                                                        std::span<const double> light, std::uint64_t seed,
                                                        const StopRequest& stop);
+
+/// Returns the openings at which rays from x on region `own` should be aimed; empty if that does not pay.
+std::span<const PortalCell> portals_worth_aiming(const Stage& stage, RegionId own, const Point& x, const Normal& n);
+/// Returns `cells`, or nothing if aiming at them does not pay.
+std::span<const PortalCell> worth_aiming(const Stage& stage, RegionId own, std::span<const PortalCell> cells,
+                                         const Point& x, const Normal& n);
 
 }  // namespace exitance

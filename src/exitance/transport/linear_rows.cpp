@@ -5,7 +5,7 @@
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/form_factors/met_directions.hpp"
 #include "exitance/processes/distributed.hpp"
-#include "exitance/transport/portal_aim.hpp"
+#include "exitance/transport/light_portals.hpp"
 
 namespace exitance {
 namespace {
@@ -27,7 +27,7 @@ std::vector<WeightedPlace> leaf_nodes(const ElementTree& tree, ElementId e) {
 /// Aims the second half of a node's rays at openings if that pays, and sets the rays' weights.
 void aim(const Stage& stage, const Point& x, const Normal& n, RegionId region, const ScrambledSobol& points,
          std::span<Vec3> directions, std::span<float> counts) {
-    const std::span<const PortalCell> cells = PortalAim::candidates(stage, region, x, n);
+    const std::span<const PortalCell> cells = portals_worth_aiming(stage, region, x, n);
     if (cells.empty()) return;
     PortalAim aim;
     aim.set(cells, x, n);

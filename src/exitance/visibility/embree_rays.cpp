@@ -52,6 +52,28 @@ Float3 to_float(const Vec3& v) {
     return {within(v.x), within(v.y), within(v.z)};
 }
 
+float without_less_than(float c, float limit) {
+    return std::abs(c) < limit ? 0 : c;
+}
+
+// Embree replaces components of directions of less than 1e-18 by that number with a positive sign, and then tests the
+// packet as if the sign were the ray's own: other rays of the packet pass through walls. Zero is safe.
+
+/// Converts a point. derived from 1e-18: differences of coordinates that are at least 1e-9 are 0 or more than that.
+Float3 to_safe_point(const Vec3& v) {
+    constexpr float smallest = 1e-9F;
+    const Float3 p = to_float(v);
+    return {without_less_than(p.x, smallest), without_less_than(p.y, smallest), without_less_than(p.z, smallest)};
+}
+
+/// Converts a direction. derived from 1e-18, and from the rounding of the largest component, 6e-8.
+Float3 to_safe_direction(const Vec3& v) {
+    constexpr float smallest = 2e-18F, negligible = 1e-12F;
+    const Float3 d = to_float(v);
+    const float limit = std::max(smallest, negligible * std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}));
+    return {without_less_than(d.x, limit), without_less_than(d.y, limit), without_less_than(d.z, limit)};
+}
+
 /// The data of a surface that a hit needs, contiguous in memory.
 struct Face {
     Normal normal;
@@ -217,8 +239,8 @@ struct RayTracer::Content {
         attach(all, &glass);
     }
 
-    Float3 local(const Point& p) const { return to_float(scale * (p - centre)); }
-    Float3 local_direction(const Vec3& d) const { return to_float(scale * d); }
+    Float3 local(const Point& p) const { return to_safe_point(scale * (p - centre)); }
+    Float3 local_direction(const Vec3& d) const { return to_safe_direction(scale * d); }
     Vec3 offset(RegionId region) const {
         if (region.is_none()) return Vec3();
         const Region& own = scene->regions()[region];

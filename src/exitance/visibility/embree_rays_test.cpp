@@ -195,5 +195,51 @@ TEST(RayTracer, MeetsTheSideThatFacesTheRayWhereTheSidesHaveDifferentOutlines) {
     }
 }
 
+/// Rays are traced sixteen at a time, which Embree tests together. The answer must not depend on the company, in
+/// particular not on rays that run parallel, or nearly so, to a plane of the coordinates.
+TEST(RayTracer, RaysDoNotDependOnOthersOfTheirPacket) {
+    for (const double ground : {0.0, 10.0, 1000.0}) {
+        std::vector<test::Face> faces = test::closed_box({0, 0, 0}, {4, 5, 3});
+        for (const test::Face& face : test::triangle_soup(50, 0.3, 5, {2, 2, 1})) faces.push_back(face);
+        if (ground > 0)
+            faces.push_back(
+                {{{-ground, -ground, -1}, {ground, -ground, -1}, {ground, ground, -1}, {-ground, ground, -1}}});
+        const Scene scene = test::make(faces);
+        const RayTracer tracer(scene);
+        RandomStream random(3, Stream::rows);
+        for (const double small :
+             {0.0, 1e-300, 1e-19, 1e-18, 1e-17, 1e-16, 1e-15, 1e-12, 1e-9, 1e-8, 1e-7, 1e-6, 1e-4}) {
+            int differing = 0, hidden_differing = 0;
+            for (int trial = 0; trial < 300; ++trial) {
+                const Point origin = Vec3{2, 2.5, 1.5} + 2 * test::any_in_cube(random);
+                const auto axis = static_cast<int>(3 * random.uniform());
+                const Vec3 around = test::any_in_cube(random);
+                std::vector<Vec3> directions;
+                for (int i = 0; i < 16; ++i) {
+                    Vec3 d = around + 0.5 * test::any_in_cube(random);
+                    if (i % 5 == 3) (axis == 0 ? d.x : axis == 1 ? d.y : d.z) = trial % 2 == 0 ? small : -small;
+                    directions.push_back(d);
+                }
+                std::vector<RayHit> together(16), alone(1);
+                tracer.nearest(directions, origin, RegionId(), together);
+                std::vector<Point> from(16, origin), to;
+                for (const Vec3& d : directions) to.push_back(origin + 2 * d);
+                const auto hidden = std::make_unique<bool[]>(16);
+                bool single = false;
+                tracer.occluded(from, to, RegionId(), RegionId(), std::span(hidden.get(), 16));
+                for (std::size_t i = 0; i < 16; ++i) {
+                    tracer.nearest(std::span(&directions[i], 1), origin, RegionId(), alone);
+                    differing += alone[0].surface != together[i].surface;
+                    tracer.occluded(std::span(&origin, 1), std::span(&to[i], 1), RegionId(), RegionId(),
+                                    std::span(&single, 1));
+                    hidden_differing += single != hidden[i];
+                }
+            }
+            EXPECT_EQ(differing, 0) << ground << ", " << small;
+            EXPECT_EQ(hidden_differing, 0) << ground << ", " << small;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace exitance

@@ -1,4 +1,4 @@
-#include "exitance/transport/portal_aim.hpp"
+#include "exitance/transport/light_portals.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,14 +3,13 @@
 #include <array>
 #include <span>
 
-#include "exitance/transport/light_portals.hpp"
-#include "exitance/transport/stage.hpp"
+#include "exitance/visibility/portal_cells.hpp"
 
 namespace exitance {
 
-/// Aims rays from a point at openings into brighter rooms. If a dark room is lit through a small hole, only one unaimed
-/// ray in thousands would find it. The hemisphere is divided into the directions towards some parallelograms and the
-/// rest:
+/// Aims rays from a point at openings into brighter rooms, or to the sky. If a dark room is lit through a small hole,
+/// only one unaimed ray in thousands would find it. The hemisphere is divided into the directions towards some
+/// parallelograms and the rest:
 ///
 ///     E = int_rest b cos / pi dw + int_towards b cos / pi dw.
 ///
@@ -19,11 +18,12 @@ namespace exitance {
 /// parallelograms cover the openings incompletely or are occluded.
 class PortalAim {
   public:
-    /// Returns the parallelograms at which rays from x should be aimed; empty if that does not pay.
-    static std::span<const PortalCell> candidates(const Stage& stage, RegionId own, const Point& x, const Normal& n);
-    /// Returns `cells`, or nothing if aiming at them does not pay.
-    static std::span<const PortalCell> candidates(const Stage& stage, RegionId own, std::span<const PortalCell> cells,
-                                                  const Point& x, const Normal& n);
+    /// Number of parallelograms at which rays of a place are aimed at most.
+    static constexpr std::size_t most_targets = 16;
+
+    /// Returns the share of rays of density cos / pi about n that lead to a parallelogram; 0 if it is behind x, or too
+    /// near to be aimed at.
+    static double form_factor(const PortalCell& cell, const Point& x, const Normal& n);
 
     /// Prepares aiming from x with normal n. Skips parallelograms that are too near or behind x.
     void set(std::span<const PortalCell> cells, const Point& x, const Normal& n);
@@ -48,8 +48,6 @@ class PortalAim {
         double height = 0;  ///< Height of x over its plane, metres, with sign.
         Vec3 offset;        ///< Vector from x to its corner.
     };
-    static constexpr std::size_t most_targets = 16;
-
     double density(const Vec3& direction) const;
 
     std::array<Target, most_targets> targets_;

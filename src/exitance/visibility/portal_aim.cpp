@@ -1,17 +1,9 @@
-#include "exitance/transport/portal_aim.hpp"
+#include "exitance/visibility/portal_aim.hpp"
 
 #include <cmath>
 
 namespace exitance {
 namespace {
-
-/// Share of rays of density cos / pi about n that lead to a parallelogram, which must be far away compared with its
-/// size.
-double form_factor(const PortalCell& cell, const Point& x, const Normal& n) {
-    const Vec3 d = cell.corner + 0.5 * (cell.u + cell.v) - x;
-    const double square = squared_norm(d);
-    return std::max(0.0, dot(d, n)) * std::abs(dot(d, cell.n)) * cell.area / (pi * square * square);
-}
 
 /// True if some corner is above the plane of x, and x is farther away than the parallelogram is long.
 bool can_be_aimed_at(const PortalCell& cell, const Point& x, const Normal& n) {
@@ -24,19 +16,11 @@ bool can_be_aimed_at(const PortalCell& cell, const Point& x, const Normal& n) {
 
 }  // namespace
 
-std::span<const PortalCell> PortalAim::candidates(const Stage& stage, RegionId own, const Point& x, const Normal& n) {
-    const LightPortals* portals = stage.rooms.portals();
-    if (!portals || own.is_none()) return {};
-    return candidates(stage, own, portals->of_room(stage.rooms.at(own, x)), x, n);
-}
-
-std::span<const PortalCell> PortalAim::candidates(const Stage& stage, RegionId own, std::span<const PortalCell> cells,
-                                                  const Point& x, const Normal& n) {
-    if (cells.empty() || !stage.scene.behind(own).is_none()) return {};
-    double worth = 0;
-    for (const PortalCell& cell : cells)
-        if (can_be_aimed_at(cell, x, n)) worth += form_factor(cell, x, n) * cell.light * cell.light;
-    return worth > 1 ? cells : std::span<const PortalCell>();
+double PortalAim::form_factor(const PortalCell& cell, const Point& x, const Normal& n) {
+    if (!can_be_aimed_at(cell, x, n)) return 0;
+    const Vec3 d = cell.corner + 0.5 * (cell.u + cell.v) - x;
+    const double square = squared_norm(d);
+    return std::max(0.0, dot(d, n)) * std::abs(dot(d, cell.n)) * cell.area / (pi * square * square);
 }
 
 void PortalAim::set(std::span<const PortalCell> cells, const Point& x, const Normal& n) {

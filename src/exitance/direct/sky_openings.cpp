@@ -1,0 +1,369 @@
+#include "exitance/direct/sky_openings.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+
+#include "exitance/base/polygon.hpp"
+#include "exitance/base/random.hpp"
+#include "exitance/visibility/portal_aim.hpp"
+
+namespace exitance {
+namespace {
+
+constexpr std::size_t first_places = 512, most_places = 8192;
+constexpr std::uint32_t rays_of_place = 64;  ///< To the sky, and to all suns together.
+constexpr int few_rays = 4;                  ///< Rays that escape, at most, from a place that sees little of the sky.
+constexpr std::size_t ways_of_place = 2;     ///< Escaping rays of a place that are followed, at most.
+constexpr std::size_t most_openings = 64, most_cells = 256;
+constexpr std::size_t most_attempts = 512;  ///< Escaping rays that are followed in the whole scene, at most.
+constexpr unsigned directions_of_point = 64, azimuths = 48, steps_of_azimuth = 24, halvings = 16;
+
+/// Share of all directions in which the sky is seen at a point where an opening begins. derived from the plane of a
+/// window above a ground that hides half of the sky: a quarter of the directions, and half of that just before it.
+constexpr double seen_at_opening = 1.0 / 8;
+
+/// Rim points farther than so many times the distance of the near ones belong to things outdoors: the horizon.
+constexpr double farthest_rim = 4;
+
+/// Share of places without sky below which a scene is not searched for rooms.
+constexpr double few_dark_places = 1.0 / 64;
+
+struct Place {
+    Point x;
+    Normal n;
+    RegionId own;
+    std::uint64_t sky = 0;  ///< Bit k: ray k to the sky arrives.
+    std::uint64_t sun = 0;
+};
+
+/// A ray from a place to the sky.
+struct Escape {
+    Point from;
+    Vec3 direction;
+};
+
+/// Casts the rays of the search.
+class SkySearch {
+  public:
+    SkySearch(const Occluders& occluders, const RayTracer& tracer, const SkyTree& sky,
+              std::span<const SkyOpenings::Sun> suns)
+        : occluders_(occluders), tracer_(tracer), sky_(sky), suns_(suns), size_(occluders.scene().size()) {}
+
+    std::vector<Place> places(std::size_t count) const;
+    void cast_to_sky(Place& place, std::uint32_t rays);
+    void cast_to_suns(Place& place);
+    /// Direction of ray k to the sky from a place.
+    Vec3 direction(const Place& place, std::uint32_t k);
+    /// The opening through which a ray escapes; of area 0 if its rim is not found.
+    PortalCell opening(const Escape& way);
+
+  private:
+    static std::uint64_t key(const Place& place, std::uint64_t of) {
+        const auto bits = [](double c) { return std::bit_cast<std::uint64_t>(c); };
+        return hash(bits(place.x.x), bits(place.x.y), bits(place.x.z), place.own.value, of);
+    }
+    double reach(const Point& x) const { return 2 * (size_ + norm(x - occluders_.middle())); }
+    std::uint64_t arriving(std::size_t count);
+    double seen_share(const Point& at);
+    Point before_opening(const Escape& way);
+    template <class IsOpen>
+    std::vector<Vec3> rim(const Point& from, const Frame& frame, const IsOpen& is_open);
+
+    const Occluders& occluders_;
+    const RayTracer& tracer_;
+    const SkyTree& sky_;
+    std::span<const SkyOpenings::Sun> suns_;
+    double size_;
+    SkyTree::Aim aim_;
+    std::vector<SurfacePoint> from_, to_;
+    std::vector<std::uint32_t> number_;
+    std::vector<RayHit> hits_;
+    std::array<bool, rays_of_place> blocked_{};
+};
+
+/// Places on all polygons: half of them spread by area, half of them evenly over polygons.
+std::vector<Place> SkySearch::places(std::size_t count) const {
+    std::vector<PieceId> pieces;
+    std::vector<double> before{0};
+    for (std::uint32_t i = 0; i < occluders_.pieces().size(); ++i) {
+        const PieceId piece(i);
+        if (occluders_.is_distant(piece) || occluders_.is_window(piece)) continue;
+        if (occluders_.enclosure().holds(occluders_.pieces()[piece].region)) continue;
+        pieces.push_back(piece);
+        before.push_back(before.back() + norm(area_vector(occluders_.corners(piece))));
+    }
+    std::vector<Place> out;
+    if (!(before.back() > 0)) return out;
+    const ScrambledSobol points(hash(static_cast<std::uint64_t>(Stream::direct), count));
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t half = count / 2;
+        const double share = (static_cast<double>(i % half) + 0.5) / static_cast<double>(half);
+        std::size_t k = static_cast<std::size_t>(share * static_cast<double>(pieces.size()));
+        if (i < half)
+            k = static_cast<std::size_t>(std::upper_bound(before.begin() + 1, before.end() - 1, share * before.back()) -
+                                         before.begin()) -
+                1;
+        const ConvexPiece& piece = occluders_.pieces()[pieces[k]];
+        const double area = before[k + 1] - before[k];
+        if (!(area > 0)) continue;
+        const auto number = static_cast<std::uint32_t>(i);
+        out.push_back({uniform_on(occluders_.corners(pieces[k]), area, points(number, 0), points(number, 1)),
+                       piece.plane.n, piece.region});
+    }
+    return out;
+}
+
+std::uint64_t SkySearch::arriving(std::size_t count) {
+    tracer_.occluded(from_, to_, std::span(blocked_).first(count));
+    std::uint64_t out = 0;
+    for (std::size_t k = 0; k < count; ++k)
+        if (!blocked_[k]) out |= std::uint64_t{1} << number_[k];
+    from_.clear(), to_.clear(), number_.clear();
+    return out;
+}
+
+Vec3 SkySearch::direction(const Place& place, std::uint32_t k) {
+    const ScrambledSobol points(key(place, 0));
+    sky_.aim(place.n, aim_);
+    return sky_.direction(aim_, points(k, 0), points(k, 1)).w;
+}
+
+void SkySearch::cast_to_sky(Place& place, std::uint32_t rays) {
+    sky_.aim(place.n, aim_);
+    if (!(aim_.weight[0] > 0)) return;
+    for (std::uint32_t k = 0; k < rays; ++k) {
+        const Vec3 w = direction(place, k);
+        if (dot(w, place.n) <= 0) continue;
+        number_.push_back(k);
+        from_.push_back({place.x, place.own}), to_.push_back({place.x + reach(place.x) * w, RegionId()});
+    }
+    place.sky = arriving(from_.size());
+}
+
+void SkySearch::cast_to_suns(Place& place) {
+    const ScrambledSobol points(key(place, 1));
+    for (std::uint32_t k = 0; k < rays_of_place; ++k) {
+        const SkyOpenings::Sun& sun = suns_[k % suns_.size()];
+        const Vec3 d = sun.seen->at(points(k, 0), points(k, 1)) - sun.from;
+        if (dot(d, place.n) <= 0) continue;
+        number_.push_back(k);
+        from_.push_back({place.x, place.own}), to_.push_back({place.x + reach(place.x) / norm(d) * d, RegionId()});
+    }
+    place.sun = arriving(from_.size());
+}
+
+std::vector<Vec3> all_around() {
+    const ScrambledSobol points(directions_of_point);
+    std::vector<Vec3> out;
+    for (unsigned k = 0; k < directions_of_point; ++k) {
+        const double z = 1 - 2 * points(k, 0), r = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * pi * points(k, 1);
+        out.emplace_back(r * std::cos(phi), r * std::sin(phi), z);
+    }
+    return out;
+}
+
+double SkySearch::seen_share(const Point& at) {
+    static const std::vector<Vec3> directions = all_around();
+    hits_.resize(directions.size());
+    tracer_.nearest(directions, at, RegionId(), hits_);
+    const auto seen =
+        std::count_if(hits_.begin(), hits_.end(), [](const RayHit& hit) { return hit.surface.is_none(); });
+    return static_cast<double>(seen) / directions_of_point;
+}
+
+/// The first point of the ray where an eighth of all directions leads to the sky.
+Point SkySearch::before_opening(const Escape& way) {
+    constexpr int doublings = 20;
+    double near = 0, far = 0x1p-18 * size_;
+    for (int i = 0; i < doublings && seen_share(way.from + far * way.direction) < seen_at_opening; ++i)
+        near = far, far *= 2;
+    for (unsigned i = 0; i < halvings; ++i) {
+        const double middle = 0.5 * (near + far);
+        (seen_share(way.from + middle * way.direction) < seen_at_opening ? near : far) = middle;
+    }
+    return way.from + far * way.direction;
+}
+
+/// Finds the border of the open directions around frame.n: for each azimuth the first hit that is not open, relative
+/// to `from`. Azimuths without one are left out.
+template <class IsOpen>
+std::vector<Vec3> SkySearch::rim(const Point& from, const Frame& frame, const IsOpen& is_open) {
+    const auto tilted = [&](unsigned azimuth, double angle) {
+        const double phi = 2 * pi * azimuth / azimuths;
+        return frame.to_world(std::sin(angle) * std::cos(phi), std::sin(angle) * std::sin(phi), std::cos(angle));
+    };
+    const auto is_passed = [&](std::size_t k, const Vec3& w) {
+        return hits_[k].surface.is_none() || is_open(hits_[k].distance * w);
+    };
+    constexpr double step = 0.5 * pi / steps_of_azimuth;
+    std::vector<Vec3> directions;
+    for (unsigned a = 0; a < azimuths; ++a)
+        for (unsigned k = 1; k <= steps_of_azimuth; ++k) directions.push_back(tilted(a, k * step));
+    hits_.resize(directions.size());
+    tracer_.nearest(directions, from, RegionId(), hits_);
+    std::vector<Vec3> found(azimuths);
+    std::vector<double> open(azimuths), blocked(azimuths);
+    for (unsigned a = 0; a < azimuths; ++a) {
+        unsigned k = 0;
+        while (k < steps_of_azimuth && is_passed(a * steps_of_azimuth + k, directions[a * steps_of_azimuth + k])) ++k;
+        open[a] = k * step, blocked[a] = (k + 1) * step;
+        if (k < steps_of_azimuth)
+            found[a] = hits_[a * steps_of_azimuth + k].distance * directions[a * steps_of_azimuth + k];
+    }
+    directions.resize(azimuths), hits_.resize(azimuths);
+    for (unsigned i = 0; i < halvings; ++i) {
+        for (unsigned a = 0; a < azimuths; ++a) directions[a] = tilted(a, 0.5 * (open[a] + blocked[a]));
+        tracer_.nearest(directions, from, RegionId(), hits_);
+        for (unsigned a = 0; a < azimuths; ++a) {
+            const bool passes = is_passed(a, directions[a]);
+            (passes ? open[a] : blocked[a]) = 0.5 * (open[a] + blocked[a]);
+            if (!passes) found[a] = hits_[a].distance * directions[a];
+        }
+    }
+    std::erase(found, Vec3());
+    return found;
+}
+
+/// The plane and extent of an opening, from some points of its rim; of area 0 if they do not tell.
+PortalCell rectangle_of_rim(const Point& from, const Vec3& outwards, std::vector<Vec3> rim) {
+    constexpr std::size_t fewest = 12;  // points from which a rectangle can be found
+    constexpr double edge_on = 0.05;    // cosine
+    if (rim.size() < fewest) return {};
+    std::vector<double> distances;
+    for (const Vec3& p : rim) distances.push_back(norm(p));
+    const auto quarter = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 4);
+    std::nth_element(distances.begin(), quarter, distances.end());
+    const double farthest = farthest_rim * *quarter;
+    std::erase_if(rim, [&](const Vec3& p) { return norm(p) > farthest; });
+    if (rim.size() < fewest) return {};
+    const Vec3 middle = std::accumulate(rim.begin(), rim.end(), Vec3()) / static_cast<double>(rim.size());
+    Vec3 area;
+    for (std::size_t k = 0; k < rim.size(); ++k) area += cross(rim[k] - middle, rim[(k + 1) % rim.size()] - middle);
+    if (!(norm(area) > 0)) return {};
+    const Normal n = normalized(dot(area, outwards) < 0 ? -area : area);
+    const double height = dot(middle, n);
+    if (!(height > 0)) return {};
+    const Frame frame(n);
+    std::vector<Vec2> points;
+    for (const Vec3& p : rim) {  // seen from the same point
+        const double along = dot(p, n);
+        if (along < edge_on * norm(p)) continue;
+        const Vec3 q = height / along * p - middle;
+        points.push_back({dot(q, frame.u), dot(q, frame.v)});
+    }
+    return points.size() < fewest ? PortalCell() : rectangle_around(from + middle, frame, points);
+}
+
+PortalCell SkySearch::opening(const Escape& way) {
+    constexpr double before = 0.25;  // distance from which the whole rim is seen, as a share of the opening's size
+    const Point first = before_opening(way);
+    const PortalCell seen =
+        rectangle_of_rim(first, way.direction, rim(first, Frame(way.direction), [](const Vec3&) { return false; }));
+    if (!(seen.area > 0)) return {};
+    // From close to its middle nothing hides the rim, and what is beyond its plane is outdoors.
+    const double step = before * std::sqrt(seen.area);
+    const Point from = seen.corner + 0.5 * (seen.u + seen.v) - step * seen.n;
+    PortalCell out = rectangle_of_rim(
+        from, seen.n, rim(from, Frame(seen.n), [&](const Vec3& hit) { return dot(hit, seen.n) > 2 * step; }));
+    out.light = 1;
+    return out.area > 0 && passes_near(way.from, way.direction, out) ? out : PortalCell();
+}
+
+/// Mean square of the shares that rays n to 2 n find where rays 0 to n found nothing, plus that of one more ray in all.
+double mean_square_hidden(const std::vector<std::uint64_t>& arrivals, std::uint32_t n) {
+    const std::uint64_t first = (std::uint64_t{1} << n) - 1;
+    double sum = 1.0 / (1.0 * n * n), count = 1;
+    for (const std::uint64_t bits : arrivals) {
+        if ((bits & first) != 0) continue;
+        const double found = std::popcount((bits >> n) & first);
+        sum += found * (found - 1) / (1.0 * n * (n - 1.0)), count += 1;
+    }
+    return sum / count;
+}
+
+std::vector<double> hidden_after(const std::vector<std::uint64_t>& arrivals) {
+    std::vector<double> out;
+    for (std::uint32_t n = 2; n <= rays_of_place / 2; n *= 2)
+        out.push_back(std::min(1.0 / n, std::sqrt(mean_square_hidden(arrivals, n))));
+    return out;
+}
+
+}  // namespace
+
+double SkyOpenings::Hidden::after(std::uint32_t n) const {
+    const auto doublings = static_cast<std::size_t>(std::bit_width(n));  // n >= 2^(doublings - 1)
+    if (rms.empty() || doublings < 2) return 1.0 / std::max(n, 1u);
+    const std::size_t last = std::min(doublings - 2, rms.size() - 1);
+    return rms[last] * static_cast<double>(2u << last) / n;
+}
+
+void SkyOpenings::choose(const Point& x, const Normal& n, std::vector<PortalCell>& out) const {
+    out.clear();
+    std::vector<std::pair<double, std::uint32_t>> best;
+    for (std::uint32_t i = 0; i < cells_.size(); ++i) {
+        const bool is_indoors = dot(cells_[i].corner - x, cells_[i].n) > 0;
+        const double share = is_indoors ? PortalAim::form_factor(cells_[i], x, n) : 0;
+        if (share > 0) best.push_back({-share, i});
+    }
+    if (best.size() > PortalAim::most_targets) {
+        std::nth_element(best.begin(), best.begin() + PortalAim::most_targets, best.end());
+        best.resize(PortalAim::most_targets);
+    }
+    std::sort(best.begin(), best.end());
+    for (const auto& [share, i] : best) out.push_back(cells_[i]);
+}
+
+SkyOpenings::SkyOpenings(const Occluders& occluders, const RayTracer& tracer, const SkyTree& sky,
+                         std::span<const Sun> suns) {
+    if (sky.empty()) return;
+    SkySearch search(occluders, tracer, sky, suns);
+    constexpr std::uint32_t first_rays = 16;
+    std::vector<Place> places = search.places(first_places);
+    for (Place& place : places) search.cast_to_sky(place, first_rays);
+    const auto dark = std::count_if(places.begin(), places.end(), [](const Place& p) { return p.sky == 0; });
+    if (static_cast<double>(dark) <= few_dark_places * static_cast<double>(places.size())) return;
+
+    places = search.places(most_places);
+    std::vector<Escape> ways;
+    for (Place& place : places) {
+        search.cast_to_sky(place, rays_of_place);
+        if (!suns.empty()) search.cast_to_suns(place);
+        if (std::popcount(place.sky) > few_rays) continue;
+        std::uint64_t left = place.sky;
+        for (std::size_t i = 0; i < ways_of_place && left != 0; ++i, left &= left - 1)
+            ways.push_back({place.x, search.direction(place, static_cast<std::uint32_t>(std::countr_zero(left)))});
+    }
+    const std::size_t all = ways.size();
+    std::size_t attempts = 0, openings = 0;
+    while (!ways.empty() && attempts++ < most_attempts && openings < most_openings) {
+        const Escape way = ways[hash(attempts) % ways.size()];
+        const PortalCell found = search.opening(way);
+        if (!(found.area > 0)) continue;
+        ++openings;
+        std::erase_if(ways, [&](const Escape& other) { return passes_near(other.from, other.direction, found); });
+        add_portal_cells(found, most_cells, cells_);
+    }
+    if (2 * ways.size() > all) cells_.clear();
+
+    std::vector<PortalCell> chosen;
+    PortalAim aim;
+    std::vector<std::uint64_t> to_sky, to_sun;
+    for (const Place& place : places) {
+        choose(place.x, place.n, chosen);
+        aim.set(chosen, place.x, place.n);
+        std::uint64_t rest = place.sky;
+        for (std::uint64_t left = place.sky; left != 0 && !chosen.empty(); left &= left - 1) {
+            const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
+            if (aim.is_aimed_at(search.direction(place, k))) rest &= ~(std::uint64_t{1} << k);
+        }
+        to_sky.push_back(rest);
+        to_sun.push_back(place.sun);
+    }
+    sky_.rms = hidden_after(to_sky);
+    if (!suns.empty()) sun_.rms = hidden_after(to_sun);
+}
+
+}  // namespace exitance

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "exitance/direct/direct_light.hpp"
+#include "exitance/direct/sky_tree.hpp"
+#include "exitance/direct/source_point.hpp"
+#include "exitance/visibility/portal_cells.hpp"
+#include "exitance/visibility/rays.hpp"
+
+namespace exitance {
+
+/// Openings through which rooms see the sky, such as windows without panes, and how much light of the sky and of suns a
+/// few rays miss. If a room has a small window, only one unaimed ray in thousands would find the sky.
+///
+/// Rays to the sky are cast from places all over the scene. A ray that escapes from a place that sees little of the sky
+/// passes through an opening. The search walks along the ray to a point in front of the opening, from where the
+/// directions in which the sky is seen are bounded by the opening's rim. A rectangle around the rim covers the opening.
+/// It need not do so completely: rays that are not aimed at it find the rest.
+///
+/// The same places tell how much light a few rays miss: where the first n rays found nothing, the next n rays tell.
+class SkyOpenings {
+  public:
+    /// A sun's disc, as seen from every place.
+    struct Sun {
+        const SeenPolygon* seen;  ///< Must outlive the constructor.
+        Point from;               ///< Viewpoint of `seen`.
+    };
+
+    /// Casts up to a million rays, on the calling thread alone.
+    SkyOpenings(const Occluders& occluders, const RayTracer& tracer, const SkyTree& sky, std::span<const Sun> suns);
+
+    /// Parallelograms that cover the openings, with normals that point outdoors.
+    std::span<const PortalCell> cells() const { return cells_; }
+    /// Chooses the parallelograms at which rays from x should be aimed, at most PortalAim::most_targets.
+    void choose(const Point& x, const Normal& n, std::vector<PortalCell>& out) const;
+
+    /// Root mean square of the share of the sky's light that arrives where the first n rays found nothing.
+    double hidden_sky(std::uint32_t n) const { return sky_.after(n); }
+    /// The same of a sun's disc.
+    double hidden_sun(std::uint32_t n) const { return sun_.after(n); }
+
+  private:
+    /// Shares found after 2^k rays that found nothing.
+    struct Hidden {
+        std::vector<double> rms;
+        double after(std::uint32_t n) const;
+    };
+
+    std::vector<PortalCell> cells_;
+    Hidden sky_, sun_;
+};
+
+}  // namespace exitance

@@ -1,0 +1,196 @@
+// Openings through which rooms see the sky, and light by rays through them.
+#include "exitance/direct/sky_openings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "exitance/base/random.hpp"
+#include "exitance/error/area_samples.hpp"
+#include "exitance/scene/locator.hpp"
+#include "exitance/scene/sky/sun_position.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+namespace {
+
+/// Where a scene stands: scaled, then turned about the vertical, then moved.
+struct Placing {
+    double scale = 1, turn = 0;
+    Vec3 move = {};
+
+    Point operator()(const Point& p) const {
+        const double c = std::cos(turn), s = std::sin(turn);
+        return scale * Vec3{c * p.x - s * p.y, s * p.x + c * p.y, p.z} + move;
+    }
+};
+
+/// Rooms of 4 x 5 x 3 m in a row along x, each with a window in the wall at y = 0 and with boxes on the floor.
+struct Rooms {
+    int count = 1, boxes = 40;
+    double left = 1.9, right = 2.2, sill = 1.5, top = 1.8;  ///< Of each window, metres.
+    double ground = 0;                                      ///< Half of the side of a ground outdoors, metres; 0: none.
+    Placing placing = {};
+    DistantLight light = {};
+
+    Scene make() const {
+        SceneDescription d;
+        d.file = "rooms.obj";
+        d.materials = {{"grey", Spectrum(0.5), {}}};
+        d.groups = {"all"};
+        const auto face = [&](std::vector<Point> corners) {
+            SceneDescription::Face f;
+            for (const Point& p : corners) {
+                f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+                d.points.push_back(placing(p));
+            }
+            d.faces.push_back(f);
+        };
+        const auto sheet = [&](const std::vector<Point>& corners) {  // a wall with two sides
+            face(corners);
+            face({corners.rbegin(), corners.rend()});
+        };
+        for (int i = 0; i < count; ++i) {
+            const double x0 = 4.0 * i, x1 = x0 + 4;
+            face({{x0, 0, 0}, {x1, 0, 0}, {x1, 5, 0}, {x0, 5, 0}});
+            sheet({{x0, 0, 3}, {x0, 5, 3}, {x1, 5, 3}, {x1, 0, 3}});
+            sheet({{x0, 5, 0}, {x1, 5, 0}, {x1, 5, 3}, {x0, 5, 3}});
+            if (i == 0) sheet({{x0, 0, 0}, {x0, 5, 0}, {x0, 5, 3}, {x0, 0, 3}});
+            sheet({{x1, 0, 0}, {x1, 0, 3}, {x1, 5, 3}, {x1, 5, 0}});
+            const double a = x0 + left, b = x0 + right;
+            sheet({{x0, 0, 0}, {x0, 0, 3}, {a, 0, 3}, {a, 0, 0}});
+            sheet({{b, 0, 0}, {b, 0, 3}, {x1, 0, 3}, {x1, 0, 0}});
+            sheet({{a, 0, 0}, {a, 0, sill}, {b, 0, sill}, {b, 0, 0}});
+            if (top < 3) sheet({{a, 0, top}, {a, 0, 3}, {b, 0, 3}, {b, 0, top}});
+            RandomStream random(1, Stream::mesh, static_cast<std::uint64_t>(i));
+            for (int k = 0; k < boxes; ++k) {
+                const double u = x0 + 0.3 + 3.2 * random.uniform(), v = 0.5 + 4.2 * random.uniform();
+                const double s = 0.05 + 0.1 * random.uniform(), h = 0.02 + 1.2 * random.uniform();
+                face({{u, v, h}, {u + s, v, h}, {u + s, v + s, h}, {u, v + s, h}});
+                face({{u, v, 0}, {u + s, v, 0}, {u + s, v, h}, {u, v, h}});
+                face({{u + s, v, 0}, {u + s, v + s, 0}, {u + s, v + s, h}, {u + s, v, h}});
+                face({{u + s, v + s, 0}, {u, v + s, 0}, {u, v + s, h}, {u + s, v + s, h}});
+                face({{u, v + s, 0}, {u, v, 0}, {u, v, h}, {u, v + s, h}});
+            }
+        }
+        if (ground > 0)
+            face({{-ground, -ground, -0.05},
+                  {ground, -ground, -0.05},
+                  {ground, ground, -0.05},
+                  {-ground, ground, -0.05}});
+        d.distant = light;
+        CheckedScene checked = make_scene(std::move(d));
+        EXI_CHECK(static_cast<bool>(checked.scene));
+        return std::move(*checked.scene);
+    }
+};
+
+DistantLight overcast() {
+    SkyModel sky = overcast_sky();
+    EXPECT_TRUE(sky.normalize());
+    return {{{sky, Spectrum(100.0)}}, {}};
+}
+
+SkyOpenings openings_of(const Stage& stage, const DistantLight& light) {
+    return SkyOpenings(stage.occluders, stage.tracer, SkyTree(light), {});
+}
+
+/// Share of a grid of points of a window through which a line leads to a parallelogram that covers them.
+double covered_share(const Rooms& rooms, int room, std::span<const PortalCell> cells) {
+    constexpr int steps = 20;
+    int covered = 0;
+    for (int i = 0; i < steps; ++i)
+        for (int k = 0; k < steps; ++k) {
+            const Point p = rooms.placing({4.0 * room + rooms.left + (rooms.right - rooms.left) * (i + 0.5) / steps, 0,
+                                           rooms.sill + (rooms.top - rooms.sill) * (k + 0.5) / steps});
+            covered += std::any_of(cells.begin(), cells.end(), [&](const PortalCell& cell) {
+                const Vec3 at = p - cell.corner;
+                const double s = dot(at, cell.u) / squared_norm(cell.u), t = dot(at, cell.v) / squared_norm(cell.v);
+                return s >= 0 && s <= 1 && t >= 0 && t <= 1 && std::abs(dot(at, cell.n)) < 0.05 * std::sqrt(cell.area);
+            });
+        }
+    return static_cast<double>(covered) / (steps * steps);
+}
+
+double area_of(std::span<const PortalCell> cells) {
+    double out = 0;
+    for (const PortalCell& cell : cells) out += cell.area;
+    return out;
+}
+
+TEST(SkyOpenings, AWindowIsCoveredWhereverTheRoomStands) {
+    const std::vector<Placing> placings = {{},
+                                           {.turn = 0.7},
+                                           {.move = {1000, -1000, 300}},
+                                           {.scale = 1e-3},
+                                           {.scale = 1e-3, .turn = 2, .move = {1, 1, 1}}};
+    for (const Placing& placing : placings) {
+        const Rooms rooms{.placing = placing, .light = overcast()};
+        const Scene scene = rooms.make();
+        const SkyOpenings openings = openings_of(Stage(scene), rooms.light);
+        const double window = 0.09 * placing.scale * placing.scale;
+        EXPECT_EQ(covered_share(rooms, 0, openings.cells()), 1) << placing.scale << ", " << placing.turn;
+        EXPECT_NEAR(area_of(openings.cells()) / window, 1.06 * 1.06, 0.05);  // with its margin of 3% per side
+        for (const PortalCell& cell : openings.cells())
+            EXPECT_GT(dot(cell.n, rooms.placing({2, -1, 0}) - rooms.placing({2, 0, 0})), 0) << "points indoors";
+    }
+}
+
+TEST(SkyOpenings, WindowsOfSeveralRoomsAboveAGroundAreCovered) {
+    const Rooms rooms{
+        .count = 4, .boxes = 10, .left = 1, .right = 3, .sill = 1, .top = 2, .ground = 500, .light = overcast()};
+    const Scene scene = rooms.make();
+    const SkyOpenings openings = openings_of(Stage(scene), rooms.light);
+    for (int room = 0; room < 4; ++room) EXPECT_GT(covered_share(rooms, room, openings.cells()), 0.95) << room;
+}
+
+TEST(SkyOpenings, NoneAreFoundInTheOpen) {
+    Rooms rooms{.count = 0, .ground = 10, .light = overcast()};
+    const Scene scene = rooms.make();
+    const SkyOpenings openings = openings_of(Stage(scene), rooms.light);
+    EXPECT_TRUE(openings.cells().empty());
+    for (const std::uint32_t n : {4u, 64u, 1024u}) EXPECT_EQ(openings.hidden_sky(n), 1.0 / n);
+}
+
+TEST(SkyOpenings, RaysIndoorsMissLessThanOneRayShows) {
+    const Rooms closed{.light = overcast()};
+    const Scene indoors = closed.make();
+    const SkyOpenings openings = openings_of(Stage(indoors), closed.light);
+    for (const std::uint32_t n : {4u, 64u, 1024u}) {
+        EXPECT_LT(openings.hidden_sky(n), 0.03 / n) << n;
+        EXPECT_GT(openings.hidden_sky(n), 0) << n;
+    }
+}
+
+TEST(RayLight, LightThroughAWindowIsUnbiasedAndItsVarianceIsKnown) {
+    const Normal towards = sky_direction(40, 180);
+    DistantLight light = overcast();
+    light.discs.push_back({towards, sun_half_angle, Spectrum(500.0)});
+    for (const bool has_ground : {false, true}) {
+        const Rooms rooms{.ground = has_ground ? 100.0 : 0.0, .light = light};
+        const Scene scene = rooms.make();
+        const Stage stage(scene);
+        PlaceLight::Workspace room;
+        const Locator locator(scene);
+        double bias = 0, squares = 0, variance = 0, exact = 0, rays = 0, count = 0;
+        for (const ProbePoint& p : points_uniform_in_area(scene, has_ground ? 300000 : 3000, 5)) {
+            const SurfaceId surface = locator.find(p.x, p.n);
+            const bool is_inside = p.x.y > 0.001 && p.x.y < 4.999 && p.x.x > 0.001 && p.x.x < 3.999 && p.x.z > -0.001;
+            if (surface.is_none() || !is_inside || p.x.z > 2.999) continue;
+            const RegionId region = scene.surfaces()[surface].region;
+            const double E = mean(stage.direct.irradiance(p.x, p.n, region, room.exact));
+            const RayLight::Estimate found = stage.place_light.rays().at(p.x, p.n, region, {.absolute = 0.02}, room);
+            const double error = mean(found.irradiance) - E;
+            bias += error, squares += error * error, variance += found.variance, exact += E;
+            rays += static_cast<double>(found.rays), ++count;
+        }
+        ASSERT_GT(count, 200);
+        EXPECT_LT(std::abs(bias), 3 * std::sqrt(variance) + 2e-3 * exact) << has_ground;
+        EXPECT_LT(squares, 1.5 * variance) << has_ground;
+        EXPECT_LT(variance / count, 0.02 * 0.02) << has_ground;
+        EXPECT_LT(rays / count, 1500) << has_ground;  // unaimed: the most that are allowed, 8192
+    }
+}
+
+}  // namespace
+}  // namespace exitance

@@ -1,0 +1,65 @@
+#include "exitance/visibility/portal_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace exitance {
+namespace {
+
+Vec2 turned(Vec2 p, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {c * p.x + s * p.y, c * p.y - s * p.x};
+}
+
+}  // namespace
+
+PortalCell rectangle_around(const Point& at, const Frame& frame, std::span<const Vec2> points) {
+    constexpr int angles = 48;
+    constexpr double wider = 0.03;
+    struct Rectangle {
+        Vec2 lo, hi;   ///< Corners, in coordinates rotated by `angle`.
+        double angle;  ///< radians
+
+        double area() const { return (hi.x - lo.x) * (hi.y - lo.y); }
+    };
+    Rectangle best{{0, 0}, {HUGE_VAL, HUGE_VAL}, 0};
+    for (int i = 0; i < angles; ++i) {
+        Rectangle r{{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}, 0.5 * pi * i / angles};
+        for (const Vec2& p : points) {
+            const Vec2 q = turned(p, r.angle);
+            r.lo = {std::min(r.lo.x, q.x), std::min(r.lo.y, q.y)},
+            r.hi = {std::max(r.hi.x, q.x), std::max(r.hi.y, q.y)};
+        }
+        if (r.area() < best.area()) best = r;
+    }
+    const Vec2 more = wider * (best.hi - best.lo);
+    best.lo = best.lo - more, best.hi = best.hi + more;
+    const Vec2 x = turned({1, 0}, -best.angle), y = turned({0, 1}, -best.angle), lo = turned(best.lo, -best.angle);
+    const auto in_space = [&](Vec2 p) { return p.x * frame.u + p.y * frame.v; };
+    return {at + in_space(lo), in_space((best.hi.x - best.lo.x) * x), in_space((best.hi.y - best.lo.y) * y), frame.n,
+            best.area()};
+}
+
+void add_portal_cells(const PortalCell& opening, std::size_t most, std::vector<PortalCell>& cells) {
+    constexpr double most_pieces = 8;
+    PortalCell piece = opening;
+    Vec3& longer = squared_norm(piece.u) > squared_norm(piece.v) ? piece.u : piece.v;
+    const Vec3& shorter = &longer == &piece.u ? piece.v : piece.u;
+    const double pieces = std::clamp(std::round(norm(longer) / norm(shorter)), 1.0, most_pieces);
+    longer *= 1 / pieces, piece.area /= pieces;
+    for (int k = 0; k < static_cast<int>(pieces) && cells.size() < most; ++k) {
+        cells.push_back(piece);
+        piece.corner += longer;
+    }
+}
+
+bool passes_near(const Point& from, const Vec3& direction, const PortalCell& cell) {
+    const double t = dot(cell.corner - from, cell.n) / dot(direction, cell.n);
+    if (!std::isfinite(t)) return false;
+    const Vec3 at = from + t * direction - cell.corner;
+    const double s = dot(at, cell.u) / squared_norm(cell.u), r = dot(at, cell.v) / squared_norm(cell.v);
+    constexpr double beside = 0.5;
+    return std::max(std::abs(s - 0.5), std::abs(r - 0.5)) < 0.5 + beside;
+}
+
+}  // namespace exitance

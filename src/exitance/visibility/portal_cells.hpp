@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "exitance/base/vec.hpp"
+
+namespace exitance {
+
+/// A parallelogram that covers all or part of an opening.
+struct PortalCell {
+    Point corner;  ///< Its points are corner + s u + t v, s and t in [0, 1).
+    Vec3 u, v;     ///< Edges, perpendicular to each other.
+    Normal n;      ///< Normal of its plane.
+    double area = 0;
+    double light = 0;  ///< Approximate ratio of the light that comes through it to the light of the place.
+};
+
+/// Returns the smallest rectangle around some points, among 48 orientations. It is enlarged by 3% per side, about the
+/// margin that 64 random points leave.
+/// at, frame  a point and the frame of a plane, in which the points have coordinates
+PortalCell rectangle_around(const Point& at, const Frame& frame, std::span<const Vec2> points);
+
+/// Splits an opening along its longer side into pieces that are about as long as wide, since rays are not aimed at
+/// pieces that are nearer than their length. Adds them to `cells`, up to `most` in total.
+void add_portal_cells(const PortalCell& opening, std::size_t most, std::vector<PortalCell>& cells);
+
+/// True if a line passes through a parallelogram, or beside it by less than half of its size.
+bool passes_near(const Point& from, const Vec3& direction, const PortalCell& cell);
+
+}  // namespace exitance
