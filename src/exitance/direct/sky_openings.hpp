@@ -38,7 +38,7 @@ class SkyOpenings {
 
     /// Root mean square of the share of the sky's light that arrives where the first n rays found nothing.
     double hidden_sky(std::uint32_t n) const { return sky_.after(n); }
-    /// The same of a sun's disc.
+    /// Like hidden_sky(), for a sun's disc.
     double hidden_sun(std::uint32_t n) const { return sun_.after(n); }
 
   private:

@@ -14,7 +14,7 @@
 namespace exitance {
 namespace {
 
-/// Where a scene stands: scaled, then turned about the vertical, then moved.
+/// Places a scene: scaled, then turned about the vertical, then moved.
 struct Placing {
     double scale = 1, turn = 0;
     Vec3 move = {};
@@ -28,7 +28,7 @@ struct Placing {
 /// Rooms of 4 x 5 x 3 m in a row along x, each with a window in the wall at y = 0 and with boxes on the floor.
 struct Rooms {
     int count = 1, boxes = 40;
-    double left = 1.9, right = 2.2, sill = 1.5, top = 1.8;  ///< Of each window, metres.
+    double left = 1.9, right = 2.2, sill = 1.5, top = 1.8;  ///< Borders of each window, metres.
     double ground = 0;                                      ///< Half of the side of a ground outdoors, metres; 0: none.
     Placing placing = {};
     DistantLight light = {};

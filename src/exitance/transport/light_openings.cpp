@@ -20,9 +20,7 @@ constexpr int steps = 60;
 
 /// Flux that a leaf of exitance 1 W/m^2 sends to the sky, W.
 double sent_to_sky(const Flow& flow, std::uint32_t leaf) {
-    const auto hits = flow.rows.hits(leaf);
-    const auto lost = static_cast<double>(std::count(hits.begin(), hits.end(), RayRows::missed));
-    return flow.area[leaf] * lost / static_cast<double>(hits.size());
+    return flow.area[leaf] * missed_share(flow, leaf);
 }
 
 double sent_to_sky(const Flow& flow, const LeafNumbers& leaves) {
@@ -166,6 +164,12 @@ std::optional<OpeningBetween> by_what_is_seen(const Flow& flow, OpeningBetween s
 }
 
 }  // namespace
+
+double missed_share(const Flow& flow, std::uint32_t leaf) {
+    const auto hits = flow.rows.hits(leaf);
+    return static_cast<double>(std::count(hits.begin(), hits.end(), RayRows::missed)) /
+           static_cast<double>(hits.size());
+}
 
 std::optional<OpeningBetween> find_opening(const Flow& flow, const LeafNumbers& leaves, std::uint16_t part) {
     LeafNumbers order = leaves;

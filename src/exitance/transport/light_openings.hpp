@@ -19,6 +19,9 @@ struct Flow {
     bool has_sky = false;  ///< If true, rays that hit nothing reach the sky, which connects leaves like a wall.
 };
 
+/// Share of a leaf's rays that hit no front.
+double missed_share(const Flow& flow, std::uint32_t leaf);
+
 /// Leaves of a part on the two sides of an opening.
 struct OpeningBetween {
     LeafNumbers small, large;  ///< The sides with the smaller and the larger area.

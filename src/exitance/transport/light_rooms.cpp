@@ -18,6 +18,9 @@ namespace {
 constexpr double least_share = 0.05;  ///< Area of a room as a share of all area but ground and sky, at least.
 constexpr double least_detail =
     0.001;  ///< Elements of a small room beside ground and sky, as a share of all elements, at least.
+/// Share of an element's rays that reach the sky, above which it is outdoors. Under an open sky that is half of the
+/// rays of a facade, and most of those of a ground.
+constexpr double outdoors = 0.25;
 constexpr double far_larger = 20;  ///< Extent of ground and sky over that of all other geometry, at least.
 constexpr double flattest = 0.1;   ///< Smallest over largest extent of a room; anything flatter is a gap.
 constexpr double thinnest =
@@ -80,7 +83,10 @@ class RoomFinder {
                 std::vector<std::uint16_t>(numbering.leaves.size()), has_sky},
           stage_(stage),
           tree_(tree),
-          numbering_(numbering) {}
+          numbering_(numbering) {
+        for (std::uint32_t i = 0; i < flow_.area.size(); ++i)
+            if (missed_share(flow_, i) < outdoors) indoor_area_ += flow_.area[i];
+    }
 
     /// Returns the rooms in descending order of area. Each leaf belongs to one of them.
     std::vector<Part> find(const StopRequest& stop) {
@@ -191,6 +197,7 @@ class RoomFinder {
         if (static_cast<double>(part.leaves.size()) < least_detail * static_cast<double>(flow_.area.size()))
             return false;
         if (!has_own_walls(part)) return false;
+        if (flow_.has_sky && part.area >= least_share * indoor_area_) return true;
         Box inner = inner_;
         inner.add(part.box.lo), inner.add(part.box.hi);
         return whole_.diagonal() >= far_larger * inner.diagonal();
@@ -219,8 +226,9 @@ class RoomFinder {
     const ElementTree& tree_;
     const LeafNumbering& numbering_;
     std::vector<Part> parts_;
-    Box inner_, whole_;  ///< Bounds of all rooms but the largest, and of the whole scene.
-    double total_ = 0;
+    Box inner_, whole_;        ///< Bounds of all rooms but the largest, and of the whole scene.
+    double total_ = 0;         ///< Area of the scene, m^2.
+    double indoor_area_ = 0;   ///< Area of the elements that see little of the sky, m^2.
     std::uint16_t fresh_ = 1;  ///< Number of the next part.
 };
 

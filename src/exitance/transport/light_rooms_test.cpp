@@ -135,8 +135,9 @@ TEST(LightRooms, SmallRoomsBelongToTheirNeighbourUnlessThatIsGroundOrSky) {
     EXPECT_EQ(rooms_of(boxes({{{0, 0, 0}, {900, 900, 900}}, {{5, 5, 5}, {6, 6, 6}}})).count(), 2u);
 }
 
-/// A house without a floor on ground of 300 m under an even sky: 5 x 4 x 2.5 m, with a slit of 5 x 0.4 m in one wall.
-Scene house_on_ground() {
+/// A house without a floor on ground under an even sky: 5 x 4 x 2.5 m, with a slit of 5 x 0.4 m in one wall. The ground
+/// extends from -half to half metres.
+Scene house_on_ground(double half) {
     SceneDescription d;
     d.groups = {"all"};
     d.materials = {{"grey", Spectrum(0.5), {}}};
@@ -154,7 +155,7 @@ Scene house_on_ground() {
         std::reverse(corners.begin(), corners.end());
         face(corners);
     };
-    face({{-150, -150, 0}, {150, -150, 0}, {150, 150, 0}, {-150, 150, 0}});
+    face({{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}});
     wall({{0, 0, 0}, {5, 0, 0}, {5, 0, 1}, {0, 0, 1}});
     wall({{0, 0, 1.4}, {5, 0, 1.4}, {5, 0, 2.5}, {0, 0, 2.5}});
     wall({{5, 0, 0}, {5, 4, 0}, {5, 4, 2.5}, {5, 0, 2.5}});
@@ -165,12 +166,15 @@ Scene house_on_ground() {
 }
 
 TEST(LightRooms, AHouseOnGroundUnderTheSkyIsARoom) {
-    const Scene scene = house_on_ground();
-    const Stage stage(scene);
-    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-        const LightRooms rooms = find_light_rooms(stage, seed, StopRequest());
-        ASSERT_EQ(rooms.count(), 2u) << seed;
-        EXPECT_NEAR(rooms.area(1), 83, 1e-6) << "floor, ceiling and walls without the slit; seed " << seed;
+    for (const double half : {30, 60, 150, 500}) {
+        const Scene scene = house_on_ground(half);
+        const Stage stage(scene);
+        for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+            const LightRooms rooms = find_light_rooms(stage, seed, StopRequest());
+            ASSERT_EQ(rooms.count(), 2u) << half << ", seed " << seed;
+            // Floor, ceiling and walls without the slit. The ground's elements do not end at the walls.
+            EXPECT_NEAR(rooms.area(1), 83, 1e-6) << half << ", seed " << seed;
+        }
     }
 }
 
