@@ -16,9 +16,9 @@ namespace exitance {
 namespace {
 
 Error no_set(const std::string& path, const std::string& name, const std::string& sets) {
-    return {ErrorCode::usage, fmt::format("{} has no texture coordinates '{}'", path, name), "--uv",
-            sets.empty() ? "unwrap the model in your modeller, or leave --uv out: bake then makes charts of its own"
-                         : "it has " + sets};
+    return {
+        ErrorCode::usage, fmt::format("{} has no texture coordinates '{}'", path, name), "--uv",
+        sets.empty() ? "use --uv unwrap, which makes coordinates and writes the model with them" : "it has " + sets};
 }
 
 /// Error about faces without coordinates, by object; none if there are none.
@@ -40,7 +40,8 @@ Result<void> require_all(const Scene& scene, const Field<SurfaceId, std::uint8_t
     if (missing.size() > max_names) names += fmt::format(" and {} more objects", missing.size() - max_names);
     return Error{ErrorCode::bad_input,
                  fmt::format("{} of {} faces have no texture coordinates: {}", count, scene.surfaces().size(), names),
-                 path, "unwrap these objects in your modeller, or leave --uv out: bake then makes charts of its own"};
+                 path,
+                 "unwrap these objects in your modeller, or use --uv unwrap: bake then makes coordinates for all"};
 }
 
 /// Makes names differ: the second "lamp" becomes "lamp #2".
