@@ -104,6 +104,30 @@ TEST(ProgramBake, TextureCoordinatesOfTheFileGiveAMapPerObject) {
     EXPECT_EQ(run_program({"bake", solution, "-o", out, "--uv", "own"}).status, 3);
 }
 
+/// The model that is written with its coordinates can be solved and baked into them without warnings.
+TEST(ProgramBake, UnwrapsAModelWithoutCoordinates) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5", out = folder / "maps";
+    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    const Finished run = run_program({"bake", solution, "-o", out, "--uv", "unwrap", "--size", "64x64", "--unlit"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    EXPECT_NE(run.err.find("charts cover"), std::string::npos) << run.err;
+    EXPECT_EQ(run.err.find("warning"), std::string::npos) << run.err;
+    const std::string manifest = read_text(out + "/lightmaps.json");
+    for (const std::string text : {"\"model\": \"scene.glb\"", "\"unwrapped\": {\"charts\": ", "\"filled\": ",
+                                   "\"set\": \"TEXCOORD_1\"", "\"overlapping\": 0", "\"mirrored\": 0"})
+        EXPECT_NE(manifest.find(text), std::string::npos) << text << " is not in " << manifest;
+    EXPECT_NE(read_text(out + "/scene.glb").find("\"baseColorTexture\":{\"index\":0,\"texCoord\":1}"),
+              std::string::npos);
+
+    const std::string again = folder / "again.h5";
+    ASSERT_EQ(run_program({"solve", out + "/scene.obj", "-o", again, "--error", "0.1", "-q"}).status, 0);
+    const Finished second = run_program({"bake", again, "-o", folder / "again", "--uv", "vt", "--size", "64x64"});
+    ASSERT_EQ(second.status, 0) << second.err;
+    EXPECT_EQ(second.err.find("warning"), std::string::npos) << second.err;
+    EXPECT_EQ(run_program({"bake", solution, "-o", out, "--uv", "unwrap", "--size", "8x8"}).status, 2);
+}
+
 TEST(ProgramBake, RejectsInvalidOptions) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5";

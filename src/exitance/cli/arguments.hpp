@@ -135,6 +135,7 @@ struct BakeArguments : CommonArguments {
     std::string uv;                   ///< Set of texture coordinates of the scene's file; empty: charts of our own.
     std::optional<PictureSize> size;  ///< Texels of each map with `uv`; empty: by density.
     std::string charts;               ///< PNG file for a picture of the charts with `uv`; empty: none.
+    bool faceted = false;             ///< Ignore the normals of the scene's file.
     bool light_groups = false;        ///< Also bake separate maps for every light group.
     int threads = 0;
 };

@@ -150,7 +150,8 @@ void declare(CLI::App& app, BakeArguments& arguments) {
         app.add_option("--uv", arguments.uv,
                        "Bake into texture coordinates of the scene's file, which must still exist: TEXCOORD_0 to "
                        "TEXCOORD_3 (glTF), vt (OBJ), or own: the set that light maps use. Objects share one map "
-                       "unless their charts overlap. Default: charts of exitance's own")
+                       "unless their charts overlap. unwrap: make coordinates for all faces in one map, and write the "
+                       "model with them. Default: a chart for each flat part")
             ->type_name("SET");
     app.add_option_function<std::string>(
            "--size", [&arguments](const std::string& w) { arguments.size = read_size(w); },
@@ -163,6 +164,10 @@ void declare(CLI::App& app, BakeArguments& arguments) {
                    "Draw the charts of --uv into a PNG file: overlaps in red, mirrored ones in blue")
         ->type_name("FILE")
         ->needs(uv);
+    app.add_flag(
+        "--faceted", arguments.faceted,
+        "Bake the light of the flat faces. Default: where a mesh approximates a curved surface, light follows the "
+        "normals of the scene's file (glTF NORMAL, OBJ vn)");
     add_count(app, "--padding", arguments.padding, 1,
               "Texels around every chart. Default 4. 2^m texels keep charts apart down to mip level m")
         ->check(CLI::Range(1, 256));
@@ -174,12 +179,10 @@ void declare(CLI::App& app, BakeArguments& arguments) {
     CLI::Option* unlit = app.add_flag_callback(
         "--unlit", [&format] { format.material = LightMapMaterial::unlit; },
         "Write tone-mapped light as base colour of the .glb. Default: linear light as emission");
-    unlit->excludes(uv);
     app.add_flag_callback(
            "--moz-lightmap", [&format] { format.material = LightMapMaterial::moz_lightmap; },
            "Write base colours into the .glb, and the light in its extension MOZ_lightmap")
-        ->excludes(unlit)
-        ->excludes(uv);
+        ->excludes(unlit);
     app.add_flag(
         "--light-groups", arguments.light_groups,
         "Also write maps of each light group, undimmed, on the same charts. Needs a solution of solve --light-groups");

@@ -61,6 +61,10 @@ Spectrum RadiosityFunction::gathered(const ProbePoint& point, RegionId own, unsi
     return gather_reflected(*stage_, point.x, point.n, own, rays, key, reflected, workspace).irradiance;
 }
 
+Spectrum RadiosityFunction::direct_at(const ProbePoint& point, RegionId own, PlaceLight::Workspace& workspace) const {
+    return stage_->place_light.at(point.x, point.n, own, accuracy_, workspace).irradiance;
+}
+
 Light RadiosityFunction::light_on(RegionId region, const Material& material, const Point& x, Component component,
                                   PlaceLight::Workspace& workspace) const {
     // The elements hold E_ind + c E_dir. The factor of exact direct light is 1 - c for the total, 1 for direct and -c

@@ -74,6 +74,9 @@ class RadiosityFunction {
     Spectrum gathered(const ProbePoint& point, RegionId own, unsigned rays, std::uint64_t key,
                       GatherWorkspace& workspace) const;
 
+    /// Direct light at a point of region `own` (none: in free space), W/m^2, at the accuracy of at().
+    Spectrum direct_at(const ProbePoint& point, RegionId own, PlaceLight::Workspace& workspace) const;
+
     const Solution& solution() const { return solution_; }
     const PlaceFinder& places() const { return places_; }
     const Stage& stage() const { return *stage_; }

@@ -8,6 +8,7 @@
 #include "exitance/io/export/light_map_files.hpp"
 #include "exitance/io/export/uv_map_files.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/textures/normal_file.hpp"
 #include "exitance/io/scenes/textures/scene_textures.hpp"
 #include "exitance/io/scenes/textures/uv_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
@@ -15,6 +16,9 @@
 
 namespace exitance {
 namespace {
+
+/// Name in place of a set of texture coordinates for `--uv`.
+constexpr const char* unwrapped_name = "unwrap";
 
 /// Bakes and writes the light of one group, given its number and the solution with that light alone. Returns false if a
 /// stop was requested.
@@ -73,23 +77,86 @@ Result<std::vector<std::string>> write_charts(const std::string& file, const UvS
     return names;
 }
 
-/// Bakes into texture coordinates of the scene's file.
-ExitCode bake_into_uvs(const BakeArguments& arguments, const Solution& solution, const LightGroups& groups,
-                       Terminal& terminal) {
-    const Result<UvSet> set =
-        load_uv_set(solution.scene, find_scene_file(solution.scene, arguments.solution), arguments.uv);
-    if (!set) return terminal.fail(set.error());
-    const Stopwatch watch;
+/// Reads the normals of the scene's file, unless light is to show the flat faces.
+CurvedFaces find_curved_faces(const BakeArguments& arguments, const Scene& scene) {
+    if (arguments.faceted) return {};
+    return CurvedFaces(scene, load_normals(scene, find_scene_file(scene, arguments.solution)));
+}
+
+/// Notes how many regions are curved.
+void note_curved(const CurvedDifferences& curved, Terminal& terminal) {
+    if (curved.empty()) return;
+    terminal.note(
+        fmt::format("light follows the file's normals on {} flat parts of curved surfaces; it differs from the "
+                    "solution's by {:.2g}% RMS",
+                    curved.regions.size(), 100 * curved.rms()));
+}
+
+/// Texture coordinates into which light is baked.
+struct UvTarget {
+    UvSet set;
+    std::optional<Unwrapped> unwrapped;  ///< Coordinates that were made; none: those of the scene's file.
     UvBakeOptions options;
-    options.density = arguments.density, options.padding = static_cast<int>(arguments.padding);
-    if (arguments.size) options.size = {arguments.size->width, arguments.size->height};
+};
+
+/// Reads texture coordinates from the scene's file, or makes them.
+Result<UvTarget> find_uv_target(const BakeArguments& arguments, const Scene& scene, const std::string& scene_file) {
+    UvTarget out;
+    out.options.density = arguments.density, out.options.padding = static_cast<int>(arguments.padding);
+    if (arguments.size) out.options.size = {arguments.size->width, arguments.size->height};
+    if (arguments.uv != unwrapped_name) {
+        if (arguments.format.material != LightMapMaterial::emissive)
+            return Error{ErrorCode::usage, "--unlit and --moz-lightmap need a scene.glb, which is written without --uv",
+                         "--uv", "use --uv unwrap, or leave --uv out"};
+        Result<UvSet> set = load_uv_set(scene, scene_file, arguments.uv);
+        if (!set) return set.error();
+        out.set = std::move(*set);
+        return out;
+    }
+    Result<Unwrapped> made =
+        unwrap(scene, {.size = out.options.size, .density = out.options.density, .padding = out.options.padding});
+    if (!made) return made.error();
+    out.set = uv_set_of(scene, *made);
+    out.options.size = made->size;
+    out.unwrapped = std::move(*made);
+    return out;
+}
+
+/// Writes the model if its coordinates were made, and the manifest.
+Result<void> write_uv_model(const BakeArguments& arguments, const Solution& solution, UvTarget& target,
+                            const std::string& scene_file, const UvLightMaps& maps,
+                            std::span<const std::string> groups) {
+    const Result<std::vector<std::string>> charts = write_charts(arguments.charts, target.set, maps);
+    if (!charts) return charts.error();
+    const Unwrapped* unwrapped = target.unwrapped ? &*target.unwrapped : nullptr;
+    if (unwrapped) {
+        LightMapFormat format = arguments.format;
+        format.scene_file = scene_file;
+        const Result<std::string> name = write_unwrapped_model(solution, *unwrapped, maps, format, arguments.output);
+        if (!name) return name.error();
+        target.set.file = "scene.glb", target.set.name = *name;
+    }
+    return write_uv_manifest(solution.scene, target.set, maps, arguments.format, groups, *charts, unwrapped,
+                             arguments.output);
+}
+
+/// Bakes into texture coordinates of the scene's file, or of its unwrapped faces.
+ExitCode bake_into_uvs(const BakeArguments& arguments, const Solution& solution, const CurvedFaces& curved,
+                       const LightGroups& groups, Terminal& terminal) {
+    const std::string scene_file = find_scene_file(solution.scene, arguments.solution);
+    const Stopwatch watch;
+    Result<UvTarget> target = find_uv_target(arguments, solution.scene, scene_file);
+    if (!target) return terminal.fail(target.error());
+    const UvSet& set = target->set;
+    UvBakeOptions& options = target->options;
+    options.curved = &curved;
     auto& progress = terminal.progress();
     const StopRequest& stop = terminal.limits().keep();
-    const Result<UvLightMaps> maps = bake_uv_light_maps(RadiosityFunction(solution), *set, options, progress, stop);
+    const Result<UvLightMaps> maps = bake_uv_light_maps(RadiosityFunction(solution), set, options, progress, stop);
     if (!maps) return terminal.fail(maps.error());
     if (stop.requested()) return terminal.fail_stopped("the light maps are not finished");
     const auto bake_group = [&](const Solution& lit, std::size_t group) -> Result<bool> {
-        const Result<UvLightMaps> own = bake_uv_light_maps(RadiosityFunction(lit), *set, options, progress, stop);
+        const Result<UvLightMaps> own = bake_uv_light_maps(RadiosityFunction(lit), set, options, progress, stop);
         if (!own) return own.error();
         if (stop.requested()) return false;
         const Result<void> written = write_uv_pictures(lit.scene, *own, group, arguments.format, arguments.output);
@@ -100,13 +167,16 @@ ExitCode bake_into_uvs(const BakeArguments& arguments, const Solution& solution,
     if (!names) return terminal.fail(names.error());
     Result<void> written = write_uv_pictures(solution.scene, *maps, {}, arguments.format, arguments.output);
     if (!written) return terminal.fail(written.error());
-    const Result<std::vector<std::string>> charts = write_charts(arguments.charts, *set, *maps);
-    if (!charts) return terminal.fail(charts.error());
-    written = write_uv_manifest(solution.scene, *set, *maps, arguments.format, *names, *charts, arguments.output);
+    written = write_uv_model(arguments, solution, *target, scene_file, *maps, *names);
     if (!written) return terminal.fail(written.error());
-    for (const std::string& warning : chart_warnings(*set, *maps)) terminal.note("warning: " + warning);
-    terminal.note(fmt::format("{} texels on surfaces in {} of {}, in {} {} ({}); {:.1f} s", maps->texels, set->name,
-                              set->file, maps->maps.size(), maps->maps.size() == 1 ? "map" : "maps",
+    note_curved(maps->curved, terminal);
+    for (const std::string& warning : chart_warnings(set, *maps)) terminal.note("warning: " + warning);
+    if (target->unwrapped)
+        terminal.note(fmt::format("{} charts cover {:.0f}% of the map, at {:.4g} texels per metre",
+                                  target->unwrapped->charts, 100 * target->unwrapped->filled,
+                                  target->unwrapped->density));
+    terminal.note(fmt::format("{} texels on surfaces in {} of {}, in {} {} ({}); {:.1f} s", maps->texels, set.name,
+                              set.file, maps->maps.size(), maps->maps.size() == 1 ? "map" : "maps",
                               sizes_of(maps->maps, [](const UvLightMap& map) { return map.light.size; }),
                               watch.seconds()));
     return end_of_groups(groups, *names, terminal);
@@ -122,11 +192,13 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
         load_solution(arguments.solution, Rehearsed::not_yet, arguments.light_groups ? &groups : nullptr);
     if (!solution) return terminal.fail(solution.error());
     if (arguments.light_groups && groups.empty()) return terminal.fail(no_light_groups(arguments.solution));
-    if (!arguments.uv.empty()) return bake_into_uvs(arguments, *solution, groups, terminal);
+    const CurvedFaces curved = find_curved_faces(arguments, solution->scene);
+    if (!arguments.uv.empty()) return bake_into_uvs(arguments, *solution, curved, groups, terminal);
     const RadiosityFunction light(*solution);
     const Stopwatch watch;
     BakeOptions options;
     options.density = arguments.density, options.padding = static_cast<int>(arguments.padding);
+    options.curved = &curved;
     const StopRequest& stop = terminal.limits().keep();
     const Result<LightMaps> maps = bake_light_maps(light, options, terminal.progress(), stop);
     if (!maps) return terminal.fail(maps.error());
@@ -150,6 +222,7 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
         terminal.note(fmt::format("{} is missing: scene.glb has no textures", scene_file));
     const Result<void> written = write_light_maps(*solution, *maps, format, *names, arguments.output);
     if (!written) return terminal.fail(written.error());
+    note_curved(maps->curved, terminal);
     const std::string sizes = sizes_of(maps->maps, [](const LightMap& map) { return map.size; });
     terminal.note(fmt::format("{} texels on surfaces at {} per metre, in {} {} ({}); {:.1f} s", maps->texels,
                               maps->density, maps->maps.size(), maps->maps.size() == 1 ? "map" : "maps", sizes,

@@ -61,7 +61,8 @@ std::string triple(const Vec3& v) {
 }
 
 /// Formats the texels that a face touches, with their position in space.
-std::string chart_json(const Scene& scene, SurfaceId s, const Chart& chart) {
+/// curved  the difference of the face's region if it is curved; else null
+std::string chart_json(const Scene& scene, SurfaceId s, const Chart& chart, const CurvedDifference* curved) {
     constexpr double rounding = 1e-6;
     Vec2 lo{HUGE_VAL, HUGE_VAL}, hi{-HUGE_VAL, -HUGE_VAL};
     for (const Point& p : scene.outline(s)) {
@@ -75,9 +76,10 @@ std::string chart_json(const Scene& scene, SurfaceId s, const Chart& chart) {
     const int y1 = std::clamp(static_cast<int>(std::ceil(hi.y - rounding)), y0 + 1, chart.height);
     return fmt::format(
         "    {{\"surface\": {}, \"map\": {}, \"x\": {}, \"y\": {}, \"width\": {}, \"height\": {}, \"origin\": {}, "
-        "\"du\": {}, \"dv\": {}, \"normal\": {}}}",
+        "\"du\": {}, \"dv\": {}, \"normal\": {}{}}}",
         s.value, chart.map, chart.x + x0, chart.y + y0, x1 - x0, y1 - y0, triple(chart.at({x0 + 0.5, y0 + 0.5})),
-        triple(chart.du), triple(chart.dv), triple(scene.surfaces()[s].normal));
+        triple(chart.du), triple(chart.dv), triple(scene.surfaces()[s].normal),
+        curved ? fmt::format(", \"curved_difference\": {:.6g}", curved->value()) : std::string());
 }
 
 std::string manifest(const Scene& scene, const LightMaps& light, LightMapQuantity quantity, const ToneMap& tones,
@@ -92,10 +94,12 @@ std::string manifest(const Scene& scene, const LightMaps& light, LightMapQuantit
                             m > 0 ? "," : "", light_map_stem(m), light_map_stem(m), light.maps[m].size.width,
                             light.maps[m].size.height);
     text += groups_json(groups, light.maps.size());
-    text += "\n  ],\n  \"charts\": [";
+    text += "\n  ]," + curved_json(light.curved) + "\n  \"charts\": [";
+    Field<RegionId, const CurvedDifference*> curved(scene.regions().size());
+    for (const CurvedDifference& d : light.curved.regions) curved[d.region] = &d;
     for (SurfaceId s : scene.surfaces().ids()) {
         const RegionId region = scene.surfaces()[s].region;
-        text += (s.value > 0 ? ",\n" : "\n") + chart_json(scene, s, light.charts[region.value]);
+        text += (s.value > 0 ? ",\n" : "\n") + chart_json(scene, s, light.charts[region.value], curved[region]);
     }
     return text + "\n  ]\n}\n";
 }
@@ -137,6 +141,13 @@ std::string groups_json(std::span<const std::string> groups, std::size_t maps) {
         text += "]}";
     }
     return text;
+}
+
+std::string curved_json(const CurvedDifferences& curved) {
+    if (curved.empty()) return {};
+    return fmt::format(
+        "\n  \"curved\": {{\"regions\": {}, \"rms_difference\": {:.6g}, \"largest_difference\": {:.6g}}},",
+        curved.regions.size(), curved.rms(), curved.largest());
 }
 
 std::string_view name_of(LightMapQuantity quantity) {

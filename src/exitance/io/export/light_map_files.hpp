@@ -37,6 +37,8 @@ std::string light_map_stem(std::size_t map, std::optional<std::size_t> group = {
 /// Formats the end of the list of maps in lightmaps.json and, if there are any, the light groups with the files of
 /// each.
 std::string groups_json(std::span<const std::string> groups, std::size_t maps);
+/// Formats the differences of curved regions from the solution, as a line of lightmaps.json; empty if there are none.
+std::string curved_json(const CurvedDifferences& curved);
 /// Unit of a quantity in a scene's maps.
 const char* unit_of(const Scene& scene, LightMapQuantity quantity);
 std::string_view name_of(LightMapQuantity quantity);

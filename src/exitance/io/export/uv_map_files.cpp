@@ -9,6 +9,9 @@
 #include "exitance/base/version.hpp"
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/obj/obj_writer.hpp"
+#include "exitance/io/scenes/textures/scene_textures.hpp"
 #include "exitance/measure/light_maps/texel_cover.hpp"
 
 namespace exitance {
@@ -65,6 +68,13 @@ Image preview(const UvLightMap& map, LightMapQuantity quantity, const ToneMap& t
     return image;
 }
 
+std::string unwrapped_json(const Unwrapped& unwrapped) {
+    return fmt::format(
+        "\n  \"model\": \"scene.glb\",\n  \"unwrapped\": {{\"charts\": {}, \"filled\": {:.6g}, "
+        "\"smallest_scale\": {:.6g}}},",
+        unwrapped.charts, unwrapped.filled, unwrapped.smallest_scale);
+}
+
 std::string object_json(const UvObject& o, const UvLightMap& map) {
     const double density =
         std::sqrt(static_cast<double>(map.light.size.texels()) * o.map_area / std::max(o.area, 1e-300));
@@ -101,7 +111,8 @@ Result<void> write_uv_pictures(const Scene& scene, const UvLightMaps& light, std
 
 Result<void> write_uv_manifest(const Scene& scene, const UvSet& set, const UvLightMaps& light,
                                const LightMapFormat& format, std::span<const std::string> groups,
-                               std::span<const std::string> charts, const std::string& folder) {
+                               std::span<const std::string> charts, const Unwrapped* unwrapped,
+                               const std::string& folder) {
     std::string text = fmt::format(
         "{{\n  \"version\": 1,\n  \"generator\": \"exitance {}\",\n  \"quantity\": \"{}\",\n  \"unit\": \"{}\",\n"
         "  \"uv\": {{\"file\": {}, \"set\": \"{}\"}},\n  \"padding\": {},\n  \"maps\": [",
@@ -117,7 +128,7 @@ Result<void> write_uv_manifest(const Scene& scene, const UvSet& set, const UvLig
             charts.empty() ? std::string() : fmt::format(", \"charts\": {}", json_text(charts[m])));
     }
     text += groups_json(groups, light.maps.size());
-    text += "\n  ],\n  \"objects\": [";
+    text += "\n  ]," + curved_json(light.curved) + (unwrapped ? unwrapped_json(*unwrapped) : "") + "\n  \"objects\": [";
     const char* comma = "\n";
     for (const UvObject& object : light.layout.objects) {
         if (object.triangles == 0) continue;
@@ -125,6 +136,26 @@ Result<void> write_uv_manifest(const Scene& scene, const UvSet& set, const UvLig
         comma = ",\n";
     }
     return write_file(folder + "/lightmaps.json", text + "\n  ]\n}\n");
+}
+
+Result<std::string> write_unwrapped_model(const Solution& solution, const Unwrapped& unwrapped,
+                                          const UvLightMaps& light, const LightMapFormat& format,
+                                          const std::string& folder) {
+    const Scene& scene = solution.scene;
+    ToneMap tone = make_tone_map(solution);
+    tone.curve = ToneCurve::filmic;
+    const LightMaps maps = as_region_charts(unwrapped, light);
+    if (const Result<void> written = write_light_map_glb(solution, maps, format, tone, folder + "/scene.glb"); !written)
+        return written.error();
+    const std::optional<SceneTextures> own = load_scene_textures(scene, format.scene_file);
+    const std::string name = own && own->has_second_set() ? "TEXCOORD_2" : "TEXCOORD_1";
+    if (ending(scene.file()) != ".obj") return name;
+    std::vector<Vec2> places;
+    for (const SurfaceId s : scene.surfaces().ids())
+        for (const Point& p : scene.outline(s)) places.push_back(unwrapped.place(scene.surfaces()[s].region, p));
+    const Result<void> written = write_obj(describe_polygons(scene), folder + "/scene.obj", places);
+    if (!written) return written.error();
+    return name;
 }
 
 Image draw_charts(const UvSet& set, const UvLightMaps& light, std::size_t m) {

@@ -6,6 +6,7 @@
 
 #include "exitance/io/export/light_map_files.hpp"
 #include "exitance/io/pictures/png.hpp"
+#include "exitance/measure/light_maps/unwrap.hpp"
 #include "exitance/measure/light_maps/uv_light_map.hpp"
 
 namespace exitance {
@@ -16,10 +17,18 @@ Result<void> write_uv_pictures(const Scene& scene, const UvLightMaps& light, std
                                const LightMapFormat& format, const std::string& folder);
 
 /// Writes lightmaps.json: the maps, the objects of each, and what is wrong with their charts.
-/// charts  file names of pictures of the charts, one per map, or empty
+/// charts     file names of pictures of the charts, one per map, or empty
+/// unwrapped  coordinates that were made for the maps; null: those of the file
 Result<void> write_uv_manifest(const Scene& scene, const UvSet& set, const UvLightMaps& light,
                                const LightMapFormat& format, std::span<const std::string> groups,
-                               std::span<const std::string> charts, const std::string& folder);
+                               std::span<const std::string> charts, const Unwrapped* unwrapped,
+                               const std::string& folder);
+
+/// Writes the model with the coordinates of its maps: scene.glb, as write_light_map_glb does, and scene.obj if the
+/// scene's file is OBJ. Returns the name of the coordinates in scene.glb.
+Result<std::string> write_unwrapped_model(const Solution& solution, const Unwrapped& unwrapped,
+                                          const UvLightMaps& light, const LightMapFormat& format,
+                                          const std::string& folder);
 
 /// Draws the charts of a map: every chart in a colour of its own, mirrored ones in blue, texels of which several
 /// triangles cover the same part in red, and the gutter in a darker colour.

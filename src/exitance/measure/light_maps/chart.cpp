@@ -152,7 +152,7 @@ Result<std::vector<Chart>> make_charts(const Scene& scene, double density, int m
     return charts;
 }
 
-std::vector<MapSize> pack_charts(std::vector<Chart>& charts, int padding, int most) {
+std::vector<MapSize> pack_charts(std::vector<Chart>& charts, int padding, int most, int given_width) {
     const int unit = static_cast<int>(std::bit_floor(static_cast<unsigned>(std::max(padding, 1))));
     double area = 0;
     int widest = unit;
@@ -171,7 +171,8 @@ std::vector<MapSize> pack_charts(std::vector<Chart>& charts, int padding, int mo
 
     constexpr double slack = 1.05;  // parts of a map stay empty: makes the map approximately square
     const int square = static_cast<int>(std::min(std::sqrt(slack * area), static_cast<double>(most)));
-    const int width = std::max(widest, std::min(round_up(square, unit), most / unit * unit));
+    const int width = std::max(
+        widest, given_width > 0 ? given_width / unit * unit : std::min(round_up(square, unit), most / unit * unit));
     std::vector<Skyline> maps;
     std::size_t first_open = 0;  // maps that have been full for a while are skipped
     for (const std::size_t i : order) {

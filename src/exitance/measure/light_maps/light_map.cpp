@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "exitance/base/parallel.hpp"
@@ -26,6 +27,30 @@ void store(const BakedTexel& texel, LightMap& map) {
     map.share[texel.index] = static_cast<float>(texel.share);
     map.source[texel.index] = texel.is_open ? LightMap::Source::computed : LightMap::Source::buried;
     for (std::size_t b = 0; b < bands; ++b) map.irradiance[texel.index][b] = static_cast<float>(texel.irradiance[b]);
+}
+
+/// Compares the light of curved regions with the solution.
+CurvedDifferences compare_curved(const Solution& solution, const CurvedFaces* faces, const LightMaps& light) {
+    CurvedSums sums(solution.scene, faces);
+    for (const Chart& chart : light.charts) {
+        if (!faces || !faces->is_curved(chart.region)) continue;
+        const LightMap& map = light.maps[chart.map];
+        const double area = norm(cross(chart.du, chart.dv));
+        for (int y = chart.y; y < chart.y + chart.height; ++y)
+            for (int x = chart.x; x < chart.x + chart.width; ++x) {
+                const std::size_t i = map.index(x, y);
+                const Spectrum E = map.source[i] == LightMap::Source::computed ? map.at(i) : Spectrum();
+                sums.add(chart.region, area * static_cast<double>(map.share[i]), E);
+            }
+    }
+    return sums.compare(solution);
+}
+
+/// Evaluates light at the centres of texels at the borders of curved charts.
+void fit_curved(const std::vector<std::vector<CurvedTexel>>& curved, const Chart& chart, LightMaps& out) {
+    LightMap& map = out.maps[chart.map];
+    TexelValues* const values = &map.irradiance;
+    fit_curved_borders(chart.room, curved[chart.map], {}, std::span(&values, 1), map);
 }
 
 Result<LightMaps> make_empty_maps(const Scene& scene, const BakeOptions& options) {
@@ -76,22 +101,33 @@ Result<LightMaps> bake_light_maps(const RadiosityFunction& light, const BakeOpti
     const std::vector<std::vector<TexelOutline>> outlines = make_outlines(light.stage(), out.charts);
     const MeshLight mesh_light(light);
     const MeshTexels mesh(mesh_light, light.stage(), out.charts);
+    std::optional<CurvedLight> curved;
+    if (options.curved && !options.curved->empty())
+        curved.emplace(light, *options.curved, node_texels / out.density, stop);
+    std::vector<std::vector<CurvedTexel>> curved_texels(out.maps.size());
+    for (std::size_t m = 0; curved && m < out.maps.size(); ++m) curved_texels[m].resize(out.maps[m].size.texels());
     const std::vector<ChartTile> tiles = cut_into_tiles(out.charts);
     constexpr std::size_t at_once = 256, grain = 4;
     for (std::size_t first = 0; first < tiles.size() && !stop.requested(); first += at_once) {
         progress.advance(static_cast<double>(first) / static_cast<double>(tiles.size()));
         parallel_ranges(std::min(at_once, tiles.size() - first), grain, [&](std::size_t begin, std::size_t end) {
-            TileBaker baker(light, outlines, &mesh, stop);
+            TileBaker baker(light, outlines, &mesh, curved ? &*curved : nullptr, stop);
             for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i) {
                 const Chart& chart = out.charts[tiles[i].chart];
                 LightMap& map = out.maps[chart.map];
-                for (const BakedTexel& texel : baker.bake(tiles[i], chart, map)) store(texel, map);
+                for (const BakedTexel& texel : baker.bake(tiles[i], chart, map)) {
+                    store(texel, map);
+                    if (texel.curved.is_curved) curved_texels[chart.map][texel.index] = texel.curved;
+                }
             }
         });
     }
     if (stop.requested()) return made;
-    parallel_for(out.charts.size(), 1,
-                 [&](std::size_t c) { extrapolate_texels(out.charts[c], buried_reach, out.maps[out.charts[c].map]); });
+    out.curved = compare_curved(light.solution(), options.curved, out);
+    parallel_for(out.charts.size(), 1, [&](std::size_t c) {
+        if (curved && curved->is_curved(out.charts[c].region)) fit_curved(curved_texels, out.charts[c], out);
+        extrapolate_texels(out.charts[c], buried_reach, out.maps[out.charts[c].map]);
+    });
     for (const LightMap& map : out.maps)
         out.texels += static_cast<std::size_t>(
             std::count_if(map.share.begin(), map.share.end(), [](float share) { return share > 0; }));

@@ -7,13 +7,15 @@
 #include "exitance/base/progress.hpp"
 #include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/measure/light_maps/chart.hpp"
+#include "exitance/measure/light_maps/curved_difference.hpp"
 
 namespace exitance {
 
 struct BakeOptions {
-    double density = 0;  ///< Texels per metre; 0: `automatic_density`.
-    int padding = 4;     ///< Texels around every chart, at least 1.
-    int most = 8192;     ///< Limit on texels along a side of a map, for display hardware.
+    double density = 0;                   ///< Texels per metre; 0: `automatic_density`.
+    int padding = 4;                      ///< Texels around every chart, at least 1.
+    int most = 8192;                      ///< Limit on texels along a side of a map, for display hardware.
+    const CurvedFaces* curved = nullptr;  ///< Faces with the normals of the scene's file; null: all are flat.
 };
 
 /// One image of irradiance, rows from top to bottom.
@@ -48,6 +50,7 @@ struct LightMaps {
     std::vector<Chart> charts;  ///< One per region, in the order of their ids.
     std::vector<LightMap> maps;
     std::size_t texels = 0;  ///< Number of texels that are on surfaces, wholly or in part.
+    CurvedDifferences curved;
 };
 
 /// Automatic density: 64 texels per metre. In scenes smaller than 4 m it is higher, with 256 to 512 texels along the
@@ -61,7 +64,8 @@ double automatic_density(const Scene& scene);
 /// and the points only correct the difference: shadow edges are then as sharp as the mesh and free of noise. Points
 /// that another surface covers, or that are inside a closed body, do not count, so that no darkness leaks from below
 /// objects. Texels without other points, and those outside the region, are extrapolated from neighbouring texels:
-/// linearly in the first ring outside, else by means (extrapolate_texels).
+/// linearly in the first ring outside, else by means (extrapolate_texels). Curved regions have the light of the surface
+/// that their faces approximate (CurvedLight), from two to sixteen points.
 /// Same bits on any number of threads. About 5 us per texel in a room with few lamps.
 /// Returns an error of code `usage` if the maps would have more than 2^27 texels; after a stop request the maps are
 /// incomplete.

@@ -17,11 +17,13 @@ std::vector<ChartTile> cut_into_tiles(std::span<const Chart> charts) {
 }
 
 TileBaker::TileBaker(const RadiosityFunction& light, std::span<const std::vector<TexelOutline>> outlines,
-                     const MeshTexels* mesh, const StopRequest& stop)
+                     const MeshTexels* mesh, const CurvedLight* curved, const StopRequest& stop)
     : stage_(light.stage()),
       finder_(light.places()),
       outlines_(outlines),
       mesh_(mesh),
+      curved_(curved),
+      stop_(stop),
       light_(light, texel_points, 0, 1, SpotPoints::mirrored) {
     if (mesh) light_.use(mesh->light());
     light_.use(stop);
@@ -33,13 +35,19 @@ std::span<const BakedTexel> TileBaker::bake(const ChartTile& tile, const Chart& 
     if (mesh_) mesh_->integrate(tile.chart, tile.rectangle, integrals_);
     points_.clear(), spots_.clear(), texels_.clear();
     std::array<std::uint32_t, static_cast<std::size_t>(tile_side * tile_side)> texel_of;
+    const bool is_curved = curved_ && curved_->is_curved(chart.region);
     for (const TexelCover& cover : covers_) {
         Spot spot{chart.region, cover.x - tile.rectangle.x, cover.y - tile.rectangle.y,
                   static_cast<std::uint32_t>(map.index(chart.x + cover.x, chart.y + cover.y)),
                   static_cast<std::uint32_t>(points_.size())};
         texel_of[static_cast<std::size_t>(spot.y * tile_side + spot.x)] = static_cast<std::uint32_t>(texels_.size());
-        texels_.push_back({spot.pixel, cover.share, false, {}});
-        add_open_points(chart, cover);
+        texels_.push_back({spot.pixel, cover.share, false, {}, {}});
+        find_open_points(chart, cover);
+        if (is_curved) {
+            bake_curved(chart, cover, texels_.back());
+            continue;
+        }
+        for (const MeasuredPlace& place : open_) points_.push_back(place.x);
         spot.count = static_cast<std::uint32_t>(points_.size()) - spot.first;
         if (!integrals_.empty())
             spot.meshed =
@@ -55,16 +63,31 @@ std::span<const BakedTexel> TileBaker::bake(const ChartTile& tile, const Chart& 
     return texels_;
 }
 
-/// Adds the uncovered points of a texel. If the first four are all covered or all uncovered, so are the others.
-void TileBaker::add_open_points(const Chart& chart, const TexelCover& cover) {
+/// Finds the uncovered points of a texel. If the first four are all covered or all uncovered, so are the others.
+void TileBaker::find_open_points(const Chart& chart, const TexelCover& cover) {
     constexpr std::size_t first_points = 4;
     const Normal& n = stage_.scene.regions()[chart.region].plane.n;
-    std::size_t found = 0;
+    open_.clear();
     for (std::size_t k = 0; k < texel_points; ++k) {
-        if (k == first_points && found == 0) return;
-        const Point x = finder_.find(chart.at(places_[cover.first + k]), n).x;
-        if ((k >= first_points && found == k) || is_in_open(stage_, x, n, chart.region)) points_.push_back(x), ++found;
+        if (k == first_points && open_.empty()) return;
+        const MeasuredPlace place = finder_.find(chart.at(places_[cover.first + k]), n);
+        if ((k >= first_points && open_.size() == k) || is_in_open(stage_, place.x, n, chart.region))
+            open_.push_back(place);
     }
+}
+
+/// Sets the light of a texel on a curved region.
+void TileBaker::bake_curved(const Chart& chart, const TexelCover& cover, BakedTexel& texel) {
+    if (open_.empty() || stop_.requested()) return;
+    for (MeasuredPlace& place : open_) place.region = chart.region;
+    texel.is_open = true;
+    const bool is_whole = cover.share == 1 && open_.size() == texel_points;
+    const auto [irradiance, count] = curved_->mean_at(open_, is_whole, curved_work_);
+    for (std::size_t b = 0; b < bands; ++b) texel.irradiance[b] = std::max(0.0, irradiance[b]);
+    Vec2 middle;
+    for (std::size_t k = 0; k < count; ++k)
+        middle = middle + (1.0 / static_cast<double>(count)) * chart.place(open_[k].x);
+    texel.curved = {static_cast<float>(middle.x - cover.x - 0.5), static_cast<float>(middle.y - cover.y - 0.5), true};
 }
 
 }  // namespace exitance

@@ -3,6 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "exitance/measure/light_maps/curved_borders.hpp"
+#include "exitance/measure/light_maps/curved_light.hpp"
 #include "exitance/measure/light_maps/light_map.hpp"
 #include "exitance/measure/light_maps/mesh_texels.hpp"
 #include "exitance/measure/light_maps/texel_cover.hpp"
@@ -24,6 +26,7 @@ struct BakedTexel {
     double share = 0;       ///< Share of the texel that the chart covers, in (0, 1].
     bool is_open = false;   ///< False: another surface or a body covers that part, so it has no light of its own.
     Spectrum irradiance;    ///< Mean over the uncovered part, W/m^2; 0 if there is none.
+    CurvedTexel curved = {};
 };
 
 /// Bakes tiles one after the other, as described at bake_light_maps. One per thread; keeps its memory.
@@ -31,25 +34,31 @@ class TileBaker {
   public:
     /// outlines  triangles and parallelograms of each chart
     /// mesh      exact integrals over a discontinuity mesh; null: points only
+    /// curved    light of curved regions; null: all regions are flat
     /// All arguments must outlive the object.
     TileBaker(const RadiosityFunction& light, std::span<const std::vector<TexelOutline>> outlines,
-              const MeshTexels* mesh, const StopRequest& stop);
+              const MeshTexels* mesh, const CurvedLight* curved, const StopRequest& stop);
 
     /// Returns the texels that the chart covers in a tile. The range is valid until the next call.
     std::span<const BakedTexel> bake(const ChartTile& tile, const Chart& chart, const LightMap& map);
 
   private:
-    void add_open_points(const Chart& chart, const TexelCover& cover);
+    void find_open_points(const Chart& chart, const TexelCover& cover);
+    void bake_curved(const Chart& chart, const TexelCover& cover, BakedTexel& texel);
 
     const Stage& stage_;
     const PlaceFinder& finder_;
     std::span<const std::vector<TexelOutline>> outlines_;
     const MeshTexels* mesh_;
+    const CurvedLight* curved_;
+    const StopRequest& stop_;
+    CurvedLight::Workspace curved_work_;
     TileLight light_;
     TexelCutter cutter_;
     std::vector<MeshTexels::Integral> integrals_;
     std::vector<TexelCover> covers_;
     std::vector<Vec2> places_;
+    std::vector<MeasuredPlace> open_;  ///< Uncovered points of the last texel.
     std::vector<Point> points_;
     std::vector<Spot> spots_;
     std::vector<BakedTexel> texels_;

@@ -121,8 +121,13 @@ class ChartMaker {
 /// Sums the light of a map's texels, weighted by area.
 class TexelSums {
   public:
-    explicit TexelSums(UvLightMap& map)
-        : map_(map), open_(map.light.size.texels()), largest_(open_.size()), is_shared_(open_.size()) {}
+    /// has_curved  true if some regions are curved
+    TexelSums(UvLightMap& map, bool has_curved)
+        : map_(map),
+          open_(map.light.size.texels()),
+          largest_(open_.size()),
+          is_shared_(open_.size()),
+          curved_(has_curved ? open_.size() : 0) {}
 
     void add(const BakedTexel& texel, const Material& material, std::uint32_t chart) {
         const std::size_t i = texel.index;
@@ -132,6 +137,10 @@ class TexelSums {
         if (share > largest_[i]) largest_[i] = share, map_.chart[i] = chart;
         if (!texel.is_open) return;
         open_[i] += share;
+        if (texel.curved.is_curved) {
+            curved_[i].x += share * texel.curved.x, curved_[i].y += share * texel.curved.y;
+            curved_[i].is_curved = true;
+        }
         const Spectrum radiosity = material.exitance + material.reflectance * texel.irradiance;
         for (std::size_t b = 0; b < bands; ++b) {
             map_.light.irradiance[i][b] += share * static_cast<float>(texel.irradiance[b]);
@@ -150,14 +159,21 @@ class TexelSums {
             if (open_[i] == 0) continue;
             for (std::size_t b = 0; b < bands; ++b)
                 light.irradiance[i][b] /= open_[i], map_.radiosity[i][b] /= open_[i];
+            if (!curved_.empty()) curved_[i].x /= open_[i], curved_[i].y /= open_[i];
         }
+        if (curved_.empty()) return;
+        for (std::size_t i = 0; i < open_.size(); ++i) curved_[i].is_curved &= !is_shared_[i];
+        TexelValues* const values[] = {&map_.light.irradiance, &map_.radiosity};
+        const Chart::Rectangle whole{0, 0, map_.light.size.width, map_.light.size.height};
+        fit_curved_borders(whole, curved_, map_.chart, values, map_.light);
     }
 
   private:
     UvLightMap& map_;
-    std::vector<float> open_;      ///< Uncovered area of each texel's parts.
-    std::vector<float> largest_;   ///< Area of the largest part.
-    std::vector<bool> is_shared_;  ///< True if several charts have parts in a texel.
+    std::vector<float> open_;          ///< Uncovered area of each texel's parts.
+    std::vector<float> largest_;       ///< Area of the largest part.
+    std::vector<bool> is_shared_;      ///< True if several charts have parts in a texel.
+    std::vector<CurvedTexel> curved_;  ///< Empty if no region is curved.
 };
 
 /// Number of texels along a side of a square map for a density: a power of two.
@@ -208,11 +224,21 @@ Result<void> make_empty_maps(const Scene& scene, const UvBakeOptions& options, U
     return {};
 }
 
+/// Texels per metre of the finest map.
+double largest_density(const UvLightMaps& light) {
+    double largest = 0;
+    for (const UvLightMap& map : light.maps) largest = std::max(largest, map.density);
+    return largest;
+}
+
 /// Bakes all charts and adds their light to the sums, in the order of the charts.
-void bake_charts(const RadiosityFunction& light, const LinearCharts& linear, UvLightMaps& out, Progress& progress,
-                 const StopRequest& stop) {
+void bake_charts(const RadiosityFunction& light, const LinearCharts& linear, const CurvedFaces* faces, UvLightMaps& out,
+                 Progress& progress, const StopRequest& stop) {
+    std::optional<CurvedLight> curved;
+    if (faces && !faces->empty()) curved.emplace(light, *faces, node_texels / largest_density(out), stop);
+    CurvedSums curved_sums(light.solution().scene, faces);
     std::vector<TexelSums> sums;
-    for (UvLightMap& map : out.maps) sums.emplace_back(map);
+    for (UvLightMap& map : out.maps) sums.emplace_back(map, curved.has_value());
     const std::vector<ChartTile> tiles = cut_into_tiles(linear.charts);
     constexpr std::size_t at_once = 4096, grain = 8;
     std::vector<std::vector<BakedTexel>> baked;
@@ -221,7 +247,7 @@ void bake_charts(const RadiosityFunction& light, const LinearCharts& linear, UvL
         const std::size_t count = std::min(at_once, tiles.size() - first);
         baked.assign(count, {});
         parallel_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
-            TileBaker baker(light, linear.outlines, nullptr, stop);
+            TileBaker baker(light, linear.outlines, nullptr, curved ? &*curved : nullptr, stop);
             for (std::size_t i = begin; i < end && !stop.requested(); ++i) {
                 const Chart& chart = linear.charts[tiles[first + i].chart];
                 const std::span<const BakedTexel> texels =
@@ -233,11 +259,15 @@ void bake_charts(const RadiosityFunction& light, const LinearCharts& linear, UvL
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t c = tiles[first + i].chart;
             const Material& material = light.solution().scene.material(linear.charts[c].region);
-            for (const BakedTexel& texel : baked[i])
+            const double area = norm(cross(linear.charts[c].du, linear.charts[c].dv));
+            for (const BakedTexel& texel : baked[i]) {
                 sums[linear.charts[c].map].add(texel, material, linear.chart_of[c]);
+                curved_sums.add(linear.charts[c].region, area * texel.share, texel.irradiance);
+            }
         }
     }
     for (TexelSums& sum : sums) sum.finish();
+    out.curved = curved_sums.compare(light.solution());
 }
 
 /// Finds the quarters of texels that a triangle of their chart touches.
@@ -281,7 +311,7 @@ Result<UvLightMaps> bake_uv_light_maps(const RadiosityFunction& light, const UvS
     if (const Result<void> made = make_empty_maps(scene, options, out); !made) return made.error();
     progress.phase("bake");
     const LinearCharts linear = ChartMaker(scene, set, out.layout, out.maps).make();
-    bake_charts(light, linear, out, progress, stop);
+    bake_charts(light, linear, options.curved, out, progress, stop);
     if (stop.requested()) return out;
     mark_quarters(linear, out);
     parallel_for(out.maps.size(), 1, [&](std::size_t m) { fill_gutters(out.maps[m], options.padding); });

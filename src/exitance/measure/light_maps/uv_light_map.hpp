@@ -15,6 +15,7 @@ struct UvBakeOptions {
     double density = 0;  ///< Texels per metre, at least, on average over a map; 0: `automatic_density`.
     int padding = 4;     ///< Texels beyond every chart that are extrapolated, at least 1.
     int most = 8192;     ///< Limit on texels along a side of a map, for display hardware.
+    const CurvedFaces* curved = nullptr;  ///< Faces with the normals of the scene's file; null: all are flat.
 };
 
 /// Irradiance and radiosity in the texture coordinates of a scene's file.
@@ -36,6 +37,7 @@ struct UvLightMaps {
     std::vector<UvLightMap> maps;
     int padding = 0;
     std::size_t texels = 0;  ///< Number of texels that charts cover, wholly or in part.
+    CurvedDifferences curved;
 };
 
 /// Bakes the function that `probe` evaluates into the texture coordinates of a scene's file, see bake_light_maps. A

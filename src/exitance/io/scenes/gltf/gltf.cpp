@@ -52,6 +52,7 @@ class GltfReader {
     GltfAccessor accessor_of(const tinygltf::Accessor& in) const;
     void read_views_and_lamps();
     void read_places(const tinygltf::Primitive& in, GltfModel::Primitive& out);
+    void read_normals(const tinygltf::Primitive& in, GltfModel::Primitive& out);
     void read_colours(const tinygltf::Primitive& in, GltfModel::Primitive& out);
     GltfModel::TextureUse texture_use(int index, int place_set, const tinygltf::ExtensionMap& extensions) const;
     void read_pictures();
@@ -165,7 +166,7 @@ bool GltfReader::read_primitive(const tinygltf::Primitive& in, const std::string
     if (in.material >= 0 && !names_one(in.material, in_.materials))
         return error(fmt::format("mesh '{}' has material {} of {}", mesh, in.material, in_.materials.size()));
     p.material = in.material;
-    if (with_textures_) read_places(in, p), read_colours(in, p);
+    if (with_textures_) read_places(in, p), read_normals(in, p), read_colours(in, p);
     out.primitives.push_back(p);
     return true;
 }
@@ -186,6 +187,15 @@ void GltfReader::read_places(const tinygltf::Primitive& in, GltfModel::Primitive
         const Result<GltfRows> held = accessors_->rows(accessor_of(accessor), 2, false, "places");
         if (held && held->size() >= out.positions.size()) out.places[set] = *held;
     }
+}
+
+void GltfReader::read_normals(const tinygltf::Primitive& in, GltfModel::Primitive& out) {
+    const auto found = in.attributes.find("NORMAL");
+    if (found == in.attributes.end() || !names_one(found->second, in_.accessors)) return;
+    const tinygltf::Accessor& accessor = in_.accessors[static_cast<std::size_t>(found->second)];
+    if (accessor.type != TINYGLTF_TYPE_VEC3) return;
+    const Result<GltfRows> held = accessors_->rows(accessor_of(accessor), 3, false, "normals");
+    if (held && held->size() >= out.positions.size()) out.normals = *held;
 }
 
 /// Reads the colours of vertices. Those of exitance's own exports are light and not paint, and are ignored.

@@ -109,13 +109,21 @@ class TriangleVisitor {
         const std::size_t count = p.has_indices ? p.indices.size() : p.positions.size();
         const std::size_t triangles = p.mode == GltfModel::Mode::triangles ? count / 3 : count < 3 ? 0 : count - 2;
         const bool is_mirrored = to_world.determinant() < 0;
+        // Cofactors of the matrix: normals stay perpendicular to surfaces that are scaled unevenly.
+        const double side = is_mirrored ? -1 : 1;
+        const Affine turn{side * cross(to_world.y, to_world.z),
+                          side * cross(to_world.z, to_world.x),
+                          side * cross(to_world.x, to_world.y),
+                          {}};
         for (std::size_t t = 0; t < triangles; ++t) {
-            GltfTriangle triangle{node, &p, vertices_of(p, t), {}};
+            GltfTriangle triangle{node, &p, vertices_of(p, t), {}, {}};
             std::array<std::size_t, 3>& v = triangle.vertices;
             if (std::max({v[0], v[1], v[2]}) >= p.positions.size()) continue;
             if (is_mirrored) std::swap(v[1], v[2]);
             std::array<Point, 3>& corner = triangle.corners;
             for (std::size_t k = 0; k < 3; ++k) corner[k] = to_world.point(p.positions.point(v[k]));
+            for (std::size_t k = 0; k < 3 && p.normals.size() > 0; ++k)
+                if (const Vec3 n = turn.vector(p.normals.point(v[k])); norm(n) > 0) triangle.normals[k] = normalized(n);
             if (norm(cross(corner[1] - corner[0], corner[2] - corner[0])) > 0) visit_(triangle);
         }
     }

@@ -62,6 +62,7 @@ struct GltfModel {
         int material = -1;
         Mode mode = Mode::triangles;
         std::array<GltfRows, 4> places;  ///< TEXCOORD_0 to 3 if textures were requested; empty if missing.
+        GltfRows normals;                ///< NORMAL; empty if missing or not requested.
         GltfRows colours;  ///< COLOR_0, which multiplies the base colour; empty if missing or not requested.
     };
     struct Mesh {
@@ -133,6 +134,7 @@ struct GltfTriangle {
     const GltfModel::Primitive* primitive = nullptr;
     std::array<std::size_t, 3> vertices{};  ///< Rows of the primitive.
     std::array<Point, 3> corners;           ///< Metres.
+    std::array<Vec3, 3> normals{};          ///< Unit vectors; zero if the file has none or they were not requested.
 };
 
 /// Calls visit(triangle) for every triangle with an area of every node's mesh, in the order in which read_gltf reads
@@ -147,8 +149,8 @@ std::optional<Affine> gltf_transform(std::span<const double> matrix, std::span<c
 
 /// Reads a model from glTF's JSON or binary container, with the buffers and pictures in separate files. Faults in
 /// optional parts are added to `findings`. Every index, count, offset and stride is checked against the data before
-/// use, and no data are copied out of buffers. `with_textures` also reads texture coordinates and pictures; faulty ones
-/// are omitted.
+/// use, and no data are copied out of buffers. `with_textures` also reads normals, texture coordinates and pictures;
+/// faulty ones are omitted.
 Result<GltfModel> load_gltf_model(const std::string& path, std::vector<Finding>& findings, bool with_textures = false);
 
 }  // namespace exitance

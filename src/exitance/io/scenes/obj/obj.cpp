@@ -32,8 +32,9 @@ class ObjReader {
     void parse();
     void read_point();
     void read_place();
+    void read_normal();
     void read_face();
-    void add_place(std::string_view corner, std::vector<std::uint32_t>& out) const;
+    static void add_index(std::string_view corner, int number, std::size_t count, std::vector<std::uint32_t>& out);
     void read_libraries();
     void read_library(std::string_view name);
     void use_material(std::string_view name);
@@ -43,6 +44,7 @@ class ObjReader {
     void take_panes();
     void take_textures();
     std::vector<Vec2> places_of(std::size_t face) const;
+    std::vector<Vec3> normals_of(std::size_t face) const;
 
     void find(Finding::Kind kind, int line, std::string message, std::string hint = "") {
         out_.findings.push_back({kind, path_, line, std::move(message), std::move(hint)});
@@ -69,6 +71,10 @@ class ObjReader {
     std::vector<Vec2> places_;           ///< vt, with (0, 0) at the picture's upper left.
     /// Per face, the texture coordinates of its corners; empty if it has none.
     std::vector<std::vector<std::uint32_t>> places_of_face_;
+    bool with_normals_ = false;
+    std::vector<Vec3> normals_;  ///< vn, if `with_normals_`.
+    std::vector<std::vector<std::uint32_t>>
+        normals_of_face_;  ///< Like `places_of_face_`; empty unless `with_normals_`.
 };
 
 void ObjReader::parse() {
@@ -78,6 +84,8 @@ void ObjReader::parse() {
             read_point();
         else if (key == "vt")
             read_place();
+        else if (key == "vn" && with_normals_)
+            read_normal();
         else if (key == "f" || key == "fo")
             read_face();
         else if (key == "usemtl")
@@ -97,6 +105,7 @@ ReadScene ObjReader::read() {
 }
 
 std::vector<ObjPlaces> ObjReader::read_places() {
+    with_normals_ = true;
     parse();
     std::vector<ObjPlaces> out;
     for (std::size_t f = 0; f < out_.description.faces.size(); ++f) {
@@ -105,6 +114,7 @@ std::vector<ObjPlaces> ObjReader::read_places() {
         for (const std::uint32_t c : out_.description.faces[f].corners)
             face.corners.push_back(out_.description.points[c]);
         face.places = places_of(f);
+        face.normals = normals_of(f);
     }
     return out;
 }
@@ -138,12 +148,19 @@ void ObjReader::read_place() {
     places_.push_back(is_place ? Vec2{place.x, 1 - place.y} : Vec2{none, none});
 }
 
+/// Reads a normal. An unreadable one becomes NaN, and faces that use it have none.
+void ObjReader::read_normal() {
+    Vec3& n = normals_.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k)
+        if (number_of_word(lines_.word(), n[k]) != NumberKind::finite) n.x = std::numeric_limits<double>::quiet_NaN();
+}
+
 void ObjReader::read_face() {
     auto& description = out_.description;
     SceneDescription::Face face;
     face.line = lines_.number();
     face.corners.reserve(4);
-    std::vector<std::uint32_t> places;
+    std::vector<std::uint32_t> places, normals;
     while (!lines_.rest().empty()) {
         const std::string_view word = lines_.word();
         const auto index = parse_integer(word.substr(0, word.find('/')));
@@ -153,7 +170,8 @@ void ObjReader::read_face() {
         if (*index < -count) return error(fmt::format("face names vertex {}, of {} before it", *index, count));
         if (*index > max_points) return error(fmt::format("face names vertex {}", *index));
         face.corners.push_back(static_cast<std::uint32_t>(*index > 0 ? *index - 1 : count + *index));
-        add_place(word, places);
+        add_index(word, 1, places_.size(), places);
+        if (with_normals_) add_index(word, 2, normals_.size(), normals);
     }
     if (!has_use_) {
         use_material(default_material);
@@ -165,17 +183,21 @@ void ObjReader::read_face() {
     if (!has_group_) use_group("");
     face.material = use_, face.group = group_;
     if (places.size() != face.corners.size()) places.clear();
+    if (normals.size() != face.corners.size()) normals.clear();
     description.faces.push_back(std::move(face));
     places_of_face_.push_back(std::move(places));
+    if (with_normals_) normals_of_face_.push_back(std::move(normals));
 }
 
-/// Reads the texture coordinate of a corner, the second number of "1/2/3".
-void ObjReader::add_place(std::string_view corner, std::vector<std::uint32_t>& out) const {
-    const std::size_t slash = corner.find('/');
-    if (slash == corner.npos) return;
-    const std::string_view rest = corner.substr(slash + 1);
-    const auto index = parse_integer(rest.substr(0, rest.find('/')));
-    const auto count = static_cast<long long>(places_.size());
+/// Reads the texture coordinate or the normal of a corner, number 1 or 2 of "0/1/2", an index into `size` items.
+void ObjReader::add_index(std::string_view corner, int number, std::size_t size, std::vector<std::uint32_t>& out) {
+    for (; number > 0; --number) {
+        const std::size_t slash = corner.find('/');
+        if (slash == corner.npos) return;
+        corner.remove_prefix(slash + 1);
+    }
+    const auto index = parse_integer(corner.substr(0, corner.find('/')));
+    const auto count = static_cast<long long>(size);
     if (!index || *index == 0 || *index < -count || *index > max_points) return;
     out.push_back(static_cast<std::uint32_t>(*index > 0 ? *index - 1 : count + *index));
 }
@@ -236,9 +258,11 @@ void ObjReader::check_indices() {
     for (std::size_t f = 0; f < faces.size(); ++f) {
         if (is_broken(faces[f])) continue;
         if (kept != f) faces[kept] = std::move(faces[f]), places_of_face_[kept] = std::move(places_of_face_[f]);
+        if (kept != f && with_normals_) normals_of_face_[kept] = std::move(normals_of_face_[f]);
         ++kept;
     }
     faces.resize(kept), places_of_face_.resize(kept);
+    if (with_normals_) normals_of_face_.resize(kept);
 }
 
 void ObjReader::resolve_materials() {
@@ -277,6 +301,16 @@ std::vector<Vec2> ObjReader::places_of(std::size_t face) const {
     for (const std::uint32_t place : places_of_face_[face]) {
         if (place >= places_.size() || std::isnan(places_[place].x)) return {};
         out.push_back(places_[place]);
+    }
+    return out;
+}
+
+/// Normals of a face's corners; empty if it has none.
+std::vector<Vec3> ObjReader::normals_of(std::size_t face) const {
+    std::vector<Vec3> out;
+    for (const std::uint32_t n : normals_of_face_[face]) {
+        if (n >= normals_.size() || std::isnan(normals_[n].x)) return {};
+        out.push_back(normals_[n]);
     }
     return out;
 }

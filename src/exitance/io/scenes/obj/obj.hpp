@@ -29,14 +29,15 @@ struct ReadScene {
 /// reported, with file and line. O(size of the file).
 ReadScene read_obj(const std::string& path);
 
-/// A face of an OBJ file with its texture coordinates.
+/// A face of an OBJ file with its texture coordinates and normals.
 struct ObjPlaces {
     int line = 0;
     std::vector<Point> corners;  ///< In the file's coordinates.
     std::vector<Vec2> places;    ///< One per corner, (0, 0) at the picture's upper left; empty if there are none.
+    std::vector<Vec3> normals;   ///< One per corner, of any length; empty if there are none.
 };
 
-/// Reads the readable faces of an OBJ file with their texture coordinates, in the order of the file. Error
+/// Reads the readable faces of an OBJ file with their texture coordinates and normals, in the order of the file. Error
 /// (cannot_read): the file cannot be read.
 Result<std::vector<ObjPlaces>> read_obj_places(const std::string& path);
 

@@ -3,24 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
-#include <unordered_map>
 
 #include "exitance/base/triangulation.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/gltf/gltf_model.hpp"
-#include "exitance/io/scenes/obj/obj.hpp"
+#include "exitance/io/scenes/textures/obj_match.hpp"
 #include "exitance/scene/locator.hpp"
 
 namespace exitance {
 namespace {
 
 Error no_set(const std::string& path, const std::string& name, const std::string& sets) {
-    return {ErrorCode::usage, fmt::format("{} has no texture coordinates '{}'", path, name), "--uv",
-            sets.empty() ? "unwrap the model in your modeller, or leave --uv out: bake then makes charts of its own"
-                         : "it has " + sets};
+    return {
+        ErrorCode::usage, fmt::format("{} has no texture coordinates '{}'", path, name), "--uv",
+        sets.empty() ? "use --uv unwrap, which makes coordinates and writes the model with them" : "it has " + sets};
 }
 
 /// Error about faces without coordinates, by object; none if there are none.
@@ -42,7 +40,8 @@ Result<void> require_all(const Scene& scene, const Field<SurfaceId, std::uint8_t
     if (missing.size() > max_names) names += fmt::format(" and {} more objects", missing.size() - max_names);
     return Error{ErrorCode::bad_input,
                  fmt::format("{} of {} faces have no texture coordinates: {}", count, scene.surfaces().size(), names),
-                 path, "unwrap these objects in your modeller, or leave --uv out: bake then makes charts of its own"};
+                 path,
+                 "unwrap these objects in your modeller, or use --uv unwrap: bake then makes coordinates for all"};
 }
 
 /// Makes names differ: the second "lamp" becomes "lamp #2".
@@ -141,21 +140,21 @@ Result<UvSet> load_gltf_uvs(const Scene& scene, const std::string& path, const s
     return GltfUvs(scene, *model, chosen, path).find();
 }
 
-/// Matches a scene's faces with those of its OBJ file, by their lines.
+/// Adds the texture coordinates of an OBJ file's faces to a scene's faces.
 class ObjUvs {
   public:
     ObjUvs(const Scene& scene, std::vector<ObjPlaces> faces, const std::string& path)
-        : scene_(scene), faces_(std::move(faces)), has_places_(scene.surfaces().size()) {
-        for (std::size_t f = 0; f < faces_.size(); ++f) face_of_line_.emplace(faces_[f].line, f);
+        : scene_(scene), match_(scene, std::move(faces)), has_places_(scene.surfaces().size()) {
         out_.file = path, out_.name = "vt";
         UniqueNames names;
         for (const std::string& group : scene.groups()) out_.objects.push_back(names.add(group));
     }
 
     Result<UvSet> find() {
-        if (std::all_of(faces_.begin(), faces_.end(), [](const ObjPlaces& face) { return face.places.empty(); }))
+        if (std::all_of(match_.faces().begin(), match_.faces().end(),
+                        [](const ObjPlaces& face) { return face.places.empty(); }))
             return no_set(out_.file, out_.name, "");
-        if (!align()) return changed();
+        if (!match_.is_aligned()) return changed();
         for (SurfaceId s : scene_.surfaces().ids())
             if (!add(s)) return changed();
         if (const Result<void> complete = require_all(scene_, has_places_, out_.file); !complete)
@@ -164,70 +163,20 @@ class ObjUvs {
     }
 
   private:
-    const ObjPlaces* face_of(SurfaceId s) const {
-        const auto face = face_of_line_.find(scene_.surfaces()[s].line);
-        return face == face_of_line_.end() ? nullptr : &faces_[face->second];
-    }
     Error changed() const {
         return {ErrorCode::bad_input, "the file's faces are not those of the solution", out_.file,
                 "the file was changed after the solve: solve it again"};
     }
 
-    /// Finds the unit of length and the upright axis with which the file was read, from the face with the largest
-    /// extent. Returns false if neither axis fits.
-    bool align() {
-        double longest = 0;
-        SurfaceId best;
-        for (SurfaceId s : scene_.surfaces().ids()) {
-            const ObjPlaces* face = face_of(s);
-            if (!face || face->corners.size() != scene_.outline(s).size()) continue;
-            if (const double length = perimeter(scene_.outline(s)); length > longest) longest = length, best = s;
-        }
-        if (best.is_none()) return true;  // all faces were repaired, or have no line
-        const std::vector<Point> corners = face_of(best)->corners;
-        scale_ = perimeter(scene_.outline(best)) / perimeter(corners);
-        // Units of length differ by more than rounding from 1.
-        constexpr double rounding = 1e-6;
-        if (std::abs(scale_ - 1) < rounding) scale_ = 1;
-        for (const bool turns : {false, true}) {
-            turns_ = turns;
-            if (std::all_of(corners.begin(), corners.end(), [&](const Point& c) {
-                    return distance_to_corner(scene_.outline(best), in_scene(c)) < tolerance();
-                }))
-                return true;
-        }
-        return false;
-    }
-
-    static double perimeter(std::span<const Point> outline) {
-        double sum = 0;
-        for (std::size_t i = 0; i < outline.size(); ++i) sum += norm(outline[(i + 1) % outline.size()] - outline[i]);
-        return sum;
-    }
-    static double distance_to_corner(std::span<const Point> outline, const Point& p) {
-        double least = HUGE_VAL;
-        for (const Point& q : outline) least = std::min(least, norm(q - p));
-        return least;
-    }
-    Point in_scene(const Point& p) const { return scale_ * (turns_ ? Point{p.x, -p.z, p.y} : p); }
-    double tolerance() const {
-        constexpr double of_size = 1e-5;  // as Locator
-        return of_size * scene_.size();
-    }
-
     /// Adds the triangles of a face. Returns false if it does not lie where the file's face does.
     bool add(SurfaceId s) {
-        const ObjPlaces* face = face_of(s);
+        const ObjPlaces* face = match_.face_of(s);
         if (!face || face->places.empty()) return true;
-        std::vector<Point> corners;
-        for (const Point& c : face->corners) corners.push_back(in_scene(c));
+        const std::optional<std::vector<CornerMean>> corners = match_.corners(s);
+        if (!corners) return false;
         const std::span<const Point> outline = scene_.outline(s);
         std::vector<Vec2> places;
-        for (const Point& p : outline) {
-            const std::optional<Vec2> place = place_of(p, corners, face->places);
-            if (!place) return false;
-            places.push_back(*place);
-        }
+        for (const CornerMean& mean : *corners) places.push_back(mean.of(std::span(face->places)));
         for (const auto& [i, j, k] : triangulate(outline, scene_.surfaces()[s].normal))
             out_.triangles.push_back({s,
                                       scene_.surfaces()[s].group.value,
@@ -237,34 +186,8 @@ class ObjUvs {
         return true;
     }
 
-    /// Texture coordinates of a corner: those of the file's corner there, or interpolated on the triangle of three of
-    /// its corners that contains the point; none if the point is outside the face.
-    std::optional<Vec2> place_of(const Point& p, std::span<const Point> corners, std::span<const Vec2> places) const {
-        for (std::size_t i = 0; i < corners.size(); ++i)
-            if (norm(corners[i] - p) < tolerance()) return places[i];
-        // A point may be outside by this share of a triangle, because faces that are not planar are flattened.
-        constexpr double outside = 0.01;
-        double best = -outside;
-        std::optional<Vec2> out;
-        for (std::size_t i = 2; i < corners.size(); ++i) {
-            const Vec3 a = corners[i - 1] - corners[0], b = corners[i] - corners[0], d = p - corners[0];
-            const Vec3 n = cross(a, b);
-            const double area = squared_norm(n);
-            if (!(area > 0)) continue;
-            const double s = dot(cross(d, b), n) / area, t = dot(cross(a, d), n) / area;
-            const double least = std::min({s, t, 1 - s - t});
-            if (least <= best) continue;
-            best = least;
-            out = places[0] + s * (places[i - 1] - places[0]) + t * (places[i] - places[0]);
-        }
-        return out;
-    }
-
     const Scene& scene_;
-    std::vector<ObjPlaces> faces_;
-    std::unordered_map<int, std::size_t> face_of_line_;
-    double scale_ = 1;
-    bool turns_ = false;
+    ObjMatch match_;
     Field<SurfaceId, std::uint8_t> has_places_;
     UvSet out_;
 };

@@ -1,0 +1,267 @@
+#include "exitance/measure/light_maps/curved_light.hpp"
+
+#include <gtest/gtest.h>
+
+#include "exitance/base/parallel.hpp"
+#include "exitance/form_factors/point_to_polygon.hpp"
+#include "exitance/measure/light_maps/light_map.hpp"
+#include "exitance/measure/light_maps/uv_light_map.hpp"
+#include "support/built_scene.hpp"
+#include "support/solved.hpp"
+
+namespace exitance {
+namespace {
+
+/// A rotation, a scale and a translation.
+struct Motion {
+    double scale = 1;
+    Vec3 u{1, 0, 0}, v{0, 1, 0}, n{0, 0, 1}, by;
+
+    Vec3 turned(const Vec3& d) const { return d.x * u + d.y * v + d.z * n; }
+    Point operator()(const Point& p) const { return by + scale * turned(p); }
+};
+
+const Motion upright, slanted{0.03, {0.6, 0, 0.8}, {0, 1, 0}, {-0.8, 0, 0.6}, {7, -30, 11}};
+
+/// Triangles of a unit sphere: an octahedron split `depth` times.
+std::vector<std::array<Point, 3>> sphere_triangles(int depth) {
+    const Point x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+    std::vector<std::array<Point, 3>> out{{x, y, z},  {y, -x, z},  {-x, -y, z},  {-y, x, z},
+                                          {y, x, -z}, {-x, y, -z}, {-y, -x, -z}, {x, -y, -z}};
+    for (; depth > 0; --depth) {
+        std::vector<std::array<Point, 3>> split;
+        for (const auto& [a, b, c] : out) {
+            const Point ab = normalized(a + b), bc = normalized(b + c), ca = normalized(c + a);
+            split.insert(split.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+        }
+        out = std::move(split);
+    }
+    return out;
+}
+
+const std::array<Point, 4> lamp{{{2.5, 0.5, 4}, {2.5, -0.5, 4}, {1.5, -0.5, 4}, {1.5, 0.5, 4}}};
+
+/// Triangles with normals at their corners, and a lamp above them.
+struct CurvedScene {
+    Scene scene;
+    std::vector<NormalTriangle> triangles;
+};
+
+void add_polygon(SceneDescription& d, std::span<const Point> corners, std::uint32_t material, const Motion& motion) {
+    SceneDescription::Face face{{}, material, 0, static_cast<int>(d.faces.size() + 1)};
+    for (const Point& p : corners) {
+        face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+        d.points.push_back(motion(p));
+    }
+    d.faces.push_back(face);
+}
+
+/// `normal(p)`: normal at a corner; `walls`: further grey polygons.
+template <class NormalAt>
+CurvedScene curved_scene(const std::vector<std::array<Point, 3>>& triangles, const NormalAt& normal,
+                         const Motion& motion = upright, const std::vector<std::vector<Point>>& walls = {}) {
+    SceneDescription d;
+    d.file = "test.obj", d.groups = {"all"};
+    d.materials = {{"grey", Spectrum(0.5), Spectrum()}, {"lamp", Spectrum(), Spectrum(8)}};
+    for (const auto& t : triangles) add_polygon(d, t, 0, motion);
+    for (const auto& wall : walls) add_polygon(d, wall, 0, motion);
+    add_polygon(d, lamp, 1, motion);
+    CheckedScene checked = make_scene(std::move(d));
+    EXI_CHECK(static_cast<bool>(checked.scene));
+    CurvedScene out{std::move(*checked.scene), {}};
+    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+        NormalTriangle t{SurfaceId(i), {}, {}};
+        for (std::size_t k = 0; k < 3; ++k)
+            t.corner[k] = motion(triangles[i][k]), t.normal[k] = motion.turned(normal(triangles[i][k]));
+        out.triangles.push_back(t);
+    }
+    return out;
+}
+
+CurvedScene sphere_scene(const Motion& motion = upright, int depth = 3) {
+    return curved_scene(
+        sphere_triangles(depth), [](const Point& p) { return normalized(p); }, motion);
+}
+
+Solution quick_solution(const Scene& scene) {
+    SolveOptions options;
+    options.error = 0.1;
+    return solved(scene, options);
+}
+
+LightMaps bake(const Solution& solution, const CurvedFaces* curved, double density) {
+    Progress progress;
+    BakeOptions options;
+    options.density = density, options.curved = curved;
+    Result<LightMaps> maps = bake_light_maps(RadiosityFunction(solution), options, progress, StopRequest());
+    EXI_CHECK(static_cast<bool>(maps));
+    return std::move(*maps);
+}
+
+/// Light of the lamp at a point of the unit sphere before the motion.
+double exact_light(const Point& p, const Motion& motion) {
+    std::vector<Point> corners;
+    for (const Point& c : lamp) corners.push_back(motion(c));
+    const Normal n = normalized(p);
+    return 8 * point_to_polygon(motion(n), motion.turned(n), corners);
+}
+
+/// RMS difference of a map from the exact light of the sphere, relative to its RMS.
+double sphere_error(const LightMaps& light, std::size_t faces, const Motion& motion) {
+    double squares = 0, level = 0;
+    for (std::size_t c = 0; c < faces; ++c) {
+        const Chart& chart = light.charts[c];
+        for (int y = 0; y < chart.height; ++y)
+            for (int x = 0; x < chart.width; ++x) {
+                const LightMap& map = light.maps[chart.map];
+                const std::size_t i = map.index(chart.x + x, chart.y + y);
+                if (map.share[i] == 0) continue;
+                const Vec3 d = (chart.at({x + 0.5, y + 0.5}) - motion.by) / motion.scale;
+                const double exact = exact_light({dot(d, motion.u), dot(d, motion.v), dot(d, motion.n)}, motion);
+                squares += static_cast<double>(map.share[i]) * std::pow(mean(map.at(i)) - exact, 2);
+                level += static_cast<double>(map.share[i]) * exact * exact;
+            }
+    }
+    return std::sqrt(squares / level);
+}
+
+TEST(CurvedFaces, PatchesOfASphereFollowIt) {
+    const CurvedScene s = sphere_scene();
+    const CurvedFaces faces(s.scene, s.triangles);
+    ASSERT_EQ(faces.triangles().size(), 512u);
+    double farthest = 0;
+    for (std::size_t t = 0; t < 512; ++t)
+        for (int i = 0; i <= 4; ++i)
+            for (int j = 0; i + j <= 4; ++j) {
+                const CurvedPlace place = faces.at(t, {1 - 0.25 * (i + j), 0.25 * i, 0.25 * j});
+                farthest = std::max(farthest, std::abs(norm(place.x) - 1));
+                // Normals that are linear on the face are those of the sphere.
+                EXPECT_NEAR(norm(place.n - normalized(place.x)), 0, 1e-3);
+            }
+    // The faces are up to 0.013 inside. The error of a cubic patch falls with the fourth power of its angle of 0.2.
+    EXPECT_LT(farthest, 5e-4);
+}
+
+TEST(CurvedFaces, ConcavePatchesStayOnTheFaces) {
+    std::vector<std::array<Point, 3>> inside = sphere_triangles(2);
+    for (auto& t : inside) std::swap(t[1], t[2]);
+    const CurvedScene s = curved_scene(inside, [](const Point& p) { return -1 * normalized(p); });
+    const CurvedFaces faces(s.scene, s.triangles);
+    ASSERT_FALSE(faces.empty());
+    for (std::size_t t = 0; t < faces.triangles().size(); ++t) {
+        const CurvedPlace place = faces.at(t, {0.2, 0.5, 0.3});
+        const auto& c = faces.triangles()[t].corner;
+        EXPECT_NEAR(norm(place.x - (0.2 * c[0] + 0.5 * c[1] + 0.3 * c[2])), 0, 1e-12);
+    }
+}
+
+TEST(CurvedFaces, SurfacesWithNormalsOfTheirFacesOrCoarseOnesAreFlat) {
+    const std::vector<std::array<Point, 3>> octahedron = sphere_triangles(0);
+    const CurvedScene coarse = curved_scene(octahedron, [](const Point& p) { return p; });
+    EXPECT_TRUE(CurvedFaces(coarse.scene, coarse.triangles).empty());  // normals are 54.7 degrees off
+    CurvedScene split = sphere_scene();
+    for (NormalTriangle& t : split.triangles) t.normal.fill(split.scene.surfaces()[t.surface].normal);
+    EXPECT_TRUE(CurvedFaces(split.scene, split.triangles).empty());
+    EXPECT_TRUE(CurvedFaces(split.scene, {}).empty());
+}
+
+TEST(CurvedLight, TheMapOfASphereIsThatOfTheExactSphere) {
+    for (const Motion& motion : {upright, slanted}) {
+        const CurvedScene s = sphere_scene(motion);
+        const Solution solution = quick_solution(s.scene);
+        const CurvedFaces faces(solution.scene, s.triangles);
+        const LightMaps curved = bake(solution, &faces, 24 / motion.scale),
+                        faceted = bake(solution, nullptr, 24 / motion.scale);
+        // Required is 3%. Chords alone are 1% off; places are on patches, so only texels and rounding remain.
+        EXPECT_LT(sphere_error(curved, 512, motion), 0.005);
+        EXPECT_GT(sphere_error(faceted, 512, motion), 0.05);
+        ASSERT_EQ(curved.curved.regions.size(), 512u);
+        EXPECT_GT(curved.curved.rms(), 0.005);
+        EXPECT_LT(curved.curved.rms(), 0.1);  // the faces' tilt and the solve's error
+    }
+}
+
+TEST(CurvedLight, AFileWithoutNormalsChangesNoBits) {
+    const CurvedScene s = sphere_scene(upright, 1);
+    const Solution solution = quick_solution(s.scene);
+    const CurvedFaces none;
+    const LightMaps a = bake(solution, nullptr, 16), b = bake(solution, &none, 16);
+    ASSERT_EQ(a.maps.size(), b.maps.size());
+    EXPECT_EQ(a.maps[0].irradiance, b.maps[0].irradiance);
+    EXPECT_TRUE(b.curved.empty());
+}
+
+/// A wall 1 mm in front of the top of the sphere, between it and the lamp: no light may pass it, although the patches
+/// are up to 13 mm above their faces.
+TEST(CurvedLight, NoLightLeaksThroughAWallInFrontOfAPatch) {
+    const std::vector<Point> wall{{-5, -5, 0.99}, {5, -5, 0.99}, {5, 5, 0.99}, {-5, 5, 0.99}};
+    std::vector<std::array<Point, 3>> below;
+    for (const auto& t : sphere_triangles(3))
+        if (std::max({t[0].z, t[1].z, t[2].z}) < 0.985) below.push_back(t);
+    const std::vector<Point> other_side(wall.rbegin(), wall.rend());
+    const CurvedScene s =
+        curved_scene(below, [](const Point& p) { return normalized(p); }, upright, {wall, other_side});
+    const Solution solution = quick_solution(s.scene);
+    const CurvedFaces faces(solution.scene, s.triangles);
+    ASSERT_FALSE(faces.empty());
+    const RadiosityFunction light(solution);
+    const StopRequest stop;
+    const CurvedLight curved(light, faces, 1, stop);
+    CurvedLight::Workspace workspace;
+    for (const NormalTriangle& t : faces.triangles()) {
+        const Region& region = solution.scene.regions()[solution.scene.surfaces()[t.surface].region];
+        const MeasuredPlace middle = light.places().find((t.corner[0] + t.corner[1] + t.corner[2]) / 3, region.plane.n);
+        ASSERT_EQ(middle.surface, t.surface);
+        // All light is at the far side of the wall, except for that which passes around it, 5 m away.
+        EXPECT_LT(mean(curved.mean_at(std::span(&middle, 1), false, workspace).irradiance), 0.02);
+    }
+}
+
+TEST(CurvedLight, MapsHaveTheSameBitsOnAnyNumberOfThreads) {
+    const CurvedScene s = sphere_scene(upright, 2);
+    const Solution solution = quick_solution(s.scene);
+    const CurvedFaces faces(solution.scene, s.triangles);
+    set_threads(1);
+    const LightMaps one = bake(solution, &faces, 16);
+    set_threads(3);
+    const LightMaps three = bake(solution, &faces, 16);
+    set_threads(0);
+    EXPECT_EQ(one.maps[0].irradiance, three.maps[0].irradiance);
+}
+
+/// Reflected light on a sphere above a wide floor of uniform radiosity: its analytic irradiance is B (1 - cos) / 2.
+TEST(CurvedLight, ReflectedLightIsThatOfTheSmoothNormal) {
+    const double size = 200;
+    const std::vector<Point> floor{{-size, -size, -1.5}, {size, -size, -1.5}, {size, size, -1.5}, {-size, size, -1.5}};
+    const CurvedScene s =
+        curved_scene(sphere_triangles(3), [](const Point& p) { return normalized(p); }, upright, {floor});
+    Solution solution = quick_solution(s.scene);
+    const RegionId below = solution.scene.surfaces()[SurfaceId(512)].region;
+    ElementFunction& light = solution.interpolant;
+    for (ElementId e : light.tree.leaves()) {
+        const auto corners = static_cast<std::uint32_t>(light.tree.patch(e).corner_count());
+        for (std::uint32_t k = 0; k < corners; ++k)
+            light.values[light.first_value[e] + k].fill(light.tree.region(e) == below ? 2.f : 0.f);
+    }
+    const CurvedFaces faces(solution.scene, s.triangles);
+    const RadiosityFunction function(solution);
+    const StopRequest stop;
+    const CurvedLight curved(function, faces, 1, stop);
+    CurvedLight::Workspace workspace;
+    double squares = 0;
+    for (const NormalTriangle& t : faces.triangles()) {
+        const Normal& n = solution.scene.surfaces()[t.surface].normal;
+        const Point middle = (t.corner[0] + t.corner[1] + t.corner[2]) / 3;
+        const MeasuredPlace place = function.places().find(middle, n);
+        const Normal smooth = normalized(middle);
+        const double E =
+            mean(curved.mean_at(std::span(&place, 1), false, workspace).irradiance) - exact_light(middle, upright);
+        squares += std::pow(E - 0.5 * 2 * (1 - smooth.z) / 2, 2);
+    }
+    // Irradiance is from 0 to 1. Rays leave 0.3%, and the sum over nodes interpolates it by 0.2%; the horizon of a
+    // floor of 200 m is at 0.4 degrees.
+    EXPECT_LT(std::sqrt(squares / 512), 0.006);
+}
+
+}  // namespace
+}  // namespace exitance
