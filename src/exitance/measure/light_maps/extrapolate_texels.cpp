@@ -80,7 +80,9 @@ class Filler {
             const Texel d = around[k], near{t.x + d.x, t.y + d.y}, far{near.x + d.x, near.y + d.y};
             if (!is_inside(near) || !is_known(source(near))) continue;
             Spectrum light = map_.at(map_.index(near.x, near.y));
-            if (linear && is_inside(far) && is_known(source(far))) light = going_on(light, far);
+            // Texels of a curved border have been extrapolated already.
+            const bool goes_on = linear && source(near) == Source::computed;
+            if (goes_on && is_inside(far) && is_known(source(far))) light = going_on(light, far);
             sum += light, ++count;
         }
         return sum / std::max(count, 1);

@@ -134,7 +134,8 @@ class GutterFiller {
             const Texel d = around[k], near{t.x + d.x, t.y + d.y}, far{near.x + d.x, near.y + d.y};
             if (!is_usable(near)) continue;
             Spectrum light = read(values, index(near));
-            if (linear && is_usable(far)) {
+            // Texels of a curved border have been extrapolated already.
+            if (linear && source(near) == Source::computed && is_usable(far)) {
                 const Spectrum before = read(values, index(far));
                 for (std::size_t b = 0; b < bands; ++b)
                     light[b] = std::clamp(2 * light[b] - before[b], 0.5 * light[b], 1.5 * light[b]);
