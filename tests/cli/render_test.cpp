@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "cli/small_scene.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "support/sample_solution.hpp"
@@ -89,6 +91,45 @@ TEST(ProgramRender, ShowsOrdersOfEdgesAndShadowClassesOfADiscontinuityMesh) {
     EXPECT_NE(refused.err.find("--method discontinuity"), std::string::npos) << refused.err;
     EXPECT_EQ(render(meshed, "events.exr", {"--shadow-classes"}).status, 2);
     EXPECT_EQ(render(meshed, "events.png", {"--shadow-classes", "--false-colour", "illuminance"}).status, 2);
+}
+
+TEST(ProgramRender, ShowsTheMeshOrOneLayer) {
+    const TemporaryFolder folder;
+    const std::string scene = folder / "boxes.obj", solution = folder / "boxes.h5";
+    ASSERT_EQ(run_program({"generate", "boxes", "lights=2", "-o", scene, "-q"}).status, 0);
+    ASSERT_EQ(run_program({"solve", scene, "-o", solution, "--method", "discontinuity", "--bounces", "0",
+                           "--error-interpolant", "0.02", "--layers", "on", "-q"})
+                  .status,
+              0);
+    const auto render = [&](const std::string& name, const std::vector<std::string>& more) {
+        std::vector<std::string> words = {"render",    solution, "-o",         folder / name, "--size",     "80x50",
+                                          "--samples", "1",      "--exposure", "0.01x",       "--tone-map", "linear"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_program(words);
+    };
+    std::vector<std::string> pictures;
+    for (const std::vector<std::string>& more : std::vector<std::vector<std::string>>{
+             {}, {"--interpolant"}, {"--layer", "1"}, {"--layer", "2"}, {"--interpolant", "--isolux", "--mesh"}}) {
+        const Finished run = render("a.png", more);
+        ASSERT_EQ(run.status, 0) << run.err;
+        const std::string picture = read_text(folder / "a.png");
+        EXPECT_EQ(std::count(pictures.begin(), pictures.end(), picture), 0) << "every picture shows other light";
+        pictures.push_back(picture);
+    }
+    const Finished absent = render("a.png", {"--layer", "moon"});
+    EXPECT_EQ(absent.status, 2);
+    EXPECT_NE(absent.err.find("no source is called 'moon'"), std::string::npos) << absent.err;
+    for (const std::vector<std::string>& wrong :
+         std::vector<std::vector<std::string>>{{"--layer", "1", "--interpolant"},
+                                               {"--interpolant", "--gather", "16"},
+                                               {"--layer", "1", "--gather", "16"}})
+        EXPECT_EQ(render("a.png", wrong).status, 2);
+    const std::string plain = folder / "plain.h5";
+    ASSERT_EQ(run_program({"solve", scene, "-o", plain, "--error", "0.2", "-q"}).status, 0);
+    EXPECT_EQ(run_program({"render", plain, "-o", folder / "b.png", "--size", "40x25", "--interpolant"}).status, 0);
+    const Finished none = run_program({"render", plain, "-o", folder / "b.png", "--layer", "1"});
+    EXPECT_EQ(none.status, 2);
+    EXPECT_NE(none.err.find("--layers on"), std::string::npos) << none.err;
 }
 
 TEST(ProgramRender, SupportsProjectionsAndWritesLinearPictures) {

@@ -115,7 +115,9 @@ struct RenderArguments : CommonArguments {
     /// Elements whose edges are drawn: "export": the exported elements; "true": the method's own; empty: none.
     std::string mesh;
     bool shadow_classes = false;
-    std::string path;  ///< File with one camera per row, for numbered pictures; empty: one picture.
+    bool interpolant = false;  ///< Show the exported elements in place of the full solution.
+    std::string layer;         ///< Source whose layer is shown, by number or name; empty: all light.
+    std::string path;          ///< File with one camera per row, for numbered pictures; empty: one picture.
     int threads = 0;
 };
 

@@ -188,6 +188,13 @@ void declare(CLI::App& app, RenderArguments& arguments) {
     add_count(app, "--gather", arguments.gather, 4,
               "Rays of a final gather at every sample, instead of the elements' indirect light; a power of two from 4. "
               "Default: none. It is slow, and shows which details are due to the elements");
+    app.add_flag("--interpolant", arguments.interpolant,
+                 "Show the mesh that export writes, instead of the full solution with its exact direct light; isolux "
+                 "lines are those of the mesh, too");
+    app.add_option("--layer", arguments.layer,
+                   "Show the direct light of one source from its layer (solve --layers on): the source's number from "
+                   "1, its material or its group (all sources of that name), or others")
+        ->type_name("NAME");
     declare_display(app, arguments);
     declare_unit(app, arguments.unit);
     app.add_flag("--mesh", arguments.mesh,

@@ -14,6 +14,7 @@
 #include "exitance/discontinuity/mesh_progress.hpp"
 #include "exitance/discontinuity/misfit.hpp"
 #include "exitance/discontinuity/node_values.hpp"
+#include "exitance/discontinuity/shadow_class.hpp"
 #include "exitance/mesh/discontinuity/bisection_mesh.hpp"
 #include "exitance/transport/direct_projection.hpp"
 
@@ -56,6 +57,8 @@ class Builder {
             if (report_.error <= options_.error || attempt == max_attempts || report_.interrupted || is_full()) break;
             tolerance *= calibrated::attempt_aim * options_.error / report_.error;
         }
+        out.shadow = shadow_classes();
+        report_.direct_seconds += watch.restart();
         return out;
     }
 
@@ -177,7 +180,7 @@ class Builder {
             FaceOutlines outlines{{}, receivers[r]->frame.u, receivers[r]->frame.v};
             const std::size_t first = first_face[r], count = first_face[r + 1] - first;
             for (std::size_t f = first; f < first + count; ++f)
-                outlines.faces.push_back(outline(static_cast<std::uint32_t>(f)));
+                outlines.faces.push_back(inner_outline(static_cast<std::uint32_t>(f)));
             DirectLight::Workspace workspace;
             const RegionId region(r);
             if (weak_)  // searching from scratch is cheaper than filtering all blockers of the region
@@ -200,8 +203,9 @@ class Builder {
             report_.plane_tests += receiver->searched.plane_tests;
         }
         if (search_) report_.fragments = search_->fragments();
+        const std::vector<ShadowClass> classes = shadow_classes();
         for (std::uint32_t f = 0; f < lights_.size(); ++f) {
-            const ShadowClass c = class_of(f, mesh_.centre(f));
+            const ShadowClass c = classes[f];
             if (c == ShadowClass::penumbra) candidates += count_different(lights_[f].candidates);
             ++(c == ShadowClass::lit        ? report_.counts.lit
                : c == ShadowClass::penumbra ? report_.counts.penumbra
@@ -235,18 +239,32 @@ class Builder {
         touched_[r.value] |= stage_.occluders.is_covered(inside, receiver.frame.n, r);
     }
 
-    std::vector<Point> outline(std::uint32_t t) const {
-        std::vector<Point> out;
-        for (const std::uint32_t c : mesh_.triangles()[t].corner) out.push_back(mesh_.nodes()[c].at);
+    /// Outline of a triangle whose blockers are looked for. It is a little smaller than the triangle, whose sides
+    /// follow shadows: blockers that only touch its lines of sight cast no shadow.
+    std::vector<Point> inner_outline(std::uint32_t t) const {
+        const auto& c = mesh_.triangles()[t].corner;
+        return shrunk_triangle({mesh_.nodes()[c[0]].at, mesh_.nodes()[c[1]].at, mesh_.nodes()[c[2]].at},
+                               mesh_limits::one_place * stage_.scene.size());
+    }
+
+    /// Classes of all triangles, by the view from their centres.
+    std::vector<ShadowClass> shadow_classes() const {
+        std::vector<ShadowClass> out(mesh_.triangles().size());
+        parallel_ranges(out.size(), 64, [&](std::size_t first, std::size_t last) {
+            DirectLight::Workspace workspace;
+            for (std::size_t t = first; t < last; ++t)
+                out[t] = class_at(mesh_.triangles()[t].face, mesh_.centre(static_cast<std::uint32_t>(t)), workspace);
+        });
         return out;
     }
 
-    /// `centre`: centre of the face or of one of its triangles.
-    ShadowClass class_of(std::uint32_t face, const Point& centre) const {
-        if (!weak_) return shadow_class(stage_.direct, lights_[face], centre);
+    ShadowClass class_at(std::uint32_t face, const Point& x, DirectLight::Workspace& workspace) const {
+        const ReceiverLight& light = lights_[face];
         const RegionId r = region_[face];
-        if (lights_[face].is_dark() && weak_->shines_on(r)) return ShadowClass::penumbra;
-        return shadow_class(stage_.direct, lights_[face], centre, weak_->strong(r));
+        if (touched_[r.value] && stage_.occluders.is_covered(x, light.n, r)) return ShadowClass::umbra;
+        if (!weak_) return shadow_class_at(stage_.direct, light, x, workspace);
+        if (light.is_dark() && weak_->shines_on(r)) return ShadowClass::penumbra;
+        return shadow_class_at(stage_.direct, light, x, weak_->strong(r), workspace);
     }
 
     /// Returns false if a request to stop ends it early.
@@ -339,7 +357,7 @@ class Builder {
         parallel_ranges(renewed.size(), 16, [&](std::size_t first, std::size_t last) {
             DirectLight::Workspace workspace;
             for (std::size_t i = first; i < last; ++i)
-                stage_.direct.prepare(outline(renewed[i]), lights_[before[i]], lights_[base + i], workspace);
+                stage_.direct.prepare(inner_outline(renewed[i]), lights_[before[i]], lights_[base + i], workspace);
         });
         for (std::size_t i = 0; i < renewed.size(); ++i) {
             region_.push_back(region_[before[i]]);
@@ -348,8 +366,7 @@ class Builder {
     }
 
     SixNodeMesh finish() {
-        SixNodeMesh out = finished_mesh(mesh_, values_.values(), region_,
-                                        [&](std::uint32_t face, const Point& at) { return class_of(face, at); });
+        SixNodeMesh out = finished_mesh(mesh_, values_.values(), region_);
         out.curves = curves_;
         if (options_.clough_tocher) clough_tocher().write(out);
         report_.counts.triangles = out.size();

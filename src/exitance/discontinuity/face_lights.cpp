@@ -76,38 +76,15 @@ void prepare_face_lights(const DirectLight& direct, const FaceOutlines& outlines
     if (!whole.is_dark()) Halves(direct, outlines, lights, stop, workspace).run(whole);
 }
 
-namespace {
-
-/// True if part of a source's piece is in front of the face's plane, and the face's centre is in front of the source.
-bool faces(const DirectLight& direct, const ReceiverLight& light, const Point& centre,
-           const DirectLight::SourceName& source) {
-    const DirectLight::Emitter& e = direct.emitters()[source.emitter];
-    if (!direct.shines_on(e, light.own) || e.plane.signed_distance(centre) <= 0) return false;
-    const auto corners = direct.occluders().corners(source.piece);
-    return std::any_of(corners.begin(), corners.end(),
-                       [&](const Point& c) { return dot(light.n, c - centre) > direct.occluders().rounding(); });
-}
-
-}  // namespace
-
-ShadowClass shadow_class(const DirectLight& direct, const ReceiverLight& light, const Point& centre,
-                         std::span<const DirectLight::SourceName> among) {
-    if (light.is_dark()) return ShadowClass::umbra;
-    if (!light.is_unshadowed()) return ShadowClass::penumbra;
-    const auto facing = static_cast<std::size_t>(
-        std::count_if(among.begin(), among.end(), [&](const auto& s) { return faces(direct, light, centre, s); }));
-    return light.sources.size() >= facing ? ShadowClass::lit : ShadowClass::penumbra;
-}
-
-ShadowClass shadow_class(const DirectLight& direct, const ReceiverLight& light, const Point& centre) {
-    if (light.is_dark()) return ShadowClass::umbra;
-    if (!light.is_unshadowed()) return ShadowClass::penumbra;
-    std::size_t facing = 0;
-    for (std::uint32_t e = 0; e < direct.emitters().size(); ++e)
-        for (const PieceId p : direct.emitters()[e].pieces) facing += faces(direct, light, centre, {e, p});
-    for (const PunctualLight& l : direct.occluders().scene().lights())
-        facing += dot(light.n, l.is_directional() ? -l.direction : l.position - centre) > 0;
-    return light.sources.size() + light.beams.size() >= facing ? ShadowClass::lit : ShadowClass::penumbra;
+std::vector<Point> shrunk_triangle(const std::array<Point, 3>& corners, double distance) {
+    const auto& [a, b, c] = corners;
+    const double at_a = norm(c - b), at_b = norm(a - c), at_c = norm(b - a), around = at_a + at_b + at_c;
+    const double inradius = norm(cross(b - a, c - a)) / around;
+    std::vector<Point> out(corners.begin(), corners.end());
+    if (!(inradius > 2 * distance)) return out;
+    const Point incentre = a + (at_b / around) * (b - a) + (at_c / around) * (c - a);
+    for (Point& p : out) p += (distance / inradius) * (incentre - p);
+    return out;
 }
 
 }  // namespace exitance

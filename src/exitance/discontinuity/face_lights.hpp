@@ -1,11 +1,11 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
 #include "exitance/base/progress.hpp"
 #include "exitance/direct/direct_light.hpp"
-#include "exitance/mesh/discontinuity/six_node_mesh.hpp"
 
 namespace exitance {
 
@@ -23,12 +23,8 @@ struct FaceOutlines {
 void prepare_face_lights(const DirectLight& direct, const FaceOutlines& outlines, const ReceiverLight& whole,
                          std::span<ReceiverLight> lights, const StopRequest& stop, DirectLight::Workspace& workspace);
 
-/// Classifies a face: all sources that its front can see are visible (lit), none is (umbra), or neither (penumbra).
-/// `centre`: centre of the face or of a part of it.
-ShadowClass shadow_class(const DirectLight& direct, const ReceiverLight& light, const Point& centre);
-
-/// Likewise, for the sources `among` only.
-ShadowClass shadow_class(const DirectLight& direct, const ReceiverLight& light, const Point& centre,
-                         std::span<const DirectLight::SourceName> among);
+/// Moves the sides of a triangle inwards by `distance`, metres. Returns the triangle itself if the radius of its inner
+/// circle is not at least twice the distance.
+std::vector<Point> shrunk_triangle(const std::array<Point, 3>& corners, double distance);
 
 }  // namespace exitance

@@ -1,12 +1,9 @@
 #include "exitance/discontinuity/finished_mesh.hpp"
 
-#include <optional>
-
 namespace exitance {
 
 SixNodeMesh finished_mesh(const BisectionMesh& mesh, std::span<const Spectrum> values,
-                          std::span<const RegionId> region_of_face,
-                          const std::function<ShadowClass(std::uint32_t face, const Point& at)>& class_of) {
+                          std::span<const RegionId> region_of_face) {
     SixNodeMesh out;
     std::vector<std::uint32_t> number(mesh.nodes().size(), BisectionMesh::none);
     const auto add = [&](std::uint32_t node) {
@@ -18,17 +15,12 @@ SixNodeMesh finished_mesh(const BisectionMesh& mesh, std::span<const Spectrum> v
         }
         return number[node];
     };
-    std::vector<std::optional<ShadowClass>> classes(region_of_face.size());
-    for (std::uint32_t index = 0; index < mesh.triangles().size(); ++index) {
-        const BisectionMesh::Triangle& t = mesh.triangles()[index];
+    for (const BisectionMesh::Triangle& t : mesh.triangles()) {
         std::array<std::uint32_t, 6> nodes;
         for (std::size_t k = 0; k < 3; ++k) nodes[k] = add(t.corner[k]), nodes[3 + k] = add(t.middle[k]);
         out.nodes.push_back(nodes);
         out.region.push_back(region_of_face[t.face]);
         out.edge_order.push_back(t.order);
-        std::optional<ShadowClass>& shadow = classes[t.face];
-        if (!shadow) shadow = class_of(t.face, mesh.centre(index));
-        out.shadow.push_back(*shadow);
     }
     return out;
 }

@@ -14,6 +14,9 @@ enum class TransferKernel : std::uint8_t { point, disc, exact };
 enum class RefineWhen : std::uint8_t { during, after };
 enum class ClassicalRelaxation : std::uint8_t { sor, direct };
 enum class ShootingReceivers : std::uint8_t { vertex, middle };
+/// Oracles of published forms beside those of LinkOracle. `kernel`: the difference between the kernel and its
+/// interpolant of the basis. Source: [Gortler93].
+enum class ClassicalOracle : std::uint8_t { kernel };
 
 inline constexpr std::array<std::pair<ClassicalDirect, std::string_view>, 2> classical_direct_names{
     {{ClassicalDirect::apart, "apart"}, {ClassicalDirect::carried, "carried"}}};
@@ -27,6 +30,8 @@ inline constexpr std::array<std::pair<ClassicalRelaxation, std::string_view>, 2>
     {{ClassicalRelaxation::sor, "sor"}, {ClassicalRelaxation::direct, "direct"}}};
 inline constexpr std::array<std::pair<ShootingReceivers, std::string_view>, 2> shooting_receiver_names{
     {{ShootingReceivers::vertex, "vertex"}, {ShootingReceivers::middle, "middle"}}};
+inline constexpr std::array<std::pair<ClassicalOracle, std::string_view>, 1> classical_oracle_names{
+    {{ClassicalOracle::kernel, "kernel"}}};
 
 /// Times at which intermediate solutions are saved: at these seconds of the method's own time, after these shots, or
 /// after every round (sweep, iteration) of a method.
@@ -44,8 +49,9 @@ struct ClassicalOptions {
     std::optional<MeshKind> mesh;
     std::optional<bool> gather;   ///< final gather
     std::optional<bool> certify;  ///< on: the standard form, which always estimates its error; off: classical form
-    /// Threshold of the oracle: F_eps (no unit), or BF_eps (W in the brightest band).
+    /// Threshold of the oracle: F_eps (no unit), or BF_eps (W in the brightest band), likewise of the kernel oracle.
     std::optional<double> threshold;
+    std::optional<ClassicalOracle> oracle;  ///< Replaces that of SolveOptions.
     /// Number of rounds in which the threshold is halved down to the requested one.
     std::optional<std::size_t> multigrid;
     std::optional<TransferKernel> kernel;
@@ -59,8 +65,8 @@ struct ClassicalOptions {
 
     /// True if any option requests a classical form.
     bool any() const {
-        return direct || mesh || gather || certify == false || threshold || multigrid || kernel || refine_gradient ||
-               refine || relaxation || sor_factor || receivers || ambient || snapshots.any();
+        return oracle || direct || mesh || gather || certify == false || threshold || multigrid || kernel ||
+               refine_gradient || refine || relaxation || sor_factor || receivers || ambient || snapshots.any();
     }
     bool carried() const { return direct == ClassicalDirect::carried; }
 };

@@ -42,9 +42,10 @@ std::string as_text(const StudyReport& report) {
     std::string text = fmt::format("runs       {} of {} done\n", report.runs_done, report.runs);
     for (const Verdict& v : report.verdicts)
         text += fmt::format("{:<10} {}{}\n",
-                            v.holds == Verdict::Holds::yes  ? "holds"
-                            : v.holds == Verdict::Holds::no ? "does not"
-                                                            : "unknown",
+                            v.holds == Verdict::Holds::yes          ? "holds"
+                            : v.holds == Verdict::Holds::no         ? "does not"
+                            : v.holds == Verdict::Holds::not_judged ? "not judged"
+                                                                    : "unknown",
                             v.conclusion->says, v.detail.empty() ? "" : ": " + v.detail);
     return text + fmt::format("page       {}\n", report.page);
 }

@@ -18,6 +18,7 @@
 #include "exitance/io/pictures/mesh_colours.hpp"
 #include "exitance/io/pictures/unit_picture.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/lab/layers/light_layers.hpp"
 #include "exitance/measure/pictures/timed_picture.hpp"
 #include "exitance/transport/stage.hpp"
 
@@ -61,6 +62,14 @@ std::optional<Error> find_misuse(const RenderArguments& a) {
         return usage("needs one scale for all pictures", "--path", "add --scale LO,HI");
     if (a.gather > 0 && (!std::has_single_bit(a.gather) || a.gather > 1 << 20))
         return usage(fmt::format("{} is not a power of two from 4 to 1048576", a.gather), "--gather", "");
+    if (a.interpolant && !a.layer.empty())
+        return usage("cannot be combined with --interpolant: a layer is a part of it", "--layer", "omit one of them");
+    const char* shown = a.interpolant ? "--interpolant" : a.layer.empty() ? nullptr : "--layer";
+    if (shown && a.gather > 0)
+        return usage(fmt::format("cannot be combined with {}, which shows light as it is stored", shown), "--gather",
+                     "omit one of them");
+    if (shown && a.shadow_classes && !a.isolux)
+        return usage("has no effect on shadow classes without --isolux", shown, "leave it out, or add --isolux");
     const double most = a.projection == Projection::fisheye ? 360 : 170;
     if (a.fov && a.projection == Projection::orthographic && !(*a.fov > 0))
         return usage(fmt::format("width {} is not above 0 m", *a.fov), "--camera", "");
@@ -176,18 +185,47 @@ std::string describe_stop(const TimedPicture& taken, const RenderArguments& argu
         reason, taken.block, taken.block);
 }
 
+/// The irradiance that pictures show in place of the full solution. Empty if they show the solution.
+Result<ShownIrradiance> shown_light(const RenderArguments& arguments, const RadiosityFunction& light) {
+    if (arguments.interpolant)
+        return ShownIrradiance([&light](RegionId r, const Point& x) {
+            const ProbePoint place{x, light.solution().scene.regions()[r].plane.n};
+            return light.interpolant_at(std::span(&place, 1)).front().irradiance;
+        });
+    if (arguments.layer.empty()) return ShownIrradiance();
+    const LightLayers& layers = layers_of(light.solution());
+    if (layers.empty())
+        return Error{ErrorCode::usage, "the solution has no layers", "--layer",
+                     "solve with --method discontinuity --layers on"};
+    const Scene& scene = light.solution().scene;
+    std::vector<std::uint32_t> sources = named_sources(layers, scene, arguments.layer);
+    if (sources.empty())
+        return Error{ErrorCode::usage, fmt::format("no source is called '{}'", arguments.layer), "--layer",
+                     fmt::format("give a number from 1 to {}, or the name of an emitter's material or group",
+                                 layers.sources.size())};
+    return ShownIrradiance([&layers, &scene, sources = std::move(sources)](RegionId r, const Point& x) {
+        return light_at(layers, scene, r, x, sources);
+    });
+}
+
+PictureOptions picture_options(const RenderArguments& arguments, const Camera& camera) {
+    PictureOptions options{camera, arguments.size, static_cast<int>(arguments.samples)};
+    options.gather = static_cast<unsigned>(arguments.gather);
+    return options;
+}
+
 /// Renders numbered pictures, one per camera, all with the exposure of the first. Sets `done` to the number of finished
 /// pictures.
 ExitCode render_path(const RenderArguments& arguments, const std::vector<Camera>& cameras,
-                     const RadiosityFunction& light, Terminal& terminal, std::size_t& done) {
+                     const RadiosityFunction& light, const ShownIrradiance& shown, Terminal& terminal,
+                     std::size_t& done) {
     RunLimits& limits = terminal.limits();
     const StopRequest& stop = keep_picture(arguments, limits);
     RenderArguments frame = arguments;
     for (done = 0; done < cameras.size(); ++done) {
         const std::size_t i = done;
-        PictureOptions options{cameras[i], arguments.size, static_cast<int>(arguments.samples)};
-        options.gather = static_cast<unsigned>(arguments.gather);
-        const Picture picture = take_picture(light, options, terminal.progress(), stop);
+        const Picture picture =
+            take_picture_of(shown, light, picture_options(arguments, cameras[i]), terminal.progress(), stop);
         if (stop.requested()) break;
         if (!frame.exposure_scale) frame.exposure_scale = automatic_exposure(picture) * std::exp2(arguments.exposure);
         frame.output = numbered(arguments.output, i + 1);
@@ -205,7 +243,7 @@ ExitCode render_path(const RenderArguments& arguments, const std::vector<Camera>
 
 /// Renders a video from pictures at equal intervals along the path. The pictures are in a temporary folder.
 ExitCode render_film(const RenderArguments& arguments, const std::vector<CameraStation>& stations,
-                     const RadiosityFunction& light, Terminal& terminal) {
+                     const RadiosityFunction& light, const ShownIrradiance& shown, Terminal& terminal) {
     constexpr double rate = 25;  // pictures per second
     constexpr std::size_t max_pictures = 9999;
     if (const Result<void> found = find_film_program(arguments.output); !found) return terminal.fail(found.error());
@@ -221,24 +259,24 @@ ExitCode render_film(const RenderArguments& arguments, const std::vector<CameraS
     RenderArguments frames = arguments;
     frames.output = folder->path() + "/frame.png";
     std::size_t finished = 0;
-    const ExitCode code = render_path(frames, cameras, light, terminal, finished);
+    const ExitCode code = render_path(frames, cameras, light, shown, terminal, finished);
     if (finished == 0) return code;
     const Result<void> written = write_film(folder->path(), rate, arguments.output);
     return written ? code : terminal.fail(written.error());
 }
 
 /// Renders one picture, with all samples or as many as the limits allow.
-ExitCode render_picture(const RenderArguments& arguments, const RadiosityFunction& light, Terminal& terminal) {
+ExitCode render_picture(const RenderArguments& arguments, const RadiosityFunction& light, const ShownIrradiance& shown,
+                        Terminal& terminal) {
     const Result<Camera> camera = choose_camera(arguments, light);
     if (!camera) return terminal.fail(camera.error());
     if (!arguments.camera) terminal.note(fmt::format("--camera '{}'", describe(*camera)));
-    PictureOptions options{*camera, arguments.size, static_cast<int>(arguments.samples)};
-    options.gather = static_cast<unsigned>(arguments.gather);
+    const PictureOptions options = picture_options(arguments, *camera);
     TimedPicture taken;
     taken.is_complete = true;
     RunLimits& limits = terminal.limits();
     if (!arguments.shadow_classes || arguments.isolux)
-        taken = take_picture_in_time(light, options, terminal.progress(), keep_picture(arguments, limits));
+        taken = take_picture_in_time(light, options, terminal.progress(), keep_picture(arguments, limits), shown);
     terminal.progress().finish();
     if (taken.block == 0 && !taken.is_complete) return terminal.fail_stopped("not even a coarse picture was finished");
     const Result<void> written = write_picture(arguments, light, *camera, taken.picture, terminal);
@@ -262,16 +300,18 @@ ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
                                    "--shadow-classes", "solve with --method discontinuity"});
 
     const RadiosityFunction light(*solution);
+    const Result<ShownIrradiance> shown = shown_light(arguments, light);
+    if (!shown) return terminal.fail(shown.error());
     if (!arguments.path.empty()) {
         const Result<std::vector<CameraStation>> stations = load_camera_path(arguments.path);
         if (!stations) return terminal.fail(stations.error());
-        if (is_film(arguments.output)) return render_film(arguments, *stations, light, terminal);
+        if (is_film(arguments.output)) return render_film(arguments, *stations, light, *shown, terminal);
         std::vector<Camera> cameras;
         for (const CameraStation& station : *stations) cameras.push_back(station.camera);
         std::size_t done = 0;
-        return render_path(arguments, cameras, light, terminal, done);
+        return render_path(arguments, cameras, light, *shown, terminal, done);
     }
-    return render_picture(arguments, light, terminal);
+    return render_picture(arguments, light, *shown, terminal);
 }
 
 }  // namespace exitance

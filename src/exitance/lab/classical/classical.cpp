@@ -177,6 +177,7 @@ void record(const ClassicalInput& input, Method method, const ClassicalLight& li
     facts.mesh_kind =
         name_in(mesh_kind_names, linked ? MeshKind::uniform : input.classical.mesh.value_or(MeshKind::aligned));
     facts.links_found_by = !linked                     ? "none"
+                           : input.classical.oracle    ? name_in(classical_oracle_names, *input.classical.oracle)
                            : input.classical.threshold ? name_in(oracle_names, input.options.oracle)
                                                        : "leaves";
     facts.initial_links = light.initial_links;

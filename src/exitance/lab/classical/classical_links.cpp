@@ -5,6 +5,7 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/lab/classical/classical_input.hpp"
 #include "exitance/lab/classical/interaction_kernel.hpp"
+#include "exitance/lab/classical/kernel_oracle.hpp"
 #include "exitance/solve/growth_watch.hpp"
 
 namespace exitance {
@@ -29,6 +30,8 @@ struct Link {
     ElementId source;
     float share = 1;  ///< Visible share of the source.
     bool has_block = false;
+    /// Strength of the link per exitance of the source by the kernel oracle, m^2; negative: not computed.
+    float kernel_strength = -1;
     std::uint64_t block = 0;  ///< Position of its block in `blocks_`.
 };
 
@@ -54,6 +57,7 @@ class LinkedElements {
         : input_(input),
           basis_(kind),
           kernel_(input.stage, basis_, choice(input), input.options.seed),
+          oracle_(basis_),
           n_(basis_.count()),
           B_(n_),
           E_(n_),
@@ -92,8 +96,9 @@ class LinkedElements {
     void set_light(ElementId e);
     bool may_cut(ElementId e) const;
     void cut(ElementId e);
-    double strength(ElementId receiver, ElementId source) const;
-    ElementId to_cut(ElementId receiver, const Link& link, double threshold) const;
+    double brightest(ElementId source) const;
+    double strength(ElementId receiver, Link& link) const;
+    ElementId to_cut(ElementId receiver, Link& link, double threshold) const;
     bool settle(ElementId receiver, Link link, double threshold);
     void look(ElementId receiver, Link& link);
     void keep(ElementId receiver, const Link& link);
@@ -102,6 +107,7 @@ class LinkedElements {
     const ClassicalInput& input_;
     NodalBasis basis_;
     InteractionKernel kernel_;
+    KernelOracle oracle_;
     std::size_t n_;
     ElementTree tree_;
     Numbers B_, E_, rhs_;                        ///< b; irradiance; source term M or rho E_dir.
@@ -155,27 +161,40 @@ void LinkedElements::cut(ElementId e) {
     }
 }
 
+/// Mean exitance of an element in the brightest band, W/m^2.
+double LinkedElements::brightest(ElementId source) const {
+    const auto nodes = basis_.nodes(tree_.patch(source).shape);
+    Spectrum B;
+    for (std::size_t k = 0; k < n_; ++k) B += nodes[k].weight * B_[source][k];
+    return max(B);
+}
+
 /// Strength of a link. F_eps: the larger form factor of both directions. BF_eps: F_pq A_p B_q, W in the brightest band
-/// [Hanrahan91].
-double LinkedElements::strength(ElementId receiver, ElementId source) const {
+/// [Hanrahan91]. Kernel: the power that the interpolated kernel may miss, W likewise [Gortler93].
+double LinkedElements::strength(ElementId receiver, Link& link) const {
+    const ElementId source = link.source;
+    if (input_.classical.oracle == ClassicalOracle::kernel) {
+        if (link.kernel_strength < 0)
+            link.kernel_strength =
+                static_cast<float>(oracle_.strength(tree_.patch(receiver), tree_.patch(source), link.share));
+        return static_cast<double>(link.kernel_strength) * brightest(source);
+    }
     // Estimated from either centre: by reciprocity both should be equal, but each misses parts near an end of the
     // other.
     const double F = std::max(kernel_.unoccluded(tree_, receiver, source),
                               kernel_.unoccluded(tree_, source, receiver) * tree_.area(source) / tree_.area(receiver));
     if (input_.options.oracle == LinkOracle::form_factor)
         return std::max(F, F * tree_.area(receiver) / tree_.area(source));
-    const auto nodes = basis_.nodes(tree_.patch(source).shape);
-    Spectrum B;
-    for (std::size_t k = 0; k < n_; ++k) B += nodes[k].weight * B_[source][k];
-    return F * tree_.area(receiver) * max(B);
+    return F * tree_.area(receiver) * brightest(source);
 }
 
-/// Returns the element to cut, or none: the larger one unless it is too small to be cut, then the smaller one.
-ElementId LinkedElements::to_cut(ElementId p, const Link& link, double threshold) const {
+/// Returns the element to cut, or none: the larger one unless it is too small to be cut, then the smaller one. The
+/// strength by the kernel contains visibility; the other oracles halve the threshold of partly visible sources.
+ElementId LinkedElements::to_cut(ElementId p, Link& link, double threshold) const {
     const ElementId q = link.source;
     if (by_oracle()) {
-        const bool partial = link.share > 0 && link.share < 1;
-        if (strength(p, q) <= (partial ? 0.5 * threshold : threshold)) return {};
+        const bool partial = link.share > 0 && link.share < 1 && input_.classical.oracle != ClassicalOracle::kernel;
+        if (strength(p, link) <= (partial ? 0.5 * threshold : threshold)) return {};
     }
     const bool first = tree_.area(p) >= (1 - rounding) * tree_.area(q) && tree_.area(p) > 0;
     const ElementId larger = first ? p : q, smaller = first ? q : p;
@@ -366,10 +385,10 @@ void LinkedElements::report(ClassicalLight& light) const {
 }  // namespace
 
 /// Hierarchical and wavelet radiosity as in [Hanrahan91] and [Gortler93]. Starting from whole polygons, links are split
-/// while F or B F A is above a threshold and elements are larger than A_eps; the threshold is halved for partial
-/// visibility. Light is gathered over links, pushed and pulled. This is repeated with the new light until no link is
-/// split and the change is small. With `--multigrid N`, the first threshold is 2^(N-1) times as large and is halved in
-/// each round. Without an oracle, all links connect leaves of `--mesh-size`: a uniform mesh, O(leaves^2).
+/// while their strength by the oracle is above a threshold and elements are larger than A_eps; the threshold is halved
+/// for partial visibility. Light is gathered over links, pushed and pulled. This is repeated with the new light until
+/// no link is split and the change is small. With `--multigrid N`, the first threshold is 2^(N-1) times as large and is
+/// halved in each round. Without an oracle, all links connect leaves of `--mesh-size`: a uniform mesh, O(leaves^2).
 ClassicalLight solve_classical_links(const ClassicalInput& input, HierarchyBasis kind) {
     ClassicalLight light;
     input.progress.phase("link");

@@ -127,6 +127,25 @@ TEST(Classical, NumberOfLinksIsInverseToTheThreshold) {
     EXPECT_EQ(fine.facts.initial_links, 30u);  // six polygons that all see each other
 }
 
+TEST(Classical, TheKernelOracleAddsFewerLinksForHigherOrders) {
+    const Scene scene = built_scene("tube", {{"rho", "0.7"}});
+    const auto added = [&](BasisKind basis, std::optional<ClassicalOracle> oracle) {
+        ClassicalOptions classical = by_power(0.05);
+        classical.oracle = oracle;
+        const SolveOptions o{.method = Method::wavelet, .basis = basis, .oracle = LinkOracle::power};
+        const Solved s = solve(scene, o, classical);
+        EXPECT_EQ(s.facts.links_found_by, oracle ? "kernel" : "bf");
+        return static_cast<double>(s.solution.statistics.links) - static_cast<double>(s.facts.initial_links);
+    };
+    const double haar = added(BasisKind::haar, ClassicalOracle::kernel),
+                 M2 = added(BasisKind::multiwavelet2, ClassicalOracle::kernel),
+                 M3 = added(BasisKind::multiwavelet3, ClassicalOracle::kernel);
+    EXPECT_LT(M2, haar);
+    EXPECT_LT(M3, M2);
+    // The power of a link is the same in every basis, up to the light that it carries.
+    EXPECT_NEAR(added(BasisKind::multiwavelet3, {}) / added(BasisKind::haar, {}), 1, 0.1);
+}
+
 TEST(Classical, NoElementIsSmallerThanTheMinimumArea) {
     const Scene scene = built_scene("tube", {{"rho", "0.7"}});
     const double least = 0.04;

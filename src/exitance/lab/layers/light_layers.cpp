@@ -1,6 +1,7 @@
 #include "exitance/lab/layers/light_layers.hpp"
 
 #include <algorithm>
+#include <charconv>
 
 #include "exitance/base/archive.hpp"
 
@@ -18,7 +19,12 @@ std::size_t LightLayers::memory_bytes() const {
     return sum;
 }
 
-Spectrum light_at(const LightLayers& layers, const Scene& scene, RegionId region, const Point& p) {
+namespace {
+
+/// Sum of the layers whose sources are wanted at a point of a region: irradiance, W/m^2.
+template <class IsWanted>
+Spectrum sum_of_layers(const LightLayers& layers, const Scene& scene, RegionId region, const Point& p,
+                       const IsWanted& is_wanted) {
     Spectrum sum;
     if (region.is_none()) return sum;
     const auto of_region = [&](const LightLayers::Sheet& sheet) { return sheet.region.value < region.value; };
@@ -26,8 +32,36 @@ Spectrum light_at(const LightLayers& layers, const Scene& scene, RegionId region
     if (sheet == layers.sheets.end() || sheet->region != region) return sum;
     const Vec2 place = layer_place(scene.regions()[region], p);
     for (; sheet != layers.sheets.end() && sheet->region == region; ++sheet)
-        sum += sheet->light.at(place) * sheet->colour;
+        if (is_wanted(sheet->source)) sum += sheet->light.at(place) * sheet->colour;
     return sum;
+}
+
+}  // namespace
+
+Spectrum light_at(const LightLayers& layers, const Scene& scene, RegionId region, const Point& p) {
+    return sum_of_layers(layers, scene, region, p, [](std::uint32_t) { return true; });
+}
+
+Spectrum light_at(const LightLayers& layers, const Scene& scene, RegionId region, const Point& p,
+                  std::span<const std::uint32_t> among) {
+    return sum_of_layers(layers, scene, region, p,
+                         [&](std::uint32_t source) { return std::binary_search(among.begin(), among.end(), source); });
+}
+
+std::vector<std::uint32_t> named_sources(const LightLayers& layers, const Scene& scene, const std::string& word) {
+    std::uint32_t number = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    const bool is_number = error == std::errc() && end == word.data() + word.size();
+    std::vector<std::uint32_t> out;
+    for (std::uint32_t i = 0; i < layers.sources.size(); ++i) {
+        const RegionId r = layers.sources[i];
+        const bool is_named =
+            r.is_none() ? word == "others"
+                        : scene.material(r).name == word ||
+                              scene.groups()[scene.surfaces()[scene.regions()[r].surfaces.front()].group] == word;
+        if (is_number ? i + 1 == number : is_named) out.push_back(i);
+    }
+    return out;
 }
 
 LayersForm::LayersForm(LightLayers layers) : layers_(std::move(layers)), first_{0} {

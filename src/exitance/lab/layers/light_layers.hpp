@@ -1,5 +1,10 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
 #include "exitance/base/ids.hpp"
 #include "exitance/base/spectrum.hpp"
 #include "exitance/lab/layers/light_layer.hpp"
@@ -27,6 +32,14 @@ struct LightLayers {
 
 /// The sum of all layers at a point of a region, whose grids must be made: irradiance, W/m^2.
 Spectrum light_at(const LightLayers& layers, const Scene& scene, RegionId region, const Point& p);
+
+/// Like `light_at` above, for the layers of these sources only, which are indices in `sources`, ascending.
+Spectrum light_at(const LightLayers& layers, const Scene& scene, RegionId region, const Point& p,
+                  std::span<const std::uint32_t> among);
+
+/// Returns the sources that a word selects, as indices in `sources`, ascending: one by its number from 1, or all whose
+/// material or group has this name; "others" selects the layer of all other emitters. Empty if there is none.
+std::vector<std::uint32_t> named_sources(const LightLayers& layers, const Scene& scene, const std::string& word);
 
 /// Layers as the engine evaluates and keeps them.
 class LayersForm final : public LightForm {

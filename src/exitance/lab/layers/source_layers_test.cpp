@@ -78,6 +78,24 @@ TEST(SourceLayers, EachHasTheLightOfOneSource) {
     }
 }
 
+TEST(SourceLayers, AreSelectedByTheNumberOrNameOfTheirSources) {
+    const Layered l(lamps(2), 0.02);
+    const auto named = [&](const char* word) { return named_sources(l.layers, l.scene, word); };
+    const std::vector<std::uint32_t> first{0}, second{1}, both{0, 1}, none;
+    EXPECT_EQ(named("1"), first);
+    EXPECT_EQ(named("2"), second);
+    EXPECT_EQ(named("all"), both) << "the group of all surfaces";
+    for (const char* word : {"3", "0", "-1", "others", "lamp", ""}) EXPECT_EQ(named(word), none) << word;
+    for (const double x : {-1.5, 0.3, 1.2}) {
+        const Point p{x, 0.1, 0};
+        const auto light = [&](const std::vector<std::uint32_t>& among) {
+            return light_at(l.layers, l.scene, RegionId(0), p, among);
+        };
+        EXPECT_EQ(light(both), light_at(l.layers, l.scene, RegionId(0), p));
+        EXPECT_NEAR(mean(light(first) + light(second)), mean(light(both)), 1e-12 * mean(light(both)));
+    }
+}
+
 TEST(SourceLayers, OmitDarkTrianglesAndTakeLessThanHalfOfWingedEdges) {
     const Layered l(lamps(2), 0.01);
     EXPECT_LT(l.layers.size(), l.report.triangles);

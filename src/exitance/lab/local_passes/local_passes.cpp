@@ -6,6 +6,7 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
+#include "exitance/discontinuity/shadow_class.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
 #include "exitance/mesh/discontinuity/bisection_mesh.hpp"
 
@@ -121,11 +122,24 @@ SixNodeMesh take_mesh(const LineHierarchy& h, const BisectionMesh& mesh, const s
         out.nodes.push_back(nodes);
         out.region.push_back(region_of[t]);
         out.edge_order.push_back(triangle.order);
-        const ReceiverLight& light = h.receiver(region_of[t]).light;
-        out.shadow.push_back(light.is_dark()         ? ShadowClass::umbra
-                             : light.is_unshadowed() ? ShadowClass::lit
-                                                     : ShadowClass::penumbra);
     }
+    return out;
+}
+
+/// Classes of all triangles, by the view from their centres.
+std::vector<ShadowClass> shadow_classes(const LineHierarchy& h, const SixNodeMesh& mesh) {
+    std::vector<ShadowClass> out(mesh.size());
+    const Stage& stage = h.stage();
+    parallel_ranges(mesh.size(), 64, [&](std::size_t first, std::size_t last) {
+        DirectLight::Workspace workspace;
+        for (std::size_t i = first; i < last; ++i) {
+            const auto t = static_cast<std::uint32_t>(i);
+            const RegionId r = mesh.region[t];
+            const Point x = mesh.centre(t);
+            const bool is_covered = stage.occluders.is_covered(x, stage.scene.regions()[r].plane.n, r);
+            out[t] = is_covered ? ShadowClass::umbra : shadow_class_at(stage.direct, h.receiver(r).light, x, workspace);
+        }
+    });
     return out;
 }
 
@@ -152,6 +166,7 @@ SixNodeMesh run_local_pass(const LineHierarchy& h, LocalPassRule rule, LocalPass
     }
     std::vector<Site> sites;
     SixNodeMesh out = take_mesh(h, mesh, region_of, sites);
+    out.shadow = shadow_classes(h, out);
     out.values.resize(out.points.size());
     std::atomic<std::size_t> form_factors = 0, rays = 0, exact = 0;
     parallel_ranges(sites.size(), 32, [&](std::size_t first, std::size_t last) {

@@ -22,7 +22,11 @@ struct ScheduleTables {
     /// A recorded graph: its tasks, interactions found and predicted, the time of all its tasks, and the longest chain.
     Table graphs;
     Table iterations;  ///< Engine with one thread: tasks, interactions, seconds by kind, and the light, per iteration.
-    Table phases;      ///< Production solve with one thread: seconds, and seconds in parallel loops, per phase.
+    /// Costs of 1993 that are not published: for every `slowness` of a processor, the lock (`lock_us`) with which one
+    /// queue reaches 20 of 64 processors, as published, and the speed-ups of all schedules on that machine. Columns:
+    /// `slowness`, `lock_us`, `schedule`, `processors`, `speedup`.
+    Table calibration;
+    Table phases;  ///< Production solve with one thread: seconds, and seconds in parallel loops, per phase.
 };
 
 /// The engine's thresholds in W and m^2, as for `--threshold` and `--min-area`, and the number of runs of which the

@@ -67,7 +67,7 @@ Result<StudyReport> conduct_study(const Study& study, const StudyOptions& option
 
     StudyReport report;
     report.tables = std::move(*tables);
-    report.verdicts = judge(study, report.tables);
+    report.verdicts = judge(study, report.tables, options.quick);
     const Table& results = report.tables["results"];
     const std::vector<std::size_t> last = chosen_rows(results, {}, true);
     report.runs = last.size();

@@ -86,14 +86,14 @@ struct StudyPicture {
 
 /// A number computed from a table, to be compared with the range in which a statement holds.
 enum class Measure : std::uint8_t {
-    value,       ///< Mean of y.
-    largest,     ///< Largest y.
-    last,        ///< y at the largest x.
-    slope,       ///< Slope of log y over log x, by least squares.
-    ratio,       ///< Geometric mean of y / (y of `against`), for rows of the same scene, parameter and setting.
-    last_ratio,  ///< Like `ratio`, but only at the largest x.
-    crossing,    ///< Last x at which y and y of `against` cross.
-    quadratic,   ///< sigma of y = sigma x^2 + beta x, by least squares.
+    value,             ///< Mean of y.
+    largest,           ///< Largest y.
+    last,              ///< y at the largest x.
+    slope,             ///< Slope of log y over log x, by least squares.
+    ratio,             ///< Geometric mean of y / (y of `against`), for rows of the same scene, parameter and setting.
+    last_ratio,        ///< Like `ratio`, but only at the largest x.
+    crossing,          ///< Last x at which y and y of `against` cross.
+    quadratic_misfit,  ///< Relative RMS error of the fit y = sigma x^2 + beta x by least squares.
 };
 
 struct StudyConclusion {

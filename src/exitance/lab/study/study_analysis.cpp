@@ -88,8 +88,8 @@ double measured(const Table& table, const StudyConclusion& c) {
             break;
         case Measure::crossing:
             return crossing(curve, curve_of(table, c.x, c.y, c.against));
-        case Measure::quadratic:
-            return fit_quadratic(curve.x, curve.y).sigma;
+        case Measure::quadratic_misfit:
+            return fit_quadratic(curve.x, curve.y).misfit;
     }
     return unknown;
 }
@@ -148,7 +148,7 @@ std::vector<std::size_t> measured_rows(const Table& table, const RowFilter& wher
     return rows;
 }
 
-std::vector<Verdict> judge(const Study& study, const StudyTables& tables) {
+std::vector<Verdict> judge(const Study& study, const StudyTables& tables, bool quick) {
     std::vector<Verdict> verdicts;
     for (const StudyConclusion& c : study.conclusions) {
         Verdict verdict;
@@ -156,7 +156,7 @@ std::vector<Verdict> judge(const Study& study, const StudyTables& tables) {
         if (const auto table = tables.find(c.table); table != tables.end()) verdict.value = measured(table->second, c);
         if (std::isfinite(verdict.value)) {
             const bool holds = verdict.value >= c.least && verdict.value <= c.most;
-            verdict.holds = holds ? Verdict::Holds::yes : Verdict::Holds::no;
+            verdict.holds = quick ? Verdict::Holds::not_judged : holds ? Verdict::Holds::yes : Verdict::Holds::no;
             verdict.detail = fmt::format("{:.4g} ({})", verdict.value, range_text(c));
         }
         verdicts.push_back(std::move(verdict));

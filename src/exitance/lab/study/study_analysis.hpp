@@ -13,11 +13,13 @@ std::vector<std::size_t> measured_rows(const Table& table, const RowFilter& wher
 /// Result of a conclusion.
 struct Verdict {
     const StudyConclusion* conclusion = nullptr;
-    enum class Holds : std::uint8_t { yes, no, unknown } holds = Holds::unknown;
+    /// `not_judged`: measured in a quick run, whose scenes and settings are too few for the statement.
+    enum class Holds : std::uint8_t { yes, no, unknown, not_judged } holds = Holds::unknown;
     double value = std::numeric_limits<double>::quiet_NaN();
     std::string detail;  ///< For example "1.93, asked 1.6 to 2.4".
 };
-std::vector<Verdict> judge(const Study& study, const StudyTables& tables);
+/// Measures and judges the conclusions of a study; those of a quick run are measured only.
+std::vector<Verdict> judge(const Study& study, const StudyTables& tables, bool quick);
 
 /// Fit of y = sigma x^2 + beta x by least squares of relative errors.
 struct QuadraticFit {

@@ -31,7 +31,7 @@ double measured(Measure measure, const std::string& y, const RowFilter& where, c
     c.measure = measure, c.x = "parameter", c.y = y, c.where = where, c.against = against;
     study.conclusions = {c};
     const StudyTables tables{{"results", two_methods()}};
-    return judge(study, tables).at(0).value;
+    return judge(study, tables, false).at(0).value;
 }
 
 TEST(StudyAnalysis, FitsRecoverTheirCoefficients) {
@@ -60,7 +60,7 @@ TEST(StudyAnalysis, MeasuresUseFinalSolutionsOnly) {
     EXPECT_NEAR(measured(Measure::slope, "relative_rms_error", a), -1, 1e-6);
     EXPECT_NEAR(measured(Measure::largest, "relative_rms_error", b), 0.8, 1e-6);
     EXPECT_NEAR(measured(Measure::last, "relative_rms_error", a), 0.125, 1e-6);
-    EXPECT_NEAR(measured(Measure::quadratic, "links", a), 3, 1e-6);
+    EXPECT_NEAR(measured(Measure::quadratic_misfit, "links", a), 0, 1e-9);
     EXPECT_NEAR(measured(Measure::last_ratio, "relative_rms_error", b, a), 6.4, 1e-5);
     // The ratio of 0.1 x to 1/x is 0.1 x^2; its geometric mean over 1, 2, 4, 8 is 0.1 * 8.
     EXPECT_NEAR(measured(Measure::ratio, "relative_rms_error", b, a), 0.8, 1e-5);
@@ -78,10 +78,14 @@ TEST(StudyAnalysis, AStatementHoldsWithinItsRange) {
     study.conclusions[1].most = 0.7;
     study.conclusions[2].table = "nowhere";
     const StudyTables tables{{"results", two_methods()}};
-    const std::vector<Verdict> verdicts = judge(study, tables);
+    const std::vector<Verdict> verdicts = judge(study, tables, false);
     EXPECT_EQ(verdicts[0].holds, Verdict::Holds::yes);
     EXPECT_EQ(verdicts[1].holds, Verdict::Holds::no);
     EXPECT_EQ(verdicts[2].holds, Verdict::Holds::unknown);
+    const std::vector<Verdict> quick = judge(study, tables, true);
+    EXPECT_EQ(quick[0].holds, Verdict::Holds::not_judged);
+    EXPECT_EQ(quick[0].detail, verdicts[0].detail);
+    EXPECT_EQ(quick[2].holds, Verdict::Holds::unknown);
 }
 
 TEST(StudyAnalysis, EqualTimeInterpolatesLogarithms) {

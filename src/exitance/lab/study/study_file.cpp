@@ -22,7 +22,7 @@ constexpr std::array<std::pair<Measure, std::string_view>, 8> measure_names{{
     {Measure::ratio, "ratio"},
     {Measure::last_ratio, "last_ratio"},
     {Measure::crossing, "crossing"},
-    {Measure::quadratic, "quadratic"},
+    {Measure::quadratic_misfit, "quadratic_misfit"},
 }};
 
 void read_scene(TomlKeys& keys, StudyScene& scene) {

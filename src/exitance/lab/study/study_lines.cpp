@@ -41,19 +41,52 @@ struct LineRows {
     std::string scene, parameter, row, setting;
 };
 
-void add_rows(Table& table, const LineRows& of, const std::vector<double>& light, const std::vector<double>& drawn,
+/// Light at the points of a line, with its first and second derivative along the line.
+struct LineLight {
+    std::vector<double> E, slope, curvature;  ///< W/m^2, W/m^3, W/m^4
+};
+
+/// Evaluates light at the points and a quarter of their distance before and after them. Central differences are exact
+/// for quadratic elements, but where a border of elements lies in between. `at`: light at points.
+template <class LightAtPoints>
+LineLight light_along(const StudyLine& line, const std::vector<ProbePoint>& points, const LightAtPoints& at) {
+    constexpr double part = 1.0 / 4;
+    const Vec3 whole = points.back().x - points.front().x;
+    const Vec3 step = (part / static_cast<double>(std::max<std::size_t>(line.points - 1, 1))) * whole;
+    const double h = norm(step);
+    const auto moved = [&](double steps) {
+        std::vector<ProbePoint> out = points;
+        for (ProbePoint& p : out) p.x += steps * step;
+        return at(out);
+    };
+    const std::vector<Light> here = moved(0), before = moved(-1), after = moved(1);
+    LineLight out;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double E = mean(here[i].irradiance), a = mean(before[i].irradiance), b = mean(after[i].irradiance);
+        out.E.push_back(E);
+        out.slope.push_back(h > 0 ? (b - a) / (2 * h) : 0);
+        out.curvature.push_back(h > 0 ? (a - 2 * E + b) / (h * h) : 0);
+    }
+    return out;
+}
+
+void add_rows(Table& table, const LineRows& of, const LineLight& light, const LineLight& drawn,
               const std::vector<double>& truth) {
     const double length =
         std::hypot(of.line.to[0] - of.line.from[0], of.line.to[1] - of.line.from[1], of.line.to[2] - of.line.from[2]);
     const double largest = *std::max_element(truth.begin(), truth.end());
-    for (std::size_t i = 0; i < light.size(); ++i) {
-        const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(light.size());
+    for (std::size_t i = 0; i < light.E.size(); ++i) {
+        const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(light.E.size());
         table.add_row();
         table.set("line", of.line.name), table.set("scene", of.scene), table.set("parameter", of.parameter);
         table.set("row", of.row), table.set("setting", of.setting), table.set("s", field(share * length));
-        table.set("irradiance", field(light[i])), table.set("interpolant", field(drawn[i]));
-        table.set("error", field((light[i] - truth[i]) / largest));
-        table.set("error_interpolant", field((drawn[i] - truth[i]) / largest));
+        table.set("irradiance", field(light.E[i])), table.set("interpolant", field(drawn.E[i]));
+        table.set("error", field((light.E[i] - truth[i]) / largest));
+        table.set("error_interpolant", field((drawn.E[i] - truth[i]) / largest));
+        if (light.slope.empty()) continue;
+        table.set("slope", field(light.slope[i])), table.set("curvature", field(light.curvature[i]));
+        table.set("slope_interpolant", field(drawn.slope[i]));
+        table.set("curvature_interpolant", field(drawn.curvature[i]));
     }
 }
 
@@ -83,7 +116,7 @@ std::string instant_path(const std::string& stem, double at) {
 Result<Table> profile_table(const Study& study, const StudyOptions& options, Progress& progress,
                             const StopRequest& stop) {
     Table table{{"line", "scene", "parameter", "row", "setting", "s", "irradiance", "interpolant", "error",
-                 "error_interpolant"},
+                 "error_interpolant", "slope", "curvature", "slope_interpolant", "curvature_interpolant"},
                 {}};
     const std::size_t paths = options.quick ? study.reference.quick_paths : study.reference.paths;
     std::map<std::pair<std::string, std::string>, std::vector<double>> truths;  // by the line's name and the scene
@@ -103,12 +136,13 @@ Result<Table> profile_table(const Study& study, const StudyOptions& options, Pro
                 for (const ReferenceLight& light :
                      reference_light(solution->scene, points, std::max<std::size_t>(paths, 16), 1, progress, stop))
                     truth.push_back(mean(light.irradiance));
-                add_rows(table, {line, rows.scene, rows.parameter, "reference", "reference"}, truth, truth, truth);
+                add_rows(table, {line, rows.scene, rows.parameter, "reference", "reference"}, {truth, {}, {}},
+                         {truth, {}, {}}, truth);
             }
             const RadiosityFunction function(*solution);
-            std::vector<double> light, drawn;
-            for (const Light& l : function.at(points)) light.push_back(mean(l.irradiance));
-            for (const Light& l : function.interpolant_at(points)) drawn.push_back(mean(l.irradiance));
+            const LineLight light = light_along(line, points, [&](const auto& at) { return function.at(at); });
+            const LineLight drawn =
+                light_along(line, points, [&](const auto& at) { return function.interpolant_at(at); });
             add_rows(table, rows, light, drawn, truth);
         }
     return table;

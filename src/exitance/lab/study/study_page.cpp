@@ -74,9 +74,10 @@ std::string conclusions(const StudyPage& page) {
         "<table>\n<tr><th>statement</th><th>source</th><th>here</th><th>measured (asked)</th><th>plot</th></tr>\n";
     for (const Verdict& v : page.verdicts) {
         const char* kind = v.holds == Verdict::Holds::yes ? "yes" : v.holds == Verdict::Holds::no ? "no" : "unknown";
-        const char* word = v.holds == Verdict::Holds::yes  ? "holds"
-                           : v.holds == Verdict::Holds::no ? "does not hold"
-                                                           : "not measured";
+        const char* word = v.holds == Verdict::Holds::yes          ? "holds"
+                           : v.holds == Verdict::Holds::no         ? "does not hold"
+                           : v.holds == Verdict::Holds::not_judged ? "quick run, not judged"
+                                                                   : "not measured";
         const std::string& plot = v.conclusion->plot;
         html += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"{}\">{}</td><td>{}</td><td>{}</td></tr>\n",
                             escaped(v.conclusion->says), escaped(v.conclusion->paper), kind, word, escaped(v.detail),

@@ -27,7 +27,8 @@ extern const std::vector<std::string> result_columns;
 /// reference. A row of the table is a solution: the columns of results.csv, and
 ///
 ///     row              the label
-///     initial_links, iterations, polygons, processor_seconds, wall_seconds, points, noise, is_last (0 or 1), command
+///     initial_links, added_links, iterations, polygons, processor_seconds, wall_seconds, points, noise, is_last (0 or
+///     1), command
 ///
 /// `status` is "done", "not reached" (the requested error), "time limit", "memory limit", "not run: ..." or "failed:
 /// ...". References and finished runs are kept in the folder. A stop keeps the finished ones. The table `references`

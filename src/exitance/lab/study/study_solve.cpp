@@ -129,6 +129,11 @@ void add_last(Table& table, const StudySolve& run, std::size_t number, const Pro
     copy("rays", "rays"), copy("link_bytes", "link_memory_bytes"), copy("element_bytes", "element_memory_bytes");
     copy("iterations", "iterations"), copy("initial_links", "initial_links"), copy("triangles", "triangles");
     copy("estimate", "relative_error_estimate");
+    if (facts.contains("initial_links")) {
+        const std::size_t last = table.rows.size() - 1;
+        const double added = table.number(last, "links") - table.number(last, "initial_links");
+        if (std::isfinite(added)) table.set("added_links", field(added));
+    }
     const bool classical = facts.contains("method_seconds");
     copy("seconds", classical ? "method_seconds" : "seconds.total");
     table.set("processor_seconds", classical ? get(facts, "processor_seconds") : field(program.processor_seconds));

@@ -249,13 +249,14 @@ Result<StudyTables> schedule_tables(const Study& study, const StudyOptions& opti
     };
     ScheduleStudy asked{given("threshold_W"), given("min_area_m2"), 1, argument(study, "error", 0.02)};
     if (!options.quick) asked.repeats = static_cast<int>(argument(study, "repeats", 3));
-    return tables_by_scene(study, options, progress, stop, {"results", "graphs", "iterations", "phases"},
+    return tables_by_scene(study, options, progress, stop, {"results", "graphs", "iterations", "calibration", "phases"},
                            [&](const std::string& name, const Scene& scene) -> Result<StudyTables> {
                                ScheduleTables tables;
                                measure_schedules(name, scene, asked, tables, stop);
                                return StudyTables{{"results", std::move(tables.runs)},
                                                   {"graphs", std::move(tables.graphs)},
                                                   {"iterations", std::move(tables.iterations)},
+                                                  {"calibration", std::move(tables.calibration)},
                                                   {"phases", std::move(tables.phases)}};
                            });
 }

@@ -1,6 +1,7 @@
 #include "exitance/lab/tasks/schedule_simulator.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <queue>
 #include <set>
@@ -24,6 +25,7 @@ class Replay {
           run_(run),
           queues_(schedule == Schedule::dynamic ? 1 : processors),
           free_at_(queues_.size(), 0),
+          runner_(iteration.task_count, none),
           running_(processors, none) {
         for (std::size_t t = first_; t < first_ + iteration.task_count; ++t) {
             const TaskGraph::Task& task = graph.tasks[t];
@@ -116,7 +118,9 @@ class Replay {
         const double P = static_cast<double>(processors_), cost = machine_.slowness * task.cost();
         const double outside = processors_ > machine_.ring ? 1 - static_cast<double>(machine_.ring) / P : 0;
         const double line = (1 - outside) * machine_.near + outside * machine_.far;
-        const double remote = (1 - 1 / P + (is_stolen ? 1 : 0)) * task.interactions * line;
+        const bool is_made_elsewhere = task.maker != TaskGraph::none && runner_[task.maker - first_] != p;
+        const double remote = (1 - 1 / P + (is_stolen || is_made_elsewhere ? 1 : 0)) * task.interactions * line;
+        runner_[t - first_] = p;
         run_.tasks += cost;
         run_.remote += remote;
         running_[p] = t;
@@ -131,8 +135,9 @@ class Replay {
     const MachineModel& machine_;
     SimulatedRun& run_;
     std::vector<std::deque<std::size_t>> queues_;
-    std::set<std::size_t> filled_;  ///< Queues that are not empty.
-    std::vector<double> free_at_;   ///< Time at which each queue's lock becomes free.
+    std::set<std::size_t> filled_;     ///< Queues that are not empty.
+    std::vector<double> free_at_;      ///< Time at which each queue's lock becomes free.
+    std::vector<std::size_t> runner_;  ///< Processor that ran each task of the iteration.
     std::vector<std::size_t> running_;
     std::deque<Event> waiting_;
     std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
@@ -152,6 +157,24 @@ SimulatedRun simulate_schedule(const TaskGraph& graph, Schedule schedule, std::s
     const double all = run.seconds * static_cast<double>(processors);
     run.idle = all - run.tasks - run.queue - run.remote - run.serial;
     return run;
+}
+
+std::optional<double> flattening_lock(const TaskGraph& graph, Schedule schedule, std::size_t processors,
+                                      MachineModel machine, double speedup) {
+    const auto speedup_with = [&](double lock) {
+        machine.queue = lock;
+        return simulate_schedule(graph, schedule, 1, machine).seconds /
+               simulate_schedule(graph, schedule, processors, machine).seconds;
+    };
+    constexpr double shortest = 1e-9, longest = 1;  // derived from a cycle of a processor, and a task's longest time
+    if (speedup_with(0) < speedup || speedup_with(longest) > speedup) return std::nullopt;
+    double low = shortest, high = longest;
+    constexpr double accuracy = 1.01;  // derived from the digits with which published curves can be read
+    while (high > accuracy * low) {
+        const double middle = std::sqrt(low * high);
+        (speedup_with(middle) > speedup ? low : high) = middle;
+    }
+    return std::sqrt(low * high);
 }
 
 double critical_path(const TaskGraph& graph) {

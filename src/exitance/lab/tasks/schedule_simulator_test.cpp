@@ -79,6 +79,37 @@ TEST(ScheduleSimulator, OneSharedQueueIsLimitedByItsLock) {
     EXPECT_LT(simulate_schedule(graph, Schedule::stealing, 512, slow_queue).seconds, 0.5 * locks);
 }
 
+TEST(ScheduleSimulator, TheLockOfAPublishedSpeedUpIsFound) {
+    const TaskGraph graph = random_graph(3, 400);
+    MachineModel machine = no_overhead;
+    machine.queue = 20e-6;
+    const double published = simulate_schedule(graph, Schedule::dynamic, 1, machine).seconds /
+                             simulate_schedule(graph, Schedule::dynamic, 64, machine).seconds;
+    const std::optional<double> found = flattening_lock(graph, Schedule::dynamic, 64, no_overhead, published);
+    ASSERT_TRUE(found);
+    machine.queue = *found;
+    const double again = simulate_schedule(graph, Schedule::dynamic, 1, machine).seconds /
+                         simulate_schedule(graph, Schedule::dynamic, 64, machine).seconds;
+    EXPECT_NEAR(again / published, 1, 0.02) << "the lock is accurate to 1%, and speed-ups fall at most as its inverse";
+    EXPECT_FALSE(flattening_lock(graph, Schedule::dynamic, 64, no_overhead, 65)) << "more than there are processors";
+}
+
+TEST(ScheduleSimulator, ListsThatAnotherProcessorMadeAreTransferred) {
+    // Task 1 is made by task 0 on processor 0, which then takes task 2, made likewise; the other processor takes one.
+    TaskGraph graph;
+    graph.iterations.push_back({.first_task = 0, .task_count = 3});
+    for (const std::uint32_t maker : {TaskGraph::none, 0u, 0u}) {
+        TaskGraph::Task& task = graph.tasks.emplace_back();
+        task.maker = maker, task.interactions = 10, task.seconds = {1, 0, 0, 0, 0};
+    }
+    MachineModel machine = no_overhead;
+    machine.near = 1e-3, machine.ring = 32;
+    const double line = 10 * machine.near;
+    // Each of three tasks reads half of its radiosities from the other processor; one has a list made elsewhere.
+    EXPECT_NEAR(simulate_schedule(graph, Schedule::dynamic, 2, machine).remote, (3 * 0.5 + 1) * line, 1e-12);
+    EXPECT_NEAR(simulate_schedule(graph, Schedule::fixed, 2, machine).remote, 3 * 0.5 * line, 1e-12);
+}
+
 TEST(ScheduleSimulator, RemoteLinesCostMoreBeyondARing) {
     const TaskGraph graph = random_graph(4, 300);
     const SimulatedRun inside = simulate_schedule(graph, Schedule::fixed, 32, two_rings);

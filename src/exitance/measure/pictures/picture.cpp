@@ -52,7 +52,7 @@ struct Pass {
 class TilePainter {
   public:
     TilePainter(const RadiosityFunction& light, const PictureOptions& options, const Pass& pass,
-                std::span<const Vec2> places, double brightness, const StopRequest& stop)
+                std::span<const Vec2> places, double brightness, const StopRequest& stop, const ShownIrradiance& shown)
         : scene_(light.solution().scene),
           tracer_(light.stage().tracer),
           options_(options),
@@ -63,6 +63,7 @@ class TilePainter {
           light_(light, static_cast<std::uint32_t>(places.size()), options.gather, options.seed, SpotPoints::any,
                  brightness) {
         light_.use(stop);
+        if (shown) light_.show(shown);
     }
 
     /// Renders the tile whose upper left pixel is (x0, y0) into a picture of the pass's size.
@@ -215,7 +216,8 @@ double usual_brightness(const RadiosityFunction& light, const PictureOptions& op
 
 /// Renders one pass. `finished`: 1 for each completed tile, row by row; 0 for those that a stop left unfinished.
 Picture paint(const RadiosityFunction& light, const PictureOptions& options, const Pass& pass, double brightness,
-              Progress& progress, const StopRequest& stop, std::vector<std::uint8_t>& finished) {
+              Progress& progress, const StopRequest& stop, const ShownIrradiance& shown,
+              std::vector<std::uint8_t>& finished) {
     Picture picture{pass.size(options.size), {}};
     picture.pixels.resize(picture.size.pixels());
     const std::vector<Vec2> places = places_about_pixel(pass.samples, options.seed);
@@ -227,7 +229,7 @@ Picture paint(const RadiosityFunction& light, const PictureOptions& options, con
     for (std::size_t first = 0; first < tiles && !stop.requested(); first += at_once) {
         progress.advance(static_cast<double>(first) / static_cast<double>(tiles));
         parallel_ranges(std::min(at_once, tiles - first), grain, [&](std::size_t begin, std::size_t end) {
-            TilePainter painter(light, options, pass, places, brightness, stop);
+            TilePainter painter(light, options, pass, places, brightness, stop, shown);
             for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i) {
                 painter.paint(static_cast<int>(i % columns) * tile_side, static_cast<int>(i / columns) * tile_side,
                               picture);
@@ -288,13 +290,19 @@ std::size_t next_pass(std::span<const Pass> passes, std::size_t last, PictureSiz
 
 Picture take_picture(const RadiosityFunction& light, const PictureOptions& options, Progress& progress,
                      const StopRequest& stop) {
+    return take_picture_of({}, light, options, progress, stop);
+}
+
+Picture take_picture_of(const ShownIrradiance& shown, const RadiosityFunction& light, const PictureOptions& options,
+                        Progress& progress, const StopRequest& stop) {
     progress.phase("render");
     std::vector<std::uint8_t> finished;
-    return paint(light, options, {1, options.samples}, usual_brightness(light, options), progress, stop, finished);
+    return paint(light, options, {1, options.samples}, usual_brightness(light, options), progress, stop, shown,
+                 finished);
 }
 
 TimedPicture take_picture_in_time(const RadiosityFunction& light, const PictureOptions& options, Progress& progress,
-                                  const StopRequest& stop) {
+                                  const StopRequest& stop, const ShownIrradiance& shown) {
     progress.phase("render");
     const double brightness = usual_brightness(light, options);
     const std::vector<Pass> passes = passes_to(options.samples);
@@ -303,7 +311,7 @@ TimedPicture take_picture_in_time(const RadiosityFunction& light, const PictureO
         const Pass& pass = passes[i];
         const Stopwatch watch;
         std::vector<std::uint8_t> finished;
-        Picture painted = paint(light, options, pass, brightness, progress, stop, finished);
+        Picture painted = paint(light, options, pass, brightness, progress, stop, shown, finished);
         const bool is_whole = std::find(finished.begin(), finished.end(), 0) == finished.end();
         if (is_whole) out.samples = pass.block == 1 ? pass.samples : 0, out.block = pass.block;
         if (is_whole && pass.block == 1)

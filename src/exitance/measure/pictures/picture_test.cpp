@@ -92,6 +92,33 @@ TEST(Picture, IsUniformInAFurnace) {
     }
 }
 
+TEST(Picture, ShowsAnotherIrradianceOnRequest) {
+    const Solution s = furnace(0.6);
+    const RadiosityFunction light(s);
+    const PictureOptions options{{{0.2, 0.3, 0.5}, {0.9, 1.9, 0.4}, 90}, {40, 30}, 1};
+    Progress progress;
+    const StopRequest stop;
+    const ShownIrradiance shown = [](RegionId, const Point& x) { return Spectrum(1 + x.y); };
+    const Picture picture = take_picture_of(shown, light, options, progress, stop);
+    const CameraRays rays(options.camera, options.size);
+    for (int y = 0; y < 30; ++y)
+        for (int x = 0; x < 40; ++x) {
+            Point origin;
+            Vec3 along;
+            ASSERT_TRUE(rays.ray(x + 0.5, y + 0.5, origin, along));
+            RayHit hit;
+            light.stage().tracer.nearest(std::span(&along, 1), origin, RegionId(), std::span(&hit, 1));
+            const Pixel& pixel = picture.pixels[static_cast<std::size_t>(y * 40 + x)];
+            const double E = 1 + (origin + hit.distance * along).y;
+            EXPECT_NEAR(pixel.irradiance[0], E, 1e-5);           // rays are cast in single precision
+            EXPECT_NEAR(pixel.radiosity[0], 1 + 0.6 * E, 1e-5);  // every surface emits 1 W/m^2
+        }
+    const TimedPicture timed = take_picture_in_time(light, options, progress, stop, shown);
+    ASSERT_TRUE(timed.is_complete);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        EXPECT_EQ(timed.picture.pixels[i].irradiance, picture.pixels[i].irradiance);
+}
+
 TEST(Picture, ShowsNoLightOnBacksAndInEmptySpace) {
     const Solution s = furnace(0.5);
     const Picture picture = picture_of(s, {{0.5, -3, 0.5}, {0.5, 0, 0.5}, 90}, {21, 21});

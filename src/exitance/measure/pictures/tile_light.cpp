@@ -135,9 +135,11 @@ bool TileLight::looks_small(const Spot& spot, const ReceiverLight& known, const 
 /// All light except exact direct light, mean over a spot.
 Spectrum TileLight::elements(const Spot& spot) {
     if (is_stopped()) return {};
-    if (gather_ == 0)
-        return probed_mean(spot.count, Spectrum(),
-                           [&](std::uint32_t i) { return light_.elements(spot.region, points_[spot.first + i]); });
+    if (gather_ == 0 || shown_)
+        return probed_mean(spot.count, Spectrum(), [&](std::uint32_t i) {
+            const Point& x = points_[spot.first + i];
+            return shown_ ? (*shown_)(spot.region, x) : light_.elements(spot.region, x);
+        });
     const Normal& n = light_.stage().scene.regions()[spot.region].plane.n;
     Spectrum sum;  // every gather has its own noise
     for (std::uint32_t i = 0; i < spot.count; ++i) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -42,6 +43,10 @@ class TileLight {
 
     /// Sets the mesh whose means spots may have; it must outlive the object.
     void use(const MeshLight& mesh) { mesh_ = &mesh; }
+    /// Shows this irradiance in place of the solution's; it must outlive the object.
+    void show(const std::function<Spectrum(RegionId, const Point&)>& shown) {
+        shown_ = &shown, direct_share_ = Spectrum();
+    }
     /// Sets a stop request, which must outlive the object: after a stop, evaluate() returns at once with unfinished
     /// spots.
     void use(const StopRequest& stop) { stop_ = &stop; }
@@ -94,6 +99,7 @@ class TileLight {
     const RadiosityFunction& light_;
     const MeshLight* mesh_ = nullptr;
     const StopRequest* stop_ = nullptr;
+    const std::function<Spectrum(RegionId, const Point&)>* shown_ = nullptr;
     std::uint32_t samples_;
     unsigned gather_;
     std::uint64_t seed_;

@@ -1,8 +1,14 @@
 #pragma once
 
+#include <functional>
+
 #include "exitance/measure/pictures/picture.hpp"
 
 namespace exitance {
+
+/// Irradiance at a point of a region, W/m^2, that a picture shows in place of the solution's. Empty: the solution. Of
+/// the samples of a pixel, four are evaluated if these are alike, else all.
+using ShownIrradiance = std::function<Spectrum(RegionId, const Point&)>;
 
 /// A picture that is complete, if coarse, whenever it was stopped.
 struct TimedPicture {
@@ -19,6 +25,10 @@ struct TimedPicture {
 /// the same bits as that of take_picture. Without a deadline the passes before the last one have squares of 128 and 8
 /// pixels a side, so that a signal leaves a picture.
 TimedPicture take_picture_in_time(const RadiosityFunction& light, const PictureOptions& options, Progress& progress,
-                                  const StopRequest& stop);
+                                  const StopRequest& stop, const ShownIrradiance& shown = {});
+
+/// Like take_picture, of another irradiance.
+Picture take_picture_of(const ShownIrradiance& shown, const RadiosityFunction& light, const PictureOptions& options,
+                        Progress& progress, const StopRequest& stop);
 
 }  // namespace exitance

@@ -67,6 +67,16 @@ OptionValue clusters() {
     return out;
 }
 
+/// Sets an option back to its default.
+template <class T>
+void clear(std::optional<T>& option) {
+    option.reset();
+}
+template <class T>
+void clear(T& option) {
+    option = T();
+}
+
 /// A value with the names of two tables, each stored in a member of its own: one for the standard form, and one for
 /// names that only published forms have.
 template <class First, class FirstMember, class Second, class SecondMember>
@@ -75,7 +85,7 @@ OptionValue either(const First& first, FirstMember in_first, const Second& secon
     OptionValue out;
     out.type = one.type + "|" + other.type;
     out.read = [&first, &second, in_first, in_second](const std::string& word, SolveRequest& r) -> std::string {
-        in_first(r).reset(), in_second(r).reset();
+        clear(in_first(r)), clear(in_second(r));
         if (choose(first, word, in_first(r)) || choose(second, word, in_second(r))) return "";
         return fmt::format("'{}' is not one of {}, {}", word, names_of(first, ", "), names_of(second, ", "));
     };
@@ -198,12 +208,13 @@ std::vector<OptionRow> rows_of_method() {
          .group = group::method,
          .support = links_of_hierarchies() + Support{{every_published | tasks, "off"}}},
         {.name = "--oracle",
-         .value = choice(oracle_names, at(&O::oracle)),
-         .does = "Criterion by which links are refined: the error of the transported light, form factor, or power",
+         .value = either(oracle_names, at(&O::oracle), classical_oracle_names, at(&ClassicalOptions::oracle)),
+         .does = "Criterion by which links are refined: the error of the transported light, form factor, power, or the "
+                 "difference of the kernel from its interpolant of the basis",
          .initial = "transport",
          .group = group::method,
-         .support = links_of_hierarchies() + Support{{published_links | tasks}},
-         .needs = {{"--threshold", "ff|bf", Form::published}}},
+         .support = links_of_hierarchies("transport|ff|bf") + Support{{published_links}, {tasks, "transport|ff|bf"}},
+         .needs = {{"--threshold", "ff|bf|kernel", Form::published}}},
         {.name = "--keep-links",
          .value = flag(at(&O::keep_links)),
          .does = "Write the links of a hierarchy into the solution, for export --links and view",
