@@ -246,4 +246,49 @@ TEST(ProgramReport, MeasuresWorkingPlanesByStandards) {
     EXPECT_EQ(run_program({"report", solution, "-o", folder / "r.html", "--maintenance", "0.8"}).status, 2);
 }
 
+TEST(ProgramReport, JudgesRoomsByTheirTasks) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5", page = folder / "room.html", own = folder / "own.toml";
+    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    const Finished list = run_program({"report", "--list-tasks"});
+    ASSERT_EQ(list.status, 0) << list.err;
+    EXPECT_NE(list.out.find("office"), std::string::npos);
+    EXPECT_NE(list.out.find("EN 12464-1:2021"), std::string::npos);
+    const auto report = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"report", solution, "-o", page, "--size", "16x10", "--unit", "lux", "-q"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_program(words);
+    };
+    // Planes and observers that the task needs are added.
+    const Finished office = report({"--task", "office"});
+    ASSERT_EQ(office.status, 0) << office.err;
+    const auto json = nlohmann::json::parse(read_text(folder / "room.json"));
+    ASSERT_EQ(json["rooms"].size(), 1u);
+    EXPECT_NEAR(json["rooms"][0]["area"], 12, 1e-3);
+    ASSERT_EQ(json["grids"].size(), 1u);
+    EXPECT_EQ(json["grids"][0]["room"], 1);
+    EXPECT_EQ(json["observers"].size(), 4u);
+    ASSERT_EQ(json["requirements"].size(), 4u);
+    for (const auto& r : json["requirements"]) EXPECT_EQ(r["task"], "office (EN 12464-1:2021)");
+    EXPECT_EQ(json["requirements"][0]["required"], 500);
+    EXPECT_EQ(json["requirements"][0]["reached"], json["grids"][0]["mean"]);
+    EXPECT_EQ(json["requirements"][3]["quantity"], "Ra");
+    EXPECT_EQ(json["requirements"][3]["verdict"], "not measured");
+    // The user's own tasks, by room.
+    write_text(own, "edition = \"house\"\n[[task]]\nname = \"dim\"\nEm = 1\nEz = 1\n");
+    ASSERT_EQ(report({"--tasks", own, "--task", "office", "--task", "1=dim"}).status, 0);
+    const auto dim = nlohmann::json::parse(read_text(folder / "room.json"));
+    ASSERT_EQ(dim["requirements"].size(), 2u);
+    EXPECT_EQ(dim["requirements"][1]["verdict"], "reached");
+    for (const std::vector<std::string>& wrong :
+         std::vector<std::vector<std::string>>{{"--task", "ofice"}, {"--task", "7=office"}, {"--tasks", own}})
+        EXPECT_EQ(report(wrong).status, 2) << wrong[1];
+    for (const char* text :
+         {"[[task]]\nname = \"a\"\nEm = -1\n", "[[task]]\nname = \"a\"\nlux = 5\n", "task = 1\n", "[[", ""}) {
+        write_text(own, text);
+        EXPECT_EQ(report({"--tasks", own, "--task", "office"}).status, 3) << text;
+    }
+    EXPECT_EQ(run_program({"report", "-o", page}).status, 2) << "no solution";
+}
+
 }  // namespace exitance::test

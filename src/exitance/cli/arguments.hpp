@@ -153,6 +153,9 @@ struct ReportArguments : CommonArguments {
     std::string pdf;                     ///< The page as PDF; empty: none.
     ReportHeading heading;
     std::vector<Requirement> requirements;
+    std::vector<std::string> tasks;  ///< Tasks of rooms, "NAME" or "ROOM=NAME".
+    std::string tasks_file;          ///< Further tasks (TOML); empty: none.
+    bool lists_tasks = false;        ///< Print the known tasks, and nothing else.
     PictureSize size{960, 600};
     UnitArguments unit;
     int threads = 0;

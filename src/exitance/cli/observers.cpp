@@ -8,29 +8,12 @@
 #include <sstream>
 
 #include "exitance/io/files/text_table.hpp"
-#include "exitance/measure/working_plane.hpp"
+#include "exitance/measure/floor_rooms.hpp"
+#include "exitance/measure/glare/room_observers.hpp"
+#include "exitance/transport/stage.hpp"
 
 namespace exitance {
 namespace {
-
-/// Observers of CIE 117: in the middle of each side of the largest floor, looking across it.
-Result<std::vector<Observer>> standard_observers(const Scene& scene) {
-    constexpr double seated = 1.2, off_wall = 0.1;  // metres
-    PlaneRequest request;
-    request.height = seated;
-    const Result<std::vector<GridLight>> planes = make_working_planes(scene, request);
-    if (!planes) return planes.error();
-    const MeasuringPlane& plane = planes->front().plane;
-    const Point middle = plane.origin + 0.5 * (plane.u + plane.v);
-    std::vector<Observer> out;
-    const std::array<std::pair<const char*, Vec3>, 4> walls{{{"along u", -0.5 * plane.u},
-                                                             {"against u", 0.5 * plane.u},
-                                                             {"along v", -0.5 * plane.v},
-                                                             {"against v", 0.5 * plane.v}}};
-    for (const auto& [name, way] : walls)
-        out.push_back({name, middle + way - off_wall * normalized(way), Vec3() - normalized(way)});
-    return out;
-}
 
 /// Eight directions every 45 degrees, clockwise from y.
 constexpr std::array<Vec3, 8> around_the_horizon{
@@ -68,8 +51,12 @@ Result<std::vector<Observer>> load_table(const std::string& path, bool around) {
 
 }  // namespace
 
-Result<std::vector<Observer>> find_observers(const std::string& words, const Scene& scene) {
-    if (words == "auto") return standard_observers(scene);
+Result<std::vector<Observer>> find_observers(const std::string& words, const Stage& stage, const FloorRooms& rooms) {
+    if (words == "auto") {
+        if (rooms.count() == 0)
+            return Error{ErrorCode::usage, "the scene has no floor", "--observers", "give eyes, 'x,y,z dx,dy,dz'"};
+        return room_observers(stage, rooms);
+    }
     if (words.find_first_not_of("0123456789.,+-eE ") != std::string::npos) return load_table(words, false);
     std::string blank = words;
     std::replace(blank.begin(), blank.end(), ',', ' ');
@@ -83,14 +70,19 @@ Result<std::vector<Observer>> find_observers(const std::string& words, const Sce
     return std::vector<Observer>{{words, {n[0], n[1], n[2]}, normalized(view)}};
 }
 
+bool need_rooms(const std::vector<std::string>& observers) {
+    return std::find(observers.begin(), observers.end(), "auto") != observers.end();
+}
+
 Result<std::vector<Observer>> load_views(const std::string& path) {
     return load_table(path, true);
 }
 
-Result<std::vector<Observer>> find_observers(const std::vector<std::string>& all, const Scene& scene) {
+Result<std::vector<Observer>> find_observers(const std::vector<std::string>& all, const Stage& stage,
+                                             const FloorRooms& rooms) {
     std::vector<Observer> out;
     for (const std::string& words : all) {
-        const Result<std::vector<Observer>> some = find_observers(words, scene);
+        const Result<std::vector<Observer>> some = find_observers(words, stage, rooms);
         if (!some) return some.error();
         out.insert(out.end(), some->begin(), some->end());
     }

@@ -209,7 +209,7 @@ void declare(CLI::App& app, RenderArguments& arguments) {
 }
 
 void declare(CLI::App& app, ReportArguments& arguments) {
-    app.add_option("SOLUTION", arguments.solution, "Solution file (.h5), as solve writes it")->required();
+    app.add_option("SOLUTION", arguments.solution, "Solution file (.h5), as solve writes it");
     app.add_option("-o,--output", arguments.output,
                    "Page to write (.html; its numbers are also written as .json); optional with --tables")
         ->type_name("FILE");

@@ -22,13 +22,17 @@ PlaneRequest read_request(const std::string& option, const std::string& words) {
         const std::size_t at = word.find('=');
         const std::string key = word.substr(0, at);
         const double value = at == std::string::npos ? -1 : read_number(option, word.substr(at + 1));
-        const bool known = key == "height" || key == "border" || key == "spacing";
-        if (!known || !(value >= 0) || (key == "spacing" && value == 0))
-            throw CLI::ValidationError(option, fmt::format("'{}' is not height=H, border=B or spacing=S", word));
+        const bool known = key == "height" || key == "border" || key == "spacing" || key == "around";
+        if (!known || !(value >= 0) || ((key == "spacing" || key == "around") && value == 0))
+            throw CLI::ValidationError(option,
+                                       fmt::format("'{}' is not height=H, border=B, spacing=S or around=W", word));
         if (key == "height") out.height = value;
         if (key == "border") out.border = value;
         if (key == "spacing") out.spacing = value;
+        if (key == "around") out.surroundings = value;
     }
+    if (out.surroundings && out.group.empty())
+        throw CLI::ValidationError(option, "around=W needs a task area: the name of faces");
     return out;
 }
 
@@ -86,7 +90,7 @@ void declare_standards(CLI::App& app, ReportArguments& arguments) {
     add_planes(app, "--plane", arguments.working_planes, false,
                "Working plane of EN 12464-1: '0.75' (metres above the floor), or named faces: 'desk' (on them) or "
                "'hall,height=0.75'; further border=B (default 0.5 m above floors) and spacing=S (default: the "
-               "standard's). May be given several times");
+               "standard's); around=0.5 also measures the surroundings of named faces. May be given several times");
     add_planes(app, "--cylindrical", arguments.working_planes, true,
                "Plane for cylindrical illuminance, '1.2' or 'hall,height=1.6'. May be given several times");
     add_positive(app, "--maintenance", arguments.maintenance, "FACTOR",
@@ -113,6 +117,17 @@ void declare_standards(CLI::App& app, ReportArguments& arguments) {
         ->type_name("NUMBERS")
         ->expected(1)
         ->take_all();
+    app.add_option(
+           "--task", arguments.tasks,
+           "Task of all rooms, 'office', or of one room, by number or name: '2=corridor'. The page then compares "
+           "what the standard requires with what is reached; without planes and observers, adds those that "
+           "the task needs. May be given several times")
+        ->type_name("TASK")
+        ->expected(1)
+        ->take_all();
+    app.add_option("--tasks", arguments.tasks_file, "Further tasks (TOML), which replace known ones of the same name")
+        ->type_name("FILE");
+    app.add_flag("--list-tasks", arguments.lists_tasks, "Print the known tasks with their requirements, and end");
     const auto add_text = [&](const char* name, std::string& text, const char* help) {
         app.add_option(name, text, help)->type_name("TEXT");
     };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,8 @@ struct GridLight {
     std::vector<bool> counts;  ///< For every point, true if it belongs to the measured area. Empty: all do.
     /// True for cylindrical illuminance E_z, the mean over vertical planes of all directions.
     bool is_cylindrical = false;
-    std::string name;  ///< Empty: no name.
+    std::string name;                 ///< Empty: no name.
+    std::optional<std::size_t> room;  ///< Index of the room that contains the plane; none: not in a room.
 };
 
 /// Returns the grid of a plane. Errors of code `usage`: a plane without area, a margin that leaves no area, more than

@@ -4,115 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "exitance/measure/floor_rooms.hpp"
 
 namespace exitance {
 namespace {
 
-constexpr double level_tolerance = 1e-3;  ///< Distance below which faces are in one plane, metres.
-constexpr double upward = 0.999;          ///< Cosine to the vertical for faces that point up.
-constexpr double least_share = 0.1;       ///< Share of the largest area; smaller planes are not used.
+constexpr double least_share = 0.1;  ///< Share of the largest area of named faces; smaller planes are not used.
 constexpr std::size_t most_planes = 32;
-
-/// A polygon with holes: a region or one face.
-struct Shape {
-    std::vector<std::vector<Point>> loops;
-    Plane plane;
-    double area = 0;  ///< m^2
-    Box box;
-
-    bool holds(const Point& p) const {
-        bool inside = false;
-        for (const std::vector<Point>& loop : loops) inside ^= contains(loop, plane.n, p);
-        return inside;
-    }
-};
-
-/// Coplanar shapes that touch each other.
-struct Floor {
-    std::vector<Shape> shapes;
-    double area = 0;  ///< m^2
-};
 
 Error refuse(const std::string& message, const std::string& hint) {
     return {ErrorCode::usage, message, "--plane", hint};
 }
 
-Shape shape_of(std::vector<std::vector<Point>> loops, const Plane& plane, double area) {
-    Shape out{std::move(loops), plane, area, {}};
-    for (const std::vector<Point>& loop : out.loops)
-        for (const Point& p : loop) out.box.add(p);
-    return out;
-}
-
-Shape shape_of(const Region& region) {
-    return shape_of(region.loops, region.plane, region.area);
-}
-
-std::vector<Shape> floors(const Scene& scene) {
-    double largest = 0, lowest = std::numeric_limits<double>::infinity();
-    for (const Region& region : scene.regions())
-        if (region.plane.n.z > upward) largest = std::max(largest, region.area);
-    for (const Region& region : scene.regions())
-        if (region.plane.n.z > upward && region.area >= least_share * largest)
-            lowest = std::min(lowest, region.loops[0][0].z);
-    std::vector<Shape> out;
-    for (const Region& region : scene.regions())
-        if (region.plane.n.z > upward && std::abs(region.loops[0][0].z - lowest) < level_tolerance)
-            out.push_back(shape_of(region));
-    return out;
-}
-
-/// Faces of a group: whole regions if all of their faces are in it, else single faces.
-std::vector<Shape> shapes_of_group(const Scene& scene, const std::string& name) {
-    const auto is_named = [&](SurfaceId s) { return scene.groups()[scene.surfaces()[s].group] == name; };
-    std::vector<Shape> out;
-    for (const Region& region : scene.regions()) {
-        if (std::all_of(region.surfaces.begin(), region.surfaces.end(), is_named)) {
-            out.push_back(shape_of(region));
-            continue;
-        }
-        for (const SurfaceId s : region.surfaces)
-            if (is_named(s))
-                out.push_back(shape_of({{scene.outline(s).begin(), scene.outline(s).end()}}, region.plane,
-                                       scene.surfaces()[s].area));
-    }
-    const auto is_up = [](const Shape& shape) { return shape.plane.n.z > upward; };
-    if (std::any_of(out.begin(), out.end(), is_up)) std::erase_if(out, [&](const Shape& s) { return !is_up(s); });
-    return out;
-}
-
-bool touch(const Shape& a, const Shape& b) {
-    for (std::size_t k = 0; k < 3; ++k)
-        if (a.box.lo[k] > b.box.hi[k] + level_tolerance || b.box.lo[k] > a.box.hi[k] + level_tolerance) return false;
-    return dot(a.plane.n, b.plane.n) > upward && std::abs(a.plane.signed_distance(b.loops[0][0])) < level_tolerance;
-}
-
-/// Groups shapes that are in one plane and touch each other directly or indirectly; the largest group first.
-std::vector<Floor> join(std::vector<Shape> shapes) {
-    // Sorted along x, so that only neighbours must be compared.
-    std::stable_sort(shapes.begin(), shapes.end(),
-                     [](const Shape& a, const Shape& b) { return a.box.lo.x < b.box.lo.x; });
-    std::vector<std::size_t> root(shapes.size());
-    std::iota(root.begin(), root.end(), std::size_t{0});
-    const auto find = [&](std::size_t i) {
-        while (root[i] != i) i = root[i] = root[root[i]];
-        return i;
-    };
-    for (std::size_t a = 0; a < shapes.size(); ++a)
-        for (std::size_t b = a + 1; b < shapes.size(); ++b) {
-            if (shapes[b].box.lo.x > shapes[a].box.hi.x + level_tolerance) break;
-            if (touch(shapes[a], shapes[b])) root[find(a)] = find(b);
-        }
-    std::vector<Floor> out;
-    std::vector<std::size_t> number(shapes.size(), shapes.size());
-    for (std::size_t i = 0; i < shapes.size(); ++i) {
-        std::size_t& at = number[find(i)];
-        if (at == shapes.size()) at = out.size(), out.emplace_back();
-        out[at].area += shapes[i].area;
-        out[at].shapes.push_back(std::move(shapes[i]));
-    }
-    std::stable_sort(out.begin(), out.end(), [](const Floor& a, const Floor& b) { return a.area > b.area; });
+/// Groups of named faces that are large enough for planes of their own.
+std::vector<Floor> large_groups(std::vector<FloorShape> shapes) {
+    std::vector<Floor> out = join_shapes(std::move(shapes));
     if (!out.empty()) {
         const double least = least_share * out[0].area;
         std::erase_if(out, [&](const Floor& f) { return f.area < least; });
@@ -121,71 +28,113 @@ std::vector<Floor> join(std::vector<Shape> shapes) {
     return out;
 }
 
-/// Bounding rectangle of a floor, aligned with its longest edge. Its u axis is the one of the four side directions that
-/// is closest to +x.
-MeasuringPlane rectangle_about(const Floor& floor) {
-    Vec3 longest;
-    for (const Shape& shape : floor.shapes)
-        for (const std::vector<Point>& loop : shape.loops)
-            for (std::size_t i = 0; i < loop.size(); ++i) {
-                const Vec3 edge = loop[(i + 1) % loop.size()] - loop[i];
-                if (norm(edge) > norm(longest) * (1 + 1e-9)) longest = edge;
-            }
-    const Normal n = floor.shapes[0].plane.n;
-    const Vec3 along = normalized(longest - dot(longest, n) * n), across = cross(n, along);
-    Vec3 u = along;
-    for (const Vec3& way : {across, -1 * along, -1 * across})
-        if (way.x + 1e-3 * way.y > u.x + 1e-3 * u.y + 1e-9) u = way;
-    const Vec3 v = cross(n, u);
-    const Point start = floor.shapes[0].loops[0][0];
-    Vec2 low{HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL};
-    for (const Shape& shape : floor.shapes)
-        for (const std::vector<Point>& loop : shape.loops)
-            for (const Point& p : loop) {
-                const double a = dot(p - start, u), b = dot(p - start, v);
-                low = {std::min(low.x, a), std::min(low.y, b)}, high = {std::max(high.x, a), std::max(high.y, b)};
-            }
-    return {start + low.x * u + low.y * v, (high.x - low.x) * u, (high.y - low.y) * v};
-}
-
-bool is_within(const Floor& floor, const Point& p) {
-    return std::any_of(floor.shapes.begin(), floor.shapes.end(), [&](const Shape& shape) { return shape.holds(p); });
-}
-
 /// True if a point of the floor's plane is inside its outline, by at least the border. Tests places on a circle around
 /// the point, so that edges between shapes do not count.
 bool is_well_within(const Floor& floor, const Point& p, double border) {
     constexpr int places = 24;
-    if (!is_within(floor, p)) return false;
+    if (!floor.holds(p)) return false;
     const Frame frame(floor.shapes[0].plane.n);
     for (int i = 0; i < places && border > 0; ++i) {
         const double a = 2 * pi * i / places;
-        if (!is_within(floor, p + border * frame.to_world(std::cos(a), std::sin(a), 0))) return false;
+        if (!floor.holds(p + border * frame.to_world(std::cos(a), std::sin(a), 0))) return false;
     }
     return true;
 }
 
-std::string name_of(const PlaneRequest& request, std::size_t number, std::size_t count) {
-    std::string name = request.group.empty() ? "floor" : request.group;
-    if (count > 1) name += fmt::format(" {}", number + 1);
-    if (request.height) name = fmt::format("{:.4g} m above {}", *request.height, name);
+std::string name_of(const PlaneRequest& request, const std::string& place) {
+    const std::string name = request.height ? fmt::format("{:.4g} m above {}", *request.height, place) : place;
     return request.is_cylindrical ? name + ", cylindrical" : name;
 }
 
-Result<GridLight> make_plane(const PlaneRequest& request, const Floor& floor) {
-    MeasuringPlane plane = rectangle_about(floor);
+/// Makes the grid over a rectangle. `holds(p, border)`: true if a point of the rectangle's plane counts.
+template <class Holds>
+Result<GridLight> make_plane(const PlaneRequest& request, MeasuringPlane plane, const Holds& holds) {
     plane.spacing = request.spacing;
     plane.margin = request.border.value_or(default_border(norm(plane.u), norm(plane.v), request.height.has_value()));
-    const Vec3 rise = request.height.value_or(0) * floor.shapes[0].plane.n;
+    const Vec3 rise = request.height.value_or(0) * normalized(cross(plane.u, plane.v));
     plane.origin += rise;
     Result<GridLight> grid = make_grid(plane);
     if (!grid) return refuse(grid.error().message, grid.error().hint);
-    for (const Point& p : grid->points) grid->counts.push_back(is_well_within(floor, p - rise, plane.margin));
+    for (const Point& p : grid->points) grid->counts.push_back(holds(p - rise, plane.margin));
     if (std::none_of(grid->counts.begin(), grid->counts.end(), [](bool b) { return b; }))
         return refuse(fmt::format("a border of {:.3g} m leaves no point", plane.margin),
                       "choose a smaller one, border=B");
     grid->is_cylindrical = request.is_cylindrical;
     return grid;
+}
+
+Result<std::vector<GridLight>> planes_of_rooms(const FloorRooms& rooms, const PlaneRequest& request) {
+    if (rooms.count() == 0) return refuse("the scene has no floor", "name the faces to measure on");
+    std::vector<GridLight> out;
+    for (std::size_t i = 0; i < rooms.count(); ++i) {
+        Result<GridLight> grid = make_plane(request, rooms[i].rectangle,
+                                            [&](const Point& p, double border) { return rooms.holds(i, p, border); });
+        if (!grid && i > 0) continue;  // e.g. a closet beside a hall
+        if (!grid) return grid.error();
+        grid->room = i;
+        grid->name = name_of(request, rooms.count() > 1 ? rooms.label(i) : "floor");
+        out.push_back(std::move(*grid));
+    }
+    return out;
+}
+
+/// True if a point of the floor's plane is outside its outline, but within a distance from it.
+bool is_around(const Floor& floor, const Point& p, double width) {
+    constexpr int places = 24, rings = 4;  // derived from a tenth of the width
+    if (floor.holds(p)) return false;
+    const Frame frame(floor.shapes[0].plane.n);
+    for (int ring = 1; ring <= rings; ++ring)
+        for (int i = 0; i < places; ++i) {
+            const double a = 2 * pi * i / places, r = width * ring / rings;
+            if (floor.holds(p + r * frame.to_world(std::cos(a), std::sin(a), 0))) return true;
+        }
+    return false;
+}
+
+/// Makes the grid of the immediate surroundings of a task area: a band around it, inside the same room.
+Result<GridLight> make_surroundings(const PlaneRequest& request, const Floor& floor, const FloorRooms& rooms,
+                                    const std::optional<std::size_t>& room) {
+    const double width = *request.surroundings;
+    MeasuringPlane plane = rectangle_about(floor);
+    const Vec3 u = normalized(plane.u), v = normalized(plane.v), n = cross(u, v);
+    plane.origin = plane.origin - width * (u + v);
+    plane.u = plane.u + 2 * width * u, plane.v = plane.v + 2 * width * v;
+    PlaneRequest band = request;
+    band.border = 0;
+    return make_plane(band, plane, [&](const Point& p, double) {
+        return is_around(floor, p, width) && (!room || rooms.at(p + request.height.value_or(0) * n) == *room);
+    });
+}
+
+Result<std::vector<GridLight>> planes_of_group(const Scene& scene, const FloorRooms& rooms,
+                                               const PlaneRequest& request) {
+    std::vector<FloorShape> named = shapes_of_group(scene, request.group);
+    if (named.empty()) {
+        std::string names;
+        for (const GroupId g : scene.groups().ids())
+            if (g.value < 20) names += fmt::format("{}{}", names.empty() ? "" : ", ", scene.groups()[g]);
+        return refuse(fmt::format("no faces are called '{}'", request.group), "there are " + names);
+    }
+    const std::vector<Floor> all = large_groups(std::move(named));
+    std::vector<GridLight> out;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Floor& floor = all[i];
+        Result<GridLight> grid = make_plane(request, rectangle_about(floor), [&](const Point& p, double border) {
+            return is_well_within(floor, p, border);
+        });
+        if (!grid && i > 0) continue;
+        if (!grid) return grid.error();
+        grid->name = name_of(request, all.size() > 1 ? fmt::format("{} {}", request.group, i + 1) : request.group);
+        const std::size_t room = rooms.at(grid->plane.origin + 0.5 * (grid->plane.u + grid->plane.v));
+        if (room < rooms.count()) grid->room = room;
+        out.push_back(std::move(*grid));
+        if (!request.surroundings) continue;
+        Result<GridLight> band = make_surroundings(request, floor, rooms, out.back().room);
+        if (!band) return band.error();
+        band->name = out.back().name + ", surroundings", band->room = out.back().room;
+        out.push_back(std::move(*band));
+    }
+    return out;
 }
 
 }  // namespace
@@ -196,25 +145,9 @@ double default_border(double length, double width, bool is_above) {
     return !is_above ? 0 : border > most * shorter ? share * shorter : border;
 }
 
-Result<std::vector<GridLight>> make_working_planes(const Scene& scene, const PlaneRequest& request) {
-    std::vector<Shape> named = request.group.empty() ? floors(scene) : shapes_of_group(scene, request.group);
-    if (named.empty() && request.group.empty()) return refuse("the scene has no floor", "name the faces to measure on");
-    if (named.empty()) {
-        std::string names;
-        for (const GroupId g : scene.groups().ids())
-            if (g.value < 20) names += fmt::format("{}{}", names.empty() ? "" : ", ", scene.groups()[g]);
-        return refuse(fmt::format("no faces are called '{}'", request.group), "there are " + names);
-    }
-    const std::vector<Floor> all = join(std::move(named));
-    std::vector<GridLight> out;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        Result<GridLight> grid = make_plane(request, all[i]);
-        if (!grid && all.size() > 1 && i > 0) continue;  // e.g. a closet beside a hall
-        if (!grid) return grid.error();
-        grid->name = name_of(request, i, all.size());
-        out.push_back(std::move(*grid));
-    }
-    return out;
+Result<std::vector<GridLight>> make_working_planes(const Scene& scene, const FloorRooms& rooms,
+                                                   const PlaneRequest& request) {
+    return request.group.empty() ? planes_of_rooms(rooms, request) : planes_of_group(scene, rooms, request);
 }
 
 }  // namespace exitance

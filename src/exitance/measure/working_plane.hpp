@@ -8,13 +8,17 @@
 
 namespace exitance {
 
+class FloorRooms;
+
 /// Planes on which lighting standards require measurements: above the floors of a scene, or above named faces.
 struct PlaneRequest {
     std::string group;             ///< Name of the faces; empty: the floors.
     std::optional<double> height;  ///< Height above them, metres; none: on the faces themselves.
     /// Width of the strip along the outline that does not count, metres; none: default_border.
     std::optional<double> border;
-    double spacing = 0;           ///< See MeasuringPlane::spacing.
+    double spacing = 0;  ///< See MeasuringPlane::spacing.
+    /// Width of the immediate surroundings to be measured around named faces, metres; none: they are not measured.
+    std::optional<double> surroundings;
     bool is_cylindrical = false;  ///< Measure E_z, the mean illuminance of vertical planes of all directions.
 };
 
@@ -22,12 +26,11 @@ struct PlaneRequest {
 /// than a quarter of that side; 0 if light is measured on the faces themselves.
 double default_border(double length, double width, bool is_above);
 
-/// Makes one grid over every group of coplanar faces that touch each other, along their longest edge. Groups with less
-/// than a tenth of the largest one's area are omitted, and at most the 32 largest are used. Points of the grid outside
-/// the faces' outline, or nearer to it than the border, do not count. Floors are the faces that point up at the lowest
-/// level with a face of at least a tenth of the area of the largest one. Of named faces, those that point up are used,
-/// if there are any.
-/// Errors of code `usage`: no such faces, no point within the border, or more than 100,000 points.
-Result<std::vector<GridLight>> make_working_planes(const Scene& scene, const PlaneRequest& request);
+/// Makes the grids of a request: one per room above the floors, or one per group of coplanar faces of the name that
+/// touch each other (at most 32, none below a tenth of the largest). Points outside the room or the faces' outline, or
+/// nearer to its walls or outline than the border, do not count. Of named faces, those that point up are used, if there
+/// are any. Errors of code `usage`: no such faces, no point within the border, or more than 100,000 points.
+Result<std::vector<GridLight>> make_working_planes(const Scene& scene, const FloorRooms& rooms,
+                                                   const PlaneRequest& request);
 
 }  // namespace exitance

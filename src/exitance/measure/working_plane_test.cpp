@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "exitance/measure/floor_rooms.hpp"
 #include "support/built_scene.hpp"
 #include "support/sample_solution.hpp"
 
@@ -33,6 +34,11 @@ std::size_t counted(const GridLight& grid) {
     return static_cast<std::size_t>(std::count(grid.counts.begin(), grid.counts.end(), true));
 }
 
+Result<std::vector<GridLight>> planes_of(const Scene& scene, const PlaneRequest& request) {
+    const RayTracer tracer(scene);
+    return make_working_planes(scene, FloorRooms(scene, tracer), request);
+}
+
 PlaneRequest at_height(double height) {
     PlaneRequest request;
     request.height = height;
@@ -42,7 +48,7 @@ PlaneRequest at_height(double height) {
 TEST(WorkingPlane, HasTheStandardSpacingWithinABorderOfHalfAMetre) {
     // 6 x 4 m: 5 x 3 m within the border, p = 0.2 * 5^log10(5) = 0.616 m: 9 x 5 points.
     const Scene scene = scene_of({{{0, 0}, {6, 0}, {6, 4}, {0, 4}}});
-    const auto planes = make_working_planes(scene, at_height(0.75));
+    const auto planes = planes_of(scene, at_height(0.75));
     ASSERT_TRUE(planes) << planes.error().message;
     ASSERT_EQ(planes->size(), 1u);
     const GridLight& grid = planes->front();
@@ -58,7 +64,7 @@ TEST(WorkingPlane, OmitsPointsOutsideTheOutlineOrNearIt) {
     const Scene scene = scene_of({{{0, 0}, {3, 0}, {3, 6}, {0, 6}}, {{3, 0}, {6, 0}, {6, 3}, {3, 3}}});
     PlaneRequest request = at_height(1);
     request.spacing = 0.5;
-    const auto planes = make_working_planes(scene, request);
+    const auto planes = planes_of(scene, request);
     ASSERT_TRUE(planes);
     ASSERT_EQ(planes->size(), 1u);
     const GridLight& grid = planes->front();
@@ -76,19 +82,33 @@ TEST(WorkingPlane, NamedFacesAreMeasuredOnThemselves) {
     const Scene scene = scene_of({{{0, 0}, {6, 0}, {6, 4}, {0, 4}}});
     PlaneRequest request;
     request.group = "table";
-    const auto planes = make_working_planes(scene, request);
+    const auto planes = planes_of(scene, request);
     ASSERT_TRUE(planes);
     EXPECT_EQ(planes->front().points.size(), 25u);  // p = 0.2 m
     EXPECT_NEAR(planes->front().points[0].z, 0.8, 1e-12);
     request.group = "chair";
-    const auto missing = make_working_planes(scene, request);
+    const auto missing = planes_of(scene, request);
     ASSERT_FALSE(missing);
     EXPECT_NE(missing.error().hint.find("table"), std::string::npos);
 }
 
+TEST(WorkingPlane, SurroundingsAreABandAroundTheTaskArea) {
+    // Around the table of 1 x 1 m: a band of 0.5 m has 3 m^2 and four quarters of a circle of 0.5 m, 3 - 1 + pi / 4.
+    const Scene scene = scene_of({{{0, 0}, {6, 0}, {6, 4}, {0, 4}}});
+    PlaneRequest request;
+    request.group = "table", request.surroundings = 0.5, request.spacing = 0.02;
+    const auto planes = planes_of(scene, request);
+    ASSERT_TRUE(planes);
+    ASSERT_EQ(planes->size(), 2u);
+    EXPECT_EQ(planes->back().name, "table, surroundings");
+    const double cell = planes->back().step_u * planes->back().step_v;
+    // Four rings of places, 15 degrees apart, miss up to 3% of the band, at its round corners.
+    EXPECT_NEAR(static_cast<double>(counted(planes->back())) * cell, 2 + pi / 4, 0.08);
+}
+
 TEST(WorkingPlane, SeparateRoomsHaveOnePlaneEach) {
     const Scene scene = scene_of({{{0, 0}, {3, 0}, {3, 4}, {0, 4}}, {{3.2, 0}, {8, 0}, {8, 4}, {3.2, 4}}});
-    const auto planes = make_working_planes(scene, at_height(0.75));
+    const auto planes = planes_of(scene, at_height(0.75));
     ASSERT_TRUE(planes);
     ASSERT_EQ(planes->size(), 2u);
     EXPECT_GT(counted(planes->front()), counted(planes->back()));
@@ -111,7 +131,7 @@ TEST(WorkingPlane, CylindricalIlluminanceInAFurnaceEqualsThatOfItsWalls) {
     s.direct_in_elements = true;
     PlaneRequest request = at_height(1.2);
     request.is_cylindrical = true, request.spacing = 1;
-    auto planes = make_working_planes(s.scene, request);
+    auto planes = planes_of(s.scene, request);
     ASSERT_TRUE(planes);
     Progress progress;
     measure(RadiosityFunction(s), planes->front(), progress, StopRequest());

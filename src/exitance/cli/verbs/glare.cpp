@@ -5,6 +5,8 @@
 #include "exitance/cli/observers.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/measure/floor_rooms.hpp"
+#include "exitance/transport/stage.hpp"
 
 namespace exitance {
 namespace {
@@ -38,12 +40,13 @@ ExitCode run(const GlareArguments& arguments, Terminal& terminal) {
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
     const Scene& scene = solution->scene;
-    const Result<std::vector<Observer>> observers = find_observers(arguments.observers, scene);
-    if (!observers) return terminal.fail(observers.error());
     const LightUnit lux(UnitChoice::lux, scene.is_photometric(), arguments.efficacy.value_or(daylight_efficacy));
     if (arguments.efficacy && !lux.is_converted())
         terminal.note("--efficacy has no effect: light in lumens is not converted");
     const RadiosityFunction light(*solution);
+    const FloorRooms rooms = need_rooms(arguments.observers) ? FloorRooms(scene, light.stage().tracer) : FloorRooms();
+    const Result<std::vector<Observer>> observers = find_observers(arguments.observers, light.stage(), rooms);
+    if (!observers) return terminal.fail(observers.error());
     const StopRequest& stop = terminal.limits().stop();
     std::vector<DaylightGlare> glare;
     terminal.progress().phase("glare");

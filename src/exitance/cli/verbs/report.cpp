@@ -15,13 +15,18 @@
 #include "exitance/io/pictures/display.hpp"
 #include "exitance/io/pictures/isolux.hpp"
 #include "exitance/io/pictures/unit_picture.hpp"
+#include "exitance/io/report/lighting_tasks.hpp"
 #include "exitance/io/report/report_pdf.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/io/solution/statistics_json.hpp"
+#include "exitance/measure/floor_rooms.hpp"
 #include "exitance/measure/pictures/timed_picture.hpp"
+#include "exitance/transport/stage.hpp"
 
 namespace exitance {
 namespace {
+
+constexpr int picture_samples = 2;  ///< Rays per pixel; derived from pages that show pictures at a third of their size.
 
 /// The requested views; by default an automatic one and up to three cameras of the scene.
 std::vector<RenderArguments> views(const ReportArguments& arguments, const Scene& scene) {
@@ -39,18 +44,17 @@ std::vector<RenderArguments> views(const ReportArguments& arguments, const Scene
 /// Adds a camera's view in display colours and in false colours. The captions say if a stop has left them coarse.
 void add_pictures(const ReportArguments& arguments, const RadiosityFunction& light, const Camera& camera,
                   ReportContent& content, Terminal& terminal, const StopRequest& stop) {
-    PictureOptions options{camera, arguments.size, 8};
+    PictureOptions options{camera, arguments.size, picture_samples};
     const TimedPicture taken = take_picture_in_time(light, options, terminal.progress(), stop);
     if (taken.block == 0) return content.unfinished.push_back("pictures from " + describe(camera));
-    const std::string note = taken.is_complete ? ""
-                             : taken.samples > 0
-                                 ? fmt::format("; stopped after {} of 8 samples per pixel", taken.samples)
-                                 : fmt::format("; stopped at squares of {} pixels", taken.block);
+    const std::string note =
+        taken.is_complete   ? ""
+        : taken.samples > 0 ? fmt::format("; stopped after {} of {} samples per pixel", taken.samples, picture_samples)
+                            : fmt::format("; stopped at squares of {} pixels", taken.block);
     const Picture& picture = taken.picture;
     ToneMap tones;
     tones.curve = ToneCurve::filmic, tones.scale = automatic_exposure(picture);
-    content.pictures.push_back({fmt::format("Radiosity times {:.4g}, toned by a filmic curve{}", tones.scale, note),
-                                describe(camera), display_image(picture, tones)});
+    content.pictures.push_back({"The room as it looks" + note, describe(camera), display_image(picture, tones)});
     const bool lux = content.unit.is_lux();
     const Quantity quantity = lux ? Quantity::illuminance : Quantity::irradiance;
     const Picture shown = in_unit(picture, content.unit);
@@ -58,8 +62,8 @@ void add_pictures(const ReportArguments& arguments, const RadiosityFunction& lig
     Image image = false_colour_image(shown, quantity, scale);
     if (lux) draw_isolux(image, shown, scale, title(quantity, lux));
     draw_legend(image, title(quantity, lux), scale);
-    content.pictures.push_back({(lux ? "Illuminance in lx" : "Irradiance in W/m^2, mean of the bands") + note,
-                                describe(camera), std::move(image)});
+    content.pictures.push_back(
+        {(lux ? "Illuminance in lx" : "Irradiance in W/m²") + note, describe(camera), std::move(image)});
 }
 
 /// The 1000 largest faces. Sets `left_out` to the number of the others.
@@ -76,7 +80,7 @@ std::vector<SurfaceId> largest_faces(const Scene& scene, std::size_t& left_out) 
 
 /// Bakes light maps for the embedded viewer, if the scene is small enough for a page that can be mailed.
 void add_viewer(const RadiosityFunction& light, ReportContent& content, Terminal& terminal, const StopRequest& stop) {
-    constexpr double many_texels = 30000, few_texels = 2000;
+    constexpr double many_texels = 8000, few_texels = 2000;  // derived from pages of about a megabyte
     constexpr std::size_t most_faces = 20000;
     const Scene& scene = light.solution().scene;
     if (scene.surfaces().size() > most_faces) return;
@@ -96,16 +100,53 @@ void add_viewer(const RadiosityFunction& light, ReportContent& content, Terminal
         content.viewer = std::move(*maps);
 }
 
-Result<void> add_working_planes(const ReportArguments& arguments, const Scene& scene, std::vector<GridLight>& grids) {
+/// True if the rooms of the scene are needed for planes or observers.
+bool needs_rooms(const ReportArguments& arguments) {
+    return need_rooms(arguments.observers) || !arguments.working_planes.empty() || !arguments.tasks.empty();
+}
+
+Result<void> add_working_planes(const ReportArguments& arguments, const Scene& scene, const FloorRooms& rooms,
+                                std::vector<GridLight>& grids) {
     for (const PlaneRequest& request : arguments.working_planes) {
-        Result<std::vector<GridLight>> planes = make_working_planes(scene, request);
+        Result<std::vector<GridLight>> planes = make_working_planes(scene, rooms, request);
         if (!planes) return planes.error();
         for (GridLight& plane : *planes) grids.push_back(std::move(plane));
     }
     return {};
 }
 
+/// Adds the planes and observers that the requirements of tasks need, if the user gave none: a working plane at 0.75 m,
+/// a cylindrical one at the eyes of seated people, and automatic observers.
+ReportArguments with_needs_of_tasks(ReportArguments arguments, std::span<const LightingTask> tasks) {
+    constexpr double working_height = 0.75, seated = 1.2;  // metres, the usual heights of EN 12464-1
+    const auto need = [&](const std::string& quantity) {
+        for (const std::string& words : arguments.tasks)
+            for (const LightingTask& task : tasks)
+                if (task.name == words.substr(words.find('=') + 1))
+                    for (const Requirement::Limit& limit : task.limits)
+                        if (limit.quantity == quantity) return true;
+        return false;
+    };
+    const auto has_plane = [&](bool cylindrical) {
+        return std::any_of(arguments.working_planes.begin(), arguments.working_planes.end(),
+                           [&](const PlaneRequest& p) { return p.is_cylindrical == cylindrical; });
+    };
+    if ((need("Em") || need("U0")) && !has_plane(false))
+        arguments.working_planes.emplace_back().height = working_height;
+    if (need("Ez") && !has_plane(true)) {
+        PlaneRequest& plane = arguments.working_planes.emplace_back();
+        plane.height = seated, plane.is_cylindrical = true;
+    }
+    if (need("UGR") && arguments.observers.empty()) arguments.observers.emplace_back("auto");
+    return arguments;
+}
+
 std::optional<Error> find_misuse(const ReportArguments& arguments) {
+    if (arguments.solution.empty())
+        return Error{ErrorCode::usage, "no solution is given", "report",
+                     "for example: exitance report room.h5 -o room.html"};
+    if (!arguments.tasks_file.empty() && arguments.tasks.empty())
+        return Error{ErrorCode::usage, "has no effect without a task", "--tasks", "add --task NAME, or --list-tasks"};
     if (arguments.output.empty() && arguments.tables.empty())
         return Error{ErrorCode::usage, "no output is given", "report", "name a page, -o room.html, or --tables FOLDER"};
     const bool measures = !arguments.planes.empty() || !arguments.working_planes.empty();
@@ -193,11 +234,8 @@ ExitCode write(const ReportArguments& arguments, const ReportContent& content, T
     return terminal.limits().stopped_code();
 }
 
-}  // namespace
-
-/// Runs `exitance report SOLUTION -o PAGE --tables FOLDER`.
-ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
-    if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
+/// Runs a report whose arguments are complete.
+ExitCode make_report(const ReportArguments& arguments, std::span<const LightingTask> tasks, Terminal& terminal) {
     if (!arguments.pdf.empty())
         if (const Result<void> printer = find_page_printer(arguments.pdf); !printer)
             return terminal.fail(printer.error());
@@ -211,11 +249,16 @@ ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
-    if (const Result<void> added = add_working_planes(arguments, solution->scene, content.grids); !added)
-        return terminal.fail(added.error());
-    const Result<std::vector<Observer>> observers = find_observers(arguments.observers, solution->scene);
-    if (!observers) return terminal.fail(observers.error());
     const RadiosityFunction light(*solution);
+    if (needs_rooms(arguments)) content.rooms = FloorRooms(solution->scene, light.stage().tracer);
+    const FloorRooms& rooms = content.rooms;
+    Result<std::vector<Requirement>> required = require_tasks(arguments.tasks, tasks, content.rooms);
+    if (!required) return terminal.fail(required.error());
+    content.requirements.insert(content.requirements.end(), required->begin(), required->end());
+    if (const Result<void> added = add_working_planes(arguments, solution->scene, rooms, content.grids); !added)
+        return terminal.fail(added.error());
+    const Result<std::vector<Observer>> observers = find_observers(arguments.observers, light.stage(), rooms);
+    if (!observers) return terminal.fail(observers.error());
     content.solution = &*solution, content.unit = unit_of(arguments.unit, solution->scene, terminal);
     content.maintenance = arguments.maintenance;
     const StopRequest& stop = terminal.limits().keep();
@@ -225,6 +268,21 @@ ExitCode run(const ReportArguments& arguments, Terminal& terminal) {
             return terminal.fail(added.error());
     terminal.progress().finish();
     return write(arguments, content, terminal, stop);
+}
+
+}  // namespace
+
+/// Runs `exitance report SOLUTION -o PAGE --tables FOLDER` or `exitance report --list-tasks`.
+ExitCode run(const ReportArguments& given, Terminal& terminal) {
+    const Result<std::vector<LightingTask>> tasks = load_tasks(given.tasks_file);
+    if (!tasks) return terminal.fail(tasks.error());
+    if (given.lists_tasks) {
+        terminal.print(table_of_tasks(*tasks));
+        return ExitCode::done;
+    }
+    const ReportArguments arguments = with_needs_of_tasks(given, *tasks);
+    if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
+    return make_report(arguments, *tasks, terminal);
 }
 
 }  // namespace exitance

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "exitance/io/report/grid_contours.hpp"
+#include "exitance/io/report/isolux_plan.hpp"
 #include "exitance/io/report/report_figures.hpp"
 
 namespace exitance {
@@ -47,6 +48,34 @@ std::string values(const ReportFigures::Grid& grid, Vec2 cell) {
     return svg;
 }
 
+/// Draws what is around a plane: walls and objects where the plane cuts them, and the outlines of furniture below it.
+std::string surroundings(const GridLight& light, const Scene& scene, double to_plan, Vec2 plan) {
+    const Point low = light.points.empty() ? light.plane.origin
+                                           : light.points[0] - 0.5 * light.step_u * normalized(light.plane.u) -
+                                                 0.5 * light.step_v * normalized(light.plane.v);
+    const Vec3 u = normalized(light.plane.u), v = normalized(light.plane.v);
+    const auto line = [&](const Point& a, const Point& b) {
+        return fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", to_plan * dot(a - low, u),
+                           plan.y - to_plan * dot(a - low, v), to_plan * dot(b - low, u),
+                           plan.y - to_plan * dot(b - low, v));
+    };
+    std::string cut, below;
+    for (const SurfaceId s : scene.surfaces().ids())
+        for (const auto& [a, b] : section_of(scene.outline(s), light.plane.origin, light.n)) cut += line(a, b);
+    constexpr double highest = 1.2,
+                     parallel = 0.999;  // metres below the plane; derived from furniture and slopes of 4%
+    for (const Region& region : scene.regions()) {
+        const double depth = -dot(region.loops[0][0] - light.plane.origin, light.n);
+        // The floor itself is the face that is larger than the plane.
+        if (dot(region.plane.n, light.n) < parallel || depth < 0 || depth > highest ||
+            region.area > norm(light.plane.u) * norm(light.plane.v) / 2)
+            continue;
+        for (const std::vector<Point>& loop : region.loops)
+            for (std::size_t i = 0; i < loop.size(); ++i) below += line(loop[i], loop[(i + 1) % loop.size()]);
+    }
+    return fmt::format("<path class=\"below\" d=\"{}\"/><path class=\"cut\" d=\"{}\"/>", below, cut);
+}
+
 std::string legend(const ColourScale& scale, const LightUnit& unit) {
     std::string html;
     const std::vector<std::string> names = scale.names();
@@ -63,7 +92,7 @@ std::string legend(const ColourScale& scale, const LightUnit& unit) {
 
 }  // namespace
 
-std::string grid_plan(const ReportFigures::Grid& grid, const LightUnit& unit) {
+std::string grid_plan(const ReportFigures::Grid& grid, const LightUnit& unit, const Scene& scene) {
     const GridLight& light = *grid.light;
     const Picture points = picture_of_points(light, grid.values);
     const ColourScale scale = make_colour_scale(points, quantity(unit));
@@ -74,13 +103,15 @@ std::string grid_plan(const ReportFigures::Grid& grid, const LightUnit& unit) {
     const double to_plan = plan_width / std::max(width, height);
     const Vec2 cell{light.step_u * to_plan, light.step_v * to_plan};
     const Vec2 plan{width * to_plan, height * to_plan};
+    const double edge = 4 + to_plan * light.plane.margin;  // shows the walls at the border
     const Picture coarse = smooth_picture(points, contour_width);
     return fmt::format(
-        "<svg class=\"plan\" viewBox=\"-1 -1 {0:.1f} {1:.1f}\" style=\"max-width:{0:.0f}px\" role=\"img\" "
+        "<svg class=\"plan\" viewBox=\"{8:.1f} {8:.1f} {0:.1f} {1:.1f}\" style=\"max-width:{0:.0f}px\" role=\"img\" "
         "aria-label=\"plan of the light\"><image href=\"{2}\" width=\"{3:.1f}\" height=\"{4:.1f}\" "
         "preserveAspectRatio=\"none\"/>{5}{6}</svg>{7}",
-        plan.x + 2, plan.y + 2, picture ? *picture : "", plan.x, plan.y, values(grid, cell), lines(coarse, plan, scale),
-        legend(scale, unit));
+        plan.x + 2 * edge, plan.y + 2 * edge, picture ? *picture : "", plan.x, plan.y,
+        surroundings(light, scene, to_plan, plan) + lines(coarse, plan, scale), values(grid, cell), legend(scale, unit),
+        -edge);
 }
 
 }  // namespace exitance

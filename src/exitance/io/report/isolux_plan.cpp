@@ -34,27 +34,12 @@ int round_scale(double length) {
     return 50000;
 }
 
-/// Adds the line segments in which the plan's plane cuts a polygon.
-void add_section(std::span<const Point> outline, const Plan& plan, std::vector<Vec2>& pieces) {
-    std::vector<Vec2> crossings;
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-        const Point &p = outline[i], &q = outline[(i + 1) % outline.size()];
-        const double a = dot(p - plan.origin, plan.n), b = dot(q - plan.origin, plan.n);
-        if ((a > 0) == (b > 0)) continue;
-        crossings.push_back(plan.at(p + a / (a - b) * (q - p)));
-    }
-    std::sort(crossings.begin(), crossings.end(),
-              [](const Vec2& a, const Vec2& b) { return std::pair(a.x, a.y) < std::pair(b.x, b.y); });
-    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
-        pieces.push_back(crossings[i]);
-        pieces.push_back(crossings[i + 1]);
-    }
-}
-
 void draw_scene(const Scene& scene, const Plan& plan, Drawing& out) {
     Drawing::Line cut{{}, wall, 0.5};
     cut.pieces = true;
-    for (const SurfaceId s : scene.surfaces().ids()) add_section(scene.outline(s), plan, cut.points);
+    for (const SurfaceId s : scene.surfaces().ids())
+        for (const auto& [a, b] : section_of(scene.outline(s), plan.origin, plan.n))
+            cut.points.push_back(plan.at(a)), cut.points.push_back(plan.at(b));
     if (!cut.points.empty()) out.lines.push_back(std::move(cut));
     for (const SurfaceId s : scene.emitters()) {
         Drawing::Line line{{}, lamp, 0.25};
@@ -111,6 +96,27 @@ void draw_scale_bar(const Plan& plan, Drawing& out) {
 }
 
 }  // namespace
+
+std::vector<std::pair<Point, Point>> section_of(std::span<const Point> outline, const Point& origin, const Normal& n) {
+    std::vector<Point> crossings;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+        const Point &p = outline[i], &q = outline[(i + 1) % outline.size()];
+        const double a = dot(p - origin, n), b = dot(q - origin, n);
+        if ((a > 0) != (b > 0)) crossings.push_back(p + a / (a - b) * (q - p));
+    }
+    if (crossings.empty()) return {};
+    // In order along the line of the section, towards the crossing that is farthest from the first one.
+    const Point first = crossings.front();
+    const Point last = *std::max_element(crossings.begin(), crossings.end(), [&](const Point& a, const Point& b) {
+        return norm(a - first) < norm(b - first);
+    });
+    std::sort(crossings.begin(), crossings.end(), [&](const Point& a, const Point& b) {
+        return dot(a - first, last - first) < dot(b - first, last - first);
+    });
+    std::vector<std::pair<Point, Point>> out;
+    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) out.emplace_back(crossings[i], crossings[i + 1]);
+    return out;
+}
 
 Drawing isolux_plan(const ReportFigures::Grid& grid, const LightUnit& unit, const Scene& scene) {
     const GridLight& light = *grid.light;

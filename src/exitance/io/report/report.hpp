@@ -8,6 +8,7 @@
 #include "exitance/error/error_percentile.hpp"
 #include "exitance/evaluate/surface_levels.hpp"
 #include "exitance/io/pictures/false_colour.hpp"
+#include "exitance/measure/floor_rooms.hpp"
 #include "exitance/measure/glare/glare.hpp"
 #include "exitance/measure/light_maps/light_map.hpp"
 #include "exitance/measure/measuring_grid.hpp"
@@ -27,13 +28,14 @@ struct ObserverGlare {
     Glare glare;
 };
 
-/// Requirements on the planes of one name, or on observers; see read_requirement().
+/// Requirements on the planes of one name, on a room, or on observers; see read_requirement() and require_tasks().
 struct Requirement {
     struct Limit {
-        std::string quantity;  ///< "Em", "U0", "Ez" or "UGR".
+        std::string quantity;  ///< "Em", "U0", "Ez" or "UGR"; of a task also "Ra", "walls" or "ceiling".
         double value = 0;      ///< lx or W/m^2 for illuminances.
     };
-    std::string plane;  ///< Empty: all planes.
+    /// Name of planes, or label of a room, to which ": " and a task may be added; empty: all planes and observers.
+    std::string plane;
     std::vector<Limit> limits;
 };
 
@@ -49,6 +51,7 @@ struct ReportContent {
     const Solution* solution = nullptr;
     LightUnit unit;  ///< Unit of all light values.
     std::vector<ReportPicture> pictures;
+    FloorRooms rooms;  ///< Rooms of the scene; none if no part of the report needs them.
     std::vector<GridLight> grids;
     double maintenance = 1;  ///< Maintenance factor of the values of grids.
     std::vector<ObserverGlare> observers;

@@ -75,14 +75,25 @@ std::string grid_json(const ReportFigures::Grid& grid) {
         values += fmt::format("{}{}", i > 0 ? ", " : "", light.is_open[i] ? figure(grid.values[i]) : "null");
     }
     return fmt::format(
-        "{{\"name\": {}, \"kind\": \"{}\", \"origin\": {}, \"u\": {}, \"v\": {}, \"normal\": {}, \"margin\": {}, "
+        "{{\"name\": {}, \"room\": {}, \"kind\": \"{}\", \"origin\": {}, \"u\": {}, \"v\": {}, \"normal\": {}, "
+        "\"margin\": {}, "
         "\"columns\": {}, \"rows\": {}, "
         "\"spacing\": [{}, {}], {}, \"diversity\": {}, \"hidden\": {},\n     \"points\": [{}],\n     \"values\": "
         "[{}]}}",
-        json_text(light.name), light.is_cylindrical ? "cylindrical" : "plane", point(light.plane.origin),
-        point(light.plane.u), point(light.plane.v), point(light.n), figure(light.plane.margin), light.columns,
-        light.rows, figure(light.step_u), figure(light.step_v), levels(grid.levels), figure(grid.levels.diversity()),
-        grid.hidden, points, values);
+        json_text(light.name), light.room ? std::to_string(*light.room + 1) : "null",
+        light.is_cylindrical ? "cylindrical" : "plane", point(light.plane.origin), point(light.plane.u),
+        point(light.plane.v), point(light.n), figure(light.plane.margin), light.columns, light.rows,
+        figure(light.step_u), figure(light.step_v), levels(grid.levels), figure(grid.levels.diversity()), grid.hidden,
+        points, values);
+}
+
+std::string rooms_json(const FloorRooms& rooms) {
+    std::string out;
+    for (std::size_t i = 0; i < rooms.count(); ++i)
+        out += fmt::format("{}{{\"label\": {}, \"name\": {}, \"area\": {}, \"height\": {}}}", i > 0 ? ", " : "",
+                           json_text(rooms.label(i)), json_text(rooms[i].name), figure(rooms[i].area),
+                           figure(rooms[i].height));
+    return fmt::format("[{}]", out);
 }
 
 std::string face_json(const ReportFigures::Face& face) {
@@ -152,7 +163,8 @@ std::string report_json(const ReportContent& content, const ReportFigures& figur
         "  \"error\": {{\"median\": {}, \"error_p99\": {}, \"check_noise\": {}, \"check_points\": {}}},\n"
         "  \"heading\": {{\"title\": {}, \"project\": {}, \"client\": {}, \"author\": {}, \"date\": {}}},\n"
         "  \"requirements\": {},\n"
-        "  \"pictures\": {},\n  \"grids\": {},\n  \"maintenance\": {},\n  \"observers\": {},\n  \"materials\": {},\n  "
+        "  \"pictures\": {},\n  \"rooms\": {},\n  \"grids\": {},\n  \"maintenance\": {},\n  \"observers\": {},\n  "
+        "\"materials\": {},\n  "
         "\"surfaces\": {},\n"
         "  \"surfaces_left_out\": {},\n  \"unfinished\": {},\n  \"statistics\": {},\n  \"options\": {}\n}}\n",
         program_version, lux ? "lx" : "W/m^2", json_text(scene.file()), scene.surfaces().size(), figure(figures.area),
@@ -163,15 +175,17 @@ std::string report_json(const ReportContent& content, const ReportFigures& figur
         list(judge(content, figures),
              [](const Judgement& j) {
                  return fmt::format(
-                     "{{\"where\": {}, \"quantity\": {}, \"required\": {}, \"reached\": {}, \"verdict\": {}}}",
-                     json_text(j.where), json_text(j.quantity), figure(j.required), figure(j.reached),
-                     json_text(words_of(j.verdict)));
+                     "{{\"where\": {}, \"task\": {}, \"quantity\": {}, \"required\": {}, \"reached\": {}, \"verdict\": "
+                     "{}}}",
+                     json_text(j.where), json_text(j.task), json_text(j.quantity), figure(j.required),
+                     figure(j.reached), json_text(words_of(j.verdict)));
              }),
         list(content.pictures,
              [](const ReportPicture& p) {
                  return fmt::format("{{\"caption\": {}, \"camera\": {}}}", json_text(p.caption), json_text(p.camera));
              }),
-        list(figures.grids, grid_json), figure(content.maintenance), list(content.observers, observer_json),
+        rooms_json(content.rooms), list(figures.grids, grid_json), figure(content.maintenance),
+        list(content.observers, observer_json),
         list(figures.materials,
              [](const ReportFigures::MaterialUse& m) {
                  return fmt::format(

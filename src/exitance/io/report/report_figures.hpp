@@ -53,8 +53,8 @@ std::string observers_html(const ReportContent& content);
 /// Escapes text for HTML.
 std::string escaped(const std::string& text);
 
-/// Draws a plan of a grid in false colours with isolines (SVG), with a legend (HTML).
-std::string grid_plan(const ReportFigures::Grid& grid, const LightUnit& unit);
+/// Draws a plan of a grid in false colours with isolines, walls and furniture (SVG), with a legend (HTML).
+std::string grid_plan(const ReportFigures::Grid& grid, const LightUnit& unit, const Scene& scene);
 
 /// A canvas that shows the scene with its light maps, and the script that rotates it (HTML); empty without maps.
 Result<std::string> report_viewer(const ReportContent& content);

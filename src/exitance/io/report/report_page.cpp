@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
+#include <map>
+#include <span>
 #include <utility>
 
 #include "exitance/base/version.hpp"
@@ -16,7 +20,7 @@ constexpr const char* style = R"css(
 :root { color-scheme: light; }
 body { font: 15px/1.5 system-ui, sans-serif; color: #1b1b1f; background: #fff; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.7rem; margin-bottom: .2rem; } h2 { font-size: 1.25rem; margin-top: 2.2rem; border-bottom: 1px solid #ccc; }
-img, canvas, svg.plan { width: 100%; height: auto; display: block; background: #141418; }
+img, canvas, svg.plan { width: 100%; height: auto; display: block; } img, canvas { background: #141418; } svg.plan { background: #d8d8dc; }
 figure { margin: 1rem 0; break-inside: avoid; } figcaption, .note { color: #555; font-size: .85rem; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .85rem; margin: .6rem 0; }
 th, td { padding: .15rem .7rem .15rem 0; text-align: right; vertical-align: top; border-bottom: 1px solid #eee; }
@@ -27,10 +31,10 @@ th { border-bottom: 1px solid #999; } td.text, th.text { text-align: left; overf
 .legend { font-size: .85rem; } .legend span { white-space: nowrap; margin-right: .8rem; }
 .legend i { display: inline-block; width: 1rem; height: .8rem; margin-right: .3rem; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 .plan .line { fill: none; stroke: #fff; stroke-width: 1.5; } .plan text { font: 11px sans-serif; text-anchor: middle; fill: #fff; paint-order: stroke; stroke: #000; stroke-width: 2px; }
-.plan .level { font-weight: bold; font-size: 13px; }
+.plan .below { fill: none; stroke: #fff; stroke-opacity: .45; stroke-width: .7; } .plan .cut { fill: none; stroke: #000; stroke-width: 2.5; } .plan .level { font-weight: bold; font-size: 13px; }
 .wide { overflow-x: auto; } details { margin: .6rem 0; }
 @page { size: A4; margin: 18mm 16mm; }
-@media print { #surfaces { display: none; } body { margin: 0; max-width: none; font-size: 10.5pt; } canvas, .viewer { display: none; } h2 { break-after: avoid; } tr { break-inside: avoid; } thead { display: table-header-group; } a { color: inherit; } }
+@media print { #surfaces, #walk, details { display: none; } svg.plan { max-height: 10cm; } body { margin: 0; max-width: none; font-size: 10.5pt; } canvas, .viewer { display: none; } h2 { break-after: avoid; } tr { break-inside: avoid; } thead { display: table-header-group; } a { color: inherit; } }
 )css";
 
 std::string percent(double share) {
@@ -72,21 +76,32 @@ std::string heading(const ReportHeading& h) {
     return rows.empty() ? "" : "<table class=\"facts\">\n" + rows + "</table>\n";
 }
 
+/// Words and symbol of a required quantity.
+std::string name_of_quantity(const std::string& symbol) {
+    static const std::map<std::string, std::string> words{
+        {"Em", "Mean illuminance <i>E</i><sub>m</sub>"},        {"U0", "Uniformity <i>U</i><sub>0</sub>"},
+        {"Ez", "Cylindrical illuminance <i>E</i><sub>z</sub>"}, {"UGR", "Glare UGR"},
+        {"Ra", "Colour rendering <i>R</i><sub>a</sub>"},        {"walls", "Mean illuminance of walls"},
+        {"ceiling", "Mean illuminance of the ceiling"}};
+    const auto at = words.find(symbol);
+    return at == words.end() ? escaped(symbol) : at->second;
+}
+
 /// Required and measured numbers with verdicts.
 std::string requirements(const ReportContent& content, const ReportFigures& figures) {
     const std::vector<Judgement> judged = judge(content, figures);
     if (judged.empty()) return "";
     std::string html =
-        "<table>\n<thead><tr><th class=\"text\">Where</th><th class=\"text\">Quantity</th><th>Required</th>"
-        "<th>Measured</th><th class=\"text\">Verdict</th></tr></thead>\n";
+        "<table>\n<thead><tr><th class=\"text\">Where</th><th class=\"text\">Task</th><th class=\"text\">Quantity</th>"
+        "<th>Required</th><th>Reached</th><th class=\"text\">Verdict</th></tr></thead>\n";
     for (const Judgement& j : judged) {
-        const bool is_light = j.quantity == "Em" || j.quantity == "Ez";
+        const bool is_light = j.quantity != "U0" && j.quantity != "UGR" && j.quantity != "Ra";
         const std::string unit = is_light ? std::string(" ") + symbol(content.unit) : "";
         html += fmt::format(
-            "<tr><td class=\"text\">{}</td><td class=\"text\">{}</td><td>{} {:.4g}{}</td><td>{}</td><td class=\"text "
-            "{}\">{}"
-            "</td></tr>\n",
-            escaped(j.where), j.quantity, j.quantity == "UGR" ? "at most" : "at least", j.required, unit,
+            "<tr><td class=\"text\">{}</td><td class=\"text\">{}</td><td class=\"text\">{}</td><td>{} {:.4g}{}</td>"
+            "<td>{}</td><td class=\"text {}\">{}</td></tr>\n",
+            escaped(j.where), escaped(j.task), name_of_quantity(j.quantity),
+            j.quantity == "UGR" ? "at most" : "at least", j.required, unit,
             j.verdict == Fulfilment::not_measured ? "-" : short_figure(j.reached) + unit,
             j.verdict == Fulfilment::missed         ? "missed"
             : j.verdict == Fulfilment::not_measured ? "unknown"
@@ -95,7 +110,20 @@ std::string requirements(const ReportContent& content, const ReportFigures& figu
     }
     return html +
            "</table>\n<p class=\"note\">\"Reached within the error\": the number misses the requirement by less than "
-           "the estimated error of the light.</p>\n";
+           "the estimated error of the light. \"Not measured\": the quantity does not follow from the solution, such "
+           "as "
+           "colour rendering, or no plane or observer was asked for.</p>\n";
+}
+
+std::string rooms_part(const ReportContent& content) {
+    const FloorRooms& rooms = content.rooms;
+    if (rooms.count() == 0) return "";
+    std::string html =
+        "<table>\n<thead><tr><th class=\"text\">Room</th><th>Floor m²</th><th>Height m</th></tr></thead>\n";
+    for (std::size_t i = 0; i < rooms.count(); ++i)
+        html += fmt::format("<tr><td class=\"text\">{}</td><td>{}</td><td>{}</td></tr>\n", escaped(rooms.label(i)),
+                            short_figure(rooms[i].area), short_figure(rooms[i].height));
+    return html + "</table>\n";
 }
 
 std::string unfinished(const ReportContent& content) {
@@ -118,8 +146,15 @@ Result<std::string> pictures(const ReportContent& content) {
     return html;
 }
 
+/// An error with one significant digit, without exponents.
+std::string one_digit(double error) {
+    if (!(error > 0)) return "0";
+    const double unit = std::pow(10, std::floor(std::log10(error)));
+    return fmt::format("{:.6g}", std::round(error / unit) * unit);
+}
+
 std::string place(const Vec3& p) {
-    return fmt::format("({}, {}, {})", figure(p.x), figure(p.y), figure(p.z));
+    return fmt::format("({:.3g}, {:.3g}, {:.3g})", p.x, p.y, p.z);
 }
 
 std::string grid_table(const ReportFigures::Grid& grid) {
@@ -148,19 +183,21 @@ std::string grids(const ReportContent& content, const ReportFigures& figures) {
         html += fact(
             "Points",
             fmt::format(
-                "{} x {}, {} and {} m apart, {} m from the edges{}", light.columns, light.rows, figure(light.step_u),
-                figure(light.step_v), figure(light.plane.margin),
+                "{} x {}, {} and {} m apart, {} m from the edges{}", light.columns, light.rows,
+                short_figure(light.step_u), short_figure(light.step_v), short_figure(light.plane.margin),
                 grid.hidden > 0 ? fmt::format("; {} of them below or within something, left out", grid.hidden) : ""));
         const char* unit = symbol(content.unit);
+        const double error = content.solution->statistics.relative_error_estimate.value_or(0);
         html +=
             fact(light.is_cylindrical ? "Mean E_z" : "Mean E_m",
-                 figure(grid.levels.mean) + " " + unit +
-                     (content.maintenance < 1 ? fmt::format(" (maintained: factor {:.3g})", content.maintenance) : ""));
-        html += fact("Minimum", figure(grid.levels.least) + " " + unit);
-        html += fact("Maximum", figure(grid.levels.most) + " " + unit);
-        html += fact("Uniformity U_0", figure(grid.levels.uniformity()) + " (minimum / mean)");
-        html += fact("Diversity U_d", figure(grid.levels.diversity()) + " (minimum / maximum)");
-        html += "</table>\n<figure>" + grid_plan(grid, content.unit) +
+                 fmt::format(
+                     "{} ± {} {}{}", short_figure(grid.levels.mean), one_digit(error * grid.levels.mean), unit,
+                     content.maintenance < 1 ? fmt::format(" (maintained: factor {:.3g})", content.maintenance) : ""));
+        html += fact("Minimum", short_figure(grid.levels.least) + " " + unit);
+        html += fact("Maximum", short_figure(grid.levels.most) + " " + unit);
+        html += fact("Uniformity U_0", fmt::format("{:.2f} (minimum / mean)", grid.levels.uniformity()));
+        html += fact("Diversity U_d", fmt::format("{:.2f} (minimum / maximum)", grid.levels.diversity()));
+        html += "</table>\n<figure>" + grid_plan(grid, content.unit, content.solution->scene) +
                 "<figcaption>u runs to the right, v upwards.</figcaption></figure>\n" + grid_table(grid);
     }
     return html;
@@ -189,7 +226,8 @@ std::string surfaces(const ReportContent& content, const ReportFigures& figures)
         "{0}</th><th>Minimum</th><th>Maximum</th><th>Uniformity</th><th>Radiosity "
         "{0}</th></tr></thead>\n",
         symbol(content.unit));
-    for (const ReportFigures::Face& face : figures.faces) {
+    constexpr std::size_t most_rows = 20;  // derived from half a page
+    for (const ReportFigures::Face& face : std::span(figures.faces).first(std::min(most_rows, figures.faces.size()))) {
         const Levels& l = face.irradiance;
         const std::string light =
             l.count == 0 ? "<td colspan=\"5\" class=\"text\">covered</td>"
@@ -203,8 +241,10 @@ std::string surfaces(const ReportContent& content, const ReportFigures& figures)
         "</table></div>\n<p class=\"note\">Light of the full function at 16 to 1024 points of a surface, those that "
         "lie "
         "in the open. Uniformity is the minimum over the mean.</p>\n";
-    if (content.surfaces_left_out > 0)
-        html += fmt::format("<p class=\"note\">{} smaller surfaces are left out.</p>\n", content.surfaces_left_out);
+    const std::size_t others = figures.faces.size() - std::min(most_rows, figures.faces.size());
+    if (others + content.surfaces_left_out > 0)
+        html += fmt::format("<p class=\"note\">{} smaller surfaces are not listed.</p>\n",
+                            others + content.surfaces_left_out);
     return html;
 }
 
@@ -249,7 +289,6 @@ std::string method_part(const ReportContent& content) {
     rows += fact("Time", fmt::format("{:.3g} s on {} threads ({})", total == s.seconds.end() ? 0 : total->second,
                                      s.threads, escaped(parts)));
     rows += fact("Memory", fmt::format("{:.3g} MB at most", static_cast<double>(s.peak_memory_bytes) / 1e6));
-    rows += fact("Options", "<code>" + escaped(content.solution->options) + "</code>");
     return "<table class=\"facts\">\n" + rows + "</table>\n";
 }
 
@@ -283,7 +322,8 @@ Result<void> write_report(const ReportContent& content, const std::string& path)
             "<h1>{0}</h1>\n",
             escaped(title), style) +
         heading(content.heading) + section("requirements", "Requirements", requirements(content, figures)) +
-        overview(content, figures) + unfinished(content) + section("pictures", "Pictures", *shown) +
+        overview(content, figures) + unfinished(content) + section("rooms", "Rooms", rooms_part(content)) +
+        section("pictures", "Pictures", *shown) +
         (viewer->empty() ? "" : "<div class=\"viewer\">" + section("walk", "Look around", *viewer) + "</div>") +
         section("grids", "Measuring planes", grids(content, figures)) +
         section("glare", "Glare", observers_html(content)) +

@@ -126,10 +126,12 @@ std::string observer_json(const ObserverGlare& o) {
         left_out += fmt::format("{}{{\"name\": {}, \"reason\": {}}}", left_out.empty() ? "" : ", ", json_text(s.name),
                                 json_text(name_of(s.limit)));
     return fmt::format(
-        "{{\"name\": {}, \"eye\": [{}], \"view\": [{}], \"ugr\": {}, \"background\": {}, \"large_source\": {},\n     "
+        "{{\"name\": {}, \"room\": {}, \"eye\": [{}], \"view\": [{}], \"ugr\": {}, \"background\": {}, "
+        "\"large_source\": {},\n     "
         "\"sources\": [{}],\n     \"left_out\": [{}]}}",
-        json_text(o.observer.name), triple(o.observer.eye, ", "), triple(o.observer.view, ", "),
-        figure(o.glare.rating()), figure(o.glare.background), o.glare.has_large_source(), sources, left_out);
+        json_text(o.observer.name), o.observer.room ? std::to_string(*o.observer.room + 1) : "null",
+        triple(o.observer.eye, ", "), triple(o.observer.view, ", "), figure(o.glare.rating()),
+        figure(o.glare.background), o.glare.has_large_source(), sources, left_out);
 }
 
 std::string observers_html(const ReportContent& content) {

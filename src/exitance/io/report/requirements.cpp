@@ -12,6 +12,11 @@ namespace {
 
 constexpr std::array<const char*, 4> quantities{"Em", "U0", "Ez", "UGR"};
 
+/// False for quantities of tasks that the report does not compute: colour rendering, and light on walls and ceilings.
+bool is_measurable(const std::string& quantity) {
+    return std::find(quantities.begin(), quantities.end(), quantity) != quantities.end();
+}
+
 std::string trimmed(const std::string& text) {
     const std::size_t first = text.find_first_not_of(' '), last = text.find_last_not_of(' ');
     return first == std::string::npos ? "" : text.substr(first, last - first + 1);
@@ -29,6 +34,12 @@ Fulfilment verdict_on(double reached, double required, double error, bool is_upp
 }
 
 class Judge {
+    /// The place that a requirement names: its words, and the task after a room's label.
+    struct Place {
+        std::string words, task;
+        std::optional<std::size_t> room;
+    };
+
   public:
     Judge(const ReportContent& content, const ReportFigures& figures)
         : content_(content),
@@ -36,31 +47,40 @@ class Judge {
           error_(content.solution->statistics.relative_error_estimate.value_or(0)) {}
 
     void judge_planes(const Requirement& asked, const Requirement::Limit& limit) {
+        const Place place = place_of(asked);
         const std::size_t before = out_.size();
         const bool is_cylindrical = limit.quantity == "Ez";
         for (const ReportFigures::Grid& grid : figures_.grids) {
             if (grid.light->is_cylindrical != is_cylindrical) continue;
-            if (!asked.plane.empty() && grid.light->name != asked.plane) continue;
+            if (!asked.plane.empty() && grid.light->name != asked.plane && !is_in(place, grid.light->room)) continue;
             const bool is_uniformity = limit.quantity == "U0";
             const double reached = is_uniformity ? grid.levels.uniformity() : grid.levels.mean;
             // A quotient has the errors of two numbers.
             const double error = (is_uniformity ? 2 : 1) * error_ * reached;
-            out_.push_back({grid.light->name.empty() ? "plane" : grid.light->name, limit.quantity, limit.value, reached,
-                            verdict_on(reached, limit.value, error, false)});
+            out_.push_back({grid.light->name.empty() ? "plane" : grid.light->name, limit.quantity, place.task,
+                            limit.value, reached, verdict_on(reached, limit.value, error, false)});
         }
-        if (out_.size() == before)
-            out_.push_back({asked.plane.empty() ? "planes" : asked.plane, limit.quantity, limit.value});
+        if (out_.size() == before) add_unmeasured(place, limit, "planes");
+    }
+
+    void add_unmeasured(const Place& place, const Requirement::Limit& limit, const std::string& where) {
+        out_.push_back({place.words.empty() ? where : place.words, limit.quantity, place.task, limit.value});
     }
 
     /// The observer with the highest rating decides.
-    void judge_glare(const Requirement::Limit& limit) {
-        Judgement out{"observers", limit.quantity, limit.value};
+    void judge_glare(const Requirement& asked, const Requirement::Limit& limit) {
+        const Place place = place_of(asked);
+        Judgement out{place.words.empty() ? "observers" : place.words, limit.quantity, place.task, limit.value};
         double worst = -HUGE_VAL;
-        for (const ObserverGlare& o : content_.observers)
+        bool is_measured = false;
+        for (const ObserverGlare& o : content_.observers) {
+            if (!asked.plane.empty() && !is_in(place, o.observer.room)) continue;
+            is_measured = true;
             if (std::isfinite(o.glare.rating()) && o.glare.rating() > worst)
                 worst = o.glare.rating(), out.where = o.observer.name;
+        }
         // Ratings are minus infinity where no source counts.
-        if (!content_.observers.empty())
+        if (is_measured)
             out.reached = std::max(worst, 0.0),
             out.verdict = verdict_on(out.reached, limit.value, 8 * std::log10(1 + error_), true);
         out_.push_back(out);
@@ -69,11 +89,25 @@ class Judge {
     std::vector<Judgement> all() {
         for (const Requirement& asked : content_.requirements)
             for (const Requirement::Limit& limit : asked.limits)
-                limit.quantity == "UGR" ? judge_glare(limit) : judge_planes(asked, limit);
+                limit.quantity == "UGR"         ? judge_glare(asked, limit)
+                : is_measurable(limit.quantity) ? judge_planes(asked, limit)
+                                                : add_unmeasured(place_of(asked), limit, "");
         return std::move(out_);
     }
 
   private:
+    Place place_of(const Requirement& asked) const {
+        for (std::size_t i = 0; i < content_.rooms.count(); ++i) {
+            const std::string label = content_.rooms.label(i);
+            if (asked.plane == label || asked.plane == fmt::format("room {}", i + 1)) return {label, "", i};
+            if (asked.plane.starts_with(label + ": ")) return {label, asked.plane.substr(label.size() + 2), i};
+        }
+        return {asked.plane, "", std::nullopt};
+    }
+    static bool is_in(const Place& place, const std::optional<std::size_t>& room) {
+        return place.room && room == place.room;
+    }
+
     const ReportContent& content_;
     const ReportFigures& figures_;
     double error_;
@@ -96,8 +130,8 @@ Result<Requirement> read_requirement(const std::string& words) {
                                              more.empty() ? "" : "; separate quantities by commas"));
         if (std::find(quantities.begin(), quantities.end(), limit.quantity) == quantities.end())
             return misuse(words, fmt::format("'{}' is not Em, U0, Ez or UGR", limit.quantity));
-        if (limit.quantity == "UGR" && !out.plane.empty())
-            return misuse(words, "UGR is required of observers, which have no plane");
+        if (limit.quantity == "UGR" && !out.plane.empty() && !out.plane.starts_with("room "))
+            return misuse(words, "UGR is required of observers, which have no plane: name a room, 'room 2: UGR 19'");
         out.limits.push_back(limit);
     }
     if (out.limits.empty()) return misuse(words, "names no quantity");

@@ -14,12 +14,13 @@ enum class Fulfilment {
     reached,
     within_error,  ///< The difference to the required number is smaller than the error of the light.
     missed,
-    not_measured  ///< No plane or observer of the report has this name.
+    not_measured  ///< No plane or observer of the report has this name, or the quantity is not computed.
 };
 
 /// One required number, the measured one, and the verdict.
 struct Judgement {
-    std::string where, quantity;  ///< Plane or observers, and symbol: "Em", "U0", "Ez" or "UGR".
+    std::string where, quantity;  ///< Plane, observers or room, and symbol, see Requirement::Limit.
+    std::string task = {};        ///< Name of the task that requires the number; empty: none.
     double required = 0;
     double reached = std::numeric_limits<double>::quiet_NaN();  ///< NaN if not measured.
     Fulfilment verdict = Fulfilment::not_measured;

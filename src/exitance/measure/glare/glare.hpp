@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,9 +12,10 @@ namespace exitance {
 
 /// An observer at whose eye glare is computed.
 struct Observer {
-    std::string name;  ///< Empty: none.
-    Point eye;         ///< Metres.
-    Normal view;       ///< Line of sight, unit vector.
+    std::string name;                      ///< Empty: none.
+    Point eye;                             ///< Metres.
+    Normal view;                           ///< Line of sight, unit vector.
+    std::optional<std::size_t> room = {};  ///< Index of the observer's room; none: unknown.
 };
 
 /// A luminaire as seen by an observer.

@@ -1,0 +1,165 @@
+#include "exitance/measure/floor_rooms.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "exitance/measure/glare/room_observers.hpp"
+#include "exitance/measure/working_plane.hpp"
+#include "exitance/transport/stage.hpp"
+
+namespace exitance {
+namespace {
+
+/// Builds scenes of boxes, turned, moved and scaled.
+class Builder {
+  public:
+    Builder(double degrees, Vec3 shift, double scale) : shift_(shift), scale_(scale) {
+        const double a = degrees * pi / 180;
+        x_ = {std::cos(a), std::sin(a), 0}, y_ = {-std::sin(a), std::cos(a), 0};
+        d_.materials.push_back({"white", Spectrum(0.5), Spectrum(1)});
+    }
+
+    Point at(double x, double y, double z) const { return shift_ + scale_ * (x * x_ + y * y_ + Vec3{0, 0, z}); }
+
+    void face(const std::vector<Vec3>& corners, const std::string& group) {
+        SceneDescription::Face f;
+        for (const Vec3& p : corners) {
+            f.corners.push_back(static_cast<std::uint32_t>(d_.points.size()));
+            d_.points.push_back(at(p.x, p.y, p.z));
+        }
+        f.group = static_cast<std::uint32_t>(d_.groups.size());
+        d_.groups.push_back(group);
+        d_.faces.push_back(f);
+    }
+    /// Four walls of a box and its top, pointing outwards; or `inwards`, with a floor.
+    void box(Vec3 lo, Vec3 hi, const std::string& group, bool inwards = false) {
+        const auto side = [&](std::vector<Vec3> p, const std::string& name) {
+            if (inwards) std::reverse(p.begin(), p.end());
+            face(p, name);
+        };
+        side({{lo.x, lo.y, lo.z}, {hi.x, lo.y, lo.z}, {hi.x, lo.y, hi.z}, {lo.x, lo.y, hi.z}}, group);
+        side({{hi.x, lo.y, lo.z}, {hi.x, hi.y, lo.z}, {hi.x, hi.y, hi.z}, {hi.x, lo.y, hi.z}}, group);
+        side({{hi.x, hi.y, lo.z}, {lo.x, hi.y, lo.z}, {lo.x, hi.y, hi.z}, {hi.x, hi.y, hi.z}}, group);
+        side({{lo.x, hi.y, lo.z}, {lo.x, lo.y, lo.z}, {lo.x, lo.y, hi.z}, {lo.x, hi.y, hi.z}}, group);
+        side({{lo.x, lo.y, hi.z}, {hi.x, lo.y, hi.z}, {hi.x, hi.y, hi.z}, {lo.x, hi.y, hi.z}}, group);
+    }
+    void floor(Vec3 lo, Vec3 hi, const std::string& group) {
+        face({{lo.x, lo.y, lo.z}, {hi.x, lo.y, lo.z}, {hi.x, hi.y, lo.z}, {lo.x, hi.y, lo.z}}, group);
+    }
+    Scene scene() {
+        CheckedScene checked = make_scene(std::move(d_));
+        EXI_CHECK(static_cast<bool>(checked.scene));
+        return std::move(*checked.scene);
+    }
+
+  private:
+    SceneDescription d_;
+    Vec3 shift_, x_, y_;
+    double scale_;
+};
+
+/// A storey of 10 x 4 m and 2.7 m: a wall 0.2 m thick from x = 6 with a door of 0.9 x 2.1 m, a table, a bed, and a
+/// cupboard.
+void add_flat(Builder& b, double z) {
+    b.box({0, 0, z}, {10, 4, z + 2.7}, "shell", true);
+    b.floor({0, 0, z}, {6.1, 4, z}, "kitchen_floor");
+    b.floor({6.1, 0, z}, {10, 4, z}, "Hall floor");
+    b.box({6, 0, z}, {6.2, 1, z + 2.7}, "wall"), b.box({6, 1.9, z}, {6.2, 4, z + 2.7}, "wall");
+    // The lintel is closed from below.
+    b.box({6, 1, z + 2.1}, {6.2, 1.9, z + 2.7}, "wall");
+    b.face({{6, 1, z + 2.1}, {6, 1.9, z + 2.1}, {6.2, 1.9, z + 2.1}, {6.2, 1, z + 2.1}}, "wall");
+    b.box({1, 1, z}, {3, 2.5, z + 0.5}, "bed");
+    b.box({8, 0, z}, {10, 0.6, z + 2}, "cupboard");
+    b.face({{4, 2, z + 0.75}, {5.5, 2, z + 0.75}, {5.5, 3, z + 0.75}, {4, 3, z + 0.75}}, "table");
+}
+
+class FloorRoomsOf : public testing::TestWithParam<double> {};
+
+TEST_P(FloorRoomsOf, AFlatAreSeparatedByTheWallAboveTheDoor) {
+    // Turned by an angle that is parallel to nothing, and moved far from the origin.
+    const double scale = GetParam();
+    Builder b(23, {30, -70, 5}, scale);
+    add_flat(b, 0);
+    const Scene scene = b.scene();
+    const RayTracer tracer(scene);
+    const FloorRooms rooms(scene, tracer);
+    ASSERT_EQ(rooms.count(), 2u);
+    EXPECT_EQ(rooms.label(0), "room 1 (kitchen)");
+    EXPECT_EQ(rooms.label(1), "room 2 (Hall)");
+    // Cells are 0.1 m wide; the door's threshold belongs to either room.
+    EXPECT_NEAR(rooms[0].area, 24 * scale * scale, 0.7 * scale * scale);
+    EXPECT_NEAR(rooms[1].area, 14 * scale * scale, 0.7 * scale * scale);  // without the cupboard
+    EXPECT_NEAR(rooms[0].height, 2.7 * scale, 1e-5 * scale);
+    // The border keeps points away from the walls, exactly; the bed and the table are within the room.
+    const double border = 0.5 * scale, little = 1e-3 * scale;
+    EXPECT_TRUE(rooms.holds(0, b.at(5.5, 3, 0) - little * normalized(b.at(1, 0, 0) - b.at(0, 0, 0)), border));
+    EXPECT_FALSE(rooms.holds(0, b.at(5.5, 3, 0) + little * normalized(b.at(1, 0, 0) - b.at(0, 0, 0)), border));
+    EXPECT_TRUE(rooms.holds(0, b.at(2, 1.5, 0), border));
+    EXPECT_TRUE(rooms.holds(0, b.at(4.6, 2.6, 0), border));
+    EXPECT_FALSE(rooms.holds(1, b.at(4.6, 2.6, 0), 0));
+    EXPECT_EQ(rooms.at(b.at(8, 2, 1.2)), 1u);
+    EXPECT_EQ(rooms.at(b.at(8, 2, 3)), 2u);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfSize, FloorRoomsOf, testing::Values(1.0, 0.1));
+
+TEST(FloorRooms, EveryStoreyHasItsRoomsAndRoofsHaveNone) {
+    Builder b(0, {0, 0, 0}, 1);
+    add_flat(b, 0), add_flat(b, 3);
+    b.floor({0, 0, 5.9}, {10, 4, 5.9}, "roof");
+    b.floor({-40, -40, -0.3}, {40, 40, -0.3}, "meadow");
+    const Scene scene = b.scene();
+    const RayTracer tracer(scene);
+    const FloorRooms rooms(scene, tracer);
+    ASSERT_EQ(rooms.count(), 4u);
+    for (std::size_t i = 0; i < rooms.count(); ++i) {
+        const double z = rooms[i].rectangle.origin.z;
+        EXPECT_TRUE(std::abs(z) < 1e-9 || std::abs(z - 3) < 1e-9) << z;
+    }
+}
+
+TEST(FloorRooms, ThePlanesOfTwoRoomsEndAtTheWall) {
+    Builder b(0, {0, 0, 0}, 1);
+    add_flat(b, 0);
+    const Scene scene = b.scene();
+    const RayTracer tracer(scene);
+    PlaneRequest request;
+    request.height = 0.75;
+    const auto planes = make_working_planes(scene, FloorRooms(scene, tracer), request);
+    ASSERT_TRUE(planes) << planes.error().message;
+    ASSERT_EQ(planes->size(), 2u);
+    EXPECT_EQ((*planes)[0].name, "0.75 m above room 1 (kitchen)");
+    EXPECT_EQ((*planes)[1].room, 1u);
+    // Walls are exact to the rays' accuracy, 1e-7 of the scene's size.
+    EXPECT_NEAR(norm((*planes)[0].plane.u), 6, 1e-5);
+    EXPECT_NEAR((*planes)[1].plane.origin.x, 6.2, 1e-5);
+    EXPECT_NEAR(norm((*planes)[1].plane.v), 4, 1e-9);
+    for (const GridLight& plane : *planes)
+        for (std::size_t i = 0; i < plane.points.size(); ++i) {
+            const Point& p = plane.points[i];
+            const bool in_kitchen = p.x > 0.5 && p.x<5.5, in_hall = p.x> 6.7 && p.x < 9.5;
+            EXPECT_TRUE(!plane.counts[i] || (plane.room == 0u ? in_kitchen : in_hall)) << p.x;
+        }
+}
+
+TEST(RoomObservers, StandInRoomsAndNotInFurniture) {
+    Builder b(23, {30, -70, 5}, 1);
+    add_flat(b, 0);
+    const Scene scene = b.scene();
+    const Stage stage(scene);
+    const FloorRooms rooms(scene, stage.tracer);
+    const std::vector<Observer> observers = room_observers(stage, rooms);
+    ASSERT_EQ(observers.size(), 8u);
+    EXPECT_EQ(observers[0].name, "room 1 (kitchen), along u");
+    for (const Observer& o : observers) {
+        ASSERT_TRUE(o.room);
+        EXPECT_EQ(rooms.at(o.eye), *o.room) << o.name;
+        const Vec3 d = o.eye - b.at(0, 0, 0);
+        const double x = dot(d, b.at(1, 0, 0) - b.at(0, 0, 0)), y = dot(d, b.at(0, 1, 0) - b.at(0, 0, 0));
+        EXPECT_FALSE(x > 8 && y < 0.6 + observer_clearance - 1e-9) << o.name << " stands in the cupboard";
+    }
+}
+
+}  // namespace
+}  // namespace exitance
