@@ -14,7 +14,7 @@ Result<Scene> load_files(std::span<const std::string> files, const LoadOptions& 
     if (!sky) return sky.error();
     std::vector<std::string> warnings;
     if (*sky) {
-        (*sky)->photometric = options.photometric;
+        if (options.photometric) (*sky)->photometric = options.photometric;
         warnings = (*sky)->warnings;
     }
     exitance::LoadOptions in;

@@ -70,7 +70,10 @@ Result<Scene> make_scene(const SceneDescription& description) {
         exitance::SceneDescription in = to_engine(description);
         const Result<std::optional<ChosenSky>> sky = read_sky(description.sky, description.epw);
         if (!sky) return sky.error();
-        if (*sky) in.distant = in.photometric ? (*sky)->in_lumens : (*sky)->in_watts;
+        if (*sky) {
+            in.photometric = (*sky)->photometric.value_or(in.photometric);
+            in.distant = in.photometric ? (*sky)->in_lumens : (*sky)->in_watts;
+        }
         if (description.light_groups) part_emitters_by_group(in);
         CheckedScene checked = exitance::make_scene(std::move(in));
         if (!checked.scene) return to_api(checked.scene.error());

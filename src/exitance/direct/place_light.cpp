@@ -15,8 +15,8 @@ namespace {
 constexpr double work_of_shaft = 10;     ///< Search for the blockers between a polygon and a source.
 constexpr double work_of_blocker = 6;    ///< A blocker that is clipped from a source, if there are many fragments.
 constexpr double work_of_integral = 20;  ///< Integral of a directed radiance over a fragment.
-/// Rays needed, over the work that exact light was allowed, above which it is tried again with a quarter of them:
-/// derived from the cost of trying in vain, at most a quarter of that of the rays.
+/// Exact light is tried again if rays need more than this many times the work that it was allowed. It is then allowed
+/// what they need, divided by this number. derived from the cost of trying in vain: at most a quarter of the rays.
 constexpr double worth_another = 4;
 
 /// Limit on the rays of a place of a polygon below a sky from a picture. derived from RayLight::error_of(), 0.3% of the
@@ -134,7 +134,7 @@ double PlaceLight::exact_work(const ReceiverLight& light) const {
         work += 1 + work_of_blocker * blockers;
         const RelativeRadiance& radiance = direct_->emitters()[source.emitter].radiance;
         if (radiance.is_directed()) work += work_of_integral * (1 + blockers);
-        if (radiance.is_picture()) return HUGE_VAL;  // rays of any number are faster
+        if (radiance.is_picture()) return HUGE_VAL;  // integrating a picture costs more than any number of rays
     }
     return light.behind.empty() ? work : work + exact_work(light.behind[0]);
 }
@@ -154,7 +154,8 @@ bool PlaceLight::prepare(const Polygon& on, double work, const std::vector<Sourc
     return !room.light_.has_crowded() && of_one <= work && of_one < HUGE_VAL;
 }
 
-/// Work that a place by rays is forecast to take, less the share of each place in finding the blockers.
+/// Returns the forecast cost of a place by rays, in rays, minus its share of the cost of finding the blockers; infinite
+/// if no error is allowed.
 double PlaceLight::forecast_work(const Polygon& on, const std::vector<SourceName>* named, const LightAccuracy& accuracy,
                                  Workspace& room) const {
     if (!(accuracy.relative > 0 || accuracy.absolute > 0)) return HUGE_VAL;

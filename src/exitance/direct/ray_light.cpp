@@ -106,8 +106,8 @@ Spectrum RayLight::Part::light() const {
 }
 
 /// Variance of the mean over bands, from the spread of eighths of the rays, each of which is stratified (of quarters,
-/// if there are few rays), and from the share of the light in features that no ray has met.
-double RayLight::Part::variance(double missed_share) const {
+/// if there are few rays), and from the light of features that no ray may have met, W/m^2.
+double RayLight::Part::variance(double missed) const {
     std::array<double, 8> all{}, arrived{};
     const std::size_t count = std::min<std::size_t>(all.size(), blocks.size());
     for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -122,7 +122,6 @@ double RayLight::Part::variance(double missed_share) const {
     for (std::size_t q = 0; q < count; ++q)
         squares += std::pow(counts_weights() ? arrived[q] - part / groups : arrived[q] - part / whole * all[q], 2);
     const double scale = counts_weights() ? 1 / n : L / whole;
-    const double missed = half_hidden * L * missed_share;
     return groups / (groups - 1) * squares * scale * scale + missed * missed;
 }
 
@@ -149,14 +148,17 @@ const SkyOpenings& RayLight::openings() const {
     return *openings_;
 }
 
-/// Variance of a part. If none of its rays has arrived, the scene's other places tell how much light they may miss.
+/// Returns the variance of a part. If no ray of the sky or of a sun has arrived, it is that of the light which as many
+/// rays miss at the places of SkyOpenings.
 double RayLight::variance(const Part& part) const {
-    double missed_share = 1.0 / part.rays;
     const bool is_sky = part.kind == Part::Kind::sky, is_sun = part.kind == Part::Kind::piece && part.is_sun;
-    if ((is_sky || is_sun) && std::all_of(part.blocks.begin(), part.blocks.end(),
-                                          [](const Part::Block& block) { return !(max(block.arrived) > 0); }))
-        missed_share = is_sky ? openings().hidden_sky(part.rays) : openings().hidden_sun(part.rays);
-    return part.variance(missed_share);
+    const bool finds_nothing = std::all_of(part.blocks.begin(), part.blocks.end(),
+                                           [](const Part::Block& block) { return !(max(block.arrived) > 0); });
+    double missed = half_hidden * mean(part.open) / part.rays;
+    if (finds_nothing && is_sun) missed = half_hidden * mean(part.open) * openings().hidden_sun(part.rays);
+    if (finds_nothing && is_sky)
+        missed = std::min(missed, part.unaimed + half_hidden * mean(part.open) * openings().hidden_sky(part.rays));
+    return part.variance(missed);
 }
 
 /// Unoccluded light of a piece of an emitter.
@@ -195,15 +197,21 @@ void RayLight::add_piece(const Receiver& at, const DirectLight::SourceName& sour
                            .from = at.x});
 }
 
-/// Adds the light of the sky through openings, unless it is too little to matter.
+/// Adds the light of the sky through openings, after the sky itself. If it is too little to matter it is left to the
+/// sky's own rays, and counts in their variance.
 void RayLight::add_openings(const Receiver& at, const LightAccuracy& accuracy, Workspace& room) const {
-    openings().choose(at.x, at.n, room.cells_);
+    const double left_out = openings().choose(at.x, at.n, room.cells_);
     Spectrum light;
+    double chosen = 0;
     for (const PortalCell& cell : room.cells_) {
         const Vec3 w = normalized(cell.corner + 0.5 * (cell.u + cell.v) - at.x);
-        light += PortalAim::form_factor(cell, at.x, at.n) * direct_->scene().distant().radiosity(w, false);
+        const double share = PortalAim::form_factor(cell, at.x, at.n);
+        light += share * direct_->scene().distant().radiosity(w, false), chosen += share;
     }
-    if (mean(light) <= accuracy.allowed(min_share * mean(room.aim_.open))) room.cells_.clear();
+    const double of_all = chosen > 0 ? (chosen + left_out) / chosen * mean(light) : 0;
+    const bool is_little = of_all <= accuracy.allowed(min_share * mean(room.aim_.open));
+    room.parts_.back().unaimed = is_little ? of_all : of_all - mean(light);
+    if (is_little) room.cells_.clear();
     room.portals_.set(room.cells_, at.x, at.n);
     if (!room.cells_.empty()) room.parts_.push_back({.kind = Part::Kind::openings, .open = light});
 }
@@ -290,7 +298,7 @@ void RayLight::add_rays(const Receiver& at, Part& part, std::uint32_t last, std:
             if (cosine <= 0) continue;
             const Spectrum weight = cosine / (pi * to.density) * occluders.scene().distant().radiosity(to.w, false);
             if (room.portals_.is_aimed_at(to.w))
-                part.blocks[i / part.block].all += weight;  // counts in the light through openings
+                part.blocks[i / part.block].all += weight;  // its light belongs to the part `openings`
             else
                 add(i, at.x + reach * to.w, RegionId(), weight, true, PieceId());
         } else if (part.kind == Part::Kind::openings) {

@@ -43,7 +43,7 @@ class RayLight {
         Spectrum parallel = {};    ///< The part of it from sky and sun.
         double variance = 0;       ///< Variance of the mean over bands, (W/m^2)^2; 0: exact.
         std::size_t rays = 0;      ///< Number of rays cast.
-        double work = 0;           ///< Work of closed forms, whether they gave the result or not, in rays.
+        double work = 0;           ///< Cost of attempts at exact light, with or without success, in rays.
 
         Spectrum standard_error() const;  ///< Per band, in proportion to the light of the band, W/m^2.
     };
@@ -104,6 +104,7 @@ struct RayLight::Part {
     DirectLight::SourceName source = {};  ///< For a piece.
     Spectrum open;                        ///< Light without occlusion, W/m^2; for `openings`, `others` an estimate.
     const SeenPolygon* seen = nullptr;    ///< For a piece.
+    double unaimed = 0;                   ///< Light through openings at which no rays are aimed, W/m^2, of the sky.
     bool is_sun = false;                  ///< A disc of the sun.
     Point from = {};                      ///< Viewpoint of a piece: the place, or the scene's middle for the sun.
     std::uint32_t rays = 0;               ///< Rays cast so far: a power of two.
@@ -118,7 +119,7 @@ struct RayLight::Part {
     /// True if the mean of the rays' weights is the light; otherwise only their ratio matters.
     bool counts_weights() const { return kind == Kind::openings || kind == Kind::others; }
     Spectrum light() const;
-    double variance(double missed_share) const;
+    double variance(double missed) const;
     std::uint64_t sequence() const;  ///< Distinguishes the random numbers of parts.
 };
 

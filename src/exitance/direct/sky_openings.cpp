@@ -17,18 +17,18 @@ constexpr std::size_t first_places = 512, most_places = 8192;
 constexpr std::uint32_t rays_of_place = 64;  ///< To the sky, and to all suns together.
 constexpr int few_rays = 4;                  ///< Rays that escape, at most, from a place that sees little of the sky.
 constexpr std::size_t ways_of_place = 2;     ///< Escaping rays of a place that are followed, at most.
-constexpr std::size_t most_openings = 64, most_cells = 256;
+constexpr std::size_t most_openings = 128, most_cells = 512;
 constexpr std::size_t most_attempts = 512;  ///< Escaping rays that are followed in the whole scene, at most.
 constexpr unsigned directions_of_point = 64, azimuths = 48, steps_of_azimuth = 24, halvings = 16;
 
-/// Share of all directions in which the sky is seen at a point where an opening begins. derived from the plane of a
-/// window above a ground that hides half of the sky: a quarter of the directions, and half of that just before it.
+/// Share of directions that lead to the sky, from which on a point is at an opening. derived from the plane of a window
+/// above a ground, where it is a quarter; half of that marks a point just indoors.
 constexpr double seen_at_opening = 1.0 / 8;
 
 /// Rim points farther than so many times the distance of the near ones belong to things outdoors: the horizon.
 constexpr double farthest_rim = 4;
 
-/// Share of places without sky below which a scene is not searched for rooms.
+/// If at most this share of places sees no sky, openings are not searched.
 constexpr double few_dark_places = 1.0 / 64;
 
 struct Place {
@@ -228,16 +228,17 @@ std::vector<Vec3> SkySearch::rim(const Point& from, const Frame& frame, const Is
 }
 
 /// The plane and extent of an opening, from some points of its rim; of area 0 if they do not tell.
-PortalCell rectangle_of_rim(const Point& from, const Vec3& outwards, std::vector<Vec3> rim) {
+/// farthest  distance of rim points that count, by that of a quarter of them
+PortalCell rectangle_of_rim(const Point& from, const Vec3& outwards, std::vector<Vec3> rim, double farthest) {
     constexpr std::size_t fewest = 12;  // points from which a rectangle can be found
-    constexpr double edge_on = 0.05;    // cosine
+    constexpr double edge_on = 1e-3;    // cosine
     if (rim.size() < fewest) return {};
     std::vector<double> distances;
     for (const Vec3& p : rim) distances.push_back(norm(p));
     const auto quarter = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 4);
     std::nth_element(distances.begin(), quarter, distances.end());
-    const double farthest = farthest_rim * *quarter;
-    std::erase_if(rim, [&](const Vec3& p) { return norm(p) > farthest; });
+    const double most = farthest * *quarter;
+    std::erase_if(rim, [&](const Vec3& p) { return norm(p) > most; });
     if (rim.size() < fewest) return {};
     const Vec3 middle = std::accumulate(rim.begin(), rim.end(), Vec3()) / static_cast<double>(rim.size());
     Vec3 area;
@@ -260,19 +261,20 @@ PortalCell rectangle_of_rim(const Point& from, const Vec3& outwards, std::vector
 PortalCell SkySearch::opening(const Escape& way) {
     constexpr double before = 0.25;  // distance from which the whole rim is seen, as a share of the opening's size
     const Point first = before_opening(way);
-    const PortalCell seen =
-        rectangle_of_rim(first, way.direction, rim(first, Frame(way.direction), [](const Vec3&) { return false; }));
+    const std::vector<Vec3> first_rim = rim(first, Frame(way.direction), [](const Vec3&) { return false; });
+    const PortalCell seen = rectangle_of_rim(first, way.direction, first_rim, farthest_rim);
     if (!(seen.area > 0)) return {};
     // From close to its middle nothing hides the rim, and what is beyond its plane is outdoors.
     const double step = before * std::sqrt(seen.area);
     const Point from = seen.corner + 0.5 * (seen.u + seen.v) - step * seen.n;
-    PortalCell out = rectangle_of_rim(
-        from, seen.n, rim(from, Frame(seen.n), [&](const Vec3& hit) { return dot(hit, seen.n) > 2 * step; }));
+    const auto is_outdoors = [&](const Vec3& hit) { return dot(hit, seen.n) > 2 * step; };
+    PortalCell out = rectangle_of_rim(from, seen.n, rim(from, Frame(seen.n), is_outdoors), HUGE_VAL);
     out.light = 1;
     return out.area > 0 && passes_near(way.from, way.direction, out) ? out : PortalCell();
 }
 
-/// Mean square of the shares that rays n to 2 n find where rays 0 to n found nothing, plus that of one more ray in all.
+/// Returns the mean square of the share of rays n to 2n that escape, over places where rays 0 to n - 1 were blocked.
+/// One more escaping ray is assumed, so that the result is above 0.
 double mean_square_hidden(const std::vector<std::uint64_t>& arrivals, std::uint32_t n) {
     const std::uint64_t first = (std::uint64_t{1} << n) - 1;
     double sum = 1.0 / (1.0 * n * n), count = 1;
@@ -300,7 +302,7 @@ double SkyOpenings::Hidden::after(std::uint32_t n) const {
     return rms[last] * static_cast<double>(2u << last) / n;
 }
 
-void SkyOpenings::choose(const Point& x, const Normal& n, std::vector<PortalCell>& out) const {
+double SkyOpenings::choose(const Point& x, const Normal& n, std::vector<PortalCell>& out) const {
     out.clear();
     std::vector<std::pair<double, std::uint32_t>> best;
     for (std::uint32_t i = 0; i < cells_.size(); ++i) {
@@ -308,12 +310,15 @@ void SkyOpenings::choose(const Point& x, const Normal& n, std::vector<PortalCell
         const double share = is_indoors ? PortalAim::form_factor(cells_[i], x, n) : 0;
         if (share > 0) best.push_back({-share, i});
     }
+    double left_out = 0;
     if (best.size() > PortalAim::most_targets) {
         std::nth_element(best.begin(), best.begin() + PortalAim::most_targets, best.end());
+        for (std::size_t k = PortalAim::most_targets; k < best.size(); ++k) left_out -= best[k].first;
         best.resize(PortalAim::most_targets);
     }
     std::sort(best.begin(), best.end());
     for (const auto& [share, i] : best) out.push_back(cells_[i]);
+    return left_out;
 }
 
 SkyOpenings::SkyOpenings(const Occluders& occluders, const RayTracer& tracer, const SkyTree& sky,
@@ -336,7 +341,6 @@ SkyOpenings::SkyOpenings(const Occluders& occluders, const RayTracer& tracer, co
         for (std::size_t i = 0; i < ways_of_place && left != 0; ++i, left &= left - 1)
             ways.push_back({place.x, search.direction(place, static_cast<std::uint32_t>(std::countr_zero(left)))});
     }
-    const std::size_t all = ways.size();
     std::size_t attempts = 0, openings = 0;
     while (!ways.empty() && attempts++ < most_attempts && openings < most_openings) {
         const Escape way = ways[hash(attempts) % ways.size()];
@@ -346,18 +350,17 @@ SkyOpenings::SkyOpenings(const Occluders& occluders, const RayTracer& tracer, co
         std::erase_if(ways, [&](const Escape& other) { return passes_near(other.from, other.direction, found); });
         add_portal_cells(found, most_cells, cells_);
     }
-    if (2 * ways.size() > all) cells_.clear();
 
-    std::vector<PortalCell> chosen;
-    PortalAim aim;
     std::vector<std::uint64_t> to_sky, to_sun;
     for (const Place& place : places) {
-        choose(place.x, place.n, chosen);
-        aim.set(chosen, place.x, place.n);
         std::uint64_t rest = place.sky;
-        for (std::uint64_t left = place.sky; left != 0 && !chosen.empty(); left &= left - 1) {
+        for (std::uint64_t left = place.sky; left != 0; left &= left - 1) {
             const auto k = static_cast<std::uint32_t>(std::countr_zero(left));
-            if (aim.is_aimed_at(search.direction(place, k))) rest &= ~(std::uint64_t{1} << k);
+            const Vec3 w = search.direction(place, k);
+            const bool is_known = std::any_of(cells_.begin(), cells_.end(), [&](const PortalCell& cell) {
+                return dot(cell.corner - place.x, cell.n) > 0 && passes_near(place.x, w, cell, 0);
+            });
+            if (is_known) rest &= ~(std::uint64_t{1} << k);
         }
         to_sky.push_back(rest);
         to_sun.push_back(place.sun);

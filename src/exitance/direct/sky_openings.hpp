@@ -33,10 +33,12 @@ class SkyOpenings {
 
     /// Parallelograms that cover the openings, with normals that point outdoors.
     std::span<const PortalCell> cells() const { return cells_; }
-    /// Chooses the parallelograms at which rays from x should be aimed, at most PortalAim::most_targets.
-    void choose(const Point& x, const Normal& n, std::vector<PortalCell>& out) const;
+    /// Chooses the parallelograms at which rays from x should be aimed, at most PortalAim::most_targets. Returns the
+    /// sum of the form factors of the others.
+    double choose(const Point& x, const Normal& n, std::vector<PortalCell>& out) const;
 
-    /// Root mean square of the share of the sky's light that arrives where the first n rays found nothing.
+    /// Root mean square of the share of the sky's light that arrives beside all openings where the first n rays found
+    /// nothing.
     double hidden_sky(std::uint32_t n) const { return sky_.after(n); }
     /// Like hidden_sky(), for a sun's disc.
     double hidden_sun(std::uint32_t n) const { return sun_.after(n); }

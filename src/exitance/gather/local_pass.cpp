@@ -43,7 +43,7 @@ std::uint32_t LocalPass::body_of(ElementId e, const LocalPassDemand& demand) con
     return demand.bodies->of(stage_.scene, tree_.region(e));
 }
 
-/// Divides the error of every body among its present elements: misfit evenly, noise such that it takes the fewest rays.
+/// Divides the error allowed for every body among its elements: misfit by area, noise so that it takes the fewest rays.
 void LocalPass::divide_among_bodies(const LocalPassDemand& demand) {
     if (!demand.bodies) return;
     std::vector<std::vector<double>> areas(demand.bodies->all.size());

@@ -37,7 +37,7 @@ struct LocalPassDemand {
     /// b minus the light gathered last, if that is small. Only the change is then gathered, with as few rays as its
     /// noise requires, and added to the present result. Null: b was gathered last, or is unrelated to it.
     const ReflectedLight* change = nullptr;
-    /// Places at which the light gathered last was found to miss features. They are followed and refined.
+    /// Points at which the last gather missed a feature. Elements there and along the feature are refined.
     std::span<const RoughPlace> rough_places = {};
 };
 

@@ -71,8 +71,8 @@ void LocalPass::look_closely(ElementId e, SampledElement& sampled, const Reflect
     const double allowed = allowed_misfit(e, sampled.light, demand);
     // The noise of so many places is known to a quarter, so that twice its expected value is not noise.
     if (!(misfit > allowed * allowed + 2 * noise)) return;
-    // The polynomial's own noise is part of the misfit, as in `fit_gathered`.
-    // Derived from five degrees of freedom, as in tolerated_misfit_squared().
+    // The misfit includes the polynomial's own noise, as in `fit_gathered`.
+    // 2.3: derived from five degrees of freedom, as in tolerated_misfit_squared().
     sampled.misfit_squared = std::max(sampled.misfit_squared, misfit + 2.3 * sampled.noise_in_misfit);
     for (std::size_t k = 0; k < 2; ++k) sampled.misfit_along[k] = strips[k].between();
 }

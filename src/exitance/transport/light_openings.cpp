@@ -96,8 +96,12 @@ Cuts sweep(const Flow& flow, const LeafNumbers& order, std::uint16_t part) {
     for (std::uint32_t i : order) total += flow.area[i];
     for (std::size_t k = 0; k < n; ++k) {
         area += flow.area[order[k]], u += up[k], d += down[k], lost_below += lost[k];
+        const bool is_small = 2 * area <= total;
+        double outwards = is_small ? lost_below : all_lost - lost_below;
+        // The sky is on the side that sends more to it: only what the other side sends there crosses the cut.
+        if (flow.has_sky) outwards = std::min(lost_below, all_lost - lost_below);
         out.area[k] = area;
-        out.opening[k] = 2 * area <= total ? u + lost_below : d + all_lost - lost_below;
+        out.opening[k] = (is_small ? u : d) + outwards;
     }
     return out;
 }

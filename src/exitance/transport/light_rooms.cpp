@@ -102,7 +102,10 @@ class RoomFinder {
         }
         for (Part& part : open) parts_.push_back(std::move(part));
         sort();
-        while (parts_.size() > 1 && !counts(parts_.back())) join_smallest();
+        while (const Part* part = smallest_indoors()) {
+            if (part == &parts_.front() || counts(*part)) break;
+            join(static_cast<std::size_t>(part - parts_.data()));
+        }
         if (parts_.size() > 1) place_blind_leaves();
         return std::move(parts_);
     }
@@ -190,6 +193,13 @@ class RoomFinder {
         return own >= static_cast<std::ptrdiff_t>(fewest_walls);
     }
 
+    /// True if the sky is above a part. Such a part is judged by itself, whatever its shape and size.
+    bool is_outdoors(const Part& part) const {
+        double to_sky = 0;
+        for (const std::uint32_t i : part.leaves) to_sky += flow_.area[i] * missed_share(flow_, i);
+        return flow_.has_sky && to_sky >= outdoors * part.area;
+    }
+
     /// True if a part is large enough to be a room of its own.
     bool counts(const Part& part) const {
         if (!part.may_be_room()) return false;
@@ -209,8 +219,10 @@ class RoomFinder {
         const std::optional<OpeningBetween> opening = find_opening(flow_, part.leaves, own);
         if (!opening) return false;
         Part small = part_of(opening->small), large = part_of(opening->large);
-        if (!counts(small)) return false;
-        inner_.add(small.box.lo), inner_.add(small.box.hi);
+        const bool room_is_large = is_outdoors(small) && !is_outdoors(large);
+        const Part& room = room_is_large ? large : small;
+        if (!counts(room)) return false;
+        inner_.add(room.box.lo), inner_.add(room.box.hi);
         for (std::uint32_t i : small.leaves) flow_.part[i] = fresh_;
         ++fresh_;
         part = std::move(large), rest = std::move(small);
@@ -219,7 +231,8 @@ class RoomFinder {
 
     std::vector<std::uint8_t> blind_leaves() const;
     void place_blind_leaves();
-    void join_smallest();
+    const Part* smallest_indoors() const;
+    void join(std::size_t number);
 
     Flow flow_;
     const Stage& stage_;
@@ -293,21 +306,27 @@ void RoomFinder::place_blind_leaves() {
     sort();
 }
 
-/// Merges the smallest part with the part that it exchanges most light with.
-void RoomFinder::join_smallest() {
-    const Part& small = parts_.back();
+/// The smallest part that is not outdoors; null if there is none.
+const Part* RoomFinder::smallest_indoors() const {
+    const auto at = std::find_if(parts_.rbegin(), parts_.rend(), [&](const Part& part) { return !is_outdoors(part); });
+    return at == parts_.rend() ? nullptr : &*at;
+}
+
+/// Merges a part with the other part that it exchanges most light with.
+void RoomFinder::join(std::size_t number) {
+    const Part small = std::move(parts_[number]);
+    parts_.erase(parts_.begin() + static_cast<std::ptrdiff_t>(number));
     const std::uint16_t own = flow_.part[small.leaves[0]];
     std::vector<double> to(fresh_);
     for (std::uint32_t i : small.leaves)
         for (std::uint32_t j : flow_.rows.hits(i))
             if (j != RayRows::missed && flow_.part[j] != own)
                 to[flow_.part[j]] += flow_.area[i] / static_cast<double>(flow_.rows.hits(i).size());
-    const auto most = std::max_element(parts_.begin(), parts_.end() - 1, [&](const Part& a, const Part& b) {
+    const auto most = std::max_element(parts_.begin(), parts_.end(), [&](const Part& a, const Part& b) {
         return to[flow_.part[a.leaves[0]]] < to[flow_.part[b.leaves[0]]];
     });
     for (std::uint32_t i : small.leaves) flow_.part[i] = flow_.part[most->leaves[0]];
     most->add(small);
-    parts_.pop_back();
     sort();
 }
 

@@ -178,6 +178,51 @@ TEST(LightRooms, AHouseOnGroundUnderTheSkyIsARoom) {
     }
 }
 
+/// A room of 5 x 4 x 3 m below a ground of 2 `half` metres, with a roof light of 0.4 m.
+Scene basement(double half) {
+    SceneDescription d;
+    d.groups = {"all"};
+    d.materials = {{"grey", Spectrum(0.5), {}}};
+    d.distant.domes.push_back({uniform_sky(), Spectrum(1.0)});
+    const auto face = [&](const std::vector<Point>& corners) {
+        SceneDescription::Face f;
+        for (const Point& p : corners) {
+            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            d.points.push_back(p);
+        }
+        d.faces.push_back(f);
+    };
+    const auto around_hole = [&](double x, double y, bool upwards) {  // four rectangles up to |x|, |y|
+        for (std::vector<Point> corners : {std::vector<Point>{{-x, -y, 0}, {x, -y, 0}, {x, -0.2, 0}, {-x, -0.2, 0}},
+                                           {{-x, 0.2, 0}, {x, 0.2, 0}, {x, y, 0}, {-x, y, 0}},
+                                           {{-x, -0.2, 0}, {-0.2, -0.2, 0}, {-0.2, 0.2, 0}, {-x, 0.2, 0}},
+                                           {{0.2, -0.2, 0}, {x, -0.2, 0}, {x, 0.2, 0}, {0.2, 0.2, 0}}}) {
+            if (!upwards) std::reverse(corners.begin(), corners.end());
+            face(corners);
+        }
+    };
+    around_hole(half, half, true);
+    around_hole(2.5, 2, false);
+    face({{-2.5, -2, -3}, {2.5, -2, -3}, {2.5, 2, -3}, {-2.5, 2, -3}});
+    face({{-2.5, -2, -3}, {-2.5, 2, -3}, {-2.5, 2, 0}, {-2.5, -2, 0}});
+    face({{2.5, -2, -3}, {2.5, -2, 0}, {2.5, 2, 0}, {2.5, 2, -3}});
+    face({{-2.5, -2, -3}, {-2.5, -2, 0}, {2.5, -2, 0}, {2.5, -2, -3}});
+    face({{-2.5, 2, -3}, {2.5, 2, -3}, {2.5, 2, 0}, {-2.5, 2, 0}});
+    return std::move(*make_scene(std::move(d)).scene);
+}
+
+TEST(LightRooms, ARoomBelowAGroundOfAnySizeIsARoom) {
+    constexpr double area = 2 * 20 - 0.16 + 2 * 3 * (5 + 4);  // m^2
+    for (const double half : {2.6, 3.0, 5.0, 100.0}) {
+        const Scene scene = basement(half);
+        const Stage stage(scene);
+        const LightRooms rooms = find_light_rooms(stage, 1, StopRequest());
+        ASSERT_EQ(rooms.count(), 2u) << half;
+        const std::size_t room = 4 * half * half - 0.16 < area ? 0 : 1;
+        EXPECT_NEAR(rooms.area(room), area, 0.03 * area) << half;
+    }
+}
+
 TEST(LightRooms, SeveralGapsAreNoRoom) {
     // The gaps over the lamp and behind the board receive light and are far apart, but both are centimetres high.
     for (const char* lamp : {"0.01", "0.03"})

@@ -19,7 +19,7 @@ namespace exitance {
 class PortalAim {
   public:
     /// Number of parallelograms at which rays of a place are aimed at most.
-    static constexpr std::size_t most_targets = 16;
+    static constexpr std::size_t most_targets = 32;
 
     /// Returns the share of rays of density cos / pi about n that lead to a parallelogram; 0 if it is behind x, or too
     /// near to be aimed at.

@@ -53,12 +53,11 @@ void add_portal_cells(const PortalCell& opening, std::size_t most, std::vector<P
     }
 }
 
-bool passes_near(const Point& from, const Vec3& direction, const PortalCell& cell) {
+bool passes_near(const Point& from, const Vec3& direction, const PortalCell& cell, double beside) {
     const double t = dot(cell.corner - from, cell.n) / dot(direction, cell.n);
     if (!std::isfinite(t)) return false;
     const Vec3 at = from + t * direction - cell.corner;
     const double s = dot(at, cell.u) / squared_norm(cell.u), r = dot(at, cell.v) / squared_norm(cell.v);
-    constexpr double beside = 0.5;
     return std::max(std::abs(s - 0.5), std::abs(r - 0.5)) < 0.5 + beside;
 }
 

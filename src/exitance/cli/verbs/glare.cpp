@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/observers.hpp"
@@ -56,7 +58,9 @@ ExitCode run(const GlareArguments& arguments, Terminal& terminal) {
         terminal.progress().advance(static_cast<double>(glare.size()) / static_cast<double>(observers->size()));
     }
     terminal.progress().finish();
-    const std::optional<double> error = solution->statistics.relative_error_estimate;
+    // The eye may be in any room.
+    const std::optional<double> error =
+        std::max(solution->statistics.relative_error_estimate, solution->statistics.relative_error_estimate_worst_room);
     if (arguments.json) {
         terminal.print(glare_json(*observers, glare, error));
     } else {

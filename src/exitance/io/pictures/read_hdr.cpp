@@ -138,7 +138,8 @@ class HdrRows {
         return true;
     }
 
-    /// Plain pixels; (1, 1, 1, n) repeats the last one n times, and successive ones count by bytes.
+    /// Reads a row in the old encoding: (1, 1, 1, n) repeats the previous pixel n times; the k-th such marker of a
+    /// series, from 0, counts n 256^k.
     bool next_by_pixel(std::vector<Rgbe>& row) {
         unsigned shift = 0;
         for (std::size_t i = 0; i < row.size();) {

@@ -205,7 +205,7 @@ ReadScene read_files(std::span<const std::string> paths, const LoadOptions& opti
     return all;
 }
 
-/// Replaces the distant light of the files by the requested sky.
+/// Replaces the distant light of the files by the requested sky. A sky in lumens makes the scene one in lumens.
 void give_sky(const ChosenSky& sky, ReadScene& read) {
     SceneDescription& description = read.description;
     if (!description.distant.empty())
@@ -214,6 +214,15 @@ void give_sky(const ChosenSky& sky, ReadScene& read) {
                                  "leave out --sky to have the scene's own"});
     const bool photometric = sky.photometric.value_or(description.photometric);
     description.distant = photometric ? sky.in_lumens : sky.in_watts;
+    if (!photometric || description.photometric) return;
+    const bool shines = std::any_of(description.materials.begin(), description.materials.end(),
+                                    [](const Material& m) { return m.emits(); }) ||
+                        !description.lights.empty();
+    if (shines)
+        read.findings.push_back({Finding::Kind::warning, description.file, 0,
+                                 "the sky is in lumens: the scene's own light is taken as lumens, too",
+                                 "leave out efficacy_direct and efficacy_diffuse to have both in watts"});
+    description.photometric = true;
 }
 
 /// Adds the luminaires of the scene files and those of the table.

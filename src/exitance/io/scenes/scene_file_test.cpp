@@ -1,10 +1,13 @@
 #include "exitance/io/scenes/scene_file.hpp"
-#include "support/places.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
+
+#include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/scenes/sky_words.hpp"
+#include "support/places.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace exitance {
 namespace {
@@ -100,6 +103,31 @@ TEST(SceneFile, EveryPublishedSceneIsAccepted) {
         for (const Surface& s : checked.scene->surfaces()) faces += s.area;
         for (const Region& r : checked.scene->regions()) regions += r.area;
         EXPECT_NEAR(regions, faces, 1e-9 * faces) << entry.path();  // the corners of bent faces are moved
+    }
+}
+
+TEST(SceneFile, ASkyInLumensMakesTheSceneOneInLumens) {
+    const TemporaryFolder folder;
+    const std::string square = "v -5 -5 0\nv 5 -5 0\nv 5 5 0\nv -5 5 0\nf 1 2 3 4\n";
+    for (const bool has_lamp : {false, true}) {
+        ASSERT_TRUE(
+            write_file(folder / "m.mtl", has_lamp ? "newmtl grey\nKe 1 1 1\n" : "newmtl grey\nKd 0.5 0.5 0.5\n"));
+        ASSERT_TRUE(write_file(folder / "s.obj", "mtllib m.mtl\nusemtl grey\n" + square));
+        for (const std::string efficacy : {"", ",efficacy_diffuse=110"}) {
+            Result<ChosenSky> sky = parse_sky("overcast,dhi=100" + efficacy, nullptr);
+            ASSERT_TRUE(sky) << sky.error().message;
+            LoadOptions load;
+            load.sky = std::move(*sky);
+            const std::vector<std::string> paths{folder / "s.obj"};
+            const LoadedScene scene = load_scene(paths, load);
+            ASSERT_TRUE(scene.scene);
+            EXPECT_EQ(scene.scene->is_photometric(), !efficacy.empty());
+            EXPECT_EQ(scene.scene->distant().domes[0].irradiance[0], efficacy.empty() ? 100 : 11000);
+            const bool warns = std::any_of(scene.findings.begin(), scene.findings.end(), [](const Finding& f) {
+                return f.message.find("sky is in lumens") != std::string::npos;
+            });
+            EXPECT_EQ(warns, has_lamp && !efficacy.empty());
+        }
     }
 }
 

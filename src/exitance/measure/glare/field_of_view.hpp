@@ -14,10 +14,10 @@ namespace exitance {
 /// The luminances that an eye sees in front of it, for daylight glare: skies, suns, lamps and lit surfaces, also
 /// through panes. Light that panes mirror is not seen.
 ///
-/// The visible part of every polygon and of the sky is exact, so that all solid angles are. It is cut into triangles of
-/// at most 0.1 rad, of which the luminance of each quarter is evaluated in its middle. Triangles whose luminance varies
-/// are cut further, down to 0.0125 rad: those with more than 1e-4 of all light, and those that the threshold of glare
-/// divides. Bright spots of less than 0.05 rad on a surface can be missed.
+/// All visible parts and their solid angles are exact. Surfaces are cut into triangles of at most 0.1 rad, the sky into
+/// triangles of at most 0.02 rad. The luminance of each quarter of a triangle is evaluated in its middle. Triangles
+/// whose luminance varies are cut further, down to 0.0125 rad: those with more than 1e-4 of all light, and those that
+/// the threshold of glare divides. Bright spots of less than 0.05 rad on a surface can be missed.
 class FieldOfView {
   public:
     /// `eye`: not on a surface. All must outlive this. O(pieces + parts): about 1 s for a room.

@@ -81,7 +81,7 @@ TEST(DirectionalPicture, LightIsTheIntegralOfThePixels) {
                 // Linear interpolation between cells of 2.8 degrees.
                 EXPECT_NEAR(irradiance_by_model(light, n, band), exact, 5e-3 * exact) << height;
             }
-        // A horizontal plane has the exact sum; that of the test has parts of a quarter of a pixel.
+        // A horizontal plane has the exact sum. The test's own sum has samples of a quarter of a pixel, hence 1e-3.
         EXPECT_NEAR(horizontal_irradiance(picture, false)[0] / plain_irradiance(picture, {0, 0, 1}, 0), 1, 1e-3);
         double above = 0;
         for (const DistantLight::Dome& dome : light.domes)
@@ -96,7 +96,8 @@ TEST(DirectionalPicture, TheMiddleLooksAlongXAndRotationIsCounterClockwise) {
         const DistantLight light = light_of_picture(picture_of(64, spot), degrees);
         const double angle = degrees * pi / 180;
         const Vec3 towards{std::cos(angle), std::sin(angle), 0.02}, away{-std::cos(angle), -std::sin(angle), 0.02};
-        EXPECT_NEAR(mean(light.radiosity(normalized(towards), false)) / pi, 21, 1) << degrees;  // 2.8 degrees of 18
+        EXPECT_NEAR(mean(light.radiosity(normalized(towards), false)) / pi, 21, 1)
+            << degrees;  // a spot of 18 degrees, averaged over 2.8
         EXPECT_NEAR(mean(light.radiosity(normalized(away), false)) / pi, 1, 1e-3) << degrees;
     }
     // A quarter of the width from the left is +y, three quarters are -y.

@@ -107,7 +107,8 @@ Result<std::vector<GlareYear>> DaylightSimulation::glare(std::span<const ProbePo
     std::vector<GlareYear> out;
     for (std::size_t at = 0; at < eyes.size(); at += block_sensors) {
         const auto together = std::span(eyes).subspan(at, std::min(block_sensors, eyes.size() - at));
-        const std::size_t first = d.task.sensors.size() + at;  // random points other than those of the sensors
+        const std::size_t first =
+            d.task.sensors.size() + at;  // numbers differ from those of the sensors, and so do random points
         const auto unknown = [](std::size_t) -> const KnownSensor* { return nullptr; };
         const DaylightBlock block = years.evaluate(first, together, rows.rows(together, first, unknown));
         for (GlareYear& year : glare.evaluate(together, block)) out.push_back(std::move(year));
