@@ -160,7 +160,7 @@ std::vector<Vec3> all_around() {
     std::vector<Vec3> out;
     for (unsigned k = 0; k < directions_of_point; ++k) {
         const double z = 1 - 2 * points(k, 0), r = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * pi * points(k, 1);
-        out.emplace_back(r * std::cos(phi), r * std::sin(phi), z);
+        out.push_back({r * std::cos(phi), r * std::sin(phi), z});
     }
     return out;
 }
