@@ -23,6 +23,10 @@ constexpr double half_hidden = 0.5;
 constexpr std::uint32_t least_pilot = 16, most_pilot = 64, least_rays_of_part = 4;
 constexpr std::uint32_t fastest_growth = 16;  ///< Per round: a variance from few rays is uncertain.
 
+/// Light through openings, as a share of the allowed error, that is left to the sky's own rays. derived from its part
+/// of the variance, a sixteenth.
+constexpr double little = 0.25;
+
 /// Nearly hidden light needs no better accuracy than light of this share of the unoccluded light.
 constexpr double min_share = 0.05;
 
@@ -197,8 +201,7 @@ void RayLight::add_piece(const Receiver& at, const DirectLight::SourceName& sour
                            .from = at.x});
 }
 
-/// Adds the light of the sky through openings, after the sky itself. If it is too little to matter it is left to the
-/// sky's own rays, and counts in their variance.
+/// Adds the light of the sky through openings, after the sky itself, unless it is too little to matter.
 void RayLight::add_openings(const Receiver& at, const LightAccuracy& accuracy, Workspace& room) const {
     const double left_out = openings().choose(at.x, at.n, room.cells_);
     Spectrum light;
@@ -209,9 +212,10 @@ void RayLight::add_openings(const Receiver& at, const LightAccuracy& accuracy, W
         light += share * direct_->scene().distant().radiosity(w, false), chosen += share;
     }
     const double of_all = chosen > 0 ? (chosen + left_out) / chosen * mean(light) : 0;
-    const bool is_little = of_all <= accuracy.allowed(min_share * mean(room.aim_.open));
-    room.parts_.back().unaimed = is_little ? of_all : of_all - mean(light);
-    if (is_little) room.cells_.clear();
+    if (of_all <= little * accuracy.allowed(min_share * mean(room.aim_.open)))
+        room.cells_.clear();
+    else
+        room.parts_.back().unaimed = of_all - mean(light);
     room.portals_.set(room.cells_, at.x, at.n);
     if (!room.cells_.empty()) room.parts_.push_back({.kind = Part::Kind::openings, .open = light});
 }
