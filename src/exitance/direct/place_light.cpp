@@ -80,7 +80,7 @@ PlaceLight::Estimate PlaceLight::at(const Point& x, const Normal& n, RegionId ow
             most_work_ <= of_one || !(accuracy.absolute > 0) ? of_one : rays_.forecast(x, n, own, accuracy, room);
         exact = exact_within(x, n, own, work, room), tried = work_of(room, work);
         if (!exact) {
-            // In penumbrae rays need more than was forecast. The first ones tell.
+            // In penumbrae rays need more than was forecast, which the first ones show.
             const double needed = rays_needed_at(x, n, own, work, accuracy, room, tried);
             if (needed > worth_another * work) {
                 exact = exact_within(x, n, own, needed / worth_another, room);
@@ -191,7 +191,7 @@ void PlaceLight::at_places(const Polygon& on, const LightAccuracy& accuracy, Wor
     if (std::any_of(direct_->emitters().begin(), direct_->emitters().end(),
                     [](const DirectLight::Emitter& emitter) { return emitter.radiance.is_picture(); }))
         limited.most_rays = std::min(limited.most_rays, max_rays_to_picture);
-    // In penumbrae, and where little of the light arrives, rays need more than was forecast. The first ones tell.
+    // In penumbrae, and where little of the light arrives, rays need more than was forecast, which the first ones show.
     double tried = 0;
     const double needed = rays_needed_at(on.places[on.places.size() / 2], on.n, on.own, work, limited, room, tried);
     if (needed > worth_another * work &&

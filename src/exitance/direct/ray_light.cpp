@@ -57,6 +57,30 @@ bool is_grey(const Spectrum& s) {
     return std::all_of(s.value.begin(), s.value.end(), [&](double v) { return v == s[0]; });
 }
 
+/// A source that is drawn from the tree of emitters.
+struct DrawnSource {
+    const EmitterTree::Source* source = nullptr;
+    double chance = 0;  ///< Probability of drawing it; 0 if it was drawn by rounding alone.
+};
+
+/// Draws one of the terms of a cut, and then a source below it in proportion to its power, by a number u in [0, 1).
+/// chance_before  prefix sums of the chances of the terms
+DrawnSource draw_source(const EmitterTree& tree, const EmitterTree::Cut& cut, const std::vector<double>& chance_before,
+                        double u) {
+    const double wanted = u * chance_before.back();
+    const auto after = std::upper_bound(chance_before.begin() + 1, chance_before.end() - 1, wanted);
+    const auto term = static_cast<std::size_t>(after - chance_before.begin()) - 1;
+    const double of_term = chance_before[term + 1] - chance_before[term];
+    if (!(of_term / chance_before.back() > 0)) return {};
+    const EmitterTree::Node& node = tree.nodes()[cut.terms[term].node];
+    const double within = std::clamp((wanted - chance_before[term]) / of_term, 0.0, 1.0);
+    const auto first = tree.power_before().begin() + node.first, end = tree.power_before().begin() + node.last;
+    const auto found = std::upper_bound(first + 1, end, *first + within * (*end - *first));
+    const EmitterTree::Source& source =
+        tree.sources()[static_cast<std::size_t>(found - tree.power_before().begin()) - 1];
+    return {&source, of_term / chance_before.back() * source.power / node.power};
+}
+
 std::uint32_t power_of_two(double rays, std::uint32_t least, std::uint32_t most) {
     return std::bit_ceil(
         static_cast<std::uint32_t>(std::clamp(rays, static_cast<double>(least), static_cast<double>(most))));
@@ -276,7 +300,8 @@ void RayLight::add_rays(const Receiver& at, Part& part, std::uint32_t last, std:
         room.rays_.push_back({number, i / part.block, is_distant, window, weight});
         room.from_.push_back({at.x, at.own}), room.to_.push_back({to, region});
     };
-    /// Adds a ray to a point y of an emitter; `scale`: 1 / (pi density), or 1 if only the ratio of weights matters.
+    /// Adds a ray to a point y of an emitter. `weight`: cosines / (pi r^2 density), or that times any constant if only
+    /// the ratio of weights matters.
     const auto add_towards = [&](std::uint32_t i, const DirectLight::SourceName& source, const Point& y,
                                  const Point& from, double weight) {
         const DirectLight::Emitter& emitter = direct_->emitters()[source.emitter];
@@ -292,7 +317,6 @@ void RayLight::add_rays(const Receiver& at, Part& part, std::uint32_t last, std:
         add(i, at.x + way * d, emitter.region, weight * emitter.exitance, direct_->is_distant(source.emitter),
             is_window && looks_out_on_faces(occluders, source.piece) ? source.piece : PieceId());
     };
-    std::size_t term = 0;
     for (std::uint32_t k = 0; k < count; ++k) {
         const std::uint32_t i = part.rays + k;
         const double s = room.s_[k], t = room.t_[k];
@@ -314,27 +338,16 @@ void RayLight::add_rays(const Receiver& at, Part& part, std::uint32_t last, std:
             const Point y = part.seen->at(s, t);
             add_towards(i, part.source, y, part.from, part.seen->weight(y - part.from, at.n));
         } else {
-            const std::vector<double>& before = room.chance_before_;
-            const double wanted = room.u_[k] * before.back();
-            term = static_cast<std::size_t>(std::upper_bound(before.begin() + 1, before.end() - 1, wanted) -
-                                            before.begin()) -
-                   1;
-            const EmitterTree::Node& node = tree_.nodes()[room.cut_.terms[term].node];
-            const double chance = (before[term + 1] - before[term]) / before.back();
-            if (!(chance > 0)) continue;
-            const double within = std::clamp((wanted - before[term]) / (before[term + 1] - before[term]), 0.0, 1.0);
-            const auto first = tree_.power_before().begin() + node.first,
-                       end = tree_.power_before().begin() + node.last;
-            const auto found = std::upper_bound(first + 1, end, *first + within * (*end - *first));
-            const EmitterTree::Source& source =
-                tree_.sources()[static_cast<std::size_t>(found - tree_.power_before().begin()) - 1];
+            const DrawnSource drawn = draw_source(tree_, room.cut_, room.chance_before_, room.u_[k]);
+            if (!(drawn.chance > 0)) continue;
+            const EmitterTree::Source& source = *drawn.source;
             const DirectLight::Emitter& emitter = direct_->emitters()[source.name.emitter];
             if (!direct_->shines_on(emitter, at.own)) continue;
             const Point y = uniform_on(occluders.corners(source.name.piece), source.area, s, t);
             const Vec3 d = y - at.x;
             const double above = dot(at.n, d), below = -dot(emitter.plane.n, d), squared = squared_norm(d);
             if (above <= 0 || below <= 0) continue;
-            const double density = chance * source.power / node.power / source.area;
+            const double density = drawn.chance / source.area;
             add_towards(i, source.name, y, at.x, above * below / (pi * squared * squared * density));
         }
     }

@@ -31,7 +31,7 @@ constexpr double farthest_rim = 4;
 /// If at most this share of places sees no sky, openings are not searched.
 constexpr double few_dark_places = 1.0 / 64;
 
-struct Place {
+struct SearchPlace {
     Point x;
     Normal n;
     RegionId own;
@@ -52,16 +52,16 @@ class SkySearch {
               std::span<const SkyOpenings::Sun> suns)
         : occluders_(occluders), tracer_(tracer), sky_(sky), suns_(suns), size_(occluders.scene().size()) {}
 
-    std::vector<Place> places(std::size_t count) const;
-    void cast_to_sky(Place& place, std::uint32_t rays);
-    void cast_to_suns(Place& place);
+    std::vector<SearchPlace> places(std::size_t count) const;
+    void cast_to_sky(SearchPlace& place, std::uint32_t rays);
+    void cast_to_suns(SearchPlace& place);
     /// Direction of ray k to the sky from a place.
-    Vec3 direction(const Place& place, std::uint32_t k);
+    Vec3 direction(const SearchPlace& place, std::uint32_t k);
     /// The opening through which a ray escapes; of area 0 if its rim is not found.
     PortalCell opening(const Escape& way);
 
   private:
-    static std::uint64_t key(const Place& place, std::uint64_t of) {
+    static std::uint64_t key(const SearchPlace& place, std::uint64_t of) {
         const auto bits = [](double c) { return std::bit_cast<std::uint64_t>(c); };
         return hash(bits(place.x.x), bits(place.x.y), bits(place.x.z), place.own.value, of);
     }
@@ -85,7 +85,7 @@ class SkySearch {
 };
 
 /// Places on all polygons: half of them spread by area, half of them evenly over polygons.
-std::vector<Place> SkySearch::places(std::size_t count) const {
+std::vector<SearchPlace> SkySearch::places(std::size_t count) const {
     std::vector<PieceId> pieces;
     std::vector<double> before{0};
     for (std::uint32_t i = 0; i < occluders_.pieces().size(); ++i) {
@@ -95,7 +95,7 @@ std::vector<Place> SkySearch::places(std::size_t count) const {
         pieces.push_back(piece);
         before.push_back(before.back() + norm(area_vector(occluders_.corners(piece))));
     }
-    std::vector<Place> out;
+    std::vector<SearchPlace> out;
     if (!(before.back() > 0)) return out;
     const ScrambledSobol points(hash(static_cast<std::uint64_t>(Stream::direct), count));
     for (std::size_t i = 0; i < count; ++i) {
@@ -125,13 +125,13 @@ std::uint64_t SkySearch::arriving(std::size_t count) {
     return out;
 }
 
-Vec3 SkySearch::direction(const Place& place, std::uint32_t k) {
+Vec3 SkySearch::direction(const SearchPlace& place, std::uint32_t k) {
     const ScrambledSobol points(key(place, 0));
     sky_.aim(place.n, aim_);
     return sky_.direction(aim_, points(k, 0), points(k, 1)).w;
 }
 
-void SkySearch::cast_to_sky(Place& place, std::uint32_t rays) {
+void SkySearch::cast_to_sky(SearchPlace& place, std::uint32_t rays) {
     sky_.aim(place.n, aim_);
     if (!(aim_.weight[0] > 0)) return;
     for (std::uint32_t k = 0; k < rays; ++k) {
@@ -143,7 +143,7 @@ void SkySearch::cast_to_sky(Place& place, std::uint32_t rays) {
     place.sky = arriving(from_.size());
 }
 
-void SkySearch::cast_to_suns(Place& place) {
+void SkySearch::cast_to_suns(SearchPlace& place) {
     const ScrambledSobol points(key(place, 1));
     for (std::uint32_t k = 0; k < rays_of_place; ++k) {
         const SkyOpenings::Sun& sun = suns_[k % suns_.size()];
@@ -155,18 +155,8 @@ void SkySearch::cast_to_suns(Place& place) {
     place.sun = arriving(from_.size());
 }
 
-std::vector<Vec3> all_around() {
-    const ScrambledSobol points(directions_of_point);
-    std::vector<Vec3> out;
-    for (unsigned k = 0; k < directions_of_point; ++k) {
-        const double z = 1 - 2 * points(k, 0), r = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * pi * points(k, 1);
-        out.push_back({r * std::cos(phi), r * std::sin(phi), z});
-    }
-    return out;
-}
-
 double SkySearch::seen_share(const Point& at) {
-    static const std::vector<Vec3> directions = all_around();
+    static const std::vector<Vec3> directions = directions_all_around(directions_of_point);
     hits_.resize(directions.size());
     tracer_.nearest(directions, at, RegionId(), hits_);
     const auto seen =
@@ -326,14 +316,14 @@ SkyOpenings::SkyOpenings(const Occluders& occluders, const RayTracer& tracer, co
     if (sky.empty()) return;
     SkySearch search(occluders, tracer, sky, suns);
     constexpr std::uint32_t first_rays = 16;
-    std::vector<Place> places = search.places(first_places);
-    for (Place& place : places) search.cast_to_sky(place, first_rays);
-    const auto dark = std::count_if(places.begin(), places.end(), [](const Place& p) { return p.sky == 0; });
+    std::vector<SearchPlace> places = search.places(first_places);
+    for (SearchPlace& place : places) search.cast_to_sky(place, first_rays);
+    const auto dark = std::count_if(places.begin(), places.end(), [](const SearchPlace& p) { return p.sky == 0; });
     if (static_cast<double>(dark) <= few_dark_places * static_cast<double>(places.size())) return;
 
     places = search.places(most_places);
     std::vector<Escape> ways;
-    for (Place& place : places) {
+    for (SearchPlace& place : places) {
         search.cast_to_sky(place, rays_of_place);
         if (!suns.empty()) search.cast_to_suns(place);
         if (std::popcount(place.sky) > few_rays) continue;
@@ -352,7 +342,7 @@ SkyOpenings::SkyOpenings(const Occluders& occluders, const RayTracer& tracer, co
     }
 
     std::vector<std::uint64_t> to_sky, to_sun;
-    for (const Place& place : places) {
+    for (const SearchPlace& place : places) {
         std::uint64_t rest = place.sky;
         for (std::uint64_t left = place.sky; left != 0; left &= left - 1) {
             const auto k = static_cast<std::uint32_t>(std::countr_zero(left));

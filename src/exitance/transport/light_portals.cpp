@@ -26,12 +26,6 @@ struct Way {
     std::size_t into;
 };
 
-/// Maps two numbers in [0, 1) to a direction, uniformly over the sphere.
-Vec3 sphere_direction(double a, double b) {
-    const double z = 1 - 2 * a, r = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * pi * b;
-    return {r * std::cos(phi), r * std::sin(phi), z};
-}
-
 /// Finds openings between rooms by rays.
 class PortalFinder {
   public:
@@ -106,17 +100,10 @@ void PortalFinder::look(const Point& from, std::span<const Vec3> directions, std
             met[k] = rooms_.at(hits[k].region, from + hits[k].distance * directions[k]);
 }
 
-std::vector<Vec3> all_directions(unsigned count) {
-    const ScrambledSobol points(count);
-    std::vector<Vec3> out;
-    for (unsigned k = 0; k < count; ++k) out.push_back(sphere_direction(points(k, 0), points(k, 1)));
-    return out;
-}
-
 /// Point of the ray from which equally much is visible of both rooms.
 Point PortalFinder::middle(std::size_t room, const Way& way) const {
     constexpr int halvings = 16;
-    const std::vector<Vec3> directions = all_directions(64);
+    const std::vector<Vec3> directions = directions_all_around(64);
     std::vector<std::size_t> met;
     double lo = 0, hi = 1;
     for (int i = 0; i < halvings; ++i) {
@@ -131,7 +118,7 @@ Point PortalFinder::middle(std::size_t room, const Way& way) const {
 /// Normal of the opening, from `room` to the other room: the mean of the directions in which each is visible, with
 /// opposite signs.
 Normal PortalFinder::normal(std::size_t room, const Way& way, const Point& at) const {
-    const std::vector<Vec3> directions = all_directions(256);
+    const std::vector<Vec3> directions = directions_all_around(256);
     std::vector<std::size_t> met;
     look(at, directions, met);
     Vec3 sum;

@@ -135,21 +135,28 @@ TEST(LightRooms, SmallRoomsBelongToTheirNeighbourUnlessThatIsGroundOrSky) {
     EXPECT_EQ(rooms_of(boxes({{{0, 0, 0}, {900, 900, 900}}, {{5, 5, 5}, {6, 6, 6}}})).count(), 2u);
 }
 
-/// A house without a floor on ground under an even sky: 5 x 4 x 2.5 m, with a slit of 5 x 0.4 m in one wall. The ground
-/// extends from -half to half metres.
-Scene house_on_ground(double half) {
+/// Grey polygons under an even sky.
+Scene under_sky(const std::vector<std::vector<Point>>& faces) {
     SceneDescription d;
     d.groups = {"all"};
     d.materials = {{"grey", Spectrum(0.5), {}}};
     d.distant.domes.push_back({uniform_sky(), Spectrum(1.0)});
-    const auto face = [&](const std::vector<Point>& corners) {
-        SceneDescription::Face f;
+    for (const std::vector<Point>& corners : faces) {
+        SceneDescription::Face face;
         for (const Point& p : corners) {
-            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
+            face.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
             d.points.push_back(p);
         }
-        d.faces.push_back(f);
-    };
+        d.faces.push_back(face);
+    }
+    return std::move(*make_scene(std::move(d)).scene);
+}
+
+/// A house without a floor on ground under an even sky: 5 x 4 x 2.5 m, with a slit of 5 x 0.4 m in one wall. The ground
+/// extends from -half to half metres.
+Scene house_on_ground(double half) {
+    std::vector<std::vector<Point>> faces;
+    const auto face = [&](const std::vector<Point>& corners) { faces.push_back(corners); };
     const auto wall = [&](std::vector<Point> corners) {
         face(corners);
         std::reverse(corners.begin(), corners.end());
@@ -162,7 +169,7 @@ Scene house_on_ground(double half) {
     wall({{5, 4, 0}, {0, 4, 0}, {0, 4, 2.5}, {5, 4, 2.5}});
     wall({{0, 4, 0}, {0, 0, 0}, {0, 0, 2.5}, {0, 4, 2.5}});
     wall({{0, 0, 2.5}, {5, 0, 2.5}, {5, 4, 2.5}, {0, 4, 2.5}});
-    return std::move(*make_scene(std::move(d)).scene);
+    return under_sky(faces);
 }
 
 TEST(LightRooms, AHouseOnGroundUnderTheSkyIsARoom) {
@@ -180,18 +187,8 @@ TEST(LightRooms, AHouseOnGroundUnderTheSkyIsARoom) {
 
 /// A room of 5 x 4 x 3 m below a ground of 2 `half` metres, with a roof light of 0.4 m.
 Scene basement(double half) {
-    SceneDescription d;
-    d.groups = {"all"};
-    d.materials = {{"grey", Spectrum(0.5), {}}};
-    d.distant.domes.push_back({uniform_sky(), Spectrum(1.0)});
-    const auto face = [&](const std::vector<Point>& corners) {
-        SceneDescription::Face f;
-        for (const Point& p : corners) {
-            f.corners.push_back(static_cast<std::uint32_t>(d.points.size()));
-            d.points.push_back(p);
-        }
-        d.faces.push_back(f);
-    };
+    std::vector<std::vector<Point>> faces;
+    const auto face = [&](const std::vector<Point>& corners) { faces.push_back(corners); };
     const auto around_hole = [&](double x, double y, bool upwards) {  // four rectangles up to |x|, |y|
         for (std::vector<Point> corners : {std::vector<Point>{{-x, -y, 0}, {x, -y, 0}, {x, -0.2, 0}, {-x, -0.2, 0}},
                                            {{-x, 0.2, 0}, {x, 0.2, 0}, {x, y, 0}, {-x, y, 0}},
@@ -208,7 +205,7 @@ Scene basement(double half) {
     face({{2.5, -2, -3}, {2.5, -2, 0}, {2.5, 2, 0}, {2.5, 2, -3}});
     face({{-2.5, -2, -3}, {-2.5, -2, 0}, {2.5, -2, 0}, {2.5, -2, -3}});
     face({{-2.5, 2, -3}, {2.5, 2, -3}, {2.5, 2, 0}, {-2.5, 2, 0}});
-    return std::move(*make_scene(std::move(d)).scene);
+    return under_sky(faces);
 }
 
 TEST(LightRooms, ARoomBelowAGroundOfAnySizeIsARoom) {

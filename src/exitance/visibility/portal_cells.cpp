@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/random.hpp"
+
 namespace exitance {
 namespace {
 
@@ -12,6 +14,16 @@ Vec2 turned(Vec2 p, double angle) {
 }
 
 }  // namespace
+
+std::vector<Vec3> directions_all_around(unsigned count) {
+    const ScrambledSobol points(count);
+    std::vector<Vec3> out;
+    for (unsigned k = 0; k < count; ++k) {
+        const double z = 1 - 2 * points(k, 0), r = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * pi * points(k, 1);
+        out.push_back({r * std::cos(phi), r * std::sin(phi), z});
+    }
+    return out;
+}
 
 PortalCell rectangle_around(const Point& at, const Frame& frame, std::span<const Vec2> points) {
     constexpr int angles = 48;

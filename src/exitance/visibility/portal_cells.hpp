@@ -16,6 +16,9 @@ struct PortalCell {
     double light = 0;  ///< Approximate ratio of the light that comes through it to the light of the place.
 };
 
+/// Returns directions that are spread evenly over the sphere, always the same ones for a number of them.
+std::vector<Vec3> directions_all_around(unsigned count);
+
 /// Returns the smallest rectangle around some points, among 48 orientations. It is enlarged by 3% per side, about the
 /// margin that 64 random points leave.
 /// at, frame  a point and the frame of a plane, in which the points have coordinates

@@ -16,7 +16,7 @@ struct LightingTask {
     std::vector<Requirement::Limit> limits;
 };
 
-/// Returns the tasks that the program knows, then those of a TOML file (none: ""). A task of the file replaces one of
+/// Returns the built-in tasks, then those of a TOML file (none: ""). A task of the file replaces one of
 /// the same name. Errors: a file that cannot be read, unknown keys, numbers that are not positive.
 Result<std::vector<LightingTask>> load_tasks(const std::string& path);
 
