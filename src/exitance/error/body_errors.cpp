@@ -127,8 +127,9 @@ std::vector<ResidualSample> BodySurvey::measure(std::span<const BodyPoint> point
         points.size(), 4,
         [&](std::size_t begin, std::size_t end) {
             ResidualSampler::Workspace w;
-            for (std::size_t i = begin; i < end; ++i) {
+            for (std::size_t i = begin; i < end && !c_.is_stopped(); ++i) {
                 const BodyPoint& p = points[i];
+                out[i].is_measured = true;
                 c_.sampler.locate(p.place, out[i], w);
                 out[i].r1 = c_.sampler.by_rays(out[i], p.plan, p.rays, hash(p.key, 1), w);
                 out[i].r2 = c_.sampler.by_rays(out[i], p.plan, p.rays, hash(p.key, 2), w);
@@ -144,6 +145,7 @@ std::vector<PointError> BodySurvey::add(std::span<const BodyPoint> points) {
     std::vector<PointError> out;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const ResidualSample& s = found[i];
+        if (!s.is_measured) continue;
         const double squared = mean((s.r1 + c_.late[s.leaf]) * (s.r2 + c_.late[s.leaf])),
                      light = light_of_room_(s.room);
         measured_[points[i].body].add(1, squared, s.reflected, light);
@@ -206,7 +208,7 @@ bool BodySurvey::look_closely_at(std::uint32_t body) {
     const double seems = std::max(requested, before.mean_square());
     const unsigned rays = certificate_rays((of_body.gather_variance + of_body.variance) / seems);
     measured_[body] = {};
-    for (std::size_t k = 0; k < max_batches; ++k) {
+    for (std::size_t k = 0; k < max_batches && !c_.is_stopped(); ++k) {
         if (work(of_body, rays, batch) > left_) break;
         left_ -= work(of_body, rays, batch);
         std::vector<BodyPoint> todo;

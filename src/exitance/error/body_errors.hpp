@@ -53,13 +53,16 @@ struct BodyCheck {
     const SceneBodies& bodies;
     std::span<const Spectrum> late;  ///< The smooth part of the error, by leaf of the coarse mesh.
     std::uint64_t seed;
+    const StopRequest* stop = nullptr;  ///< Null: no stop.
+    bool is_stopped() const { return stop && stop->requested(); }
 };
 
 /// Measures the error of every body that reflects. First, each body gets eight points, with enough rays for the
 /// standard error of a mean square to be that of 1.5 times the requested error. Three times the requested error, at
 /// which users are warned, is then four standard errors above zero. Afterwards, the body with the largest possible
 /// error is measured at further points until its mean square is known to a quarter. This is repeated until the worst
-/// body has been measured. Bodies for which the rays do not suffice get no error.
+/// body has been measured. Bodies for which the rays do not suffice, or whose turn does not come before a stop, get no
+/// error.
 ///
 /// light_of_room  function that returns the reflected radiosity of a room, W/m^2
 /// error          requested relative error

@@ -160,8 +160,10 @@ void Certifier::Content::plan_checks(std::span<const WeightedSample> places) {
     const std::size_t step = std::max<std::size_t>(1, places.size() / pilots);
     for (std::size_t k = step / 2; k < places.size(); k += step) {
         const ElementTree::Place& place = places[k].place;
-        at.push_back(
-            {{indirect.tree.patch(place.element).at(place.uv), indirect.tree.region(place.element)}, places[k].weight});
+        const unsigned rays = options.summed ? ResidualSampler::rays_beside_sums : sampler().rays_at(place.element);
+        at.push_back({{indirect.tree.patch(place.element).at(place.uv), indirect.tree.region(place.element)},
+                      places[k].weight,
+                      static_cast<double>(rays)});
     }
     // Noise as large as the requested error is acceptable, since that of hundreds of points is averaged. Sums have no
     // other noise.
@@ -193,8 +195,11 @@ void Certifier::Content::measure_residuals() {
     samples.resize(before + places.size());
     const ResidualSampler sampler = this->sampler();
     if (looks == 0) plan_checks(places);
-    sampler.measure(places, plan, seed, std::span(samples).subspan(before));
-    ++looks;
+    const bool may_stop = looks > 0;
+    if (sampler.measure(places, plan, seed, std::span(samples).subspan(before), may_stop ? options.stop : nullptr))
+        ++looks;
+    else
+        samples.resize(before);
 }
 
 /// Returns the mean residual of each leaf of the coarse mesh. `first`: weight of the first of the two gathers of every
@@ -389,7 +394,8 @@ void Certifier::Content::look_at_bodies(Certificate& out) {
         const SceneBody& body = options.bodies->all[0];
         bodies = {{body.surfaces, body.area, mean_reflected, out.estimate, samples.size(), body.first}};
     } else {
-        const BodyCheck body_check{stage, indirect, b, check, sampler(), *options.bodies, late, options.seed};
+        const BodyCheck body_check{stage, indirect,     b,           check, sampler(), *options.bodies,
+                                   late,  options.seed, options.stop};
         const auto light = [&](std::size_t room) { return light_of_room(room); };
         MeasuredBodies found = measure_bodies(body_check, light, options.error, options.check_rays);
         bodies = std::move(found.errors), body_points = std::move(found.points), out.rays += found.rays;
@@ -429,13 +435,16 @@ void Certifier::Content::tell_p99(Certificate& out) {
     const ResidualSampler sampler = this->sampler();
     const auto by_more_rays = [&](std::span<const std::size_t> which, unsigned factor, std::span<TwoErrors> error) {
         const auto rays_at = [&](std::size_t i) { return std::min(max_rays, factor * samples[i].rays / 2); };
-        for (std::size_t i : which) out.rays += 2 * rays_at(i);
+        if (!options.is_stopped())
+            for (std::size_t i : which) out.rays += 2 * rays_at(i);
         shared_ranges(
             which.size(), 1,
             [&](std::size_t begin, std::size_t end) {
                 ResidualSampler::Workspace workspace;
                 for (std::size_t k = begin; k < end; ++k) {
                     const ResidualSample& s = samples[which[k]];
+                    error[k] = {s.r1 + late[s.leaf], s.r2 + late[s.leaf]};
+                    if (options.is_stopped()) continue;
                     for (std::uint64_t half = 0; half < 2; ++half) {
                         const std::uint64_t key =
                             hash(options.seed, static_cast<std::uint64_t>(Stream::certificate), which[k], factor, half);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "exitance/base/progress.hpp"
 #include "exitance/error/direct_check.hpp"
 #include "exitance/gather/local_pass.hpp"
 #include "exitance/gather/rough_places.hpp"
@@ -57,6 +58,9 @@ struct CertificateOptions {
     std::size_t check_rays = 1 << 16;
     /// Bodies whose errors are reported; null: none.
     const SceneBodies* bodies = nullptr;
+    /// Ends further measurements when it is requested. The first `look` is always completed. Null: no stop.
+    const StopRequest* stop = nullptr;
+    bool is_stopped() const { return stop && stop->requested(); }
 };
 
 /// How far a delivered function is from the solution of the radiosity equation.
@@ -113,16 +117,16 @@ class Certifier {
     ~Certifier();
 
     /// Measures the residual at `options.points` more points, and returns the estimate from all points so far. Its
-    /// `rays` counts those of all calls.
+    /// `rays` counts those of all calls. If a stop is requested during a further call, its points are dropped.
     Certificate look();
 
     /// Sets `p99` of the result of the last `look`, and adds the rays cast to its `rays`. The points with the largest
-    /// apparent errors are measured again, since these are mostly noise.
+    /// apparent errors are measured again, since these are mostly noise; after a stop, they keep that noise.
     void tell_p99(Certificate& certificate);
 
     /// Measures the error of every body at additional points on it (`measure_bodies`) and sets `worst_body`. Paths
     /// check the smooth part of the error at some of the points of `look`; what it lacks is added to the estimate. Adds
-    /// the rays cast to `rays`.
+    /// the rays cast to `rays`. After a stop, the remaining bodies get no error.
     void look_at_bodies(Certificate& certificate);
 
     /// Returns the error of every body, in descending order of area; empty before `look_at_bodies`.

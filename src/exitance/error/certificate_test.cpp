@@ -130,6 +130,30 @@ TEST(Certificate, IsMoreAccurateAfterMorePoints) {
     EXPECT_LT(four_times, 0.75 * once);  // expected: 0.5; sixteen seeds determine each spread to a sixth
 }
 
+TEST(Certificate, EndsFurtherMeasurementsAtAStop) {
+    const PlantedError planted(rough);
+    const ElementLocator locator(planted.delivered.tree, planted.scene.regions().size());
+    const PointwiseLight b(
+        [&](RegionId region, const Point& y) { return Spectrum(planted.reflected(locator, region, y)); });
+    const SceneBodies bodies = find_bodies(planted.scene);
+    StopRequest stop;
+    Certifier certifier(planted.stage, planted.light, planted.delivered, b,
+                        {.error = 0.02, .bodies = &bodies, .stop = &stop});
+    stop.interrupt();
+    const Certificate first = certifier.look();
+    EXPECT_EQ(first.points, 1280u);  // an estimate is always made
+    EXPECT_NEAR(first.residual, planted.error(rough), 0.2 * planted.error(rough));
+    Certificate second = certifier.look();
+    EXPECT_EQ(second.points, 1280u);
+    EXPECT_EQ(second.estimate, first.estimate);
+    const std::size_t rays = second.rays;
+    certifier.tell_p99(second);
+    // The noise of few rays makes the percentile larger than the planted error, which is the same size everywhere.
+    ASSERT_TRUE(second.p99);
+    EXPECT_GT(*second.p99, first.residual);
+    EXPECT_LT(second.rays, 2 * rays);
+}
+
 /// An error on one leaf in five hundred, chosen at random.
 double rare(const Point& p) {
     const double chance = 43758.5453 * std::abs(std::sin(127.1 * p.x + 311.7 * p.y + 74.7 * p.z));

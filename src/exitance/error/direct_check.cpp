@@ -55,7 +55,7 @@ Spectrum DirectCheck::missing(const CheckPlan& plan, const GatherWorkspace& gath
 }
 
 double DirectCheck::probability(const CheckPlan& plan, const HitPoint& hit) const {
-    return plan.per_misfit > 0 ? std::min(1.0, plan.share + plan.per_misfit * misfit(hit)) : plan.share;
+    return plan.per_misfit > 0 ? plan.probability(misfit(hit)) : plan.share;  // a misfit takes a search
 }
 
 namespace {
@@ -65,6 +65,7 @@ constexpr unsigned pilot_rays = 8;  // per place; enough to estimate the varianc
 /// One hit of a pilot's ray, with its terms in rho E, mean over bands.
 struct PilotHit {
     double weight = 0;   ///< Weight of the ray in the mean over all rays.
+    double cast = 0;     ///< Share of the rays of all places that this one represents.
     double step = 0;     ///< Square of the difference found by one step of a path, (W/m^2)^2.
     double exact = -1;   ///< Square of the exact difference, (W/m^2)^2; negative: not evaluated.
     double work = 0;     ///< Work of the exact difference, in rays.
@@ -79,7 +80,7 @@ struct PilotFound {
 };
 
 PilotFound pilot_at(const DirectCheck& check, const Stage& stage, const ReflectedLight& b, const PilotPlace& place,
-                    std::uint64_t key, GatherWorkspace& gather, DirectCheck::Workspace& room) {
+                    double rays_of_all, std::uint64_t key, GatherWorkspace& gather, DirectCheck::Workspace& room) {
     PilotFound out;
     const Region& region = stage.scene.regions()[place.at.region];
     cast_gather(stage, place.at.at, region.plane.n, place.at.region, pilot_rays, key, b.bright_places(), gather);
@@ -97,7 +98,7 @@ PilotFound pilot_at(const DirectCheck& check, const Stage& stage, const Reflecte
         square += mean(count * gather.values[k] * (count * gather.values[k]));
         if (!check.has_projection()) continue;
         PilotHit& told = out.hits[k];
-        told.weight = place.weight / n;
+        told.weight = place.weight / n, told.cast = place.rays / (n * rays_of_all);
         told.claimed = check.misfit(hit), told.misfit = count * std::sqrt(rho2) * told.claimed;
         const auto square_of = [&](const Spectrum& difference) {
             const Spectrum term = rho * difference;
@@ -115,7 +116,7 @@ PilotFound pilot_at(const DirectCheck& check, const Stage& stage, const Reflecte
 
 /// Sums over the hits of a pilot.
 struct PilotSums {
-    double gather = 0, step = 0, misfit = 0, exact = 0, exact_work = 0, exact_weight = 0, weight = 0;
+    double gather = 0, step = 0, misfit = 0, exact = 0, exact_work = 0, exact_weight = 0, exact_cast = 0, weight = 0;
 };
 
 PilotSums sums_of(std::span<const PilotFound> found) {
@@ -125,11 +126,26 @@ PilotSums sums_of(std::span<const PilotFound> found) {
         for (const PilotHit& hit : p.hits) {
             V.weight += hit.weight, V.step += hit.weight * hit.step, V.misfit += hit.weight * hit.misfit;
             if (hit.exact < 0) continue;
-            V.exact_weight += hit.weight, V.exact += hit.weight * hit.exact, V.exact_work += hit.weight * hit.work;
+            V.exact_weight += hit.weight, V.exact += hit.weight * hit.exact;
+            V.exact_cast += hit.cast, V.exact_work += hit.cast * hit.work;
         }
     }
-    if (V.exact_weight > 0) V.exact *= V.weight / V.exact_weight, V.exact_work /= V.exact_weight;
+    if (V.exact_weight > 0) V.exact *= V.weight / V.exact_weight, V.exact_work /= V.exact_cast;
     return V;
+}
+
+/// Returns the work of a plan's checks per ray of the gather, in rays. It counts rays as they are cast, not by the
+/// weights of their places: places of little weight may have most of the rays. The work of one check is that of the
+/// evaluated hits, each as likely as it would be checked.
+double work_of_checks(const CheckPlan& plan, std::span<const PilotFound> found) {
+    double checked = 0, evaluated = 0, work = 0;
+    for (const PilotFound& p : found)
+        for (const PilotHit& hit : p.hits) {
+            const double q = hit.cast * plan.probability(hit.claimed);
+            checked += q;
+            if (hit.exact >= 0) evaluated += q, work += q * hit.work;
+        }
+    return evaluated > 0 ? checked * work / evaluated : 0;
 }
 
 }  // namespace
@@ -137,6 +153,8 @@ PilotSums sums_of(std::span<const PilotFound> found) {
 CheckPlan plan_check(const DirectCheck& check, const Stage& stage, const ReflectedLight& b,
                      std::span<const PilotPlace> places, std::uint64_t seed, const OtherNoise& other) {
     if (places.empty()) return {};
+    double rays_of_all = 0;
+    for (const PilotPlace& p : places) rays_of_all += p.rays;
     std::vector<PilotFound> found(places.size());
     shared_ranges(
         places.size(), 1,
@@ -144,7 +162,7 @@ CheckPlan plan_check(const DirectCheck& check, const Stage& stage, const Reflect
             GatherWorkspace gather;
             DirectCheck::Workspace room;
             for (std::size_t k = begin; k < end; ++k)
-                found[k] = pilot_at(check, stage, b, places[k],
+                found[k] = pilot_at(check, stage, b, places[k], rays_of_all,
                                     hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, 0), gather, room);
         },
         [&](std::size_t k) -> PilotFound& { return found[k]; }, {"certificate"});
@@ -162,11 +180,11 @@ CheckPlan plan_check(const DirectCheck& check, const Stage& stage, const Reflect
     for (const PilotFound& p : found)
         for (const PilotHit& hit : p.hits) {
             if (hit.exact < 0) continue;
-            const double q = std::min(1.0, exact.share + exact.per_misfit * hit.claimed);
-            exact.variance += hit.weight * hit.exact / q, exact.work += hit.weight * q * exact_work;
+            exact.variance += hit.weight * hit.exact / exact.probability(hit.claimed);
             weight += hit.weight;
         }
-    if (weight > 0) exact.variance *= V.weight / weight, exact.work *= V.weight / weight;
+    if (weight > 0) exact.variance *= V.weight / weight;
+    exact.work = work_of_checks(exact, found);
     // Differences that are rarer than one per evaluated hit may be as large as those found by single steps.
     exact.variance += V.step / static_cast<double>(places.size());
     for (CheckPlan* plan : {&step, &exact}) plan->gather_variance = V.gather;

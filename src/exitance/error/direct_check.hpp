@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 
 #include "exitance/direct/place_light.hpp"
@@ -24,6 +25,8 @@ struct CheckPlan {
     /// Predicted variances of one ray's terms in rho E, mean over bands, (W/m^2)^2: of the check, and of the gather.
     double variance = 0, gather_variance = 0;
     double work = 0;  ///< Predicted work of the checks per ray of the gather, in rays.
+    /// Returns the probability that a hit with this misfit is checked.
+    double probability(double misfit) const { return std::min(1.0, share + per_misfit * misfit); }
 };
 
 /// Corrects a gather for reading projected instead of true direct light. The correction is
@@ -80,7 +83,8 @@ class DirectCheck {
 /// A place of the pilot, which predicts variances.
 struct PilotPlace {
     SurfacePoint at;
-    double weight;  ///< Weight in the mean over all places.
+    double weight;    ///< Weight in the mean over all places.
+    double rays = 1;  ///< Number of rays that places like this one receive; only ratios count.
 };
 
 /// Other noise, to which that of the checks is compared.

@@ -133,14 +133,15 @@ void ResidualSampler::cast_rays(std::uint64_t seed, std::size_t k, const CheckPl
     sample.rays = 2 * rays;
 }
 
-void ResidualSampler::measure(std::span<const WeightedSample> places, const CheckPlan& plan, std::uint64_t seed,
-                              std::span<ResidualSample> samples) const {
+bool ResidualSampler::measure(std::span<const WeightedSample> places, const CheckPlan& plan, std::uint64_t seed,
+                              std::span<ResidualSample> samples, const StopRequest* stop) const {
     shared_ranges(
         places.size(), 8,
         [&](std::size_t begin, std::size_t end) {
             Workspace w;
-            for (std::size_t k = begin; k < end; ++k) {
+            for (std::size_t k = begin; k < end && !(stop && stop->requested()); ++k) {
                 locate(places[k], samples[k], w);
+                samples[k].is_measured = true;
                 if (options_.summed)
                     sum_elements(seed, k, plan, samples[k], w);
                 else
@@ -148,6 +149,7 @@ void ResidualSampler::measure(std::span<const WeightedSample> places, const Chec
             }
         },
         [&](std::size_t k) -> ResidualSample& { return samples[k]; }, {"certificate"});
+    return std::all_of(samples.begin(), samples.end(), [](const ResidualSample& s) { return s.is_measured; });
 }
 
 Spectrum ResidualSampler::by_rays(const ResidualSample& sample, const CheckPlan& plan, unsigned rays, std::uint64_t key,

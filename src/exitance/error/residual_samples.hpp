@@ -23,6 +23,7 @@ struct ResidualSample {
     double reflected = 0;    ///< Reflected radiosity with the projected direct light, mean over bands, W/m^2.
     std::uint32_t leaf = 0;  ///< Leaf number in the coarse mesh.
     std::uint32_t rays = 0;
+    bool is_measured = false;  ///< False if a stop was requested before.
 };
 
 /// Returns the number of rays of each of a point's two gathers that resolves a relative error as the mean over this
@@ -52,12 +53,16 @@ class ResidualSampler {
                     const ElementLocator& coarse, const LeafNumbering& numbering);
 
     /// Measures the residual twice at each place; `samples` has one entry per place. `plan` determines how the direct
-    /// light at hits is checked. O(places x rays), parallel.
-    void measure(std::span<const WeightedSample> places, const CheckPlan& plan, std::uint64_t seed,
-                 std::span<ResidualSample> samples) const;
+    /// light at hits is checked. Returns false if a stop was requested before all places were measured. O(places x
+    /// rays), parallel.
+    bool measure(std::span<const WeightedSample> places, const CheckPlan& plan, std::uint64_t seed,
+                 std::span<ResidualSample> samples, const StopRequest* stop = nullptr) const;
 
     /// Sets the position of a sample and the light delivered there.
     void locate(const WeightedSample& place, ResidualSample& sample, Workspace& w) const;
+
+    /// Returns the number of rays of each of the two gathers at a leaf of the delivered function.
+    unsigned rays_at(ElementId leaf) const;
 
     /// Returns another estimate of the residual at a sample's point, from this many rays.
     Spectrum by_rays(const ResidualSample& sample, const CheckPlan& plan, unsigned rays, std::uint64_t key,
@@ -71,7 +76,6 @@ class ResidualSampler {
                       Workspace& w) const;
     void cast_rays(std::uint64_t seed, std::size_t k, const CheckPlan& plan, ResidualSample& sample,
                    Workspace& w) const;
-    unsigned rays_at(ElementId leaf) const;
     Point point(const ResidualSample& sample) const;
 
     const Stage& stage_;

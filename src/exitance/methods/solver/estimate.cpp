@@ -32,6 +32,7 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
     options.light_in = light_in_, options.allowed_in = allowed_in_;
     options.bounces = options_.bounces;
     options.bodies = &bodies();
+    options.stop = &stop_;
     if (has_links_) options.places = places_of(stage_, solution_.indirect.tree, options_.importance);
     // With a limited number of reflections, the gathered light has one reflection less than the delivered light.
     std::optional<ElementFunction> older;
