@@ -99,7 +99,8 @@ struct OtherNoise {
 /// Chooses the parameters of the checks from a pilot of a few rays at each place, which are not used otherwise. The
 /// probability of a check minimizes the product of variance and work: it is sqrt(V / k) for checks with work k and
 /// variance V, both relative to those of one ray of the gather. Of the two ways to evaluate E_dir, the one with the
-/// smaller product is used. The probability is never 0. O(places).
+/// smaller product is used; exact light also at up to twice the variance and work. The probability is
+/// never 0. O(places).
 CheckPlan plan_check(const DirectCheck& check, const Stage& stage, const ReflectedLight& b,
                      std::span<const PilotPlace> places, std::uint64_t seed, const OtherNoise& other);
 
