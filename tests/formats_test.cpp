@@ -45,7 +45,7 @@ std::vector<std::vector<double>> rows_of(const fs::path& path) {
     return rows;
 }
 
-std::string content(const fs::path& path) {
+std::string bytes_of_file(const fs::path& path) {
     std::ostringstream text;
     text << std::ifstream(path).rdbuf();
     return text.str();
@@ -99,9 +99,9 @@ TEST(StoredFiles, ViewFactorsOfAllVersionsAreRead) {
 TEST(Version, IsThatOfTheCitationAndOfTheChanges) {
     const fs::path root = test::source_folder();
     const std::string version = program_version;
-    EXPECT_NE(content(root / "CITATION.cff").find("version: " + version + "\n"), std::string::npos);
+    EXPECT_NE(bytes_of_file(root / "CITATION.cff").find("version: " + version + "\n"), std::string::npos);
     std::smatch heading;
-    const std::string changes = content(root / "CHANGELOG.md");
+    const std::string changes = bytes_of_file(root / "CHANGELOG.md");
     ASSERT_TRUE(std::regex_search(changes, heading, std::regex("\n## ([0-9.]+)")));
     EXPECT_EQ(heading[1], version);
 }

@@ -12,11 +12,11 @@
 
 namespace exitance::test {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
-std::vector<std::string> keys(const Json& json) {
+std::vector<std::string> keys(const OrderedJson& json) {
     std::vector<std::string> names;
     for (const auto& [name, value] : json.items()) names.push_back(name);
     return names;
@@ -103,10 +103,11 @@ std::string write_rad(const TemporaryFolder& folder, const Polygons& faces) {
 }
 
 /// How many findings of a kind name a body that is inside out.
-std::size_t inside_out(const Json& checked, const std::string& kind) {
-    return static_cast<std::size_t>(std::count_if(checked[kind].begin(), checked[kind].end(), [](const Json& finding) {
-        return finding["message"].get<std::string>().find("closed body") != std::string::npos;
-    }));
+std::size_t inside_out(const OrderedJson& checked, const std::string& kind) {
+    return static_cast<std::size_t>(
+        std::count_if(checked[kind].begin(), checked[kind].end(), [](const OrderedJson& finding) {
+            return finding["message"].get<std::string>().find("closed body") != std::string::npos;
+        }));
 }
 
 }  // namespace
@@ -121,7 +122,7 @@ TEST(ProgramCheck, AValidSceneIsUsableAndItsPartsAreCounted) {
 
 TEST(ProgramCheck, JsonHasTheKeysOfTheContract) {
     const TemporaryFolder folder;
-    const Json json = Json::parse(run_program({"check", "--json", write_small_room(folder)}).out);
+    const OrderedJson json = OrderedJson::parse(run_program({"check", "--json", write_small_room(folder)}).out);
     EXPECT_EQ(keys(json), (std::vector<std::string>{"surfaces", "errors", "warnings", "repairs"}));
     EXPECT_EQ(json["surfaces"], 7);
     EXPECT_TRUE(json["errors"].empty());
@@ -136,7 +137,7 @@ TEST(ProgramCheck, ABrokenSceneIsBadInputWithFileAndLine) {
 
     const Finished as_json = run_program({"check", scene, "--json"});
     EXPECT_EQ(as_json.status, 3);
-    const Json json = Json::parse(as_json.out);
+    const OrderedJson json = OrderedJson::parse(as_json.out);
     ASSERT_EQ(json["errors"].size(), 1u);
     EXPECT_EQ(keys(json["errors"][0]), (std::vector<std::string>{"file", "line", "message"}));
     EXPECT_EQ(json["errors"][0]["line"], 9);
@@ -164,7 +165,7 @@ TEST(ProgramCheck, AFaceWithReversedOrientationIsNamed) {
     write_text(folder / "box.obj",
                "mtllib box.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
                "usemtl grey\ng crate\nf 1 2 3 4\nf 8 7 6 5\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 1 5 8 4\n");
-    const Json json = Json::parse(run_program({"check", "--json", folder / "box.obj"}).out);
+    const OrderedJson json = OrderedJson::parse(run_program({"check", "--json", folder / "box.obj"}).out);
     ASSERT_EQ(json["warnings"].size(), 1u);
     EXPECT_EQ(json["warnings"][0]["line"], 17);
     EXPECT_NE(json["warnings"][0]["message"].get<std::string>().find("'crate'"), std::string::npos);
@@ -176,15 +177,16 @@ TEST(ProgramCheck, BodiesThatAreInsideOutAreNamedInEveryFormatAndTurnedOnRequest
         const Polygons faces = furnished_room(is_wrong);
         for (const std::string& file :
              {write_obj(folder, "room.obj", faces), write_stl(folder, faces), write_gltf(folder, faces)}) {
-            const Json as_it_is = Json::parse(run_program({"check", "--json", file}).out);
+            const OrderedJson as_it_is = OrderedJson::parse(run_program({"check", "--json", file}).out);
             EXPECT_EQ(inside_out(as_it_is, "warnings"), is_wrong ? 1u : 0u) << file;
             EXPECT_EQ(inside_out(as_it_is, "repairs"), 0u) << file;
-            const Json turned = Json::parse(run_program({"check", "--json", "--turn-bodies", file}).out);
+            const OrderedJson turned = OrderedJson::parse(run_program({"check", "--json", "--turn-bodies", file}).out);
             EXPECT_EQ(inside_out(turned, "warnings"), 0u) << file;
             EXPECT_EQ(inside_out(turned, "repairs"), is_wrong ? 1u : 0u) << file;
         }
         // Radiance's polygons have two sides.
-        const Json of_radiance = Json::parse(run_program({"check", "--json", write_rad(folder, faces)}).out);
+        const OrderedJson of_radiance =
+            OrderedJson::parse(run_program({"check", "--json", write_rad(folder, faces)}).out);
         EXPECT_EQ(inside_out(of_radiance, "warnings"), 0u);
     }
 }

@@ -6,7 +6,7 @@
 
 namespace exitance::test {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 TEST(ProgramCompare, ASolutionAgreesWithItsOwnProbesAndWithAFinerOne) {
     const TemporaryFolder folder;
@@ -17,7 +17,7 @@ TEST(ProgramCompare, ASolutionAgreesWithItsOwnProbesAndWithAFinerOne) {
     const Finished probes = run_program({"probe", coarse, "--points", "-", "-o", folder / "own.csv"},
                                         "x,y,z,nx,ny,nz\n1,1,0,0,0,1\n3,2,0,0,0,1\n0,1,1,1,0,0\n");
     ASSERT_EQ(probes.status, 0) << probes.err;
-    const Json own = Json::parse(run_program({"compare", coarse, folder / "own.csv", "--json"}).out);
+    const OrderedJson own = OrderedJson::parse(run_program({"compare", coarse, folder / "own.csv", "--json"}).out);
     std::vector<std::string> names;
     for (const auto& [name, value] : own.items()) names.push_back(name);
     EXPECT_EQ(names, (std::vector<std::string>{"relative_rms_error", "raw_relative_rms_error", "reference_noise",
@@ -25,7 +25,7 @@ TEST(ProgramCompare, ASolutionAgreesWithItsOwnProbesAndWithAFinerOne) {
     EXPECT_EQ(own["points"], 3);
     EXPECT_LT(own["relative_rms_error"], 1e-8);  // ten digits are printed
 
-    const Json difference = Json::parse(run_program({"compare", coarse, fine, "--json"}).out);
+    const OrderedJson difference = OrderedJson::parse(run_program({"compare", coarse, fine, "--json"}).out);
     EXPECT_GT(difference["relative_rms_error"], 1e-4);
     EXPECT_LT(difference["relative_rms_error"], 0.15);  // the sum of both requested errors, with a margin
 }
@@ -46,8 +46,8 @@ TEST(ProgramCompare, DrawsThePositionsOfErrors) {
     EXPECT_EQ(map(folder / "own.csv", folder / "b.png").status, 0);
     EXPECT_NE(read_text(folder / "a.png"), read_text(folder / "b.png"));
     EXPECT_EQ(map(fine, folder / "a.jpg").status, 2);
-    const Json function = Json::parse(run_program({"compare", coarse, fine, "--json"}).out);
-    const Json drawn = Json::parse(run_program({"compare", coarse, fine, "--interpolant", "--json"}).out);
+    const OrderedJson function = OrderedJson::parse(run_program({"compare", coarse, fine, "--json"}).out);
+    const OrderedJson drawn = OrderedJson::parse(run_program({"compare", coarse, fine, "--interpolant", "--json"}).out);
     EXPECT_GT(drawn["relative_rms_error"], function["relative_rms_error"]);
 }
 

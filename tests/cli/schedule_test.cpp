@@ -23,7 +23,7 @@ std::string solve_small_room(const TemporaryFolder& folder, const std::string& n
 }
 
 /// All light of a solution, as text.
-std::string light_of(const TemporaryFolder& folder, const std::string& name) {
+std::string light_by_schedule(const TemporaryFolder& folder, const std::string& name) {
     const std::string table = folder / (name + ".csv");
     EXPECT_EQ(run_program({"export", folder / (name + ".h5"), "-o", table}).status, 0);
     return read_text(table);
@@ -38,7 +38,7 @@ TEST(ProgramSchedule, AllSchedulesGiveTheSameLightAndReportTheirName) {
         const std::string json =
             solve_small_room(folder, schedule, {"--schedule", schedule, "--threads", "3", "--method", "hierarchical"});
         EXPECT_EQ(Json::parse(json)["schedule"], schedule);
-        const std::string light = light_of(folder, schedule);
+        const std::string light = light_by_schedule(folder, schedule);
         if (first.empty()) first = light;
         EXPECT_EQ(light, first);
     }
@@ -53,7 +53,7 @@ TEST(ProgramTrace, TasksHaveParentsAndDoNotOverlapPerWorker) {
     traced.insert(traced.end(), {"--trace", file});
     solve_small_room(folder, "traced", traced);
     solve_small_room(folder, "plain", options);
-    EXPECT_EQ(light_of(folder, "traced"), light_of(folder, "plain"));
+    EXPECT_EQ(light_by_schedule(folder, "traced"), light_by_schedule(folder, "plain"));
 
     const Json trace = Json::parse(read_text(file));
     EXPECT_EQ(trace["otherData"]["schedule"], "stealing");

@@ -10,11 +10,11 @@
 
 namespace exitance::test {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
-std::vector<std::string> keys(const Json& json) {
+std::vector<std::string> keys(const OrderedJson& json) {
     std::vector<std::string> names;
     for (const auto& [name, value] : json.items()) names.push_back(name);
     return names;
@@ -88,12 +88,12 @@ TEST(ProgramSolve, EnergyIsOneNumberInTheUnitOfTheScene) {
         const Finished run = run_program({"solve", write_lamp(folder, c.radiance), "-o", solution, "--quantity",
                                           c.quantity, "--json", "--progress", "none"});
         ASSERT_EQ(run.status, 0) << run.err;
-        const Json energy = Json::parse(run.out)["energy"];
+        const OrderedJson energy = OrderedJson::parse(run.out)["energy"];
         EXPECT_NEAR(energy["emitted"].get<double>() / c.emitted, 1, 1e-6) << c.radiance << c.unit;
         EXPECT_EQ(energy["unit"], c.unit);
         EXPECT_NEAR((energy["absorbed"].get<double>() + energy["escaped"].get<double>()) / c.emitted, 1, 0.02)
             << "escaped light is known by few rays";
-        EXPECT_EQ(Json::parse(run_program({"stats", solution, "--json"}).out)["energy"], energy);
+        EXPECT_EQ(OrderedJson::parse(run_program({"stats", solution, "--json"}).out)["energy"], energy);
         const std::string text = run_program({"stats", solution}).out;
         EXPECT_TRUE(std::regex_search(text, std::regex("energy +[0-9.]+ " + c.unit + " emitted, "))) << text;
         ASSERT_EQ(run_program({"report", solution, "-o", folder / "r.html", "--size", "16x10", "-q"}).status, 0);
@@ -107,7 +107,7 @@ TEST(ProgramSolve, JsonHasTheKeysOfTheContractInTheirOrderAndStatsAgrees) {
     const std::string solution = folder / "room.h5";
     const Finished run = run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "--json"});
     ASSERT_EQ(run.status, 0) << run.err;
-    const Json json = Json::parse(run.out);
+    const OrderedJson json = OrderedJson::parse(run.out);
     EXPECT_EQ(keys(json), statistics_keys);
     EXPECT_EQ(keys(json["energy"]), (std::vector<std::string>{"emitted", "absorbed", "escaped", "defect", "unit"}));
     EXPECT_EQ(keys(json["seconds"]),
@@ -120,8 +120,8 @@ TEST(ProgramSolve, JsonHasTheKeysOfTheContractInTheirOrderAndStatsAgrees) {
 
     const Finished stats = run_program({"stats", solution, "--json"});
     ASSERT_EQ(stats.status, 0) << stats.err;
-    Json kept = Json::parse(stats.out), made = json;
-    for (Json* either : {&kept, &made}) either->erase("seconds"), either->erase("peak_memory_bytes");
+    OrderedJson kept = OrderedJson::parse(stats.out), made = json;
+    for (OrderedJson* either : {&kept, &made}) either->erase("seconds"), either->erase("peak_memory_bytes");
     EXPECT_EQ(kept, made);
 }
 
@@ -140,16 +140,16 @@ TEST(ProgramSolve, ARoomWithoutLightHasAMeanOfZeroAndAReferenceForItsError) {
     const Finished run =
         run_program({"solve", write_lit_and_dark_room(folder), "-o", solution, "--error", "0.1", "--json"});
     ASSERT_EQ(run.status, 0) << run.err;
-    const Json rooms = Json::parse(run.out)["rooms"];
+    const OrderedJson rooms = OrderedJson::parse(run.out)["rooms"];
     ASSERT_EQ(rooms.size(), 2u);
-    const Json &lit = rooms[0], &dark = rooms[1];
+    const OrderedJson &lit = rooms[0], &dark = rooms[1];
     EXPECT_EQ(keys(lit), (std::vector<std::string>{"area", "mean", "reference", "error"}));
     EXPECT_GT(lit["mean"], 0.1);
     // The sums have different orders.
     EXPECT_NEAR(lit["reference"].get<double>() / lit["mean"].get<double>(), 1, 1e-12);
     EXPECT_EQ(dark["mean"], 0.0);
     EXPECT_GT(dark["reference"], 0.0);
-    EXPECT_EQ(Json::parse(run_program({"stats", solution, "--json"}).out)["rooms"], rooms);
+    EXPECT_EQ(OrderedJson::parse(run_program({"stats", solution, "--json"}).out)["rooms"], rooms);
     EXPECT_NE(run_program({"stats", solution}).out.find("48 m^2: 0 W/m^2"), std::string::npos);
 }
 
@@ -159,14 +159,14 @@ TEST(ProgramSolve, PeakMemoryExcludesTheParentProcess) {
     const Finished run =
         run_program({"solve", write_small_room(folder), "-o", folder / "s.h5", "--error", "0.5", "--json"});
     ASSERT_EQ(run.status, 0) << run.err;
-    EXPECT_LT(Json::parse(run.out)["peak_memory_bytes"], held.size());
+    EXPECT_LT(OrderedJson::parse(run.out)["peak_memory_bytes"], held.size());
 }
 
 TEST(ProgramSolve, TheLineOfTimesListsEveryPhaseThatTookTime) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5";
     ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.05"}).status, 0);
-    const Json seconds = Json::parse(run_program({"stats", solution, "--json"}).out)["seconds"];
+    const OrderedJson seconds = OrderedJson::parse(run_program({"stats", solution, "--json"}).out)["seconds"];
     const std::string text = run_program({"stats", solution}).out;
     const std::string line = text.substr(text.find("\ntime "));
     for (const char* phase : {"read", "mesh", "direct", "link", "solve", "gather", "certify", "reconstruct"})
@@ -216,7 +216,7 @@ TEST(ProgramSolve, AnErrorBeyondTheTimeLimitLeavesAResultAndStatusFour) {
     const Finished run = run_program(
         {"solve", write_small_room(folder), "-o", solution, "--error", "0.0005", "--time-limit", "1", "--json"});
     EXPECT_EQ(run.status, 4) << run.err;
-    const Json told = Json::parse(run.out);
+    const OrderedJson told = OrderedJson::parse(run.out);
     EXPECT_FALSE(told["converged"]);
     EXPECT_GT(told["relative_error_estimate"], 0.0005);
     EXPECT_EQ(run_program({"stats", solution}).status, 0);
@@ -278,7 +278,7 @@ TEST(ProgramSolve, ADryRunForecastsAndWritesNothing) {
     const TemporaryFolder folder;
     const Finished run = run_program({"solve", write_small_room(folder), "--dry-run", "--json"});
     EXPECT_EQ(run.status, 0) << run.err;
-    const Json json = Json::parse(run.out);
+    const OrderedJson json = OrderedJson::parse(run.out);
     EXPECT_EQ(json["surfaces"], 7);
     for (const char* key : {"solve_elements", "gather_elements", "rays", "seconds", "memory_bytes"})
         EXPECT_GT(json[key], 0) << key;
@@ -293,7 +293,7 @@ TEST(ProgramSolve, ProgressAsJsonHasALinePerEventAndPhasesInOrder) {
     std::istringstream lines(run.err);
     std::vector<std::string> phases;
     for (std::string line; std::getline(lines, line);) {
-        const Json event = Json::parse(line);
+        const OrderedJson event = OrderedJson::parse(line);
         EXPECT_EQ(keys(event), (std::vector<std::string>{"phase", "fraction", "detail", "elapsed", "remaining"}));
         if (phases.empty() || phases.back() != event["phase"]) phases.push_back(event["phase"]);
     }

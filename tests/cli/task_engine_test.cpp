@@ -21,7 +21,7 @@ Finished solve_by_tasks(const TemporaryFolder& folder, const std::string& name, 
     return run_program(words);
 }
 
-std::string light_of(const TemporaryFolder& folder, const std::string& name) {
+std::string light_by_engine(const TemporaryFolder& folder, const std::string& name) {
     const std::string table = folder / (name + ".csv");
     EXPECT_EQ(run_program({"export", folder / (name + ".h5"), "-o", table}).status, 0);
     return read_text(table);
@@ -43,7 +43,7 @@ TEST(ProgramTaskEngine, GivesTheSameLightUnderEveryScheduleAndReportsCounts) {
         EXPECT_GE(stats["iterations"], 4);
         EXPECT_TRUE(stats["relative_error_estimate"].is_null());
         EXPECT_LT(stats["energy"]["defect"], 0.1);
-        const std::string light = light_of(folder, schedule);
+        const std::string light = light_by_engine(folder, schedule);
         if (first.empty()) first = light;
         EXPECT_EQ(light, first);
     }

@@ -7,7 +7,7 @@
 
 namespace exitance::test {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 TEST(TimeToError, MeasuresTheSameErrorAsCompare) {
     const TemporaryFolder folder;
@@ -26,8 +26,8 @@ TEST(TimeToError, MeasuresTheSameErrorAsCompare) {
                                         {}, "/usr/bin/python3")
                              .finish();
     ASSERT_EQ(run.status, 0) << run.err;
-    const Json row = Json::parse(read_text(folder / "rows.json")).at(0);
-    const Json own = Json::parse(run_program({"compare", same, folder / "reference.csv", "--json"}).out);
+    const OrderedJson row = OrderedJson::parse(read_text(folder / "rows.json")).at(0);
+    const OrderedJson own = OrderedJson::parse(run_program({"compare", same, folder / "reference.csv", "--json"}).out);
     EXPECT_GT(row["seconds"], 0);
     EXPECT_GT(row["memory_bytes"], 1 << 20);
     EXPECT_GT(row["error"], 1e-6);

@@ -8,6 +8,7 @@
 namespace exitance {
 
 inline constexpr double pi = std::numbers::pi;
+inline constexpr double degree = pi / 180;  ///< One degree in radians.
 
 /// A vector or point in space; metres unless it is a direction.
 struct Vec3 {
@@ -83,6 +84,9 @@ constexpr Vec2 operator*(double s, Vec2 a) {
 }
 constexpr double dot(Vec2 a, Vec2 b) {
     return a.x * b.x + a.y * b.y;
+}
+inline double length(Vec2 v) {
+    return std::hypot(v.x, v.y);
 }
 constexpr double cross(Vec2 a, Vec2 b) {
     return a.x * b.y - a.y * b.x;

@@ -60,11 +60,23 @@ std::string shell_text(const std::vector<std::string>& words) {
     return out;
 }
 
-std::string_view without_blanks(std::string_view text) {
-    constexpr std::string_view blanks = " \t\r\n";
-    const std::size_t first = text.find_first_not_of(blanks);
+namespace {
+
+/// Returns `text` without any of `letters` at both ends.
+std::string_view without(std::string_view letters, std::string_view text) {
+    const std::size_t first = text.find_first_not_of(letters);
     if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+    return text.substr(first, text.find_last_not_of(letters) - first + 1);
+}
+
+}  // namespace
+
+std::string_view without_blanks(std::string_view text) {
+    return without(" \t\r\n", text);
+}
+
+std::string_view without_quotes(std::string_view text) {
+    return without(" \t\r\n\"", text);
 }
 
 std::string filled_in(std::string text, const std::vector<std::pair<std::string, std::string>>& values) {

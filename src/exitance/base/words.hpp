@@ -15,6 +15,8 @@ char open_quote(const std::string& text);
 std::string shell_text(const std::vector<std::string>& words);
 /// Returns `text` without spaces, tabs and line ends at both ends.
 std::string_view without_blanks(std::string_view text);
+/// Returns `text` without blanks as above and double quotes at both ends.
+std::string_view without_quotes(std::string_view text);
 /// Replaces "{name}" in `text` for all names.
 std::string filled_in(std::string text, const std::vector<std::pair<std::string, std::string>>& values);
 

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-Pane pane(std::vector<Point> corners, const Spectrum& transmissivity) {
+Pane clear_pane(std::vector<Point> corners, const Spectrum& transmissivity) {
     Pane out;
     out.corners = std::move(corners), out.transmissivity = transmissivity;
     return out;
@@ -30,7 +30,7 @@ Scene ground_under(const DistantLight& light, std::vector<Pane> panes) {
     return std::move(*checked.scene);
 }
 
-std::vector<Point> square(double half, double z, double x0 = 0) {
+std::vector<Point> level_square(double half, double z, double x0 = 0) {
     return {{x0 - half, -half, z}, {x0 + half, -half, z}, {x0 + half, half, z}, {x0 - half, half, z}};
 }
 
@@ -66,7 +66,7 @@ const RegionId own(0);
 TEST(GlazedLight, AWidePaneLetsTheDiffuseShareOfASkyThrough) {
     Spectrum tint;
     for (std::size_t b = 0; b < bands; ++b) tint[b] = 0.96 - 0.2 * static_cast<double>(b);
-    const Pane wide = pane(square(1000, 0.5), tint);
+    const Pane wide = clear_pane(level_square(1000, 0.5), tint);
     const Scene scene = ground_under({{{uniform_sky(), Spectrum(100.0)}}, {}}, {wide});
     const Stage stage(scene);
     DirectLight::Workspace workspace;
@@ -79,7 +79,7 @@ TEST(GlazedLight, AWidePaneLetsTheDiffuseShareOfASkyThrough) {
 }
 
 TEST(GlazedLight, TheSameShareOfRaysPasses) {
-    const Pane wide = pane(square(1000, 0.5), Spectrum(0.7));
+    const Pane wide = clear_pane(level_square(1000, 0.5), Spectrum(0.7));
     const Scene scene = ground_under({}, {wide});
     const Stage stage(scene);
     constexpr std::uint32_t rays = 1 << 14;
@@ -100,7 +100,7 @@ TEST(GlazedLight, TheSameShareOfRaysPasses) {
 
 TEST(GlazedLight, TheReflectedShareOfRaysArrivesAtTheMirroredPoints) {
     // Ground below a low pane that is wider: mirrored rays return to the ground, whose border is at x = y = +-1.
-    const Pane wide = pane(square(1000, 0.25), Spectrum(0.7));
+    const Pane wide = clear_pane(level_square(1000, 0.25), Spectrum(0.7));
     const Scene scene = ground_under({}, {wide});
     const Stage stage(scene);
     constexpr std::uint32_t rays = 1 << 14;
@@ -131,7 +131,8 @@ TEST(GlazedLight, TheReflectedShareOfRaysArrivesAtTheMirroredPoints) {
 TEST(GlazedLight, TheSunThroughOnePaneOfTwo) {
     const Normal sun = sky_direction(50, 90);  // +x
     const DistantLight light{{}, {{sun, sun_half_angle, Spectrum(700.0)}}};
-    const Pane low = pane(square(0.5, 0.2), Spectrum(0.8)), high = pane(square(0.3, 0.4), Spectrum(0.6));
+    const Pane low = clear_pane(level_square(0.5, 0.2), Spectrum(0.8)),
+               high = clear_pane(level_square(0.3, 0.4), Spectrum(0.6));
     const Scene scene = ground_under(light, {low, high});
     const Stage stage(scene);
     DirectLight::Workspace workspace;

@@ -9,9 +9,9 @@ namespace exitance {
 namespace {
 
 /// A unit square of many triangles, and a function's values at all nodes.
-struct Sheet {
+struct MisfitSheet {
     template <class Light>
-    Sheet(const Light& light, int bisections) : mesh(1e-9) {
+    MisfitSheet(const Light& light, int bisections) : mesh(1e-9) {
         const std::vector<std::vector<Vec2>> loops = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
         mesh.add(labelled_triangles(loops, {}), PlaneFrame({0, 0, 0}, {0, 0, 1}));
         for (int i = 0; i < bisections; ++i)
@@ -30,7 +30,7 @@ struct Sheet {
 };
 
 TEST(TriedTriangles, FlatTrianglesAreTestedOnlyIfLarge) {
-    Sheet plane([](const Point& p) { return 3 + p.x - 2 * p.y; }, 4);
+    MisfitSheet plane([](const Point& p) { return 3 + p.x - 2 * p.y; }, 4);
     const MisfitLimits limits{.squared = 1e-6, .largest = 1e-3, .tried_area = 1};
     EXPECT_TRUE(plane.untried(limits).empty());
     MisfitLimits small = limits;
@@ -40,7 +40,7 @@ TEST(TriedTriangles, FlatTrianglesAreTestedOnlyIfLarge) {
 
 TEST(TriedTriangles, EachLimitSelectsTheTrianglesAtAShadowEdge) {
     const auto edge = [](const Point& p) { return std::clamp(20 * (p.x - 0.45), 0.0, 1.0); };
-    Sheet sheet(edge, 5);
+    MisfitSheet sheet(edge, 5);
     const auto reaches_edge = [&](std::uint32_t t) {
         double lo = 1, hi = 0;
         for (const std::uint32_t c : sheet.mesh.triangles()[t].corner)
@@ -57,7 +57,7 @@ TEST(TriedTriangles, EachLimitSelectsTheTrianglesAtAShadowEdge) {
 }
 
 TEST(TriedTriangles, TrianglesAreTestedOnceATighterLimitRequiresItAndOnlyOnce) {
-    Sheet bowl([](const Point& p) { return p.x * p.x; }, 4);
+    MisfitSheet bowl([](const Point& p) { return p.x * p.x; }, 4);
     MisfitLimits limits{.squared = 1e9, .largest = 1, .tried_area = 1};
     EXPECT_TRUE(bowl.untried(limits).empty());
     limits.largest = 1e-6;

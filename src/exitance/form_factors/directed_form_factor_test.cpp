@@ -11,8 +11,6 @@
 namespace exitance {
 namespace {
 
-constexpr double degree = pi / 180;
-
 /// An opening that faces down, with intensity cos^n per area.
 EmissionProfile power_of_cosine(double n, double step) {
     EmissionProfile p;

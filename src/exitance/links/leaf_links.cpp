@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t block_size = 8;  // receivers per task
+constexpr std::size_t receivers_per_task = 8;  // receivers per task
 
 /// The links of the leaves of one task.
 struct Block {
@@ -100,20 +100,20 @@ LeafLinks link_leaves(const LinkSites& sites, const NodalField& b, const LinkTol
                       const StopRequest& stop) {
     const std::vector<LeafOfPiece> leaves = leaves_by_piece(sites.tree());
     const Field<ElementId, double> roughness(sites.tree().size(), 0.0);  // zero: the light of leaves counts as exact
-    std::vector<Block> found((leaves.size() + block_size - 1) / block_size);
-    parallel_for(
-        found.size(), 1,
-        [&](std::size_t i) {
-            LinkJudge judge(sites, b, roughness, tolerance);
-            PieceViews views(sites);
-            Block& block = found[i];
-            const std::size_t end = std::min(leaves.size(), (i + 1) * block_size);
-            for (std::size_t k = i * block_size; k < end && !stop.requested(); ++k)
-                link_leaf(sites, leaves[k], leaves, views, judge, block);
-            block.rays = judge.rays(), block.form_factors = judge.form_factors();
-            note_touched("rays", block.rays), note_touched("links", block.links.size());
-        },
-        {"link leaves", [&](std::size_t i) { return sites.tree().region(leaves[i * block_size].leaf).value; }, true});
+    std::vector<Block> found((leaves.size() + receivers_per_task - 1) / receivers_per_task);
+    parallel_for(found.size(), 1,
+                 [&](std::size_t i) {
+                     LinkJudge judge(sites, b, roughness, tolerance);
+                     PieceViews views(sites);
+                     Block& block = found[i];
+                     const std::size_t end = std::min(leaves.size(), (i + 1) * receivers_per_task);
+                     for (std::size_t k = i * receivers_per_task; k < end && !stop.requested(); ++k)
+                         link_leaf(sites, leaves[k], leaves, views, judge, block);
+                     block.rays = judge.rays(), block.form_factors = judge.form_factors();
+                     note_touched("rays", block.rays), note_touched("links", block.links.size());
+                 },
+                 {"link leaves",
+                  [&](std::size_t i) { return sites.tree().region(leaves[i * receivers_per_task].leaf).value; }, true});
 
     std::size_t link_count = 0, float_count = 0;
     for (const Block& block : found) link_count += block.links.size(), float_count += block.blocks.size();

@@ -10,11 +10,11 @@
 namespace exitance {
 namespace {
 
-constexpr double least_area = 1;          ///< m^2
-constexpr double least_share = 0.1;       ///< Share of the largest floor, derived from models out of scale.
-constexpr double person = 1.9;            ///< Metres, derived from the height of people.
-constexpr double furniture_share = 0.75;  ///< Share of a room's height, derived from tall cupboards.
-constexpr std::size_t most_floors = 256;  ///< Derived from a few seconds of rays.
+constexpr double least_area = 1;           ///< m^2
+constexpr double least_floor_share = 0.1;  ///< Share of the largest floor, derived from models out of scale.
+constexpr double person = 1.9;             ///< Metres, derived from the height of people.
+constexpr double cupboard_share = 0.75;    ///< Share of a room's height, derived from tall cupboards.
+constexpr std::size_t most_floors = 256;   ///< Derived from a few seconds of rays.
 constexpr std::size_t most_rooms = 64;
 
 /// Floors that are large enough for rooms, the largest first.
@@ -24,7 +24,7 @@ std::vector<Floor> large_floors(const Scene& scene) {
         if (points_up(scene.regions()[id].plane.n)) shapes.push_back(floor_shape(scene.regions()[id], id));
     std::vector<Floor> floors = join_shapes(std::move(shapes));
     if (floors.empty()) return floors;
-    const double least = std::min(least_area, least_share * floors[0].area);
+    const double least = std::min(least_area, least_floor_share * floors[0].area);
     std::erase_if(floors, [&](const Floor& f) { return f.area < least; });
     if (floors.size() > most_floors) floors.resize(most_floors);
     return floors;
@@ -66,7 +66,7 @@ void FloorRooms::find_rooms(const Scene& scene) {
     double largest = 0;
     for (const FloorCells& storey : storeys_)
         for (const FloorCells::Part& part : storey.parts()) largest = std::max(largest, part.area);
-    const double least = std::min(least_area, least_share * largest);
+    const double least = std::min(least_area, least_floor_share * largest);
     for (std::size_t s = 0; s < storeys_.size(); ++s)
         for (std::uint32_t k = 0; k < storeys_[s].parts().size(); ++k) {
             const FloorCells::Part& part = storeys_[s].parts()[k];
@@ -112,7 +112,7 @@ void FloorRooms::leave_out_furniture() {
                 const double rise = level(room) - level(lower);
                 const Point below = storey.centre(i) - Vec3{0, 0, rise};
                 const bool has_ceiling = storeys_[lower.storey].parts()[lower.part].has_ceiling;
-                return rise < (has_ceiling ? std::min(person, furniture_share * lower.height) : person) + one_plane &&
+                return rise < (has_ceiling ? std::min(person, cupboard_share * lower.height) : person) + one_plane &&
                        storeys_[lower.storey].holds(lower.part, below, 0);
             });
         }

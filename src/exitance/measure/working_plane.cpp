@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-constexpr double least_share = 0.1;  ///< Share of the largest area of named faces; smaller planes are not used.
+constexpr double least_plane_share = 0.1;  ///< Share of the largest area of named faces; smaller planes are not used.
 constexpr std::size_t most_planes = 32;
 
 Error refuse(const std::string& message, const std::string& hint) {
@@ -21,7 +21,7 @@ Error refuse(const std::string& message, const std::string& hint) {
 std::vector<Floor> large_groups(std::vector<FloorShape> shapes) {
     std::vector<Floor> out = join_shapes(std::move(shapes));
     if (!out.empty()) {
-        const double least = least_share * out[0].area;
+        const double least = least_plane_share * out[0].area;
         std::erase_if(out, [&](const Floor& f) { return f.area < least; });
     }
     if (out.size() > most_planes) out.resize(most_planes);

@@ -37,7 +37,7 @@ void expect_same(const Solution& a, const Solution& b) {
     EXPECT_EQ(a.statistics.rays, b.statistics.rays) << "nothing is counted twice";
 }
 
-Solution solved(const Scene& scene, const SolveOptions& options, CheckpointStore* store) {
+Solution solved_with_store(const Scene& scene, const SolveOptions& options, CheckpointStore* store) {
     Progress progress;
     const StopRequest stop;
     Result<Solution> solution = solve_scene(scene, options, progress, stop, store);
@@ -75,22 +75,22 @@ INSTANTIATE_TEST_SUITE_P(Methods, Checkpoints,
 TEST_P(Checkpoints, EverySavedStateLeadsToTheSameBits) {
     const Scene scene = built_scene("gcr2");
     const SolveOptions options{.method = GetParam().method, .error = GetParam().error};
-    const Solution whole = solved(scene, options, nullptr);
+    const Solution whole = solved_with_store(scene, options, nullptr);
     AllStates on_the_way;
-    expect_same(solved(scene, options, &on_the_way), whole);
+    expect_same(solved_with_store(scene, options, &on_the_way), whole);
     const std::size_t count = on_the_way.states.size();
     ASSERT_GE(count, 4u);
     for (std::size_t i = 0; i < 5; ++i) {
         SCOPED_TRACE("state " + std::to_string(i * (count - 1) / 4) + " of " + std::to_string(count));
         AllStates resumed(on_the_way.states[i * (count - 1) / 4]);
-        expect_same(solved(scene, options, &resumed), whole);
+        expect_same(solved_with_store(scene, options, &resumed), whole);
     }
 }
 
 TEST(Checkpoint, AStateSavedBeforeAnInterruptLeadsToTheSameBits) {
     const Scene scene = built_scene("gcr2");
     const SolveOptions options{.method = Method::matrix, .error = 0.012};
-    const Solution whole = solved(scene, options, nullptr);
+    const Solution whole = solved_with_store(scene, options, nullptr);
     for (int steps : {2, 5, 8}) {
         StopRequest stop;
         StopsAfter progress(steps, stop);
@@ -98,7 +98,7 @@ TEST(Checkpoint, AStateSavedBeforeAnInterruptLeadsToTheSameBits) {
         const Result<Solution> half = solve_scene(scene, options, progress, stop, &kept);
         ASSERT_TRUE(half);
         AllStates resumed(kept.states.empty() ? std::string() : kept.states.back());
-        expect_same(solved(scene, options, &resumed), whole);
+        expect_same(solved_with_store(scene, options, &resumed), whole);
     }
 }
 
@@ -106,15 +106,15 @@ TEST(Checkpoint, EverySavedStateOfARefiningAttemptLeadsToTheSameBits) {
     const Scene scene = built_scene("cornell");
     SolveOptions options{.error = 0.03};
     options.mesh_size = 3;  // elements as large as walls, so that the method's error dominates
-    const Solution whole = solved(scene, options, nullptr);
+    const Solution whole = solved_with_store(scene, options, nullptr);
     ASSERT_EQ(whole.statistics.figures.at("refinement_steps"), 1);
     AllStates on_the_way;
-    expect_same(solved(scene, options, &on_the_way), whole);
+    expect_same(solved_with_store(scene, options, &on_the_way), whole);
     const std::size_t count = on_the_way.states.size();
     for (std::size_t i = 0; i < count; i += std::max<std::size_t>(1, count / 16)) {
         SCOPED_TRACE("state " + std::to_string(i) + " of " + std::to_string(count));
         AllStates resumed(on_the_way.states[i]);
-        expect_same(solved(scene, options, &resumed), whole);
+        expect_same(solved_with_store(scene, options, &resumed), whole);
     }
 }
 
@@ -137,7 +137,7 @@ TEST(Checkpoint, AnInterruptedDiscontinuityMeshIsResumed) {
     };
     const Scene scene = built_scene("table");
     const SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.01};
-    const Solution whole = solved(scene, options, nullptr);
+    const Solution whole = solved_with_store(scene, options, nullptr);
     for (const std::size_t states : {2, 3, 4}) {  // curves, first nodes, nodes of a round of bisection
         StopRequest stop;
         Progress progress;
@@ -145,7 +145,7 @@ TEST(Checkpoint, AnInterruptedDiscontinuityMeshIsResumed) {
         ASSERT_TRUE(solve_scene(scene, options, progress, stop, &store));
         ASSERT_TRUE(stop.requested());
         AllStates resumed(store.last);
-        const Solution again = solved(scene, options, &resumed);
+        const Solution again = solved_with_store(scene, options, &resumed);
         expect_same(again, whole);
         EXPECT_EQ(again.discontinuity.values, whole.discontinuity.values);
         EXPECT_EQ(again.discontinuity.nodes, whole.discontinuity.nodes);

@@ -28,7 +28,7 @@ Scene two_rooms() {
 const std::vector<ImportantPoint> on_the_first_floor{
     {{0.2, 0.3, 0}, {0, 0, 1}}, {{1, 1, 0}, {0, 0, 1}}, {{1.8, 1.7, 0}, {0, 0, 1}}, {{1.2, 0.3, 0}, {0, 0, 1}}};
 
-Solution solved(const Scene& scene, const SolveOptions& options) {
+Solution solved_by_importance(const Scene& scene, const SolveOptions& options) {
     Progress progress;
     const StopRequest stop;
     Result<Solution> solution = solve_scene(scene, options, progress, stop);
@@ -88,7 +88,7 @@ TEST(Importance, TheOtherRoomGetsFewerLinksAtTheSameAccuracy) {
         const SolveOptions everywhere{.method = method, .epsilon = 0.002, .keep_links = true};
         SolveOptions here = everywhere;
         here.importance = on_the_first_floor;
-        const Solution all = solved(scene, everywhere), some = solved(scene, here);
+        const Solution all = solved_by_importance(scene, everywhere), some = solved_by_importance(scene, here);
         EXPECT_LT(10 * links_in_second_room(some), links_in_second_room(all)) << name_in(method_names, method);
         // The remaining error is that of the local pass, about 1%, and of the reference, 0.3%.
         EXPECT_LT(error(some), std::max(0.015, 1.3 * error(all))) << name_in(method_names, method);

@@ -7,7 +7,6 @@ namespace exitance {
 namespace {
 
 using Angle = EmissionProfile::Angle;
-constexpr double degree = pi / 180;
 
 /// Reflects an angle into the range 0 to m.
 double folded(double angle, double m) {

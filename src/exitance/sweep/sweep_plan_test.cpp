@@ -26,7 +26,7 @@ std::string variants_of(const std::string& vary) {
 }
 
 /// The place and the message of the error in a plan.
-std::string error_of(const std::string& text) {
+std::string plan_error(const std::string& text) {
     const Result<SweepPlan> plan = parse_sweep_plan(text, "plan.toml");
     return plan ? "" : plan.error().where + ": " + plan.error().message;
 }
@@ -90,21 +90,21 @@ TEST(SweepPlan, PlaceholdersMayHaveBlanks) {
 }
 
 TEST(SweepPlan, QuotesThatAreNotClosedAreErrors) {
-    EXPECT_EQ(error_of("[[step]]\nrun = \"check 'a.obj\"\n"),
+    EXPECT_EQ(plan_error("[[step]]\nrun = \"check 'a.obj\"\n"),
               "plan.toml:2: the command has a quote ' that is not closed");
-    EXPECT_EQ(error_of("[scene]\ngenerate = 'office \"nx=1'\n" + step),
+    EXPECT_EQ(plan_error("[scene]\ngenerate = 'office \"nx=1'\n" + step),
               "plan.toml:2: the command has a quote \" that is not closed");
-    EXPECT_EQ(error_of("[[step]]\nrun = \"check \\\"it's.obj\\\"\"\n"), "");
+    EXPECT_EQ(plan_error("[[step]]\nrun = \"check \\\"it's.obj\\\"\"\n"), "");
 }
 
 TEST(SweepPlan, SingleTablesInPlaceOfListsAreErrorsThatNameTheBrackets) {
-    EXPECT_EQ(error_of("[step]\nrun = \"check a.obj\"\n"),
+    EXPECT_EQ(plan_error("[step]\nrun = \"check a.obj\"\n"),
               "plan.toml:1: 'step' is a list of tables, so [step] must be [[step]]");
-    EXPECT_EQ(error_of("[vary]\na = 1\n" + step),
+    EXPECT_EQ(plan_error("[vary]\na = 1\n" + step),
               "plan.toml:1: 'vary' is a list of tables, so [vary] must be [[vary]]");
-    EXPECT_EQ(error_of(step + "[output]\nname = \"e\"\n"),
+    EXPECT_EQ(plan_error(step + "[output]\nname = \"e\"\n"),
               "plan.toml:3: 'output' is a list of tables, so [output] must be [[output]]");
-    EXPECT_EQ(error_of("[[scene]]\nfiles = \"a.obj\"\n" + step), "plan.toml:1: 'scene' is not a table");
+    EXPECT_EQ(plan_error("[[scene]]\nfiles = \"a.obj\"\n" + step), "plan.toml:1: 'scene' is not a table");
     const Result<SweepPlan> repeated = parse_sweep_plan("[step]\nrun = \"check\"\n[step]\nrun = \"check\"\n", "p");
     ASSERT_FALSE(repeated);
     EXPECT_EQ(repeated.error().hint, "a plan may have several such tables: write each as [[step]], not as [step]");
@@ -139,13 +139,13 @@ TEST(SweepPlan, ColumnsOfResultsHaveDifferentNames) {
     const auto output = [](const std::string& name, const std::string& take) {
         return "[[output]]\nname = \"" + name + "\"\nfile = \"e.csv\"\ncolumn = \"E\"\ntake = \"" + take + "\"\n";
     };
-    EXPECT_EQ(error_of(step + output("E", "mean") + output("E", "max")),
+    EXPECT_EQ(plan_error(step + output("E", "mean") + output("E", "max")),
               "plan.toml:8: two columns would be called 'E'");
-    EXPECT_EQ(error_of(step + output("E_1", "mean") + output("E", "all")),
+    EXPECT_EQ(plan_error(step + output("E_1", "mean") + output("E", "all")),
               "plan.toml:8: the columns of the outputs 'E_1' and 'E' would have equal names");
-    EXPECT_EQ(error_of(step + output("E", "all") + output("E_2", "mean")),
+    EXPECT_EQ(plan_error(step + output("E", "all") + output("E_2", "mean")),
               "plan.toml:8: the columns of the outputs 'E' and 'E_2' would have equal names");
-    EXPECT_EQ(error_of(step + output("E", "all") + output("E_mean", "mean")), "");
+    EXPECT_EQ(plan_error(step + output("E", "all") + output("E_mean", "mean")), "");
 }
 
 TEST(SweepPlan, PathsBelowTheFolderHaveOneSpelling) {
@@ -153,36 +153,37 @@ TEST(SweepPlan, PathsBelowTheFolderHaveOneSpelling) {
     EXPECT_EQ(path_in_folder("//etc/x"), "etc/x");
     for (const char* const path : {"..", "../x", "a/../../x", "a/..", ".", "", "/"})
         EXPECT_EQ(path_in_folder(path), "");
-    EXPECT_EQ(error_of(step + "[[output]]\nname = \"e\"\nfile = \"../e.csv\"\ncolumn = \"E\"\n"),
+    EXPECT_EQ(plan_error(step + "[[output]]\nname = \"e\"\nfile = \"../e.csv\"\ncolumn = \"E\"\n"),
               "plan.toml:5: '../e.csv' is not below {dir}");
 }
 
 TEST(SweepPlan, ErrorsNameTheLineAndTheKey) {
-    EXPECT_EQ(error_of("titel = \"x\"\n" + step), "plan.toml:1: 'titel' is not known here");
-    EXPECT_EQ(error_of(step + "[[step]]\nname = \"b\"\n"), "plan.toml:3: 'run' is missing");
-    EXPECT_EQ(error_of(step + "acept = [0]\n"), "plan.toml:3: 'acept' is not known here");
-    EXPECT_EQ(error_of("[[vary]]\n\na = { from = 0, to = 1 }\n" + step),
+    EXPECT_EQ(plan_error("titel = \"x\"\n" + step), "plan.toml:1: 'titel' is not known here");
+    EXPECT_EQ(plan_error(step + "[[step]]\nname = \"b\"\n"), "plan.toml:3: 'run' is missing");
+    EXPECT_EQ(plan_error(step + "acept = [0]\n"), "plan.toml:3: 'acept' is not known here");
+    EXPECT_EQ(plan_error("[[vary]]\n\na = { from = 0, to = 1 }\n" + step),
               "plan.toml:3: the range 'a' has either 'step' or 'count'");
-    EXPECT_EQ(error_of("[[vary]]\na = []\n" + step), "plan.toml:2: 'a' has no values");
-    EXPECT_EQ(error_of("[[vary]]\ncombine = \"zip\"\na = [1, 2]\nb = [3]\n" + step),
+    EXPECT_EQ(plan_error("[[vary]]\na = []\n" + step), "plan.toml:2: 'a' has no values");
+    EXPECT_EQ(plan_error("[[vary]]\ncombine = \"zip\"\na = [1, 2]\nb = [3]\n" + step),
               "plan.toml:4: 'b' has 1 values where the lists before have 2");
-    EXPECT_EQ(error_of("[[vary]]\na = 1\n[[vary]]\na = 2\n" + step), "plan.toml:3: the parameter 'a' is given twice");
-    EXPECT_EQ(error_of("[[vary]]\ndir = 1\n" + step), "plan.toml:2: 'dir' cannot be a parameter");
-    EXPECT_EQ(error_of("[[vary]]\na = 1979-05-27\n" + step),
+    EXPECT_EQ(plan_error("[[vary]]\na = 1\n[[vary]]\na = 2\n" + step), "plan.toml:3: the parameter 'a' is given twice");
+    EXPECT_EQ(plan_error("[[vary]]\ndir = 1\n" + step), "plan.toml:2: 'dir' cannot be a parameter");
+    EXPECT_EQ(plan_error("[[vary]]\na = 1979-05-27\n" + step),
               "plan.toml:2: 'a' has a value that is neither text, a number, true nor false");
-    EXPECT_EQ(error_of("[scene]\ngenerate = \"complex\"\ntemplate = \"a.obj\"\n" + step),
+    EXPECT_EQ(plan_error("[scene]\ngenerate = \"complex\"\ntemplate = \"a.obj\"\n" + step),
               "plan.toml:1: a scene has one of 'generate', 'template' and 'files'");
-    EXPECT_EQ(error_of("[scene]\nfiles = \"/nowhere/*.obj\"\n" + step), "plan.toml:2: there is no file /nowhere/*.obj");
-    EXPECT_EQ(error_of(step + step), "plan.toml:3: two steps are called 'check'");
-    EXPECT_EQ(error_of(step + "[[output]]\nname = \"e\"\nstep = \"solve\"\njson = \"e\"\n"),
+    EXPECT_EQ(plan_error("[scene]\nfiles = \"/nowhere/*.obj\"\n" + step),
+              "plan.toml:2: there is no file /nowhere/*.obj");
+    EXPECT_EQ(plan_error(step + step), "plan.toml:3: two steps are called 'check'");
+    EXPECT_EQ(plan_error(step + "[[output]]\nname = \"e\"\nstep = \"solve\"\njson = \"e\"\n"),
               "plan.toml:5: there is no step 'solve'");
-    EXPECT_EQ(error_of(step + "[[output]]\nname = \"e\"\nstep = \"check\"\njson = \"e\"\n"),
+    EXPECT_EQ(plan_error(step + "[[output]]\nname = \"e\"\nstep = \"check\"\njson = \"e\"\n"),
               "plan.toml:5: the step 'check' prints no JSON");
-    EXPECT_EQ(error_of(step + "[[output]]\nname = \"e\"\nfile = \"e.csv\"\ncolumn = \"e\"\ntake = \"median\"\n"),
+    EXPECT_EQ(plan_error(step + "[[output]]\nname = \"e\"\nfile = \"e.csv\"\ncolumn = \"e\"\ntake = \"median\"\n"),
               "plan.toml:7: 'median' is not one of value, mean, sum, min, max, all");
-    EXPECT_EQ(error_of("title = \"x\n"), error_of("title = \"x\n"));
-    EXPECT_EQ(error_of("title = \"x\n").substr(0, 12), "plan.toml:1:");
-    EXPECT_EQ(error_of(""), "plan.toml:1: a plan has a [[step]] at least");
+    EXPECT_EQ(plan_error("title = \"x\n"), plan_error("title = \"x\n"));
+    EXPECT_EQ(plan_error("title = \"x\n").substr(0, 12), "plan.toml:1:");
+    EXPECT_EQ(plan_error(""), "plan.toml:1: a plan has a [[step]] at least");
 }
 
 }  // namespace exitance

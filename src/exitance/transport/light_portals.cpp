@@ -13,8 +13,8 @@
 namespace exitance {
 namespace {
 
-constexpr unsigned most_rays = 1 << 18;  ///< Rays that search for openings, in total.
-constexpr unsigned ray_batch = 1 << 10;  ///< Rays of a room that are cast in succession.
+constexpr unsigned most_portal_rays = 1 << 18;  ///< Rays that search for openings, in total.
+constexpr unsigned ray_batch = 1 << 10;         ///< Rays of a room that are cast in succession.
 constexpr std::size_t enough_ways =
     64;  ///< Rays through a room's openings after which the search stops: more would find the same openings.
 constexpr std::size_t most_openings = 8;  ///< Openings between two rooms, at most.
@@ -232,7 +232,7 @@ std::shared_ptr<const LightPortals> find_light_portals(const Stage& stage, const
                                                        std::span<const double> light, std::uint64_t seed,
                                                        const StopRequest& stop) {
     const PortalFinder finder(stage, rooms, tree, numbering, seed);
-    const auto most = std::max(ray_batch, static_cast<unsigned>(most_rays / rooms.count()));
+    const auto most = std::max(ray_batch, static_cast<unsigned>(most_portal_rays / rooms.count()));
     std::vector<std::vector<PortalCell>> by_room(rooms.count());
     for (std::size_t room = rooms.count(); room-- > 1 && !stop.requested();) {
         std::vector<Way> ways = finder.ways(room, most, stop);

@@ -29,7 +29,7 @@ constexpr std::size_t fewest_walls = 4;  ///< Walls of a room, at least.
 constexpr std::size_t most_rooms = 64;
 constexpr unsigned least_rays =
     16;  ///< Rays per leaf, at least; a leaf of mean area has 24. Enough if rooms make up the whole scene.
-constexpr unsigned most_rays =
+constexpr unsigned most_room_rays =
     256;  ///< Rays per leaf, at most. Outdoors most leaves are ground, and a room may have only a few leaves.
 constexpr std::size_t rays_outdoors = 1 << 18;  ///< Rays of all leaves together, outdoors.
 
@@ -398,9 +398,10 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     auto locator = std::make_shared<const ElementLocator>(tree, stage.scene.regions().size());
     const LeafNumbering numbering(tree);
     const bool has_sky = !stage.scene.distant().domes.empty();
-    RayBudget rays{.average = 24, .least = least_rays, .most = most_rays, .front_alone = true};
+    RayBudget rays{.average = 24, .least = least_rays, .most = most_room_rays, .front_alone = true};
     if (has_sky)
-        while (rays.least < most_rays && 2 * rays.least * numbering.leaves.size() <= rays_outdoors) rays.least *= 2;
+        while (rays.least < most_room_rays && 2 * rays.least * numbering.leaves.size() <= rays_outdoors)
+            rays.least *= 2;
     const RayRows rows(stage, tree, numbering, *locator, rays, seed, Dealing::by_element, RowsHeld::everywhere, &stop);
     const std::vector<Part> parts = find_parts(stage, rows, tree, numbering, seed, has_sky, stop);
     LightRooms out;

@@ -68,7 +68,7 @@ std::vector<double> product(const SparseFactors& F, const std::vector<double>& x
     return y;
 }
 
-std::vector<double> random_values(std::size_t count, std::uint64_t seed) {
+std::vector<double> random_radiosity(std::size_t count, std::uint64_t seed) {
     RandomStream random(seed, Stream::reference);
     std::vector<double> values(count);
     for (double& value : values) value = 2 * random.uniform() - 1;
@@ -148,7 +148,7 @@ TEST(FactorOperator, MergingKeepsRowSumsAndItsErrorBound) {
     const SparseFactors table = table_of(scene, {.error = 0.02});
     const FactorOperator F = make_factor_operator(make_view_faces(scene), table, 0.02);
     EXPECT_LT(F.rows.entries(), table.entries());
-    const std::vector<double> one(F.size(), 1), x = random_values(F.size(), 3);
+    const std::vector<double> one(F.size(), 1), x = random_radiosity(F.size(), 3);
     const std::vector<double> sums = product(F, one), y = product(F, x), exact = product(table, x);
     for (std::size_t i = 0; i < F.size(); ++i) {
         EXPECT_NEAR(sums[i], table.row_sums[i], 1e-12);  // rounding
@@ -163,7 +163,7 @@ TEST(FactorOperator, MergingKeepsRowSumsAndItsErrorBound) {
 
 TEST(FactorOperator, TransposedProductIsTheAdjointAndRowsAreItsMatrix) {
     const FactorOperator F = operator_of(complex_of("6"), 0.05);
-    const std::vector<double> x = random_values(F.size(), 1), y = random_values(F.size(), 2);
+    const std::vector<double> x = random_radiosity(F.size(), 1), y = random_radiosity(F.size(), 2);
     const std::vector<double> forward = product(F, x);
     std::vector<double> backward(F.size());
     F.apply_transposed(y, backward);
@@ -180,7 +180,7 @@ TEST(FactorOperator, BitsDoNotDependOnThreads) {
     const int before = threads();
     set_threads(1);
     const FactorOperator one = operator_of(scene, 0.05);
-    const std::vector<double> x = random_values(one.size(), 1), y = product(one, x);
+    const std::vector<double> x = random_radiosity(one.size(), 1), y = product(one, x);
     set_threads(4);
     const FactorOperator four = operator_of(scene, 0.05);
     EXPECT_EQ(one.rows.values, four.rows.values);

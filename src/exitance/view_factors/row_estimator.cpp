@@ -24,7 +24,8 @@ constexpr double shadow_ray_cost = 0.25;
 /// dimensions for an integrand with a discontinuity.
 constexpr double cast_rate = 1.25, pair_rate = 1.25;
 
-constexpr double near_sizes = 0.5;  ///< Distance over the larger face's size; kernels of nearer pairs vary too much.
+constexpr double near_kernel_sizes =
+    0.5;  ///< Distance over the larger face's size; kernels of nearer pairs vary too much.
 constexpr double contour_share = 1e-4;  ///< Share of the error: tolerance of the contour integral.
 constexpr double integrated_share =
     1e-2;  ///< Share of the error: bound for integrated entries, including cancellation in contour sums.
@@ -181,8 +182,8 @@ void RowEstimator::classify_pair(std::size_t face, Pair& pair, std::uint32_t rou
     const View view = view_of(face, pair.column);
     pair.is_exact = view != View::mixed;
     if (view == View::none) return;
-    pair.to_cast = !pair.is_exact &&
-                   (under_others_ || box_distance(own, other) < near_sizes * std::max(own.diameter, other.diameter));
+    pair.to_cast = !pair.is_exact && (under_others_ || box_distance(own, other) <
+                                                           near_kernel_sizes * std::max(own.diameter, other.diameter));
     if (pair.to_cast) return;
     pair.unoccluded = exchange_area(own.outline, other.outline, contour_share * error_) / own.area;
     pair.visible = pair.is_exact ? 1

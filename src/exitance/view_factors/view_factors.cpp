@@ -18,7 +18,7 @@ namespace {
 /// `aimed_at`. Both rows may have the same error. In a town, one of 120 pairs within 0.7 of each other was off by more
 /// than the tolerance, up to 1.5 times as much (2.0 at 1e-4); of those within 0.3 one of 7,500, up to 1.2 times.
 constexpr double agreeing = 0.3, aimed_at = 0.8;
-constexpr std::size_t rows_a_step = 64, pairs_a_step = 512;  ///< Between progress reports.
+constexpr std::size_t rows_a_report = 64, pairs_a_report = 512;  ///< Between progress reports.
 
 Error stopped(const std::string& what) {
     return {ErrorCode::limit, "stopped " + what, "", "allow more time or a larger --tolerance"};
@@ -87,8 +87,8 @@ class TableMaker {
     Result<void> find_hidden() {
         const std::size_t n = table_.size();
         progress_.phase("hidden pairs");
-        for (std::size_t first = 0; first < n; first += rows_a_step) {
-            const std::size_t last = std::min(first + rows_a_step, n);
+        for (std::size_t first = 0; first < n; first += rows_a_report) {
+            const std::size_t last = std::min(first + rows_a_report, n);
             pairs_.find_hidden(first, last, stop_);
             if (stop_.requested()) return stopped("before the first row of view factors");
             progress_.advance(static_cast<double>(last) / static_cast<double>(n));
@@ -100,8 +100,8 @@ class TableMaker {
     Result<void> compute_rows(std::vector<std::uint8_t>& finished, RawRowStore* store, std::size_t memory_limit) {
         const std::size_t n = table_.size();
         progress_.phase("view factors");
-        for (std::size_t first = 0; first < n; first += rows_a_step) {
-            const std::size_t count = std::min(rows_a_step, n - first);
+        for (std::size_t first = 0; first < n; first += rows_a_report) {
+            const std::size_t count = std::min(rows_a_report, n - first);
             std::vector<std::uint8_t> made(count);
             parallel_ranges(count, 4, [&](std::size_t from, std::size_t to) {
                 RowWorker worker(pairs_, aimed_at * tolerance_, stop_);
@@ -139,8 +139,8 @@ class TableMaker {
         for (const Round& round : rounds) {
             const std::vector<Pair> pairs = disagreeing(table_, agreeing * tolerance_);
             if (&round == &rounds[0]) table_.mended = pairs.size();
-            for (std::size_t first = 0; first < pairs.size(); first += pairs_a_step) {
-                const std::size_t count = std::min(pairs_a_step, pairs.size() - first);
+            for (std::size_t first = 0; first < pairs.size(); first += pairs_a_report) {
+                const std::size_t count = std::min(pairs_a_report, pairs.size() - first);
                 parallel_ranges(count, 4, [&](std::size_t from, std::size_t to) {
                     RowWorker worker(pairs_, aimed_at * tolerance_, stop_);
                     for (std::size_t k = first + from; k < first + to && !stop_.requested(); ++k) {

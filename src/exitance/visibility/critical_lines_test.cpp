@@ -29,14 +29,14 @@ std::vector<CriticalLine> lines_of(const Outline& receiver, const Outline& sourc
 }
 
 const Outline floor_square = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-const Outline ceiling = {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}};
+const Outline unit_ceiling = {{0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}};
 
 TEST(CriticalLines, AStripYieldsThePenumbraLinesOfItsTwoEdges) {
     // A strip x in [0.4, 0.7], longer than the receiver in y. The ends of the source at x = 0 and 1 appear on its edges
     // at x = 0.8 and 0.4 (edges 0.4 and 0.7); -0.2 and 1.4 are outside.
     const ConvexBlocker strip =
         make_sheet(Outline{{0.4, -2, 0.5}, {0.7, -2, 0.5}, {0.7, 3, 0.5}, {0.4, 3, 0.5}}, {{0, 0, 1}, 0.5});
-    const std::vector<CriticalLine> lines = lines_of(floor_square, ceiling, {&strip});
+    const std::vector<CriticalLine> lines = lines_of(floor_square, unit_ceiling, {&strip});
     const PlaneFrame frame(floor_square[0], {0, 0, 1});
     std::vector<double> places;
     for (const CriticalLine& line : lines) {
@@ -55,14 +55,14 @@ TEST(CriticalLines, AFinOnTheReceiverYieldsALineAlongItsFoot) {
         make_sheet(Outline{{0.5, 0, 0}, {0.5, 1, 0}, {0.5, 1, 0.6}, {0.5, 0, 0.6}}, {{1, 0, 0}, 0.5});
     const PlaneFrame frame(floor_square[0], {0, 0, 1});
     bool foot = false;
-    for (const CriticalLine& line : lines_of(floor_square, ceiling, {&fin}))
+    for (const CriticalLine& line : lines_of(floor_square, unit_ceiling, {&fin}))
         foot |= std::abs(frame.at(line.offset * line.n).x - 0.5) < 1e-12;
     EXPECT_TRUE(foot);
 }
 
 TEST(CriticalLines, ABlockerOutsideTheShaftYieldsNoLine) {
     const ConvexBlocker aside = make_sheet(Outline{{3, 0, 0.5}, {4, 0, 0.5}, {4, 1, 0.5}}, {{0, 0, 1}, 0.5});
-    EXPECT_TRUE(lines_of(floor_square, ceiling, {&aside}).empty());
+    EXPECT_TRUE(lines_of(floor_square, unit_ceiling, {&aside}).empty());
 }
 
 TEST(CriticalLines, TheGapBetweenTwoPlatesClosesOnALine) {
@@ -74,7 +74,7 @@ TEST(CriticalLines, TheGapBetweenTwoPlatesClosesOnALine) {
         make_sheet(Outline{{0.6, -3, 0.6}, {4, -3, 0.6}, {4, 4, 0.6}, {0.6, 4, 0.6}}, {{0, 0, 1}, 0.6});
     const PlaneFrame frame(floor_square[0], {0, 0, 1});
     bool closes = false;
-    for (const CriticalLine& line : lines_of(floor_square, ceiling, {&low, &high}))
+    for (const CriticalLine& line : lines_of(floor_square, unit_ceiling, {&low, &high}))
         closes |= std::abs(frame.at(line.offset * line.n).x - 0.4) < 1e-12;
     EXPECT_TRUE(closes);
 }

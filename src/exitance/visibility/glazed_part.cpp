@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-constexpr double noise = 1e-12;  ///< Share of a corner's distance: rounding errors of clipping.
+constexpr double clip_noise = 1e-12;  ///< Share of a corner's distance: rounding errors of clipping.
 
 /// A part of the source, with the panes in front of it.
 struct Part {
@@ -58,7 +58,7 @@ Position position_of(std::span<const Vec3> corners, std::span<const Vec3> pyrami
     for (const Vec3& plane : pyramid) {
         bool any_in = false;
         for (const Vec3& r : corners) {
-            const double h = dot(plane, r), rounding = noise * norm(r);
+            const double h = dot(plane, r), rounding = clip_noise * norm(r);
             any_in |= h > rounding, is_inside &= h >= -rounding;
         }
         if (!any_in) return Position::outside;
@@ -76,7 +76,7 @@ void cut_along(const Pane& pane, std::span<const Vec3> pyramid, std::vector<Part
         std::vector<Vec3> inside = part.corners;
         const std::size_t first = fresh.size();
         for (const Vec3& plane : pyramid) {
-            const auto is_out = [&](const Vec3& r) { return dot(plane, r) < -noise * norm(r); };
+            const auto is_out = [&](const Vec3& r) { return dot(plane, r) < -clip_noise * norm(r); };
             if (std::any_of(inside.begin(), inside.end(), is_out)) {
                 std::vector<Vec3> rest = cut_above(inside, -plane);
                 if (!rest.empty()) fresh.push_back({std::move(rest), part.panes});

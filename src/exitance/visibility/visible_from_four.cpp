@@ -10,7 +10,7 @@ namespace {
 
 using namespace four;
 
-constexpr double on_plane = 1e-12;  ///< Sine of an angle that counts as zero, as for single points.
+constexpr double zero_sine_of_four = 1e-12;  ///< Sine of an angle that counts as zero, as for single points.
 constexpr std::size_t most_corners = 20, most_planes = 160, most_fragments = 160;
 
 /// A convex polygon relative to each of the four points.
@@ -120,7 +120,7 @@ class VisibleFromFour::Work {
 
     /// Computes the heights of the corners over a plane, and their signs (-1, 0 or 1) per corner.
     Standing measure(const Polygon& polygon, const Vec& plane, Real* heights, int* signs) const {
-        const Real none = on_plane * size_ * (absolute(plane.x) + absolute(plane.y) + absolute(plane.z));
+        const Real none = zero_sine_of_four * size_ * (absolute(plane.x) + absolute(plane.y) + absolute(plane.z));
         Standing standing;
         for (std::size_t i = 0; i < polygon.count; ++i) {
             heights[i] = dot(plane, polygon.corner[i]);

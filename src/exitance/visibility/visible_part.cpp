@@ -14,7 +14,7 @@
 namespace exitance {
 namespace {
 
-constexpr double on_plane = 1e-14;       ///< Sine of an angle that may be due to rounding alone.
+constexpr double rounded_sine = 1e-14;   ///< Sine of an angle that may be due to rounding alone.
 constexpr double work_of_integral = 20;  ///< Work of the integral of a directed radiance over a fragment.
 
 using Workspace = VisibilityWorkspace;
@@ -91,7 +91,7 @@ Hides compare(std::span<const Vec3> source, std::span<const Vec3> planes) {
     for (const Vec3& plane : planes) {
         bool any_in = false;
         for (const Vec3& r : source) {
-            const double h = dot(plane, r), noise = on_plane * (std::abs(r.x) + std::abs(r.y) + std::abs(r.z));
+            const double h = dot(plane, r), noise = rounded_sine * (std::abs(r.x) + std::abs(r.y) + std::abs(r.z));
             any_in |= h > noise;
             everything &= h >= -noise;
         }

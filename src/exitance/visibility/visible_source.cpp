@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-constexpr double on_plane = 1e-12;  ///< Sine of an angle that counts as zero: scenes have many aligned edges.
+constexpr double zero_sine = 1e-12;  ///< Sine of an angle that counts as zero: scenes have many aligned edges.
 /// Share of the point's height over the source: blockers that reach higher are not projected but treated as unbounded.
 constexpr double max_projected_height = 1 - 1e-9;
 /// Up to this many shadows are cut from the source in turn; more are subtracted one by one.
@@ -120,7 +120,7 @@ bool VisibleSource::add_pyramid(const Body& body, Pyramid& pyramid, bool& inside
         // A face seen from its front is counter-clockwise, so b x a points inwards.
         const Vec3 plane = left ? cross(b, a) : cross(a, b);
         lines_.push_back({plane.x, plane.y, -plane.z * x_.z,
-                          on_plane * size_ * (std::abs(plane.x) + std::abs(plane.y) + std::abs(plane.z))});
+                          zero_sine * size_ * (std::abs(plane.x) + std::abs(plane.y) + std::abs(plane.z))});
     }
     pyramid.first = pyramid.likely = first;
     pyramid.last = static_cast<std::uint32_t>(lines_.size());

@@ -22,7 +22,7 @@ using test::sheet;
 using Outline = std::vector<Point>;
 
 /// Faces down from z = 2 to the plane z = 0.
-const Outline ceiling = {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}};
+const Outline ceiling_above = {{-1, -1, 2}, {-1, 1, 2}, {1, 1, 2}, {1, -1, 2}};
 constexpr Normal up = {0, 0, 1};
 
 Outline level_square(double x, double y, double z, double half) {
@@ -38,11 +38,11 @@ double seen(const Point& x, const Normal& n, const Outline& source, const std::v
 TEST(VisibleSource, ASheetHidesItsShadow) {
     const ConvexBlocker plate = sheet(level_square(0.1, 0, 1, 0.2));
     Seen how;
-    const double F = seen({0, 0, 0}, up, ceiling, {&plate}, how);
+    const double F = seen({0, 0, 0}, up, ceiling_above, {&plate}, how);
     EXPECT_EQ(how, Seen::part);
     Outline shadow = level_square(0.2, 0, 2, 0.4);  // twice as far, twice as large
     std::reverse(shadow.begin(), shadow.end());
-    EXPECT_NEAR(F, point_to_polygon({0, 0, 0}, up, ceiling) - point_to_polygon({0, 0, 0}, up, shadow), 1e-15);
+    EXPECT_NEAR(F, point_to_polygon({0, 0, 0}, up, ceiling_above) - point_to_polygon({0, 0, 0}, up, shadow), 1e-15);
 }
 
 Outline regular(std::size_t corners, double radius, double z) {
@@ -59,12 +59,12 @@ TEST(VisibleSource, RoundSheetsHideAllOfTheirShadowWhateverTheirNumberOfCorners)
         const ConvexBlocker disc = sheet(regular(corners, 0.4, 1)), small = sheet(level_square(0.2, 0.3, 1.5, 0.1));
         Outline shadow = regular(corners, 0.8, 2);
         std::reverse(shadow.begin(), shadow.end());
-        const double lit = point_to_polygon({0, 0, 0}, up, ceiling) - point_to_polygon({0, 0, 0}, up, shadow);
+        const double lit = point_to_polygon({0, 0, 0}, up, ceiling_above) - point_to_polygon({0, 0, 0}, up, shadow);
         Seen how;
-        EXPECT_NEAR(seen({0, 0, 0}, up, ceiling, {&disc}, how), lit, 1e-13) << corners;
+        EXPECT_NEAR(seen({0, 0, 0}, up, ceiling_above, {&disc}, how), lit, 1e-13) << corners;
         EXPECT_EQ(how, Seen::part);
         // A second blocker within the shadow hides nothing more; its cuts leave fragments with many corners.
-        EXPECT_NEAR(seen({0, 0, 0}, up, ceiling, {&small, &disc}, how), lit, 1e-13) << corners;
+        EXPECT_NEAR(seen({0, 0, 0}, up, ceiling_above, {&small, &disc}, how), lit, 1e-13) << corners;
     }
 }
 
@@ -73,11 +73,12 @@ TEST(VisibleSource, DistinguishesHidingByOneBlockerAndBySeveral) {
     const ConvexBlocker left = sheet(level_square(-0.5, 0, 1, 0.55)), right = sheet(level_square(0.5, 0, 1, 0.55));
     const ConvexBlocker aside = sheet(level_square(3, 0, 1, 0.5));
     Seen how;
-    EXPECT_EQ(seen({0, 0, 0}, up, ceiling, {&whole}, how), 0);
+    EXPECT_EQ(seen({0, 0, 0}, up, ceiling_above, {&whole}, how), 0);
     EXPECT_EQ(how, Seen::nothing);
-    EXPECT_EQ(seen({0, 0, 0}, up, ceiling, {&left, &right}, how), 0);
+    EXPECT_EQ(seen({0, 0, 0}, up, ceiling_above, {&left, &right}, how), 0);
     EXPECT_EQ(how, Seen::nothing_past_several);
-    EXPECT_NEAR(seen({0, 0, 0}, up, ceiling, {&aside}, how), point_to_polygon({0, 0, 0}, up, ceiling), 1e-15);
+    EXPECT_NEAR(seen({0, 0, 0}, up, ceiling_above, {&aside}, how), point_to_polygon({0, 0, 0}, up, ceiling_above),
+                1e-15);
     EXPECT_EQ(how, Seen::all);
 }
 
@@ -95,7 +96,7 @@ TEST(VisibleSource, ABodyHidesWhatItsFacesHideTogether) {
     for (int k = 0; k < 200; ++k) {
         const Point x = {3 * random.uniform() - 1.5, 3 * random.uniform() - 1.5, 0};
         Seen one, six;
-        EXPECT_NEAR(seen(x, up, ceiling, {&body}, one), seen(x, up, ceiling, all, six), 1e-14);
+        EXPECT_NEAR(seen(x, up, ceiling_above, {&body}, one), seen(x, up, ceiling_above, all, six), 1e-14);
     }
 }
 
@@ -103,7 +104,7 @@ TEST(VisibleSource, ManyShadowsHideTheirUnion) {
     // Twelve pairs of plates whose shadows overlap by half: each pair hides a rectangle of 0.3 x 0.2.
     std::vector<ConvexBlocker> plates;
     std::vector<const ConvexBlocker*> blockers;
-    double F = point_to_polygon({0, 0, 0}, up, ceiling);
+    double F = point_to_polygon({0, 0, 0}, up, ceiling_above);
     for (int k = 0; k < 12; ++k) {
         const double x = -0.8 + 0.5 * (k % 4), y = -0.6 + 0.5 * (k / 4);  // centre of the shadow on the ceiling
         plates.push_back(sheet(level_square(0.5 * x, 0.5 * y, 1, 0.05)));
@@ -114,7 +115,7 @@ TEST(VisibleSource, ManyShadowsHideTheirUnion) {
     }
     for (const ConvexBlocker& plate : plates) blockers.push_back(&plate);
     Seen how;
-    EXPECT_NEAR(seen({0, 0, 0}, up, ceiling, blockers, how), F, 1e-14);
+    EXPECT_NEAR(seen({0, 0, 0}, up, ceiling_above, blockers, how), F, 1e-14);
     EXPECT_EQ(how, Seen::part);
 }
 
@@ -125,7 +126,7 @@ TEST(VisibleSource, ManyShadowsThatCoverEverythingLeaveNothing) {
         plates.push_back(sheet(level_square(-0.375 + 0.25 * (k % 4), -0.375 + 0.25 * (k / 4), 1, 0.13)));
     for (const ConvexBlocker& plate : plates) blockers.push_back(&plate);
     Seen how;
-    EXPECT_EQ(seen({0, 0, 0}, up, ceiling, blockers, how), 0);
+    EXPECT_EQ(seen({0, 0, 0}, up, ceiling_above, blockers, how), 0);
     EXPECT_EQ(how, Seen::nothing_past_several);
 }
 
@@ -133,7 +134,7 @@ TEST(VisibleSource, CertifiesPairsThatOneBodyHides) {
     const ConvexBlocker body = box({-2, -2, 0.9}, {2, 2, 1.1});
     VisibleSource visible;
     const std::array<const ConvexBlocker*, 1> blockers = {&body};
-    visible.set(ceiling, blockers);
+    visible.set(ceiling_above, blockers);
     EXPECT_TRUE(visible.is_hidden_from(level_square(0, 0, 0, 0.5)));
     EXPECT_FALSE(visible.is_hidden_from(level_square(3, 0, 0, 0.5)));
 }
@@ -151,11 +152,11 @@ TEST(VisibleFromFour, AgreesWithSinglePointsWheneverItAnswers) {
         for (Point& p : x) p = middle + 0.02 * Vec3{random.uniform(), random.uniform(), 0};
         std::array<double, 4> F;
         Seen together;
-        if (!four(ceiling, blockers, x, up, F, together)) continue;
+        if (!four(ceiling_above, blockers, x, up, F, together)) continue;
         ++answered;
         for (std::size_t i = 0; i < 4; ++i) {
             Seen alone;
-            EXPECT_NEAR(F[i], seen(x[i], up, ceiling, blockers, alone), 1e-14);
+            EXPECT_NEAR(F[i], seen(x[i], up, ceiling_above, blockers, alone), 1e-14);
             EXPECT_EQ(together, alone);
         }
     }

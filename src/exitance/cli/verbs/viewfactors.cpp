@@ -121,7 +121,7 @@ std::string words_of(const ViewFactorFacts& facts) {
 }
 
 /// Prints warnings and repairs, except the one about missing light, which view factors do not need.
-void show_findings(const CheckedScene& checked, Terminal& terminal) {
+void show_geometry_findings(const CheckedScene& checked, Terminal& terminal) {
     std::vector<Finding> findings = checked.findings;
     std::erase_if(findings, [](const Finding& f) {
         return f.kind == Finding::Kind::warning && f.message.starts_with("nothing emits light");
@@ -350,7 +350,7 @@ ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal) {
     LoadOptions load = arguments.scene.load;
     load.stop = &stop, load.without_panes = true;
     const LoadedScene checked = load_scene(arguments.scene.files, load);
-    show_findings(checked, terminal);
+    show_geometry_findings(checked, terminal);
     if (!checked.scene) return terminal.fail(checked);
     return ViewFactorRun(arguments, checked, stop, limits, terminal)();
 }

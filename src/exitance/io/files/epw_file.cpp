@@ -11,6 +11,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "exitance/base/words.hpp"
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/text_table.hpp"
 
@@ -18,12 +19,6 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t max_rows = 8784 * 100;  ///< Hours of 100 years, or minutes of about 1.7 years.
-
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view blanks = " \t\"";
-    const std::size_t first = text.find_first_not_of(blanks);
-    return first == text.npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
 
 /// Splits a line into fields and trims blanks and quotation marks. A separator within quotation marks is part of a
 /// field.
@@ -34,7 +29,7 @@ std::vector<std::string_view> fields_of(std::string_view line, char separator) {
     for (std::size_t i = 0; i <= line.size(); ++i) {
         if (i < line.size() && line[i] == '"') in_quotes = !in_quotes;
         if (i < line.size() && (line[i] != separator || in_quotes)) continue;
-        out.push_back(trimmed(line.substr(begin, i - begin)));
+        out.push_back(without_quotes(line.substr(begin, i - begin)));
         begin = i + 1;
     }
     return out;
@@ -60,17 +55,17 @@ std::optional<double> number_within(std::string_view word, double least, double 
 }
 
 /// Global, direct normal and diffuse horizontal light in one unit; a missing value is empty.
-struct Light {
+struct SkyValues {
     std::optional<double> global, direct, diffuse;
 
     bool any_above_zero() const { return global.value_or(0) > 0 || direct.value_or(0) > 0 || diffuse.value_or(0) > 0; }
 };
 
 /// One line of data.
-struct Row {
+struct DataLine {
     int year = 2021, month = 1, day = 1, hour = 1;
     double minute = 0;
-    Light watts = {}, lux = {};
+    SkyValues watts = {}, lux = {};
     int line = 0;
 };
 
@@ -87,7 +82,7 @@ bool starts_with_number(const std::vector<std::string_view>& fields) {
 
 /// Corrects the date of a row and returns false if there is no such date. 29 February becomes that of a leap year,
 /// since typical years combine months of different years.
-bool mend_date(Row& row) {
+bool mend_date(DataLine& row) {
     constexpr int unknown_year = 2021, leap_year = 2020;
     if (row.year < 1) row.year = unknown_year;
     if (is_date(row.year, row.month, row.day)) return true;
@@ -107,17 +102,17 @@ class EpwReader {
     Result<void> read_location(std::string_view line);
     Result<void> read_header(const std::vector<std::string_view>& fields);
     Result<void> read_row(const std::vector<std::string_view>& fields);
-    Result<Light> read_light(const std::vector<std::string_view>& fields, std::size_t first, double missing) const;
+    Result<SkyValues> read_light(const std::vector<std::string_view>& fields, std::size_t first, double missing) const;
     Result<void> count_hours_from_one();
     Result<void> make_hours();
-    WeatherHour mean_of(std::span<const Row* const> rows);
-    bool find_light(const Row& row, double hour, double& direct, double& diffuse);
+    WeatherHour mean_of(std::span<const DataLine* const> rows);
+    bool find_light(const DataLine& row, double hour, double& direct, double& diffuse);
     Error error_at(int line, std::string message, std::string hint = "") const;
 
     LineReader lines_;
     WeatherEfficacies efficacies_;
     Weather out_;
-    std::vector<Row> rows_;
+    std::vector<DataLine> rows_;
     bool has_location_ = false, has_data_periods_ = false;
     char separator_ = ',';
     int stray_line_ = 0;  ///< First line of numbers in the header that has too few fields for an hour; 0: none.
@@ -165,8 +160,8 @@ Result<void> EpwReader::read_header(const std::vector<std::string_view>& fields)
 }
 
 /// Reads three fields from `first` on. Negative numbers, and numbers of at least `missing`, count as missing.
-Result<Light> EpwReader::read_light(const std::vector<std::string_view>& fields, std::size_t first,
-                                    double missing) const {
+Result<SkyValues> EpwReader::read_light(const std::vector<std::string_view>& fields, std::size_t first,
+                                        double missing) const {
     std::array<std::optional<double>, 3> value;
     for (std::size_t i = 0; i < 3; ++i) {
         if (first + i >= fields.size() || fields[first + i].empty()) continue;
@@ -176,7 +171,7 @@ Result<Light> EpwReader::read_light(const std::vector<std::string_view>& fields,
                 fmt::format("'{}' in field {} is not a number", shown(fields[first + i]), first + i + 1));
         if (!(*value[i] >= 0 && *value[i] < missing)) value[i].reset();
     }
-    return Light{value[0], value[1], value[2]};
+    return SkyValues{value[0], value[1], value[2]};
 }
 
 Result<void> EpwReader::read_row(const std::vector<std::string_view>& fields) {
@@ -190,14 +185,14 @@ Result<void> EpwReader::read_row(const std::vector<std::string_view>& fields) {
             return lines_.error(fmt::format("'{}' is not a valid part of a date", shown(fields[i])));
         date[i] = static_cast<int>(*value);
     }
-    Row row{date[0], date[1], date[2], date[3]};
+    DataLine row{date[0], date[1], date[2], date[3]};
     if (!mend_date(row) || row.hour > 24)
         return lines_.error(fmt::format("{}-{}-{}, hour {}, is not a date", row.year, row.month, row.day, row.hour));
     row.minute = parse_number(fields[minute_field]).value_or(0);
     constexpr double missing_watts = 9999, missing_lux = 999'900;  // limits in EnergyPlus' definition of the format
-    const Result<Light> watts = read_light(fields, first_watts_field, missing_watts);
+    const Result<SkyValues> watts = read_light(fields, first_watts_field, missing_watts);
     if (!watts) return watts.error();
-    const Result<Light> lux = read_light(fields, first_lux_field, missing_lux);
+    const Result<SkyValues> lux = read_light(fields, first_lux_field, missing_lux);
     if (!lux) return lux.error();
     row.watts = *watts, row.lux = *lux, row.line = lines_.line();
     rows_.push_back(row);
@@ -214,12 +209,12 @@ Result<void> EpwReader::read_line(std::string_view line) {
 
 /// Changes hours counted from 0 to 23 by their beginning to 1 to 24 by their end.
 Result<void> EpwReader::count_hours_from_one() {
-    const auto is_hour = [](int hour) { return [hour](const Row& row) { return row.hour == hour; }; };
+    const auto is_hour = [](int hour) { return [hour](const DataLine& row) { return row.hour == hour; }; };
     const auto zero = std::find_if(rows_.begin(), rows_.end(), is_hour(0));
     if (zero == rows_.end()) return {};
     if (std::any_of(rows_.begin(), rows_.end(), is_hour(24)))
         return error_at(zero->line, "there are hours 0 and 24 in the file", "hours are counted from 1 to 24");
-    for (Row& row : rows_) ++row.hour;
+    for (DataLine& row : rows_) ++row.hour;
     out_.warnings.push_back("hours are counted from 0 to 23: hour 0 is read as the first of its day");
     return {};
 }
@@ -227,7 +222,7 @@ Result<void> EpwReader::count_hours_from_one() {
 /// Computes a missing diffuse or direct part from global = diffuse + direct sin h, if the other two are known. `sine`
 /// computes sin h, where h is the sun's altitude.
 template <class Sine>
-void fill_in(Light& light, const Sine& sine) {
+void fill_in(SkyValues& light, const Sine& sine) {
     constexpr double min_sine = 0.05;  // for a lower sun, a small difference would give large direct light
     if (!light.global || light.direct.has_value() == light.diffuse.has_value()) return;
     const double h = sine();
@@ -239,15 +234,15 @@ void fill_in(Light& light, const Sine& sine) {
 
 /// Computes direct and diffuse irradiance of a line, W/m^2. `hour` is the middle of the line's time. Returns false if
 /// they are unknown.
-bool EpwReader::find_light(const Row& row, double hour, double& direct, double& diffuse) {
+bool EpwReader::find_light(const DataLine& row, double hour, double& direct, double& diffuse) {
     const auto sine = [&] {
         const LocalTime time{row.year, row.month, row.day, hour, out_.zone};
         return std::sin(sun_position(time, out_.place).altitude * pi / 180);
     };
-    Light light = row.watts;
+    SkyValues light = row.watts;
     fill_in(light, sine);
     if (!light.direct || !light.diffuse) {
-        Light lux = row.lux;
+        SkyValues lux = row.lux;
         if (light.direct) lux.direct = *light.direct * efficacies_.direct;
         if (light.diffuse) lux.diffuse = *light.diffuse * efficacies_.diffuse;
         fill_in(lux, sine);
@@ -262,8 +257,8 @@ bool EpwReader::find_light(const Row& row, double hour, double& direct, double& 
 }
 
 /// Averages the lines of one hour, which divide it evenly in their order. Lines without known light are ignored.
-WeatherHour EpwReader::mean_of(std::span<const Row* const> rows) {
-    const Row& first = *rows.front();
+WeatherHour EpwReader::mean_of(std::span<const DataLine* const> rows) {
+    const DataLine& first = *rows.front();
     WeatherHour out{first.year, first.month, first.day, first.hour};
     const double count = static_cast<double>(rows.size());
     double known = 0;
@@ -281,26 +276,27 @@ WeatherHour EpwReader::mean_of(std::span<const Row* const> rows) {
 Result<void> EpwReader::make_hours() {
     using Key = std::tuple<int, int, int, int>;
     std::map<Key, std::size_t> numbers;
-    std::vector<std::vector<const Row*>> hours;
+    std::vector<std::vector<const DataLine*>> hours;
     // A quantity that is 0 in the whole file was not measured.
-    const auto has_light = [&](Light Row::*columns) {
-        return std::any_of(rows_.begin(), rows_.end(), [&](const Row& row) { return (row.*columns).any_above_zero(); });
+    const auto has_light = [&](SkyValues DataLine::*columns) {
+        return std::any_of(rows_.begin(), rows_.end(),
+                           [&](const DataLine& row) { return (row.*columns).any_above_zero(); });
     };
-    const bool has_watts = has_light(&Row::watts), has_lux = has_light(&Row::lux);
-    for (Row& row : rows_) {
+    const bool has_watts = has_light(&DataLine::watts), has_lux = has_light(&DataLine::lux);
+    for (DataLine& row : rows_) {
         if (!has_watts) row.watts = {};
         if (!has_lux) row.lux = {};
         const auto [at, is_new] = numbers.try_emplace(Key{row.year, row.month, row.day, row.hour}, hours.size());
         if (is_new) hours.emplace_back();
-        for (const Row* other : hours[at->second])
+        for (const DataLine* other : hours[at->second])
             if (other->minute == row.minute)
                 return error_at(row.line,
                                 fmt::format("{}-{}-{}, hour {}, occurs twice", row.year, row.month, row.day, row.hour),
                                 "lines of one hour differ in their minutes, the fifth field");
         hours[at->second].push_back(&row);
     }
-    for (std::vector<const Row*>& rows : hours) {
-        std::sort(rows.begin(), rows.end(), [](const Row* a, const Row* b) { return a->minute < b->minute; });
+    for (std::vector<const DataLine*>& rows : hours) {
+        std::sort(rows.begin(), rows.end(), [](const DataLine* a, const DataLine* b) { return a->minute < b->minute; });
         out_.hours.push_back(mean_of(rows));
     }
     return {};

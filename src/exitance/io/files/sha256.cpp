@@ -6,7 +6,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t block_bytes = 64;
+constexpr std::size_t hashed_block = 64;
 constexpr std::size_t length_bytes = 8;
 
 constexpr std::array<std::uint32_t, 64> round_constants{
@@ -50,11 +50,11 @@ void Sha256::add_block(const unsigned char* block) {
 
 void Sha256::add(std::string_view bytes) {
     while (!bytes.empty()) {
-        const std::size_t at = bytes_ % block_bytes, n = std::min(block_bytes - at, bytes.size());
+        const std::size_t at = bytes_ % hashed_block, n = std::min(hashed_block - at, bytes.size());
         std::copy_n(bytes.data(), n, rest_.begin() + static_cast<std::ptrdiff_t>(at));
         bytes_ += n;
         bytes.remove_prefix(n);
-        if (bytes_ % block_bytes == 0) add_block(rest_.data());
+        if (bytes_ % hashed_block == 0) add_block(rest_.data());
     }
 }
 
@@ -67,7 +67,7 @@ void Sha256::add_text(std::string_view text) {
 std::string Sha256::finish() {
     const std::uint64_t bits = 8 * bytes_;
     add(std::string_view("\x80", 1));
-    while (bytes_ % block_bytes != block_bytes - length_bytes) add(std::string_view("\0", 1));
+    while (bytes_ % hashed_block != hashed_block - length_bytes) add(std::string_view("\0", 1));
     for (int shift = 56; shift >= 0; shift -= 8) {
         const char byte = static_cast<char>(bits >> shift & 0xff);
         add(std::string_view(&byte, 1));

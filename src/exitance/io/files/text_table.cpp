@@ -11,35 +11,30 @@
 #include <limits>
 #include <utility>
 
+#include "exitance/base/words.hpp"
+
 namespace exitance {
 namespace {
 
 constexpr std::size_t block_bytes = 1 << 18;
 constexpr std::size_t max_line_bytes = 1 << 24;  ///< A longer line shows that the file is not text.
 
-std::string_view trimmed(std::string_view text) {
-    const auto blank = [](char c) { return c == ' ' || c == '\t'; };
-    while (!text.empty() && blank(text.front())) text.remove_prefix(1);
-    while (!text.empty() && blank(text.back())) text.remove_suffix(1);
-    return text;
-}
-
 /// Takes the next field of a CSV line, without blanks and quotation marks. `line` then begins after the field's comma.
 std::string_view next_field(std::string_view& line) {
     std::size_t end = line.find(',');
-    const std::string_view start = trimmed(line);
+    const std::string_view start = without_blanks(line);
     if (!start.empty() && start.front() == '"') {
         const std::size_t open = line.find('"'), close = line.find('"', open + 1);
         if (close != std::string_view::npos) {
             const std::string_view inside = line.substr(open + 1, close - open - 1);
             end = line.find(',', close);
             line.remove_prefix(end == std::string_view::npos ? line.size() : end + 1);
-            return trimmed(inside);
+            return without_blanks(inside);
         }
     }
     const std::string_view field = line.substr(0, end);
     line.remove_prefix(end == std::string_view::npos ? line.size() : end + 1);
-    return trimmed(field);
+    return without_blanks(field);
 }
 
 /// Quotes text from a file for a message: at most 40 characters, only printable ASCII.
@@ -131,7 +126,7 @@ std::optional<std::string_view> LineReader::next_content() {
 }
 
 std::optional<double> parse_number(std::string_view text) {
-    text = trimmed(text);
+    text = without_blanks(text);
     if (text.starts_with('+')) text.remove_prefix(1);
     double value = 0;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);

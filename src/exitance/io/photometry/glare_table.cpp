@@ -14,7 +14,6 @@ namespace exitance {
 namespace {
 
 constexpr double height = 2, spacing = 0.25 * height;  ///< Mounting height H and distance of luminaires, metres.
-constexpr double degree = pi / 180;
 
 constexpr std::array<std::pair<double, double>, 19> rooms{{{2, 2},
                                                            {2, 3},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/words.hpp"
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/photometry/ies_text.hpp"
 #include "exitance/io/photometry/photometric_file.hpp"
@@ -11,14 +12,8 @@
 namespace exitance {
 namespace {
 
-constexpr double max_angles = 20000, max_candelas = 4e6, max_value = 1e12;
+constexpr double max_ies_angles = 20000, max_ies_candelas = 4e6, max_ies_value = 1e12;
 constexpr double foot = 0.3048;
-
-std::string_view trimmed(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
 
 /// Numbers before the table, in the order of the file.
 struct Header {
@@ -60,13 +55,13 @@ class IesReader {
 void IesReader::read_label(std::string_view line) {
     constexpr std::size_t max_keywords = 10000;
     if (out_.keywords.size() >= max_keywords) return;
-    const std::string_view words = trimmed(line);
+    const std::string_view words = without_blanks(line);
     const std::size_t close = words.find(']');
     if (!words.starts_with('[') || close == std::string_view::npos) {
         if (!words.empty()) out_.keywords.emplace_back("", shown(words));
         return;
     }
-    const std::string_view key = words.substr(1, close - 1), value = trimmed(words.substr(close + 1));
+    const std::string_view key = words.substr(1, close - 1), value = without_blanks(words.substr(close + 1));
     if (key == "MORE" && !out_.keywords.empty())
         out_.keywords.back().second += ' ' + shown(value);
     else
@@ -79,9 +74,9 @@ Result<void> IesReader::read_labels() {
     has_blpf_ = true;
     bool is_first = true;
     while (const auto line = text_.line()) {
-        const std::string_view words = trimmed(*line);
+        const std::string_view words = without_blanks(*line);
         if (words.starts_with("TILT=")) {
-            tilt_ = std::string(trimmed(words.substr(5)));
+            tilt_ = std::string(without_blanks(words.substr(5)));
             return {};
         }
         if (is_first && (words.starts_with("IES"))) {
@@ -154,12 +149,12 @@ Result<void> IesReader::read_header() {
 
 Result<void> IesReader::check_header() {
     Header& h = header_;
-    const auto is_count = [](double v) { return v == std::floor(v) && v >= 1 && v <= max_angles; };
+    const auto is_count = [](double v) { return v == std::floor(v) && v >= 1 && v <= max_ies_angles; };
     if (!is_count(h.verticals))
         return text_.error(fmt::format("{:g} is not a possible number of vertical angles", h.verticals));
     if (!is_count(h.horizontals))
         return text_.error(fmt::format("{:g} is not a possible number of horizontal angles", h.horizontals));
-    if (h.verticals * h.horizontals > max_candelas)
+    if (h.verticals * h.horizontals > max_ies_candelas)
         return text_.error(
             fmt::format("{:g} intensities exceed the limit of this program", h.verticals * h.horizontals));
     if (h.verticals < 2) return text_.error("there is only one vertical angle", "a distribution has at least two");
@@ -171,7 +166,7 @@ Result<void> IesReader::check_header() {
         return text_.error(fmt::format("{:g} is not a type of photometry", h.type), "1 is C, 2 is B, 3 is A");
     if (h.units != 1 && h.units != 2)
         return text_.error(fmt::format("{:g} is not a kind of units", h.units), "1 is feet, 2 is metres");
-    if (!(h.multiplier > 0 && h.multiplier < max_value))
+    if (!(h.multiplier > 0 && h.multiplier < max_ies_value))
         return text_.error(fmt::format("the multiplier is {:g}", h.multiplier), "intensities are multiplied by it");
     if (!(h.ballast > 0 && h.ballast < 1e6))
         return text_.error(fmt::format("the ballast factor is {:g}", h.ballast), "intensities are multiplied by it");
@@ -222,7 +217,7 @@ Result<void> IesReader::read_table() {
             const Result<double> value = text_.number(
                 fmt::format("intensity {} of {}", h * vertical->size() + v + 1, horizontal->size() * vertical->size()));
             if (!value) return value.error();
-            if (!(*value >= 0 && *value * factor <= max_value))
+            if (!(*value >= 0 && *value * factor <= max_ies_value))
                 return text_.error(fmt::format("the intensity {:g} cd is invalid", *value), "0 or more");
             row.push_back(*value * factor);
         }

@@ -11,7 +11,6 @@ namespace {
 using Shape = Opening::Shape;
 using Polygons = std::vector<std::vector<Point>>;
 
-constexpr double degree = pi / 180;
 /// Sides of a round edge: their normals are at angles that tables of 1, 3, 5 and 15 degrees contain.
 constexpr int sides = 24;
 constexpr int bands_of_sphere = 8, sides_of_sphere = 16;

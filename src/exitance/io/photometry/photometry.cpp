@@ -6,8 +6,6 @@
 namespace exitance {
 namespace {
 
-constexpr double degree = pi / 180;
-
 /// Position of an angle between two table entries; `inside` is false beyond both ends.
 struct Place {
     std::size_t first = 0;

@@ -15,8 +15,6 @@
 namespace exitance {
 namespace {
 
-constexpr double degree = pi / 180;
-
 /// Text of an IES file, of type C by default, with the given opening and angles and I = f(theta, phi).
 template <class F>
 std::string ies(const std::string& opening, const std::vector<double>& vertical, const std::vector<double>& horizontal,

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-constexpr double degree = pi / 180, radius = 220, middle = 260;
+constexpr double radius = 220, middle = 260;
 
 /// A step of 1, 2 or 5 times a power of ten, about a quarter of `most`.
 double round_step(double most) {

@@ -5,7 +5,7 @@
 namespace exitance {
 namespace {
 
-Rgb colour_at(const Image& image, int x, int y) {
+Rgb pixel_at(const Image& image, int x, int y) {
     const std::uint8_t* p = image.at(x, y);
     return {p[0], p[1], p[2]};
 }
@@ -17,10 +17,10 @@ TEST(MeshColours, EdgesHaveTheColoursOfTheLegendAndOthersAreFaint) {
                                                           std::nullopt};
     draw_ordered_edges(image, edges);
     const auto key = edge_order_key();
-    EXPECT_EQ(colour_at(image, 0, 0), key[0].colour);
-    EXPECT_EQ(colour_at(image, 1, 0), key[2].colour);
-    EXPECT_EQ(colour_at(image, 2, 0), (Rgb{150, 150, 150}));
-    EXPECT_EQ(colour_at(image, 3, 0), (Rgb{200, 200, 200}));
+    EXPECT_EQ(pixel_at(image, 0, 0), key[0].colour);
+    EXPECT_EQ(pixel_at(image, 1, 0), key[2].colour);
+    EXPECT_EQ(pixel_at(image, 2, 0), (Rgb{150, 150, 150}));
+    EXPECT_EQ(pixel_at(image, 3, 0), (Rgb{200, 200, 200}));
 }
 
 TEST(MeshColours, TheLegendShowsEveryColourAndFitsAnyPicture) {
@@ -29,7 +29,7 @@ TEST(MeshColours, TheLegendShowsEveryColourAndFitsAnyPicture) {
     for (const KeyEntry& entry : shadow_class_key()) {
         bool shown = false;
         for (int y = 0; y < image.height; ++y)
-            for (int x = 0; x < image.width; ++x) shown |= colour_at(image, x, y) == entry.colour;
+            for (int x = 0; x < image.width; ++x) shown |= pixel_at(image, x, y) == entry.colour;
         EXPECT_TRUE(shown) << entry.name;
     }
     Image tiny(3, 2);

@@ -7,19 +7,16 @@
 #include <cmath>
 #include <sstream>
 
+#include "exitance/base/words.hpp"
+
 namespace exitance {
 namespace {
 
-constexpr std::array<const char*, 4> quantities{"Em", "U0", "Ez", "UGR"};
+constexpr std::array<const char*, 4> computed_quantities{"Em", "U0", "Ez", "UGR"};
 
 /// False for quantities of tasks that the report does not compute: colour rendering, and light on walls and ceilings.
 bool is_measurable(const std::string& quantity) {
-    return std::find(quantities.begin(), quantities.end(), quantity) != quantities.end();
-}
-
-std::string trimmed(const std::string& text) {
-    const std::size_t first = text.find_first_not_of(' '), last = text.find_last_not_of(' ');
-    return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+    return std::find(computed_quantities.begin(), computed_quantities.end(), quantity) != computed_quantities.end();
 }
 
 Error misuse(const std::string& words, const std::string& why) {
@@ -119,16 +116,17 @@ class Judge {
 Result<Requirement> read_requirement(const std::string& words) {
     Requirement out;
     const std::size_t colon = words.rfind(':');
-    if (colon != std::string::npos) out.plane = trimmed(words.substr(0, colon));
+    if (colon != std::string::npos) out.plane = without_blanks(words.substr(0, colon));
     std::istringstream items(colon == std::string::npos ? words : words.substr(colon + 1));
     for (std::string item; std::getline(items, item, ',');) {
         std::istringstream in(item);
         Requirement::Limit limit;
         std::string more;
         if (!(in >> limit.quantity >> limit.value) || in >> more || !(limit.value > 0) || !std::isfinite(limit.value))
-            return misuse(words, fmt::format("'{}' is not a quantity and a positive number{}", trimmed(item),
-                                             more.empty() ? "" : "; separate quantities by commas"));
-        if (std::find(quantities.begin(), quantities.end(), limit.quantity) == quantities.end())
+            return misuse(words, fmt::format("'{}' is not a quantity and a positive number{}", without_blanks(item),
+                                             more.empty() ? "" : "; separate computed_quantities by commas"));
+        if (std::find(computed_quantities.begin(), computed_quantities.end(), limit.quantity) ==
+            computed_quantities.end())
             return misuse(words, fmt::format("'{}' is not Em, U0, Ez or UGR", limit.quantity));
         if (limit.quantity == "UGR" && !out.plane.empty() && !out.plane.starts_with("room "))
             return misuse(words, "UGR is required of observers, which have no plane: name a room, 'room 2: UGR 19'");

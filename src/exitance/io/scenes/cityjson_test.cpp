@@ -23,7 +23,7 @@ std::string block(const std::string& version, const std::string& low, const std:
 "vertices":[[0,0,0],[2000,0,0],[2000,1000,0],[0,1000,0],[0,0,3000],[2000,0,3000],[2000,1000,3000],[0,1000,3000]]})";
 }
 
-ReadScene read(const std::string& text, const std::string& lod = "") {
+ReadScene read_city(const std::string& text, const std::string& lod = "") {
     const TemporaryFolder folder;
     std::ofstream(folder / "c.city.json") << text;
     return read_cityjson(folder / "c.city.json", lod);
@@ -32,7 +32,7 @@ ReadScene read(const std::string& text, const std::string& lod = "") {
 TEST(CityJson, ReadsTheHighestLevelWithSemanticsAndMovesTheOrigin) {
     for (const auto& [version, low, high] :
          {std::tuple{"1.0", "1", "2.2"}, {"1.1", R"("1.2")", R"("2.2")"}, {"2.0", R"("0.1")", R"("2.0")"}}) {
-        const ReadScene scene = read(block(version, low, high));
+        const ReadScene scene = read_city(block(version, low, high));
         const SceneDescription& d = scene.description;
         ASSERT_EQ(d.faces.size(), 6U) << version;
         EXPECT_EQ(d.materials[d.faces[0].material].name, "GroundSurface");
@@ -51,8 +51,8 @@ TEST(CityJson, ReadsTheHighestLevelWithSemanticsAndMovesTheOrigin) {
 
 TEST(CityJson, ReadsARequestedLevelAndWarnsOfObjectsWithoutIt) {
     const std::string text = block("1.1", R"("1.2")", R"("2.2")");
-    EXPECT_EQ(read(text, "1.2").description.faces.size(), 1U);
-    const ReadScene none = read(text, "3.0");
+    EXPECT_EQ(read_city(text, "1.2").description.faces.size(), 1U);
+    const ReadScene none = read_city(text, "3.0");
     EXPECT_TRUE(none.description.faces.empty());
     ASSERT_FALSE(none.findings.empty());
     EXPECT_NE(none.findings.back().message.find("1 city objects have no geometry of level of detail 3.0"),
@@ -74,7 +74,7 @@ TEST(CityJson, HolesAreCutOut) {
 
 TEST(CityJson, PlacesInstancesOfTemplates) {
     const ReadScene scene =
-        read(R"({"type":"CityJSON","version":"1.1","CityObjects":{"tree":{"type":"SolitaryVegetationObject",
+        read_city(R"({"type":"CityJSON","version":"1.1","CityObjects":{"tree":{"type":"SolitaryVegetationObject",
 "geometry":[{"type":"GeometryInstance","template":0,"boundaries":[1],"transformationMatrix":[2,0,0,0,0,2,0,0,0,0,2,0,0,0,0,1]}]}},
 "geometry-templates":{"templates":[{"type":"MultiSurface","lod":"2","boundaries":[[[0,1,2]]]}],
 "vertices-templates":[[0,0,0],[1,0,0],[0,1,0]]},"vertices":[[0,0,0],[5,6,7]]})");
@@ -86,7 +86,7 @@ TEST(CityJson, PlacesInstancesOfTemplates) {
 
 TEST(CityJson, SaysWhatIsWrong) {
     const auto first = [](const std::string& text) {
-        const ReadScene scene = read(text);
+        const ReadScene scene = read_city(text);
         return scene.findings.empty() ? std::string() : scene.findings.front().message;
     };
     EXPECT_NE(first("{").find("is not valid JSON"), std::string::npos);

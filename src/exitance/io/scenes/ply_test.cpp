@@ -12,7 +12,7 @@
 namespace exitance {
 namespace {
 
-ReadScene read(const std::string& bytes) {
+ReadScene read_ply_text(const std::string& bytes) {
     const TemporaryFolder folder;
     std::ofstream(folder / "s.ply", std::ios::binary) << bytes;
     return read_ply(folder / "s.ply");
@@ -55,23 +55,23 @@ void expect_two_faces(const ReadScene& scene) {
 }
 
 TEST(Ply, TextAndBothByteOrdersGiveTheSameScene) {
-    const ReadScene text = read(header("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 2.5\n3 0 1 2 7\n4 0 1 2 3 7\n");
+    const ReadScene text = read_ply_text(header("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 2.5\n3 0 1 2 7\n4 0 1 2 3 7\n");
     expect_two_faces(text);
     EXPECT_EQ(text.description.faces[0].line, 16);
-    expect_two_faces(read(header("binary_little_endian") + binary_body(false)));
-    expect_two_faces(read(header("binary_big_endian") + binary_body(true)));
+    expect_two_faces(read_ply_text(header("binary_little_endian") + binary_body(false)));
+    expect_two_faces(read_ply_text(header("binary_big_endian") + binary_body(true)));
 }
 
 TEST(Ply, SkipsPropertiesThatItDoesNotUseAndWarnsOfColours) {
-    const ReadScene scene = read(header("ascii", "property uchar red\n") +
-                                 "0 0 255 0\n1 0 255 0\n1 1 255 0\n0 1 255 2.5\n3 0 1 2 7\n4 0 1 2 3 7\n");
+    const ReadScene scene = read_ply_text(header("ascii", "property uchar red\n") +
+                                          "0 0 255 0\n1 0 255 0\n1 1 255 0\n0 1 255 2.5\n3 0 1 2 7\n4 0 1 2 3 7\n");
     ASSERT_EQ(scene.findings.size(), 1u);
     EXPECT_EQ(scene.findings[0].kind, Finding::Kind::warning);
     EXPECT_EQ(scene.description.points[3].z, 2.5);
 }
 
 TEST(Ply, RowsWithoutContentTakeNoTime) {
-    const ReadScene scene = read(
+    const ReadScene scene = read_ply_text(
         "ply\nformat ascii 1.0\nelement junk 9000000000000000000\nelement vertex 0\nelement face 0\n"
         "end_header\n");
     EXPECT_TRUE(scene.findings.empty());
@@ -92,7 +92,7 @@ TEST(Ply, BrokenFilesAreErrors) {
           std::string("ply\nformat ascii 1.0\nelement vertex 0\nelement vertex 0\nelement face 0\nend_header\n"),
           header("ascii") + rows + "3 0 1 1.5 7\n3 0 1 2 7\n",
           std::string("ply\nformat ascii 1.0\nproperty float x\nend_header\n")}) {
-        const ReadScene scene = read(bytes);
+        const ReadScene scene = read_ply_text(bytes);
         ASSERT_FALSE(scene.findings.empty()) << bytes;
         EXPECT_EQ(scene.findings[0].kind, Finding::Kind::error) << bytes;
     }

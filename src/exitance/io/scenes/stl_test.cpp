@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-ReadScene read(const std::string& bytes) {
+ReadScene read_stl_text(const std::string& bytes) {
     const TemporaryFolder folder;
     std::ofstream(folder / "s.stl", std::ios::binary) << bytes;
     return read_stl(folder / "s.stl");
@@ -33,7 +33,8 @@ std::string binary(const std::string& header, std::uint32_t count, const std::st
 TEST(Stl, AsciiFacetsBecomeTrianglesAndSolidsGroups) {
     const std::string facet =
         "  facet normal 0 0 1\n outer loop\n vertex 0 0 0\n vertex 1e0 0 0\n vertex 0 2 0\n endloop\n endfacet\n";
-    const ReadScene scene = read("solid one thing\n" + facet + facet + "endsolid\nsolid\n" + facet + "endsolid\n");
+    const ReadScene scene =
+        read_stl_text("solid one thing\n" + facet + facet + "endsolid\nsolid\n" + facet + "endsolid\n");
     EXPECT_TRUE(scene.findings.empty());
     ASSERT_EQ(scene.description.faces.size(), 3u);
     EXPECT_EQ(scene.description.groups, (std::vector<std::string>{"one thing", "default"}));
@@ -44,7 +45,7 @@ TEST(Stl, AsciiFacetsBecomeTrianglesAndSolidsGroups) {
 
 TEST(Stl, BinaryIsDetectedByItsLengthEvenIfItBeginsLikeText) {
     const ReadScene scene =
-        read(binary("solid from a program that ought to know better", 2, triangle(3) + triangle(4)));
+        read_stl_text(binary("solid from a program that ought to know better", 2, triangle(3) + triangle(4)));
     EXPECT_TRUE(scene.findings.empty());
     ASSERT_EQ(scene.description.faces.size(), 2u);
     EXPECT_EQ(scene.description.points[5].z, 4);
@@ -57,7 +58,7 @@ TEST(Stl, BrokenFilesAreErrors) {
           std::string("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\nendfacet\n"),
           std::string("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 nan\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"),
           std::string("solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"), std::string("solid s\ncube 1\n")}) {
-        const ReadScene scene = read(bytes);
+        const ReadScene scene = read_stl_text(bytes);
         ASSERT_FALSE(scene.findings.empty()) << bytes;
         EXPECT_EQ(scene.findings[0].kind, Finding::Kind::error);
     }

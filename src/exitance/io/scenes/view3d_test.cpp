@@ -12,7 +12,7 @@ namespace {
 
 const std::string square = "V 1 0 0 0\nV 2 4 0 0\nV 3 4 4 0\nV 4 0 4 0\nV 5 1 1 0\nV 6 3 1 0\nV 7 3 3 0\nV 8 1 3 0\n";
 
-ReadScene read(const std::string& text) {
+ReadScene read_vs3_text(const std::string& text) {
     const TemporaryFolder folder;
     std::ofstream(folder / "s.vs3") << text;
     return read_view3d(folder / "s.vs3");
@@ -25,9 +25,9 @@ CheckedScene load(const std::string& text) {
 }
 
 TEST(View3d, ReadsLettersOfEitherCaseCommasCommentsAndTriangles) {
-    const ReadScene scene = read("t a title ! with a mark\nc eps=1e-5, encl=0\nf 3\n" + square +
-                                 "s 1,1,2,3,4,0,0,0.75,floor ! a comment\nS 2 5 7 6 0 0 0 0.5 lid / another\n"
-                                 "e the end\nS 3 nonsense\n");
+    const ReadScene scene = read_vs3_text("t a title ! with a mark\nc eps=1e-5, encl=0\nf 3\n" + square +
+                                          "s 1,1,2,3,4,0,0,0.75,floor ! a comment\nS 2 5 7 6 0 0 0 0.5 lid / another\n"
+                                          "e the end\nS 3 nonsense\n");
     EXPECT_TRUE(scene.findings.empty());
     const SceneDescription& d = scene.description;
     ASSERT_EQ(d.faces.size(), 2u);
@@ -53,7 +53,8 @@ TEST(View3d, AWindowIsCutOutOfItsWall) {
 }
 
 TEST(View3d, MergedPiecesAreOneGroup) {
-    const ReadScene scene = read("F 3\n" + square + "S 1 1 2 3 0 0 0 .9 a\nS 2 1 3 4 0 0 1 .9 b\nS 3 5 8 7 6 0 0 .9\n");
+    const ReadScene scene =
+        read_vs3_text("F 3\n" + square + "S 1 1 2 3 0 0 0 .9 a\nS 2 1 3 4 0 0 1 .9 b\nS 3 5 8 7 6 0 0 .9\n");
     ASSERT_EQ(scene.description.faces.size(), 3u);
     EXPECT_EQ(scene.description.faces[0].group, scene.description.faces[1].group);
     EXPECT_EQ(scene.description.groups[scene.description.faces[2].group], "surface 3");
@@ -106,7 +107,7 @@ TEST(View3d, InputThatView3dRejectsIsAnErrorWithItsLine) {
         {"F 3a\nS 1 R 0 0 .9\n1 2 3\n", 2},  // ends within a surface
     };
     for (const auto& [text, line] : wrong) {
-        const ReadScene scene = read(text);
+        const ReadScene scene = read_vs3_text(text);
         const auto error = std::find_if(scene.findings.begin(), scene.findings.end(),
                                         [](const Finding& f) { return f.kind == Finding::Kind::error; });
         ASSERT_NE(error, scene.findings.end()) << text;

@@ -16,7 +16,7 @@
 namespace exitance {
 namespace {
 
-constexpr Hdf5Label label = {"1", "made up"};
+constexpr Hdf5Label hostile_label = {"1", "made up"};
 
 /// The data of a file with one square split into four. Tests change one of them.
 struct Parts {
@@ -29,18 +29,18 @@ struct Parts {
     std::string wrong(const std::string& path) const {
         Hdf5Writer out(path);
         out.make_group("f");
-        out.write("f/parent", parent, 1, label);
-        out.write("f/cut", cut, 1, label);
-        out.write("f/ratio", ratio, 1, label);
-        out.write("f/line_element", line_element, 1, label);
-        out.write("f/line", line, 3, label);
-        out.write("f/fan_element", fan_element, 1, label);
-        out.write("f/fan_places", fan_places, 1, label);
-        out.write("f/fan", fan, 2, label);
-        out.write("f/root_region", root_region, 1, label);
-        out.write("f/root_shape", root_shape, 1, label);
-        out.write("f/root_patch", root_patch, 9, label);
-        out.write("f/values", values, bands, label);
+        out.write("f/parent", parent, 1, hostile_label);
+        out.write("f/cut", cut, 1, hostile_label);
+        out.write("f/ratio", ratio, 1, hostile_label);
+        out.write("f/line_element", line_element, 1, hostile_label);
+        out.write("f/line", line, 3, hostile_label);
+        out.write("f/fan_element", fan_element, 1, hostile_label);
+        out.write("f/fan_places", fan_places, 1, hostile_label);
+        out.write("f/fan", fan, 2, hostile_label);
+        out.write("f/root_region", root_region, 1, hostile_label);
+        out.write("f/root_shape", root_shape, 1, hostile_label);
+        out.write("f/root_patch", root_patch, 9, hostile_label);
+        out.write("f/values", values, bands, hostile_label);
         if (!out.commit()) return "cannot write";
         Result<Hdf5Reader> in = Hdf5Reader::open(path);
         if (!in) return "cannot open";
@@ -187,11 +187,11 @@ TEST(Hdf5Writers, WriteRowsAndArraysEqually) {
     for (const bool by_rows : {false, true}) {
         Hdf5Writer out(folder / (by_rows ? "rows.h5" : "array.h5"));
         if (by_rows)
-            out.write_rows<double>("a", 50000, 3, label, [&](std::size_t i, std::span<double> row) {
+            out.write_rows<double>("a", 50000, 3, hostile_label, [&](std::size_t i, std::span<double> row) {
                 std::copy_n(&values[3 * i], 3, row.begin());
             });
         else
-            out.write("a", values, 3, label);
+            out.write("a", values, 3, hostile_label);
         ASSERT_TRUE(out.commit());
     }
     Result<Hdf5Reader> in = Hdf5Reader::open(folder / "rows.h5");
@@ -203,22 +203,22 @@ TEST(Hdf5Writers, WriteRowsAndArraysEqually) {
 TEST(Hdf5Writers, ReportDiskErrors) {
     if (!std::filesystem::exists("/dev/full")) return;
     Hdf5Writer out("/dev/full");
-    out.write("a", std::vector<double>(100000, 1.0), 1, label);
+    out.write("a", std::vector<double>(100000, 1.0), 1, hostile_label);
     const Result<void> written = out.commit();
     ASSERT_FALSE(written);
     EXPECT_EQ(written.error().code, ErrorCode::cannot_write);
     EXPECT_NE(written.error().message.find("No space"), std::string::npos) << written.error().message;
     Hdf5Writer nowhere("/nowhere/at/all.h5");
-    nowhere.write("a", std::vector<double>(10, 1.0), 1, label);
+    nowhere.write("a", std::vector<double>(10, 1.0), 1, hostile_label);
     EXPECT_FALSE(nowhere.commit());
 }
 
 TEST(HostileSolutions, WithOtherDataSetTypesAreErrors) {
     const TemporaryFolder folder;
     Hdf5Writer out(folder / "f.h5");
-    out.write("a", std::vector<double>{1, 2, 3, 4}, 2, label);
-    out.write("b", std::vector<std::int64_t>{-1, 2}, 1, label);
-    out.write_text("c", "text", label);
+    out.write("a", std::vector<double>{1, 2, 3, 4}, 2, hostile_label);
+    out.write("b", std::vector<std::int64_t>{-1, 2}, 1, hostile_label);
+    out.write_text("c", "text", hostile_label);
     out.make_group("g");
     ASSERT_TRUE(out.commit());
     const auto wrong = [&](const auto& read) {

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "exitance/base/words.hpp"
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/text_table.hpp"
 #include "exitance/io/scenes/view3d.hpp"
@@ -11,12 +12,6 @@
 
 namespace exitance {
 namespace {
-
-std::string trimmed(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t\"\r");
-    if (first == std::string_view::npos) return {};
-    return std::string(text.substr(first, text.find_last_not_of(" \t\"\r") - first + 1));
-}
 
 /// Nodes by a key of every face.
 template <class KeyOf>
@@ -99,8 +94,8 @@ Result<FactorNodes> read_node_table(const std::string& path, std::size_t faces) 
     if (lines->failed()) return lines->read_error();
     if (!header) return lines->error("the table is empty", hint);
     const std::size_t middle = header->find(',');
-    const std::string first = trimmed(header->substr(0, middle));
-    const std::string second = middle == std::string_view::npos ? "" : trimmed(header->substr(middle + 1));
+    const std::string first(without_quotes(header->substr(0, middle)));
+    const std::string second(middle == std::string_view::npos ? "" : without_quotes(header->substr(middle + 1)));
     const bool is_turned = first == "node" && second == "face";
     if (!is_turned && !(first == "face" && second == "node"))
         return lines->error(fmt::format("the header is '{}'", shown(*header)), hint);
@@ -110,7 +105,7 @@ Result<FactorNodes> read_node_table(const std::string& path, std::size_t faces) 
     while (const auto line = lines->next_content()) {
         const std::size_t comma = is_turned ? line->rfind(',') : line->find(',');
         if (comma == std::string_view::npos) return lines->error("a line has one field only", hint);
-        const std::string left = trimmed(line->substr(0, comma)), right = trimmed(line->substr(comma + 1));
+        const std::string left(without_quotes(line->substr(0, comma))), right(without_quotes(line->substr(comma + 1)));
         const std::string &face = is_turned ? right : left, &node = is_turned ? left : right;
         const std::optional<long long> number = parse_integer(face);
         if (!number || *number < 1 || *number > static_cast<long long>(faces))

@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::int64_t file_version = 1;  ///< Version of the format; raised if older programs cannot read the file.
+constexpr std::int64_t operator_version = 1;  ///< Version of the format; raised if older programs cannot read the file.
 const std::string group = "factor_operator";
 
 /// The tree, if its order names every face once.
@@ -25,7 +25,8 @@ FaceTree read_tree(Hdf5Reader& file, std::size_t faces) {
 }
 
 Result<FactorOperator> read_operator(Hdf5Reader& file, const std::string& path) {
-    if (const Result<void> known = check_file_version(file, group, file_version, path); !known) return known.error();
+    if (const Result<void> known = check_file_version(file, group, operator_version, path); !known)
+        return known.error();
     FactorOperator out;
     const std::size_t faces = file.read<double>(group + "/areas").size();
     if (!file.failed()) out.tree = read_tree(file, faces);
@@ -43,7 +44,7 @@ Result<void> write_factor_operator(const std::string& path, const FactorOperator
     Hdf5Writer file(path);
     file.make_group(group);
     file.set_attribute(group, "format", std::string_view("rows over faces and nodes of a tree"));
-    file.set_attribute(group, "version", file_version);
+    file.set_attribute(group, "version", operator_version);
     file.set_attribute(group, "combined", static_cast<std::int32_t>(transport.rows.combined));
     file.set_attribute(group, "closure_defect", transport.closure_defect());
     write_factor_rows(file, group, transport.rows);

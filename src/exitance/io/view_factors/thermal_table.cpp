@@ -9,6 +9,7 @@
 #include <optional>
 #include <string_view>
 
+#include "exitance/base/words.hpp"
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/text_table.hpp"
 
@@ -18,17 +19,11 @@ namespace {
 constexpr std::array<std::string_view, 4> column_names{"surface", "emissivity", "temperature", "heat"};
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-std::string_view trimmed(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(" \t\"");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t\"") - first + 1);
-}
-
 std::vector<std::string_view> fields_of(std::string_view line) {
     std::vector<std::string_view> out;
     while (true) {
         const std::size_t comma = line.find(',');
-        out.push_back(trimmed(line.substr(0, comma)));
+        out.push_back(without_quotes(line.substr(0, comma)));
         if (comma == std::string_view::npos) return out;
         line.remove_prefix(comma + 1);
     }

@@ -13,7 +13,8 @@
 namespace exitance {
 namespace {
 
-constexpr std::int64_t file_version = 1;  ///< Version of the .h5 format; raised if older programs cannot read the file.
+constexpr std::int64_t factors_version =
+    1;  ///< Version of the .h5 format; raised if older programs cannot read the file.
 
 Error stopped() {
     return {ErrorCode::limit, "stopped while view factors were written", "", "allow more time"};
@@ -137,7 +138,7 @@ Result<void> write_hdf5(const std::string& path, const SparseFactors& table, con
     Hdf5Writer file(path);
     file.make_group(group);
     file.set_attribute(group, "format", std::string_view("csr"));
-    file.set_attribute(group, "version", file_version);
+    file.set_attribute(group, "version", factors_version);
     const std::int64_t shape[] = {static_cast<std::int64_t>(table.size()), static_cast<std::int64_t>(table.size())};
     file.set_attribute(group, "shape", std::span<const std::int64_t>(shape));
     file.set_attribute(group, "combined", static_cast<std::int32_t>(table.combined));
@@ -186,7 +187,7 @@ Result<SparseFactors> read_view_factors(const std::string& path) {
 }
 
 Result<SparseFactors> read_view_factors(Hdf5Reader& file, const std::string& path) {
-    if (const Result<void> known = check_file_version(file, "view_factors", file_version, path); !known)
+    if (const Result<void> known = check_file_version(file, "view_factors", factors_version, path); !known)
         return known.error();
     SparseFactors table = read_factor_rows(file, "view_factors", 0);
     if (file.failed()) return file.error();

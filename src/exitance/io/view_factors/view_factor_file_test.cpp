@@ -13,12 +13,12 @@
 namespace exitance {
 namespace {
 
-SparseFactors two_faces() {
+SparseFactors written_factors() {
     return sparse_from({{1, 2}, {0.5, 0.25}, {0, 1.0 / 3, 1.0 / 6, 0}, {1.0 / 3, 1.0 / 6}, 0});
 }
 
 TEST(ViewFactorFile, CsvKeepsDoublesExactly) {
-    std::istringstream in(view_factors_csv(two_faces()));
+    std::istringstream in(view_factors_csv(written_factors()));
     std::string line;
     std::getline(in, line);
     EXPECT_EQ(line, "surface,area,row_sum,F_1,F_2");
@@ -28,7 +28,7 @@ TEST(ViewFactorFile, CsvKeepsDoublesExactly) {
 }
 
 TEST(ViewFactorFile, VfHoldsHeaderAreasRowsAndEmittances) {
-    const std::string text = view_factors_vf(two_faces());
+    const std::string text = view_factors_vf(written_factors());
     EXPECT_EQ(text.find('\n'), 30u);
     std::istringstream in(text);
     std::string name, version;
@@ -46,7 +46,7 @@ TEST(ViewFactorFile, VfHoldsHeaderAreasRowsAndEmittances) {
 }
 
 TEST(ViewFactorFile, MatrixMarketHoldsNonzeroEntries) {
-    std::istringstream in(view_factors_mtx(two_faces()));
+    std::istringstream in(view_factors_mtx(written_factors()));
     std::string line, last;
     std::getline(in, line);
     EXPECT_EQ(line, "%%MatrixMarket matrix coordinate real general");
@@ -62,7 +62,7 @@ TEST(ViewFactorFile, MatrixMarketHoldsNonzeroEntries) {
 
 TEST(ViewFactorFile, Hdf5HoldsCompressedRows) {
     const TemporaryFolder folder;
-    ASSERT_TRUE(write_view_factors(folder / "F.h5", two_faces(), StopRequest()));
+    ASSERT_TRUE(write_view_factors(folder / "F.h5", written_factors(), StopRequest()));
     Result<Hdf5Reader> file = Hdf5Reader::open(folder / "F.h5");
     ASSERT_TRUE(file);
     EXPECT_EQ(file->read<std::int64_t>("view_factors/indptr"), (std::vector<std::int64_t>{0, 1, 2}));
@@ -74,7 +74,7 @@ TEST(ViewFactorFile, Hdf5HoldsCompressedRows) {
 
 TEST(ViewFactorFile, Hdf5IsReadBack) {
     const TemporaryFolder folder;
-    SparseFactors table = two_faces();
+    SparseFactors table = written_factors();
     table.row_errors = {1e-3, 2e-3}, table.combined = true;
     ASSERT_TRUE(write_view_factors(folder / "F.h5", table, StopRequest()));
     const Result<SparseFactors> read = read_view_factors(folder / "F.h5");
@@ -88,7 +88,7 @@ TEST(ViewFactorFile, Hdf5IsReadBack) {
 }
 
 TEST(ViewFactorFile, UnfinishedRowsAreOmittedFromCsvAndNamedInMatrixMarket) {
-    SparseFactors table = two_faces();
+    SparseFactors table = written_factors();
     table.finished = {1, 0}, table.starts = {0, 1, 1}, table.columns.resize(1), table.values.resize(1);
     const std::string csv = view_factors_csv(table), mtx = view_factors_mtx(table);
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 2);
@@ -100,7 +100,7 @@ TEST(ViewFactorFile, AStopLeavesNoFileInAnyFormat) {
     StopRequest stop;
     stop.interrupt();
     for (const char* name : {"F.csv", "F.vf", "F.mtx", "F.h5"}) {
-        const Result<void> written = write_view_factors(folder / name, two_faces(), stop);
+        const Result<void> written = write_view_factors(folder / name, written_factors(), stop);
         ASSERT_FALSE(written) << name;
         EXPECT_EQ(written.error().code, ErrorCode::limit);
         EXPECT_FALSE(std::filesystem::exists(folder / name));
@@ -111,12 +111,13 @@ TEST(ViewFactorFile, IsWrittenWholeOrNotAtAll) {
     const auto folder = std::filesystem::temp_directory_path() / "exitance_view_factor_file";
     std::filesystem::create_directories(folder);
     const std::string path = (folder / "F.csv").string();
-    ASSERT_TRUE(write_view_factors(path, two_faces(), StopRequest()));
+    ASSERT_TRUE(write_view_factors(path, written_factors(), StopRequest()));
     std::ifstream file(path);
     std::stringstream content;
     content << file.rdbuf();
-    EXPECT_EQ(content.str(), view_factors_csv(two_faces()));
-    const Result<void> failed = write_view_factors((folder / "none" / "F.csv").string(), two_faces(), StopRequest());
+    EXPECT_EQ(content.str(), view_factors_csv(written_factors()));
+    const Result<void> failed =
+        write_view_factors((folder / "none" / "F.csv").string(), written_factors(), StopRequest());
     ASSERT_FALSE(failed);
     EXPECT_EQ(failed.error().code, ErrorCode::cannot_write);
     std::size_t files = 0;

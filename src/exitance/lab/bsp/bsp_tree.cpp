@@ -6,21 +6,22 @@
 #include "exitance/base/random.hpp"
 
 namespace exitance {
-namespace {
 
 /// A convex polygon that is being inserted.
-struct Part {
+struct BspPart {
     std::vector<Point> outline;
     Plane plane;
     PieceId piece;
 };
+
+namespace {
 
 struct Sides {
     bool front = false, behind = false;
     bool is_cut() const { return front && behind; }
 };
 
-Sides sides_of(const Part& part, const Plane& plane, double thickness) {
+Sides sides_of(const BspPart& part, const Plane& plane, double thickness) {
     Sides out;
     for (const Point& p : part.outline) {
         const double d = plane.signed_distance(p);
@@ -31,8 +32,8 @@ Sides sides_of(const Part& part, const Plane& plane, double thickness) {
 }
 
 /// Splits a polygon at a plane that it crosses. Corners within the thickness belong to both parts.
-std::pair<Part, Part> cut(const Part& part, const Plane& plane, double thickness) {
-    std::pair<Part, Part> out{{{}, part.plane, part.piece}, {{}, part.plane, part.piece}};
+std::pair<BspPart, BspPart> cut(const BspPart& part, const Plane& plane, double thickness) {
+    std::pair<BspPart, BspPart> out{{{}, part.plane, part.piece}, {{}, part.plane, part.piece}};
     const std::size_t n = part.outline.size();
     for (std::size_t i = 0; i < n; ++i) {
         const Point &p = part.outline[i], &q = part.outline[(i + 1) % n];
@@ -52,19 +53,19 @@ std::pair<Part, Part> cut(const Part& part, const Plane& plane, double thickness
 
 struct BspTree::Builder {
     struct Job {
-        std::vector<Part> parts;
+        std::vector<BspPart> parts;
         std::uint32_t parent;
         bool is_front;
         std::uint16_t depth;
     };
 
-    const Plane& choose(const std::vector<Part>& parts) {
+    const Plane& choose(const std::vector<BspPart>& parts) {
         std::size_t best = 0;
         double least = HUGE_VAL;
         for (std::size_t k = 0; k < std::min(tries, parts.size()); ++k) {
             const std::size_t i = tries >= parts.size() ? k : random.bits() % parts.size();
             double cuts = 0, balance = 0;
-            for (const Part& part : parts) {
+            for (const BspPart& part : parts) {
                 const Sides sides = sides_of(part, parts[i].plane, tree.thickness_);
                 cuts += sides.is_cut();
                 balance += static_cast<double>(sides.front) - static_cast<double>(sides.behind);
@@ -76,14 +77,14 @@ struct BspTree::Builder {
         return parts[best].plane;
     }
 
-    void add_fragment(const Part& part, const Plane& plane) {
+    void add_fragment(const BspPart& part, const Plane& plane) {
         tree.fragments_.push_back({static_cast<std::uint32_t>(tree.corners_.size()),
                                    static_cast<std::uint32_t>(part.outline.size()), part.piece,
                                    dot(part.plane.n, plane.n) > 0});
         tree.corners_.insert(tree.corners_.end(), part.outline.begin(), part.outline.end());
     }
 
-    void run(std::vector<Part> all) {
+    void run(std::vector<BspPart> all) {
         std::vector<Job> jobs;
         jobs.push_back({std::move(all), none, true, 0});
         while (!jobs.empty()) {
@@ -98,7 +99,7 @@ struct BspTree::Builder {
             node.first_fragment = static_cast<std::uint32_t>(tree.fragments_.size());
             const auto below = static_cast<std::uint16_t>(job.depth + 1);
             Job front{{}, id, true, below}, behind{{}, id, false, below};
-            for (Part& part : job.parts) {
+            for (BspPart& part : job.parts) {
                 const Sides sides = sides_of(part, plane, tree.thickness_);
                 if (sides.is_cut()) {
                     auto [f, b] = cut(part, plane, tree.thickness_);
@@ -124,7 +125,7 @@ struct BspTree::Builder {
 
 BspTree::BspTree(const Occluders& occluders, std::size_t tries, std::uint64_t seed, double thickness)
     : occluders_(&occluders), thickness_(thickness > 0 ? thickness : occluders.rounding()) {
-    std::vector<Part> parts;
+    std::vector<BspPart> parts;
     for (PieceId p : occluders.pieces().ids()) {
         const auto corners = occluders.corners(p);
         // A piece may deviate from its own plane by its thickness, because of rounding.

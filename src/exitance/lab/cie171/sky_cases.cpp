@@ -13,9 +13,8 @@ namespace exitance {
 namespace {
 
 using Case = Cie171Case;
-constexpr double degree = pi / 180;
-constexpr std::array<double, 6> heights{2.75, 2.25, 1.75, 1.25, 0.75, 0.25};
-constexpr std::array<double, 8> depths{0.25, 0.75, 1.25, 1.75, 2.25, 2.75, 3.25, 3.75};
+constexpr std::array<double, 6> wall_heights{2.75, 2.25, 1.75, 1.25, 0.75, 0.25};
+constexpr std::array<double, 8> floor_depths{0.25, 0.75, 1.25, 1.75, 2.25, 2.75, 3.25, 3.75};
 
 /// A hole in a wall: range along x, and along the wall's other direction.
 struct Hole {
@@ -73,8 +72,8 @@ std::vector<Setting> roofs() {
     for (const auto& [name, a] : {std::pair{"roof_1x1", 0.5}, {"roof_4x4", 2.0}}) {
         Setting s{"5.9", name, {}, {{0, 0, 3}, {1, 0, 0}, {0, 1, 0}, 2 - a, 2 + a, 2 - a, 2 + a}, {}, {}};
         s.description = room_with(name, true, {2 - a, 2 + a, 2 - a, 2 + a}).take();
-        for (const double z : heights) s.points.push_back({{2, 0, z}, {0, 1, 0}});
-        for (const double y : depths) s.points.push_back({{2, y, 0}, {0, 0, 1}});
+        for (const double z : wall_heights) s.points.push_back({{2, 0, z}, {0, 1, 0}});
+        for (const double y : floor_depths) s.points.push_back({{2, y, 0}, {0, 0, 1}});
         for (std::size_t i = 0; i < s.points.size(); ++i) s.names.push_back(letter(i));
         out.push_back(std::move(s));
     }
@@ -87,11 +86,11 @@ std::vector<Setting> facades() {
          {std::pair{"facade_2x1", Hole{1, 3, 1, 2}}, std::pair{"facade_4x3", Hole{0, 4, 0, 3}}}) {
         Setting s{"5.11", name, {}, {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, h.x0, h.x1, h.b0, h.b1}, {}, {}};
         s.description = room_with(name, false, h).take();
-        for (const double z : heights) s.points.push_back({{2, 4, z}, {0, -1, 0}});
-        for (const double y : depths) s.points.push_back({{2, 4 - y, 0}, {0, 0, 1}});
+        for (const double z : wall_heights) s.points.push_back({{2, 4, z}, {0, -1, 0}});
+        for (const double y : floor_depths) s.points.push_back({{2, 4 - y, 0}, {0, 0, 1}});
         for (std::size_t i = 0; i < s.points.size(); ++i) s.names.push_back(letter(i));
-        for (std::size_t i = 0; i < depths.size(); ++i) {
-            s.points.push_back({{2, 4 - depths[i], 3}, {0, 0, -1}});
+        for (std::size_t i = 0; i < floor_depths.size(); ++i) {
+            s.points.push_back({{2, 4 - floor_depths[i], 3}, {0, 0, -1}});
             s.names.push_back(letter(6 + i) + "'");
         }
         out.push_back(std::move(s));
@@ -99,7 +98,8 @@ std::vector<Setting> facades() {
     return out;
 }
 
-/// Black masks: overhangs of several depths over the opening, and walls of several heights 6 m in front of it.
+/// Black masks: overhangs of several floor_depths over the opening, and walls of several wall_heights 6 m in front of
+/// it.
 std::vector<Setting> masks() {
     std::vector<Setting> out;
     const auto add = [&](const char* study, const char* name, std::vector<Point> mask, auto seen) {
@@ -107,8 +107,8 @@ std::vector<Setting> masks() {
         PolygonKit kit = room_with(name, false, {1, 3, 1, 2});
         kit.facing({2, 0, 1}, "mask", "room", std::move(mask));
         s.description = std::move(kit).take();
-        for (std::size_t i = 0; i < depths.size(); ++i) {
-            const double y = 4 - depths[i];
+        for (std::size_t i = 0; i < floor_depths.size(); ++i) {
+            const double y = 4 - floor_depths[i];
             s.points.push_back({{2, y, 0}, {0, 0, 1}}), s.names.push_back(letter(i));
             SkyOpening& part = s.visible.emplace_back(s.opening);
             const auto [from, to] = seen(y);

@@ -11,8 +11,6 @@
 namespace exitance {
 namespace {
 
-/// Default of A_eps, relative to the scene's area: eight cuts into quarters.
-constexpr double default_min_share = 1.0 / 65536;
 constexpr std::size_t default_memory = std::size_t(1) << 32;  // limit on the memory of links, bytes
 constexpr double rounding = 1e-6;                             // relative rounding of lengths and areas in files
 constexpr std::size_t max_rounds = 200;                       // limit on rounds of refinement and gathering

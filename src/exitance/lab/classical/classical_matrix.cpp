@@ -16,8 +16,6 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t default_visibility_samples = 16;
-constexpr unsigned default_hemicube_cells = 64;
 constexpr double default_sor_factor = 1.15;  // radiosity converges fastest with 1.1 to 1.2 [Gortler94]
 
 /// Solves b = rhs + rho F b by the requested relaxation. Calls `swept` after every sweep.

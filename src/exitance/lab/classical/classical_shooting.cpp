@@ -15,10 +15,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t default_visibility_samples = 16;
-constexpr unsigned default_hemicube_cells = 64;
 constexpr std::size_t column_memory = std::size_t{1} << 29;  // of columns that are kept for later shots, bytes
-constexpr double default_min_share = 1.0 / 65536;            // of the scene's area: smallest element
 constexpr double vertex_rounding = 1e-6;  // of the scene's size: corners of a region that are closer are one vertex
 
 class Shooting {

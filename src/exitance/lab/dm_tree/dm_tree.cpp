@@ -4,14 +4,6 @@
 #include <cmath>
 
 namespace exitance {
-namespace {
-
-double length(const Vec2& v) {
-    return std::hypot(v.x, v.y);
-}
-
-}  // namespace
-
 DmTree::DmTree(std::span<const Vec2> outline, double tolerance) : tolerance_(tolerance), mesh_(outline) {
     Node leaf;
     leaf.face = 0;

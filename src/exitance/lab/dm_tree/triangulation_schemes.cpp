@@ -7,10 +7,6 @@
 namespace exitance {
 namespace {
 
-double length(const Vec2& v) {
-    return std::hypot(v.x, v.y);
-}
-
 /// Vertices of a convex face; some may be collinear.
 using Ring = std::vector<std::uint32_t>;
 

@@ -7,11 +7,11 @@
 namespace exitance::flatland {
 namespace {
 
-double smooth(double x, double y) {
+double smooth_kernel(double x, double y) {
     return 1 / ((x - y) * (x - y) + 1);
 }
 double stepped(double x, double y) {
-    return x > y ? smooth(x, y) : 0;
+    return x > y ? smooth_kernel(x, y) : 0;
 }
 
 /// Slope of log error over log m, between two counts in the asymptotic range.
@@ -62,9 +62,9 @@ TEST(KernelTerms, FlatletsHaveVanishingMoments) {
 /// Theory for smooth kernels: with m ~ 4^j terms of one level the error falls as 2^(-jk), hence as m^(-k/2)
 /// [Gortler93]. The tolerance of a quarter allows for counts that are not yet asymptotic.
 TEST(KernelTerms, NonStandardTermsDecayWithTheOrderWhereTheKernelIsSmooth) {
-    EXPECT_NEAR(slope(LineBasis::haar, Decomposition::non_standard, smooth, 100, 1600), -0.5, 0.25);
-    EXPECT_NEAR(slope(LineBasis::multiwavelet2, Decomposition::non_standard, smooth, 100, 1600), -1.0, 0.25);
-    EXPECT_NEAR(slope(LineBasis::multiwavelet3, Decomposition::non_standard, smooth, 150, 1600), -1.5, 0.35);
+    EXPECT_NEAR(slope(LineBasis::haar, Decomposition::non_standard, smooth_kernel, 100, 1600), -0.5, 0.25);
+    EXPECT_NEAR(slope(LineBasis::multiwavelet2, Decomposition::non_standard, smooth_kernel, 100, 1600), -1.0, 0.25);
+    EXPECT_NEAR(slope(LineBasis::multiwavelet3, Decomposition::non_standard, smooth_kernel, 150, 1600), -1.5, 0.35);
 }
 
 /// A jump along the diagonal crosses 2^j elements of level j, whose terms together have a norm of 2^(-j/2): m^(-1/2)

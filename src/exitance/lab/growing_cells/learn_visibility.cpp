@@ -16,9 +16,9 @@ constexpr double near_distance = 3;  ///< Cells closer than this multiple of the
 constexpr std::size_t rays_per_pair = 4;   ///< Rays per pair whose learned visibility is not sure.
 constexpr std::size_t nodes_per_cell = 4;  ///< Points per cell from which it sends light, on average.
 /// Length that a unit difference of normals counts as, relative to the scene's size.
-constexpr double turn_by_size = 0.2;
-constexpr double slope_ridge = 0.02;  ///< Ridge of slopes, relative to the spread of a cell's neighbours.
-constexpr std::size_t max_reflections = 200;
+constexpr double visibility_turn_by_size = 0.2;
+constexpr double visibility_ridge = 0.02;  ///< Ridge of slopes, relative to the spread of a cell's neighbours.
+constexpr std::size_t max_flow_reflections = 200;
 constexpr double direct_accuracy = 0.01;  ///< Relative accuracy of direct light at points, if there are many emitters.
 
 /// Points (nodes) from which cells send light.
@@ -290,7 +290,7 @@ void find_slopes(CellLight& light) {
             spread += weight * squared_norm(w);
         });
         if (!(spread > 0)) return;
-        for (std::size_t i = 0; i < 3; ++i) A[4 * i] += slope_ridge * spread;
+        for (std::size_t i = 0; i < 3; ++i) A[4 * i] += visibility_ridge * spread;
         solve_in_place(A, b, 3, bands);
         for (std::size_t i = 0; i < 3; ++i) std::copy_n(&b[bands * i], bands, slopes[c][i].value.begin());
     });
@@ -323,7 +323,7 @@ LearnedLight learn_visibility(const MethodInput& input, const SurfacePool& pool)
     for (std::size_t i = 0; i < pool.size(); ++i) sent[i] = cell_light[network.cell_of[i]];
     KernelNetwork kernel(stage, pool,
                          {.target = KernelTarget::visibility,
-                          .normal_scale = turn_by_size * stage.scene.size(),
+                          .normal_scale = visibility_turn_by_size * stage.scene.size(),
                           .seed = input.options.seed},
                          sent);
     out.light.cells = network.cells;
@@ -336,7 +336,7 @@ LearnedLight learn_visibility(const MethodInput& input, const SurfacePool& pool)
         CellTransport T = make_transport(stage, pool, network, nodes, kernel, input.options.seed);
         if (!passed.empty()) passed.meet(T);
         out.report = reflect(T, network.area, E, input.knobs.residual,
-                             std::min(max_reflections, input.knobs.max_iterations), input.stop);
+                             std::min(max_flow_reflections, input.knobs.max_iterations), input.stop);
         out.kernels += T.kernels, out.rays += T.rays;
         out.memory_bytes = T.matrix.size() * sizeof(Spectrum);
         for (std::size_t i = 0; i < pool.size(); ++i) {

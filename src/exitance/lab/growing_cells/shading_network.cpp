@@ -13,8 +13,8 @@ namespace {
 /// Length that a unit difference of normals counts as, relative to the scene's size.
 constexpr double turn_by_size = 0.5;
 constexpr std::size_t samples_per_unit = 60;  ///< Samples between two insertions.
-constexpr std::size_t thinnings = 4;          ///< Searches for idle units while a network doubles in size.
-constexpr double idle_share = 0.09;           ///< Threshold of [Fritzke94], relative to the mean number of signals.
+constexpr std::size_t shading_thinnings = 4;  ///< Searches for idle units while a network doubles in size.
+constexpr double idle_shading_share = 0.09;   ///< Threshold of [Fritzke94], relative to the mean number of signals.
 constexpr std::size_t last_samples = 30;      ///< Samples per unit before the last search for idle units.
 constexpr int max_rounds = 3;
 constexpr double min_normal_length = 0.9;  ///< Length of the mean normal below which a cell is on a fold.
@@ -79,11 +79,12 @@ GrowingCells grow_units(const SurfacePool& pool, const std::function<std::uint32
         for (std::size_t tries = 0; cells.unit_count() < units && tries < 4 * units && !stop.requested(); ++tries) {
             for (std::size_t i = 0; i < samples_per_unit; ++i) cells.learn(sample(), {}, 1, 0);
             cells.insert();
-            if (++since > 8 + cells.unit_count() / thinnings) cells.remove_idle(idle_share, false), since = 0;
+            if (++since > 8 + cells.unit_count() / shading_thinnings)
+                cells.remove_idle(idle_shading_share, false), since = 0;
         }
         cells.remove_idle(0, false);
         for (std::size_t i = 0; i < last_samples * units; ++i) cells.learn(sample(), {}, 1, 0);
-        if (cells.remove_idle(idle_share, false) == 0) break;
+        if (cells.remove_idle(idle_shading_share, false) == 0) break;
     }
     cells.refresh();
     return cells;

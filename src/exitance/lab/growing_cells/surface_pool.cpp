@@ -10,7 +10,7 @@ namespace exitance {
 namespace {
 
 /// Length that a unit difference of normals counts as, relative to the scene's size.
-constexpr double turn_by_size = 0.5;
+constexpr double pool_turn_by_size = 0.5;
 
 double coordinate(const PoolPoint& p, std::size_t axis, double normal_scale) {
     return axis < 3 ? p.at[axis] : normal_scale * p.n[axis - 3];
@@ -35,7 +35,7 @@ SurfacePool::SurfacePool(const Stage& stage, std::size_t count, std::uint64_t se
         points_.push_back({patch.at(uniform_in_shape(patch.shape, sobol(k, 1), sobol(k, 2))),
                            stage.scene.regions()[pieces[piece].region].plane.n, pieces[piece].region});
     }
-    sort(0, points_.size(), turn_by_size * stage.scene.size());
+    sort(0, points_.size(), pool_turn_by_size * stage.scene.size());
 }
 
 void SurfacePool::sort(std::size_t first, std::size_t count, double normal_scale) {

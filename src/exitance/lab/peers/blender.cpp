@@ -11,7 +11,7 @@
 namespace exitance {
 namespace {
 
-Result<std::vector<std::string>> prepare(const PeerTask& task) {
+Result<std::vector<std::string>> prepare_blender(const PeerTask& task) {
     const auto options = named_options(task, {{"samples", "64"}, {"bounces", "64"}});
     if (!options) return options.error();
     std::string triangles, points;
@@ -49,7 +49,7 @@ Result<std::vector<std::string>> prepare(const PeerTask& task) {
                                     fmt::format("{:.9g}", task.scene.size)};
 }
 
-Result<PeerLight> read(const PeerTask& task, const ProgramRun&) {
+Result<PeerLight> read_blender(const PeerTask& task, const ProgramRun&) {
     const Result<std::string> text = read_whole_file(task.folder + "/irradiance.csv");
     if (!text) return text.error();
     const Result<Table> table = parse_csv(*text, "irradiance.csv");
@@ -67,6 +67,6 @@ Result<PeerLight> read(const PeerTask& task, const ProgramRun&) {
 
 }  // namespace
 
-const Peer blender_peer{"blender", "blender", prepare, "", read};
+const Peer blender_peer{"blender", "blender", prepare_blender, "", read_blender};
 
 }  // namespace exitance

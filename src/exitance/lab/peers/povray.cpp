@@ -44,7 +44,7 @@ std::string camera_triangle(const ProbePoint& p, double metre) {
                        vector_text(x + h * frame.u), vector_text(x - h * frame.u - h * frame.v));
 }
 
-Result<std::vector<std::string>> prepare(const PeerTask& task) {
+Result<std::vector<std::string>> prepare_povray(const PeerTask& task) {
     const auto options = named_options(
         task, {{"count", "200"}, {"error_bound", "0.5"}, {"recursion_limit", "8"}, {"nearest_count", "10"}});
     if (!options) return options.error();
@@ -102,7 +102,7 @@ std::vector<unsigned char> bytes_of_line(std::string_view file, std::size_t widt
     return out.size() == 4 * width ? out : std::vector<unsigned char>();
 }
 
-Result<PeerLight> read(const PeerTask& task, const ProgramRun&) {
+Result<PeerLight> read_povray(const PeerTask& task, const ProgramRun&) {
     const std::string path = task.folder + "/light.hdr";
     const Result<std::string> file = read_whole_file(path);
     if (!file) return file.error();
@@ -125,6 +125,6 @@ Result<PeerLight> read(const PeerTask& task, const ProgramRun&) {
 
 }  // namespace
 
-const Peer povray_peer{"povray", "povray", prepare, "", read};
+const Peer povray_peer{"povray", "povray", prepare_povray, "", read_povray};
 
 }  // namespace exitance

@@ -25,7 +25,7 @@ std::string polygon_text(const PeerScene::Face& face, std::size_t number) {
     return text + "\n";
 }
 
-Result<std::vector<std::string>> prepare(const PeerTask& task) {
+Result<std::vector<std::string>> prepare_radiance(const PeerTask& task) {
     std::string scene, points;
     for (std::size_t i = 0; i < task.scene.faces.size(); ++i) scene += polygon_text(task.scene.faces[i], i);
     for (const auto& [point, rho, m] : task.scene.places) {
@@ -42,7 +42,7 @@ Result<std::vector<std::string>> prepare(const PeerTask& task) {
     return words;
 }
 
-Result<PeerLight> read(const PeerTask&, const ProgramRun& run) {
+Result<PeerLight> read_radiance(const PeerTask&, const ProgramRun& run) {
     PeerLight light;
     std::istringstream text(run.out);
     for (Spectrum e; text >> e[0] >> e[1] >> e[2];) light.irradiance.push_back(e);
@@ -51,6 +51,6 @@ Result<PeerLight> read(const PeerTask&, const ProgramRun& run) {
 
 }  // namespace
 
-const Peer radiance_peer{"radiance", "rtrace", prepare, "points.txt", read};
+const Peer radiance_peer{"radiance", "rtrace", prepare_radiance, "points.txt", read_radiance};
 
 }  // namespace exitance

@@ -11,7 +11,7 @@ namespace exitance {
 namespace {
 
 /// Processor time of the calling thread; other programs on the machine do not affect it.
-double processor_seconds() {
+double thread_seconds() {
     timespec t{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
@@ -37,7 +37,7 @@ double mean_form_factor(const TaskPatch& p, const TaskPatch& q) {
 }  // namespace
 
 void TaskWorker::spend(TaskGraph::Cost kind) {
-    const double now = processor_seconds();
+    const double now = thread_seconds();
     seconds[kind] += now - mark_;
     mark_ = now;
 }
@@ -46,7 +46,7 @@ void TaskWorker::process(const PatchTask& task, const IterationState& iteration)
     iteration_ = &iteration;
     made_.clear();
     before_ = seconds;
-    mark_ = processor_seconds();
+    mark_ = thread_seconds();
     const double begin = options_->record ? iteration.clock.seconds() : 0;
     TaskPatch& patch = (*patches_)[task.patch];
     if (iteration.number == 1 && patch.level == 0) link_pieces(task.patch);

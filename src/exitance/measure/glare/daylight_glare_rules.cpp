@@ -11,7 +11,7 @@ namespace {
 
 /// Index of Guth's formula beside the line of sight, tau = 90 degrees, at an angle beta below it [Iwata10].
 double position_below(double ahead, double aside, double above) {
-    constexpr double degree = pi / 180, stretch = 0.3225;  // [Iwata10]
+    constexpr double stretch = 0.3225;  // [Iwata10]
     const double off = std::hypot(aside, above), cosine = above / off;
     const double beta = std::atan2(off * std::sqrt(1 + stretch * cosine * cosine), ahead) / degree;
     return std::exp(6.49e-3 * beta + 21e-5 * beta * beta);  // [Iwata10]

@@ -10,7 +10,6 @@
 namespace exitance {
 namespace {
 
-constexpr double degree = pi / 180;
 const Normal ahead{0, 1, 0};
 
 /// Direction at an angle sigma from the line of sight; tau 0 is above it, 90 beside it, 180 below it, degrees.

@@ -6,7 +6,6 @@
 namespace exitance {
 namespace {
 
-constexpr double degree = pi / 180;
 constexpr double largest_aside = 3;            ///< T / R; last row of Guth's table.
 constexpr double largest_angle = 85 * degree;  ///< Angle from a luminaire's nadir.
 

@@ -7,21 +7,11 @@
 #include "exitance/measure/light_maps/light_map.hpp"
 #include "exitance/measure/light_maps/uv_light_map.hpp"
 #include "support/built_scene.hpp"
+#include "support/motion.hpp"
 #include "support/solved.hpp"
 
 namespace exitance {
 namespace {
-
-/// A rotation, a scale and a translation.
-struct Motion {
-    double scale = 1;
-    Vec3 u{1, 0, 0}, v{0, 1, 0}, n{0, 0, 1}, by;
-
-    Vec3 turned(const Vec3& d) const { return d.x * u + d.y * v + d.z * n; }
-    Point operator()(const Point& p) const { return by + scale * turned(p); }
-};
-
-const Motion upright, slanted{0.03, {0.6, 0, 0.8}, {0, 1, 0}, {-0.8, 0, 0.6}, {7, -30, 11}};
 
 /// Triangles of a unit sphere: an octahedron split `depth` times.
 std::vector<std::array<Point, 3>> sphere_triangles(int depth) {
@@ -59,7 +49,7 @@ void add_polygon(SceneDescription& d, std::span<const Point> corners, std::uint3
 /// `normal(p)`: normal at a corner; `walls`: further grey polygons.
 template <class NormalAt>
 CurvedScene curved_scene(const std::vector<std::array<Point, 3>>& triangles, const NormalAt& normal,
-                         const Motion& motion = upright, const std::vector<std::vector<Point>>& walls = {}) {
+                         const Motion& motion = as_written, const std::vector<std::vector<Point>>& walls = {}) {
     SceneDescription d;
     d.file = "test.obj", d.groups = {"all"};
     d.materials = {{"grey", Spectrum(0.5), Spectrum()}, {"lamp", Spectrum(), Spectrum(8)}};
@@ -78,7 +68,7 @@ CurvedScene curved_scene(const std::vector<std::array<Point, 3>>& triangles, con
     return out;
 }
 
-CurvedScene sphere_scene(const Motion& motion = upright, int depth = 3) {
+CurvedScene sphere_scene(const Motion& motion = as_written, int depth = 3) {
     return curved_scene(
         sphere_triangles(depth), [](const Point& p) { return normalized(p); }, motion);
 }
@@ -166,7 +156,7 @@ TEST(CurvedFaces, SurfacesWithNormalsOfTheirFacesOrCoarseOnesAreFlat) {
 }
 
 TEST(CurvedLight, TheMapOfASphereIsThatOfTheExactSphere) {
-    for (const Motion& motion : {upright, slanted}) {
+    for (const Motion& motion : {as_written, turned_and_moved}) {
         const CurvedScene s = sphere_scene(motion);
         const Solution solution = quick_solution(s.scene);
         const CurvedFaces faces(solution.scene, s.triangles);
@@ -182,7 +172,7 @@ TEST(CurvedLight, TheMapOfASphereIsThatOfTheExactSphere) {
 }
 
 TEST(CurvedLight, AFileWithoutNormalsChangesNoBits) {
-    const CurvedScene s = sphere_scene(upright, 1);
+    const CurvedScene s = sphere_scene(as_written, 1);
     const Solution solution = quick_solution(s.scene);
     const CurvedFaces none;
     const LightMaps a = bake(solution, nullptr, 16), b = bake(solution, &none, 16);
@@ -200,7 +190,7 @@ TEST(CurvedLight, NoLightLeaksThroughAWallInFrontOfAPatch) {
         if (std::max({t[0].z, t[1].z, t[2].z}) < 0.985) below.push_back(t);
     const std::vector<Point> other_side(wall.rbegin(), wall.rend());
     const CurvedScene s =
-        curved_scene(below, [](const Point& p) { return normalized(p); }, upright, {wall, other_side});
+        curved_scene(below, [](const Point& p) { return normalized(p); }, as_written, {wall, other_side});
     const Solution solution = quick_solution(s.scene);
     const CurvedFaces faces(solution.scene, s.triangles);
     ASSERT_FALSE(faces.empty());
@@ -218,7 +208,7 @@ TEST(CurvedLight, NoLightLeaksThroughAWallInFrontOfAPatch) {
 }
 
 TEST(CurvedLight, MapsHaveTheSameBitsOnAnyNumberOfThreads) {
-    const CurvedScene s = sphere_scene(upright, 2);
+    const CurvedScene s = sphere_scene(as_written, 2);
     const Solution solution = quick_solution(s.scene);
     const CurvedFaces faces(solution.scene, s.triangles);
     set_threads(1);
@@ -234,7 +224,7 @@ TEST(CurvedLight, ReflectedLightIsThatOfTheSmoothNormal) {
     const double size = 200;
     const std::vector<Point> floor{{-size, -size, -1.5}, {size, -size, -1.5}, {size, size, -1.5}, {-size, size, -1.5}};
     const CurvedScene s =
-        curved_scene(sphere_triangles(3), [](const Point& p) { return normalized(p); }, upright, {floor});
+        curved_scene(sphere_triangles(3), [](const Point& p) { return normalized(p); }, as_written, {floor});
     Solution solution = quick_solution(s.scene);
     const RegionId below = solution.scene.surfaces()[SurfaceId(512)].region;
     ElementFunction& light = solution.interpolant;
@@ -255,7 +245,7 @@ TEST(CurvedLight, ReflectedLightIsThatOfTheSmoothNormal) {
         const MeasuredPlace place = function.places().find(middle, n);
         const Normal smooth = normalized(middle);
         const double E =
-            mean(curved.mean_at(std::span(&place, 1), false, workspace).irradiance) - exact_light(middle, upright);
+            mean(curved.mean_at(std::span(&place, 1), false, workspace).irradiance) - exact_light(middle, as_written);
         squares += std::pow(E - 0.5 * 2 * (1 - smooth.z) / 2, 2);
     }
     // Irradiance is from 0 to 1. Rays leave 0.3%, and the sum over nodes interpolates it by 0.2%; the horizon of a

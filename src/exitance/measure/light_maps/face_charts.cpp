@@ -13,7 +13,7 @@ namespace exitance {
 namespace {
 
 /// Angles between neighbours, and between a face and the axis of its chart: derived from the bound of 0.77 on areas.
-constexpr double max_angle = 40 * pi / 180;
+constexpr double max_chart_angle = 40 * pi / 180;
 
 /// Neighbours of each region, across edges of faces.
 class RegionNeighbours {
@@ -60,7 +60,7 @@ class RegionNeighbours {
     static bool can_join(const Scene& scene, RegionId a, RegionId b) {
         const Region &p = scene.regions()[a], &q = scene.regions()[b];
         return p.material == q.material && group(scene, a) == group(scene, b) &&
-               dot(p.plane.n, q.plane.n) > std::cos(max_angle);
+               dot(p.plane.n, q.plane.n) > std::cos(max_chart_angle);
     }
 
     Field<RegionId, std::vector<RegionId>> of_;
@@ -106,7 +106,7 @@ class ChartGrower {
     }
 
     bool is_near(RegionId r, const Normal& axis) const {
-        return dot(scene_.regions()[r].plane.n, axis) > std::cos(max_angle);
+        return dot(scene_.regions()[r].plane.n, axis) > std::cos(max_chart_angle);
     }
 
     /// Collects the regions around a seed, nearest ones first.

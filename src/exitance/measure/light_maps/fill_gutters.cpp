@@ -8,12 +8,13 @@ namespace {
 using Source = LightMap::Source;
 constexpr std::uint32_t no_chart = UvLayout::no_chart;
 
-struct Texel {
+struct GutterTexel {
     int x, y;
 };
 
 /// Neighbours of a texel: the four nearest ones first.
-constexpr std::array<Texel, 8> around{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
+constexpr std::array<GutterTexel, 8> gutter_neighbours{
+    {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
 constexpr std::size_t nearest = 4;
 /// Quarters of these neighbours (UvLightMap::quarters) from which bilinear lookups read the texel.
 constexpr std::array<std::uint8_t, 8> reading{1 | 4, 2 | 8, 1 | 2, 4 | 8, 1, 2, 4, 8};
@@ -23,21 +24,21 @@ class GutterFiller {
     explicit GutterFiller(UvLightMap& map) : map_(map) {}
 
     /// Texels without a value that touch a known one, in the order of the map.
-    std::vector<Texel> first_ring() const {
-        std::vector<Texel> ring;
+    std::vector<GutterTexel> first_ring() const {
+        std::vector<GutterTexel> ring;
         for (int y = 0; y < map_.light.size.height; ++y)
             for (int x = 0; x < map_.light.size.width; ++x)
                 if (!is_known({x, y}) && chart_for({x, y}) != no_chart) ring.push_back({x, y});
         return ring;
     }
 
-    void fill(const std::vector<Texel>& ring, bool is_first) {
+    void fill(const std::vector<GutterTexel>& ring, bool is_first) {
         struct Filled {
             std::uint32_t chart;
             Spectrum irradiance, radiosity;
         };
         std::vector<Filled> filled;
-        for (const Texel& t : ring) {
+        for (const GutterTexel& t : ring) {
             const std::uint32_t chart = chart_for(t);
             const bool linear = is_first && source(t) != Source::buried;
             filled.push_back(
@@ -56,40 +57,41 @@ class GutterFiller {
     }
 
     /// Texels outside of charts next to those that were just filled.
-    std::vector<Texel> next_ring(const std::vector<Texel>& ring) const {
-        std::vector<Texel> next;
-        for (const Texel& t : ring)
-            for (const Texel& d : around) {
-                const Texel n{t.x + d.x, t.y + d.y};
+    std::vector<GutterTexel> next_ring(const std::vector<GutterTexel>& ring) const {
+        std::vector<GutterTexel> next;
+        for (const GutterTexel& t : ring)
+            for (const GutterTexel& d : gutter_neighbours) {
+                const GutterTexel n{t.x + d.x, t.y + d.y};
                 if (is_inside(n) && source(n) == Source::nothing) next.push_back(n);
             }
-        std::sort(next.begin(), next.end(), [&](const Texel& a, const Texel& b) { return index(a) < index(b); });
-        const auto last =
-            std::unique(next.begin(), next.end(), [&](const Texel& a, const Texel& b) { return index(a) == index(b); });
+        std::sort(next.begin(), next.end(),
+                  [&](const GutterTexel& a, const GutterTexel& b) { return index(a) < index(b); });
+        const auto last = std::unique(next.begin(), next.end(),
+                                      [&](const GutterTexel& a, const GutterTexel& b) { return index(a) == index(b); });
         next.erase(last, next.end());
         return next;
     }
 
   private:
-    std::size_t index(const Texel& t) const { return map_.light.index(t.x, t.y); }
-    Source source(const Texel& t) const { return map_.light.source[index(t)]; }
-    bool is_inside(const Texel& t) const {
+    std::size_t index(const GutterTexel& t) const { return map_.light.index(t.x, t.y); }
+    Source source(const GutterTexel& t) const { return map_.light.source[index(t)]; }
+    bool is_inside(const GutterTexel& t) const {
         return t.x >= 0 && t.y >= 0 && t.x < map_.light.size.width && t.y < map_.light.size.height;
     }
-    bool is_known(const Texel& t) const {
+    bool is_known(const GutterTexel& t) const {
         return is_inside(t) && (source(t) == Source::computed || source(t) == Source::extrapolated);
     }
 
     /// The chart that a texel continues: its own if the texel is covered and a neighbour has it, else the one with the
     /// most votes of neighbours. Those from which lookups read the texel outvote all others, and the four nearest count
     /// twice. None without known neighbours.
-    std::uint32_t chart_for(const Texel& t) const {
+    std::uint32_t chart_for(const GutterTexel& t) const {
         constexpr int of_reader = 16;
-        std::array<std::pair<std::uint32_t, int>, around.size()> votes;
+        std::array<std::pair<std::uint32_t, int>, gutter_neighbours.size()> votes;
         std::size_t count = 0;
         const std::uint32_t own = map_.chart[index(t)];
-        for (std::size_t k = 0; k < around.size(); ++k) {
-            const Texel n{t.x + around[k].x, t.y + around[k].y};
+        for (std::size_t k = 0; k < gutter_neighbours.size(); ++k) {
+            const GutterTexel n{t.x + gutter_neighbours[k].x, t.y + gutter_neighbours[k].y};
             if (!is_known(n)) continue;
             const std::uint32_t chart = map_.chart[index(n)];
             if (chart == own) return own;
@@ -105,14 +107,14 @@ class GutterFiller {
         return best == end ? no_chart : best->first;
     }
 
-    bool is_read_from(const Texel& neighbour, std::size_t k) const {
+    bool is_read_from(const GutterTexel& neighbour, std::size_t k) const {
         return (map_.quarters[index(neighbour)] & reading[k]) != 0;
     }
 
     /// True if bilinear lookups on another chart than the given one read a texel.
-    bool is_read_by_other(const Texel& t, std::uint32_t chart) const {
-        for (std::size_t k = 0; k < around.size(); ++k) {
-            const Texel n{t.x + around[k].x, t.y + around[k].y};
+    bool is_read_by_other(const GutterTexel& t, std::uint32_t chart) const {
+        for (std::size_t k = 0; k < gutter_neighbours.size(); ++k) {
+            const GutterTexel n{t.x + gutter_neighbours[k].x, t.y + gutter_neighbours[k].y};
             if (is_known(n) && is_read_from(n, k) && map_.chart[index(n)] != chart) return true;
         }
         return false;
@@ -126,12 +128,12 @@ class GutterFiller {
 
     /// Mean over the known neighbours of a chart or, if `linear`, of linear extrapolations from them. Prefers the
     /// four nearest ones.
-    Spectrum value(const Texel& t, std::uint32_t chart, const UvLightMap::Values& values, bool linear) const {
-        const auto is_usable = [&](const Texel& n) { return is_known(n) && map_.chart[index(n)] == chart; };
+    Spectrum value(const GutterTexel& t, std::uint32_t chart, const UvLightMap::Values& values, bool linear) const {
+        const auto is_usable = [&](const GutterTexel& n) { return is_known(n) && map_.chart[index(n)] == chart; };
         Spectrum sum;
         int count = 0;
-        for (std::size_t k = 0; k < around.size() && (k < nearest || count == 0 || !linear); ++k) {
-            const Texel d = around[k], near{t.x + d.x, t.y + d.y}, far{near.x + d.x, near.y + d.y};
+        for (std::size_t k = 0; k < gutter_neighbours.size() && (k < nearest || count == 0 || !linear); ++k) {
+            const GutterTexel d = gutter_neighbours[k], near{t.x + d.x, t.y + d.y}, far{near.x + d.x, near.y + d.y};
             if (!is_usable(near)) continue;
             Spectrum light = read(values, index(near));
             // Texels of a curved border have been extrapolated already.
@@ -152,7 +154,7 @@ class GutterFiller {
 
 void fill_gutters(UvLightMap& map, int padding) {
     GutterFiller filler(map);
-    std::vector<Texel> ring = filler.first_ring();
+    std::vector<GutterTexel> ring = filler.first_ring();
     for (int k = 0; k < padding && !ring.empty(); ++k) {
         filler.fill(ring, k == 0);
         ring = filler.next_ring(ring);

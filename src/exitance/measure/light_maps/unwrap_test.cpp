@@ -5,24 +5,15 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/measure/light_maps/face_charts.hpp"
 #include "support/built_scene.hpp"
+#include "support/motion.hpp"
 #include "support/sample_solution.hpp"
 
 namespace exitance {
 namespace {
 
-/// A rotation, a scale and a translation.
-struct Placement {
-    double scale = 1;
-    Vec3 u{1, 0, 0}, v{0, 1, 0}, n{0, 0, 1}, by;
-
-    Point operator()(const Point& p) const { return by + scale * (p.x * u + p.y * v + p.z * n); }
-};
-
-const Placement straight, leaning{0.03, {0.6, 0, 0.8}, {0, 1, 0}, {-0.8, 0, 0.6}, {7, -30, 11}};
-
 /// A scene of triangles and quadrangles of points(i, j) on a lattice.
 template <class PointAt>
-Scene lattice_scene(int columns, int rows, const PointAt& point, const Placement& placement = straight) {
+Scene lattice_scene(int columns, int rows, const PointAt& point, const Motion& placement = as_written) {
     SceneDescription d;
     d.file = "test.obj", d.groups = {"all"};
     d.materials = {{"grey", Spectrum(0.5), Spectrum(1)}};
@@ -39,7 +30,7 @@ Scene lattice_scene(int columns, int rows, const PointAt& point, const Placement
     return std::move(*checked.scene);
 }
 
-Scene tube(const Placement& placement = straight) {
+Scene tube(const Motion& placement = as_written) {
     return lattice_scene(
         24, 3,
         [](double s, double t) {
@@ -49,7 +40,7 @@ Scene tube(const Placement& placement = straight) {
 }
 
 /// A spiral ramp of three turns: each part is steep by less than 40 degrees, and the turns are above each other.
-Scene spiral(const Placement& placement = straight) {
+Scene spiral(const Motion& placement = as_written) {
     return lattice_scene(
         72, 1,
         [](double s, double t) {
@@ -103,7 +94,7 @@ void expect_fit(const Scene& scene, const Unwrapped& unwrapped, int padding) {
 }
 
 TEST(Unwrap, ATubeHasFewChartsWithoutFaults) {
-    for (const Placement& placement : {straight, leaning}) {
+    for (const Motion& placement : {as_written, turned_and_moved}) {
         const Scene scene = tube(placement);
         for (const int padding : {1, 4}) {
             const Result<Unwrapped> unwrapped = unwrap(scene, {.size = {256, 192}, .padding = padding});
@@ -118,7 +109,7 @@ TEST(Unwrap, ATubeHasFewChartsWithoutFaults) {
 }
 
 TEST(Unwrap, ChartsThatWouldOverlapThemselvesAreDivided) {
-    for (const Placement& placement : {straight, leaning}) {
+    for (const Motion& placement : {as_written, turned_and_moved}) {
         const Scene scene = spiral(placement);
         const Result<Unwrapped> unwrapped = unwrap(scene, {.size = {256, 256}});
         ASSERT_TRUE(unwrapped);

@@ -13,8 +13,9 @@ namespace {
 
 using Triangle2 = std::array<Vec2, 3>;
 
-/// Share of the map's side: coordinates that differ by less are equal up to the rounding of single precision.
-constexpr double rounding = 1e-6;
+/// Share of the map's side: coordinates that differ by less are equal up to the coordinate_rounding of single
+/// precision.
+constexpr double coordinate_rounding = 1e-6;
 
 double doubled_area(const Triangle2& t) {
     return cross(t[1] - t[0], t[2] - t[0]);
@@ -44,7 +45,8 @@ struct Bounds {
             lo = {std::min(lo.x, p.x), std::min(lo.y, p.y)}, hi = {std::max(hi.x, p.x), std::max(hi.y, p.y)};
     }
     bool is_in_unit_square() const {
-        return lo.x >= -rounding && lo.y >= -rounding && hi.x <= 1 + rounding && hi.y <= 1 + rounding;
+        return lo.x >= -coordinate_rounding && lo.y >= -coordinate_rounding && hi.x <= 1 + coordinate_rounding &&
+               hi.y <= 1 + coordinate_rounding;
     }
 };
 
@@ -87,7 +89,8 @@ void move_charts(const UvSet& set, UvLayout& out) {
     std::vector<Vec2> shift(out.charts);
     std::vector<bool> is_counted(out.charts);
     for (std::size_t c = 0; c < out.charts; ++c) {
-        const Vec2 square{std::floor(bounds[c].lo.x + rounding), std::floor(bounds[c].lo.y + rounding)};
+        const Vec2 square{std::floor(bounds[c].lo.x + coordinate_rounding),
+                          std::floor(bounds[c].lo.y + coordinate_rounding)};
         const Bounds moved{bounds[c].lo - square, bounds[c].hi - square};
         if (!bounds[c].is_in_unit_square() && moved.is_in_unit_square()) shift[c] = square;
     }
@@ -171,7 +174,7 @@ class TriangleGrid {
 };
 
 bool overlap(const Triangle2& a, const Triangle2& b) {
-    return common_area(a, b) > rounding * std::min(longest_edge(a), longest_edge(b));
+    return common_area(a, b) > coordinate_rounding * std::min(longest_edge(a), longest_edge(b));
 }
 
 /// Marks triangles that overlap others of their object, and objects that overlap each other.

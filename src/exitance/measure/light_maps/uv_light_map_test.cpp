@@ -8,6 +8,7 @@
 #include "exitance/base/triangulation.hpp"
 #include "exitance/measure/light_maps/texel_cover.hpp"
 #include "support/built_scene.hpp"
+#include "support/motion.hpp"
 #include "support/sample_solution.hpp"
 
 namespace exitance {
@@ -15,18 +16,8 @@ namespace {
 
 using Source = LightMap::Source;
 
-/// Rectangles, each an object of its own, moved, rotated and scaled from the plane z = 0.
-struct Turned {
-    double scale = 1;
-    Vec3 u{1, 0, 0}, v{0, 1, 0}, n{0, 0, 1}, by;
-
-    Point operator()(double x, double y, double z) const { return Point(by + scale * (x * u + y * v + z * n)); }
-};
-
-const Turned upright, slanted{0.03, {0.6, 0, 0.8}, {0, 1, 0}, {-0.8, 0, 0.6}, {7, -30, 11}};
-
 /// Rectangles side by side, 1 m apart: `sizes` are those along x and y, metres, before the motion.
-Scene rectangles(const std::vector<Vec2>& sizes, const Turned& turned = upright) {
+Scene rectangles(const std::vector<Vec2>& sizes, const Motion& turned = as_written) {
     SceneDescription d;
     d.file = "test.obj";
     d.materials = {{"grey", Spectrum(0.5), Spectrum()}, {"lamp", Spectrum(0.25), Spectrum(8)}};
@@ -34,7 +25,7 @@ Scene rectangles(const std::vector<Vec2>& sizes, const Turned& turned = upright)
     for (std::uint32_t i = 0; i < sizes.size(); ++i) {
         const Vec2 s = sizes[i];
         d.points.insert(d.points.end(),
-                        {turned(x, 0, 0), turned(x + s.x, 0, 0), turned(x + s.x, s.y, 0), turned(x, s.y, 0)});
+                        {turned({x, 0, 0}), turned({x + s.x, 0, 0}), turned({x + s.x, s.y, 0}), turned({x, s.y, 0})});
         d.groups.push_back("rectangle " + std::to_string(i));
         d.faces.push_back({{4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 3}, i == 0 ? 0u : 1u, i, static_cast<int>(i + 1)});
         x += s.x + 1;
@@ -108,7 +99,7 @@ double lookup(const UvLightMap& map, Vec2 place) {
 }
 
 TEST(UvLightMap, UniformLightIsUniformInEveryTexelOfAnyChart) {
-    for (const Turned& turned : {upright, slanted}) {
+    for (const Motion& turned : {as_written, turned_and_moved}) {
         const Scene scene = rectangles({{2, 1}, {1, 3}}, turned);
         // The second chart is rotated, sheared and mirrored.
         const UvSet set = uvs_of(
@@ -134,7 +125,7 @@ TEST(UvLightMap, UniformLightIsUniformInEveryTexelOfAnyChart) {
 }
 
 TEST(UvLightMap, LinearLightIsIntegratedExactly) {
-    for (const Turned& turned : {upright, slanted}) {
+    for (const Motion& turned : {as_written, turned_and_moved}) {
         const Scene scene = rectangles({{2, 1}}, turned);
         const UvSet set = uvs_of(scene, {{{0.2, 0.3}, {0.8, 0.5}, {0.7, 0.9}, {0.1, 0.7}}});
         const auto linear = [&](const Point& p) {

@@ -11,10 +11,8 @@
 namespace exitance {
 namespace {
 
-constexpr double degree = pi / 180;
-
 /// Statistics of a camera's view, from a few hundred rays.
-struct View {
+struct Outlook {
     double fronts = 0, backs = 0;  ///< Shares of the rays that hit fronts and backs.
     double lit = 0;                ///< Share of the rays that hit a front bright enough to be visible.
     double breadth = 0;            ///< Sum of the distances to fronts, in sizes of the scene, over the number of rays.
@@ -45,7 +43,7 @@ class Scout {
         least_light_ = area > 0 ? worth_seeing * power / area : 0;
     }
 
-    View look(const Camera& camera, PictureSize coarse) const {
+    Outlook look(const Camera& camera, PictureSize coarse) const {
         const CameraRays rays(camera, coarse);
         std::vector<Point> origins;
         std::vector<Vec3> directions;
@@ -58,7 +56,7 @@ class Scout {
         std::vector<RayHit> hits(directions.size());
         tracer_.nearest(origins, directions, RegionId(), hits);
         const double near = 0.3 * norm(camera.target - camera.eye);
-        View view;
+        Outlook view;
         std::set<RegionId> regions;
         double lit = 0, sum = 0, squares = 0;
         for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -160,7 +158,7 @@ std::optional<Camera> camera_inside(const Scene& scene, const Scout& scout, Pict
     std::optional<Camera> best;
     double best_quality = 0;
     const auto consider = [&](const Camera& camera) {
-        const View view = scout.look(camera, {24, 15});
+        const Outlook view = scout.look(camera, {24, 15});
         if (view.fronts >= min_fronts && view.lit >= least_lit && view.quality() > best_quality)
             best = camera, best_quality = view.quality();
     };
@@ -237,7 +235,7 @@ Camera camera_outside(const Scene& scene, const Scout& scout, PictureSize size) 
             const double a = (45 * step - 60) * degree, e = elevation * degree;
             const Camera camera =
                 camera_at(box, {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)}, 40, size);
-            const View view = scout.look(camera, {24, 24 * size.height / size.width + 1});
+            const Outlook view = scout.look(camera, {24, 24 * size.height / size.width + 1});
             const double quality = view.quality_outside();
             if (quality > most) best = camera, most = quality;
         }
@@ -253,7 +251,7 @@ Camera camera_amid(const Scene& scene, const Scout& scout) {
     const auto consider = [&](const Point& eye, double off) {
         Camera camera{eye, eye + Vec3{0, 1, 0}, 360};
         camera.projection = Projection::panorama;
-        const View view = scout.look(camera, {24, 12});
+        const Outlook view = scout.look(camera, {24, 12});
         constexpr double weight_of_dark = 0.05;
         const double quality = (view.lit + weight_of_dark * view.fronts) * view.breadth * (1 - off);
         if (quality > most) best = camera, most = quality;

@@ -5,8 +5,6 @@
 namespace exitance {
 namespace {
 
-constexpr double degree = pi / 180;
-
 double pixel_width(const Camera& camera, PictureSize size) {
     switch (camera.projection) {
         case Projection::perspective:

@@ -9,10 +9,6 @@
 namespace exitance {
 namespace {
 
-double length(Vec2 v) {
-    return std::hypot(v.x, v.y);
-}
-
 /// A line n . p = offset with the curve segments on it.
 struct Line {
     Vec2 n;

@@ -6,10 +6,6 @@
 namespace exitance {
 namespace {
 
-double length(Vec2 d) {
-    return std::sqrt(dot(d, d));
-}
-
 /// The part of a convex outline with normal . p <= offset (side 1) or >= offset (side -1).
 std::vector<Vec2> half(std::span<const Vec2> outline, Vec2 normal, double offset, double side) {
     std::vector<Vec2> out;
@@ -46,7 +42,7 @@ bool cut_to(std::span<const Vec2> outline, double tolerance, FlatCurve& curve) {
     const Vec2 d = curve.b - curve.a;
     for (std::size_t i = 0; i < outline.size(); ++i) {
         const Vec2 e = outline[(i + 1) % outline.size()] - outline[i];
-        const double size = length(e);
+        const double size = std::sqrt(dot(e, e));
         if (!(size > 0)) continue;
         const double at = cross(e, curve.a - outline[i]) / size, rise = cross(e, d) / size;
         if (rise > 0)
@@ -55,7 +51,7 @@ bool cut_to(std::span<const Vec2> outline, double tolerance, FlatCurve& curve) {
             last = std::min(last, -at / rise);
         if (std::max(at, at + rise) <= tolerance) return false;
     }
-    if (!((last - first) * length(d) > tolerance)) return false;
+    if (!((last - first) * std::sqrt(dot(d, d)) > tolerance)) return false;
     curve.b = curve.a + last * d;
     curve.a = curve.a + first * d;
     return true;
@@ -103,7 +99,7 @@ bool LineTree::find_cut(const Node& node, Line& cut) const {
     for (const FlatCurve& curve : node.curves) {
         if (curve.order > order) continue;
         const Vec2 d = curve.b - curve.a;
-        const Vec2 normal = 1 / length(d) * Vec2{d.y, -d.x};
+        const Vec2 normal = 1 / std::sqrt(dot(d, d)) * Vec2{d.y, -d.x};
         const Line line{normal, dot(normal, curve.a), true};
         const double even = evenness(line);
         if (even < 0 || (curve.order == order && even <= best)) continue;
@@ -115,7 +111,7 @@ bool LineTree::find_cut(const Node& node, Line& cut) const {
         const Vec2 e = node.outline[(i + 1) % node.outline.size()] - node.outline[i];
         if (dot(e, e) > dot(longest, longest)) longest = e;
     }
-    Vec2 along = 1 / length(longest) * longest;
+    Vec2 along = 1 / std::sqrt(dot(longest, longest)) * longest;
     const Vec2 across{-along.y, along.x};
     if (extent(node.outline, across).size() > extent(node.outline, along).size()) along = across;
     const Extent range = extent(node.outline, along);

@@ -8,7 +8,7 @@ namespace exitance {
 namespace {
 
 /// A furnace, B = M / (1 - rho) everywhere, M = 1: direct light is M, indirect light rho / (1 - rho).
-class Furnace : public testing::Test {
+class StepFurnace : public testing::Test {
   protected:
     static constexpr double rho = 0.8, exact = rho / (1 - rho);
     Scene scene = box_scene(2, 1, 1.5, rho, 1, 1);
@@ -16,7 +16,7 @@ class Furnace : public testing::Test {
     DirectProjection direct{stage.make_elements({.edge = 0.5, .grading_levels = 1}), {}};
     GlobalLight light;
 
-    Furnace() {
+    StepFurnace() {
         light.tree = direct.tree, light.numbering = LeafNumbering(light.tree), light.on_projection = true;
         direct.fit.resize(direct.tree.size());
         for (ElementId e : direct.tree.leaves())
@@ -45,7 +45,7 @@ class Furnace : public testing::Test {
     }
 };
 
-TEST_F(Furnace, OneStepCorrectsAUniformError) {
+TEST_F(StepFurnace, OneStepCorrectsAUniformError) {
     constexpr double wrong = 1.03;
     // In a closed room, gathering b yields b.
     const NextLight next = step({{constant(wrong * exact)}}, wrong * exact);
@@ -58,7 +58,7 @@ TEST_F(Furnace, OneStepCorrectsAUniformError) {
     }
 }
 
-TEST_F(Furnace, ASecondStepStartsFromTheFirst) {
+TEST_F(StepFurnace, ASecondStepStartsFromTheFirst) {
     NextLight first = step({{constant(1.03 * exact)}}, 1.03 * exact);
     std::vector<double> before;
     for (ElementId e : direct.tree.leaves())

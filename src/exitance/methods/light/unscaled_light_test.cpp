@@ -10,7 +10,7 @@ namespace exitance {
 namespace {
 
 /// A closed box where all surfaces emit M and B = M / (1 - rho).
-struct Furnace {
+struct UnscaledFurnace {
     static constexpr double rho = 0.5, M = 1, E_dir = M, E_ind = rho * M / (1 - rho);
     Scene scene = box_scene(2, 1, 1.5, rho, M, 1);
     Stage stage{scene};
@@ -18,7 +18,7 @@ struct Furnace {
     GlobalLight light;
     Solution solution{.scene = scene};
 
-    Furnace() {
+    UnscaledFurnace() {
         light.tree = direct.tree, light.numbering = LeafNumbering(light.tree);
         const std::size_t n = light.numbering.leaves.size();
         light.direct.assign(n, Spectrum(E_dir)), light.indirect.assign(n, Spectrum(E_ind));
@@ -34,7 +34,7 @@ struct Furnace {
 };
 
 TEST(UnscaledLight, DefectEqualsTheCorrectionByScaling) {
-    const Furnace furnace;
+    const UnscaledFurnace furnace;
     const EnergyBalance energy = energy_balance(furnace.solution, furnace.direct, furnace.stage);
     ASSERT_NEAR(energy.defect, 0, 1e-12);
     const auto before = [&](double direct, double indirect) {
@@ -50,7 +50,7 @@ TEST(UnscaledLight, DefectEqualsTheCorrectionByScaling) {
 TEST(UnscaledLight, UsesTheUnitOfTheBalance) {
     // Excess light in one band counts by that band's weight: a third in watts.
     if constexpr (bands != 3) GTEST_SKIP() << "the bands of this build weigh alike";
-    const Furnace furnace;
+    const UnscaledFurnace furnace;
     const EnergyBalance energy = energy_balance(furnace.solution, furnace.direct, furnace.stage);
     Spectrum less(1);
     less[0] = 0.98;
@@ -59,7 +59,7 @@ TEST(UnscaledLight, UsesTheUnitOfTheBalance) {
 }
 
 TEST(UnscaledLight, SentPowerFollowsTheScalesOfDirectAndReturnedLight) {
-    const Furnace furnace;
+    const UnscaledFurnace furnace;
     const auto sent = [&](double direct, double returned, double c) {
         return unscaled_sent(furnace.scene, furnace.light, Spectrum(direct), Spectrum(returned), Spectrum(c))[0];
     };

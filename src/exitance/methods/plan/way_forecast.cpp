@@ -21,15 +21,15 @@ namespace {
 constexpr double terms_a_ray = 10;           ///< Elements summed in the time of one gather ray, at 25 ns each.
 constexpr double terms_beside_pieces = 300;  ///< Elements per place into which pieces near it are split.
 constexpr double light_rays = 64;            ///< Cost of direct light per element, in rays.
-constexpr double certificate_rays = 12;      ///< Rays per element of the method's mesh, for late light.
+constexpr double late_light_rays = 12;       ///< Rays per element of the method's mesh, for late light.
 constexpr double pair_form_factors = 100;  ///< Form factors per pair of pieces; each pair needs a search for occluders.
 /// Form factors of links per element of the method's mesh, times 1 - mean reflectance.
 constexpr double element_form_factors = 24;
-constexpr std::size_t pilot_points = 256;
-constexpr unsigned pilot_rays = 64;
+constexpr std::size_t way_pilot_points = 256;
+constexpr unsigned way_pilot_rays = 64;
 /// Smallest number of rays of a solve for which the pilot is worthwhile. The pilot takes about twice its own number of
 /// rays: three percent.
-constexpr double min_rays_for_pilot = 64 * pilot_points * pilot_rays;
+constexpr double min_rays_for_pilot = 64 * way_pilot_points * way_pilot_rays;
 
 /// Numbers of elements and rays of a first attempt.
 struct Counts {
@@ -79,7 +79,7 @@ double pilot_spread(const Stage& stage, const SolveOptions& options) {
     const StopRequest never;
     const DirectProjection direct = project_direct_light(
         stage, {.mesh = coarse.solve_mesh, .tolerance = coarse.direct_tolerance, .seed = options.seed}, never);
-    const std::vector<ProbePoint> points = points_uniform_in_area(stage.scene, pilot_points, options.seed);
+    const std::vector<ProbePoint> points = points_uniform_in_area(stage.scene, way_pilot_points, options.seed);
     const Locator locator(stage.scene);
     const ElementLocator elements(direct.tree, stage.scene.regions().size());
     const auto reflectance = [&](RegionId r) { return stage.scene.material(r).reflectance; };
@@ -97,7 +97,7 @@ double pilot_spread(const Stage& stage, const SolveOptions& options) {
         const RegionId region = stage.scene.surfaces()[face].region;
         GatherWorkspace workspace;
         const Gathered g =
-            gather_reflected(stage, points[i].x, points[i].n, region, pilot_rays, i, reflected, workspace);
+            gather_reflected(stage, points[i].x, points[i].n, region, way_pilot_rays, i, reflected, workspace);
         const Spectrum rho = reflectance(region);
         return Sum{mean(rho * rho * g.quarters), mean(rho * g.irradiance)};
     });
@@ -115,7 +115,7 @@ double further_attempts(double spread, double error, const Counts& counts, doubl
     const double finer = std::clamp(c::part_aim * wanted / method, c::least_tightening, c::most_method_tightening);
     return forecast_attempt({.row_rays = counts.row_rays,
                              .gather_rays = gather,
-                             .certificate_rays = certificate_rays * counts.elements,
+                             .certificate_rays = late_light_rays * counts.elements,
                              .method = method,
                              .wanted = wanted,
                              .left = 1,

@@ -107,7 +107,7 @@ TEST(DirectionalPicture, TheMiddleLooksAlongXAndRotationIsCounterClockwise) {
 }
 
 TEST(DirectionalPicture, TheSunBecomesADiscAndIsNotCountedTwice) {
-    constexpr double degree = pi / 180, half_angle = 1.2 * degree, radiance = 1e4;
+    constexpr double half_angle = 1.2 * degree, radiance = 1e4;
     for (const double altitude : {5.0, 41.0, 85.0, -20.0}) {
         const Normal sun = sky_direction(altitude, 200);
         const auto sky = [&](const Vec3& w, std::size_t band) {

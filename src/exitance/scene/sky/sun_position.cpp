@@ -6,8 +6,6 @@
 namespace exitance {
 namespace {
 
-constexpr double degree = pi / 180;
-
 struct Term {
     double a, b, c;
 };

@@ -6,8 +6,6 @@
 namespace exitance {
 namespace {
 
-constexpr double degree = pi / 180;
-
 /// Declination, radians, and solar time, hours.
 struct SolarDay {
     double declination = 0, time = 12;
