@@ -115,7 +115,8 @@ void add_light_maps(py::module_& m) {
         .def_property_readonly("density", &api::LightMaps::density, docs::LightMaps::density)
         .def("__len__", &api::LightMaps::size)
         .def("__getitem__", &checked_map, "index"_a, docs::LightMaps::map)
-        .def_property_readonly("charts", &api::LightMaps::charts)
+        .def_property_readonly("charts", &api::LightMaps::charts, docs::LightMaps::charts)
+        .def_property_readonly("warnings", &api::LightMaps::warnings, docs::LightMaps::warnings)
         .def(
             "save",
             [](const api::LightMaps& maps, const py::object& folder) {

@@ -106,10 +106,12 @@ api::Picture render(const api::Solution& solution, const std::optional<api::Came
                              [&](const api::Control& control) { return api::render(solution, options, control); });
 }
 
-api::LightMaps bake(const api::Solution& solution, double density, int padding, const py::object& progress) {
-    return run<api::LightMaps>(progress, [&](const api::Control& control) {
-        return api::bake(solution, {density, padding}, control);
-    });
+api::LightMaps bake(const api::Solution& solution, double density, int padding, const std::string& uv,
+                    const std::optional<std::pair<int, int>>& size, bool faceted, const py::object& progress) {
+    api::BakeOptions options{.density = density, .padding = padding, .uv = uv, .faceted = faceted};
+    if (size) options.width = size->first, options.height = size->second;
+    return run<api::LightMaps>(progress,
+                               [&](const api::Control& control) { return api::bake(solution, options, control); });
 }
 
 std::string describe(const api::Solution& solution) {
@@ -207,7 +209,8 @@ void add_solutions(py::module_& m) {
         .def("mix", &mix_dicts, "dim"_a = py::dict(), "reflectance"_a = py::dict(), docs::Solution::mix)
         .def("render", &render, "camera"_a = py::none(), "size"_a = std::pair(640, 400), "samples"_a = 16,
              "progress"_a = py::none(), docs::render)
-        .def("bake", &bake, "density"_a = 0.0, "padding"_a = 4, "progress"_a = py::none(), docs::bake)
+        .def("bake", &bake, "density"_a = 0.0, "padding"_a = 4, "uv"_a = "", "size"_a = py::none(), "faceted"_a = false,
+             "progress"_a = py::none(), docs::bake)
         .def("__repr__", &describe);
     static const std::string solve_doc = std::string(docs::solve) + solve_arguments;
     m.def("solve", &solve, "scene"_a, "error"_a = py::none(), py::kw_only(), "method"_a = "auto",

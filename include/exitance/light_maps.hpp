@@ -14,6 +14,12 @@ namespace exitance::api {
 struct BakeOptions {
     double density = 0;  ///< Texels per metre; 0: chosen for the scene.
     int padding = 4;     ///< Texels around every chart, at least 1.
+    /// Texture coordinates to bake into: "own" (those for light maps in the scene's file), a name such as "TEXCOORD_1"
+    /// or "vt", or "unwrap" (coordinates are made). Empty: charts of flat parts, see Chart.
+    std::string uv = {};
+    int width = 0, height = 0;  ///< Texels of every map in texture coordinates; 0: chosen by `density`.
+    /// Show the flat faces, instead of following the normals of the scene's file where it has them.
+    bool faceted = false;
 };
 
 /// One image of irradiance that covers surfaces. Rows from top to bottom.
@@ -38,15 +44,18 @@ struct LightMapsData;
 /// Irradiance as images that cover all surfaces. Copies share their data.
 class LightMaps {
   public:
-    /// Texels per metre.
+    /// Texels per metre; with texture coordinates, the mean over the maps.
     double density() const;
     /// Number of maps.
     std::size_t size() const;
     /// Map `index`, below size().
     LightMap map(std::size_t index) const;
+    /// The charts; empty if the maps are in texture coordinates.
     std::vector<Chart> charts() const;
-    /// Writes lightmap_N.exr and .png, scene.glb and lightmaps.json into a folder. Each file appears whole or not at
-    /// all. Error: cannot_write.
+    /// Sentences about texture coordinates that overlap, leave the map or are mirrored, by object.
+    std::vector<std::string> warnings() const;
+    /// Writes lightmap_N.exr and .png, lightmaps.json, and scene.glb unless the coordinates are those of the scene's
+    /// file, into a folder. Each file appears whole or not at all. Error: cannot_write.
     Result<void> save(const std::string& folder) const;
 
     /// For the library.
@@ -58,7 +67,8 @@ class LightMaps {
 
 /// Bakes light maps: every texel holds the mean irradiance over the part of it that is on its surface and not covered.
 /// About 5 us per texel in a room with few lamps. Same bits on any number of threads.
-/// Errors: usage for a density or padding out of range; limit after a stop.
+/// Errors: usage for a density, padding or size out of range, and for texture coordinates that the scene's file does
+/// not have; bad_input if some faces have none; limit after a stop.
 Result<LightMaps> bake(const Solution& solution, const BakeOptions& options = {}, const Control& control = {});
 
 }  // namespace exitance::api

@@ -149,6 +149,34 @@ def test_light_maps_hold_the_irradiance_of_points(solution, tmp_path):
         solution.bake(density=-1)
 
 
+def test_light_maps_in_texture_coordinates(tmp_path):
+    """A floor of 2 m x 1 m under a lamp, with coordinates that fill the map: rows of texels run along the floor."""
+    (tmp_path / "room.mtl").write_text("newmtl grey\nKd 0.5 0.5 0.5\nnewmtl lamp\nKd 0 0 0\nKe 10 10 10\n")
+    (tmp_path / "room.obj").write_text(
+        "mtllib room.mtl\n"
+        "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\nv 1 1 1\nv 1 0 1\n"
+        "vt 0 0\nvt 1 0\nvt 1 0.5\nvt 0 0.5\nvt 0 0.6\nvt 0 0.9\nvt 0.3 0.9\nvt 0.3 0.6\n"
+        "usemtl grey\nf 1/1 2/2 3/3 4/4\nusemtl lamp\nf 5/5 6/6 7/7 8/8\n"
+    )
+    solution = ex.solve(ex.load(tmp_path / "room.obj"), error=0.05)
+    maps = solution.bake(uv="vt", size=(64, 64))
+    assert len(maps) == 1 and maps[0].irradiance.shape == (64, 64, ex.bands) and maps.charts == []
+    x, y = 10, 40  # columns from the left, rows from the top: u = 10.5 / 64, v = 1 - 40.5 / 64
+    E = solution.irradiance([2 * (x + 0.5) / 64, 2 * (1 - (y + 0.5) / 64), 0], [0, 0, 1])
+    assert maps[0].irradiance[y, x] == pytest.approx(E, rel=0.01)  # the texel is a mean over 3 cm
+    assert maps[0].coverage[y, x] == pytest.approx(1)
+    assert len(maps.warnings) == 1 and "mirrored" in maps.warnings[0]  # the lamp's coordinates run clockwise
+    maps.save(tmp_path / "own")
+    assert (tmp_path / "own" / "lightmaps.json").exists() and not (tmp_path / "own" / "scene.glb").exists()
+
+    made = solution.bake(uv="unwrap", density=16)
+    made.save(tmp_path / "unwrapped")
+    assert made.density >= 16 and (tmp_path / "unwrapped" / "scene.glb").exists()
+    for wrong in (dict(uv="TEXCOORD_1"), dict(size=(64, 64)), dict(uv="vt", size=(64, 0))):
+        with pytest.raises(ex.UsageError):
+            solution.bake(**wrong)
+
+
 def test_mixing_dims_groups():
     solved = ex.solve(small_room(groups=["walls"] * 6 + ["lamp"], light_groups=True), error=0.1)
     assert solved.light_groups == ["lamp"]

@@ -168,6 +168,8 @@ class LightMaps:
     def __getitem__(self, index: int) -> LightMap: ...
     @property
     def charts(self) -> list[Chart]: ...
+    @property
+    def warnings(self) -> list[str]: ...
     def save(self, folder: _Path) -> None: ...
 
 class Solution:
@@ -206,7 +208,15 @@ class Solution:
         samples: int = 16,
         progress: _Progress = None,
     ) -> Picture: ...
-    def bake(self, density: float = 0.0, padding: int = 4, progress: _Progress = None) -> LightMaps: ...
+    def bake(
+        self,
+        density: float = 0.0,
+        padding: int = 4,
+        uv: str = "",
+        size: Union[None, tuple[int, int]] = None,
+        faceted: bool = False,
+        progress: _Progress = None,
+    ) -> LightMaps: ...
 
 class Daylight:
     """Illuminances of sensors in every hour of a weather file, and their annual figures."""

@@ -7,18 +7,15 @@
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/export/light_map_files.hpp"
 #include "exitance/io/export/uv_map_files.hpp"
+#include "exitance/io/export/uv_target.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/textures/normal_file.hpp"
 #include "exitance/io/scenes/textures/scene_textures.hpp"
-#include "exitance/io/scenes/textures/uv_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/what_if/light_groups/light_groups.hpp"
 
 namespace exitance {
 namespace {
-
-/// Name in place of a set of texture coordinates for `--uv`.
-constexpr const char* unwrapped_name = "unwrap";
 
 /// Bakes and writes the light of one group, given its number and the solution with that light alone. Returns false if a
 /// stop was requested.
@@ -92,52 +89,26 @@ void note_curved(const CurvedDifferences& curved, Terminal& terminal) {
                     curved.regions.size(), 100 * curved.rms()));
 }
 
-/// Texture coordinates into which light is baked.
-struct UvTarget {
-    UvSet set;
-    std::optional<Unwrapped> unwrapped;  ///< Coordinates that were made; none: those of the scene's file.
-    UvBakeOptions options;
-};
-
 /// Reads texture coordinates from the scene's file, or makes them.
 Result<UvTarget> find_uv_target(const BakeArguments& arguments, const Scene& scene, const std::string& scene_file) {
-    UvTarget out;
-    out.options.density = arguments.density, out.options.padding = static_cast<int>(arguments.padding);
-    if (arguments.size) out.options.size = {arguments.size->width, arguments.size->height};
-    if (arguments.uv != unwrapped_name) {
-        if (arguments.format.material != LightMapMaterial::emissive)
-            return Error{ErrorCode::usage, "--unlit and --moz-lightmap need a scene.glb, which is written without --uv",
-                         "--uv", "use --uv unwrap, or leave --uv out"};
-        Result<UvSet> set = load_uv_set(scene, scene_file, arguments.uv);
-        if (!set) return set.error();
-        out.set = std::move(*set);
-        return out;
-    }
-    Result<Unwrapped> made =
-        unwrap(scene, {.size = out.options.size, .density = out.options.density, .padding = out.options.padding});
-    if (!made) return made.error();
-    out.set = uv_set_of(scene, *made);
-    out.options.size = made->size;
-    out.unwrapped = std::move(*made);
-    return out;
+    if (arguments.uv != "unwrap" && arguments.format.material != LightMapMaterial::emissive)
+        return Error{ErrorCode::usage, "--unlit and --moz-lightmap need a scene.glb, which is written without --uv",
+                     "--uv", "use --uv unwrap, or leave --uv out"};
+    UvBakeOptions options;
+    options.density = arguments.density, options.padding = static_cast<int>(arguments.padding);
+    if (arguments.size) options.size = {arguments.size->width, arguments.size->height};
+    return find_uv_target(scene, scene_file, arguments.uv, options);
 }
 
-/// Writes the model if its coordinates were made, and the manifest.
-Result<void> write_uv_model(const BakeArguments& arguments, const Solution& solution, UvTarget& target,
+/// Writes pictures of the charts, the model if its coordinates were made, and the manifest.
+Result<void> write_uv_model(const BakeArguments& arguments, const Solution& solution, const UvTarget& target,
                             const std::string& scene_file, const UvLightMaps& maps,
                             std::span<const std::string> groups) {
     const Result<std::vector<std::string>> charts = write_charts(arguments.charts, target.set, maps);
     if (!charts) return charts.error();
-    const Unwrapped* unwrapped = target.unwrapped ? &*target.unwrapped : nullptr;
-    if (unwrapped) {
-        LightMapFormat format = arguments.format;
-        format.scene_file = scene_file;
-        const Result<std::string> name = write_unwrapped_model(solution, *unwrapped, maps, format, arguments.output);
-        if (!name) return name.error();
-        target.set.file = "scene.glb", target.set.name = *name;
-    }
-    return write_uv_manifest(solution.scene, target.set, maps, arguments.format, groups, *charts, unwrapped,
-                             arguments.output);
+    LightMapFormat format = arguments.format;
+    format.scene_file = scene_file;
+    return write_uv_model(solution, target, maps, format, groups, *charts, arguments.output);
 }
 
 /// Bakes into texture coordinates of the scene's file, or of its unwrapped faces.

@@ -16,13 +16,6 @@
 namespace exitance {
 namespace {
 
-using Float3 = std::array<float, 3>;
-
-/// Converts Z up to glTF's Y up.
-Float3 y_up(const Vec3& v) {
-    return {static_cast<float>(v.x), static_cast<float>(v.z), static_cast<float>(-v.y)};
-}
-
 /// Polygons of one group and material: a range of the vertices and of the indices.
 struct Primitive {
     std::size_t group = 0, material = 0;

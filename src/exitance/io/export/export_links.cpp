@@ -14,7 +14,7 @@ namespace exitance {
 namespace {
 
 /// Parses comma-separated numbers; empty if `text` is anything else.
-std::optional<std::vector<double>> numbers(std::string_view text) {
+std::optional<std::vector<double>> numbers_in(std::string_view text) {
     std::vector<double> out;
     for (;;) {
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out.emplace_back());
@@ -54,7 +54,7 @@ std::vector<ElementId> path_to(const ElementTree& tree, const Point& p) {
 
 /// The receivers that `which` selects.
 Result<std::vector<ElementId>> receivers(const ElementTree& tree, const std::string& which) {
-    const auto given = numbers(which);
+    const auto given = numbers_in(which);
     if (given && given->size() == 3) return path_to(tree, {(*given)[0], (*given)[1], (*given)[2]});
     if (!given || given->size() != 1 || (*given)[0] != std::floor((*given)[0]) || (*given)[0] < 0)
         return Error{ErrorCode::usage, fmt::format("'{}' is neither an element's number nor x,y,z", which), "--links",

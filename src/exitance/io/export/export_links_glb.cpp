@@ -7,8 +7,6 @@
 namespace exitance {
 namespace {
 
-using Float3 = std::array<float, 3>;
-
 std::string triple(const Float3& v) {
     return fmt::format("[{},{},{}]", v[0], v[1], v[2]);
 }

@@ -13,16 +13,16 @@ namespace {
 /// Assumed ratio of width to height of a camera's picture, since scenes only store the horizontal angle.
 constexpr double aspect = 1.6;
 
-Vec3 y_up(const Vec3& v) {
+Vec3 turned_up(const Vec3& v) {
     return {v.x, v.z, -v.y};
 }
 
 /// A node's matrix by columns. It turns -z to `ahead`; `ahead`, `up` and `at` are in coordinates with Z up.
 std::string matrix(const Vec3& ahead, const Vec3& up, const Point& at) {
     const Vec3 none;  // adding it turns -0 into 0
-    const Vec3 z = none - normalized(y_up(ahead));
-    const Vec3 x = none + (norm(cross(y_up(up), z)) > 1e-6 ? normalized(cross(y_up(up), z)) : Frame(z).u);
-    const Vec3 y = none + cross(z, x), o = none + y_up(at);
+    const Vec3 z = none - normalized(turned_up(ahead));
+    const Vec3 x = none + (norm(cross(turned_up(up), z)) > 1e-6 ? normalized(cross(turned_up(up), z)) : Frame(z).u);
+    const Vec3 y = none + cross(z, x), o = none + turned_up(at);
     return fmt::format("[{},{},{},0,{},{},{},0,{},{},{},0,{},{},{},1]", x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z,
                        o.x, o.y, o.z);
 }

@@ -56,7 +56,7 @@ Image preview(const Scene& scene, const LightMaps& light, std::size_t m, LightMa
     return image;
 }
 
-std::string triple(const Vec3& v) {
+std::string triple_of_metres(const Vec3& v) {
     return fmt::format("[{},{},{}]", v.x, v.y, v.z);
 }
 
@@ -77,8 +77,9 @@ std::string chart_json(const Scene& scene, SurfaceId s, const Chart& chart, cons
     return fmt::format(
         "    {{\"surface\": {}, \"map\": {}, \"x\": {}, \"y\": {}, \"width\": {}, \"height\": {}, \"origin\": {}, "
         "\"du\": {}, \"dv\": {}, \"normal\": {}{}}}",
-        s.value, chart.map, chart.x + x0, chart.y + y0, x1 - x0, y1 - y0, triple(chart.at({x0 + 0.5, y0 + 0.5})),
-        triple(chart.du), triple(chart.dv), triple(scene.surfaces()[s].normal),
+        s.value, chart.map, chart.x + x0, chart.y + y0, x1 - x0, y1 - y0,
+        triple_of_metres(chart.at({x0 + 0.5, y0 + 0.5})), triple_of_metres(chart.du), triple_of_metres(chart.dv),
+        triple_of_metres(scene.surfaces()[s].normal),
         curved ? fmt::format(", \"curved_difference\": {:.6g}", curved->value()) : std::string());
 }
 

@@ -16,16 +16,10 @@
 namespace exitance {
 namespace {
 
-using Float3 = std::array<float, 3>;
 using Float2 = std::array<float, 2>;
 
-/// Converts Z up to glTF's Y up.
-Float3 y_up(const Vec3& v) {
-    return {static_cast<float>(v.x), static_cast<float>(v.z), static_cast<float>(-v.y)};
-}
-
 /// Faces of one group, material and map: a range of the vertices and of the indices.
-struct Primitive {
+struct MapPrimitive {
     std::uint32_t group = 0, material = 0, map = 0;
     std::size_t first_vertex = 0, vertices = 0, first_index = 0, indices = 0;
     Float3 lo = {HUGE_VALF, HUGE_VALF, HUGE_VALF}, hi = {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
@@ -38,7 +32,7 @@ struct Mesh {
     /// Texture coordinates: of the scene or of the plane; the scene's second set or none; in the maps.
     std::vector<Float2> place, second_place, map_place;
     std::vector<std::uint32_t> index;  ///< Relative to the first vertex of the primitive.
-    std::vector<Primitive> primitives;
+    std::vector<MapPrimitive> primitives;
 };
 
 Float2 floats(Vec2 v) {
@@ -47,7 +41,7 @@ Float2 floats(Vec2 v) {
 
 void add_face(const Scene& scene, SurfaceId s, const Chart& chart, const LightMaps& light,
               const SceneTextures* textures, Mesh& mesh) {
-    Primitive& primitive = mesh.primitives.back();
+    MapPrimitive& primitive = mesh.primitives.back();
     const MapSize size = light.maps[chart.map].size;
     const Surface& face = scene.surfaces()[s];
     const std::span<const Point> outline = scene.outline(s);
@@ -74,7 +68,7 @@ void add_face(const Scene& scene, SurfaceId s, const Chart& chart, const LightMa
 Mesh make_mesh(const Scene& scene, const LightMaps& light, const SceneTextures* textures) {
     const auto primitive_of = [&](SurfaceId s) {
         const Surface& face = scene.surfaces()[s];
-        return Primitive{face.group.value, face.material.value, light.charts[face.region.value].map};
+        return MapPrimitive{face.group.value, face.material.value, light.charts[face.region.value].map};
     };
     std::vector<SurfaceId> order;
     for (SurfaceId s : scene.surfaces().ids()) order.push_back(s);
@@ -82,7 +76,7 @@ Mesh make_mesh(const Scene& scene, const LightMaps& light, const SceneTextures* 
                      [&](SurfaceId a, SurfaceId b) { return primitive_of(a).key() < primitive_of(b).key(); });
     Mesh mesh;
     for (const SurfaceId s : order) {
-        Primitive primitive = primitive_of(s);
+        MapPrimitive primitive = primitive_of(s);
         if (mesh.primitives.empty() || mesh.primitives.back().key() != primitive.key()) {
             primitive.first_vertex = mesh.position.size(), primitive.first_index = mesh.index.size();
             mesh.primitives.push_back(primitive);
@@ -153,7 +147,7 @@ Image texture(const Scene& scene, const LightMaps& shown, std::size_t m, LightMa
 }
 
 template <class Triple>
-std::string triple(const Triple& v) {
+std::string triple_of(const Triple& v) {
     return fmt::format("[{},{},{}]", v[0], v[1], v[2]);
 }
 
@@ -162,7 +156,7 @@ std::string emission(std::array<double, 3> colour, const std::string& texture, s
     const double strength = std::max({colour[0], colour[1], colour[2], 1e-30});
     for (double& c : colour) c /= strength;
     extensions += fmt::format(",\"KHR_materials_emissive_strength\":{{\"emissiveStrength\":{}}}", strength);
-    return fmt::format(",\"emissiveFactor\":{}{}", triple(colour), texture);
+    return fmt::format(",\"emissiveFactor\":{}{}", triple_of(colour), texture);
 }
 
 /// Images and textures of a document: the maps, then one per material with its own picture.
@@ -187,8 +181,8 @@ struct Textures {
     std::size_t count = 0;
 };
 
-std::string material_json(const Scene& scene, MaterialId id, std::size_t map, LightMapMaterial way, const ToneMap& tone,
-                          const TextureLevels& levels, const Textures& textures) {
+std::string map_material_json(const Scene& scene, MaterialId id, std::size_t map, LightMapMaterial way,
+                              const ToneMap& tone, const TextureLevels& levels, const Textures& textures) {
     const Material& material = scene.materials()[id];
     const auto rho = red_green_blue(material.reflectance), exitance = red_green_blue(material.exitance);
     const std::string light = fmt::format("{{\"index\":{},\"texCoord\":{}}}", map, textures.light_set);
@@ -216,7 +210,8 @@ std::string material_json(const Scene& scene, MaterialId id, std::size_t map, Li
     return fmt::format(
         "{{\"name\":{},\"pbrMetallicRoughness\":{{\"baseColorFactor\":{},\"metallicFactor\":0,\"roughnessFactor\":1{}}}"
         "{},\"extensions\":{{{}}},\"extras\":{{\"reflectance\":{},\"exitance\":{}}}}}",
-        json_text(material.name), base, base_texture, emitted, extensions.substr(1), triple(rho), triple(exitance));
+        json_text(material.name), base, base_texture, emitted, extensions.substr(1), triple_of(rho),
+        triple_of(exitance));
 }
 
 void add(std::string& list, const std::string& item) {
@@ -230,7 +225,7 @@ class Document {
         : scene_(scene), mesh_(mesh), textures_(textures) {
         add_views();
         std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> numbers;
-        for (const Primitive& p : mesh.primitives)
+        for (const MapPrimitive& p : mesh.primitives)
             if (numbers.emplace(std::pair(p.material, p.map), numbers.size()).second)
                 material_of_.emplace_back(p.material, p.map);
         for (std::size_t first = 0, last = 0; first < mesh.primitives.size(); first = last) {
@@ -282,14 +277,14 @@ class Document {
         for (const std::string& file : textures_.files) add_view(file.size(), "");
     }
 
-    std::string primitive_json(const Primitive& p, std::size_t material) {
+    std::string primitive_json(const MapPrimitive& p, std::size_t material) {
         std::string attributes;
         const std::vector<VertexArray> arrays = vertex_arrays(mesh_);
         for (std::size_t a = 0; a < arrays.size(); ++a) {
             std::string accessor =
                 fmt::format("{{\"bufferView\":{},\"byteOffset\":{},\"componentType\":5126,\"count\":{},\"type\":\"{}\"",
                             a, p.first_vertex * arrays[a].stride, p.vertices, a < 2 ? "VEC3" : "VEC2");
-            if (a == 0) accessor += fmt::format(",\"min\":{},\"max\":{}", triple(p.lo), triple(p.hi));
+            if (a == 0) accessor += fmt::format(",\"min\":{},\"max\":{}", triple_of(p.lo), triple_of(p.hi));
             add(accessors_, accessor + "}");
             add(attributes, fmt::format("\"{}\":{}", arrays[a].name, accessor_count_++));
         }
@@ -360,7 +355,7 @@ Result<void> write_light_map_glb(const Solution& solution, const LightMaps& ligh
     Document document(scene, mesh, *textures);
     std::string materials, used;
     for (const auto& [number, map] : document.materials())
-        add(materials, material_json(scene, MaterialId(number), map, material, tone, levels, *textures));
+        add(materials, map_material_json(scene, MaterialId(number), map, material, tone, levels, *textures));
     for (const char* extension : {"KHR_materials_unlit", "KHR_materials_emissive_strength", "MOZ_lightmap",
                                   "KHR_materials_specular", "KHR_materials_ior"})
         if (materials.find(fmt::format("\"{}\":", extension)) != std::string::npos)

@@ -27,7 +27,7 @@ Spectrum value_at(const UvLightMap::Values& values, std::size_t i) {
     return out;
 }
 
-LinearImage numbers(const UvLightMap& map, LightMapQuantity quantity) {
+LinearImage uv_numbers(const UvLightMap& map, LightMapQuantity quantity) {
     LinearImage image{map.light.size.width, map.light.size.height, {}};
     const std::size_t texels = map.light.size.texels();
     for (const char* name : {"R", "G", "B"}) image.channels.push_back({name, std::vector<float>(texels)});
@@ -41,7 +41,7 @@ LinearImage numbers(const UvLightMap& map, LightMapQuantity quantity) {
 }
 
 /// Tone map that brings the median of the texels on charts to middle grey.
-ToneMap preview_tones(const UvLightMaps& light, LightMapQuantity quantity) {
+ToneMap uv_tones(const UvLightMaps& light, LightMapQuantity quantity) {
     std::vector<double> levels;
     for (const UvLightMap& map : light.maps)
         for (std::size_t i = 0; i < map.light.size.texels(); ++i)
@@ -58,7 +58,7 @@ ToneMap preview_tones(const UvLightMaps& light, LightMapQuantity quantity) {
     return tones;
 }
 
-Image preview(const UvLightMap& map, LightMapQuantity quantity, const ToneMap& tones) {
+Image uv_preview(const UvLightMap& map, LightMapQuantity quantity, const ToneMap& tones) {
     Image image(map.light.size.width, map.light.size.height);
     for (std::size_t i = 0; i < map.light.size.texels(); ++i) {
         const DisplayColour colour = tones(value_at(values_of(map, quantity), i));
@@ -91,19 +91,19 @@ std::string object_json(const UvObject& o, const UvLightMap& map) {
 Result<void> write_uv_pictures(const Scene& scene, const UvLightMaps& light, std::optional<std::size_t> group,
                                const LightMapFormat& format, const std::string& folder) {
     if (const Result<void> made = make_map_folder(folder); !made) return made;
-    const ToneMap tones = preview_tones(light, format.quantity);
+    const ToneMap tones = uv_tones(light, format.quantity);
     const std::string_view unit = unit_of(scene, format.quantity);
     const std::string_view quantity = name_of(format.quantity);
     for (std::size_t m = 0; m < light.maps.size(); ++m) {
         const std::string stem = folder + "/" + light_map_stem(m, group);
         const ImageFacts facts{{"software", "exitance"}, {"units", fmt::format("R, G, B: {} in {}", quantity, unit)}};
-        const LinearImage image = numbers(light.maps[m], format.quantity);
+        const LinearImage image = uv_numbers(light.maps[m], format.quantity);
         if (const Result<void> written = write_exr(stem + ".exr", image, facts, format.precision); !written)
             return written;
         const ImageTexts texts{
             {"Software", "exitance"},
             {"Exposure", fmt::format("{} in {} times {:.6g}, then a filmic curve", quantity, unit, tones.scale)}};
-        const Result<void> written = write_png(stem + ".png", preview(light.maps[m], format.quantity, tones), texts);
+        const Result<void> written = write_png(stem + ".png", uv_preview(light.maps[m], format.quantity, tones), texts);
         if (!written) return written;
     }
     return {};

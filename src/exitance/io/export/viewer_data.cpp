@@ -16,10 +16,10 @@ using nlohmann::json;
 /// Limit on the links that are drawn for a selected element.
 constexpr std::size_t most_links = 400;
 
-json numbers(const Point& p) {
+json json_numbers(const Point& p) {
     return {p.x, p.y, p.z};
 }
-json numbers(const Spectrum& s) {
+json json_numbers(const Spectrum& s) {
     return red_green_blue(s);
 }
 
@@ -54,7 +54,7 @@ json links_at(const Solution& solution, RegionId region, const Point& x) {
     if (found.size() > most_links) found.resize(most_links);
     for (const KeptLink& link : found) {
         json outline = json::array();
-        for (const Point& p : tree.outline(link.source)) outline.push_back(numbers(p));
+        for (const Point& p : tree.outline(link.source)) outline.push_back(json_numbers(p));
         out.push_back({{"outline", std::move(outline)}, {"form_factor", link.form_factor}});
     }
     return out;
@@ -66,29 +66,30 @@ std::string viewer_scene_json(const Solution& solution, const Camera& camera) {
     json materials = json::array();
     for (const Material& m : solution.scene.materials())
         materials.push_back(
-            {{"name", m.name}, {"reflectance", numbers(m.reflectance)}, {"exitance", numbers(m.exitance)}});
+            {{"name", m.name}, {"reflectance", json_numbers(m.reflectance)}, {"exitance", json_numbers(m.exitance)}});
     json groups = json::array();
     for (const std::string& name : solution.scene.groups()) groups.push_back(name);
     const Box& box = solution.scene.box();
-    json out{{"file", solution.scene.file()},
-             {"photometric", solution.scene.is_photometric()},
-             {"weights", colour_weights(solution.scene)},
-             {"surfaces", solution.scene.surfaces().size()},
-             {"elements", solution.statistics.leaf_elements},
-             {"method", solution.statistics.method},
-             {"materials", std::move(materials)},
-             {"exposure", make_tone_map(solution).scale},
-             {"camera", {{"eye", numbers(camera.eye)}, {"target", numbers(camera.target)}, {"fov", camera.fov}}},
-             {"box", {numbers(box.lo), numbers(box.hi)}},
-             {"parts",
-              {{"exported", viewer_part_count(solution, ViewerLayer::exported)},
-               {"method", viewer_part_count(solution, ViewerLayer::method)},
-               {"raw", viewer_part_count(solution, ViewerLayer::raw)}}},
-             {"basis", solution.statistics.basis},
-             {"groups", std::move(groups)},
-             {"shadow_classes", !solution.discontinuity.shadow.empty()},
-             {"discontinuities", !solution.discontinuity.empty()},
-             {"links", solution.links.links.size()}};
+    json out{
+        {"file", solution.scene.file()},
+        {"photometric", solution.scene.is_photometric()},
+        {"weights", colour_weights(solution.scene)},
+        {"surfaces", solution.scene.surfaces().size()},
+        {"elements", solution.statistics.leaf_elements},
+        {"method", solution.statistics.method},
+        {"materials", std::move(materials)},
+        {"exposure", make_tone_map(solution).scale},
+        {"camera", {{"eye", json_numbers(camera.eye)}, {"target", json_numbers(camera.target)}, {"fov", camera.fov}}},
+        {"box", {json_numbers(box.lo), json_numbers(box.hi)}},
+        {"parts",
+         {{"exported", viewer_part_count(solution, ViewerLayer::exported)},
+          {"method", viewer_part_count(solution, ViewerLayer::method)},
+          {"raw", viewer_part_count(solution, ViewerLayer::raw)}}},
+        {"basis", solution.statistics.basis},
+        {"groups", std::move(groups)},
+        {"shadow_classes", !solution.discontinuity.shadow.empty()},
+        {"discontinuities", !solution.discontinuity.empty()},
+        {"links", solution.links.links.size()}};
     const auto& error = solution.statistics.relative_error_estimate;
     out["error"] = error ? json(*error) : json(nullptr);
     return out.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -98,9 +99,9 @@ std::string viewer_point_json(const RadiosityFunction& light, const ProbePoint& 
     const Solution& solution = light.solution();
     const std::span<const ProbePoint> points(&point, 1);
     const Light total = light.at(points)[0];
-    json out{{"irradiance", numbers(total.irradiance)},
-             {"direct", numbers(light.at(points, Component::direct)[0].irradiance)},
-             {"indirect", numbers(light.at(points, Component::indirect)[0].irradiance)}};
+    json out{{"irradiance", json_numbers(total.irradiance)},
+             {"direct", json_numbers(light.at(points, Component::direct)[0].irradiance)},
+             {"indirect", json_numbers(light.at(points, Component::indirect)[0].irradiance)}};
     const Locator locator(solution.scene);
     const SurfaceId s = locator.find(point.x, point.n);
     if (total.on_surface && !s.is_none()) {
@@ -108,7 +109,7 @@ std::string viewer_point_json(const RadiosityFunction& light, const ProbePoint& 
         const Surface& surface = scene.surfaces()[s];
         const ElementLocator elements(solution.interpolant.tree, scene.regions().size());
         const ElementId e = elements.find(surface.region, point.x).element;
-        out["radiosity"] = numbers(total.radiosity);
+        out["radiosity"] = json_numbers(total.radiosity);
         out["surface"] = s.value, out["line"] = surface.line;
         out["material"] = scene.material(s).name;
         out["group"] = surface.group.is_none() ? "" : scene.groups()[surface.group];
