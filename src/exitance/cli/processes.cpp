@@ -102,13 +102,14 @@ void record_processor_time(SolveStatistics& statistics) {
 
 void note_division(Progress& progress) {
     if (processes() == 1) return;
-    const double dealt = result_sharing().dealt_seconds, longest = largest_of_all(dealt), all = sum_of_all(dealt),
-                 repeated = as_first(processor_seconds() - dealt),
-                 peak = largest_of_all(static_cast<double>(peak_memory_bytes()));
+    double longest = 0;
+    for (const auto& [what, time] : dealt_time()) longest += time.longest;
+    const double dealt = result_sharing().dealt_seconds, repeated = as_first(processor_seconds() - dealt);
     progress.note(fmt::format(
-        "{} processes: {:.2f} s of processor time in divided loops, {:.2f} s of the busiest process; {:.2f} s of the "
-        "first one outside them; at most {:.0f} MB in a process",
-        processes(), all, longest, repeated, peak / 1e6));
+        "{} processes: {:.2f} s of processor time in divided loops, {:.2f} s of the slowest process in each; {:.2f} s "
+        "of the first one outside them; at most {:.0f} MB in a process",
+        processes(), sum_of_all(dealt), longest, repeated,
+        largest_of_all(1e-6 * static_cast<double>(peak_memory_bytes()))));
 }
 
 }  // namespace exitance

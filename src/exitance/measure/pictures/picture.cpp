@@ -244,7 +244,11 @@ Picture paint(const RadiosityFunction& light, const PictureOptions& options, con
     const std::size_t tiles = tile_count(picture.size);
     finished.assign(tiles, 0);
     // A painter's memory is reused for several tiles; if a tile takes long, tiles are distributed one by one.
-    const std::size_t grain = options.gather > 0 ? 1 : 8, at_once = (options.gather > 0 ? 16 : 256) * processes();
+    // Processes need smaller parts than threads, which take the next part when they have finished one.
+    const std::size_t grain = options.gather > 0 ? 1
+                              : processes() > 1  ? 2
+                                                 : 8,
+                      at_once = (options.gather > 0 ? 16 : 256) * processes();
     for (std::size_t first = 0; first < tiles && !stop.requested(); first += at_once) {
         progress.advance(static_cast<double>(first) / static_cast<double>(tiles));
         const std::size_t count = std::min(at_once, tiles - first);

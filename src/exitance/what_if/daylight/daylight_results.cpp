@@ -13,7 +13,7 @@ namespace {
 
 /// Sensors whose results are in memory together.
 constexpr std::size_t block_sensors = 256;
-/// Least number of sensors of a block that one process evaluates. derived from the tiles of YearSky
+/// Sensors that each of many processes evaluates at once, unless fewer are left. derived from the tiles of YearSky
 constexpr std::size_t min_own_sensors = 16;
 
 Error stopped() {
@@ -26,18 +26,20 @@ Error stopped() {
 template <class Block, class Evaluate, class ArchiveOne, class Take>
 Result<void> pass_blocks(std::size_t count, const Evaluate& evaluate, const ArchiveOne& archive_one, const Take& take,
                          Progress& progress, const StopRequest& stop) {
-    const std::size_t all = processes(), of_own = std::max(min_own_sensors, block_sensors / all);
-    for (std::size_t at = 0; at < count; at += all * of_own) {
-        std::vector<Block> blocks(std::min(all, (count - at + of_own - 1) / of_own));
+    const std::size_t all = processes(), most = std::max(min_own_sensors, block_sensors / all);
+    for (std::size_t at = 0, end = 0; at < count; at = end) {
+        const std::size_t of_own = std::min(most, (count - at + all - 1) / all);
+        end = std::min(count, at + all * of_own);
+        std::vector<Block> blocks((end - at + of_own - 1) / of_own);
         const std::size_t own = own_process(), first = at + own * of_own;
         do_own_share([&] {
-            if (own < blocks.size()) blocks[own] = evaluate(first, std::min(of_own, count - first));
+            if (own < blocks.size()) blocks[own] = evaluate(first, std::min(of_own, end - first));
         });
         exchange_archived(std::span(blocks), 1, archive_one, "year");
         for (Block& block : blocks)
             if (const Result<void> taken = result_of_all(take(block)); !taken) return taken.error();
         if (stop.requested()) return stopped();
-        progress.advance(static_cast<double>(std::min(count, at + all * of_own)) / static_cast<double>(count));
+        progress.advance(static_cast<double>(end) / static_cast<double>(count));
     }
     return {};
 }
