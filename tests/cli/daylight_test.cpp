@@ -11,16 +11,6 @@
 namespace exitance::test {
 namespace {
 
-/// Writes a room without a ceiling, half of which is covered by a pane.
-std::string write_court(const TemporaryFolder& folder) {
-    write_text(folder / "court.mtl", "newmtl grey\nKd 0.5 0.5 0.5\nnewmtl glass\nKd 0 0 0\nd 0.1\n");
-    write_text(folder / "court.obj",
-               "mtllib court.mtl\nv 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 0\nv 0 0 2.5\nv 4 0 2.5\nv 4 3 2.5\nv 0 3 2.5\n"
-               "v 2 0 2.5\nv 2 3 2.5\nusemtl grey\nf 1 2 3 4\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n"
-               "usemtl glass\nf 5 9 10 8\n");
-    return folder / "court.obj";
-}
-
 std::string first_line_of(const std::string& text) {
     return text.substr(0, text.find('\n'));
 }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "cli/process_runs.hpp"
 #include "exitance/io/files/folder_lock.hpp"
 #include "run_program.hpp"
 
@@ -46,6 +47,21 @@ std::string without_times(const std::string& path) {
         out += "\n";
     }
     return out;
+}
+
+TEST(ProgramExperiment, SeveralProcessesDivideTheRuns) {
+    if (launcher.empty()) GTEST_SKIP() << "the build has no MPI";
+    allow_any_processes();
+    const TemporaryFolder folder;
+    write_text(folder / "tiny.toml", tiny);
+    for (int processes = 1; processes <= 3; ++processes) {
+        const std::string output = folder / ("of" + std::to_string(processes));
+        const Finished run = run_on(processes, {"experiment", folder / "tiny.toml", "-o", output});
+        ASSERT_EQ(run.status, 0) << run.err;
+        EXPECT_EQ(times(run.out, "page "), 1u) << run.out;
+        EXPECT_EQ(without_times(output + "/results.csv"), without_times(folder / "of1/results.csv"));
+        EXPECT_TRUE(fs::exists(output + "/index.html"));
+    }
 }
 
 TEST(ProgramExperiment, ListsAndPrintsStudies) {

@@ -43,6 +43,17 @@ inline std::string write_small_room_in(const TemporaryFolder& folder, double per
     return folder / (name + ".obj");
 }
 
+/// Writes a room without a ceiling, half of which is covered by a pane. Returns the
+/// path of the OBJ file.
+inline std::string write_court(const TemporaryFolder& folder) {
+    write_text(folder / "court.mtl", "newmtl grey\nKd 0.5 0.5 0.5\nnewmtl glass\nKd 0 0 0\nd 0.1\n");
+    write_text(folder / "court.obj",
+               "mtllib court.mtl\nv 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 0\nv 0 0 2.5\nv 4 0 2.5\nv 4 3 2.5\nv 0 3 2.5\n"
+               "v 2 0 2.5\nv 2 3 2.5\nusemtl grey\nf 1 2 3 4\nf 1 5 6 2\nf 2 6 7 3\nf 3 7 8 4\nf 4 8 5 1\n"
+               "usemtl glass\nf 5 9 10 8\n");
+    return folder / "court.obj";
+}
+
 /// Writes a scene with an error in line 9: a face whose corner does not exist.
 inline std::string write_broken_scene(const TemporaryFolder& folder) {
     write_text(folder / "broken.mtl", "newmtl grey\nKd 0.5 0.5 0.5\n");

@@ -9,6 +9,7 @@
 
 #include "exitance/base/memory.hpp"
 #include "exitance/cli/arguments.hpp"
+#include "exitance/cli/processes.hpp"
 #include "exitance/cli/signals.hpp"
 #include "exitance/cli/terminal.hpp"
 #include "exitance/cli/verbs.hpp"
@@ -17,6 +18,13 @@
 
 namespace exitance {
 namespace {
+
+template <class Arguments, class... Supported>
+constexpr bool is_one_of = (std::is_same_v<Arguments, Supported> || ...);
+/// True for the arguments of verbs that may be started as several processes.
+template <class Arguments>
+constexpr bool supports_processes = is_one_of<Arguments, SolveArguments, ProbeArguments, RenderArguments, BakeArguments,
+                                              DaylightArguments, ViewFactorArguments, ExperimentArguments>;
 
 int run_program(const std::vector<std::string>& arguments) {
     const auto parsed = parse_arguments(arguments);
@@ -29,10 +37,15 @@ int run_program(const std::vector<std::string>& arguments) {
     const ExitCode code = std::visit(
         []<class Arguments>(const Arguments& command) {
             Terminal terminal(command);
-            if (processes() > 1 && !std::is_same_v<Arguments, SolveArguments>)
-                return terminal.fail({ErrorCode::usage, "starts several processes, which only `solve` supports",
+            if (processes() > 1 && !supports_processes<Arguments>)
+                return terminal.fail({ErrorCode::usage,
+                                      "starts several processes, which only solve, probe, render, bake, daylight, "
+                                      "viewfactors and experiment support",
                                       "mpirun", "run the other verbs without mpirun"});
-            return terminal.finish(run(command, terminal));
+            const ExitCode code = run(command, terminal);
+            if (code == ExitCode::done && !is_one_of<Arguments, SolveArguments, ExperimentArguments>)
+                note_division(terminal.progress());
+            return terminal.finish(code);
         },
         std::get<Command>(*parsed));
     return static_cast<int>(code);

@@ -1,5 +1,7 @@
 #include "exitance/cli/processes.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -44,10 +46,10 @@ LoadedScene load_for_all(const SceneArguments& scene) {
         as_first(is_first_process() ? StoredScene::bytes_of(*checked.scene) : std::string(), "scene");
     if (!is_first_process()) checked.scene = StoredScene::from_bytes(bytes);
     ArchiveWriter own;
-    own(checked.reflectance_deviation);
-    const std::string deviation = as_first(own.take(), "scene");
-    ArchiveReader reader(deviation);
-    reader(checked.reflectance_deviation);
+    own(checked.reflectance_deviation, checked.origin);
+    const std::string rest = as_first(own.take(), "scene");
+    ArchiveReader reader(rest);
+    reader(checked.reflectance_deviation, checked.origin);
     return checked;
 }
 
@@ -96,6 +98,18 @@ void record_processor_time(SolveStatistics& statistics) {
     const double dealt = result_sharing().dealt_seconds;
     statistics.figures["dealt_processor_seconds"] = sum_of_all(dealt);
     statistics.figures["repeated_processor_seconds"] = as_first(processor_seconds() - dealt);
+}
+
+void note_division(Progress& progress) {
+    if (processes() == 1) return;
+    double longest = 0;
+    for (const auto& [what, time] : dealt_time()) longest += time.longest;
+    const double dealt = result_sharing().dealt_seconds, repeated = as_first(processor_seconds() - dealt);
+    progress.note(fmt::format(
+        "{} processes: {:.2f} s of processor time in divided loops, {:.2f} s of the slowest process in each; {:.2f} s "
+        "of the first one outside them; at most {:.0f} MB in a process",
+        processes(), sum_of_all(dealt), longest, repeated,
+        largest_of_all(1e-6 * static_cast<double>(peak_memory_bytes()))));
 }
 
 }  // namespace exitance

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "exitance/base/progress.hpp"
 #include "exitance/cli/arguments.hpp"
 #include "exitance/cli/exit_code.hpp"
 #include "exitance/solution/solution.hpp"
@@ -13,7 +14,8 @@ namespace exitance {
 /// methods that do.
 Result<void> check_processes(const SolveArguments& arguments);
 
-/// The scene, read and checked by the first process and sent to all others. Collective.
+/// The scene, read and checked by the first process and sent to all others, without its findings and lines.
+/// Collective.
 LoadedScene load_for_all(const SceneArguments& scene);
 
 /// The exit status for a signal that any of the processes has received, `own` being that of this process; none if there
@@ -27,5 +29,9 @@ void record_processes(SolveStatistics& statistics);
 /// Records processor time so far: that of all processes on distributed work, and that of the first process on all other
 /// work, which the others repeat or wait for. Collective.
 void record_processor_time(SolveStatistics& statistics);
+
+/// Notes, with -v, how the work of a verb was divided, if there are several processes: processor time and memory.
+/// Collective.
+void note_division(Progress& progress);
 
 }  // namespace exitance

@@ -21,6 +21,8 @@ using Clock = StopRequest::Clock;
 constexpr std::chrono::milliseconds grace{200};
 /// Interval of checks of the memory. Pages are first written at about 1 GB/s per core: 10 MB per core and interval.
 constexpr std::chrono::milliseconds memory_interval{10};
+/// With several processes, whose shares of pages the system adds up in 1 to 5 ms per GB.
+constexpr std::chrono::milliseconds memory_interval_of_several{100};
 
 }  // namespace
 
@@ -29,7 +31,8 @@ Clock::time_point seconds_from_now(double seconds) {
     return Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
 }
 
-RunLimits::RunLimits(const LimitArguments& limits) : limits_(limits) {
+RunLimits::RunLimits(const LimitArguments& limits)
+    : limits_(limits), is_alone_(processes() == 1), is_first_(is_first_process()) {
     if (limits_.time_limit) {
         const Clock::time_point deadline = seconds_from_now(*limits_.time_limit);
         stop_.set_deadline(deadline);
@@ -68,7 +71,7 @@ std::string RunLimits::reason() const {
 Error RunLimits::error(const std::string& message) const {
     return over_memory_ ? Error{ErrorCode::limit,
                                 fmt::format("{:.0f} MiB are in use, over the limit of {:.0f} MiB, and {}",
-                                            static_cast<double>(resident_memory_bytes()) / 0x1p20,
+                                            static_cast<double>(used_memory_bytes()) / 0x1p20,
                                             static_cast<double>(*limits_.memory_limit) / 0x1p20, message),
                                 "--memory-limit", "raise the limit"}
                         : Error{ErrorCode::limit,
@@ -76,17 +79,28 @@ Error RunLimits::error(const std::string& message) const {
                                 "--time-limit", "raise the limit"};
 }
 
+void RunLimits::watch_memory_of_several() {
+    const std::lock_guard lock(mutex_);
+    watches_several_ = true;
+    changed_.notify_all();
+}
+
+std::size_t RunLimits::used_memory_bytes() const {
+    return is_alone_ ? resident_memory_bytes() : proportional_memory_bytes();
+}
+
 bool RunLimits::is_over_memory() const {
-    // Not checked with several processes: only fit_into_memory() knows by which share a shared page counts for each.
-    return limits_.memory_limit && processes() == 1 && resident_memory_bytes() > *limits_.memory_limit;
+    // A solve over several processes keeps the limit by fit_into_memory().
+    return limits_.memory_limit && (is_alone_ || watches_several_) && used_memory_bytes() > *limits_.memory_limit;
 }
 
 void RunLimits::watch() {
+    const std::chrono::milliseconds interval = is_alone_ ? memory_interval : memory_interval_of_several;
     std::unique_lock lock(mutex_);
     while (!is_over_) {
         const bool looks = limits_.memory_limit && !over_memory_;
         if (looks)
-            changed_.wait_until(lock, std::min(end_, Clock::now() + memory_interval));
+            changed_.wait_until(lock, std::min(end_, Clock::now() + interval));
         else if (keeps_ || !limits_.time_limit)
             changed_.wait(lock);
         else
@@ -94,7 +108,7 @@ void RunLimits::watch() {
         if (is_over_) return;
         const bool passes_memory = looks && is_over_memory();
         if (passes_memory) over_memory_ = true, stop_.interrupt();
-        if (!keeps_ && (passes_memory || Clock::now() >= end_) && is_first_process()) end_without_result();
+        if (!keeps_ && (passes_memory || Clock::now() >= end_) && is_first_) end_without_result();
     }
 }
 

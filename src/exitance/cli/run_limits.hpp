@@ -26,7 +26,8 @@ struct LimitArguments {
 /// Before keep() is called, there is no result: an exceeded limit ends the program with status 5, and a signal with 130
 /// or 143; both remove unfinished files. After keep(), limits and signals request a stop instead, and the verb writes
 /// its result so far. A thread watches the limits, so that they hold in code that checks no StopRequest. Without limits
-/// there is no thread. With several processes, only the first one ends the program.
+/// there is no thread. With several processes, only the first one ends the program, and the memory limit is watched
+/// only after watch_memory_of_several().
 class RunLimits {
   public:
     explicit RunLimits(const LimitArguments& limits);
@@ -41,6 +42,10 @@ class RunLimits {
     /// Declares that from now on there is a result to keep. Returns stop().
     StopRequest& keep(Signals signals = Signals::request_stop);
 
+    /// Watches the memory limit with several processes as well: each may use it, and a page that n processes of a node
+    /// share counts 1/n.
+    void watch_memory_of_several();
+
     /// Seconds until the time limit; infinite without a limit, negative after it.
     double seconds_left() const;
     /// The signal received since keep(); empty if none was.
@@ -54,17 +59,19 @@ class RunLimits {
 
   private:
     void watch();
+    std::size_t used_memory_bytes() const;
     bool is_over_memory() const;
     [[noreturn]] void end_without_result() const;
 
     LimitArguments limits_;
+    const bool is_alone_, is_first_;  ///< True if there is one process; if this is the first one.
     StopRequest::Clock::time_point end_ =
         StopRequest::Clock::time_point::max();  ///< Time limit plus a grace period of 0.2 s.
     StopRequest stop_;
     std::optional<SignalGuard> signals_;
     std::mutex mutex_;  ///< Guards the flags below.
     std::condition_variable changed_;
-    bool keeps_ = false, is_over_ = false;
+    bool keeps_ = false, is_over_ = false, watches_several_ = false;
     std::atomic<bool> over_memory_{false};
     std::jthread watcher_;
 };

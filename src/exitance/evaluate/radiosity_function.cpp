@@ -4,6 +4,7 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/gather/gather.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -85,23 +86,31 @@ Light RadiosityFunction::light_on(RegionId region, const Material& material, con
 
 std::vector<Light> RadiosityFunction::at(std::span<const ProbePoint> points, Component component) const {
     std::vector<Light> out(points.size());
-    evaluate(points, 0, component, out);
+    parallel_ranges(out.size(), points_a_task, [&](std::size_t begin, std::size_t end) {
+        evaluate(points, begin, component, std::span(out).subspan(begin, end - begin));
+    });
     return out;
 }
 
 std::vector<Light> RadiosityFunction::at_until(const StopRequest& stop, std::span<const ProbePoint> points,
                                                Component component) const {
     constexpr double step_seconds = 0.5;
-    const std::size_t least = points_a_task * static_cast<std::size_t>(threads());
+    const std::size_t least = points_a_task * processes() * static_cast<std::size_t>(as_first(threads()));
     std::vector<Light> out;
     for (std::size_t step = least; out.size() < points.size() && !stop.requested();) {
         const Stopwatch watch;
         const std::size_t first = out.size();
         out.resize(std::min(points.size(), first + step));
-        evaluate(points, first, component, std::span(out).subspan(first));
-        if (2 * watch.seconds() < step_seconds)
+        shared_ranges(
+            out.size() - first, points_a_task,
+            [&](std::size_t begin, std::size_t end) {
+                evaluate(points, first + begin, component, std::span(out).subspan(first + begin, end - begin));
+            },
+            [&](std::size_t i) -> Light& { return out[first + i]; }, {"points"});
+        const double seconds = as_first(watch.seconds());
+        if (2 * seconds < step_seconds)
             step *= 2;
-        else if (watch.seconds() > 2 * step_seconds)
+        else if (seconds > 2 * step_seconds)
             step = std::max(least, step / 2);
     }
     return out;
@@ -109,32 +118,30 @@ std::vector<Light> RadiosityFunction::at_until(const StopRequest& stop, std::spa
 
 void RadiosityFunction::evaluate(std::span<const ProbePoint> points, std::size_t first, Component component,
                                  std::span<Light> results) const {
-    parallel_ranges(results.size(), points_a_task, [&](std::size_t begin, std::size_t end) {
-        PlaceLight::Workspace workspace;
-        GatherWorkspace gathering;
-        for (std::size_t k = begin; k < end; ++k) {
-            const std::size_t i = first + k;
-            Light& out = results[k];
-            const Normal& n = points[i].n;
-            const auto& [x, surface, region, is_between_sides] = places_.find(points[i].x, n);
-            if (!surface.is_none()) {
-                const bool is_covered = stage_->occluders.is_covered(x, n, region);
-                const Material& material = solution_.scene.material(surface);
-                out = is_covered ? exitance::light_on(material, Spectrum())
-                                 : light_on(region, material, x, component, workspace);
-                out.is_between_sides = is_between_sides;
-                continue;
-            }
+    PlaceLight::Workspace workspace;
+    GatherWorkspace gathering;
+    for (std::size_t k = 0; k < results.size(); ++k) {
+        const std::size_t i = first + k;
+        Light& out = results[k];
+        const Normal& n = points[i].n;
+        const auto& [x, surface, region, is_between_sides] = places_.find(points[i].x, n);
+        if (!surface.is_none()) {
+            const bool is_covered = stage_->occluders.is_covered(x, n, region);
+            const Material& material = solution_.scene.material(surface);
+            out = is_covered ? exitance::light_on(material, Spectrum())
+                             : light_on(region, material, x, component, workspace);
             out.is_between_sides = is_between_sides;
-            if (component != Component::indirect) {
-                const PlaceLight::Estimate direct = stage_->place_light.at(x, n, region, accuracy_, workspace);
-                out.irradiance += direct.irradiance, out.standard_error = direct.standard_error();
-            }
-            const std::uint64_t key = hash(static_cast<std::uint64_t>(Stream::gather), i);
-            if (component != Component::direct)
-                out.irradiance += gathered({x, n}, RegionId(), free_space_rays, key, gathering);
+            continue;
         }
-    });
+        out.is_between_sides = is_between_sides;
+        if (component != Component::indirect) {
+            const PlaceLight::Estimate direct = stage_->place_light.at(x, n, region, accuracy_, workspace);
+            out.irradiance += direct.irradiance, out.standard_error = direct.standard_error();
+        }
+        const std::uint64_t key = hash(static_cast<std::uint64_t>(Stream::gather), i);
+        if (component != Component::direct)
+            out.irradiance += gathered({x, n}, RegionId(), free_space_rays, key, gathering);
+    }
 }
 
 Spectrum RadiosityFunction::interpolated(RegionId region, const Point& x) const {

@@ -53,6 +53,7 @@ class RadiosityFunction {
     std::vector<Light> at(std::span<const ProbePoint> points, Component component = Component::total) const;
 
     /// Like at(), in steps of about half a second; after a stop request the result ends with the last finished step.
+    /// Several processes divide the points. Collective.
     std::vector<Light> at_until(const StopRequest& stop, std::span<const ProbePoint> points,
                                 Component component = Component::total) const;
 
@@ -82,7 +83,7 @@ class RadiosityFunction {
     const Stage& stage() const { return *stage_; }
 
   private:
-    /// Light at points[first...]; indices of `points` select the random numbers.
+    /// Light at points[first...], one after the other; indices of `points` select the random numbers.
     void evaluate(std::span<const ProbePoint> points, std::size_t first, Component component,
                   std::span<Light> out) const;
     Spectrum interpolated(RegionId region, const Point& x) const;

@@ -12,8 +12,10 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <tuple>
 
 #include "exitance/base/memory.hpp"
+#include "exitance/processes/run_apart.hpp"
 
 namespace exitance {
 namespace {
@@ -38,9 +40,12 @@ struct Team {
 };
 Team team;
 
-/// True if a launcher started this process as one of several; launchers set environment variables.
+/// Environment variables that launchers set.
+constexpr std::array launcher_variables{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMI_RANK", "PMIX_RANK"};
+
+/// True if a launcher started this process as one of several.
 bool was_launched() {
-    for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMI_RANK", "PMIX_RANK"})
+    for (const char* name : launcher_variables)
         if (const char* value = std::getenv(name); value && *value)
             return std::string(name).ends_with("_SIZE") ? std::atol(value) > 1 : true;
     return false;
@@ -133,6 +138,11 @@ StopTogether::~StopTogether() {
     team.asked = nullptr, team.agreed = nullptr;
 }
 
+bool stops_within_loop(const StopRequest& agreed) {
+    if (team.asked && team.asked->requested()) team.agreed->interrupt();
+    return agreed.requested();
+}
+
 double seconds_left(const StopRequest& agreed) {
     return as_first((team.asked ? *team.asked : agreed).seconds_left());
 }
@@ -160,15 +170,31 @@ std::string as_first(std::string bytes, const char* what) {
     return bytes;
 }
 
+void run_apart(const std::function<void()>& work) {
+    const ResultSharing sharing = std::exchange(result_sharing(), ResultSharing());
+    const auto [size, own, node_size] = std::tuple(team.size, team.own, team.node_size);
+    team.size = 1, team.own = 0, team.node_size = 1;
+    work();
+    team.size = size, team.own = own, team.node_size = node_size;
+    result_sharing() = sharing;
+}
+
+void hide_launcher() {
+    for (const char* name : launcher_variables) unsetenv(name);
+}
+
 Result<void> by_first(const std::function<Result<void>()>& work) {
-    const ResultSharing sharing = std::exchange(result_sharing(), ResultSharing());  // the other processes do no work
     const int own_threads = threads();
     // The other processes of the node sleep, so that their processors are available as far as this process may use
     // them.
-    if (is_first_process() && team.node_size > 1) set_threads(own_threads * team.node_size);
-    const Result<void> done = is_first_process() ? work() : Result<void>();
-    if (is_first_process() && team.node_size > 1) set_threads(own_threads);
-    result_sharing() = sharing;
+    const int all_threads = own_threads * team.node_size;
+    const bool is_first = is_first_process();
+    if (is_first && all_threads > own_threads) set_threads(all_threads);
+    Result<void> done;
+    run_apart([&] {
+        if (is_first) done = work();
+    });
+    if (is_first && all_threads > own_threads) set_threads(own_threads);
     if (team.size == 1 || as_first(static_cast<bool>(done))) return done;
     const Error none, &own = done ? none : done.error();
     Error error{as_first(own.code), {}, {}, {}};
@@ -222,7 +248,7 @@ void parallel_own_ranges(std::size_t count, std::size_t grain,
         own, 1,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t k = begin; k < end; ++k) {
-                if (team.asked && team.asked->requested()) team.agreed->interrupt();
+                if (team.agreed) stops_within_loop(*team.agreed);
                 body(first_of(k), std::min(count, first_of(k) + grain));
             }
         },

@@ -48,6 +48,10 @@ class StopTogether {
     StopTogether& operator=(const StopTogether&) = delete;
 };
 
+/// True if this process or all processes are requested to stop. For long bodies of shared loops, which run longer than
+/// a stop may take; elsewhere processes could disagree. `agreed` as in StopTogether.
+bool stops_within_loop(const StopRequest& agreed);
+
 /// Seconds until the deadline, by the clock of the first process; `agreed` as in StopTogether. Collective.
 double seconds_left(const StopRequest& agreed);
 

@@ -1,6 +1,7 @@
 #include <cstdlib>
 
 #include "exitance/processes/distributed.hpp"
+#include "exitance/processes/run_apart.hpp"
 
 // Implementation for builds without MPI: there is one process.
 
@@ -24,6 +25,10 @@ std::size_t own_process() {
 StopTogether::StopTogether(const StopRequest&, StopRequest&) {}
 StopTogether::~StopTogether() = default;
 
+bool stops_within_loop(const StopRequest& agreed) {
+    return agreed.requested();
+}
+
 double seconds_left(const StopRequest& agreed) {
     return agreed.seconds_left();
 }
@@ -34,6 +39,10 @@ std::string as_first(std::string bytes, const char*) {
 Result<void> by_first(const std::function<Result<void>()>& work) {
     return work();
 }
+void run_apart(const std::function<void()>& work) {
+    work();
+}
+void hide_launcher() {}
 std::size_t processes_on_node() {
     return 1;
 }

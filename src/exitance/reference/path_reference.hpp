@@ -24,7 +24,8 @@ struct ReferenceLight {
 /// to an emitter chosen by its unoccluded contribution, and by the path's next ray, weighted by the balance heuristic.
 /// Paths end by Russian roulette, with the reflectance as survival probability. `paths`: number of paths per point,
 /// rounded up to a multiple of 16. Deterministic for a given `seed` and index of a point. After a stop request, the
-/// result ends before the first unfinished point. Source: [Kajiya86], [Veach95]. O(points x paths).
+/// result ends before the first unfinished point. Several processes divide the points. Collective. Source: [Kajiya86],
+/// [Veach95]. O(points x paths).
 std::vector<ReferenceLight> reference_light(const Scene& scene, std::span<const ProbePoint> points, std::size_t paths,
                                             std::uint64_t seed, Progress& progress, const StopRequest& stop);
 

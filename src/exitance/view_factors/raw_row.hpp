@@ -41,4 +41,10 @@ struct RawRow {
     }
 };
 
+template <class Archive>
+void archive(Archive& a, RawRow& row) {
+    a(row.face, row.round, row.cast_density, row.sky, row.back, row.sky_variance, row.back_variance);
+    a(row.missed_variance, row.bound, row.rays, row.cast_rays, row.entries);
+}
+
 }  // namespace exitance

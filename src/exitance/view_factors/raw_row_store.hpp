@@ -18,4 +18,8 @@ class RawRowStore {
     virtual void flush() {}
 };
 
+/// Returns the rows that the store of the first process has kept, in all processes; none without a store, which the
+/// other processes do not have. Collective.
+std::vector<RawRow> resumed_rows(RawRowStore* store);
+
 }  // namespace exitance

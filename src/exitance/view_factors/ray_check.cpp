@@ -7,8 +7,8 @@
 #include <unordered_set>
 #include <vector>
 
-#include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
+#include "exitance/processes/distributed.hpp"
 #include "exitance/view_factors/face_sampler.hpp"
 #include "exitance/visibility/rays.hpp"
 
@@ -131,15 +131,20 @@ RayCheck check_by_rays(const Scene& scene, const SparseFactors& table, const Ray
     const RayTracer tracer(scene);
     std::vector<RayEntry> found(drawn.size());
     std::atomic<bool> stopped{false};
-    parallel_for(drawn.size(), 1, [&](std::size_t k) {
-        if (stop.requested()) stopped = true;
-        if (stopped) return;
-        const auto [i, j, F] = drawn[k];
-        found[k] = view_factor_by_rays(scene, tracer, SurfaceId(i), SurfaceId(j), options.rays,
-                                       hash(options.seed, std::uint64_t{i} * table.size() + j));
-    });
+    shared_ranges(
+        drawn.size(), 1,
+        [&](std::size_t from, std::size_t to) {
+            for (std::size_t k = from; k < to; ++k) {
+                if (stop.requested()) stopped = true;
+                if (stopped) return;
+                const auto [i, j, F] = drawn[k];
+                found[k] = view_factor_by_rays(scene, tracer, SurfaceId(i), SurfaceId(j), options.rays,
+                                               hash(options.seed, std::uint64_t{i} * table.size() + j));
+            }
+        },
+        [&](std::size_t k) -> RayEntry& { return found[k]; }, {"checked entries"});
     std::vector<double> relative_errors;
-    check.is_complete = !stopped;
+    check.is_complete = !(largest_of_all(stopped ? 1 : 0) > 0);
     for (std::size_t k = 0; k < drawn.size(); ++k) {
         if (found[k].rays == 0) continue;
         const double F = drawn[k].F, off = std::abs(F - found[k].F);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/base/parallel.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -142,9 +142,13 @@ RowCheck check_rows_by_rays(const Scene& scene, std::span<const std::uint8_t> fi
     if (faces.empty()) return check;
     const RowScene ready(scene);
     check.rows.resize(faces.size());
-    parallel_for(faces.size(), 1, [&](std::size_t k) {
-        if (!stop.requested()) check.rows[k] = check_row(ready, row_of(faces[k]), faces[k], options, stop);
-    });
+    shared_ranges(
+        faces.size(), 1,
+        [&](std::size_t from, std::size_t to) {
+            for (std::size_t k = from; k < to && !stop.requested(); ++k)
+                check.rows[k] = check_row(ready, row_of(faces[k]), faces[k], options, stop);
+        },
+        [&](std::size_t k) -> CheckedRow& { return check.rows[k]; }, {"checked rows"});
     if (stop.requested()) {
         check.rows.clear(), check.is_complete = false;
         return check;

@@ -12,13 +12,14 @@
 
 #include "exitance/base/memory.hpp"
 #include "exitance/base/parallel.hpp"
+#include "exitance/processes/exchange_archived.hpp"
 #include "exitance/view_factors/combine_rows.hpp"
 #include "exitance/view_factors/row_estimator.hpp"
 
 namespace exitance {
 namespace {
 
-constexpr std::size_t rows_a_step = 64;  ///< Rows between progress reports and checks of memory.
+constexpr std::size_t rows_a_step = 64;  ///< Rows of a process between progress reports and checks of memory.
 constexpr std::size_t rows_a_range = 4;  ///< Rows that one thread computes without interruption.
 
 /// Share of R that rows use in the first pass, as the expected error after combination.
@@ -45,7 +46,7 @@ class RowRun {
         }
         rows_.resize(out.size()), shares_.assign(out.size(), first_share);
         finished_.assign(out.size(), 0);
-        if (store_) resumed_ = store_->resumed();
+        resumed_ = resumed_rows(store_);
         std::vector<std::size_t> faces(out.size());
         std::iota(faces.begin(), faces.end(), 0);
         const CombineOptions combine{options_.smallest, options_.error};
@@ -96,9 +97,10 @@ class RowRun {
         progress_.phase(round == 0 ? "view factors" : "rows again");
         if (!ready_) ready_.emplace(scene_);
         const std::size_t before = faces.size() - left.size();
-        for (std::size_t first = 0; first < left.size(); first += rows_a_step) {
+        const std::size_t rows_at_once = rows_a_step * processes();
+        for (std::size_t first = 0; first < left.size(); first += rows_at_once) {
             const std::span<const std::size_t> step =
-                std::span(left).subspan(first, std::min(rows_a_step, left.size() - first));
+                std::span(left).subspan(first, std::min(rows_at_once, left.size() - first));
             if (!compute_step(step, round) || exceeds_memory()) return false;
             const std::size_t done = before + first + step.size();
             progress_.advance(static_cast<double>(done) / static_cast<double>(faces.size()),
@@ -110,14 +112,19 @@ class RowRun {
     /// Computes and keeps a few rows; returns false if a stop request left some out.
     bool compute_step(std::span<const std::size_t> faces, std::uint32_t round) {
         std::vector<std::optional<RawRow>> made(faces.size());
-        parallel_ranges(faces.size(), rows_a_range, [&](std::size_t from, std::size_t to) {
-            std::unique_ptr<RowEstimator>& estimator = estimators_[from / rows_a_range];
-            if (!estimator)
-                estimator = std::make_unique<RowEstimator>(
-                    *ready_, options_.error, options_.missed_error.value_or(options_.error), options_.seed, stop_);
-            for (std::size_t k = from; k < to && !stop_.requested(); ++k)
-                made[k] = (*estimator)(faces[k], round, shares_[faces[k]]);
-        });
+        parallel_own_ranges(
+            faces.size(), rows_a_range,
+            [&](std::size_t from, std::size_t to) {
+                std::unique_ptr<RowEstimator>& estimator = estimators_[from / rows_a_range / processes()];
+                if (!estimator)
+                    estimator = std::make_unique<RowEstimator>(
+                        *ready_, options_.error, options_.missed_error.value_or(options_.error), options_.seed, stop_);
+                for (std::size_t k = from; k < to && !stop_.requested(); ++k)
+                    made[k] = (*estimator)(faces[k], round, shares_[faces[k]]);
+            },
+            {"rows"});
+        exchange_archived(
+            std::span(made), rows_a_range, [](auto& archive, std::optional<RawRow>& row) { archive(row); }, "rows");
         bool all = true;
         for (std::size_t k = 0; k < faces.size(); ++k) {
             all &= made[k].has_value();
@@ -129,8 +136,10 @@ class RowRun {
         return all;
     }
 
+    /// True if any process is over the limit. Collective.
     bool exceeds_memory() const {
-        return options_.memory_limit_bytes != SIZE_MAX && proportional_memory_bytes() > options_.memory_limit_bytes;
+        if (options_.memory_limit_bytes == SIZE_MAX) return false;
+        return largest_of_all(proportional_memory_bytes() > options_.memory_limit_bytes ? 1 : 0) > 0;
     }
 
     const Scene& scene_;

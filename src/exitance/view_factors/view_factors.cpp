@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "exitance/base/memory.hpp"
-#include "exitance/base/parallel.hpp"
+#include "exitance/processes/distributed.hpp"
 #include "exitance/view_factors/entry_factors.hpp"
 #include "exitance/view_factors/row_worker.hpp"
 #include "exitance/view_factors/view_pairs.hpp"
@@ -18,14 +18,15 @@ namespace {
 /// `aimed_at`. Both rows may have the same error. In a town, one of 120 pairs within 0.7 of each other was off by more
 /// than the tolerance, up to 1.5 times as much (2.0 at 1e-4); of those within 0.3 one of 7,500, up to 1.2 times.
 constexpr double agreeing = 0.3, aimed_at = 0.8;
-constexpr std::size_t rows_a_report = 64, pairs_a_report = 512;  ///< Between progress reports.
+constexpr std::size_t rows_of_process = 64, pairs_of_process = 512;  ///< Between progress reports.
 
 Error stopped(const std::string& what) {
     return {ErrorCode::limit, "stopped " + what, "", "allow more time or a larger --tolerance"};
 }
 
+/// True if any process is over the limit. Collective.
 bool exceeds_memory(std::size_t limit) {
-    return limit != SIZE_MAX && proportional_memory_bytes() > limit;
+    return limit != SIZE_MAX && largest_of_all(proportional_memory_bytes() > limit ? 1 : 0) > 0;
 }
 
 /// Relative difference of the two rows' values for a pair of faces, by the larger one.
@@ -85,10 +86,10 @@ class TableMaker {
 
     /// Finds hidden pairs once for both of their rows. In a town most pairs of faces are hidden by several houses.
     Result<void> find_hidden() {
-        const std::size_t n = table_.size();
+        const std::size_t n = table_.size(), rows_a_step = rows_of_process * processes();
         progress_.phase("hidden pairs");
-        for (std::size_t first = 0; first < n; first += rows_a_report) {
-            const std::size_t last = std::min(first + rows_a_report, n);
+        for (std::size_t first = 0; first < n; first += rows_a_step) {
+            const std::size_t last = std::min(first + rows_a_step, n);
             pairs_.find_hidden(first, last, stop_);
             if (stop_.requested()) return stopped("before the first row of view factors");
             progress_.advance(static_cast<double>(last) / static_cast<double>(n));
@@ -98,19 +99,24 @@ class TableMaker {
 
     /// Computes and keeps the rows that are not finished.
     Result<void> compute_rows(std::vector<std::uint8_t>& finished, RawRowStore* store, std::size_t memory_limit) {
-        const std::size_t n = table_.size();
+        const std::size_t n = table_.size(), rows_a_step = rows_of_process * processes();
         progress_.phase("view factors");
-        for (std::size_t first = 0; first < n; first += rows_a_report) {
-            const std::size_t count = std::min(rows_a_report, n - first);
+        for (std::size_t first = 0; first < n; first += rows_a_step) {
+            const std::size_t count = std::min(rows_a_step, n - first);
             std::vector<std::uint8_t> made(count);
-            parallel_ranges(count, 4, [&](std::size_t from, std::size_t to) {
-                RowWorker worker(pairs_, aimed_at * tolerance_, stop_);
-                for (std::size_t i = first + from; i < first + to && !stop_.requested(); ++i) {
-                    if (finished[i]) continue;
-                    worker.compute(i, std::span(table_.factors).subspan(i * n, n));
-                    made[i - first] = !stop_.requested();
-                }
-            });
+            shared_ranges(
+                count, 4,
+                [&](std::size_t from, std::size_t to) {
+                    RowWorker worker(pairs_, aimed_at * tolerance_, stop_);
+                    for (std::size_t i = first + from; i < first + to && !stop_.requested(); ++i) {
+                        if (finished[i]) continue;
+                        worker.compute(i, std::span(table_.factors).subspan(i * n, n));
+                        made[i - first] = !stop_.requested();
+                    }
+                },
+                [&](std::size_t k) { return std::span(table_.factors).subspan((first + k) * n, n); }, {"rows"});
+            exchange_values(
+                count, 4, [&](std::size_t k) -> std::uint8_t& { return made[k]; }, "rows");
             for (std::size_t k = 0; k < count; ++k) {
                 finished[first + k] |= made[k];
                 if (made[k] && store) store->keep(raw_row(first + k));
@@ -136,17 +142,23 @@ class TableMaker {
                                     {0.2, RowWorker::Means::without_lines},
                                     {0.04, RowWorker::Means::patient}};
         progress_.phase("look again");
+        const std::size_t pairs_a_step = pairs_of_process * processes();
         for (const Round& round : rounds) {
             const std::vector<Pair> pairs = disagreeing(table_, agreeing * tolerance_);
             if (&round == &rounds[0]) table_.mended = pairs.size();
-            for (std::size_t first = 0; first < pairs.size(); first += pairs_a_report) {
-                const std::size_t count = std::min(pairs_a_report, pairs.size() - first);
-                parallel_ranges(count, 4, [&](std::size_t from, std::size_t to) {
-                    RowWorker worker(pairs_, aimed_at * tolerance_, stop_);
-                    for (std::size_t k = first + from; k < first + to && !stop_.requested(); ++k) {
-                        look_again(worker, pairs[k], round.share * tolerance_, round.means);
-                    }
-                });
+            for (std::size_t first = 0; first < pairs.size(); first += pairs_a_step) {
+                const std::size_t count = std::min(pairs_a_step, pairs.size() - first);
+                const std::span<const Pair> some = std::span(pairs).subspan(first, count);
+                shared_ranges(
+                    count, 4,
+                    [&](std::size_t from, std::size_t to) {
+                        RowWorker worker(pairs_, aimed_at * tolerance_, stop_);
+                        for (std::size_t k = from; k < to && !stop_.requested(); ++k)
+                            look_again(worker, some[k], round.share * tolerance_, round.means);
+                    },
+                    [&](std::size_t k) -> double& { return at(some[k].i, some[k].j); }, {"pairs"});
+                exchange_values(
+                    count, 4, [&](std::size_t k) -> double& { return at(some[k].j, some[k].i); }, "pairs");
                 if (stop_.requested())
                     return stopped(fmt::format("while {} pairs of faces were computed again", pairs.size()));
                 progress_.advance(static_cast<double>(first + count) / static_cast<double>(pairs.size()));
@@ -206,8 +218,7 @@ ViewFactors empty_table(const Scene& scene) {
 /// Restores the rows that an earlier run kept; returns 1 for each of them.
 std::vector<std::uint8_t> take_resumed(RawRowStore* store, ViewFactors& table) {
     std::vector<std::uint8_t> finished(table.size());
-    if (!store) return finished;
-    for (const RawRow& row : store->resumed()) {
+    for (const RawRow& row : resumed_rows(store)) {
         finished[row.face] = 1;
         for (const RowEntry& entry : row.entries) table.factors[row.face * table.size() + entry.column] = entry.F;
     }

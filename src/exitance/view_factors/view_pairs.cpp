@@ -4,6 +4,7 @@
 #include <array>
 
 #include "exitance/base/parallel.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -103,29 +104,35 @@ void ViewPairs::find_blockers(std::size_t i, std::size_t j, std::span<const std:
 }
 
 void ViewPairs::find_hidden(std::size_t first, std::size_t last, const StopRequest& stop) {
-    parallel_ranges(last - first, 4, [&](std::size_t from, std::size_t to) {
-        JointShadow shadow;
-        std::vector<std::uint32_t> of_face, of_pair;
-        std::vector<Point> part_i, part_j;
-        for (std::size_t i = first + from; i < first + to; ++i) {
-            find_blockers(i, of_face);
-            for (std::size_t j = 0; j < i && !stop.requested(); ++j) {
-                bool cut = false;
-                if (!face_each_other(i, j, cut)) continue;
-                find_blockers(i, j, of_face, of_pair);
-                if (of_pair.empty()) continue;
-                bool hidden = true;
-                for (const std::vector<Point>& piece_i : faces_[i].pieces)
-                    for (const std::vector<Point>& piece_j : faces_[j].pieces) {
-                        if (!hidden) continue;
-                        clip(piece_i, faces_[j].plane, part_i);
-                        clip(piece_j, faces_[i].plane, part_j);
-                        hidden = part_i.empty() || part_j.empty() || shadow.hides(part_i, part_j, planes_, of_pair);
-                    }
-                hidden_[i * faces_.size() + j] = hidden_[j * faces_.size() + i] = hidden;
+    const std::size_t n = faces_.size();
+    shared_ranges(
+        last - first, 4,
+        [&](std::size_t from, std::size_t to) {
+            JointShadow shadow;
+            std::vector<std::uint32_t> of_face, of_pair;
+            std::vector<Point> part_i, part_j;
+            for (std::size_t i = first + from; i < first + to; ++i) {
+                find_blockers(i, of_face);
+                for (std::size_t j = 0; j < i && !stop.requested(); ++j) {
+                    bool cut = false;
+                    if (!face_each_other(i, j, cut)) continue;
+                    find_blockers(i, j, of_face, of_pair);
+                    if (of_pair.empty()) continue;
+                    bool hidden = true;
+                    for (const std::vector<Point>& piece_i : faces_[i].pieces)
+                        for (const std::vector<Point>& piece_j : faces_[j].pieces) {
+                            if (!hidden) continue;
+                            clip(piece_i, faces_[j].plane, part_i);
+                            clip(piece_j, faces_[i].plane, part_j);
+                            hidden = part_i.empty() || part_j.empty() || shadow.hides(part_i, part_j, planes_, of_pair);
+                        }
+                    hidden_[i * n + j] = hidden;
+                }
             }
-        }
-    });
+        },
+        [&](std::size_t k) { return std::span(hidden_).subspan((first + k) * n, first + k); }, {"hidden pairs"});
+    for (std::size_t i = first; i < last; ++i)
+        for (std::size_t j = 0; j < i; ++j) hidden_[j * n + i] = hidden_[i * n + j];
 }
 
 }  // namespace exitance

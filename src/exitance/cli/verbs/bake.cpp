@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "exitance/base/parallel.hpp"
+#include "exitance/cli/common_stop.hpp"
 #include "exitance/cli/solve/kept_groups.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/export/light_map_files.hpp"
@@ -12,6 +13,7 @@
 #include "exitance/io/scenes/textures/normal_file.hpp"
 #include "exitance/io/scenes/textures/scene_textures.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/processes/result_of_all.hpp"
 #include "exitance/what_if/light_groups/light_groups.hpp"
 
 namespace exitance {
@@ -44,11 +46,12 @@ Result<std::vector<std::string>> bake_groups(const Solution& whole, const LightG
 }
 
 /// Notes a stop before all groups were finished. Returns the program's exit code.
-ExitCode end_of_groups(const LightGroups& groups, const std::vector<std::string>& names, Terminal& terminal) {
+ExitCode end_of_groups(const LightGroups& groups, const std::vector<std::string>& names, const CommonStop& stop,
+                       Terminal& terminal) {
     if (names.size() == groups.groups.size()) return ExitCode::done;
-    terminal.note(fmt::format("stopped by the {}: {} of {} light groups have maps of their own",
-                              terminal.limits().reason(), names.size(), groups.groups.size()));
-    return terminal.limits().stopped_code();
+    terminal.note(fmt::format("stopped by the {}: {} of {} light groups have maps of their own", stop.reason(),
+                              names.size(), groups.groups.size()));
+    return stop.stopped_code();
 }
 
 template <class Maps, class Size>
@@ -116,29 +119,32 @@ ExitCode bake_into_uvs(const BakeArguments& arguments, const Solution& solution,
                        const LightGroups& groups, Terminal& terminal) {
     const std::string scene_file = find_scene_file(solution.scene, arguments.solution);
     const Stopwatch watch;
-    Result<UvTarget> target = find_uv_target(arguments, solution.scene, scene_file);
+    Result<UvTarget> target = all_or_none(find_uv_target(arguments, solution.scene, scene_file));
     if (!target) return terminal.fail(target.error());
     const UvSet& set = target->set;
     UvBakeOptions& options = target->options;
     options.curved = &curved;
     auto& progress = terminal.progress();
-    const StopRequest& stop = terminal.limits().keep();
+    const CommonStop common(terminal, terminal.limits().keep());
+    const StopRequest& stop = common.request();
     const Result<UvLightMaps> maps = bake_uv_light_maps(RadiosityFunction(solution), set, options, progress, stop);
     if (!maps) return terminal.fail(maps.error());
-    if (stop.requested()) return terminal.fail_stopped("the light maps are not finished");
+    if (stop.requested()) return common.fail("the light maps are not finished");
     const auto bake_group = [&](const Solution& lit, std::size_t group) -> Result<bool> {
         const Result<UvLightMaps> own = bake_uv_light_maps(RadiosityFunction(lit), set, options, progress, stop);
         if (!own) return own.error();
         if (stop.requested()) return false;
-        const Result<void> written = write_uv_pictures(lit.scene, *own, group, arguments.format, arguments.output);
+        const Result<void> written =
+            by_first([&] { return write_uv_pictures(lit.scene, *own, group, arguments.format, arguments.output); });
         return written ? Result<bool>(true) : written.error();
     };
     const Result<std::vector<std::string>> names = bake_groups(solution, groups, progress, stop, bake_group);
     progress.finish();
     if (!names) return terminal.fail(names.error());
-    Result<void> written = write_uv_pictures(solution.scene, *maps, {}, arguments.format, arguments.output);
-    if (!written) return terminal.fail(written.error());
-    written = write_uv_model(arguments, solution, *target, scene_file, *maps, *names);
+    const Result<void> written = by_first([&] {
+        const Result<void> pictures = write_uv_pictures(solution.scene, *maps, {}, arguments.format, arguments.output);
+        return pictures ? write_uv_model(arguments, solution, *target, scene_file, *maps, *names) : pictures;
+    });
     if (!written) return terminal.fail(written.error());
     note_curved(maps->curved, terminal);
     for (const std::string& warning : chart_warnings(set, *maps)) terminal.note("warning: " + warning);
@@ -150,7 +156,7 @@ ExitCode bake_into_uvs(const BakeArguments& arguments, const Solution& solution,
                               set.file, maps->maps.size(), maps->maps.size() == 1 ? "map" : "maps",
                               sizes_of(maps->maps, [](const UvLightMap& map) { return map.light.size; }),
                               watch.seconds()));
-    return end_of_groups(groups, *names, terminal);
+    return end_of_groups(groups, *names, common, terminal);
 }
 
 }  // namespace
@@ -160,7 +166,7 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     LightGroups groups;
     const Result<Solution> solution =
-        load_solution(arguments.solution, Rehearsed::not_yet, arguments.light_groups ? &groups : nullptr);
+        all_or_none(load_solution(arguments.solution, Rehearsed::not_yet, arguments.light_groups ? &groups : nullptr));
     if (!solution) return terminal.fail(solution.error());
     if (arguments.light_groups && groups.empty()) return terminal.fail(no_light_groups(arguments.solution));
     const CurvedFaces curved = find_curved_faces(arguments, solution->scene);
@@ -170,16 +176,18 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     BakeOptions options;
     options.density = arguments.density, options.padding = static_cast<int>(arguments.padding);
     options.curved = &curved;
-    const StopRequest& stop = terminal.limits().keep();
+    const CommonStop common(terminal, terminal.limits().keep());
+    const StopRequest& stop = common.request();
     const Result<LightMaps> maps = bake_light_maps(light, options, terminal.progress(), stop);
     if (!maps) return terminal.fail(maps.error());
-    if (stop.requested()) return terminal.fail_stopped("the light maps are not finished");
+    if (stop.requested()) return common.fail("the light maps are not finished");
     options.density = maps->density;  // so that all groups have the same charts
     const auto bake_group = [&](const Solution& lit, std::size_t group) -> Result<bool> {
         const Result<LightMaps> own = bake_light_maps(RadiosityFunction(lit), options, terminal.progress(), stop);
         if (!own) return own.error();
         if (stop.requested()) return false;
-        const Result<void> written = write_group_light_maps(lit.scene, *own, group, arguments.format, arguments.output);
+        const Result<void> written = by_first(
+            [&] { return write_group_light_maps(lit.scene, *own, group, arguments.format, arguments.output); });
         return written ? Result<bool>(true) : written.error();
     };
     const Result<std::vector<std::string>> names =
@@ -191,14 +199,15 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     format.scene_file = find_scene_file(solution->scene, arguments.solution);
     if (format.scene_file.empty() && (ending(scene_file) == ".glb" || ending(scene_file) == ".gltf"))
         terminal.note(fmt::format("{} is missing: scene.glb has no textures", scene_file));
-    const Result<void> written = write_light_maps(*solution, *maps, format, *names, arguments.output);
+    const Result<void> written =
+        by_first([&] { return write_light_maps(*solution, *maps, format, *names, arguments.output); });
     if (!written) return terminal.fail(written.error());
     note_curved(maps->curved, terminal);
     const std::string sizes = sizes_of(maps->maps, [](const LightMap& map) { return map.size; });
     terminal.note(fmt::format("{} texels on surfaces at {} per metre, in {} {} ({}); {:.1f} s", maps->texels,
                               maps->density, maps->maps.size(), maps->maps.size() == 1 ? "map" : "maps", sizes,
                               watch.seconds()));
-    return end_of_groups(groups, *names, terminal);
+    return end_of_groups(groups, *names, common, terminal);
 }
 
 }  // namespace exitance

@@ -8,8 +8,10 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/border_points.hpp"
+#include "exitance/cli/common_stop.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/observers.hpp"
+#include "exitance/cli/processes.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/files/radiance_matrix.hpp"
@@ -24,6 +26,8 @@
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/processes/exchange_archived.hpp"
+#include "exitance/processes/result_of_all.hpp"
 
 namespace exitance {
 namespace {
@@ -64,11 +68,11 @@ std::string as_text(const DaylightSummary& s, const DaylightTask& task, const st
 Result<Scene> scene_of(const DaylightArguments& arguments, Terminal& terminal) {
     const std::vector<std::string>& files = arguments.scene.files;
     if (files.size() == 1 && ending(files[0]) == ".h5") {
-        Result<Solution> solution = load_solution(files[0]);
+        Result<Solution> solution = all_or_none(load_solution(files[0]));
         if (!solution) return solution.error();
         return std::move(solution->scene);
     }
-    CheckedScene checked = load_scene(files, arguments.scene.load);
+    CheckedScene checked = load_for_all(arguments.scene);
     std::erase_if(checked.findings, [](const Finding& f) {
         return f.kind == Finding::Kind::warning && f.message.starts_with("nothing emits light");
     });
@@ -152,14 +156,28 @@ Result<std::vector<std::uint8_t>> read_occupancy(const std::string& words, const
     return out;
 }
 
+/// Reads the sensors in the first process, so that they may come from standard input, and sends them to all.
+Result<ProbePoints> read_sensors(const std::string& file) {
+    ProbePoints points;
+    const Result<void> read = by_first([&]() -> Result<void> {
+        Result<ProbePoints> found = load_probe_points(file);
+        if (!found) return found.error();
+        points = std::move(*found);
+        return {};
+    });
+    if (!read) return read.error();
+    return as_first_archived(
+        std::move(points), [](auto& archive, ProbePoints& all) { archive(all.points, all.normals); }, "points");
+}
+
 /// Reads weather, sensors and eye points.
 Result<Request> read_request(const DaylightArguments& arguments, const Scene& scene, Terminal& terminal) {
-    const Result<Weather> weather = load_weather(arguments.epw);
+    const Result<Weather> weather = all_or_none(load_weather(arguments.epw));
     if (!weather) return weather.error();
     warn_of(*weather, arguments.epw, terminal.progress());
     const std::string sensors = sensor_file(arguments);
     if (sensors.empty()) return Error{ErrorCode::usage, "there are no sensors", "--points", "name a file with points"};
-    const Result<ProbePoints> points = load_probe_points(sensors);
+    const Result<ProbePoints> points = read_sensors(sensors);
     if (!points) return points.error();
     if (points->size() == 0)
         return Error{ErrorCode::bad_input, "holds no points", sensors, "give one sensor per line: x y z dx dy dz"};
@@ -199,22 +217,30 @@ Result<Request> read_request(const DaylightArguments& arguments, const Scene& sc
     return out;
 }
 
-/// Passes the results of all sensors to the files; `pass` calls its argument with every block. Returns the totals.
+/// Passes the results of all sensors to the files, in the first process; `pass` calls its argument with every block.
+/// Returns the totals.
 template <class Pass>
 Result<DaylightSummary> write_all(const Request& request, const DaylightBias& bias, std::span<const ViewOut> views,
                                   const std::string& output, const Pass& pass,
                                   const std::optional<GlareSummary>& glare = {}) {
-    Result<DaylightFiles> files = DaylightFiles::create(output, request.task, request.formats);
-    if (!files) return files.error();
+    std::optional<DaylightFiles> files;
+    const Result<void> opened = by_first([&]() -> Result<void> {
+        Result<DaylightFiles> made = DaylightFiles::create(output, request.task, request.formats);
+        if (!made) return made.error();
+        files.emplace(std::move(*made));
+        return {};
+    });
+    if (!opened) return opened.error();
     DaylightTotals totals(request.task.grids, request.task.hours, request.task.site, request.task.criteria);
     const Result<void> passed = pass([&](const DaylightBlock& block) {
         for (const SensorResults& sensor : block.results) totals.add(sensor);
-        return files->add(block);
+        return files ? files->add(block) : Result<void>();
     });
     if (!passed) return passed.error();
     DaylightSummary summary = totals.summary(bias);
     summary.glare = glare;
-    if (const Result<void> written = files->finish(summary, request.eyes, views); !written) return written.error();
+    const Result<void> written = by_first([&] { return files->finish(summary, request.eyes, views); });
+    if (!written) return written.error();
     return summary;
 }
 
@@ -225,29 +251,49 @@ std::string light_file(const std::string& output) {
 
 /// Takes the kept light, or finds it and keeps it.
 Result<void> share_light(DaylightSimulation& simulation, const std::string& fingerprint, const std::string& output) {
-    Result<std::optional<DaylightLight>> kept = read_daylight_light(light_file(output), fingerprint);
-    if (!kept) return kept.error();
-    if (*kept && simulation.take(std::move(**kept))) return {};
+    bool is_kept = false;
+    const Result<void> read = by_first([&]() -> Result<void> {
+        const Result<std::optional<DaylightLight>> kept = read_daylight_light(light_file(output), fingerprint);
+        if (!kept) return kept.error();
+        is_kept = kept->has_value();
+        return {};
+    });
+    if (!read) return read;
+    if (as_first(is_kept)) {  // other processes look only now, since another part may write the file meanwhile
+        Result<std::optional<DaylightLight>> kept = all_or_none(read_daylight_light(light_file(output), fingerprint));
+        if (!kept) return kept.error();
+        const bool is_taken = *kept && simulation.take(std::move(**kept));
+        if (largest_of_all(is_taken ? 0 : 1) == 0) return {};
+    }
     if (const Result<void> found = simulation.find_light(); !found) return found;
-    return write_daylight_light(light_file(output), fingerprint, simulation.light());
+    return by_first([&] { return write_daylight_light(light_file(output), fingerprint, simulation.light()); });
 }
 
 /// Evaluates and writes one part of the sensors.
 Result<void> run_part(const Scene& scene, const Request& request, const DaylightArguments& arguments,
-                      Terminal& terminal) {
-    const std::string fingerprint = fingerprint_of(scene, request.task);
+                      const StopRequest& stop, Terminal& terminal) {
+    const std::string fingerprint = as_first(fingerprint_of(scene, request.task), "agreement");
     const std::string folder = arguments.part->folder(arguments.output);
     std::error_code failure;
-    std::filesystem::create_directories(folder, failure);
-    DaylightSimulation simulation(scene, request.task, terminal.progress(), terminal.limits().stop());
+    if (is_first_process()) std::filesystem::create_directories(folder, failure);
+    DaylightSimulation simulation(scene, request.task, terminal.progress(), stop);
     if (const Result<void> shared = share_light(simulation, fingerprint, arguments.output); !shared) return shared;
     const SensorRange range = sensors_of_part(arguments.part->part, arguments.part->parts, request.task.sensors.size());
-    Result<DaylightPartWriter> writer =
-        DaylightPartWriter::create(folder, request.task, range.count, simulation.light().elements.columns, fingerprint);
-    if (!writer) return writer.error();
-    const auto add = [&](const DaylightBlock& block) -> Result<void> { return writer->add(block), Result<void>(); };
+    std::optional<DaylightPartWriter> writer;
+    const Result<void> opened = by_first([&]() -> Result<void> {
+        Result<DaylightPartWriter> made = DaylightPartWriter::create(folder, request.task, range.count,
+                                                                     simulation.light().elements.columns, fingerprint);
+        if (!made) return made.error();
+        writer.emplace(std::move(*made));
+        return {};
+    });
+    if (!opened) return opened;
+    const auto add = [&](const DaylightBlock& block) -> Result<void> {
+        if (writer) writer->add(block);
+        return {};
+    };
     if (const Result<void> done = simulation.evaluate(range, add); !done) return done;
-    return writer->finish();
+    return by_first([&] { return writer->finish(); });
 }
 
 /// Writes the results of all parts, as those of a run of the whole.
@@ -297,12 +343,13 @@ Result<std::vector<float>> read_coefficients(const std::string& path, const Dayl
 
 /// Evaluates and writes all sensors with given coefficients, whose error is not known.
 Result<DaylightSummary> run_coefficients(const Scene& scene, const Request& request, std::span<const ViewOut> views,
-                                         const DaylightArguments& arguments, Terminal& terminal) {
-    const Result<std::vector<float>> coefficients = read_coefficients(arguments.coefficients, request.task);
+                                         const DaylightArguments& arguments, const StopRequest& stop) {
+    const Result<std::vector<float>> coefficients =
+        all_or_none(read_coefficients(arguments.coefficients, request.task));
     if (!coefficients) return coefficients.error();
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     return write_all(request, {unknown, unknown, 0}, views, arguments.output, [&](const DaylightSink& sink) {
-        return evaluate_coefficients(scene, request.task, *coefficients, sink, terminal.limits().stop());
+        return evaluate_coefficients(scene, request.task, *coefficients, sink, stop);
     });
 }
 
@@ -311,17 +358,18 @@ Result<GlareSummary> write_year_of_glare(const DaylightSimulation& simulation, c
                                          const DaylightArguments& arguments) {
     const Result<std::vector<GlareYear>> years = simulation.glare(request.views, GlareThreshold().value);
     if (!years) return years.error();
-    const Result<void> written =
-        write_glare(arguments.output, request.views, *years, request.task.hours, request.formats.hours);
+    const Result<void> written = by_first([&] {
+        return write_glare(arguments.output, request.views, *years, request.task.hours, request.formats.hours);
+    });
     if (!written) return written.error();
     return summary_of(*years);
 }
 
 /// Evaluates and writes all sensors.
 Result<DaylightSummary> run_whole(const Scene& scene, const Request& request, std::span<const ViewOut> views,
-                                  const DaylightArguments& arguments, Terminal& terminal) {
-    if (!arguments.coefficients.empty()) return run_coefficients(scene, request, views, arguments, terminal);
-    DaylightSimulation simulation(scene, request.task, terminal.progress(), terminal.limits().stop());
+                                  const DaylightArguments& arguments, const StopRequest& stop, Terminal& terminal) {
+    if (!arguments.coefficients.empty()) return run_coefficients(scene, request, views, arguments, stop);
+    DaylightSimulation simulation(scene, request.task, terminal.progress(), stop);
     if (const Result<void> found = simulation.find_light(); !found) return found.error();
     std::optional<GlareSummary> glare;
     if (!request.views.empty()) {
@@ -339,23 +387,29 @@ Result<DaylightSummary> run_whole(const Scene& scene, const Request& request, st
 
 /// Runs `exitance daylight SCENE --epw WEATHER --points SENSORS -o FOLDER`.
 ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
+    if (arguments.merge && processes() > 1)
+        return terminal.fail(
+            Error{ErrorCode::usage, "merges files, which one process does", "--merge", "run it without mpirun"});
     set_threads(arguments.threads);
     const Result<Scene> scene = scene_of(arguments, terminal);
     if (!scene) return terminal.fail(scene.error());
-    const Result<Request> request = read_request(arguments, *scene, terminal);
+    const Result<Request> request = all_or_none(read_request(arguments, *scene, terminal));
     if (!request) return terminal.fail(request.error());
+    const CommonStop common(terminal, terminal.limits().stop());
+    const StopRequest& stop = common.request();
     if (arguments.part) {
-        const Result<void> done = run_part(*scene, *request, arguments, terminal);
+        const Result<void> done = run_part(*scene, *request, arguments, stop, terminal);
         if (!done) return terminal.fail(done.error());
         terminal.progress().finish();
         return ExitCode::done;
     }
     const std::vector<ViewOut> views = views_out(*scene, request->eyes);
-    const Result<DaylightSummary> summary = arguments.merge ? merge_parts(*scene, *request, views, arguments.output)
-                                                            : run_whole(*scene, *request, views, arguments, terminal);
+    const Result<DaylightSummary> summary = arguments.merge
+                                                ? merge_parts(*scene, *request, views, arguments.output)
+                                                : run_whole(*scene, *request, views, arguments, stop, terminal);
     if (!summary) return terminal.fail(summary.error());
     terminal.progress().finish();
-    return tell(*request, *summary, views, arguments, terminal);
+    return as_first(tell(*request, *summary, views, arguments, terminal));
 }
 
 }  // namespace exitance

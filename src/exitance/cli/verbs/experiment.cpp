@@ -6,9 +6,12 @@
 
 #include "exitance/base/nearest.hpp"
 #include "exitance/base/parallel.hpp"
+#include "exitance/cli/processes.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/lab/study/conduct_study.hpp"
+#include "exitance/processes/distributed.hpp"
+#include "exitance/processes/run_apart.hpp"
 
 namespace exitance {
 namespace {
@@ -50,6 +53,34 @@ std::string as_text(const StudyReport& report) {
     return text + fmt::format("page       {}\n", report.page);
 }
 
+void show(const StudyReport& report, bool is_quiet, Terminal& terminal) {
+    for (const std::string& warning : report.warnings) terminal.note("warning: " + warning);
+    if (!is_quiet) terminal.print(as_text(report));
+}
+
+/// Deals the runs of a study out to the processes; then the first one makes the page from their records.
+ExitCode run_on_processes(const Study& study, const StudyOptions& options, bool is_quiet, Terminal& terminal) {
+    RunLimits& limits = terminal.limits();
+    const StopRequest& stop = limits.stop();
+    hide_launcher();
+    const Result<void> shared = run_own_share(study, options, terminal.progress(), stop);
+    if (!shared) return terminal.fail(shared.error());
+    const bool is_stopped = largest_of_all(stop.requested() ? 1 : 0) > 0;
+    Result<void> made;
+    if (!is_stopped)
+        made = by_first([&]() -> Result<void> {
+            const Result<StudyReport> report = conduct_study(study, options, terminal.progress(), stop);
+            if (!report) return report.error();
+            show(*report, is_quiet, terminal);
+            return {};
+        });
+    terminal.progress().finish();
+    if (!made) return terminal.fail(made.error());
+    if (!is_stopped) return ExitCode::done;
+    terminal.note("stopped: the same command continues from the finished runs");
+    return signal_of_any(limits.signal()).value_or(ExitCode::demand_not_reached);
+}
+
 }  // namespace
 
 /// Runs `exitance experiment STUDY -o FOLDER`.
@@ -68,14 +99,13 @@ ExitCode run(const ExperimentArguments& arguments, Terminal& terminal) {
     const StopRequest& stop = limits.keep();
     std::error_code failed;
     const std::string program = std::filesystem::read_symlink("/proc/self/exe", failed).string();
-    const Result<StudyReport> report =
-        conduct_study(*study, {arguments.output, program, arguments.quick, arguments.methods, arguments.threads},
-                      terminal.progress(), stop);
+    const StudyOptions options{arguments.output, program, arguments.quick, arguments.methods, arguments.threads};
+    if (processes() > 1) return run_on_processes(*study, options, arguments.quiet, terminal);
+    const Result<StudyReport> report = conduct_study(*study, options, terminal.progress(), stop);
     terminal.progress().finish();
     if (!report && limits.signal()) return *limits.signal();
     if (!report) return terminal.fail(report.error());
-    for (const std::string& warning : report->warnings) terminal.note("warning: " + warning);
-    if (!arguments.quiet) terminal.print(as_text(*report));
+    show(*report, arguments.quiet, terminal);
     if (limits.signal()) return *limits.signal();
     if (!stop.requested()) return ExitCode::done;
     terminal.note(fmt::format("stopped by the {}: the same command continues from the finished runs", limits.reason()));

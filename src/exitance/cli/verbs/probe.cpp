@@ -4,11 +4,14 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/border_points.hpp"
+#include "exitance/cli/common_stop.hpp"
 #include "exitance/cli/light_unit.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/io/files/probe_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/processes/exchange_archived.hpp"
+#include "exitance/processes/result_of_all.hpp"
 #include "exitance/reference/path_reference.hpp"
 #include "exitance/solve/solve_options.hpp"
 
@@ -31,48 +34,85 @@ struct WrittenRows {
     bool are_all = false;
 };
 
-Result<WrittenRows> write_light(const ProbeArguments& arguments, const RadiosityFunction& light, ProbeReader& reader,
-                                ProbeWriter& writer, BorderPoints& borders, const StopRequest& stop) {
-    ProbePoints probes;
+/// The files of a run, which only the first process opens.
+class ProbeFiles {
+  public:
+    /// Opens both files. Collective.
+    Result<void> open(const ProbeArguments& arguments, const ProbeWriter::Columns& columns) {
+        return by_first([&]() -> Result<void> {
+            Result<ProbeReader> reader = ProbeReader::open(arguments.points);
+            if (!reader) return reader.error();
+            Result<ProbeWriter> writer = ProbeWriter::create(arguments.output, columns);
+            if (!writer) return writer.error();
+            reader_.emplace(std::move(*reader)), writer_.emplace(std::move(*writer));
+            return {};
+        });
+    }
+    /// Reads the next points, at most `most`; empty at the end of the file. Collective.
+    Result<std::vector<ProbePoint>> next(std::size_t most) {
+        std::vector<ProbePoint> points;
+        const Result<void> read = by_first([&]() -> Result<void> {
+            ProbePoints probes;
+            if (Result<void> done = reader_->next(probes, most); !done) return done;
+            points = zip(probes);
+            return {};
+        });
+        if (!read) return read.error();
+        return as_first_archived(
+            std::move(points), [](auto& archive, std::vector<ProbePoint>& all) { archive(all); }, "points");
+    }
+    void add(const ProbePoint& point, const Spectrum& irradiance, const std::optional<Spectrum>& radiosity,
+             const Spectrum& standard_error) {
+        if (writer_) writer_->add(point.x, point.n, irradiance, radiosity, standard_error);
+    }
+    /// Completes the output. Collective.
+    Result<void> commit() {
+        return by_first([&] { return writer_->commit(); });
+    }
+
+  private:
+    std::optional<ProbeReader> reader_;
+    std::optional<ProbeWriter> writer_;
+};
+
+Result<WrittenRows> write_light(const ProbeArguments& arguments, const RadiosityFunction& light, ProbeFiles& files,
+                                BorderPoints& borders, const StopRequest& stop) {
     WrittenRows rows;
     for (;;) {
-        if (const Result<void> read = reader.next(probes, batch); !read) return read.error();
-        rows.are_all = probes.size() == 0;
+        const Result<std::vector<ProbePoint>> points = files.next(batch);
+        if (!points) return points.error();
+        rows.are_all = points->empty();
         if (rows.are_all || stop.requested()) return rows;
-        const std::vector<ProbePoint> points = zip(probes);
         const std::vector<Light> values =
-            arguments.interpolant ? light.interpolant_at(points) : light.at_until(stop, points, arguments.component);
+            arguments.interpolant ? light.interpolant_at(*points) : light.at_until(stop, *points, arguments.component);
         for (std::size_t i = 0; i < values.size(); ++i) {
             borders.add(values[i].is_between_sides);
-            writer.add(points[i].x, points[i].n, values[i].irradiance,
-                       values[i].on_surface ? std::optional(values[i].radiosity) : std::nullopt,
-                       values[i].standard_error);
+            files.add((*points)[i], values[i].irradiance,
+                      values[i].on_surface ? std::optional(values[i].radiosity) : std::nullopt,
+                      values[i].standard_error);
         }
         rows.count += values.size();
-        if (values.size() < points.size()) return rows;
+        if (values.size() < points->size()) return rows;
     }
 }
 
 /// Traces paths instead of evaluating the solution. Reads all points first, since the random numbers of a point depend
 /// on its index.
-Result<WrittenRows> write_reference(const ProbeArguments& arguments, const Scene& scene, ProbeReader& reader,
-                                    ProbeWriter& writer, BorderPoints& borders, Terminal& terminal,
-                                    const StopRequest& stop) {
-    ProbePoints probes;
-    if (const Result<void> read = reader.next(probes, std::numeric_limits<std::size_t>::max()); !read)
-        return read.error();
-    const std::vector<ProbePoint> points = zip(probes);
+Result<WrittenRows> write_reference(const ProbeArguments& arguments, const Scene& scene, ProbeFiles& files,
+                                    BorderPoints& borders, Terminal& terminal, const StopRequest& stop) {
+    const Result<std::vector<ProbePoint>> points = files.next(std::numeric_limits<std::size_t>::max());
+    if (!points) return points.error();
     const std::vector<ReferenceLight> values =
-        reference_light(scene, points, arguments.reference_paths, arguments.seed, terminal.progress(), stop);
+        reference_light(scene, *points, arguments.reference_paths, arguments.seed, terminal.progress(), stop);
     for (std::size_t i = 0; i < values.size(); ++i) {
         const SurfaceId surface = values[i].surface;
         const Spectrum& E = values[i].irradiance;
         borders.add(values[i].is_between_sides);
         std::optional<Spectrum> B;
         if (!surface.is_none()) B = scene.material(surface).exitance + scene.material(surface).reflectance * E;
-        writer.add(points[i].x, points[i].n, E, B, values[i].standard_error);
+        files.add((*points)[i], E, B, values[i].standard_error);
     }
-    return WrittenRows{values.size(), values.size() == points.size()};
+    return WrittenRows{values.size(), values.size() == points->size()};
 }
 
 /// The error of options that would have no effect together; none if there is no error.
@@ -98,34 +138,31 @@ std::optional<Error> find_misuse(const ProbeArguments& a) {
 ExitCode run(const ProbeArguments& arguments, Terminal& terminal) {
     if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
     set_threads(arguments.threads);
-    const Result<Solution> solution = load_solution(arguments.solution);
+    const Result<Solution> solution = all_or_none(load_solution(arguments.solution));
     if (!solution) return terminal.fail(solution.error());
-    Result<ProbeReader> reader = ProbeReader::open(arguments.points);
-    if (!reader) return terminal.fail(reader.error());
     const bool by_paths = arguments.reference_paths > 0;
     const LightUnit unit = unit_of(arguments.unit, solution->scene, terminal);
     const bool told = unit.is_lux() || arguments.unit.choice != UnitChoice::scene;
-    Result<ProbeWriter> writer = ProbeWriter::create(
-        arguments.output, {.standard_errors = true, .unit = told ? std::optional(unit) : std::nullopt});
-    if (!writer) return terminal.fail(writer.error());
+    ProbeFiles files;
+    const ProbeWriter::Columns columns{.standard_errors = true, .unit = told ? std::optional(unit) : std::nullopt};
+    if (const Result<void> opened = files.open(arguments, columns); !opened) return terminal.fail(opened.error());
 
-    RunLimits& limits = terminal.limits();
     std::optional<RadiosityFunction> light;
     if (!by_paths) light.emplace(*solution, arguments.exact ? DirectBy::closed_forms : DirectBy::cheaper);
-    const StopRequest& stop = limits.keep();
+    const CommonStop stop(terminal, terminal.limits().keep());
     BorderPoints borders;
     const Scene& scene = solution->scene;
     const Result<WrittenRows> rows = by_paths
-                                         ? write_reference(arguments, scene, *reader, *writer, borders, terminal, stop)
-                                         : write_light(arguments, *light, *reader, *writer, borders, stop);
+                                         ? write_reference(arguments, scene, files, borders, terminal, stop.request())
+                                         : write_light(arguments, *light, files, borders, stop.request());
     terminal.progress().finish();
     if (!rows) return terminal.fail(rows.error());
-    if (!rows->are_all && rows->count == 0) return terminal.fail_stopped("no point was finished");
-    if (const Result<void> written = writer->commit(); !written) return terminal.fail(written.error());
+    if (!rows->are_all && rows->count == 0) return stop.fail("no point was finished");
+    if (const Result<void> written = files.commit(); !written) return terminal.fail(written.error());
     borders.tell(terminal);
     if (rows->are_all) return ExitCode::done;
-    terminal.note(fmt::format("stopped by the {}: the first {} points are finished", limits.reason(), rows->count));
-    return limits.stopped_code();
+    terminal.note(fmt::format("stopped by the {}: the first {} points are finished", stop.reason(), rows->count));
+    return stop.stopped_code();
 }
 
 }  // namespace exitance

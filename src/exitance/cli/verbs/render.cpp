@@ -7,6 +7,7 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/camera_choice.hpp"
 #include "exitance/cli/camera_path.hpp"
+#include "exitance/cli/common_stop.hpp"
 #include "exitance/cli/light_unit.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/files/film.hpp"
@@ -20,6 +21,7 @@
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/lab/layers/light_layers.hpp"
 #include "exitance/measure/pictures/timed_picture.hpp"
+#include "exitance/processes/result_of_all.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {
@@ -147,11 +149,14 @@ Result<void> write_linear(const RenderArguments& arguments, const LightUnit& own
                                               : write_hdr(arguments.output, image, facts);
 }
 
+/// Writes a picture in the first process. Collective.
 Result<void> write_picture(const RenderArguments& arguments, const RadiosityFunction& light, const Camera& camera,
                            const Picture& picture, Terminal& terminal) {
-    return ending(arguments.output) == ".png"
-               ? write_display(arguments, light, camera, picture, terminal)
-               : write_linear(arguments, own_unit(light.solution().scene.is_photometric()), camera, picture);
+    return by_first([&] {
+        return ending(arguments.output) == ".png"
+                   ? write_display(arguments, light, camera, picture, terminal)
+                   : write_linear(arguments, own_unit(light.solution().scene.is_photometric()), camera, picture);
+    });
 }
 
 /// Inserts a number before the file name extension: "walk.0012.png" from "walk.png" and 12.
@@ -164,14 +169,12 @@ std::string numbered(const std::string& output, std::size_t number) {
 /// 400 to 8192 x 8192 pixels, as .png and .exr.
 constexpr double write_seconds_a_pixel = 0.5e-6;
 
-/// The run's stop request, with a deadline that leaves time to write the picture before the time limit.
-const StopRequest& keep_picture(const RenderArguments& arguments, RunLimits& limits) {
-    StopRequest& stop = limits.keep();
+/// Sets a deadline that leaves time to write the picture before the time limit.
+void keep_time_to_write(const RenderArguments& arguments, const RunLimits& limits, CommonStop& stop) {
     const double write_seconds = write_seconds_a_pixel * static_cast<double>(arguments.size.pixels());
     if (arguments.limits.time_limit)
         stop.set_deadline(
             seconds_from_now(limits.seconds_left() - std::min(write_seconds, 0.5 * limits.seconds_left())));
-    return stop;
 }
 
 /// Note about a picture that is coarser than requested because of a stop.
@@ -219,14 +222,14 @@ PictureOptions picture_options(const RenderArguments& arguments, const Camera& c
 ExitCode render_path(const RenderArguments& arguments, const std::vector<Camera>& cameras,
                      const RadiosityFunction& light, const ShownIrradiance& shown, Terminal& terminal,
                      std::size_t& done) {
-    RunLimits& limits = terminal.limits();
-    const StopRequest& stop = keep_picture(arguments, limits);
+    CommonStop stop(terminal, terminal.limits().keep());
+    keep_time_to_write(arguments, terminal.limits(), stop);
     RenderArguments frame = arguments;
     for (done = 0; done < cameras.size(); ++done) {
         const std::size_t i = done;
         const Picture picture =
-            take_picture_of(shown, light, picture_options(arguments, cameras[i]), terminal.progress(), stop);
-        if (stop.requested()) break;
+            take_picture_of(shown, light, picture_options(arguments, cameras[i]), terminal.progress(), stop.request());
+        if (stop.request().requested()) break;
         if (!frame.exposure_scale) frame.exposure_scale = automatic_exposure(picture) * std::exp2(arguments.exposure);
         frame.output = numbered(arguments.output, i + 1);
         const Result<void> written = write_picture(frame, light, cameras[i], picture, terminal);
@@ -235,10 +238,10 @@ ExitCode render_path(const RenderArguments& arguments, const std::vector<Camera>
     terminal.progress().finish();
     if (done > 0) terminal.note(fmt::format("{} pictures with --exposure {:.4g}x", done, *frame.exposure_scale));
     if (done == cameras.size()) return ExitCode::done;
-    if (done == 0) return terminal.fail_stopped("no picture was finished");
+    if (done == 0) return stop.fail("no picture was finished");
     terminal.note(
-        fmt::format("stopped by the {}: {} of {} pictures are finished", limits.reason(), done, cameras.size()));
-    return limits.stopped_code();
+        fmt::format("stopped by the {}: {} of {} pictures are finished", stop.reason(), done, cameras.size()));
+    return stop.stopped_code();
 }
 
 /// Renders a video from pictures at equal intervals along the path. The pictures are in a temporary folder.
@@ -246,7 +249,8 @@ ExitCode render_film(const RenderArguments& arguments, const std::vector<CameraS
                      const RadiosityFunction& light, const ShownIrradiance& shown, Terminal& terminal) {
     constexpr double rate = 25;  // pictures per second
     constexpr std::size_t max_pictures = 9999;
-    if (const Result<void> found = find_film_program(arguments.output); !found) return terminal.fail(found.error());
+    const Result<void> found = by_first([&] { return find_film_program(arguments.output); });
+    if (!found) return terminal.fail(found.error());
     const auto falls = [](const CameraStation& a, const CameraStation& b) { return b.time < a.time; };
     const std::vector<Camera> cameras = std::adjacent_find(stations.begin(), stations.end(), falls) == stations.end()
                                             ? at_equal_times(stations, rate, max_pictures)
@@ -254,14 +258,20 @@ ExitCode render_film(const RenderArguments& arguments, const std::vector<CameraS
     if (cameras.empty())
         return terminal.fail(Error{ErrorCode::bad_input, "times of a video must increase and span at most 400 s",
                                    arguments.path, "the first number of a row is its time in seconds"});
-    const Result<ScratchFolder> folder = ScratchFolder::make("exitance-film");
-    if (!folder) return terminal.fail(folder.error());
+    std::optional<ScratchFolder> folder;  // in the first process, which writes the pictures
     RenderArguments frames = arguments;
-    frames.output = folder->path() + "/frame.png";
+    const Result<void> made = by_first([&]() -> Result<void> {
+        Result<ScratchFolder> found = ScratchFolder::make("exitance-film");
+        if (!found) return found.error();
+        folder.emplace(std::move(*found));
+        frames.output = folder->path() + "/frame.png";
+        return {};
+    });
+    if (!made) return terminal.fail(made.error());
     std::size_t finished = 0;
     const ExitCode code = render_path(frames, cameras, light, shown, terminal, finished);
     if (finished == 0) return code;
-    const Result<void> written = write_film(folder->path(), rate, arguments.output);
+    const Result<void> written = by_first([&] { return write_film(folder->path(), rate, arguments.output); });
     return written ? code : terminal.fail(written.error());
 }
 
@@ -274,16 +284,19 @@ ExitCode render_picture(const RenderArguments& arguments, const RadiosityFunctio
     const PictureOptions options = picture_options(arguments, *camera);
     TimedPicture taken;
     taken.is_complete = true;
-    RunLimits& limits = terminal.limits();
-    if (!arguments.shadow_classes || arguments.isolux)
-        taken = take_picture_in_time(light, options, terminal.progress(), keep_picture(arguments, limits), shown);
+    std::optional<CommonStop> stop;
+    if (!arguments.shadow_classes || arguments.isolux) {
+        stop.emplace(terminal, terminal.limits().keep());
+        keep_time_to_write(arguments, terminal.limits(), *stop);
+        taken = take_picture_in_time(light, options, terminal.progress(), stop->request(), shown);
+    }
     terminal.progress().finish();
-    if (taken.block == 0 && !taken.is_complete) return terminal.fail_stopped("not even a coarse picture was finished");
+    if (taken.block == 0 && !taken.is_complete) return stop->fail("not even a coarse picture was finished");
     const Result<void> written = write_picture(arguments, light, *camera, taken.picture, terminal);
     if (!written) return terminal.fail(written.error());
     if (taken.is_complete) return ExitCode::done;
-    terminal.note(describe_stop(taken, arguments, limits.reason()));
-    return limits.stopped_code();
+    terminal.note(describe_stop(taken, arguments, stop->reason()));
+    return stop->stopped_code();
 }
 
 }  // namespace
@@ -292,7 +305,7 @@ ExitCode render_picture(const RenderArguments& arguments, const RadiosityFunctio
 ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
     if (const std::optional<Error> misuse = find_misuse(arguments)) return terminal.fail(*misuse);
     set_threads(arguments.threads);
-    const Result<Solution> solution = load_solution(arguments.solution);
+    const Result<Solution> solution = all_or_none(load_solution(arguments.solution));
     if (!solution) return terminal.fail(solution.error());
 
     if (arguments.shadow_classes && solution->discontinuity.empty())
@@ -303,7 +316,7 @@ ExitCode run(const RenderArguments& arguments, Terminal& terminal) {
     const Result<ShownIrradiance> shown = shown_light(arguments, light);
     if (!shown) return terminal.fail(shown.error());
     if (!arguments.path.empty()) {
-        const Result<std::vector<CameraStation>> stations = load_camera_path(arguments.path);
+        const Result<std::vector<CameraStation>> stations = all_or_none(load_camera_path(arguments.path));
         if (!stations) return terminal.fail(stations.error());
         if (is_film(arguments.output)) return render_film(arguments, *stations, light, *shown, terminal);
         std::vector<Camera> cameras;

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "exitance/base/parallel.hpp"
+#include "exitance/cli/common_stop.hpp"
 #include "exitance/cli/json_output.hpp"
+#include "exitance/cli/processes.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/cli/verbs/factor_output.hpp"
 #include "exitance/io/files/atomic_file.hpp"
@@ -16,6 +18,7 @@
 #include "exitance/io/solution/checkpoint_file.hpp"
 #include "exitance/io/view_factors/operator_file.hpp"
 #include "exitance/io/view_factors/raw_row_file.hpp"
+#include "exitance/processes/result_of_all.hpp"
 #include "exitance/view_factors/entry_factors.hpp"
 #include "exitance/view_factors/ray_check.hpp"
 #include "exitance/view_factors/row_check.hpp"
@@ -150,22 +153,26 @@ std::string work_of(const ViewFactorArguments& arguments, const Scene& scene) {
 /// One run of the verb, after the scene was read.
 class ViewFactorRun {
   public:
-    ViewFactorRun(const ViewFactorArguments& arguments, const LoadedScene& checked, const StopRequest& stop,
-                  const RunLimits& limits, Terminal& terminal)
+    ViewFactorRun(const ViewFactorArguments& arguments, const LoadedScene& checked, const CommonStop& stop,
+                  Terminal& terminal)
         : arguments_(arguments),
           scene_(*checked.scene),
           origin_(checked.origin),
-          stop_(stop),
-          limits_(limits),
+          common_stop_(stop),
+          stop_(stop.request()),
           terminal_(terminal) {}
 
     ExitCode operator()() {
-        const Result<std::optional<FactorNodes>> nodes =
-            arguments_.output.empty() ? std::optional<FactorNodes>() : nodes_of(arguments_, scene_);
-        if (!nodes) return terminal_.fail(nodes.error());
-        if (const Result<void> known = check_emissivities(arguments_, scene_, *nodes); !known)
-            return terminal_.fail(known.error());
-        if (const Result<void> opened = open_work_file(); !opened) return terminal_.fail(opened.error());
+        std::optional<FactorNodes> nodes;  // in the first process, which writes the matrix
+        const Result<void> ready = by_first([&]() -> Result<void> {
+            Result<std::optional<FactorNodes>> found =
+                arguments_.output.empty() ? std::optional<FactorNodes>() : nodes_of(arguments_, scene_);
+            if (!found) return found.error();
+            nodes = std::move(*found);
+            const Result<void> known = check_emissivities(arguments_, scene_, nodes);
+            return known ? open_work_file() : known;
+        });
+        if (!ready) return terminal_.fail(ready.error());
         const Stopwatch time;
         SparseFactors table = compute();
         ViewFactorFacts facts = facts_of(table, time.seconds());
@@ -178,8 +185,8 @@ class ViewFactorRun {
             facts.transport = facts_of(*transport);
         }
         if (is_finished) check(table, transport, facts);
-        if (const Result<void> written = write(std::move(table), transport, *nodes); !written)
-            return terminal_.fail(written.error());
+        const Result<void> written = by_first([&] { return write(std::move(table), transport, nodes); });
+        if (!written) return terminal_.fail(written.error());
         if (is_finished && rows_) rows_->remove();
         show(facts);
         return is_finished ? outcome(facts) : stopped(facts);
@@ -188,7 +195,7 @@ class ViewFactorRun {
   private:
     double error() const { return arguments_.error.value_or(default_error); }
 
-    /// Opens OUTPUT.rows for finished rows, unless the output exists and is not a regular file.
+    /// Opens OUTPUT.rows, in the first process, for finished rows, unless the output exists and is not a regular file.
     Result<void> open_work_file() {
         std::error_code ignored;
         const std::string& output = arguments_.output.empty() ? arguments_.operator_file : arguments_.output;
@@ -255,7 +262,7 @@ class ViewFactorRun {
 
     ExitCode no_rows() {
         if (rows_) rows_->remove();
-        if (limits_.signal()) return *limits_.signal();
+        if (const std::optional<ExitCode> signal = common_stop_.signal()) return *signal;
         return terminal_.fail({ErrorCode::limit, "stopped before the first row of view factors was finished", "",
                                "allow more time or memory, or a larger error"});
     }
@@ -273,7 +280,7 @@ class ViewFactorRun {
                         facts.finished_rows, facts.surfaces));
         if (rows_ && !rows_->is_whole())
             terminal_.note(fmt::format("warning: {} could not be written completely", rows_->path()));
-        return limits_.signal() == ExitCode::interrupted ? ExitCode::interrupted : ExitCode::demand_not_reached;
+        return common_stop_.signal() == ExitCode::interrupted ? ExitCode::interrupted : ExitCode::demand_not_reached;
     }
 
     ExitCode outcome(const ViewFactorFacts& facts) {
@@ -310,10 +317,10 @@ class ViewFactorRun {
     const ViewFactorArguments& arguments_;
     const Scene& scene_;
     const Point origin_;
+    const CommonStop& common_stop_;
     const StopRequest& stop_;
-    const RunLimits& limits_;
     Terminal& terminal_;
-    std::optional<RawRowFile> rows_;
+    std::optional<RawRowFile> rows_;  ///< In the first process.
 };
 
 /// Error if the files to write are inputs, cannot be written, or have options or endings that do not fit.
@@ -343,16 +350,17 @@ Result<void> check_outputs(const ViewFactorArguments& arguments) {
 
 /// Runs `exitance viewfactors SCENE -o MATRIX`, or with `--operator FILE`.
 ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal) {
-    RunLimits& limits = terminal.limits();
-    const StopRequest& stop = limits.keep();
+    StopRequest& asked = terminal.limits().keep();
+    const CommonStop stop(terminal, asked);
     set_threads(arguments.threads);
-    if (const Result<void> fit = check_outputs(arguments); !fit) return terminal.fail(fit.error());
-    LoadOptions load = arguments.scene.load;
-    load.stop = &stop, load.without_panes = true;
-    const LoadedScene checked = load_scene(arguments.scene.files, load);
+    const Result<void> fit = by_first([&] { return check_outputs(arguments); });
+    if (!fit) return terminal.fail(fit.error());
+    SceneArguments scene = arguments.scene;
+    scene.load.stop = &asked, scene.load.without_panes = true;
+    const LoadedScene checked = load_for_all(scene);
     show_geometry_findings(checked, terminal);
     if (!checked.scene) return terminal.fail(checked);
-    return ViewFactorRun(arguments, checked, stop, limits, terminal)();
+    return ViewFactorRun(arguments, checked, stop, terminal)();
 }
 
 }  // namespace exitance

@@ -28,7 +28,7 @@ struct Stored<Half> {
 template <class Number>
 class Hdf5Hours final : public HoursFile {
   public:
-    Hdf5Hours(const std::string& path, const DaylightTask& task) : file_(path) {
+    Hdf5Hours(const std::string& path, const DaylightTask& task) : file_(path), hours_(task.hours.size()) {
         const std::size_t sensors = task.sensors.size(), hours = task.hours.size();
         std::vector<std::int32_t> times;
         for (const DaylightHour& hour : task.hours)
@@ -48,17 +48,24 @@ class Hdf5Hours final : public HoursFile {
         sun_ = open("sun", "direct sunlight in illuminance over scale");
     }
 
-    void add(const DaylightBlock& block) override { append(illuminance_, block.illuminance), append(sun_, block.sun); }
+    /// Adds both rows of a sensor before the next ones, so that the places in the file do not depend on the blocks.
+    void add(const DaylightBlock& block) override {
+        for (std::size_t first = 0; first < block.illuminance.size(); first += hours_) {
+            append(illuminance_, std::span(block.illuminance).subspan(first, hours_));
+            append(sun_, std::span(block.sun).subspan(first, hours_));
+        }
+    }
     Result<void> finish() override { return file_.commit(); }
 
   private:
-    void append(Hdf5Rows& set, const std::vector<float>& lux) {
+    void append(Hdf5Rows& set, std::span<const float> lux) {
         std::vector<Number> stored(lux.size());
         std::transform(lux.begin(), lux.end(), stored.begin(), Stored<Number>::of);
         file_.append(set, std::span<const Number>(stored));
     }
 
     Hdf5Writer file_;
+    std::size_t hours_;
     Hdf5Rows illuminance_, sun_;
 };
 

@@ -15,6 +15,9 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/lab/study/study_peer.hpp"
 #include "exitance/lab/study/study_scene.hpp"
+#include "exitance/processes/distributed.hpp"
+#include "exitance/processes/result_of_all.hpp"
+#include "exitance/processes/run_apart.hpp"
 
 namespace exitance {
 namespace {
@@ -184,6 +187,16 @@ Table reference_table(const Prepared& prepared) {
     return table;
 }
 
+Result<void> make_folders(const StudyOptions& options) {
+    std::error_code failed;
+    for (const char* folder : {"scenes", "references", "runs", "work"}) {
+        fs::create_directories(fs::path(options.folder) / folder, failed);
+        if (failed)
+            return Error{ErrorCode::cannot_write, failed.message(), (fs::path(options.folder) / folder).string(), ""};
+    }
+    return {};
+}
+
 }  // namespace
 
 const std::vector<std::string> result_columns{"study",
@@ -208,11 +221,7 @@ const std::vector<std::string> result_columns{"study",
 Result<StudyTables> run_study(const Study& study, const StudyOptions& options, Progress& progress,
                               const StopRequest& stop) {
     std::error_code failed;
-    for (const char* folder : {"scenes", "references", "runs", "work"}) {
-        fs::create_directories(fs::path(options.folder) / folder, failed);
-        if (failed)
-            return Error{ErrorCode::cannot_write, failed.message(), (fs::path(options.folder) / folder).string(), ""};
-    }
+    if (Result<void> made = make_folders(options); !made) return made.error();
     std::vector<Chain> chains = chains_of(study, options);
     if (chains.empty()) {
         std::vector<std::string> labels;
@@ -229,6 +238,30 @@ Result<StudyTables> run_study(const Study& study, const StudyOptions& options, P
     if (Table references = reference_table(*prepared); !references.rows.empty())
         tables["references"] = std::move(references);
     return tables;
+}
+
+Result<void> run_own_share(const Study& study, const StudyOptions& options, Progress& progress,
+                           const StopRequest& stop) {
+    const std::vector<Chain> all = chains_of(study, options);
+    if (processes() == 1 || all.empty() || !study.table.empty()) return {};
+    // The first process makes scenes and references, and the others read them.
+    const Result<void> made = by_first([&]() -> Result<void> {
+        if (const Result<void> folders = make_folders(options); !folders) return folders;
+        const Result<Prepared> prepared = prepare(study, all, options, progress, stop);
+        return prepared ? Result<void>() : prepared.error();
+    });
+    if (!made) return made;
+    std::vector<Chain> own;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (is_own(i, 1)) own.push_back(all[i]);
+    Result<void> done;
+    run_apart([&] {
+        const Result<Prepared> prepared = prepare(study, own, options, progress, stop);
+        if (!prepared) return void(done = prepared.error());
+        const Result<Table> table = Runner(study, options, std::move(own), *prepared, progress, stop).run();
+        if (!table) done = table.error();
+    });
+    return result_of_all(done);
 }
 
 }  // namespace exitance

@@ -37,6 +37,12 @@ extern const std::vector<std::string> result_columns;
 Result<StudyTables> run_study(const Study& study, const StudyOptions& options, Progress& progress,
                               const StopRequest& stop);
 
+/// Runs this process's share of a study's solves, if there are several processes, and keeps their records in the folder
+/// for `run_study` of the first one. Every process needs the folder under the same name. Processes agree on the error
+/// only; `stop` is the request to this process. Collective.
+Result<void> run_own_share(const Study& study, const StudyOptions& options, Progress& progress,
+                           const StopRequest& stop);
+
 /// True if a row of a table is selected.
 bool is_chosen(const ChosenSolution& of, const Table& table, std::size_t row);
 /// Returns the path of the selected solution, which is kept in the folder if the study shows it; empty if there is

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/base/parallel.hpp"
 #include "exitance/evaluate/open_points.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -48,18 +48,27 @@ CurvedLight::CurvedLight(const RadiosityFunction& light, const CurvedFaces& face
     }
     reflected_.resize(nodes);
     constexpr std::size_t grain = 4;
-    parallel_ranges(lattices_.size(), grain, [&](std::size_t begin, std::size_t end) {
-        Workspace workspace;
-        for (std::size_t t = begin; t < end && !stop.requested(); ++t) {
-            const auto [first, steps] = lattices_[t];
-            for (int j = 0; j <= steps; ++j)
-                for (int i = 0; i + j <= steps; ++i) {
-                    const double second = 1.0 * i / steps, third = 1.0 * j / steps;
-                    reflected_[first + node_index(steps, i, j)] =
-                        gather(t, {1 - second - third, second, third}, workspace);
-                }
+    shared_ranges(
+        lattices_.size(), grain,
+        [&](std::size_t begin, std::size_t end) {
+            Workspace workspace;
+            for (std::size_t t = begin; t < end && !stop.requested(); ++t) gather_nodes(t, workspace);
+        },
+        [&](std::size_t t) {
+            return std::span(reflected_).subspan(lattices_[t].first, node_count(lattices_[t].steps));
+        },
+        {"nodes"});
+}
+
+/// Gathers the reflected light of all nodes of a triangle.
+void CurvedLight::gather_nodes(std::size_t triangle, Workspace& workspace) {
+    const auto [first, steps] = lattices_[triangle];
+    for (int j = 0; j <= steps; ++j)
+        for (int i = 0; i + j <= steps; ++i) {
+            const double second = 1.0 * i / steps, third = 1.0 * j / steps;
+            reflected_[first + node_index(steps, i, j)] =
+                gather(triangle, {1 - second - third, second, third}, workspace);
         }
-    });
 }
 
 /// Moves a place off its face far enough for rays. A surface that is between the face and the curved patch limits the

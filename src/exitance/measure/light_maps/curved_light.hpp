@@ -50,6 +50,7 @@ class CurvedLight {
         bool is_known = false;
     };
 
+    void gather_nodes(std::size_t triangle, Workspace& workspace);
     Spectrum at(const MeasuredPlace& place, Workspace& workspace) const;
     Spectrum reflected(const CurvedPlace& place, Workspace& workspace) const;
     Point off_face(const Point& on_face, const CurvedPlace& place, RegionId region) const;

@@ -7,6 +7,7 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/measure/light_maps/tile_baker.hpp"
+#include "exitance/processes/distributed.hpp"
 
 namespace exitance {
 namespace {
@@ -107,20 +108,20 @@ Result<LightMaps> bake_light_maps(const RadiosityFunction& light, const BakeOpti
     std::vector<std::vector<CurvedTexel>> curved_texels(out.maps.size());
     for (std::size_t m = 0; curved && m < out.maps.size(); ++m) curved_texels[m].resize(out.maps[m].size.texels());
     const std::vector<ChartTile> tiles = cut_into_tiles(out.charts);
-    constexpr std::size_t at_once = 256, grain = 4;
+    const auto map_of = [&](std::size_t m) -> const LightMap& { return out.maps[m]; };
+    const auto make_baker = [&] { return TileBaker(light, outlines, &mesh, curved ? &*curved : nullptr, stop); };
+    const std::size_t at_once = 256 * processes();
     for (std::size_t first = 0; first < tiles.size() && !stop.requested(); first += at_once) {
         progress.advance(static_cast<double>(first) / static_cast<double>(tiles.size()));
-        parallel_ranges(std::min(at_once, tiles.size() - first), grain, [&](std::size_t begin, std::size_t end) {
-            TileBaker baker(light, outlines, &mesh, curved ? &*curved : nullptr, stop);
-            for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i) {
-                const Chart& chart = out.charts[tiles[i].chart];
-                LightMap& map = out.maps[chart.map];
-                for (const BakedTexel& texel : baker.bake(tiles[i], chart, map)) {
-                    store(texel, map);
-                    if (texel.curved.is_curved) curved_texels[chart.map][texel.index] = texel.curved;
-                }
+        const auto some = std::span(tiles).subspan(first, std::min(at_once, tiles.size() - first));
+        const std::vector<std::vector<BakedTexel>> baked = bake_tiles(some, out.charts, map_of, make_baker, stop);
+        for (std::size_t i = 0; i < some.size(); ++i) {
+            const std::size_t map = out.charts[some[i].chart].map;
+            for (const BakedTexel& texel : baked[i]) {
+                store(texel, out.maps[map]);
+                if (texel.curved.is_curved) curved_texels[map][texel.index] = texel.curved;
             }
-        });
+        }
     }
     if (stop.requested()) return made;
     out.curved = compare_curved(light.solution(), options.curved, out);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "exitance/evaluate/open_points.hpp"
+#include "exitance/processes/exchange_archived.hpp"
 
 namespace exitance {
 
@@ -88,6 +89,27 @@ void TileBaker::bake_curved(const Chart& chart, const TexelCover& cover, BakedTe
     for (std::size_t k = 0; k < count; ++k)
         middle = middle + (1.0 / static_cast<double>(count)) * chart.place(open_[k].x);
     texel.curved = {static_cast<float>(middle.x - cover.x - 0.5), static_cast<float>(middle.y - cover.y - 0.5), true};
+}
+
+std::vector<std::vector<BakedTexel>> bake_tiles(std::span<const ChartTile> tiles, std::span<const Chart> charts,
+                                                const std::function<const LightMap&(std::size_t)>& map_of,
+                                                const std::function<TileBaker()>& make_baker, const StopRequest& stop) {
+    constexpr std::size_t grain = 4;
+    std::vector<std::vector<BakedTexel>> out(tiles.size());
+    parallel_own_ranges(tiles.size(), grain,
+                        [&](std::size_t begin, std::size_t end) {
+                            TileBaker baker = make_baker();
+                            for (std::size_t i = begin; i < end && !stop.requested(); ++i) {
+                                const Chart& chart = charts[tiles[i].chart];
+                                const std::span<const BakedTexel> texels =
+                                    baker.bake(tiles[i], chart, map_of(chart.map));
+                                out[i].assign(texels.begin(), texels.end());
+                            }
+                        },
+                        {"tiles"});
+    exchange_archived(
+        std::span(out), grain, [](auto& archive, std::vector<BakedTexel>& texels) { archive(texels); }, "tiles");
+    return out;
 }
 
 }  // namespace exitance

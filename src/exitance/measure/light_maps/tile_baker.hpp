@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -63,5 +64,13 @@ class TileBaker {
     std::vector<Spot> spots_;
     std::vector<BakedTexel> texels_;
 };
+
+/// Bakes tiles on all threads of all processes. Returns the texels of every tile; none of tiles that a stop left out.
+/// map_of      returns the map of a chart by its number
+/// make_baker  makes the baker of a thread
+/// Collective.
+std::vector<std::vector<BakedTexel>> bake_tiles(std::span<const ChartTile> tiles, std::span<const Chart> charts,
+                                                const std::function<const LightMap&(std::size_t)>& map_of,
+                                                const std::function<TileBaker()>& make_baker, const StopRequest& stop);
 
 }  // namespace exitance

@@ -240,21 +240,16 @@ void bake_charts(const RadiosityFunction& light, const LinearCharts& linear, con
     std::vector<TexelSums> sums;
     for (UvLightMap& map : out.maps) sums.emplace_back(map, curved.has_value());
     const std::vector<ChartTile> tiles = cut_into_tiles(linear.charts);
-    constexpr std::size_t at_once = 4096, grain = 8;
-    std::vector<std::vector<BakedTexel>> baked;
+    const auto map_of = [&](std::size_t m) -> const LightMap& { return out.maps[m].light; };
+    const auto make_baker = [&] {
+        return TileBaker(light, linear.outlines, nullptr, curved ? &*curved : nullptr, stop);
+    };
+    constexpr std::size_t at_once = 1024;
     for (std::size_t first = 0; first < tiles.size() && !stop.requested(); first += at_once) {
         progress.advance(static_cast<double>(first) / static_cast<double>(tiles.size()));
         const std::size_t count = std::min(at_once, tiles.size() - first);
-        baked.assign(count, {});
-        parallel_ranges(count, grain, [&](std::size_t begin, std::size_t end) {
-            TileBaker baker(light, linear.outlines, nullptr, curved ? &*curved : nullptr, stop);
-            for (std::size_t i = begin; i < end && !stop.requested(); ++i) {
-                const Chart& chart = linear.charts[tiles[first + i].chart];
-                const std::span<const BakedTexel> texels =
-                    baker.bake(tiles[first + i], chart, out.maps[chart.map].light);
-                baked[i].assign(texels.begin(), texels.end());
-            }
-        });
+        const std::vector<std::vector<BakedTexel>> baked =
+            bake_tiles(std::span(tiles).subspan(first, count), linear.charts, map_of, make_baker, stop);
         if (stop.requested()) return;
         for (std::size_t i = 0; i < count; ++i) {
             const std::size_t c = tiles[first + i].chart;

@@ -7,6 +7,7 @@
 #include "exitance/measure/pictures/tile_light.hpp"
 #include "exitance/measure/pictures/timed_picture.hpp"
 #include "exitance/mesh/element_locator.hpp"
+#include "exitance/processes/distributed.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {
@@ -214,6 +215,24 @@ double usual_brightness(const RadiosityFunction& light, const PictureOptions& op
     return *middle;
 }
 
+/// Sends the tiles [first, first + count) of a picture to all processes; `grain` consecutive tiles belong to one
+/// process.
+void exchange_tiles(std::size_t first, std::size_t count, std::size_t grain, Picture& picture,
+                    std::span<std::uint8_t> finished) {
+    const auto columns = static_cast<std::size_t>(tile_columns(picture.size));
+    const auto width = static_cast<std::size_t>(picture.size.width),
+               height = static_cast<std::size_t>(picture.size.height);
+    constexpr auto side = static_cast<std::size_t>(tile_side);
+    const auto row_of_tile = [&](std::size_t k) {
+        const std::size_t tile = first + k / side, x = tile % columns * side, y = tile / columns * side + k % side;
+        if (y >= height) return std::span<Pixel>();
+        return std::span(picture.pixels).subspan(y * width + x, std::min(side, width - x));
+    };
+    exchange_values(count * side, grain * side, row_of_tile, "tiles");
+    exchange_values(
+        count, grain, [&](std::size_t k) -> std::uint8_t& { return finished[first + k]; }, "tiles");
+}
+
 /// Renders one pass. `finished`: 1 for each completed tile, row by row; 0 for those that a stop left unfinished.
 Picture paint(const RadiosityFunction& light, const PictureOptions& options, const Pass& pass, double brightness,
               Progress& progress, const StopRequest& stop, const ShownIrradiance& shown,
@@ -225,17 +244,25 @@ Picture paint(const RadiosityFunction& light, const PictureOptions& options, con
     const std::size_t tiles = tile_count(picture.size);
     finished.assign(tiles, 0);
     // A painter's memory is reused for several tiles; if a tile takes long, tiles are distributed one by one.
-    const std::size_t at_once = options.gather > 0 ? 16 : 256, grain = options.gather > 0 ? 1 : 8;
+    // Processes need smaller parts than threads, which take the next part when they have finished one.
+    const std::size_t grain = options.gather > 0 ? 1
+                              : processes() > 1  ? 2
+                                                 : 8,
+                      at_once = (options.gather > 0 ? 16 : 256) * processes();
     for (std::size_t first = 0; first < tiles && !stop.requested(); first += at_once) {
         progress.advance(static_cast<double>(first) / static_cast<double>(tiles));
-        parallel_ranges(std::min(at_once, tiles - first), grain, [&](std::size_t begin, std::size_t end) {
-            TilePainter painter(light, options, pass, places, brightness, stop, shown);
-            for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i) {
-                painter.paint(static_cast<int>(i % columns) * tile_side, static_cast<int>(i / columns) * tile_side,
-                              picture);
-                finished[i] = !stop.requested();
-            }
-        });
+        const std::size_t count = std::min(at_once, tiles - first);
+        parallel_own_ranges(count, grain,
+                            [&](std::size_t begin, std::size_t end) {
+                                TilePainter painter(light, options, pass, places, brightness, stop, shown);
+                                for (std::size_t i = first + begin; i < first + end && !stop.requested(); ++i) {
+                                    painter.paint(static_cast<int>(i % columns) * tile_side,
+                                                  static_cast<int>(i / columns) * tile_side, picture);
+                                    finished[i] = !stop.requested();
+                                }
+                            },
+                            {"tiles"});
+        exchange_tiles(first, count, grain, picture, finished);
     }
     return picture;
 }
@@ -266,21 +293,22 @@ std::vector<Pass> passes_to(int samples) {
 }
 
 /// The finest pass after `last` that fits into the remaining time if rays take as long as in `last`; at least the next.
+/// Equal in all processes. Collective.
 std::size_t next_pass(std::span<const Pass> passes, std::size_t last, PictureSize whole, double seconds,
                       const StopRequest& stop) {
+    const double left = seconds_left(stop);
+    const auto all_threads = processes() * static_cast<std::size_t>(as_first(threads()));
     const auto seconds_on = [&](const Pass& pass, std::size_t at_once) {
         return static_cast<double>(pass.size(whole).pixels()) * pass.samples / static_cast<double>(at_once);
     };
     // A pass of few tiles uses few threads.
-    const auto busy = [&](const Pass& pass) {
-        return std::min(tile_count(pass.size(whole)), static_cast<std::size_t>(threads()));
-    };
+    const auto busy = [&](const Pass& pass) { return std::min(tile_count(pass.size(whole)), all_threads); };
     // Without a deadline only a signal may end the picture; a pass with squares of 8 x 8 pixels is made for that case.
-    if (std::isinf(stop.seconds_left()) && passes[last].block > 8)
+    if (std::isinf(left) && passes[last].block > 8)
         return static_cast<std::size_t>(
             std::find_if(passes.begin(), passes.end(), [](const Pass& pass) { return pass.block == 8; }) -
             passes.begin());
-    const double rate = seconds / seconds_on(passes[last], busy(passes[last])), left = stop.seconds_left();
+    const double rate = as_first(seconds) / seconds_on(passes[last], busy(passes[last]));
     std::size_t next = passes.size() - 1;
     while (next > last + 1 && rate * seconds_on(passes[next], busy(passes[next])) > left) --next;
     return next;

@@ -47,8 +47,9 @@ struct PictureOptions {
 /// pixel that differs from none of its neighbours by more than a hundredth. In other pixels four samples are evaluated,
 /// and all samples if these differ by more than a hundredth. If more than 24 emitters may be blocked, rays estimate
 /// their light (SharedRays) to 0.4% of the light of the pixel or of a quarter of the median pixel, and it is
-/// interpolated where it is uniform. Same bits on any number of threads. After a stop request the rest of the picture
-/// is empty. About 0.1 us per sample, and 1-2 us per pixel and possibly blocked emitter.
+/// interpolated where it is uniform. Same bits on any number of threads. Several processes divide the tiles, and all
+/// get the picture. After a stop request the rest of the picture is empty. Collective. About 0.1 us per sample, and 1-2
+/// us per pixel and possibly blocked emitter.
 Picture take_picture(const RadiosityFunction& light, const PictureOptions& options, Progress& progress,
                      const StopRequest& stop);
 

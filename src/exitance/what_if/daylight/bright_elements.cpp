@@ -4,6 +4,7 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/direct/beams.hpp"
+#include "exitance/processes/exchange_archived.hpp"
 #include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
@@ -37,8 +38,12 @@ BrightElements::BrightElements(const DaylightSetting& setting, const DaylightTra
     const std::vector<std::size_t>& bright = sky.bright_hours();
     const std::size_t leaves = transport.leaves(), patches = light.columns;
     const Occluders& occluders = transport.stage().occluders;
-    std::vector<std::vector<std::pair<std::size_t, Entry>>> found((leaves + together - 1) / together);
-    parallel_for(found.size(), 1, [&](std::size_t block) {
+    struct Found {
+        std::size_t hour;  ///< Index in `bright`.
+        Entry entry;
+    };
+    std::vector<std::vector<Found>> found((leaves + together - 1) / together);
+    const auto find_in = [&](std::size_t block) {
         const std::size_t first = block * together, count = std::min(together, leaves - first);
         std::vector<float> rows(count * patches), lux(count * sky.hours(), 0.0F);
         for (std::size_t i = 0; i < count; ++i)
@@ -54,7 +59,14 @@ BrightElements::BrightElements(const DaylightSetting& setting, const DaylightTra
                     found[block].push_back({k, {static_cast<std::uint32_t>(first + i), static_cast<float>(B / pi)}});
             }
         }
-    });
+    };
+    parallel_own_ranges(found.size(), 1,
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t block = begin; block < end; ++block) find_in(block);
+                        },
+                        {"bright elements"});
+    exchange_archived(
+        std::span(found), 1, [](auto& archive, std::vector<Found>& some) { archive(some); }, "bright elements");
     is_bright_.assign(leaves, 0), first_.assign(bright.size() + 1, 0);
     for (const auto& block : found)
         for (const auto& [k, entry] : block) ++first_[k + 1], is_bright_[entry.leaf] = 1;

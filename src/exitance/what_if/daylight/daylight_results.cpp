@@ -1,7 +1,10 @@
 #include "exitance/what_if/daylight/daylight_results.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "exitance/processes/exchange_archived.hpp"
+#include "exitance/processes/result_of_all.hpp"
 #include "exitance/scene/place_finder.hpp"
 #include "exitance/what_if/daylight/sensor_places.hpp"
 
@@ -10,10 +13,44 @@ namespace {
 
 /// Sensors whose results are in memory together.
 constexpr std::size_t block_sensors = 256;
+/// Sensors that each of many processes evaluates at once, unless fewer are left. derived from the tiles of YearSky
+constexpr std::size_t min_own_sensors = 16;
 
 Error stopped() {
     return {ErrorCode::limit, "stopped before the results of the year were complete", "", ""};
 }
+
+/// Evaluates `count` things (sensors or eyes) in blocks, which processes divide, and passes the results of the blocks,
+/// in order, to `take` in all processes. evaluate(first, count) returns the results of consecutive things. Errors:
+/// ErrorCode::limit after a stop request, or that of `take` in any process. Collective.
+template <class Block, class Evaluate, class ArchiveOne, class Take>
+Result<void> pass_blocks(std::size_t count, const Evaluate& evaluate, const ArchiveOne& archive_one, const Take& take,
+                         Progress& progress, const StopRequest& stop) {
+    const std::size_t all = processes(), most = std::max(min_own_sensors, block_sensors / all);
+    for (std::size_t at = 0, end = 0; at < count; at = end) {
+        const std::size_t of_own = std::min(most, (count - at + all - 1) / all);
+        end = std::min(count, at + all * of_own);
+        std::vector<Block> blocks((end - at + of_own - 1) / of_own);
+        const std::size_t own = own_process(), first = at + own * of_own;
+        do_own_share([&] {
+            if (own < blocks.size()) blocks[own] = evaluate(first, std::min(of_own, end - first));
+        });
+        exchange_archived(std::span(blocks), 1, archive_one, "year");
+        for (Block& block : blocks)
+            if (const Result<void> taken = result_of_all(take(block)); !taken) return taken.error();
+        if (stop.requested()) return stopped();
+        progress.advance(static_cast<double>(end) / static_cast<double>(count));
+    }
+    return {};
+}
+
+/// Converts a block to bytes and back.
+constexpr auto archive_block = [](auto& archive, DaylightBlock& block) {
+    DaylightMatrix& matrix = block.matrix;
+    archive(block.first, matrix.patches, matrix.direct, matrix.reflected);
+    for (std::vector<float>& replicate : matrix.replicates) archive(replicate);
+    archive(block.illuminance, block.sun, block.results);
+};
 
 }  // namespace
 
@@ -83,15 +120,11 @@ Result<void> DaylightSimulation::evaluate(SensorRange range, const DaylightSink&
     const DaylightRows rows(d.transport, d.light.elements, d.patches, d.light.options.rays_a_sensor);
     const SensorYears years(d.setting, d.light.bias, d.task.sun_day);
     const auto known = [&](std::size_t i) { return d.sample ? d.sample->find(i) : nullptr; };
-    for (std::size_t at = 0; at < places.size(); at += block_sensors) {
-        const auto together = std::span(places).subspan(at, std::min(block_sensors, places.size() - at));
-        const std::size_t first = range.first + at;
-        const DaylightBlock block = years.evaluate(first, together, rows.rows(together, first, known));
-        if (const Result<void> taken = sink(block); !taken) return taken.error();
-        if (d.stop.requested()) return stopped();
-        d.progress.advance(static_cast<double>(at + together.size()) / static_cast<double>(places.size()));
-    }
-    return {};
+    const auto evaluate_some = [&](std::size_t at, std::size_t count) {
+        const auto together = std::span(places).subspan(at, count);
+        return years.evaluate(range.first + at, together, rows.rows(together, range.first + at, known));
+    };
+    return pass_blocks<DaylightBlock>(places.size(), evaluate_some, archive_block, sink, d.progress, d.stop);
 }
 
 Result<std::vector<GlareYear>> DaylightSimulation::glare(std::span<const ProbePoint> views, double threshold) const {
@@ -104,17 +137,25 @@ Result<std::vector<GlareYear>> DaylightSimulation::glare(std::span<const ProbePo
     const DaylightRows rows(d.transport, d.light.elements, d.patches, d.light.options.rays_a_sensor);
     const SensorYears years(d.setting, d.light.bias, {});
     const GlareYears glare(d.setting, d.transport, d.light.elements, threshold);
-    std::vector<GlareYear> out;
-    for (std::size_t at = 0; at < eyes.size(); at += block_sensors) {
-        const auto together = std::span(eyes).subspan(at, std::min(block_sensors, eyes.size() - at));
+    using Years = std::vector<GlareYear>;
+    const auto evaluate_some = [&](std::size_t at, std::size_t count) {
+        const auto together = std::span(std::as_const(eyes)).subspan(at, count);
         const std::size_t first =
             d.task.sensors.size() + at;  // numbers differ from those of the sensors, and so do random points
         const auto unknown = [](std::size_t) -> const KnownSensor* { return nullptr; };
-        const DaylightBlock block = years.evaluate(first, together, rows.rows(together, first, unknown));
-        for (GlareYear& year : glare.evaluate(together, block)) out.push_back(std::move(year));
-        if (d.stop.requested()) return stopped();
-        d.progress.advance(static_cast<double>(out.size()) / static_cast<double>(eyes.size()));
-    }
+        return glare.evaluate(together, years.evaluate(first, together, rows.rows(together, first, unknown)));
+    };
+    const auto archive_years = [](auto& archive, Years& some) {
+        some.resize(archive_size(archive, some.size(), 1));
+        for (GlareYear& year : some) archive(year.probability, year.statistics);
+    };
+    Years out;
+    const auto take = [&](Years& some) -> Result<void> {
+        for (GlareYear& year : some) out.push_back(std::move(year));
+        return {};
+    };
+    const Result<void> done = pass_blocks<Years>(eyes.size(), evaluate_some, archive_years, take, d.progress, d.stop);
+    if (!done) return done.error();
     return out;
 }
 
@@ -126,18 +167,16 @@ Result<void> evaluate_coefficients(const Scene& scene, const DaylightTask& task,
                                   task.hours, task.site,    sky,        task.criteria, 1};
     const SensorYears years(setting, {}, task.sun_day);
     const std::vector<Receiver> places = sensor_places(scene, Occluders(scene), task.sensors);
-    for (std::size_t first = 0; first < places.size(); first += block_sensors) {
-        const std::size_t count = std::min(block_sensors, places.size() - first);
+    const auto evaluate_some = [&](std::size_t first, std::size_t count) {
         DaylightMatrix matrix;
         matrix.resize(count, patches.size());
         const auto rows = coefficients.subspan(first * patches.size(), count * patches.size());
         matrix.reflected.assign(rows.begin(), rows.end());
         for (std::vector<float>& replicate : matrix.replicates) replicate = matrix.reflected;
-        const DaylightBlock block = years.evaluate(first, std::span(places).subspan(first, count), std::move(matrix));
-        if (const Result<void> taken = sink(block); !taken) return taken.error();
-        if (stop.requested()) return stopped();
-    }
-    return {};
+        return years.evaluate(first, std::span(places).subspan(first, count), std::move(matrix));
+    };
+    Progress none;
+    return pass_blocks<DaylightBlock>(places.size(), evaluate_some, archive_block, sink, none, stop);
 }
 
 Result<DaylightSummary> simulate_year(const Scene& scene, const DaylightTask& task, const DaylightSink& sink,

@@ -36,6 +36,7 @@ constexpr SensorRange sensors_of_part(std::size_t part, std::size_t parts, std::
 
 /// Computes a year in two steps: the light on the elements, which is common to all sensors and can be kept, and the
 /// results of any sensors. Memory: that of the elements, of at most 2048 random sensors, and of a block of sensors.
+/// Several processes divide the rays and the sensors, and all get all results; every function is collective.
 class DaylightSimulation {
   public:
     /// All arguments must outlive this.

@@ -5,6 +5,7 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
+#include "exitance/processes/exchange_archived.hpp"
 #include "exitance/reference/path_reference.hpp"
 #include "exitance/scene/photometric_units.hpp"
 #include "exitance/what_if/daylight/sensor_places.hpp"
@@ -133,23 +134,28 @@ void DaylightSample::choose_sensors(const DaylightTransport& transport) {
 void DaylightSample::find_direct(const DaylightTransport& transport) {
     const Occluders& occluders = transport.stage().occluders;
     const VisiblePatches visible(occluders, setting_.patches);
-    parallel_ranges(sensors_.size(), 4, [&](std::size_t begin, std::size_t end) {
-        VisiblePatches::Workspace workspace;
-        for (std::size_t k = begin; k < end; ++k) {
-            sensors_[k].known.direct.resize(setting_.patches.size());
-            visible.irradiance(sensors_[k].at, workspace, sensors_[k].known.direct);
-        }
-    });
+    for (Sensor& sensor : sensors_) sensor.known.direct.resize(setting_.patches.size());
+    shared_ranges(
+        sensors_.size(), 4,
+        [&](std::size_t begin, std::size_t end) {
+            VisiblePatches::Workspace workspace;
+            for (std::size_t k = begin; k < end; ++k)
+                visible.irradiance(sensors_[k].at, workspace, sensors_[k].known.direct);
+        },
+        [&](std::size_t k) { return std::span(sensors_[k].known.direct); }, {"visible sky"});
     if (!setting_.finer) return;
     const VisiblePatches finer(occluders, *setting_.finer);
-    parallel_ranges(for_bias_.size(), 1, [&](std::size_t begin, std::size_t end) {
-        VisiblePatches::Workspace workspace;
-        for (std::size_t k = begin; k < end; ++k) {
-            Sensor& sensor = sensors_[for_bias_[k]];
-            sensor.direct_finer.resize(setting_.finer->size());
-            finer.irradiance(sensor.at, workspace, sensor.direct_finer);
-        }
-    });
+    for (const std::size_t k : for_bias_) sensors_[k].direct_finer.resize(setting_.finer->size());
+    shared_ranges(
+        for_bias_.size(), 1,
+        [&](std::size_t begin, std::size_t end) {
+            VisiblePatches::Workspace workspace;
+            for (std::size_t k = begin; k < end; ++k) {
+                Sensor& sensor = sensors_[for_bias_[k]];
+                finer.irradiance(sensor.at, workspace, sensor.direct_finer);
+            }
+        },
+        [&](std::size_t k) { return std::span(sensors_[for_bias_[k]].direct_finer); }, {"visible sky"});
 }
 
 void DaylightSample::forget_rays() {
@@ -167,10 +173,21 @@ SkyColumns DaylightSample::columns() const {
 
 void DaylightSample::evaluate(const DaylightTransport& transport, unsigned rays) {
     const ElementLight light = transport.solve(columns());
-    parallel_for(sensors_.size(), 1, [&](std::size_t k) {
-        transport.cast_sensor(sensors_[k].at, sensors_[k].number, rays, sensors_[k].known.rays);
-        evaluate(sensors_[k], light);
-    });
+    parallel_own_ranges(sensors_.size(), 1,
+                        [&](std::size_t begin, std::size_t end) {
+                            for (std::size_t k = begin; k < end; ++k) {
+                                transport.cast_sensor(sensors_[k].at, sensors_[k].number, rays, sensors_[k].known.rays);
+                                evaluate(sensors_[k], light);
+                            }
+                        },
+                        {"sample"});
+    exchange_archived(
+        std::span(sensors_), 1,
+        [](auto& archive, Sensor& sensor) {
+            for (RayCounts& replicate : sensor.known.rays) archive(replicate);
+            archive(sensor.results, sensor.patches, sensor.finer_patches);
+        },
+        "sample");
 }
 
 void DaylightSample::evaluate(Sensor& sensor, const ElementLight& light) const {

@@ -7,6 +7,7 @@
 #include "exitance/base/random.hpp"
 #include "exitance/form_factors/met_directions.hpp"
 #include "exitance/mesh/element_locator.hpp"
+#include "exitance/processes/exchange_archived.hpp"
 #include "exitance/scene/photometric_units.hpp"
 #include "exitance/transport/ray_rows.hpp"
 
@@ -40,6 +41,19 @@ void add_ends(std::vector<std::uint32_t>& numbers, std::vector<RayCounts::End>& 
     merged.insert(merged.end(), earlier, ends.end());
     merged.shrink_to_fit();
     ends = std::move(merged);
+}
+
+/// Sends the light of all replicates, of `size` values each, to all processes.
+void exchange_replicates(std::size_t size, ElementLight& light) {
+    constexpr std::size_t together = std::size_t(1) << 20;  // values of a replicate that are sent in one round
+    for (std::vector<float>& replicate : light.reflected) replicate.resize(size);
+    for (std::size_t first = 0; first < size; first += together)
+        exchange_values(
+            daylight_replicates, 1,
+            [&](std::size_t k) {
+                return std::span(light.reflected[k]).subspan(first, std::min(together, size - first));
+            },
+            "replicates");
 }
 
 }  // namespace
@@ -166,28 +180,34 @@ void DaylightTransport::cast_rows(double rays_an_element) {
     const double mean = all / static_cast<double>(area.size());
     // A replicate has few rays of its own; more than its share would make small elements expensive.
     const RayBudget budget{.average = rays_an_element / static_cast<double>(daylight_replicates), .least = 2};
-    for (std::size_t replicate = 0; replicate < daylight_replicates; ++replicate) {
-        std::vector<RayCounts>& rows = rows_[replicate];
-        rows.resize(area.size());
-        parallel_ranges(area.size(), 16, [&](std::size_t begin, std::size_t end) {
-            Found found;
-            for (std::size_t i = begin; i < end; ++i) {
-                const ElementId e = numbering.leaves[i];
-                const Patch& patch = tree.patch(e);
-                const std::uint64_t key = hash(seeds_[replicate], static_cast<std::uint64_t>(Stream::rows), i);
-                cast(
-                    budget.rays(area[i], mean), key, tree.region(e), tree.region(e),
-                    scene_.regions()[tree.region(e)].plane.n,
-                    [&](double u, double v) { return patch.at(tree.uniform(e, u, v)); }, found, rows[i]);
-            }
-        });
-    }
+    do_own_share([&] {
+        for (std::size_t replicate = own_process(); replicate < daylight_replicates; replicate += processes()) {
+            std::vector<RayCounts>& rows = rows_[replicate];
+            rows.resize(area.size());
+            parallel_ranges(area.size(), 16, [&](std::size_t begin, std::size_t end) {
+                Found found;
+                for (std::size_t i = begin; i < end; ++i) {
+                    const ElementId e = numbering.leaves[i];
+                    const Patch& patch = tree.patch(e);
+                    const std::uint64_t key = hash(seeds_[replicate], static_cast<std::uint64_t>(Stream::rows), i);
+                    cast(
+                        budget.rays(area[i], mean), key, tree.region(e), tree.region(e),
+                        scene_.regions()[tree.region(e)].plane.n,
+                        [&](double u, double v) { return patch.at(tree.uniform(e, u, v)); }, found, rows[i]);
+                }
+            });
+        }
+    });
 }
 
 ElementLight DaylightTransport::solve(const SkyColumns& columns) const {
     ElementLight out;
     out.columns = columns.count();
-    for (std::size_t k = 0; k < daylight_replicates; ++k) out.reflected[k] = solve_replicate(rows_[k], columns);
+    do_own_share([&] {
+        for (std::size_t k = own_process(); k < daylight_replicates; k += processes())
+            out.reflected[k] = solve_replicate(rows_[k], columns);
+    });
+    exchange_replicates(leaves() * out.columns, out);
     return out;
 }
 

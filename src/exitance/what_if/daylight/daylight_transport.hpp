@@ -29,6 +29,11 @@ struct RayCounts {
     std::vector<End> finer;    ///< Finer patches of the sky; empty if there are none.
 };
 
+template <class Archive>
+void archive(Archive& a, RayCounts& ends) {
+    a(ends.rays, ends.leaves, ends.patches, ends.finer);
+}
+
 /// Rays of a sensor, one set per replicate.
 using SensorRays = std::array<RayCounts, daylight_replicates>;
 
@@ -70,6 +75,7 @@ struct ElementLight {
 ///
 /// for each replicate by rays of its own. More rays can be added to those that were cast before; the result is
 /// independent of the steps. The scene's emitters are off, and its light from outside is replaced by the patches.
+/// Several processes divide the replicates, and each has the rays of its own ones only.
 class DaylightTransport {
   public:
     /// `finer`: further patches of the sky in which the ends of rays are counted; may be null. Both must outlive the
@@ -83,12 +89,13 @@ class DaylightTransport {
     std::optional<std::size_t> leaf_at(RegionId region, const Point& x) const;
     /// Returns the centre of a leaf.
     Receiver leaf_centre(std::size_t leaf) const;
-    /// Casts rays until all replicates together have this average number per element. O(new rays).
+    /// Casts rays until all replicates together have this average number per element, those of the replicates of this
+    /// process. O(new rays).
     void cast_rows(double rays_an_element);
     /// Frees the memory of the rays of elements.
     void forget_rows();
     /// Solves for rho E by Jacobi iteration over all columns at once, until a sweep changes it by at most 2e-4
-    /// (relative RMS). O(sweeps x rays x columns).
+    /// (relative RMS). Collective. O(sweeps x rays x columns).
     ElementLight solve(const SkyColumns& columns) const;
 
     /// Casts rays from a sensor until all replicates together have `rays` (a power of two). `number`: of the sensor,
