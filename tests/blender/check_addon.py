@@ -169,6 +169,63 @@ def curved_meshes():
     return camera, "Ground", [(1.2, -1.2, 0, 0, 0, 1), (-0.9, 0.3, 0, 0, 0, 1)]
 
 
+def add_unusual_objects():
+    """Adds linked copies of a mesh without a material, a mirrored one, a text, and an instance of a collection."""
+    first = box("Cube", (-0.2, -0.2, 0), (0.2, 0.2, 0.4))
+    first.location = (-0.6, 0, 0.001)
+    second = bpy.data.objects.new("Cube.001", first.data)
+    second.location, second.scale = (0.6, 0.3, 0.001), (1, -1, 1.5)
+    bpy.context.scene.collection.objects.link(second)
+    curve = bpy.data.curves.new("Text", "FONT")
+    curve.body, curve.size, curve.extrude = "A", 0.5, 0.05
+    text = bpy.data.objects.new("Text", curve)
+    text.location, text.rotation_euler = (0, 0.6, 0.02), (math.pi / 2, 0, 0)
+    bpy.context.scene.collection.objects.link(text)
+    collection = bpy.data.collections.new("Parts")
+    part = box("Part", (-0.1, -0.1, 0.5), (0.1, 0.1, 0.6), material("part", (0.8, 0.2, 0.2)))
+    bpy.context.scene.collection.objects.unlink(part)
+    collection.objects.link(part)
+    instance = bpy.data.objects.new("Instance", None)
+    instance.instance_type, instance.instance_collection = "COLLECTION", collection
+    bpy.context.scene.collection.objects.link(instance)
+    add_mesh("Ground", [(-1.5, -1.5, 0), (1.5, -1.5, 0), (1.5, 1.5, 0), (-1.5, 1.5, 0)], [(0, 1, 2, 3)],
+             material("ground", (0.6, 0.6, 0.5)))
+    return add_camera((0.5, -2.6, 1.3), (0, 0, 0.2), 55), "Ground", [(1.2, -1.2, 0, 0, 0, 1), (-0.9, 0.9, 0, 0, 0, 1)]
+
+
+def picture_sky():
+    """Unusual objects below a sky from a picture that is turned, brighter on one side."""
+    image = bpy.data.images.new("sky", 64, 32, float_buffer=True)
+    values = np.full((32, 64, 4), 0.2, np.float32)
+    values[16:, 8:24] = 3, 2, 1, 1  # above the horizon, around +y before it is turned
+    image.pixels.foreach_set(values.ravel())
+    image.filepath_raw, image.file_format = str(WORK / "sky.exr"), "OPEN_EXR"
+    image.save()
+    set_world((1, 1, 1), 0.7)
+    tree = bpy.context.scene.world.node_tree
+    texture, mapping, place = (tree.nodes.new(f"ShaderNode{n}") for n in ("TexEnvironment", "Mapping", "TexCoord"))
+    texture.image = bpy.data.images.load(str(WORK / "sky.exr"))
+    mapping.inputs["Rotation"].default_value[2] = 0.7
+    tree.links.new(place.outputs["Generated"], mapping.inputs["Vector"])
+    tree.links.new(mapping.outputs[0], texture.inputs["Vector"])
+    tree.links.new(texture.outputs[0], tree.nodes["Background"].inputs["Color"])
+    return add_unusual_objects()
+
+
+def rendered_sky():
+    """The same objects below a world that nodes compute: as bright as the direction's x."""
+    set_world((1, 1, 1), 1)
+    tree = bpy.context.scene.world.node_tree
+    place, split = tree.nodes.new("ShaderNodeTexCoord"), tree.nodes.new("ShaderNodeSeparateXYZ")
+    tree.links.new(place.outputs["Generated"], split.inputs[0])
+    positive = tree.nodes.new("ShaderNodeMath")  # Cycles would take negative light away
+    positive.operation = "MAXIMUM"
+    positive.inputs[1].default_value = 0
+    tree.links.new(split.outputs["X"], positive.inputs[0])
+    tree.links.new(positive.outputs[0], tree.nodes["Background"].inputs["Color"])
+    return add_unusual_objects()
+
+
 def render(file, bounces, samples):
     """Renders by Cycles on the processor without denoising; returns encoded pixels (height, width, 3), lowest row first."""
     scene = bpy.context.scene
@@ -254,6 +311,36 @@ def sliders():
     return [node for node in tree.nodes if node.type == "VALUE"] if tree else []
 
 
+def shared_materials():
+    """Returns how many materials with baked light are used by more than one slot."""
+    lit = [slot.material.name for thing in bpy.data.objects for slot in thing.material_slots if slot.material]
+    return len(lit) - len(set(lit))
+
+
+def check_errors():
+    """Checks the messages where nothing can be baked, and that a cancelled bake ends."""
+    print("errors")
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.preferences.addon_enable(module="exitance_blender")
+    preferences = bpy.context.preferences.addons["exitance_blender"].preferences
+    for program, build, words in ((str(WORK / "absent"), None, "preferences"), (PROGRAM, None, "no visible mesh"),
+                                  (PROGRAM, add_unusual_objects, "nothing emits light"), ("/bin/false", set_grey_world, "status 1")):
+        preferences.program = program
+        if build:
+            build()
+        try:
+            bpy.ops.exitance.bake()
+            message = "none"
+        except RuntimeError as error:
+            message = str(error)
+        check(f"message with '{words}' is missing", int(words not in message), 0)
+        check("materials of a failed bake", sum("exitance_lit" in m for m in bpy.data.materials), 0)
+
+
+def set_grey_world():
+    set_world((1, 1, 1), 1)
+
+
 def run(build):
     """Builds, bakes and checks a scene."""
     print(build.__name__)
@@ -264,11 +351,12 @@ def run(build):
     folder = WORK / build.__name__
     folder.mkdir(exist_ok=True)
     settings = bpy.context.scene.exitance
-    settings.folder, settings.error, settings.density = str(folder), 1, 32
+    settings.folder, settings.error, settings.density = str(folder), 1 if build in CLOSED_FORMS else 3, 32
     before = {thing.name: [slot.material for slot in thing.material_slots] for thing in bpy.data.objects}
     traced = render(folder / "traced.png", 12, int(os.environ.get("SAMPLES", "512")))
     start = time.time()
     assert bpy.ops.exitance.bake() == {"FINISHED"}, settings.notes
+    check("objects that share a material", shared_materials(), 0)
     print(f"  {settings.error_words}; {time.time() - start:.1f} s; " + settings.notes.replace("\n", "; "))
     baked = render(folder / "baked.png", 0, 32)
     drawn = draw(folder / "scene.h5", folder / "render.png", camera)
@@ -341,7 +429,9 @@ bpy.ops.preferences.addon_install(filepath=ZIP, overwrite=True)
 if not ONLY:
     bpy.ops.preferences.addon_enable(module="exitance_blender")
     check_units()
-for build in (closed_box, room_with_windows, curved_meshes):
+    check_errors()
+CLOSED_FORMS = (closed_box, room_with_windows, curved_meshes)
+for build in CLOSED_FORMS + (picture_sky, rendered_sky):
     if not ONLY or build.__name__ in ONLY:
         run(build)
 print("failed: " + "; ".join(failures) if failures else "all checks passed")

@@ -13,6 +13,7 @@ from . import lamps, layers, pictures, shaders, sides, world
 from .model import Body, Faces, Model, Surface
 from .units import Colour, triple
 
+OTHER_KINDS = {"VOLUME", "CURVES", "HAIR", "POINTCLOUD", "GPENCIL", "GREASEPENCIL"}
 MESH_KINDS = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 HIGHEST_REFLECTANCE = 0.95  # that exitance takes
 
@@ -40,15 +41,36 @@ class Exporter:
         """Fills the model from the evaluated scene: the world, then lamps, then faces."""
         depsgraph = context.evaluated_depsgraph_get()
         world.add_world(self.model, context.scene.world, self.folder, self.notes)
-        instances = [(i.object, i.matrix_world.copy(), i.is_instance, _name(i)) for i in depsgraph.object_instances
-                     if i.show_self and not i.object.hide_render]
+        instances = self._visible(depsgraph)
         self._eyes = [matrix.translation[:] for thing, matrix, _, _ in instances if thing.type in ("LIGHT", "CAMERA")]
-        for thing, matrix, is_instance, name in _unique_names(instances):
-            to_world = np.array(matrix)  # copied, because an instance is valid only while it is iterated
+        for original, matrix, is_instance, name in _unique_names(instances):
+            thing = original.evaluated_get(depsgraph)
+            to_world = np.array(matrix)
             if thing.type == "LIGHT":
                 self._add_lamp(thing.data, name, to_world)
             elif thing.type in MESH_KINDS:
                 self._add_mesh(depsgraph, thing, name, to_world, is_instance)
+            elif thing.type in OTHER_KINDS:
+                self.note(f"{name}: is left out, because it has no faces")
+
+    def _visible(self, depsgraph: Any) -> list[Any]:
+        """Returns (original object, matrix, is_instance, name) of all that is visible.
+
+        Objects that an iteration yields are valid only in it, so originals are kept. A text or curve is yielded twice: as
+        itself, and as an instance of its faces.
+        """
+        visible = []
+        for instance in depsgraph.object_instances:
+            original, parent = instance.object.original, instance.parent.original if instance.parent else None
+            if not instance.show_self or original.hide_render:
+                continue
+            if instance.is_instance and parent == original:
+                if original.type == "MESH":
+                    self.note(f"{original.name}: instances by its geometry nodes are left out; add the node Realize Instances")
+                continue
+            name = f"{original.name} of {parent.name}" if instance.is_instance and parent else original.name
+            visible.append((original, instance.matrix_world.copy(), instance.is_instance, name))
+        return visible
 
     def note(self, text: str) -> None:
         """Keeps a note once."""
@@ -195,13 +217,6 @@ def _integers(collection: Any, name: str, count: int) -> np.ndarray:
     values = np.empty(count, dtype=np.int32)
     collection.foreach_get(name, values)
     return values
-
-
-def _name(instance: Any) -> str:
-    """Returns the name of an object, or of the object that an instance repeats and the one that makes it."""
-    if instance.is_instance and instance.parent:
-        return f"{instance.object.name} of {instance.parent.name}"
-    return instance.object.name
 
 
 def _unique_names(instances: list[Any]) -> list[Any]:

@@ -7,12 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import bpy
+import numpy as np
 
 from .model import Model
 from .shaders import output_node, read_shader, source
 from .units import triple
 
-PANORAMA_HEIGHT, PANORAMA_SAMPLES = 512, 64  # of worlds that other nodes than a picture make
+PANORAMA_HEIGHT, PANORAMA_SAMPLES = 512, 16  # of worlds that other nodes than a picture make
 
 
 def add_world(model: Model, world: Any, folder: Path, notes: list[str]) -> None:
@@ -80,6 +81,17 @@ def vertical_angle(output: Any) -> float | None:
     return rotation[2] if node.vector_type == "POINT" else -rotation[2]
 
 
+def remove_negative_light(file: Path) -> None:
+    """Replaces values below 0, which nodes can make and exitance refuses, by 0."""
+    image = bpy.data.images.load(str(file), check_existing=False)
+    values = np.empty(image.size[0] * image.size[1] * image.channels, dtype=np.float32)
+    image.pixels.foreach_get(values)
+    if values.min() < 0:
+        image.pixels.foreach_set(np.maximum(values, 0))
+        image.save()
+    bpy.data.images.remove(image)
+
+
 def render_panorama(world: Any, file: Path) -> None:
     """Renders a world alone by Cycles into an equirectangular picture whose middle looks along +x."""
     scene = bpy.data.scenes.new("exitance world")
@@ -101,6 +113,7 @@ def render_panorama(world: Any, file: Path) -> None:
         scene.render.image_settings.color_depth = "32"
         scene.render.filepath = str(file)
         bpy.ops.render.render(write_still=True, scene=scene.name)
+        remove_negative_light(file)
     finally:
         bpy.data.objects.remove(camera)
         bpy.data.cameras.remove(data)
