@@ -99,6 +99,16 @@ def test_a_job_runs_its_steps_and_keeps_what_they_print():
     assert 0.75 <= job.fraction() <= 1
 
 
+def test_the_bar_never_falls_from_phase_to_phase():
+    code = "import sys, json\nfor p, f in (('a', 0), ('a', 1), ('b', 0), ('b', .5), ('c', 0)):" \
+        "\n print(json.dumps({'phase': p, 'fraction': f}), file=sys.stderr, flush=True); sys.stdin.read(0)"
+    job = Job([Step("one", python(code), 1)])
+    seen = [0.0]
+    while job.poll():
+        seen.append(job.fraction())
+    assert seen == sorted(seen) and job.fraction() >= 1 - 0.85**2 - 1e-12
+
+
 def test_a_failed_step_ends_the_job_with_its_message():
     job = Job([Step("one", python("import sys; sys.exit('error: no light')"), 1), Step("two", python(""), 1)])
     job.wait()

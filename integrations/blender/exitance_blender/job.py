@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 
 from .commands import LIMITED, REACHED, Progress, messages, parse_progress
 
+REMAINING_AFTER_PHASE = 0.85  # share of a step that a phase leaves; how many phases follow is not known
+
 
 @dataclass
 class Step:
@@ -32,6 +34,7 @@ class Job:
     _process: subprocess.Popen[str] | None = None
     _readers: list[threading.Thread] = field(default_factory=list)
     _progress: Progress = Progress("", 0)
+    _finished_phases: int = 0
 
     def poll(self) -> bool:
         """Moves on; returns True while a step runs. Does not wait."""
@@ -66,17 +69,18 @@ class Job:
         return ": ".join(word for word in (self.steps[self._current].title, self._progress.phase) if word)
 
     def fraction(self) -> float:
-        """Returns the finished share of the job in [0, 1]; the phase's own share counts within its step."""
+        """Returns the finished share of the job in [0, 1], which never falls: each phase takes a part of the rest of its step."""
         total = sum(step.share for step in self.steps)
         done = sum(step.share for step in self.steps[:max(0, self._current)])
         if 0 <= self._current < len(self.steps):
-            done += self.steps[self._current].share * self._progress.fraction
+            phases = self._finished_phases + self._progress.fraction
+            done += self.steps[self._current].share * (1 - REMAINING_AFTER_PHASE**phases)
         return done / total if total > 0 else 0
 
     def _start_next(self) -> None:
         """Starts the next command and two threads that read what it prints."""
         self._current += 1
-        self._progress = Progress("", 0)
+        self._progress, self._finished_phases = Progress("", 0), 0
         step = self.steps[self._current]
         try:
             self._process = subprocess.Popen(step.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -113,4 +117,6 @@ class Job:
                 if progress is None:
                     step.errors += line
                 else:
+                    if self._progress.phase not in ("", progress.phase):
+                        self._finished_phases += 1
                     self._progress = progress
