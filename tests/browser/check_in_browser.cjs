@@ -1,23 +1,10 @@
 // Called by scripts/check_in_browser; see there.
-const fs = require('fs'), http = require('http'), path = require('path');
+const fs = require('fs'), path = require('path');
 const {execFileSync} = require('child_process');
-const {chromium} = require('playwright-core');
+const {compare_pictures, launch, serve} = require('./browser.cjs');
 
 const folder = process.env.exec_folder, cache = process.env.CACHE;
 const size = [640, 400];
-const types = {'.html': 'text/html', '.js': 'text/javascript', '.glb': 'model/gltf-binary', '.png': 'image/png'};
-
-/** Serves the folder, and npm's packages below /node_modules. */
-function serve() {
-    const server = http.createServer((request, response) => {
-        const name = decodeURIComponent(request.url.split('?')[0]);
-        const file = path.join(name.startsWith('/node_modules/') ? cache : folder, name);
-        if (!fs.existsSync(file)) return response.writeHead(404).end();
-        response.writeHead(200, {'content-type': types[path.extname(file)] || 'application/octet-stream'});
-        response.end(fs.readFileSync(file));
-    });
-    return new Promise(done => server.listen(0, '127.0.0.1', () => done(server)));
-}
 
 const page_text = `<!doctype html><meta charset="utf-8"><canvas id="c"></canvas>
 <script type="importmap">{"imports": {"three": "/node_modules/three/build/three.module.js",
@@ -51,24 +38,7 @@ window.show = async (url, eye, target, fov, exr, exposure) => {
     renderer.render(scene, camera);
     return document.getElementById('c').toDataURL();
 };
-const pixels = async url => {
-    const image = new Image();
-    image.src = url;
-    await image.decode();
-    const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext('2d');
-    context.drawImage(image, 0, 0);
-    return context.getImageData(0, 0, image.width, image.height).data;
-};
-// Mean difference of two pictures as a share of white, and the share of pixels that differ by more than 0.1.
-window.compare = async (a, b) => {
-    const [p, q] = [await pixels(a), await pixels(b)];
-    let sum = 0, far = 0;
-    for (let i = 0; i < p.length; i += 4) {
-        const d = (Math.abs(p[i] - q[i]) + Math.abs(p[i + 1] - q[i + 1]) + Math.abs(p[i + 2] - q[i + 2])) / 765;
-        sum += d, far += d > 0.1;
-    }
-    return [4 * sum / p.length, 4 * far / p.length];
-};
+${compare_pictures}
 window.ready = true;
 </script>`;
 
@@ -121,9 +91,8 @@ async function check_report(page) {
 }
 
 (async () => {
-    const server = await serve();
-    const browser = await chromium.launch({executablePath: process.env.CHROMIUM || '/usr/bin/chromium',
-        args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader']});
+    const server = await serve(folder, cache);
+    const browser = await launch();
     const page = await browser.newPage();
     page.on('pageerror', error => console.log('page: ' + error));
     const failed = await check_models(page, `http://127.0.0.1:${server.address().port}`) + await check_report(page);
