@@ -48,6 +48,8 @@ def output_folder(chosen: str) -> tuple[Path, bool]:
 
 def start(context: bpy.types.Context, settings: Any, program: str) -> Bake:
     """Unwraps where needed, exports, and returns the bake whose job can be polled. Raises BakeError."""
+    if context.active_object is not None and context.active_object.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")  # what is being edited becomes part of the mesh
     display.hide()
     folder, is_temporary = output_folder(settings.folder)
     try:

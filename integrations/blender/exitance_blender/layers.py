@@ -43,15 +43,14 @@ def separate_cells(count: int) -> np.ndarray:
 def unwrap_objects(context: bpy.types.Context, name: str) -> list[str]:
     """Gives a layer of charts to every visible mesh object without one for light maps; returns the objects' names.
 
-    Blender's Smart UV Project makes the charts. Selection, mode and active layers are as before afterwards.
+    Blender's Smart UV Project makes the charts. The mode must be object mode.
+    Selection and active layers are as before afterwards.
     """
     bare = [thing for thing in context.visible_objects if thing.type == "MESH" and not thing.hide_render and
             len(thing.data.polygons) > 0 and thing.data.library is None and not light_map_layer(thing.data, name)]
     if not bare:
         return []
     active, selected = context.view_layer.objects.active, list(context.selected_objects)
-    if active is not None and active.mode != "OBJECT":
-        bpy.ops.object.mode_set(mode="OBJECT")
     made, meshes = [], set()
     for thing in bare:
         if thing.data in meshes:

@@ -33,8 +33,7 @@ struct Lit {
     Solution solution;
     LightGroups groups;
 };
-Lit lit(double error) {
-    SceneDescription d = two_lamps();
+Lit lit(double error, SceneDescription d = two_lamps()) {
     part_emitters_by_group(d);
     const CheckedScene scene = make_scene(std::move(d));
     EXPECT_TRUE(scene.scene);
@@ -191,6 +190,19 @@ TEST(LightGroupsOfTwoLamps, AreRestoredFromAFile) {
     EXPECT_EQ(groups.groups[1].indirect, whole.groups.groups[1].indirect);
     EXPECT_EQ(groups.groups[1].emitters.materials, whole.groups.groups[1].emitters.materials);
     EXPECT_TRUE(load_solution(folder / "s.h5")) << "who does not ask for them";
+}
+
+TEST(LightGroupsOfTwoLamps, AreRestoredFromAFileIfNothingReflects) {
+    SceneDescription d = two_lamps();
+    for (Material& m : d.materials) m.reflectance = Spectrum(0);
+    const Lit whole = lit(coarse, std::move(d));
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_solution(folder / "s.h5", whole.solution, &whole.groups));
+    LightGroups groups;
+    const Result<Solution> solution = load_solution(folder / "s.h5", Rehearsed::not_yet, &groups);
+    ASSERT_TRUE(solution) << solution.error().message;
+    ASSERT_EQ(groups.groups.size(), 2u);
+    EXPECT_EQ(groups.groups[1].interpolant, whole.groups.groups[1].interpolant);
 }
 
 TEST(LightChangeWords, AreParsed) {

@@ -13,6 +13,15 @@
 namespace exitance {
 namespace {
 
+/// Returns the number of values that a file of `function` holds, one per corner of a leaf. In memory, dark leaves share
+/// some.
+std::size_t value_count(const ElementFunction& function) {
+    std::size_t count = 0;
+    for (const ElementId e : function.tree.leaves())
+        count += static_cast<std::size_t>(function.tree.patch(e).corner_count());
+    return std::max(count, function.values.size());
+}
+
 CornerValues as_floats(const std::vector<Spectrum>& values) {
     CornerValues out(values.size());
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -110,7 +119,7 @@ class GroupSolver {
         direct_.push_back(fit_direct_of(lit, stage_, solution_.interpolant.tree, layout.sources,
                                         knobs_.direct_tolerance, options_.seed, stop_));
         const std::vector<DirectFit>& direct = direct_.back();
-        std::vector<Spectrum> indirect(solution_.indirect.values.size());
+        std::vector<Spectrum> indirect(value_count(solution_.indirect));
         if (reflects()) {
             const KeptOperator F(out_.transport, layout, solution_.interpolant.tree.size());
             std::vector<Spectrum> E(direct.size());
