@@ -61,6 +61,10 @@ class DaylightFiles {
     std::optional<HoneybeeResults> honeybee_;
 };
 
+/// Writes states.csv: month, day and hour, and the number of the state of every group, from 0, a row per hour.
+Result<void> write_states(const std::string& folder, const DaylightStates& states, const HourlyStates& hourly,
+                          std::span<const DaylightHour> hours);
+
 /// Names and values in summary.csv. Some names contain the target: sDA_300_50, sDA_300_50_low, sDA_300_50_high and
 /// mean_cDA_300 for 300 lx.
 std::vector<std::pair<std::string, double>> summary_values(const DaylightTask& task, const DaylightSummary& summary,

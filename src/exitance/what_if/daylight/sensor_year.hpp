@@ -4,6 +4,7 @@
 
 #include "exitance/what_if/daylight/daylight_provision.hpp"
 #include "exitance/what_if/daylight/daylight_sample.hpp"
+#include "exitance/what_if/daylight/state_tile.hpp"
 
 namespace exitance {
 
@@ -76,15 +77,17 @@ class SensorYears {
     /// Evaluates sensors at `places` with their rows of the daylight matrix. `first`: number of the first. Every
     /// replicate gives every result anew, since all hours share the noise of a sensor's coefficients. O(replicates x
     /// sensors x hours x patches): 1 ms per sensor with 146 patches.
-    DaylightBlock evaluate(std::size_t first, std::span<const Receiver> places, DaylightMatrix matrix) const;
+    /// `parts`: the rows of the parts of HourlyStates, if the setting has states. The number of sunny hours is then
+    /// that of the first states, as ASE requires; all other results of hours are those of the states.
+    DaylightBlock evaluate(std::size_t first, std::span<const Receiver> places, DaylightMatrix matrix,
+                           std::span<const StateRows> parts = {}) const;
 
   private:
     static constexpr std::size_t result_count = 9;
     using Results = std::array<double, result_count>;
 
-    void add_sun(const Receiver& at, std::span<const float> direct, std::span<float> sun) const;
     void evaluate_tile(std::size_t first, std::size_t count, std::span<const Receiver> places,
-                       DaylightBlock& block) const;
+                       std::span<const StateRows> parts, DaylightBlock& block) const;
     Results results_of(double factor, std::span<const float> lux, std::span<const float> sun) const;
     void finish(const std::array<SpreadResult, result_count>& spread, SensorResults& out) const;
 
@@ -93,7 +96,7 @@ class SensorYears {
     std::vector<double> overcast_;
     std::vector<std::size_t> daylight_hours_;
     Occluders occluders_;
-    std::vector<std::vector<PunctualLight>> suns_;  ///< The sun of every hour; empty without one.
+    YearSuns suns_;
     std::optional<SunlightHours> sunlight_;
 };
 
