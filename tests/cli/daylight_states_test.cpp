@@ -89,6 +89,20 @@ TEST_F(StatesOfCourt, FactorsFilesAndSchedulesChangeTheLight) {
     EXPECT_NE(states.find(",13,1\n"), std::string::npos) << states;
 }
 
+TEST_F(StatesOfCourt, VariantsOfGlassHaveATable) {
+    const std::string states = group("rule = 'constant'\nstays = 'open'") + open_and_shut;
+    const Finished ran = run(states + "[[variant]]\nname = 'dark'\nfactors = [0.5]\n");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const std::string table = read_text(folder_ / "year/variants.csv");
+    EXPECT_EQ(table.find("variant,\"roof\",sDA_20000_50,sDA_20000_50_low,sDA_20000_50_high,mean_cDA_20000,mean_E,"
+                         "ASE_1000_250\n\"dark\",0.5,"),
+              0u)
+        << table;
+    const Finished fault = run(states + "[[variant]]\nname = 'dark'\nfactors = [0.5, 1]\n");
+    EXPECT_EQ(fault.status, 3);
+    EXPECT_NE(fault.err.find("'factors' must be a number from 0 to 1 for each of the 1 groups"), std::string::npos);
+}
+
 TEST_F(StatesOfCourt, SaysWhySdaIsNotThatOfLm83) {
     const Finished ran = run(group("rule = 'lm83'") + open_and_shut + "factor = 0.1\n");
     ASSERT_EQ(ran.status, 0) << ran.err;

@@ -227,11 +227,18 @@ Result<DaylightSummary> write_all(const Request& request, const DaylightBias& bi
     Result<DaylightFiles> files = DaylightFiles::create(output, request.task, request.formats);
     if (!files) return files.error();
     DaylightTotals totals(request.task.grids, request.task.hours, request.task.site, request.task.criteria);
+    const std::size_t variants = request.states ? request.states->variants.size() : 0;
+    VariantTotals of_variants(variants);
     const Result<void> passed = pass([&](const DaylightBlock& block) {
         for (const SensorResults& sensor : block.results) totals.add(sensor);
+        for (std::size_t i = 0; i < block.variants.size(); i += variants)
+            of_variants.add(std::span(block.variants).subspan(i, variants));
         return files->add(block);
     });
     if (!passed) return passed.error();
+    if (variants > 0)
+        if (const Result<void> written = write_variants(output, request.task, of_variants.summaries()); !written)
+            return written.error();
     DaylightSummary summary = totals.summary(bias);
     summary.glare = glare;
     summary.lm83 = lm83_deviations(request.task, !std::isnan(bias.elements));

@@ -192,6 +192,23 @@ Result<void> write_states(const std::string& folder, const DaylightStates& state
     return write_file((std::filesystem::path(folder) / "states.csv").string(), text);
 }
 
+Result<void> write_variants(const std::string& folder, const DaylightTask& task,
+                            std::span<const VariantSummary> variants) {
+    std::string text = "variant";
+    for (const PaneGroup& group : task.states->groups) text += ',' + quoted(group.name);
+    text += fmt::format(",sDA_{0:g}_50,sDA_{0:g}_50_low,sDA_{0:g}_50_high,mean_cDA_{0:g},mean_E,ASE_1000_250\n",
+                        task.criteria.target);
+    for (std::size_t v = 0; v < variants.size(); ++v) {
+        const GlassVariant& variant = task.states->variants[v];
+        const VariantSummary& s = variants[v];
+        text += quoted(variant.name);
+        for (const double factor : variant.factors) text += fmt::format(",{:g}", factor);
+        text += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", s.autonomy, s.bounds.low, s.bounds.high,
+                            s.continuous, s.illuminance, s.exposure);
+    }
+    return write_file((std::filesystem::path(folder) / "variants.csv").string(), text);
+}
+
 std::vector<std::pair<std::string, double>> summary_values(const DaylightTask& task, const DaylightSummary& s,
                                                            std::span<const ViewOut> views) {
     const DaylightError error = worst_of(s.errors);

@@ -26,6 +26,8 @@ class StatesReader {
         const toml::table table = parse();
         TomlKeys keys(table, path_);
         for_each_table(keys, "group", [&](TomlKeys& group) { read_group(group), group.finish(); });
+        take_list(keys, "variant", out_.variants,
+                  [&](TomlKeys& variant, GlassVariant& target) { read_variant(variant, target); });
         keys.finish();
         if (out_.groups.empty()) keys.fail(table, "has no groups of panes", "begin each with [[group]]");
         out_.has_all_panes = std::find(out_.group_of_pane.begin(), out_.group_of_pane.end(), PaneGroups::no_group) ==
@@ -68,6 +70,15 @@ class StatesReader {
         if (group.states.size() > max_states) keys.fail(keys.table(), "a group has at most 255 states");
         read_rule(keys, group);
         out_.groups.push_back(std::move(group));
+    }
+
+    void read_variant(TomlKeys& keys, GlassVariant& variant) const {
+        keys.need("name", variant.name), keys.need("factors", variant.factors);
+        if (variant.factors.size() != out_.groups.size() ||
+            !std::all_of(variant.factors.begin(), variant.factors.end(), [](double f) { return f >= 0 && f <= 1; }))
+            keys.fail(*keys.find("factors"),
+                      fmt::format("'factors' must be a number from 0 to 1 for each of the {} groups above it",
+                                  out_.groups.size()));
     }
 
     static PaneChoice read_choice(TomlKeys& keys) {

@@ -115,16 +115,25 @@ void DaylightSimulation::choose_states() {
     const std::vector<Receiver> places = d.open.places(d.task.sensors);
     const DaylightRows rows = d.open.rows();
     const SensorYears years(d.open.setting, {}, {});
+    const YearSuns suns(d.sky);
+    const PaneGroups& panes = d.open.transport.pane_groups();
     const auto open_light = [&](std::size_t sensor) {
         const auto known = [&](std::size_t i) { return d.open.find(i); };
         const auto place = std::span(places).subspan(sensor, 1);
-        return years.evaluate(sensor, place, rows.rows(place, sensor, known)).illuminance;
+        DaylightMatrix matrix = rows.rows(place, sensor, known);
+        const std::vector<DaylightMatrix> through = std::exchange(matrix.through, {});
+        const DaylightBlock block = years.evaluate(sensor, place, std::move(matrix));
+        std::vector<std::vector<float>> out{block.illuminance};
+        for (std::size_t g = 0; g < through.size(); ++g) {
+            std::vector<float>& part = out.emplace_back(block.sun);
+            suns.keep_through(panes, g, place[0], part);
+            d.sky.add_sky(through[g].direct, part), d.sky.add_with_sun(through[g].reflected, part);
+        }
+        return out;
     };
-    d.states =
-        make_hourly_states(*d.task.states,
-                           exitance::choose_states(*d.task.states, d.open.setting, d.open.transport.stage().occluders,
-                                                   d.open.transport.pane_groups(), places, open_light),
-                           d.open.light.twice);
+    const StateChooser chooser(*d.task.states, d.open.setting, d.open.transport.stage().occluders, panes, places,
+                               open_light);
+    d.states = make_hourly_states(*d.task.states, chooser, d.open.setting, d.open.light.twice);
     const std::size_t groups = d.task.states->groups.size();
     for (std::size_t k = 0; k < d.states.parts.size(); ++k) {
         const DaylightTransport& transport = k < groups ? d.open.transport : d.changed[k - groups]->transport;

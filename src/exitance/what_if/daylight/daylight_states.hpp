@@ -45,12 +45,19 @@ struct StateScene {
     std::vector<std::int32_t> group_of_pane;  ///< Per pane: 0 if it belongs to this group, else PaneGroups::no_group.
 };
 
+/// Other glass: factors on the light that has crossed panes of each group, in all states of it.
+struct GlassVariant {
+    std::string name;
+    std::vector<double> factors;  ///< From 0 to 1, one per group.
+};
+
 /// Groups of panes whose states change from hour to hour.
 struct DaylightStates {
     std::vector<PaneGroup> groups;
     std::vector<std::int32_t> group_of_pane;  ///< A number per pane, see PaneGroups.
     std::vector<StateScene> scenes;
-    bool has_all_panes = false;  ///< True if every pane of the scene belongs to a group.
+    bool has_all_panes = false;               ///< True if every pane of the scene belongs to a group.
+    std::vector<GlassVariant> variants = {};  ///< Further results are computed for each.
 };
 
 /// Light through the panes of a group in the geometry of a scene, and the multiple of it that is added to the light of
@@ -60,6 +67,13 @@ struct StatePart {
     std::size_t group = 0;                 ///< Number of the group in `groups`.
     const Occluders* occluders = nullptr;  ///< Occluders of a scene with more geometry; null for the scene itself.
     std::vector<float> weights = {};       ///< One per hour.
+};
+
+/// Weights of the parts for other glass, in the occupied hours.
+struct VariantWeights {
+    std::vector<std::vector<float>> parts;  ///< Per part and occupied hour, as in StatePart.
+    std::vector<float> uncertainty;         ///< Light that may be wrong in every occupied hour, relative to all light.
+    std::vector<double> factors;            ///< One per group.
 };
 
 /// The states of all groups in every hour, as corrections of the light in their first states:
@@ -73,6 +87,8 @@ struct HourlyStates {
     std::vector<StatePart> parts;
     std::vector<std::uint8_t> is_changed;  ///< Per hour: 1 if some group is not in its first state.
     double twice = 0;                      ///< Light that crosses panes twice, relative to all light.
+    std::vector<std::size_t> occupied;     ///< Indices of the occupied hours; only with variants.
+    std::vector<VariantWeights> variants;
 };
 
 }  // namespace exitance

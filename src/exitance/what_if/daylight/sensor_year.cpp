@@ -8,10 +8,6 @@
 namespace exitance {
 namespace {
 
-/// Student's factor for 95% and 7 degrees of freedom: one fewer than replicates.
-constexpr double student = 2.3646;
-static_assert(daylight_replicates == 8);
-
 /// Sensors that are evaluated together: a tile of YearSky's products.
 constexpr std::size_t tile_sensors = 16;
 
@@ -31,13 +27,6 @@ enum Result : std::size_t {
 };
 
 }  // namespace
-
-Interval SpreadResult::interval() const {
-    const ReplicateMean found = mean_of(replicates);
-    const double noise = student * std::sqrt(found.variance);
-    const double below = value - std::min(less, more), above = std::max(less, more) - value;
-    return {value - std::hypot(noise, std::max(0.0, below)), value + std::hypot(noise, std::max(0.0, above))};
-}
 
 SensorYears::SensorYears(const DaylightSetting& setting, const DaylightBias& bias, const std::optional<SunDay>& day)
     : setting_(setting),
@@ -88,7 +77,7 @@ void SensorYears::evaluate_tile(std::size_t first, std::size_t count, std::span<
         suns_.find(occluders_, places[first + i], direct.subspan(i * m, m), sun.subspan(i * hours, hours));
     std::vector<float> straight(sun.begin(), sun.end());
     setting_.sky.add_sky(direct, straight);
-    const StateTile states(setting_, suns_, parts, {first, count}, sun);
+    StateTile states(setting_, suns_, parts, {first, count}, sun, bias_);
 
     std::vector<std::array<SpreadResult, result_count>> spread(count);
     std::vector<float> lux(count * hours);
@@ -107,7 +96,7 @@ void SensorYears::evaluate_tile(std::size_t first, std::size_t count, std::span<
     std::copy(straight.begin(), straight.end(), illuminance.begin());
     setting_.sky.add_with_sun(mean, illuminance);
     const std::vector<float> twice = states.uncertainty(illuminance);
-    states.correct(illuminance, [](const DaylightMatrix& part) { return std::span(part.reflected); });
+    states.correct(illuminance, daylight_replicates);
     add(illuminance, mean, 1, [](SpreadResult& r) -> double& { return r.value; });
     const auto add_scaled = [&](double scale, const auto& member) {
         for (std::size_t k = 0; k < lux.size(); ++k) lux[k] = illuminance[k] * static_cast<float>(scale);
@@ -121,7 +110,7 @@ void SensorYears::evaluate_tile(std::size_t first, std::size_t count, std::span<
         const std::span<const float> reflected = rows_of(matrix.replicates[k]);
         lux = straight;
         setting_.sky.add_with_sun(reflected, lux);
-        states.correct(lux, [k](const DaylightMatrix& part) { return std::span(part.replicates[k]); });
+        states.correct(lux, k);
         add(lux, reflected, 1, [k](SpreadResult& r) -> double& { return r.replicates[k]; });
     }
     for (std::size_t i = 0; i < count; ++i) {
@@ -131,6 +120,9 @@ void SensorYears::evaluate_tile(std::size_t first, std::size_t count, std::span<
         finish(spread[i], out);
     }
     states.correct_sun(sun);
+    const std::span<const VariantResult> variants = states.variants();
+    std::copy(variants.begin(), variants.end(),
+              block.variants.begin() + static_cast<std::ptrdiff_t>(first * (variants.size() / count)));
 }
 
 DaylightBlock SensorYears::evaluate(std::size_t first, std::span<const Receiver> places, DaylightMatrix matrix,
@@ -140,6 +132,7 @@ DaylightBlock SensorYears::evaluate(std::size_t first, std::span<const Receiver>
     block.first = first, block.matrix = std::move(matrix);
     block.illuminance.assign(n * hours, 0), block.sun.assign(n * hours, 0);
     block.results.resize(n);
+    if (setting_.states) block.variants.resize(n * setting_.states->variants.size());
     parallel_for((n + tile_sensors - 1) / tile_sensors, 1, [&](std::size_t t) {
         evaluate_tile(t * tile_sensors, std::min(tile_sensors, n - t * tile_sensors), places, parts, block);
     });

@@ -4,14 +4,10 @@
 
 #include "exitance/what_if/daylight/daylight_provision.hpp"
 #include "exitance/what_if/daylight/daylight_sample.hpp"
+#include "exitance/what_if/daylight/spread_result.hpp"
 #include "exitance/what_if/daylight/state_tile.hpp"
 
 namespace exitance {
-
-/// Bounds of a result.
-struct Interval {
-    double low = 0, high = 0;
-};
 
 /// Bounds of the results of one sensor.
 struct SensorIntervals {
@@ -21,15 +17,6 @@ struct SensorIntervals {
     Interval electric_hours;         ///< Hours at full power of dimmed electric light.
     std::array<Interval, 4> useful;  ///< UDI
     Interval reached;                ///< Illuminance reached in half of the daylight hours, lx.
-};
-
-/// Values of a result: by the mean of the replicates, by each, and with all light smaller and larger by the bias.
-struct SpreadResult {
-    double value = 0, less = 0, more = 0;
-    Replicates replicates{};
-
-    /// 95% interval: Student's for the mean of the replicates, widened to the results with less and more light.
-    Interval interval() const;
 };
 
 /// Results of a year at one sensor.
@@ -65,6 +52,7 @@ struct DaylightBlock {
     DaylightMatrix matrix;                ///< A row per sensor.
     std::vector<float> illuminance, sun;  ///< lx, and the direct sunlight in it: a row per sensor, a column per hour.
     std::vector<SensorResults> results;
+    std::vector<VariantResult> variants;  ///< Sensor by sensor, one per variant of the states.
 };
 
 /// Evaluates the hours of a year at sensors. Direct sunlight uses exact visibility; its reflections are those of the

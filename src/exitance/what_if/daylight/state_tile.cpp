@@ -3,11 +3,27 @@
 namespace exitance {
 
 StateTile::StateTile(const DaylightSetting& setting, const YearSuns& suns, std::span<const StateRows> parts,
-                     TileRange tile, std::span<const float> sun)
+                     TileRange tile, std::span<const float> sun, double bias)
     : setting_(setting), parts_(setting.states ? parts : std::span<const StateRows>()), tile_(tile) {
     if (parts_.empty()) return;
     EXI_CHECK(parts_.size() == setting.states->parts.size());
     find_straight(suns, sun);
+    if (setting.states->variants.empty()) return;
+    variants_.emplace(*setting.states, setting.criteria, bias, tile.count);
+    variants_->add_sun(sun, sun_);
+}
+
+void StateTile::correct(std::span<float> lux, std::size_t replicate) {
+    if (parts_.empty()) return;
+    std::vector<std::vector<float>> light = straight_;
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+        const DaylightMatrix& part = parts_[k].matrix;
+        setting_.sky.add_with_sun(
+            rows_of(replicate < daylight_replicates ? part.replicates[replicate] : part.reflected), light[k]);
+    }
+    if (variants_) variants_->add(replicate, lux, light);
+    for (std::size_t k = 0; k < parts_.size(); ++k) add_weighted(k, light[k], lux);
+    remove_rounding(lux);
 }
 
 /// Finds the light of each part that no surface reflects.

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "exitance/what_if/daylight/daylight_sample.hpp"
+#include "exitance/what_if/daylight/variant_tile.hpp"
 #include "exitance/what_if/daylight/year_suns.hpp"
 
 namespace exitance {
@@ -26,25 +28,22 @@ class StateTile {
   public:
     /// `parts`: rows of all sensors of the block, for each of the parts of the states; `sun`: direct sunlight at the
     /// sensors of the tile with all groups in their first states. Does nothing if the setting has no states.
+    /// `bias`: relative, of all light.
     StateTile(const DaylightSetting& setting, const YearSuns& suns, std::span<const StateRows> parts, TileRange tile,
-              std::span<const float> sun);
+              std::span<const float> sun, double bias);
 
-    /// Adds the corrections to `lux`, the light in the first states. `reflected`: returns the coefficients of reflected
-    /// light of a part.
-    template <class Reflected>
-    void correct(std::span<float> lux, const Reflected& reflected) const {
-        for (std::size_t k = 0; k < parts_.size(); ++k) {
-            std::vector<float> part = straight_[k];
-            setting_.sky.add_with_sun(rows_of(reflected(parts_[k].matrix)), part);
-            add_weighted(k, part, lux);
-        }
-        if (!parts_.empty()) remove_rounding(lux);
-    }
+    /// Adds the corrections to `lux`, the light in the first states, and evaluates the variants. `replicate`: that of
+    /// the light, or the number of replicates for their mean.
+    void correct(std::span<float> lux, std::size_t replicate);
     /// Adds the corrections to the direct sunlight.
     void correct_sun(std::span<float> sun) const;
     /// Returns the light by which the corrections may be wrong, from the light in the first states; empty without
     /// states.
     std::vector<float> uncertainty(std::span<const float> lux) const;
+    /// Returns the results with other glass: sensor by sensor, one per variant.
+    std::span<const VariantResult> variants() const {
+        return variants_ ? std::span(variants_->results()) : std::span<const VariantResult>();
+    }
 
   private:
     std::span<const float> rows_of(std::span<const float> rows) const {
@@ -61,6 +60,7 @@ class StateTile {
     std::span<const StateRows> parts_;
     TileRange tile_;
     std::vector<std::vector<float>> sun_, straight_;  ///< Per part: direct sunlight, and with it the sky's.
+    std::optional<VariantTile> variants_;
 };
 
 }  // namespace exitance

@@ -31,13 +31,15 @@ void YearSuns::find(const Occluders& occluders, const Receiver& at, std::span<co
 }
 
 void YearSuns::find_through(const Occluders& occluders, const PaneGroups& groups, const Receiver& at, double least,
-                            std::span<PaneGroups::Mask> crossed) const {
+                            std::span<Through> out) const {
     for (std::size_t h = 0; h < suns_.size(); ++h) {
-        crossed[h] = 0;
+        out[h] = {};
         const YearSky::Sun& sun = sky_.sun(h);
         if (suns_[h].empty() || !(sun.illuminance * dot(sun.towards, at.n) >= least)) continue;
         const PaneGroups::Mask mask = groups.crossed_outwards(at.x, sun.towards);
-        if (mask != 0 && luminous_sum(Beams(suns_[h], occluders).irradiance(at)) >= least) crossed[h] = mask;
+        if (mask == 0) continue;
+        const double E = luminous_sum(Beams(suns_[h], occluders).irradiance(at));
+        if (E >= least) out[h] = {mask, static_cast<float>(E)};
     }
 }
 

@@ -20,10 +20,14 @@ class YearSuns {
     void find(const Occluders& occluders, const Receiver& at, std::span<const float> direct,
               std::span<float> sun) const;
 
-    /// Writes the direct sunlight of every hour that crosses panes of groups, and the groups crossed; `least`: lesser
-    /// light is left out, lx.
+    /// Direct sunlight of an hour, and the groups whose panes it has crossed.
+    struct Through {
+        PaneGroups::Mask groups = 0;
+        float illuminance = 0;  ///< lx
+    };
+    /// Writes the direct sunlight of every hour that crosses panes of groups; `least`: lesser light is left out, lx.
     void find_through(const Occluders& occluders, const PaneGroups& groups, const Receiver& at, double least,
-                      std::span<PaneGroups::Mask> crossed) const;
+                      std::span<Through> out) const;
 
     /// Sets the hours to 0 in which the sun does not shine through panes of a group.
     void keep_through(const PaneGroups& groups, std::size_t group, const Receiver& at, std::span<float> sun) const;
