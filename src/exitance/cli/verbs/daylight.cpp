@@ -85,8 +85,10 @@ Result<SceneWithNames> scene_of(const DaylightArguments& arguments, Terminal& te
         return SceneWithNames{std::move(solution->scene), {}};
     }
     LoadedScene loaded = load_scene(files, arguments.scene.load);
-    std::erase_if(loaded.findings, [](const Finding& f) {
-        return f.kind == Finding::Kind::warning && f.message.starts_with("nothing emits light");
+    std::erase_if(loaded.findings, [&](const Finding& f) {
+        return f.kind == Finding::Kind::warning &&
+               (f.message.starts_with("nothing emits light") ||
+                (!arguments.states.empty() && f.message.find("with several states") != std::string::npos));
     });
     terminal.show(loaded.findings);
     if (!loaded.scene) return loaded.scene.error();

@@ -10,6 +10,7 @@
 #include "exitance/io/files/text_table.hpp"
 #include "exitance/io/files/toml_keys.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/honeybee/honeybee_states.hpp"
 #include "exitance/io/scenes/pane_choice.hpp"
 
 namespace exitance {
@@ -59,7 +60,10 @@ class StatesReader {
             keys.fail(keys.table(), fmt::format("is one group more than {}", PaneGroups::max_groups));
         for (const PaneGroup& other : out_.groups)
             if (other.name == group.name) keys.fail(keys.table(), fmt::format("'{}' names two groups", group.name));
-        const PaneChoice choice = read_choice(keys);
+        PaneChoice choice = read_choice(keys);
+        std::string dynamic;
+        keys.take("dynamic_group", dynamic);
+        if (!dynamic.empty()) take_dynamic(keys, dynamic, choice, group);
         add_panes(keys, group.name, choice);
         for_each_table(keys, "state", [&](TomlKeys& state) {
             group.states.push_back(read_state(state, group.states.empty(), choice)), state.finish();
@@ -79,6 +83,22 @@ class StatesReader {
             keys.fail(*keys.find("factors"),
                       fmt::format("'factors' must be a number from 0 to 1 for each of the {} groups above it",
                                   out_.groups.size()));
+    }
+
+    /// Chooses the panes of a dynamic group of the scene's Honeybee model, and takes its states, named by their
+    /// numbers.
+    void take_dynamic(TomlKeys& keys, const std::string& name, PaneChoice& choice, PaneGroup& group) const {
+        const auto is_model = [](const std::string& file) { return file.ends_with(".hbjson"); };
+        const auto model = std::find_if(in_.files.begin(), in_.files.end(), is_model);
+        if (model == in_.files.end())
+            keys.fail(keys.table(), "'dynamic_group' needs a Honeybee model (.hbjson) as scene",
+                      "choose panes by materials, objects or a box");
+        const Result<HoneybeeStates> found =
+            find_honeybee_states(read_honeybee_model(*model), name, keys.find("state") != nullptr);
+        if (!found) keys.fail(keys.table(), found.error().message, found.error().hint);
+        choice.objects.insert(choice.objects.end(), found->objects.begin(), found->objects.end());
+        for (std::size_t k = 0; k < found->factors.size(); ++k)
+            group.states.push_back({fmt::format("{}", k), found->factors[k], {}});
     }
 
     static PaneChoice read_choice(TomlKeys& keys) {
