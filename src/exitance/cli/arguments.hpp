@@ -182,6 +182,7 @@ struct DaylightArguments : CommonArguments {
     std::string occupied;                ///< "8-18", or a file with a number per hour; empty: 8 to 18 h.
     DaylightCriteria criteria;           ///< Occupied hours are read from `occupied`.
     std::string coefficients;            ///< Radiance matrix to evaluate; empty: none.
+    std::string states;                  ///< File with states of panes; empty: they do not change.
     std::optional<MatrixFormat> matrix;  ///< Format of matrix.mtx; none: matrix.csv.
     HoursFormat hours = HoursFormat::hdf5;
     std::optional<DaylightPart> part;  ///< Only these sensors; none: all.

@@ -93,6 +93,17 @@ void declare_files(CLI::App& app, DaylightArguments& arguments) {
         ->excludes(coefficients);
 }
 
+/// Options of states of panes. Needs the options that cannot be combined with them.
+void declare_states(CLI::App& app, DaylightArguments& arguments) {
+    CLI::Option* states =
+        app.add_option("--states", arguments.states,
+                       "Groups of panes with states, such as open and blinds down, and the rule that chooses the "
+                       "state of every hour (TOML); the states are written to states.csv. Use it for sDA of LM-83")
+            ->type_name("FILE");
+    for (const char* other : {"--coefficients", "--part", "--merge", "--views"})
+        states->excludes(app.get_option(other));
+}
+
 /// Options of EN 17037.
 void declare_en_17037(CLI::App& app, DaylightArguments& arguments) {
     app.add_option("--eyes", arguments.eyes,
@@ -157,6 +168,7 @@ void declare(CLI::App& app, DaylightArguments& arguments) {
     declare_files(app, arguments);
     declare_criteria(app, arguments);
     declare_en_17037(app, arguments);
+    declare_states(app, arguments);
     declare_json(app, arguments);
     declare_work(app, arguments, arguments.threads);
 }

@@ -206,9 +206,11 @@ std::string glare_json(std::span<const Observer> observers, std::span<const Dayl
     return dump(Json{{"observers", std::move(list)}, {"error", value_or_null(error)}}, 2);
 }
 
-std::string values_json(const std::vector<std::pair<std::string, double>>& values) {
+std::string values_json(const std::vector<std::pair<std::string, double>>& values,
+                        const std::vector<std::pair<std::string, std::vector<std::string>>>& texts) {
     Json json;
     for (const auto& [name, value] : values) json[name] = value;
+    for (const auto& [name, list] : texts) json[name] = list;
     return dump(json, 2);
 }
 

@@ -84,7 +84,9 @@ std::string glare_json(std::span<const Observer> observers, std::span<const Dayl
                        std::optional<double> error);
 
 /// JSON object of named numbers, for `daylight --json`.
-std::string values_json(const std::vector<std::pair<std::string, double>>& values);
+/// Texts follow the numbers, each key with a list.
+std::string values_json(const std::vector<std::pair<std::string, double>>& values,
+                        const std::vector<std::pair<std::string, std::vector<std::string>>>& texts = {});
 
 /// One line of `--progress json`; times in seconds.
 std::string progress_json(std::string_view phase, double fraction, std::string_view detail, double elapsed,

@@ -1,10 +1,12 @@
 #include "exitance/visibility/glazed_part.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "exitance/form_factors/directed_form_factor.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
+#include "exitance/visibility/glass/pane_groups.hpp"
 
 namespace exitance {
 namespace {
@@ -195,15 +197,20 @@ std::vector<PaneInView> panes_in_view(const Occluders& occluders, const Receiver
     return out;
 }
 
-Spectrum through_panes(const Receiver& at, std::span<const PaneInView> panes, std::span<const Vec3> visible,
-                       const RelativeRadiance& radiance) {
-    if (visible.size() < 3 || is_sliver(visible)) return {};
+/// Cuts a visible polygon along the outlines of panes.
+std::vector<Part> parts_behind(std::span<const PaneInView> panes, std::span<const Vec3> visible) {
     std::vector<Part> parts(1);
     parts[0].corners.assign(visible.begin(), visible.end());
     for (const PaneInView& in_view : panes) cut_along(*in_view.pane, in_view.pyramid, parts);
+    return parts;
+}
+
+Spectrum through_panes(const Receiver& at, std::span<const PaneInView> panes, std::span<const Vec3> visible,
+                       const RelativeRadiance& radiance) {
+    if (visible.size() < 3 || is_sliver(visible)) return {};
     const GlazedSum sum(at.n, radiance);
     Spectrum out;
-    for (const Part& part : parts) out += sum.of(part.corners, part.panes);
+    for (const Part& part : parts_behind(panes, visible)) out += sum.of(part.corners, part.panes);
     return out;
 }
 
@@ -234,20 +241,46 @@ Spectrum glazed_form_factor(const Occluders& occluders, const Receiver& at, Piec
     return out;
 }
 
+bool crosses(const Pane& pane, const Point& x, const Point& y) {
+    const double here = dot(pane.n, x - pane.corners[0]), there = dot(pane.n, y - pane.corners[0]);
+    if (here * there >= 0) return false;
+    const Vec3 d = y - x;
+    bool left = false, right = false;
+    for (std::size_t i = 0, m = pane.corners.size(); i < m; ++i) {
+        const double side = dot(d, cross(pane.corners[i] - x, pane.corners[i + 1 == m ? 0 : i + 1] - x));
+        left |= side > 0, right |= side < 0;
+    }
+    return !(left && right);
+}
+
 Spectrum transmission_between(std::span<const Pane> panes, const Point& x, const Point& y) {
     Spectrum out(1.0);
     const Vec3 d = y - x;
-    for (const Pane& pane : panes) {
-        const double here = dot(pane.n, x - pane.corners[0]), there = dot(pane.n, y - pane.corners[0]);
-        if (here * there >= 0) continue;
-        bool left = false, right = false;
-        for (std::size_t i = 0, m = pane.corners.size(); i < m; ++i) {
-            const double side = dot(d, cross(pane.corners[i] - x, pane.corners[i + 1 == m ? 0 : i + 1] - x));
-            left |= side > 0, right |= side < 0;
+    for (const Pane& pane : panes)
+        if (crosses(pane, x, y)) {
+            const double here = dot(pane.n, x - pane.corners[0]), there = dot(pane.n, y - pane.corners[0]);
+            out *= pane.transmission(std::abs(here - there) / norm(d));
         }
-        if (!(left && right)) out *= pane.transmission(std::abs(here - there) / norm(d));
-    }
     return out;
+}
+
+void add_form_factors_through(const PaneGroups& groups, const Occluders& occluders, const Receiver& at, PieceId source,
+                              std::span<const Vec3> visible, std::span<Spectrum> out) {
+    if (visible.size() < 3 || is_sliver(visible)) return;
+    const Normal& n = occluders.pieces()[source].plane.n;
+    const RelativeRadiance diffuse;
+    const GlazedSum sum(at.n, diffuse);
+    const std::vector<PaneInView> panes = panes_in_view(occluders, at, n, dot(n, visible[0]));
+    for (const Part& part : parts_behind(panes, visible)) {
+        PaneGroups::Mask crossed = 0;
+        for (const Pane* pane : part.panes)
+            crossed |= groups.mask_of(static_cast<std::size_t>(pane - occluders.scene().panes().data()));
+        if (crossed == 0) continue;
+        const Spectrum F = sum.of(part.corners, part.panes);
+        for (std::size_t g = 0; g < groups.count(); ++g)
+            if (crossed >> g & 1) out[g] += F;
+        if (!std::has_single_bit(crossed)) out[groups.count()] += F;
+    }
 }
 
 }  // namespace exitance

@@ -21,6 +21,9 @@ Spectrum glazed_form_factor(const Occluders& occluders, const Receiver& at, Piec
                             std::optional<std::span<const PieceId>> candidates, VisibilityWorkspace& scratch,
                             const PartLight& light);
 
+/// Returns whether the segment from x to y crosses a pane.
+bool crosses(const Pane& pane, const Point& x, const Point& y);
+
 /// Transmission of the panes between two points.
 Spectrum transmission_between(std::span<const Pane> panes, const Point& x, const Point& y);
 

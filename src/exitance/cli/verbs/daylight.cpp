@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,9 +26,11 @@
 #include "exitance/io/scenes/honeybee/honeybee_model.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
+#include "exitance/io/scenes/states_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/processes/exchange_archived.hpp"
 #include "exitance/processes/result_of_all.hpp"
+#include "exitance/what_if/daylight/lm83.hpp"
 
 namespace exitance {
 namespace {
@@ -40,6 +43,10 @@ std::vector<DaylightHour> hours_of(const Weather& weather) {
 }
 
 std::string as_text(const DaylightSummary& s, const DaylightTask& task, const std::string& folder) {
+    const auto conformity = [](const std::vector<std::string>& deviations) {
+        return deviations.empty() ? std::string("conforms to LM-83")
+                                  : fmt::format("not LM-83: {}", fmt::join(deviations, "; "));
+    };
     const DaylightProvision::Shares& provision = s.provision.by_illuminance;
     const DaylightError error = worst_of(s.errors);
     constexpr std::array<const char*, 4> levels{"no level", "minimum", "medium", "high"};
@@ -53,31 +60,43 @@ std::string as_text(const DaylightSummary& s, const DaylightTask& task, const st
         "factor     {:.3g}% in the mean (overcast sky; 95%: {:.3g} to {:.3g}%)\n"
         "error      {}\n"
         "sDA        {:.1f}% of the sensors have {:g} lx in half of the occupied hours (95%: {:.1f} to {:.1f}%)\n"
+        "           {}\n"
         "cDA        {:.1f}% in the mean; dimmed electric light takes {:.0f} hours at full power\n"
         "ASE        {:.1f}% of the sensors have 1000 lx of sun in more than 250 hours\n"
+        "           {}\n"
         "EN 17037   {}: 300 lx in half of the daylight hours at {:.1f}% of the sensors, 100 lx at {:.1f}%\n"
         "written    {}\n",
         s.sensors, task.hours.size(), s.occupied_hours, s.mean_daylight_factor, s.mean_factor.low, s.mean_factor.high,
         told, 100 * s.spatial_autonomy, task.criteria.target, 100 * s.spatial_autonomy_bounds.low,
-        100 * s.spatial_autonomy_bounds.high, 100 * s.continuous_autonomy, s.electric_hours, 100 * s.sunlight_exposure,
+        100 * s.spatial_autonomy_bounds.high, conformity(s.lm83.autonomy), 100 * s.continuous_autonomy,
+        s.electric_hours, 100 * s.sunlight_exposure, conformity(s.lm83.exposure),
         levels[static_cast<std::size_t>(provision.level())], 100 * provision.at_target[0],
         100 * provision.at_minimum[0], folder);
 }
 
+/// A scene, and the names of its panes if it comes from scene files.
+struct SceneWithNames {
+    Scene scene;
+    std::vector<NamedPane> panes;
+};
+
 /// The scene of scene files or of a solution. A scene needs no light of its own.
-Result<Scene> scene_of(const DaylightArguments& arguments, Terminal& terminal) {
+Result<SceneWithNames> scene_of(const DaylightArguments& arguments, Terminal& terminal) {
     const std::vector<std::string>& files = arguments.scene.files;
     if (files.size() == 1 && ending(files[0]) == ".h5") {
         Result<Solution> solution = all_or_none(load_solution(files[0]));
         if (!solution) return solution.error();
-        return std::move(solution->scene);
+        return SceneWithNames{std::move(solution->scene), {}};
     }
-    CheckedScene checked = load_for_all(arguments.scene);
-    std::erase_if(checked.findings, [](const Finding& f) {
-        return f.kind == Finding::Kind::warning && f.message.starts_with("nothing emits light");
+    LoadedScene loaded = load_for_all(arguments.scene);
+    std::erase_if(loaded.findings, [&](const Finding& f) {
+        return f.kind == Finding::Kind::warning &&
+               (f.message.starts_with("nothing emits light") ||
+                (!arguments.states.empty() && f.message.find("with several states") != std::string::npos));
     });
-    terminal.show(checked.findings);
-    return std::move(checked.scene);
+    terminal.show(loaded.findings);
+    if (!loaded.scene) return loaded.scene.error();
+    return SceneWithNames{std::move(*loaded.scene), std::move(loaded.panes)};
 }
 
 /// The file with the sensors: --points, or the scene itself if it is a Honeybee model; empty for neither.
@@ -110,13 +129,16 @@ struct Request {
     std::vector<Point> eyes;
     std::vector<ProbePoint> views;  ///< For glare.
     DaylightFormats formats;
+    std::optional<DaylightStates> states;  ///< States of panes, which the task uses.
 };
 
 /// Prints the results. Returns the exit code: whether every grid has the requested error.
 ExitCode tell(const Request& request, const DaylightSummary& summary, std::span<const ViewOut> views,
               const DaylightArguments& arguments, Terminal& terminal) {
     if (arguments.json)
-        terminal.print(values_json(summary_values(request.task, summary, views)));
+        terminal.print(
+            values_json(summary_values(request.task, summary, views),
+                        {{"sDA_deviations", summary.lm83.autonomy}, {"ASE_deviations", summary.lm83.exposure}}));
     else if (!arguments.quiet)
         terminal.print(as_text(summary, request.task, arguments.output));
     const double error = worst_of(summary.errors).largest();
@@ -232,13 +254,21 @@ Result<DaylightSummary> write_all(const Request& request, const DaylightBias& bi
     });
     if (!opened) return opened.error();
     DaylightTotals totals(request.task.grids, request.task.hours, request.task.site, request.task.criteria);
+    const std::size_t variants = request.states ? request.states->variants.size() : 0;
+    VariantTotals of_variants(variants);
     const Result<void> passed = pass([&](const DaylightBlock& block) {
         for (const SensorResults& sensor : block.results) totals.add(sensor);
+        for (std::size_t i = 0; i < block.variants.size(); i += variants)
+            of_variants.add(std::span(block.variants).subspan(i, variants));
         return files ? files->add(block) : Result<void>();
     });
     if (!passed) return passed.error();
+    if (variants > 0)
+        if (const Result<void> written = write_variants(output, request.task, of_variants.summaries()); !written)
+            return written.error();
     DaylightSummary summary = totals.summary(bias);
     summary.glare = glare;
+    summary.lm83 = lm83_deviations(request.task, !std::isnan(bias.elements));
     const Result<void> written = by_first([&] { return files->finish(summary, request.eyes, views); });
     if (!written) return written.error();
     return summary;
@@ -365,12 +395,30 @@ Result<GlareSummary> write_year_of_glare(const DaylightSimulation& simulation, c
     return summary_of(*years);
 }
 
+/// Writes the states of all hours, and warns if their light may be wrong.
+Result<void> tell_states(const DaylightSimulation& simulation, const Request& request,
+                         const DaylightArguments& arguments, Terminal& terminal) {
+    if (!simulation.states()) return {};
+    constexpr double small_share = 0.01;  // 1% of the light: below the default error
+    if (simulation.states()->twice > small_share)
+        terminal.progress().warn(fmt::format(
+            "{:.2g}% of the light crosses panes of groups twice, and counts as if it crossed them once: intervals of "
+            "hours with changed states are wider by it",
+            100 * simulation.states()->twice));
+    if (simulation.error_of_states() > arguments.error)
+        terminal.progress().warn(
+            fmt::format("the error of {:.2g}% with the geometry of a state is above the requested {:.2g}%",
+                        100 * simulation.error_of_states(), 100 * arguments.error));
+    return write_states(arguments.output, *request.states, *simulation.states(), request.task.hours);
+}
+
 /// Evaluates and writes all sensors.
 Result<DaylightSummary> run_whole(const Scene& scene, const Request& request, std::span<const ViewOut> views,
                                   const DaylightArguments& arguments, const StopRequest& stop, Terminal& terminal) {
     if (!arguments.coefficients.empty()) return run_coefficients(scene, request, views, arguments, stop);
     DaylightSimulation simulation(scene, request.task, terminal.progress(), stop);
     if (const Result<void> found = simulation.find_light(); !found) return found.error();
+    if (const Result<void> told = tell_states(simulation, request, arguments, terminal); !told) return told.error();
     std::optional<GlareSummary> glare;
     if (!request.views.empty()) {
         const Result<GlareSummary> written = write_year_of_glare(simulation, request, arguments);
@@ -390,11 +438,22 @@ ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     if (arguments.merge && processes() > 1)
         return terminal.fail(
             Error{ErrorCode::usage, "merges files, which one process does", "--merge", "run it without mpirun"});
+    if (!arguments.states.empty() && processes() > 1)
+        return terminal.fail(Error{ErrorCode::usage, "states of panes are evaluated by one process", "--states",
+                                   "run it without mpirun; --threads uses all cores"});
     set_threads(arguments.threads);
-    const Result<Scene> scene = scene_of(arguments, terminal);
-    if (!scene) return terminal.fail(scene.error());
-    const Result<Request> request = all_or_none(read_request(arguments, *scene, terminal));
+    const Result<SceneWithNames> read = scene_of(arguments, terminal);
+    if (!read) return terminal.fail(read.error());
+    const Scene* const scene = &read->scene;
+    Result<Request> request = all_or_none(read_request(arguments, *scene, terminal));
     if (!request) return terminal.fail(request.error());
+    if (!arguments.states.empty()) {
+        Result<DaylightStates> states =
+            read_states(arguments.states, {arguments.scene.files, arguments.scene.load, *scene, read->panes,
+                                           request->task.sensors.size(), request->task.hours.size()});
+        if (!states) return terminal.fail(states.error());
+        request->states = std::move(*states), request->task.states = &*request->states;
+    }
     const CommonStop common(terminal, terminal.limits().stop());
     const StopRequest& stop = common.request();
     if (arguments.part) {

@@ -177,6 +177,38 @@ void add_provision(const DaylightSummary& summary, std::span<const ViewOut> view
 
 }  // namespace
 
+Result<void> write_states(const std::string& folder, const DaylightStates& states, const HourlyStates& hourly,
+                          std::span<const DaylightHour> hours) {
+    std::error_code failure;
+    std::filesystem::create_directories(folder, failure);
+    std::string text = "month,day,hour";
+    for (const PaneGroup& group : states.groups) text += ',' + quoted(group.name);
+    text += '\n';
+    for (std::size_t h = 0; h < hours.size(); ++h) {
+        text += fmt::format("{},{},{}", hours[h].time.month, hours[h].time.day, hours[h].hour);
+        for (const std::vector<std::uint8_t>& state : hourly.state) text += fmt::format(",{}", state[h]);
+        text += '\n';
+    }
+    return write_file((std::filesystem::path(folder) / "states.csv").string(), text);
+}
+
+Result<void> write_variants(const std::string& folder, const DaylightTask& task,
+                            std::span<const VariantSummary> variants) {
+    std::string text = "variant";
+    for (const PaneGroup& group : task.states->groups) text += ',' + quoted(group.name);
+    text += fmt::format(",sDA_{0:g}_50,sDA_{0:g}_50_low,sDA_{0:g}_50_high,mean_cDA_{0:g},mean_E,ASE_1000_250\n",
+                        task.criteria.target);
+    for (std::size_t v = 0; v < variants.size(); ++v) {
+        const GlassVariant& variant = task.states->variants[v];
+        const VariantSummary& s = variants[v];
+        text += quoted(variant.name);
+        for (const double factor : variant.factors) text += fmt::format(",{:g}", factor);
+        text += fmt::format(",{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}\n", s.autonomy, s.bounds.low, s.bounds.high,
+                            s.continuous, s.illuminance, s.exposure);
+    }
+    return write_file((std::filesystem::path(folder) / "variants.csv").string(), text);
+}
+
 std::vector<std::pair<std::string, double>> summary_values(const DaylightTask& task, const DaylightSummary& s,
                                                            std::span<const ViewOut> views) {
     const DaylightError error = worst_of(s.errors);
@@ -195,6 +227,8 @@ std::vector<std::pair<std::string, double>> summary_values(const DaylightTask& t
                                                     {sDA + "_high", s.spatial_autonomy_bounds.high}};
     out.emplace_back(fmt::format("mean_cDA_{:g}", task.criteria.target), s.continuous_autonomy);
     out.emplace_back("mean_electric_hours", s.electric_hours);
+    out.emplace_back("sDA_conforms_to_LM83", s.lm83.autonomy.empty());
+    out.emplace_back("ASE_conforms_to_LM83", s.lm83.exposure.empty());
     add_provision(s, views, out);
     return out;
 }

@@ -10,6 +10,7 @@
 #include "exitance/io/report/honeybee_results.hpp"
 #include "exitance/io/report/hours_file.hpp"
 #include "exitance/what_if/daylight/daylight_results.hpp"
+#include "exitance/what_if/daylight/variant_tile.hpp"
 #include "exitance/what_if/daylight/view_out.hpp"
 
 namespace exitance {
@@ -60,6 +61,14 @@ class DaylightFiles {
     std::unique_ptr<MatrixFile> matrix_;
     std::optional<HoneybeeResults> honeybee_;
 };
+
+/// Writes states.csv: month, day and hour, and the number of the state of every group, from 0, a row per hour.
+Result<void> write_states(const std::string& folder, const DaylightStates& states, const HourlyStates& hourly,
+                          std::span<const DaylightHour> hours);
+
+/// Writes variants.csv: name, a factor per group, and the results of all sensors, a row per variant.
+Result<void> write_variants(const std::string& folder, const DaylightTask& task,
+                            std::span<const VariantSummary> variants);
 
 /// Names and values in summary.csv. Some names contain the target: sDA_300_50, sDA_300_50_low, sDA_300_50_high and
 /// mean_cDA_300 for 300 lx.

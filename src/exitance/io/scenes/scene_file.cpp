@@ -198,7 +198,7 @@ ReadScene read_files(std::span<const std::string> paths, const LoadOptions& opti
             append(all.reflectance_deviation, one.reflectance_deviation);
             append(all.description, std::move(one.description)), append(all.findings, one.findings);
             append(all.luminaires, one.luminaires), append(all.darkening, one.darkening);
-            append(all.glazed_by, one.glazed_by);
+            append(all.glazed_by, one.glazed_by), append(all.pane_labels, one.pane_labels);
         }
         is_first = false;
     }
@@ -240,6 +240,14 @@ void add_luminaires(ReadScene& read, const LoadOptions& options) {
     add_luminaires(all, options.photometric, read.description, read.findings);
 }
 
+/// Returns the panes with their names.
+std::vector<NamedPane> named_panes(const ReadScene& read) {
+    std::vector<NamedPane> out;
+    for (std::size_t i = 0; i < std::min(read.description.panes.size(), read.pane_labels.size()); ++i)
+        out.push_back({read.pane_labels[i].material, read.pane_labels[i].object, read.description.panes[i].corners});
+    return out;
+}
+
 /// Reports repairs that remove light from the scene. They are errors if nothing emits then, since all results would be
 /// 0.
 void judge_darkening(ReadScene& read) {
@@ -278,9 +286,10 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
     SceneLines lines = std::move(read.lines);
     std::vector<Spectrum> deviation = std::move(read.reflectance_deviation);
     const Point origin = read.origin;
+    std::vector<NamedPane> panes = named_panes(read);
     LoadedScene scene{checked(std::move(read), lines, options.turn_bodies), {}};
     scene.lines = std::move(lines), scene.reflectance_deviation = std::move(deviation);
-    scene.origin = origin;
+    scene.origin = origin, scene.panes = std::move(panes);
     if (!scene.scene && options.stop && options.stop->requested())
         return refused(ErrorCode::limit, paths.front(), "a stop was requested while the scene was being read", "");
     if (options.faults == Faults::refuse) refuse_repairs(scene);

@@ -43,6 +43,12 @@ struct LoadOptions {
     std::string lod = {};        ///< Level of detail to read from .city.json files; empty: the highest.
 };
 
+/// A pane of a scene file with its names: its outline in the scene's coordinates, metres.
+struct NamedPane {
+    std::string material, object;
+    std::vector<Point> corners;
+};
+
 /// A scene with the map from face lines to files. Line numbers of several files are numbered consecutively.
 struct LoadedScene : CheckedScene {
     SceneLines lines = {};
@@ -50,6 +56,7 @@ struct LoadedScene : CheckedScene {
     /// their mean. May be shorter than the list of materials.
     std::vector<Spectrum> reflectance_deviation = {};
     Point origin = {};  ///< Subtracted from the coordinates of the first file, metres.
+    std::vector<NamedPane> panes = {};
 };
 
 /// Reads and checks the files of one scene, in the given order. Radiance files share their material names and are read

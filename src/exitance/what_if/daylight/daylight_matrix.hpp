@@ -23,6 +23,7 @@ struct DaylightMatrix {
     std::vector<float> direct;     ///< Row by row, one per sensor: light that arrives from the sky, also through glass.
     std::vector<float> reflected;  ///< Light after at least one reflection: the mean of the replicates.
     std::array<std::vector<float>, daylight_replicates> replicates;  ///< Independent estimates of it.
+    std::vector<DaylightMatrix> through;  ///< The parts of it that have crossed panes of each group of the transport.
 
     void resize(std::size_t sensors, std::size_t patch_count);
     std::size_t sensors() const { return patches > 0 ? direct.size() / patches : 0; }
@@ -41,11 +42,13 @@ struct KnownSensor {
 /// light by rays.
 class DaylightRows {
   public:
-    /// `light`: a column per patch. All must outlive this.
+    /// `light`: a column per patch. `through`: the parts of it that have crossed panes of each group; empty if these
+    /// are not needed. All must outlive this.
     DaylightRows(const DaylightTransport& transport, const ElementLight& light, const SkyPatches& patches,
-                 unsigned rays_a_sensor)
+                 unsigned rays_a_sensor, std::span<const ElementLight> through = {})
         : transport_(transport),
           light_(light),
+          through_(through),
           visible_(transport.stage().occluders, patches),
           rays_a_sensor_(rays_a_sensor) {}
 
@@ -61,9 +64,12 @@ class DaylightRows {
   private:
     DaylightMatrix rows_of(std::span<const Receiver> sensors, std::size_t first,
                            std::span<const KnownSensor* const> known) const;
+    void find_through(const Receiver& sensor, std::size_t i, const SensorRays& rays,
+                      VisiblePatches::Workspace& workspace, DaylightMatrix& out) const;
 
     const DaylightTransport& transport_;
     const ElementLight& light_;
+    std::span<const ElementLight> through_;
     VisiblePatches visible_;
     unsigned rays_a_sensor_;
 };

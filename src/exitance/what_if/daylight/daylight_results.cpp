@@ -54,17 +54,49 @@ constexpr auto archive_block = [](auto& archive, DaylightBlock& block) {
 
 }  // namespace
 
+/// The light in one scene: the task's own, or one of its states.
+struct DaylightSimulation::SceneLight {
+    SceneLight(const DaylightSetting& of_setting, const Scene& scene, PaneGroups groups)
+        : setting{scene,
+                  of_setting.sensors,
+                  of_setting.grids,
+                  of_setting.patches,
+                  of_setting.finer,
+                  of_setting.hours,
+                  of_setting.site,
+                  of_setting.sky,
+                  of_setting.criteria,
+                  of_setting.seed},
+          transport(scene, setting.patches, setting.finer, setting.seed, std::move(groups)) {}
+
+    DaylightSetting setting;
+    DaylightTransport transport;
+    std::unique_ptr<DaylightSample> sample;  ///< Null if the light was taken.
+    DaylightLight light;
+
+    DaylightRows rows() const {
+        return {transport, light.elements, setting.patches, light.options.rays_a_sensor, light.through};
+    }
+    const KnownSensor* find(std::size_t sensor) const { return sample ? sample->find(sensor) : nullptr; }
+    std::vector<Receiver> places(std::span<const ProbePoint> sensors) const {
+        return sensor_places(setting.scene, transport.stage().occluders, sensors);
+    }
+};
+
 struct DaylightSimulation::Data {
-    Data(const Scene& of_scene, const DaylightTask& of_task, Progress& of_progress, const StopRequest& of_stop)
+    Data(const Scene& scene, const DaylightTask& of_task, Progress& of_progress, const StopRequest& of_stop)
         : task(of_task),
           progress(of_progress),
           stop(of_stop),
           patches(task.division),
           finer(task.division < finest_division ? std::make_unique<SkyPatches>(2 * task.division) : nullptr),
           sky(patches, task.hours, task.site),
-          setting{of_scene,   task.sensors, task.grids, patches,       finer.get(),
-                  task.hours, task.site,    sky,        task.criteria, seed},
-          transport(of_scene, patches, finer.get(), seed) {}
+          open({scene, task.sensors, task.grids, patches, finer.get(), task.hours, task.site, sky, task.criteria, seed},
+               scene, groups_of(scene, task.states)) {}
+
+    static PaneGroups groups_of(const Scene& scene, const DaylightStates* states) {
+        return states ? PaneGroups(scene, states->group_of_pane, states->groups.size()) : PaneGroups();
+    }
 
     static constexpr int finest_division = 4;
     static constexpr std::uint64_t seed = 1;
@@ -75,54 +107,129 @@ struct DaylightSimulation::Data {
     SkyPatches patches;
     std::unique_ptr<SkyPatches> finer;
     YearSky sky;
-    DaylightSetting setting;
-    DaylightTransport transport;
-    std::unique_ptr<DaylightSample> sample;  ///< Null if the light was taken.
-    DaylightLight light;
+    SceneLight open;                                   ///< With all groups in their first states.
+    std::vector<std::unique_ptr<SceneLight>> changed;  ///< The scenes of states.
+    HourlyStates states;
+    double error_of_states = 0;
 };
 
 DaylightSimulation::DaylightSimulation(const Scene& scene, const DaylightTask& task, Progress& progress,
                                        const StopRequest& stop) {
     progress.phase("rays");
     data_ = std::make_unique<Data>(scene, task, progress, stop);
+    if (!task.states) return;
+    for (const StateScene& state : task.states->scenes)
+        data_->changed.push_back(std::make_unique<SceneLight>(data_->open.setting, state.scene,
+                                                              PaneGroups(state.scene, state.group_of_pane, 1)));
 }
 
 DaylightSimulation::~DaylightSimulation() = default;
 
+void DaylightSimulation::find_light(SceneLight& scene) {
+    Data& d = *data_;
+    scene.sample = std::make_unique<DaylightSample>(scene.setting, scene.transport);
+    scene.light = find_daylight_light(scene.setting, scene.transport, *scene.sample, d.task.error, d.progress, d.stop);
+    scene.transport.forget_rows();
+}
+
 Result<void> DaylightSimulation::find_light() {
     Data& d = *data_;
-    d.sample = std::make_unique<DaylightSample>(d.setting, d.transport);
-    d.light = find_daylight_light(d.setting, d.transport, *d.sample, d.task.error, d.progress, d.stop);
-    d.transport.forget_rows();
+    find_light(d.open);
+    for (const std::unique_ptr<SceneLight>& scene : d.changed) {
+        find_light(*scene);
+        DaylightBias& bias = d.open.light.bias;
+        if (scene->light.bias.total() > bias.total()) bias = scene->light.bias;
+        d.error_of_states = std::max(d.error_of_states, worst_of(scene->sample->errors(scene->light.bias)).largest());
+    }
     if (d.stop.requested()) return stopped();
+    if (d.task.states) choose_states();
     return {};
 }
 
-bool DaylightSimulation::take(DaylightLight light) {
+void DaylightSimulation::choose_states() {
     Data& d = *data_;
-    d.transport.make_elements(light.options.elements);
-    if (light.elements.columns != d.patches.size() || light.options.seed != Data::seed) return false;
+    const std::vector<Receiver> places = d.open.places(d.task.sensors);
+    const DaylightRows rows = d.open.rows();
+    const SensorYears years(d.open.setting, {}, {});
+    const YearSuns suns(d.sky);
+    const PaneGroups& panes = d.open.transport.pane_groups();
+    const auto open_light = [&](std::size_t sensor) {
+        const auto known = [&](std::size_t i) { return d.open.find(i); };
+        const auto place = std::span(places).subspan(sensor, 1);
+        DaylightMatrix matrix = rows.rows(place, sensor, known);
+        const std::vector<DaylightMatrix> through = std::exchange(matrix.through, {});
+        const DaylightBlock block = years.evaluate(sensor, place, std::move(matrix));
+        std::vector<std::vector<float>> out{block.illuminance};
+        for (std::size_t g = 0; g < through.size(); ++g) {
+            std::vector<float>& part = out.emplace_back(block.sun);
+            suns.keep_through(panes, g, place[0], part);
+            d.sky.add_sky(through[g].direct, part), d.sky.add_with_sun(through[g].reflected, part);
+        }
+        return out;
+    };
+    const StateChooser chooser(*d.task.states, d.open.setting, d.open.transport.stage().occluders, panes, places,
+                               open_light);
+    d.states = make_hourly_states(*d.task.states, chooser, d.open.setting, d.open.light.twice);
+    const std::size_t groups = d.task.states->groups.size();
+    for (std::size_t k = 0; k < d.states.parts.size(); ++k) {
+        const DaylightTransport& transport = k < groups ? d.open.transport : d.changed[k - groups]->transport;
+        d.states.parts[k].groups = &transport.pane_groups();
+        if (k >= groups) d.states.parts[k].occluders = &transport.stage().occluders;
+    }
+    d.open.setting.states = &d.states;
+}
+
+const HourlyStates* DaylightSimulation::states() const {
+    return data_->open.setting.states;
+}
+
+double DaylightSimulation::error_of_states() const {
+    return data_->error_of_states;
+}
+
+/// Returns the rows of the parts of HourlyStates at consecutive sensors. `through`: those of the task's scene.
+std::vector<StateRows> DaylightSimulation::state_rows(std::size_t first, std::span<const Receiver> places,
+                                                      std::vector<DaylightMatrix> through) const {
+    const Data& d = *data_;
+    std::vector<StateRows> out;
+    for (DaylightMatrix& part : through)
+        out.push_back({std::move(part), std::vector<Receiver>(places.begin(), places.end())});
+    for (const std::unique_ptr<SceneLight>& scene : d.changed) {
+        std::vector<Receiver> here = scene->places(std::span(d.task.sensors).subspan(first, places.size()));
+        const auto known = [&](std::size_t i) { return scene->find(i); };
+        DaylightMatrix part = std::move(scene->rows().rows(here, first, known).through[0]);
+        out.push_back({std::move(part), std::move(here)});
+    }
+    return out;
+}
+
+bool DaylightSimulation::take(DaylightLight light) {
+    SceneLight& open = data_->open;
+    open.transport.make_elements(light.options.elements);
+    if (light.elements.columns != data_->patches.size() || light.options.seed != Data::seed) return false;
     for (const std::vector<float>& replicate : light.elements.reflected)
-        if (replicate.size() != d.transport.leaves() * light.elements.columns) return false;
-    d.light = std::move(light);
+        if (replicate.size() != open.transport.leaves() * light.elements.columns) return false;
+    open.light = std::move(light);
     return true;
 }
 
 const DaylightLight& DaylightSimulation::light() const {
-    return data_->light;
+    return data_->open.light;
 }
 
 Result<void> DaylightSimulation::evaluate(SensorRange range, const DaylightSink& sink) const {
     const Data& d = *data_;
     d.progress.phase("year");
-    const auto sensors = std::span(d.task.sensors).subspan(range.first, range.count);
-    const std::vector<Receiver> places = sensor_places(d.setting.scene, d.transport.stage().occluders, sensors);
-    const DaylightRows rows(d.transport, d.light.elements, d.patches, d.light.options.rays_a_sensor);
-    const SensorYears years(d.setting, d.light.bias, d.task.sun_day);
-    const auto known = [&](std::size_t i) { return d.sample ? d.sample->find(i) : nullptr; };
+    const std::vector<Receiver> places = d.open.places(std::span(d.task.sensors).subspan(range.first, range.count));
+    const DaylightRows rows = d.open.rows();
+    const SensorYears years(d.open.setting, d.open.light.bias, d.task.sun_day);
+    const auto known = [&](std::size_t i) { return d.open.find(i); };
     const auto evaluate_some = [&](std::size_t at, std::size_t count) {
         const auto together = std::span(places).subspan(at, count);
-        return years.evaluate(range.first + at, together, rows.rows(together, range.first + at, known));
+        const std::size_t first = range.first + at;
+        DaylightMatrix matrix = rows.rows(together, first, known);
+        const std::vector<StateRows> parts = state_rows(first, together, std::exchange(matrix.through, {}));
+        return years.evaluate(first, together, std::move(matrix), parts);
     };
     return pass_blocks<DaylightBlock>(places.size(), evaluate_some, archive_block, sink, d.progress, d.stop);
 }
@@ -130,13 +237,14 @@ Result<void> DaylightSimulation::evaluate(SensorRange range, const DaylightSink&
 Result<std::vector<GlareYear>> DaylightSimulation::glare(std::span<const ProbePoint> views, double threshold) const {
     const Data& d = *data_;
     d.progress.phase("glare");
-    std::vector<Receiver> eyes = sensor_places(d.setting.scene, d.transport.stage().occluders, views);
-    const PlaceFinder places(d.setting.scene);
+    const Scene& scene = d.open.setting.scene;
+    std::vector<Receiver> eyes = d.open.places(views);
+    const PlaceFinder places(scene);
     for (Receiver& eye : eyes)  // rays from an eye on a wall would end there
-        if (!eye.own.is_none()) eye.x += places.step() * d.setting.scene.regions()[eye.own].plane.n, eye.own = {};
-    const DaylightRows rows(d.transport, d.light.elements, d.patches, d.light.options.rays_a_sensor);
-    const SensorYears years(d.setting, d.light.bias, {});
-    const GlareYears glare(d.setting, d.transport, d.light.elements, threshold);
+        if (!eye.own.is_none()) eye.x += places.step() * scene.regions()[eye.own].plane.n, eye.own = {};
+    const DaylightRows rows(d.open.transport, d.open.light.elements, d.patches, d.open.light.options.rays_a_sensor);
+    const SensorYears years(d.open.setting, d.open.light.bias, {});
+    const GlareYears glare(d.open.setting, d.open.transport, d.open.light.elements, threshold);
     using Years = std::vector<GlareYear>;
     const auto evaluate_some = [&](std::size_t at, std::size_t count) {
         const auto together = std::span(std::as_const(eyes)).subspan(at, count);

@@ -6,6 +6,7 @@
 #include "exitance/what_if/daylight/daylight_search.hpp"
 #include "exitance/what_if/daylight/daylight_totals.hpp"
 #include "exitance/what_if/daylight/glare_year.hpp"
+#include "exitance/what_if/daylight/state_choice.hpp"
 
 namespace exitance {
 
@@ -19,6 +20,7 @@ struct DaylightTask {
     int division = 1;               ///< Parts into which Tregenza's patches are divided in each direction: 1, 2 or 4.
     double error = 0.02;            ///< Requested error of every grid.
     std::optional<SunDay> sun_day;  ///< Day for which hours of sunlight are counted.
+    const DaylightStates* states = nullptr;  ///< States of panes; null: they do not change. Must outlive the task.
 };
 
 /// Receives the results of consecutive sensors, in order. An error ends the simulation.
@@ -51,6 +53,10 @@ class DaylightSimulation {
     bool take(DaylightLight light);
     /// Requires that the light was found or taken.
     const DaylightLight& light() const;
+    /// The states of all hours, which find_light() chooses; null if the task has none.
+    const HourlyStates* states() const;
+    /// Largest error of a grid in the scenes of states; 0 without such scenes.
+    double error_of_states() const;
 
     /// Passes the results of sensors to `sink`, block by block. The bits of a sensor's results do not depend on the
     /// range in which it is. Errors: ErrorCode::limit after a stop request, or that of the sink.
@@ -61,7 +67,12 @@ class DaylightSimulation {
     Result<std::vector<GlareYear>> glare(std::span<const ProbePoint> views, double threshold) const;
 
   private:
+    struct SceneLight;
     struct Data;
+    void find_light(SceneLight& scene);
+    void choose_states();
+    std::vector<StateRows> state_rows(std::size_t first, std::span<const Receiver> places,
+                                      std::vector<DaylightMatrix> through) const;
     std::unique_ptr<Data> data_;
 };
 

@@ -263,6 +263,38 @@ double DaylightSample::bias_of_patches() const {
     return mean > 0 ? std::sqrt(std::max(0.0, squares)) / mean : 0;
 }
 
+double DaylightSample::measure_twice(const DaylightTransport& transport) const {
+    SkyColumns overcast;
+    overcast.add(overcast_);
+    const ElementLight total = transport.solve(overcast),
+                       any = transport.solve_through(overcast, total, transport.any_group()),
+                       twice = transport.solve_twice(overcast, total, any);
+    const VisiblePatches visible(transport.stage().occluders, setting_.patches);
+    const std::size_t n = sensors_.size(), m = setting_.patches.size(), groups = transport.pane_groups().count();
+    std::vector<double> found(n), light(n);
+    parallel_for(n, 1, [&](std::size_t i) {
+        const Sensor& sensor = sensors_[i];
+        VisiblePatches::Workspace workspace;
+        std::vector<float> direct((groups + 1) * m);
+        visible.irradiance_through(transport.pane_groups(), sensor.at, workspace, direct);
+        light[i] = mean_of(sensor.results.factor).mean;
+        found[i] = sum_of(std::span(direct).subspan(groups * m), overcast_);
+        for (std::size_t k = 0; k < daylight_replicates; ++k) {
+            const RayCounts& rays = sensor.known.rays[k];
+            const RayCounts::Through &one = rays.through[transport.any_group()],
+                                     &two = rays.through[transport.two_groups()];
+            std::array<float, 1> sum{};
+            twice.gather(k, rays, sum), twice.add(k, one.leaves, rays.rays, -1, sum);
+            any.add(k, one.leaves, rays.rays, 1, sum), any.add(k, two.leaves, rays.rays, -1, sum);
+            total.add(k, two.leaves, rays.rays, 1, sum);
+            found[i] += double(sum[0]) / double(daylight_replicates);
+        }
+    });
+    double mean = 0, squares = 0;
+    for (std::size_t i = 0; i < n; ++i) mean += light[i], squares += found[i] * found[i];
+    return mean > 0 ? std::sqrt(static_cast<double>(n) * squares) / mean : 0;
+}
+
 const KnownSensor* DaylightSample::find(std::size_t number) const {
     const auto at = index_.find(number);
     return at == index_.end() ? nullptr : &sensors_[at->second].known;

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "exitance/what_if/daylight/daylight_error.hpp"
+#include "exitance/what_if/daylight/daylight_states.hpp"
 
 namespace exitance {
 
@@ -18,6 +19,7 @@ struct DaylightSetting {
     const YearSky& sky;  ///< Light of the hours in the patches.
     const DaylightCriteria& criteria;
     std::uint64_t seed = 1;
+    const HourlyStates* states = nullptr;  ///< States of panes in every hour; null if they do not change.
 };
 
 /// Random sensors of every grid, at which a search measures the errors of a daylight matrix without computing it: their
@@ -39,6 +41,10 @@ class DaylightSample {
     /// Measures the bias at up to 32 of the sensors. `error`: paths are traced until the bias plus its standard error
     /// is below half of this, or until their standard error is a third of it, relative to the mean.
     DaylightBias measure_bias(double error, Progress& progress, const StopRequest& stop) const;
+
+    /// Returns the RMS over the sample of the light of the overcast sky that has crossed panes of groups at least
+    /// twice, relative to the mean light. Needs the rays of evaluate().
+    double measure_twice(const DaylightTransport& transport) const;
 
     /// Returns the rays of a sensor of the sample, and its direct light; null for other sensors.
     const KnownSensor* find(std::size_t number) const;

@@ -42,7 +42,11 @@ DaylightLight find_daylight_light(const DaylightSetting& setting, DaylightTransp
         sample.forget_rays();
     }
     progress.phase("solve");
-    out.elements = transport.solve(SkyColumns::of_patches(setting.patches.size()));
+    const SkyColumns columns = SkyColumns::of_patches(setting.patches.size());
+    out.elements = transport.solve(columns);
+    for (std::size_t g = 0; g < transport.pane_groups().count(); ++g)
+        out.through.push_back(transport.solve_through(columns, out.elements, g));
+    if (!out.through.empty()) out.twice = sample.measure_twice(transport);
     return out;
 }
 

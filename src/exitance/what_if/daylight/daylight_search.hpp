@@ -9,6 +9,9 @@ struct DaylightLight {
     DaylightOptions options;  ///< Rays and elements with which it was found; rays of sensors must be as many.
     DaylightBias bias;
     ElementLight elements;  ///< A column per patch.
+    /// The parts of it that have crossed panes of each group of the transport.
+    std::vector<ElementLight> through = {};
+    double twice = 0;  ///< Light that has crossed such panes at least twice, relative to the mean at the sample.
 };
 
 /// Finds the light on the elements, with as many rays and elements as the requested error of every grid needs: first

@@ -12,6 +12,11 @@ struct GlareSummary {
     double worst = 0;                  ///< Largest DGP of a view that 5% of the occupied hours exceed.
 };
 
+/// Reasons for which sDA and ASE are not those of LM-83, as sentences; empty: they conform.
+struct Lm83Deviations {
+    std::vector<std::string> autonomy, exposure;
+};
+
 /// Results of all sensors of a year together, with equal weights.
 struct DaylightSummary {
     std::size_t sensors = 0;
@@ -29,6 +34,7 @@ struct DaylightSummary {
     std::vector<DaylightError> errors;  ///< One per grid.
     std::vector<double> grid_factors;   ///< Mean daylight factor of every grid, per cent.
     std::optional<GlareSummary> glare;  ///< None without views.
+    Lm83Deviations lm83;
 };
 
 /// Collects the results of sensors, in their order. O(1) memory per grid.

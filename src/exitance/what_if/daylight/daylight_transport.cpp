@@ -1,7 +1,9 @@
 #include "exitance/what_if/daylight/daylight_transport.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <utility>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
@@ -64,13 +66,22 @@ SkyColumns SkyColumns::of_patches(std::size_t patches) {
     return out;
 }
 
-void SkyColumns::add_light(const RayCounts& ends, std::span<float> out) const {
-    const double each = pi / std::max<double>(1, ends.rays);
+void SkyColumns::add_light(std::span<const RayCounts::End> patches, std::span<const RayCounts::End> finer,
+                           std::uint32_t rays, std::span<float> out) const {
+    const double each = pi / std::max<double>(1, rays);
     if (unit_patches_ > 0)
-        for (const auto& [patch, count] : ends.patches) out[patch] += static_cast<float>(each * count);
+        for (const auto& [patch, count] : patches) out[patch] += static_cast<float>(each * count);
     for (std::size_t c = 0; c < columns_.size(); ++c)
-        for (const auto& [patch, count] : columns_[c].is_finer ? ends.finer : ends.patches)
+        for (const auto& [patch, count] : columns_[c].is_finer ? finer : patches)
             out[c] += static_cast<float>(each * columns_[c].luminances[patch] * count);
+}
+
+void SkyColumns::add_light(const RayCounts& ends, std::span<float> out) const {
+    add_light(ends.patches, ends.finer, ends.rays, out);
+}
+
+void SkyColumns::add_light(const RayCounts::Through& ends, std::uint32_t rays, std::span<float> out) const {
+    add_light(ends.patches, {}, rays, out);
 }
 
 void ElementLight::gather(std::size_t replicate, const RayCounts& ends, std::span<float> out) const {
@@ -78,6 +89,16 @@ void ElementLight::gather(std::size_t replicate, const RayCounts& ends, std::spa
     std::fill(out.begin(), out.end(), 0.0f);
     for (const auto& [leaf, count] : ends.leaves) {
         const float share = static_cast<float>(count) / static_cast<float>(ends.rays);
+        const float* const from = rows + leaf * columns;
+        for (std::size_t k = 0; k < columns; ++k) out[k] += share * from[k];
+    }
+}
+
+void ElementLight::add(std::size_t replicate, std::span<const RayCounts::End> ends, std::uint32_t rays, float sign,
+                       std::span<float> out) const {
+    const float* const rows = reflected[replicate].data();
+    for (const auto& [leaf, count] : ends) {
+        const float share = sign * static_cast<float>(count) / static_cast<float>(rays);
         const float* const from = rows + leaf * columns;
         for (std::size_t k = 0; k < columns; ++k) out[k] += share * from[k];
     }
@@ -104,11 +125,19 @@ struct DaylightTransport::Found {
     std::vector<Vec3> directions;
     std::vector<RayHit> hits;
     std::vector<std::uint32_t> leaves, patches, finer;
+    struct Numbers {
+        std::vector<std::uint32_t> leaves, patches;
+    };
+    std::vector<Numbers> through;  ///< Sets as those of RayCounts.
 };
 
 DaylightTransport::DaylightTransport(Scene scene, const SkyPatches& patches, const SkyPatches* finer,
-                                     std::uint64_t seed)
-    : scene_(under_patches(std::move(scene))), stage_(scene_), patches_(patches), finer_(finer) {
+                                     std::uint64_t seed, PaneGroups groups)
+    : scene_(under_patches(std::move(scene))),
+      stage_(scene_),
+      patches_(patches),
+      finer_(finer),
+      groups_(std::move(groups)) {
     for (std::size_t k = 0; k < daylight_replicates; ++k) seeds_[k] = hash(seed, k);
     stage_.rooms = find_light_rooms(stage_, seed, StopRequest());
 }
@@ -139,6 +168,20 @@ void DaylightTransport::forget_rows() {
     for (std::vector<RayCounts>& rows : rows_) rows = {};
 }
 
+/// Returns the groups whose panes a ray crossed before its hit, or before it left the scene.
+PaneGroups::Mask DaylightTransport::crossed(const RayHit& hit, const Point& origin, const Vec3& direction) const {
+    PaneGroups::Mask out = 0;
+    Point from = origin;
+    if (hit.mirror >= 0) {
+        const Pane& pane = scene_.panes()[static_cast<std::size_t>(hit.mirror)];
+        from += (dot(pane.n, pane.corners[0] - origin) / dot(pane.n, direction)) * direction;
+        out = groups_.crossed(origin, from, hit.mirror);
+    }
+    if (hit.surface.is_none())
+        return out | groups_.crossed_outwards(from, arriving(scene_, hit, direction), hit.mirror);
+    return out | groups_.crossed(from, place_of(scene_, hit, origin, direction), hit.mirror);
+}
+
 /// Casts the rays from `ends.rays` to `until` of a sequence. `sides`: the region if rays leave a diffusing pane from
 /// both sides, otherwise none. `place`: their origin for two numbers in [0, 1).
 template <class Place>
@@ -154,19 +197,35 @@ void DaylightTransport::cast(std::uint32_t until, std::uint64_t key, RegionId ow
     }
     found.hits.resize(found.origins.size());
     stage_.tracer.nearest(found.origins, found.directions, own, found.hits, Mirrored::followed);
+    const std::size_t sets = groups_.count() > 0 ? groups_.count() + 2 : 0;
+    found.through.resize(sets), ends.through.resize(sets);
+    for (auto& [leaves, patches] : found.through) leaves.clear(), patches.clear();
+    const auto add_crossing = [&](std::size_t k, auto member, std::uint32_t number) {
+        const PaneGroups::Mask groups = crossed(found.hits[k], found.origins[k], found.directions[k]);
+        for (std::size_t g = 0; g < groups_.count(); ++g)
+            if (groups >> g & 1) (found.through[g].*member).push_back(number);
+        if (groups != 0) (found.through[any_group()].*member).push_back(number);
+        if (std::popcount(groups) > 1) (found.through[two_groups()].*member).push_back(number);
+    };
     for (std::size_t k = 0; k < found.hits.size(); ++k) {
         const RayHit& hit = found.hits[k];
         if (hit.surface.is_none()) {
             const Vec3 towards = normalized(arriving(scene_, hit, found.directions[k]));
             found.patches.push_back(static_cast<std::uint32_t>(patches_.of(towards)));
             if (finer_) found.finer.push_back(static_cast<std::uint32_t>(finer_->of(towards)));
+            if (sets > 0) add_crossing(k, &Found::Numbers::patches, found.patches.back());
         } else if (hit.front) {
             const std::uint32_t leaf =
                 elements_->locator.find_leaf(hit.region, place_of(scene_, hit, found.origins[k], found.directions[k]))
                     .leaf;
-            if (leaf != ElementLocator::no_leaf) found.leaves.push_back(leaf);
+            if (leaf == ElementLocator::no_leaf) continue;
+            found.leaves.push_back(leaf);
+            if (sets > 0) add_crossing(k, &Found::Numbers::leaves, leaf);
         }
     }
+    for (std::size_t g = 0; g < sets; ++g)
+        add_ends(found.through[g].leaves, ends.through[g].leaves),
+            add_ends(found.through[g].patches, ends.through[g].patches);
     add_ends(found.leaves, ends.leaves), add_ends(found.patches, ends.patches), add_ends(found.finer, ends.finer);
     ends.rays = until;
 }
@@ -200,20 +259,11 @@ void DaylightTransport::cast_rows(double rays_an_element) {
     });
 }
 
-ElementLight DaylightTransport::solve(const SkyColumns& columns) const {
-    ElementLight out;
-    out.columns = columns.count();
-    do_own_share([&] {
-        for (std::size_t k = own_process(); k < daylight_replicates; k += processes())
-            out.reflected[k] = solve_replicate(rows_[k], columns);
-    });
-    exchange_replicates(leaves() * out.columns, out);
-    return out;
-}
-
-std::vector<float> DaylightTransport::solve_replicate(const std::vector<RayCounts>& rows,
-                                                      const SkyColumns& columns) const {
-    const std::size_t n = rows.size(), m = columns.count();
+/// Iterates over the reflected light rho E of one replicate. gather(leaf, light, out) computes the irradiance of a leaf
+/// by `light`.
+template <class Gather>
+std::vector<float> DaylightTransport::iterate(std::size_t columns, const Gather& gather) const {
+    const std::size_t n = leaves(), m = columns;
     ElementLight light;
     light.columns = m;
     std::vector<float>& reflected = light.reflected[0];
@@ -228,8 +278,7 @@ std::vector<float> DaylightTransport::solve_replicate(const std::vector<RayCount
             const std::span<float> out(&fresh[i * m], m);
             std::fill(out.begin(), out.end(), 0.0f);
             if (rho[i] == 0) return;
-            light.gather(0, rows[i], out);
-            columns.add_light(rows[i], out);
+            gather(i, std::as_const(light), out);
             for (float& v : out) v *= rho[i];
         });
         struct Norms {
@@ -244,6 +293,49 @@ std::vector<float> DaylightTransport::solve_replicate(const std::vector<RayCount
         if (norms.change <= max_change * max_change * norms.size) break;
     }
     return std::move(reflected);
+}
+
+ElementLight DaylightTransport::solve(const SkyColumns& columns) const {
+    ElementLight out;
+    out.columns = columns.count();
+    do_own_share([&] {
+        for (std::size_t k = own_process(); k < daylight_replicates; k += processes())
+            out.reflected[k] = iterate(out.columns, [&](std::size_t i, const ElementLight& light, std::span<float> to) {
+                const RayCounts& row = rows_[k][i];
+                light.gather(0, row, to), columns.add_light(row, to);
+            });
+    });
+    exchange_replicates(leaves() * out.columns, out);
+    return out;
+}
+
+ElementLight DaylightTransport::solve_through(const SkyColumns& columns, const ElementLight& total,
+                                              std::size_t group) const {
+    ElementLight out;
+    out.columns = columns.count();
+    for (std::size_t k = 0; k < daylight_replicates; ++k)
+        out.reflected[k] = iterate(out.columns, [&](std::size_t i, const ElementLight& light, std::span<float> to) {
+            const RayCounts& row = rows_[k][i];
+            const RayCounts::Through& through = row.through[group];
+            light.gather(0, row, to), light.add(0, through.leaves, row.rays, -1, to);
+            total.add(k, through.leaves, row.rays, 1, to), columns.add_light(through, row.rays, to);
+        });
+    return out;
+}
+
+ElementLight DaylightTransport::solve_twice(const SkyColumns& columns, const ElementLight& total,
+                                            const ElementLight& any) const {
+    ElementLight out;
+    out.columns = columns.count();
+    for (std::size_t k = 0; k < daylight_replicates; ++k)
+        out.reflected[k] = iterate(out.columns, [&](std::size_t i, const ElementLight& light, std::span<float> to) {
+            const RayCounts& row = rows_[k][i];
+            const RayCounts::Through &one = row.through[any_group()], &two = row.through[two_groups()];
+            light.gather(0, row, to), light.add(0, one.leaves, row.rays, -1, to);
+            any.add(k, one.leaves, row.rays, 1, to), any.add(k, two.leaves, row.rays, -1, to);
+            total.add(k, two.leaves, row.rays, 1, to), columns.add_light(two, row.rays, to);
+        });
+    return out;
 }
 
 void DaylightTransport::cast_sensor(const Receiver& sensor, std::size_t number, unsigned rays, SensorRays& out) const {

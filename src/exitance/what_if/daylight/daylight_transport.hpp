@@ -10,6 +10,7 @@
 #include "exitance/evaluate/radiosity_function.hpp"
 #include "exitance/scene/sky/sky_patches.hpp"
 #include "exitance/transport/stage.hpp"
+#include "exitance/visibility/glass/pane_groups.hpp"
 
 namespace exitance {
 
@@ -27,6 +28,13 @@ struct RayCounts {
     std::vector<End> leaves;   ///< Fronts of elements, by leaf number, ascending.
     std::vector<End> patches;  ///< Patches of the sky, ascending.
     std::vector<End> finer;    ///< Finer patches of the sky; empty if there are none.
+
+    /// Ends of the rays that crossed certain panes on their way.
+    struct Through {
+        std::vector<End> leaves, patches;
+    };
+    /// One per group of panes, then those of any group, then those of two groups or more; empty without groups.
+    std::vector<Through> through = {};
 };
 
 template <class Archive>
@@ -50,12 +58,17 @@ class SkyColumns {
     std::size_t count() const { return unit_patches_ > 0 ? unit_patches_ : columns_.size(); }
     /// Adds the irradiance by the rays that end in the sky to `out`, one value per column.
     void add_light(const RayCounts& ends, std::span<float> out) const;
+    /// Adds the irradiance by rays through panes, of `rays` rays in all; for columns without finer patches.
+    void add_light(const RayCounts::Through& ends, std::uint32_t rays, std::span<float> out) const;
 
   private:
     struct Column {
         std::vector<double> luminances;
         bool is_finer = false;
     };
+    void add_light(std::span<const RayCounts::End> patches, std::span<const RayCounts::End> finer, std::uint32_t rays,
+                   std::span<float> out) const;
+
     std::size_t unit_patches_ = 0;  ///< Number of patches if every patch has its column.
     std::vector<Column> columns_;
 };
@@ -67,6 +80,9 @@ struct ElementLight {
 
     /// Computes the reflected light at a sensor from its rays, one value per column.
     void gather(std::size_t replicate, const RayCounts& ends, std::span<float> out) const;
+    /// Adds the light of a part of the rays, of `rays` rays in all, times `sign`.
+    void add(std::size_t replicate, std::span<const RayCounts::End> ends, std::uint32_t rays, float sign,
+             std::span<float> out) const;
 };
 
 /// Transport of light from the patches of the sky between the elements of a scene:
@@ -79,8 +95,9 @@ struct ElementLight {
 class DaylightTransport {
   public:
     /// `finer`: further patches of the sky in which the ends of rays are counted; may be null. Both must outlive the
-    /// transport.
-    DaylightTransport(Scene scene, const SkyPatches& patches, const SkyPatches* finer, std::uint64_t seed);
+    /// transport. `groups`: panes whose light is also computed separately.
+    DaylightTransport(Scene scene, const SkyPatches& patches, const SkyPatches* finer, std::uint64_t seed,
+                      PaneGroups groups = {});
 
     /// Meshes the scene with about `count` elements and discards all rays. Deterministic.
     void make_elements(double count);
@@ -97,6 +114,19 @@ class DaylightTransport {
     /// Solves for rho E by Jacobi iteration over all columns at once, until a sweep changes it by at most 2e-4
     /// (relative RMS). Collective. O(sweeps x rays x columns).
     ElementLight solve(const SkyColumns& columns) const;
+    const PaneGroups& pane_groups() const { return groups_; }
+    /// Solves for the part of `total` that has crossed panes of a group at least once,
+    ///
+    ///     E_g = S_g + F_g rho E + (F - F_g) rho E_g,     S_g, F_g: by the rays that cross the group,
+    ///
+    /// with the rays of solve(), so that E_g has the noise of E.
+    ElementLight solve_through(const SkyColumns& columns, const ElementLight& total, std::size_t group) const;
+    /// Solves for the part of `total` that has crossed panes of groups at least twice. Panes of one group that one ray
+    /// crosses count once. Needs the columns of solve(), without finer patches.
+    ElementLight solve_twice(const SkyColumns& columns, const ElementLight& total, const ElementLight& any) const;
+    /// Number of the set of rays, after those of the groups, that cross panes of any group.
+    std::size_t any_group() const { return groups_.count(); }
+    std::size_t two_groups() const { return groups_.count() + 1; }
 
     /// Casts rays from a sensor until all replicates together have `rays` (a power of two). `number`: of the sensor,
     /// for its random points.
@@ -109,12 +139,15 @@ class DaylightTransport {
     template <class Place>
     void cast(std::uint32_t until, std::uint64_t key, RegionId own, RegionId sides, const Normal& n, const Place& place,
               Found& found, RayCounts& ends) const;
-    std::vector<float> solve_replicate(const std::vector<RayCounts>& rows, const SkyColumns& columns) const;
+    PaneGroups::Mask crossed(const RayHit& hit, const Point& origin, const Vec3& direction) const;
+    template <class Gather>
+    std::vector<float> iterate(std::size_t columns, const Gather& gather) const;
 
     Scene scene_;
     Stage stage_;
     const SkyPatches& patches_;
     const SkyPatches* finer_;
+    PaneGroups groups_;
     std::array<std::uint64_t, daylight_replicates> seeds_{};
     struct Deleter {
         void operator()(Elements* elements) const;

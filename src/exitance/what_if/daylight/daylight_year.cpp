@@ -113,7 +113,6 @@ std::vector<double> overcast_luminances(const SkyPatches& patches, double ground
 
 DaylightMetrics metrics_of(double factor, std::span<const float> illuminance, std::span<const float> sun,
                            std::span<const DaylightHour> hours, const DaylightCriteria& criteria) {
-    constexpr double sunny = 1000;  // lx
     const auto& limits = criteria.useful;
     DaylightMetrics metrics;
     metrics.daylight_factor = factor;
@@ -122,7 +121,7 @@ DaylightMetrics metrics_of(double factor, std::span<const float> illuminance, st
         if (!criteria.is_occupied(hours[h], h)) continue;
         const double E = double(illuminance[h]);
         ++occupied;
-        metrics.sunny_hours += double(sun[h]) > sunny;
+        metrics.sunny_hours += double(sun[h]) > sunny_illuminance;
         metrics.autonomy += E >= criteria.target;
         metrics.continuous += std::min(1.0, E / criteria.target);
         std::size_t k = 0;

@@ -97,6 +97,11 @@ struct DaylightCriteria {
     }
 };
 
+/// Direct sunlight above which an hour is sunny, lx, and sunny hours above which a sensor counts in ASE.
+constexpr double sunny_illuminance = 1000, max_sunny_hours = 250;
+/// DA from which on a sensor counts in sDA.
+constexpr double required_autonomy = 0.5;
+
 /// Annual metrics of standards at a sensor; shares are of the occupied hours.
 struct DaylightMetrics {
     double daylight_factor = 0;  ///< Per cent, under the traditional overcast sky.

@@ -4,15 +4,9 @@
 #include <cmath>
 
 #include "exitance/base/parallel.hpp"
-#include "exitance/direct/beams.hpp"
-#include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
 namespace {
-
-/// Student's factor for 95% and 7 degrees of freedom: one fewer than replicates.
-constexpr double student = 2.3646;
-static_assert(daylight_replicates == 8);
 
 /// Sensors that are evaluated together: a tile of YearSky's products.
 constexpr std::size_t tile_sensors = 16;
@@ -34,42 +28,14 @@ enum Result : std::size_t {
 
 }  // namespace
 
-Interval SpreadResult::interval() const {
-    const ReplicateMean found = mean_of(replicates);
-    const double noise = student * std::sqrt(found.variance);
-    const double below = value - std::min(less, more), above = std::max(less, more) - value;
-    return {value - std::hypot(noise, std::max(0.0, below)), value + std::hypot(noise, std::max(0.0, above))};
-}
-
 SensorYears::SensorYears(const DaylightSetting& setting, const DaylightBias& bias, const std::optional<SunDay>& day)
     : setting_(setting),
       bias_(bias.total()),
       overcast_(overcast_luminances(setting.patches, setting.site.ground)),
       daylight_hours_(daylight_hours(setting.hours)),
       occluders_(setting.scene),
-      suns_(setting.sky.hours()) {
-    for (std::size_t h = 0; h < suns_.size(); ++h) {
-        const YearSky::Sun& sun = setting.sky.sun(h);
-        if (!(sun.illuminance > 0)) continue;
-        PunctualLight light;
-        light.kind = PunctualLight::Kind::directional, light.direction = -sun.towards;
-        light.intensity = Spectrum(sun.illuminance);
-        suns_[h].push_back(light);
-    }
+      suns_(setting.sky) {
     if (day) sunlight_.emplace(occluders_, setting.site, *day);
-}
-
-/// Adds direct sunlight to a row of hours. `direct`: light of the patches at the sensor.
-void SensorYears::add_sun(const Receiver& at, std::span<const float> direct, std::span<float> sun) const {
-    for (std::size_t h = 0; h < suns_.size(); ++h) {
-        if (suns_[h].empty()) continue;
-        const YearSky::Sun& shining = setting_.sky.sun(h);
-        // A sensor that sees none of the sun's patches does not see the sun.
-        const auto is_seen = [&](std::size_t patch) { return direct[patch] > 0; };
-        if (!(dot(shining.towards, at.n) > 0) || std::none_of(shining.patches.begin(), shining.patches.end(), is_seen))
-            continue;
-        sun[h] = static_cast<float>(luminous_sum(Beams(suns_[h], occluders_).irradiance(at)));
-    }
 }
 
 SensorYears::Results SensorYears::results_of(double factor, std::span<const float> lux,
@@ -98,7 +64,7 @@ void SensorYears::finish(const std::array<SpreadResult, result_count>& spread, S
 
 /// Evaluates `count` sensors from index `first` of a block on, whose rows of hours are 0.
 void SensorYears::evaluate_tile(std::size_t first, std::size_t count, std::span<const Receiver> places,
-                                DaylightBlock& block) const {
+                                std::span<const StateRows> parts, DaylightBlock& block) const {
     const DaylightMatrix& matrix = block.matrix;
     const std::size_t m = matrix.patches, hours = setting_.sky.hours();
     const std::span<float> sun = std::span(block.sun).subspan(first * hours, count * hours),
@@ -108,9 +74,10 @@ void SensorYears::evaluate_tile(std::size_t first, std::size_t count, std::span<
     };
     const std::span<const float> direct = rows_of(matrix.direct);
     for (std::size_t i = 0; i < count; ++i)
-        add_sun(places[first + i], direct.subspan(i * m, m), sun.subspan(i * hours, hours));
+        suns_.find(occluders_, places[first + i], direct.subspan(i * m, m), sun.subspan(i * hours, hours));
     std::vector<float> straight(sun.begin(), sun.end());
     setting_.sky.add_sky(direct, straight);
+    StateTile states(setting_, suns_, parts, {first, count}, sun, bias_);
 
     std::vector<std::array<SpreadResult, result_count>> spread(count);
     std::vector<float> lux(count * hours);
@@ -128,9 +95,13 @@ void SensorYears::evaluate_tile(std::size_t first, std::size_t count, std::span<
     const std::span<const float> mean = rows_of(matrix.reflected);
     std::copy(straight.begin(), straight.end(), illuminance.begin());
     setting_.sky.add_with_sun(mean, illuminance);
+    const std::vector<float> twice = states.uncertainty(illuminance);
+    states.correct(illuminance, daylight_replicates);
     add(illuminance, mean, 1, [](SpreadResult& r) -> double& { return r.value; });
     const auto add_scaled = [&](double scale, const auto& member) {
         for (std::size_t k = 0; k < lux.size(); ++k) lux[k] = illuminance[k] * static_cast<float>(scale);
+        for (std::size_t k = 0; k < twice.size(); ++k)
+            lux[k] = std::max(0.0f, lux[k] + (scale < 1 ? -twice[k] : twice[k]));
         add(lux, mean, scale, member);
     };
     add_scaled(1 - bias_, [](SpreadResult& r) -> double& { return r.less; });
@@ -139,6 +110,7 @@ void SensorYears::evaluate_tile(std::size_t first, std::size_t count, std::span<
         const std::span<const float> reflected = rows_of(matrix.replicates[k]);
         lux = straight;
         setting_.sky.add_with_sun(reflected, lux);
+        states.correct(lux, k);
         add(lux, reflected, 1, [k](SpreadResult& r) -> double& { return r.replicates[k]; });
     }
     for (std::size_t i = 0; i < count; ++i) {
@@ -147,16 +119,22 @@ void SensorYears::evaluate_tile(std::size_t first, std::size_t count, std::span<
                                  sun.subspan(i * hours, hours), setting_.hours, setting_.criteria);
         finish(spread[i], out);
     }
+    states.correct_sun(sun);
+    const std::span<const VariantResult> variants = states.variants();
+    std::copy(variants.begin(), variants.end(),
+              block.variants.begin() + static_cast<std::ptrdiff_t>(first * (variants.size() / count)));
 }
 
-DaylightBlock SensorYears::evaluate(std::size_t first, std::span<const Receiver> places, DaylightMatrix matrix) const {
+DaylightBlock SensorYears::evaluate(std::size_t first, std::span<const Receiver> places, DaylightMatrix matrix,
+                                    std::span<const StateRows> parts) const {
     const std::size_t n = places.size(), m = matrix.patches, hours = setting_.sky.hours();
     DaylightBlock block;
     block.first = first, block.matrix = std::move(matrix);
     block.illuminance.assign(n * hours, 0), block.sun.assign(n * hours, 0);
     block.results.resize(n);
+    if (setting_.states) block.variants.resize(n * setting_.states->variants.size());
     parallel_for((n + tile_sensors - 1) / tile_sensors, 1, [&](std::size_t t) {
-        evaluate_tile(t * tile_sensors, std::min(tile_sensors, n - t * tile_sensors), places, block);
+        evaluate_tile(t * tile_sensors, std::min(tile_sensors, n - t * tile_sensors), places, parts, block);
     });
     parallel_for(n, 4, [&](std::size_t i) {
         SensorResults& out = block.results[i];

@@ -4,13 +4,10 @@
 
 #include "exitance/what_if/daylight/daylight_provision.hpp"
 #include "exitance/what_if/daylight/daylight_sample.hpp"
+#include "exitance/what_if/daylight/spread_result.hpp"
+#include "exitance/what_if/daylight/state_tile.hpp"
 
 namespace exitance {
-
-/// Bounds of a result.
-struct Interval {
-    double low = 0, high = 0;
-};
 
 /// Bounds of the results of one sensor.
 struct SensorIntervals {
@@ -20,15 +17,6 @@ struct SensorIntervals {
     Interval electric_hours;         ///< Hours at full power of dimmed electric light.
     std::array<Interval, 4> useful;  ///< UDI
     Interval reached;                ///< Illuminance reached in half of the daylight hours, lx.
-};
-
-/// Values of a result: by the mean of the replicates, by each, and with all light smaller and larger by the bias.
-struct SpreadResult {
-    double value = 0, less = 0, more = 0;
-    Replicates replicates{};
-
-    /// 95% interval: Student's for the mean of the replicates, widened to the results with less and more light.
-    Interval interval() const;
 };
 
 /// Results of a year at one sensor.
@@ -64,6 +52,7 @@ struct DaylightBlock {
     DaylightMatrix matrix;                ///< A row per sensor.
     std::vector<float> illuminance, sun;  ///< lx, and the direct sunlight in it: a row per sensor, a column per hour.
     std::vector<SensorResults> results;
+    std::vector<VariantResult> variants;  ///< Sensor by sensor, one per variant of the states.
 };
 
 /// Evaluates the hours of a year at sensors. Direct sunlight uses exact visibility; its reflections are those of the
@@ -76,15 +65,17 @@ class SensorYears {
     /// Evaluates sensors at `places` with their rows of the daylight matrix. `first`: number of the first. Every
     /// replicate gives every result anew, since all hours share the noise of a sensor's coefficients. O(replicates x
     /// sensors x hours x patches): 1 ms per sensor with 146 patches.
-    DaylightBlock evaluate(std::size_t first, std::span<const Receiver> places, DaylightMatrix matrix) const;
+    /// `parts`: the rows of the parts of HourlyStates, if the setting has states. The number of sunny hours is then
+    /// that of the first states, as ASE requires; all other results of hours are those of the states.
+    DaylightBlock evaluate(std::size_t first, std::span<const Receiver> places, DaylightMatrix matrix,
+                           std::span<const StateRows> parts = {}) const;
 
   private:
     static constexpr std::size_t result_count = 9;
     using Results = std::array<double, result_count>;
 
-    void add_sun(const Receiver& at, std::span<const float> direct, std::span<float> sun) const;
     void evaluate_tile(std::size_t first, std::size_t count, std::span<const Receiver> places,
-                       DaylightBlock& block) const;
+                       std::span<const StateRows> parts, DaylightBlock& block) const;
     Results results_of(double factor, std::span<const float> lux, std::span<const float> sun) const;
     void finish(const std::array<SpreadResult, result_count>& spread, SensorResults& out) const;
 
@@ -93,7 +84,7 @@ class SensorYears {
     std::vector<double> overcast_;
     std::vector<std::size_t> daylight_hours_;
     Occluders occluders_;
-    std::vector<std::vector<PunctualLight>> suns_;  ///< The sun of every hour; empty without one.
+    YearSuns suns_;
     std::optional<SunlightHours> sunlight_;
 };
 

@@ -34,10 +34,10 @@ void VisiblePatches::clip_to(const Cone& cone, std::vector<Vec3>& polygon, std::
     }
 }
 
-void VisiblePatches::irradiance(const Receiver& at, Workspace& workspace, std::span<float> out) const {
+/// Calls visit(piece, polygon, patch) for the visible part of every facet of a patch, relative to the receiver.
+template <class Visit>
+void VisiblePatches::for_each_part(const Receiver& at, Workspace& workspace, const Visit& visit) const {
     auto& [visibility, fragments, part, rest] = workspace;
-    const Spectrum weights = luminous_weights();
-    std::fill(out.begin(), out.end(), 0.0f);
     for (const PieceId piece : occluders_.distant_pieces()) {
         visible_fragments(occluders_, at, piece, {}, visibility, fragments);
         for (const std::vector<Vec3>& fragment : fragments) {
@@ -48,12 +48,31 @@ void VisiblePatches::irradiance(const Receiver& at, Workspace& workspace, std::s
                 if (cone.below != (lowest < -rounding)) continue;
                 part = fragment;
                 clip_to(cone, part, rest);
-                if (part.empty()) continue;
-                const Spectrum F = transmitted_form_factor(occluders_, at, piece, part, {});
-                for (std::size_t b = 0; b < bands; ++b) out[cone.patch] += static_cast<float>(pi * weights[b] * F[b]);
+                if (!part.empty()) visit(piece, part, cone.patch);
             }
         }
     }
+}
+
+void VisiblePatches::irradiance(const Receiver& at, Workspace& workspace, std::span<float> out) const {
+    const Spectrum weights = luminous_weights();
+    std::fill(out.begin(), out.end(), 0.0f);
+    for_each_part(at, workspace, [&](PieceId piece, const std::vector<Vec3>& part, std::uint32_t patch) {
+        const Spectrum F = transmitted_form_factor(occluders_, at, piece, part, {});
+        for (std::size_t b = 0; b < bands; ++b) out[patch] += static_cast<float>(pi * weights[b] * F[b]);
+    });
+}
+
+void VisiblePatches::irradiance_through(const PaneGroups& groups, const Receiver& at, Workspace& workspace,
+                                        std::span<float> out) const {
+    const std::size_t rows = groups.count() + 1, columns = out.size() / rows;
+    std::vector<Spectrum> F(rows);
+    std::fill(out.begin(), out.end(), 0.0f);
+    for_each_part(at, workspace, [&](PieceId piece, const std::vector<Vec3>& part, std::uint32_t patch) {
+        std::fill(F.begin(), F.end(), Spectrum());
+        add_form_factors_through(groups, occluders_, at, piece, part, F);
+        for (std::size_t g = 0; g < rows; ++g) out[g * columns + patch] += static_cast<float>(pi * luminous_sum(F[g]));
+    });
 }
 
 }  // namespace exitance

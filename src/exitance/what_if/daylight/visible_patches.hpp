@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "exitance/scene/sky/sky_patches.hpp"
+#include "exitance/visibility/glass/pane_groups.hpp"
 #include "exitance/visibility/glazed_part.hpp"
 
 namespace exitance {
@@ -25,6 +26,10 @@ class VisiblePatches {
     /// Computes the irradiance at a sensor by every patch with luminance 1, also through panes: one value per patch.
     /// Bands are weighted by luminous_weights(). O(patches x visible parts).
     void irradiance(const Receiver& at, Workspace& workspace, std::span<float> out) const;
+    /// Computes the parts of it that cross panes of each group, and in the last row the part that crosses panes of two
+    /// groups or more: a row per group and one more, a column per patch.
+    void irradiance_through(const PaneGroups& groups, const Receiver& at, Workspace& workspace,
+                            std::span<float> out) const;
 
   private:
     /// Directions of a facet of a patch, bounded by planes through the sensor.
@@ -34,6 +39,8 @@ class VisiblePatches {
         bool below = false;
     };
     static void clip_to(const Cone& cone, std::vector<Vec3>& polygon, std::vector<Vec3>& rest);
+    template <class Visit>
+    void for_each_part(const Receiver& at, Workspace& workspace, const Visit& visit) const;
 
     const Occluders& occluders_;
     std::vector<Cone> cones_;

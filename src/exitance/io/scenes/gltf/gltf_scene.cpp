@@ -42,7 +42,8 @@ class SceneMaker {
           out_(out.description),
           findings_(out.findings),
           luminaires_(out.luminaires),
-          deviation_(out.reflectance_deviation) {}
+          deviation_(out.reflectance_deviation),
+          pane_labels_(out.pane_labels) {}
     void make();
 
   private:
@@ -76,6 +77,7 @@ class SceneMaker {
     std::vector<Finding>& findings_;
     std::vector<PlacedLuminaire>& luminaires_;
     std::vector<Spectrum>& deviation_;
+    std::vector<PaneLabel>& pane_labels_;
     std::vector<std::uint32_t> group_of_mesh_;
     std::uint32_t default_material_ = 0;
     bool has_default_ = false;
@@ -151,6 +153,7 @@ bool SceneMaker::add_pane(const std::array<std::uint32_t, 3>& c, std::uint32_t m
     for (const std::uint32_t i : c) pane.corners.push_back(out_.points[i]);
     pane.transmissivity = transmissivity_of(std::min(1.0, m.transmission) * spread(m.base));
     out_.panes.push_back(std::move(pane));
+    pane_labels_.push_back({m.name, ""});
     ++triangles_;
     return true;
 }

@@ -63,6 +63,7 @@ class HoneybeeScene {
         Pane pane = materials_.glass[meaning.material];
         pane.corners = corners;
         out_.description.panes.push_back(std::move(pane));
+        out_.pane_labels.push_back({sheet.modifier, sheet.name});
     }
 
     void add_face(std::vector<Point> corners, std::uint32_t material) {

@@ -131,7 +131,8 @@ class ModelReader {
                  fmt::format("{} with several states {} in the first of them",
                              dynamic_ == 1 ? "1 object" : fmt::format("{} objects", dynamic_),
                              dynamic_ == 1 ? "is" : "are"),
-                 "reorder the states in the model to choose another one");
+                 "reorder the states in the model to choose another one, or choose it by the hour with daylight "
+                 "--states");
     }
 
     // --- materials
@@ -373,6 +374,14 @@ class ModelReader {
         const Json& states = entries(radiance(object), "states");
         if (states.size() > 1) ++dynamic_;
         if (states.empty()) return;
+        HoneybeeDynamic& dynamic = out_.dynamic.emplace_back();
+        dynamic.object = text(object, "identifier");
+        dynamic.group = text(radiance(object), "dynamic_group_identifier");
+        for (const Json& state : states) {
+            std::string modifier = modifier_name(member(state, "modifier"));
+            if (modifier.empty()) modifier = modifier_name(member(radiance(object), "modifier"));
+            dynamic.states.push_back({std::move(modifier), !entries(state, "shades").empty()});
+        }
         for (const Json& shade : entries(states[0], "shades")) {
             std::optional<HoneybeeOutline> outline = outline_of(shade);
             if (!outline) continue;

@@ -37,12 +37,26 @@ struct HoneybeeGrid {
     std::vector<Normal> normals = {};
 };
 
+/// A state of a dynamic object.
+struct HoneybeeState {
+    std::string modifier;  ///< Name of its material; empty if the model gives none.
+    bool has_shades = false;
+};
+
+/// An aperture, door or shade with states.
+struct HoneybeeDynamic {
+    std::string object;  ///< Its identifier.
+    std::string group;   ///< Identifier of the group of objects that change together; may be empty.
+    std::vector<HoneybeeState> states;
+};
+
 /// The parts of a Honeybee model that exitance uses.
 struct HoneybeeModel {
     std::vector<RadPrimitive> modifiers;  ///< Materials in the words of Radiance, each name once.
     std::vector<HoneybeeSheet> sheets;
     std::vector<HoneybeeGrid> grids;
     std::vector<SceneCamera> views;
+    std::vector<HoneybeeDynamic> dynamic;
     std::vector<Finding> findings;  ///< Errors, and warnings about omitted parts.
 };
 

@@ -355,6 +355,7 @@ void ObjReader::take_panes() {
         for (const std::uint32_t c : face.corners) pane.corners.push_back(d.points[c]);
         pane.transmissivity = glass->second.transmissivity, pane.line = face.line;
         d.panes.push_back(std::move(pane));
+        out_.pane_labels.push_back({glass->first, d.groups[face.group]});
         return true;
     });
 }

@@ -9,6 +9,11 @@
 
 namespace exitance {
 
+/// Names by which the panes of a scene file are chosen.
+struct PaneLabel {
+    std::string material, object;
+};
+
 /// Content of a scene file and the faults found in it. Unreadable faces are not included.
 struct ReadScene {
     SceneDescription description;
@@ -21,6 +26,7 @@ struct ReadScene {
     std::vector<Spectrum> reflectance_deviation = {};
     Point origin = {};                        ///< Subtracted from the file's coordinates, metres.
     std::vector<std::string> glazed_by = {};  ///< Materials that became panes: "material 'water' (glass.mtl:4)".
+    std::vector<PaneLabel> pane_labels = {};  ///< One per pane of the description.
 };
 
 /// Reads Wavefront OBJ with its MTL files: faces with any number of corners, 'g' and 'o' names, 'usemtl', several

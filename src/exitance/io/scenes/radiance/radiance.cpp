@@ -142,6 +142,7 @@ void RadianceReader::take_surface(const RadPrimitive& p, const Call& call) {
             for (const std::uint32_t c : face.corners) pane.corners.push_back(d.points[c]);
             pane.line = face.line;
             d.panes.push_back(std::move(pane));
+            out_.pane_labels.push_back({p.modifier, name});
             continue;
         }
         if (turned) std::reverse(face.corners.begin(), face.corners.end());

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "exitance/io/scenes/scene_file.hpp"
+
+namespace exitance {
+
+/// A choice of panes. Empty: all panes.
+struct PaneChoice {
+    std::vector<std::string> materials, objects;  ///< A pane has one of these materials or objects ...
+    std::optional<Box> box;                       ///< ... and lies within this box, metres.
+};
+
+/// Returns whether each pane of the scene belongs to a choice. `named`: the panes before they were cut into convex
+/// ones.
+std::vector<bool> chosen_panes(const PaneChoice& choice, const Scene& scene, std::span<const NamedPane> named);
+
+}  // namespace exitance
