@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <map>
 
@@ -121,6 +122,23 @@ TEST_F(VerbsOfProcesses, RenderTheSamePictures) {
 TEST_F(VerbsOfProcesses, BakeTheSameMaps) {
     expect_same({"bake", solution(), "--density", "16"}, "");
     expect_same({"bake", solution(), "--density", "16", "--uv", "unwrap", "--light-groups"}, "");
+}
+
+/// The light of nodes on curved faces is gathered before the texels are baked.
+TEST_F(VerbsOfProcesses, BakeTheSameCurvedSurfaces) {
+    const std::string room = read_text(scene);
+    std::string corners, normals, faces;
+    constexpr int sides = 12;
+    for (int i = 0; i < sides; ++i) {
+        const double angle = 2 * 3.14159265358979 * i / sides, x = std::cos(angle), y = std::sin(angle);
+        for (const double z : {0.2, 1.4}) corners += fmt::format("v {} {} {}\n", 1 + 0.4 * x, 1.5 + 0.4 * y, z);
+        normals += fmt::format("vn {} {} 0\n", x, y);
+        const int a = 13 + 2 * i, b = 13 + 2 * ((i + 1) % sides), na = i + 1, nb = (i + 1) % sides + 1;
+        faces += fmt::format("f {}//{} {}//{} {}//{} {}//{}\n", a, na, b, nb, b + 1, nb, a + 1, na);
+    }
+    write_text(scene, room + corners + normals + "usemtl grey\ng column\n" + faces);
+    expect_same({"bake", solution(), "--density", "12"}, "");
+    expect_same({"bake", solution(), "--density", "12", "--uv", "unwrap"}, "");
 }
 
 TEST_F(VerbsOfProcesses, WriteTheSameViewFactors) {
