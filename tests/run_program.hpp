@@ -8,6 +8,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -61,7 +62,11 @@ class RunningProgram {
 
     /// Waits until the error stream contains `text` or the program has ended. Returns false in the latter case.
     bool wait_for(const std::string& text) {
-        while (read_text(folder_ / "err").find(text) == std::string::npos) {
+        return wait_until([&](const std::string& err) { return err.find(text) != std::string::npos; });
+    }
+    /// Waits until the error stream satisfies a condition. Returns false if the program ends before.
+    bool wait_until(const std::function<bool(const std::string& err)>& is_so) {
+        while (!is_so(read_text(folder_ / "err"))) {
             if (siginfo_t info{}; waitid(P_PID, static_cast<id_t>(process_), &info, WEXITED | WNOHANG | WNOWAIT) != 0 ||
                                   info.si_pid == process_)
                 return false;

@@ -18,13 +18,15 @@ constexpr std::size_t compared_hours = 64;
 constexpr std::size_t most_of_a_grid = 256, fewest_of_a_grid = 8;  ///< Sensors of the sample.
 constexpr std::size_t most_sensors = 2048;  ///< Sensors of the sample together, unless there are very many grids.
 
-/// Up to `most` of `count` indices, one at random from each of as many equal ranges.
+/// Returns up to `most` different ones of `count` indices, in order: one at random from each of as many equal ranges.
 std::vector<std::size_t> random_indices(std::size_t count, std::size_t most, RandomStream random) {
     const std::size_t n = std::min(count, most);
     std::vector<std::size_t> out;
     for (std::size_t k = 0; k < n; ++k)
         out.push_back(static_cast<std::size_t>((static_cast<double>(k) + random.uniform()) / static_cast<double>(n) *
                                                static_cast<double>(count)));
+    // Neighbouring ranges of less than two indices may choose the same one.
+    out.erase(std::unique(out.begin(), out.end()), out.end());
     return out;
 }
 

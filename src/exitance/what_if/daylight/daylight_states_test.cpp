@@ -183,7 +183,8 @@ TEST(DaylightStates, BlindsCloseByTheCountOfSunlitPoints) {
         const SunPosition at = sun_position(task.hours[h].time, task.site.place);
         const Normal w = sky_direction(at.altitude, at.azimuth, 0);
         std::size_t south = 0, west = 0;
-        for (const auto& [x, n] : task.sensors) {
+        for (const ProbePoint& sensor : task.sensors) {
+            const Point& x = sensor.x;
             const auto is_lit = [&](const Point& low, const Point& high, double distance, double cosine) {
                 if (!(cosine > 0) || !(w.z > 0) || task.hours[h].direct_normal == 0) return false;
                 const Point p = x + (distance / cosine) * w;
