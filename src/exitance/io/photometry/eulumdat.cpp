@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-constexpr double max_planes = 3600, max_angles = 20000, max_candelas = 4e6, max_value = 1e12;
+constexpr double max_planes = 3600;
 
 class EulumdatReader {
   public:
@@ -123,10 +123,10 @@ Result<void> EulumdatReader::read_counts() {
     }
     const std::array<std::pair<double*, const char*>, 1> step{{{&plane_step_, "the step of C planes"}}};
     if (const Result<void> read = numbers(step); !read) return read;
-    const Result<std::size_t> angles = count("number of angles gamma", 2, max_angles);
+    const Result<std::size_t> angles = count("number of angles gamma", 2, max_photometric_angles);
     if (!angles) return angles.error();
     angles_ = *angles;
-    if (static_cast<double>(planes_) * static_cast<double>(angles_) > max_candelas)
+    if (static_cast<double>(planes_) * static_cast<double>(angles_) > max_photometric_candelas)
         return error(fmt::format("{} intensities exceed the limit of this program", planes_ * angles_));
     const std::array<std::pair<double*, const char*>, 1> other{{{&angle_step_, "the step of angles gamma"}}};
     if (const Result<void> read = numbers(other); !read) return read;
@@ -187,7 +187,7 @@ Result<void> EulumdatReader::read_lamps() {
         const Result<double> watts = number("the watts of the lamps");
         if (!watts) return watts.error();
         if (i > 0) continue;
-        if (!(*flux > 0 && *flux < max_value)) {
+        if (!(*flux > 0 && *flux < max_photometric_value)) {
             at_ -= 4;
             return error(fmt::format("the lamps' flux is {:g} lm", *flux), "intensities are given for 1000 lm of it");
         }
@@ -276,7 +276,7 @@ Result<void> EulumdatReader::read_table() {
             const Result<double> value =
                 number(fmt::format("intensity {} of {}", p * angles_ + g + 1, stored * angles_));
             if (!value) return value.error();
-            if (!(*value >= 0 && *value * factor <= max_value)) {
+            if (!(*value >= 0 && *value * factor <= max_photometric_value)) {
                 --at_;
                 return error(fmt::format("the intensity {:g} is invalid", *value), "0 or more");
             }

@@ -12,7 +12,6 @@
 namespace exitance {
 namespace {
 
-constexpr double max_ies_angles = 20000, max_ies_candelas = 4e6, max_ies_value = 1e12;
 constexpr double foot = 0.3048;
 
 /// Numbers before the table, in the order of the file.
@@ -149,12 +148,12 @@ Result<void> IesReader::read_header() {
 
 Result<void> IesReader::check_header() {
     Header& h = header_;
-    const auto is_count = [](double v) { return v == std::floor(v) && v >= 1 && v <= max_ies_angles; };
+    const auto is_count = [](double v) { return v == std::floor(v) && v >= 1 && v <= max_photometric_angles; };
     if (!is_count(h.verticals))
         return text_.error(fmt::format("{:g} is not a possible number of vertical angles", h.verticals));
     if (!is_count(h.horizontals))
         return text_.error(fmt::format("{:g} is not a possible number of horizontal angles", h.horizontals));
-    if (h.verticals * h.horizontals > max_ies_candelas)
+    if (h.verticals * h.horizontals > max_photometric_candelas)
         return text_.error(
             fmt::format("{:g} intensities exceed the limit of this program", h.verticals * h.horizontals));
     if (h.verticals < 2) return text_.error("there is only one vertical angle", "a distribution has at least two");
@@ -166,7 +165,7 @@ Result<void> IesReader::check_header() {
         return text_.error(fmt::format("{:g} is not a type of photometry", h.type), "1 is C, 2 is B, 3 is A");
     if (h.units != 1 && h.units != 2)
         return text_.error(fmt::format("{:g} is not a kind of units", h.units), "1 is feet, 2 is metres");
-    if (!(h.multiplier > 0 && h.multiplier < max_ies_value))
+    if (!(h.multiplier > 0 && h.multiplier < max_photometric_value))
         return text_.error(fmt::format("the multiplier is {:g}", h.multiplier), "intensities are multiplied by it");
     if (!(h.ballast > 0 && h.ballast < 1e6))
         return text_.error(fmt::format("the ballast factor is {:g}", h.ballast), "intensities are multiplied by it");
@@ -217,7 +216,7 @@ Result<void> IesReader::read_table() {
             const Result<double> value = text_.number(
                 fmt::format("intensity {} of {}", h * vertical->size() + v + 1, horizontal->size() * vertical->size()));
             if (!value) return value.error();
-            if (!(*value >= 0 && *value * factor <= max_ies_value))
+            if (!(*value >= 0 && *value * factor <= max_photometric_value))
                 return text_.error(fmt::format("the intensity {:g} cd is invalid", *value), "0 or more");
             row.push_back(*value * factor);
         }

@@ -176,13 +176,18 @@ TEST(LightGroupsOfTwoLamps, UnknownNamesAreRejected) {
     EXPECT_FALSE(change_light(same.solution, same.groups, {.reflectance = {{"roof", Spectrum(0.5)}}}));
 }
 
+/// Writes a solution with its groups, and reads the groups.
+void write_and_read(const Lit& whole, const std::string& path, LightGroups& groups) {
+    ASSERT_TRUE(write_solution(path, whole.solution, &whole.groups));
+    const Result<Solution> solution = load_solution(path, Rehearsed::not_yet, &groups);
+    ASSERT_TRUE(solution) << solution.error().message;
+}
+
 TEST(LightGroupsOfTwoLamps, AreRestoredFromAFile) {
     const Lit whole = lit(coarse);
     const TemporaryFolder folder;
-    ASSERT_TRUE(write_solution(folder / "s.h5", whole.solution, &whole.groups));
     LightGroups groups;
-    const Result<Solution> solution = load_solution(folder / "s.h5", Rehearsed::not_yet, &groups);
-    ASSERT_TRUE(solution) << solution.error().message;
+    write_and_read(whole, folder / "s.h5", groups);
     ASSERT_EQ(groups.groups.size(), 2u);
     EXPECT_EQ(groups.transport.source, whole.groups.transport.source);
     EXPECT_EQ(groups.transport.weight, whole.groups.transport.weight);
@@ -197,10 +202,8 @@ TEST(LightGroupsOfTwoLamps, AreRestoredFromAFileIfNothingReflects) {
     for (Material& m : d.materials) m.reflectance = Spectrum(0);
     const Lit whole = lit(coarse, std::move(d));
     const TemporaryFolder folder;
-    ASSERT_TRUE(write_solution(folder / "s.h5", whole.solution, &whole.groups));
     LightGroups groups;
-    const Result<Solution> solution = load_solution(folder / "s.h5", Rehearsed::not_yet, &groups);
-    ASSERT_TRUE(solution) << solution.error().message;
+    write_and_read(whole, folder / "s.h5", groups);
     ASSERT_EQ(groups.groups.size(), 2u);
     EXPECT_EQ(groups.groups[1].interpolant, whole.groups.groups[1].interpolant);
 }
