@@ -43,6 +43,7 @@ class DaylightSimulation {
   public:
     /// All arguments must outlive this.
     DaylightSimulation(const Scene& scene, const DaylightTask& task, Progress& progress, const StopRequest& stop);
+    DaylightSimulation(const Scene&, const DaylightTask&, Progress&, StopRequest&&) = delete;
     ~DaylightSimulation();
     DaylightSimulation(const DaylightSimulation&) = delete;
     DaylightSimulation& operator=(const DaylightSimulation&) = delete;

@@ -175,7 +175,8 @@ TEST(DaylightStates, BlindsCloseByTheCountOfSunlitPoints) {
     for (PaneGroup& group : states.groups) group.rule.kind = StateRule::Kind::sunlight;
     task.states = &states;
     Progress progress;
-    DaylightSimulation simulation(room, task, progress, StopRequest());
+    StopRequest stop;
+    DaylightSimulation simulation(room, task, progress, stop);
     ASSERT_TRUE(simulation.find_light());
     std::size_t closed = 0;
     for (std::size_t h = 0; h < task.hours.size(); ++h) {
@@ -226,7 +227,8 @@ TEST(DaylightStates, ByIlluminanceTheOpenStateDecides) {
     DaylightTask task = task_of();
     task.states = &states;
     Progress progress;
-    DaylightSimulation simulation(room, task, progress, StopRequest());
+    StopRequest stop;
+    DaylightSimulation simulation(room, task, progress, stop);
     ASSERT_TRUE(simulation.find_light());
     std::array<std::size_t, 3> hours{};
     for (std::size_t h = 0; h < task.hours.size(); ++h) {
@@ -302,13 +304,14 @@ TEST(DaylightStates, LightThatCrossesTwoGroupsIsMeasured) {
     DaylightTask task = task_of();
     Progress progress;
     task.states = &states;
-    DaylightSimulation in_series(two, task, progress, StopRequest());
+    StopRequest stop;
+    DaylightSimulation in_series(two, task, progress, stop);
     ASSERT_TRUE(in_series.find_light());
     EXPECT_GT(in_series.states()->twice, 0.9);
     DaylightStates side_by_side = states_of(0, 0);
     task.states = &side_by_side;
     const Scene room = glazed_room();
-    DaylightSimulation beside(room, task, progress, StopRequest());
+    DaylightSimulation beside(room, task, progress, stop);
     ASSERT_TRUE(beside.find_light());
     EXPECT_LT(beside.states()->twice, 1e-3);
 }
