@@ -59,7 +59,12 @@ Place find(const EmissionProfile::Axis& axis, const Vec3& d) {
     if (angle <= at.front()) return {0, 0, goes_round(axis.angle) || angle >= at[0] - 0.5 * (at[1] - at[0])};
     if (angle >= at.back())
         return {last - 1, 1, goes_round(axis.angle) || angle <= at[last] + 0.5 * (at[last] - at[last - 1])};
-    const auto next = static_cast<std::size_t>(std::upper_bound(at.begin(), at.end(), angle) - at.begin());
+    // Most tables have equal steps, so that the step is known without a search.
+    auto next =
+        1 +
+        std::min(last - 1, static_cast<std::size_t>((angle - at[0]) / (at[last] - at[0]) * static_cast<double>(last)));
+    if (!(at[next - 1] <= angle && angle < at[next]))
+        next = static_cast<std::size_t>(std::upper_bound(at.begin(), at.end(), angle) - at.begin());
     return {next - 1, (angle - at[next - 1]) / (at[next] - at[next - 1])};
 }
 

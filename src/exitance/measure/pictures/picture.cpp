@@ -63,7 +63,7 @@ class TilePainter {
           places_(places),
           light_(light, static_cast<std::uint32_t>(places.size()), options.gather, options.seed, SpotPoints::any,
                  brightness) {
-        light_.use(stop);
+        light_.use(stop), light_.interpolate_below(options.interpolation);
         if (shown) light_.show(shown);
     }
 

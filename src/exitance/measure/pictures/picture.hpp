@@ -35,6 +35,9 @@ struct PictureOptions {
     /// Rays of a final gather at every sample, a power of two of at least 4; 0: read the solution.
     unsigned gather = 0;
     std::uint64_t seed = 1;
+    /// Relative difference below which light without shadow edges may be interpolated between pixels, for pictures that
+    /// are only looked at; 0: the light of every pixel is evaluated.
+    double interpolation = 0;
 };
 
 /// Renders a solution with `samples` rays per pixel. The rays have the density of a tent filter two pixels wide (so

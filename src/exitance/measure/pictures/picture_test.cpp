@@ -178,10 +178,10 @@ TEST(Picture, AFinalGatherOfAFurnaceIsUniformToo) {
         EXPECT_NEAR(pixel.irradiance[0], 1 / (1 - rho), 1e-6);
 }
 
-/// Two furnished rooms with 96 lamps, without reflection.
-Solution many_shadows() {
+/// Solution of a scene without reflection: all light is direct.
+Solution unreflected_light(Scene scene) {
     Solution s;
-    s.scene = built_scene("carpet", {{"u", "12"}, {"v", "8"}, {"cuts", "1"}, {"books", "0"}});
+    s.scene = std::move(scene);
     ElementFunction& f = s.interpolant;
     f.tree = Stage(s.scene).make_elements({.edge = 10});
     f.first_value.resize(f.tree.size(), 0);
@@ -191,6 +191,32 @@ Solution many_shadows() {
     }
     s.indirect = f;
     return s;
+}
+
+/// Two furnished rooms with 96 lamps, without reflection.
+Solution many_shadows() {
+    return unreflected_light(built_scene("carpet", {{"u", "12"}, {"v", "8"}, {"cuts", "1"}, {"books", "0"}}));
+}
+
+TEST(Picture, InterpolatesLightWithoutVisibleDifference) {
+    const Solution s =
+        unreflected_light(built_scene("office", {{"nx", "1"}, {"ny", "1"}, {"nfurn", "1"}, {"books", "0"}}));
+    const Camera camera{{3.5, 3.5, 1.6}, {1, 1, 0.6}, 80};
+    const RadiosityFunction light(s, DirectBy::closed_forms);
+    Progress progress;
+    const StopRequest stop;
+    PictureOptions options{camera, {192, 128}, 2};
+    const Picture exact = take_picture(light, options, progress, stop);
+    options.interpolation = 0.003;
+    const Picture fast = take_picture(light, options, progress, stop);
+    std::size_t changed = 0, visible = 0;
+    for (std::size_t i = 0; i < exact.pixels.size(); ++i) {
+        const double expected = mean(exact.pixels[i].irradiance), found = mean(fast.pixels[i].irradiance);
+        EXPECT_NEAR(found, expected, 0.1 * expected + 1e-3) << i;
+        changed += found != expected, visible += std::abs(found - expected) > 0.02 * expected;
+    }
+    EXPECT_GT(changed, exact.pixels.size() / 10);    // light is interpolated
+    EXPECT_LT(visible, exact.pixels.size() / 1000);  // in shadow edges
 }
 
 TEST(Picture, ShowsTheFunctionUpToNoiseWithManyShadows) {

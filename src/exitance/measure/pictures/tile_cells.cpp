@@ -87,14 +87,16 @@ Spectrum TileLight::light_of_samples(const Spot& spot) {
 
 /// Interpolates light between the corners of a cell of pixels. Returns false if it is not uniform or differs at the
 /// centre.
-bool TileLight::interpolate(std::span<Spot> spots, int x0, int y0, int x1, int y1) {
+template <class LightAt>
+bool TileLight::interpolate(std::span<Spot> spots, const Cell& cell, const CellRule& rule, const LightAt& light_at) {
+    const auto [x0, y0, x1, y1] = cell;
     const std::array<const Spot*, 4> corners = {spot_at(spots, x0, y0), spot_at(spots, x1, y0), spot_at(spots, x0, y1),
                                                 spot_at(spots, x1, y1)};
     if (!std::ranges::all_of(corners, [&](const Spot* s) { return s && s->count == samples_; })) return false;
     std::array<Spectrum, 4> E;
     double least = HUGE_VAL, most = 0, noise = 0;
     for (std::size_t i = 0; i < 4; ++i) {
-        E[i] = light_by_rays(*corners[i]);
+        E[i] = light_at(*corners[i]);
         noise = std::max(noise, noise_[pixel_of(*corners[i])]);
         const double there = mean(E[i] + corners[i]->irradiance);
         least = std::min(least, there), most = std::max(most, there);
@@ -102,38 +104,77 @@ bool TileLight::interpolate(std::span<Spot> spots, int x0, int y0, int x1, int y
     constexpr double max_deviations =
         3;  // standard deviations: a difference due to noise is no reason for a smaller cell
     const double all = most + dim * brightness_;
-    if (most - least > std::max(even * all, max_deviations * noise)) return false;
-    const auto between = [&](int x, int y) {
-        const double u = static_cast<double>(x - x0) / (x1 - x0), v = static_cast<double>(y - y0) / (y1 - y0);
+    if (most - least > std::max(rule.even * all, max_deviations * noise)) return false;
+    const auto between = [&](double u, double v) {
         return (1 - v) * ((1 - u) * E[0] + u * E[1]) + v * ((1 - u) * E[2] + u * E[3]);
     };
+    const double to_u = 1.0 / (x1 - x0), to_v = 1.0 / (y1 - y0);
     const int x = (x0 + x1) / 2, y = (y0 + y1) / 2;
     const Spot* middle = spot_at(spots, x, y);
-    if (!middle ||
-        std::abs(mean(light_by_rays(*middle) - between(x, y))) > std::max(alike * all, max_deviations * noise))
+    if (!middle || std::abs(mean(light_at(*middle) - between((x - x0) * to_u, (y - y0) * to_v))) >
+                       std::max(rule.middle * all, max_deviations * noise))
         return false;
     for (int k = y0; k <= y1; ++k)
         for (int i = x0; i <= x1; ++i) {
             const auto pixel = static_cast<std::size_t>(k * tile_side + i);
             const Spot* spot = spot_at(spots, i, k);
             if (!spot || is_found_[pixel] || spot->count != samples_) continue;
-            found_[pixel] = between(i, k), noise_[pixel] = noise, is_found_[pixel] = 1;
+            found_[pixel] = between((i - x0) * to_u, (k - y0) * to_v), noise_[pixel] = noise, is_found_[pixel] = 1;
         }
     return true;
 }
 
 /// Computes the pixels of a cell, corners included: by interpolation, or by its quarters.
-void TileLight::fill(std::span<Spot> spots, int x0, int y0, int x1, int y1) {
-    if (x1 - x0 <= 1 || y1 - y0 <= 1 || interpolate(spots, x0, y0, x1, y1)) return;
+template <class LightAt>
+void TileLight::fill(std::span<Spot> spots, const Cell& cell, const CellRule& rule, const LightAt& light_at) {
+    const auto [x0, y0, x1, y1] = cell;
+    if (x1 - x0 <= 1 || y1 - y0 <= 1 || interpolate(spots, cell, rule, light_at)) return;
     const int x = (x0 + x1) / 2, y = (y0 + y1) / 2;
-    fill(spots, x0, y0, x, y), fill(spots, x, y0, x1, y);
-    fill(spots, x0, y, x, y1), fill(spots, x, y, x1, y1);
+    fill(spots, {x0, y0, x, y}, rule, light_at), fill(spots, {x, y0, x1, y}, rule, light_at);
+    fill(spots, {x0, y, x, y1}, rule, light_at), fill(spots, {x, y, x1, y1}, rule, light_at);
+}
+
+/// Splits the prepared light of a block into the part that no shadow edge crosses and the rest.
+void TileLight::split_block(std::size_t block) {
+    const ReceiverLight* known = known_[block];
+    SplitLight& out = split_[block];
+    const auto is_open = [](const ReceiverLight::Source& source) { return source.count == 0; };
+    out.is_split = interpolation_ > 0 && known && known->behind.empty() && squared(direct_share_) > 0 &&
+                   std::ranges::any_of(known->sources, is_open);
+    if (!out.is_split) return;
+    out.open = out.shadowed = *known;
+    std::erase_if(out.open.sources, [&](const ReceiverLight::Source& source) { return !is_open(source); });
+    out.open.beams.clear();
+    std::erase_if(out.shadowed.sources, is_open);
+    out.shadowed.open.clear(), out.shadowed.open_light.clear();
+}
+
+/// Light at the centre of a pixel from the emitters that the whole of its block sees; computed once per pixel.
+Spectrum TileLight::open_light(const Spot& spot, std::size_t block) {
+    const std::size_t pixel = pixel_of(spot);
+    if (is_stopped()) return {};
+    if (is_found_[pixel]) return found_[pixel];
+    is_found_[pixel] = 1, noise_[pixel] = 0;
+    return found_[pixel] = light_.stage().direct.irradiance(split_[block].open, centre_of(spot), visibility_);
+}
+
+/// Interpolates the open part of the light of a block between pixels, where it is uniform. Other pixels stay unknown.
+void TileLight::fill_open(std::span<Spot> spots, std::size_t block) {
+    constexpr double steepest = 0.06;  // derived from steps of 1% per pixel
+    const CellRule rule{steepest, interpolation_};
+    constexpr int across = tile_side / block_side;
+    const int x = static_cast<int>(block) % across * block_side, y = static_cast<int>(block) / across * block_side;
+    fill(spots, {x, y, x + block_side - 1, y + block_side - 1}, rule,
+         [&](const Spot& spot) { return open_light(spot, block); });
 }
 
 void TileLight::fill_all(std::span<Spot> spots) {
     constexpr int last = tile_side - 1, side = cell_side;
+    constexpr CellRule rule{even, alike};
+    const auto by_rays = [&](const Spot& spot) { return light_by_rays(spot); };
     for (int y = 0; y < last; y += side)
-        for (int x = 0; x < last; x += side) fill(spots, x, y, std::min(x + side, last), std::min(y + side, last));
+        for (int x = 0; x < last; x += side)
+            fill(spots, {x, y, std::min(x + side, last), std::min(y + side, last)}, rule, by_rays);
     std::vector<Spectrum>& rest = rest_;
     rest.resize(spots.size());
     for (std::size_t i = 0; i < spots.size(); ++i)

@@ -51,8 +51,8 @@ class Octagon {
 
 constexpr std::uint32_t probing = 4;  ///< Points of a spot by which to decide whether the others are needed.
 
-bool agree(const Spectrum& a, const Spectrum& b) {
-    return std::abs(mean(a) - mean(b)) <= TileLight::alike * std::max(mean(a), mean(b));
+bool agree(const Spectrum& a, const Spectrum& b, double difference = TileLight::alike) {
+    return std::abs(mean(a) - mean(b)) <= difference * std::max(mean(a), mean(b));
 }
 
 /// Mean of value(i) over [0, count): of the first few values if they, added to `rest`, differ little; else of all.
@@ -106,6 +106,13 @@ const ReceiverLight* TileLight::look_at_block(std::span<const Spot> spots, const
     return worth && prepare(spots, *whole, room) ? &room : whole;
 }
 
+/// Mean of a spot's points.
+Point TileLight::centre_of(const Spot& spot) const {
+    Point middle;
+    for (std::uint32_t i = 0; i < spot.count; ++i) middle += points_[spot.first + i] / spot.count;
+    return middle;
+}
+
 /// True if a spot is so small compared with its distance from every emitter that direct light is linear over it. E ~ 1
 /// / d^2 over r = d / 30 differs from its tangent by at most a few (r / d)^2, less than 1%, and its mean by a fraction
 /// of that.
@@ -154,6 +161,11 @@ Spectrum TileLight::direct(const Spot& spot, const ReceiverLight* known, const P
     if (is_stopped()) return {};
     const Stage& stage = light_.stage();
     const Spectrum meshed = spot.meshed ? mesh_->at(spot.region, x) : Spectrum();
+    if (const std::size_t pixel = pixel_of(spot); known && is_found_[pixel]) {
+        const ReceiverLight& shadowed = split_[static_cast<std::size_t>(block_of(spot))].shadowed;
+        const Spectrum rest = shadowed.is_dark() ? Spectrum() : stage.direct.irradiance(shadowed, x, visibility_);
+        return direct_share_ * (found_[pixel] + rest) - meshed;
+    }
     if (known) return direct_share_ * stage.direct.irradiance(*known, x, visibility_) - meshed;
     const Normal& n = stage.scene.regions()[spot.region].plane.n;
     return direct_share_ * stage.direct.irradiance(x, n, spot.region, visibility_) - meshed;
@@ -166,8 +178,7 @@ bool TileLight::first_guess(Spot& spot, const ReceiverLight* known, Spectrum& li
         spot.meshed.reset();
         return true;
     }
-    Point middle;
-    for (std::uint32_t i = 0; i < spot.count; ++i) middle += points_[spot.first + i] / spot.count;
+    const Point middle = centre_of(spot);
     const bool smooth = known && known->is_unshadowed() && looks_small(spot, *known, middle);
     if (smooth || spot.count == 1) spot.meshed.reset();
     // If the pixel also shows other surfaces, the centre may be hidden behind them and have different light.
@@ -176,6 +187,9 @@ bool TileLight::first_guess(Spot& spot, const ReceiverLight* known, Spectrum& li
 }
 
 bool TileLight::differs_from_neighbours(std::span<const Spot> spots, std::size_t i) const {
+    // Pixels that are only looked at show fainter edges without steps being seen.
+    constexpr double unseen_edge = 0.05;  // derived from steps of 1% between pixels within a shadow edge of some pixels
+    const double difference = interpolation_ > 0 ? unseen_edge : alike;
     int neighbours = 0;
     const auto [x, y] = std::pair(spots[i].x, spots[i].y);
     for (int v = std::max(y - 1, 0); v <= std::min(y + 1, tile_side - 1); ++v)
@@ -183,7 +197,7 @@ bool TileLight::differs_from_neighbours(std::span<const Spot> spots, std::size_t
             const std::uint32_t found = spot_at_[static_cast<std::size_t>(v * tile_side + u)];
             if (found == 0 || found == i + 1) continue;
             ++neighbours;
-            if (!agree(spots[found - 1].irradiance, spots[i].irradiance)) return true;
+            if (!agree(spots[found - 1].irradiance, spots[i].irradiance, difference)) return true;
         }
     return neighbours < 3;  // with fewer than three known neighbours, it counts as different
 }
@@ -226,12 +240,17 @@ void TileLight::evaluate_region(std::span<Spot> spots) {
     visit_blocks(spots, [&](std::size_t block, std::size_t begin, std::size_t end) {
         known_[block] = look_at_block(spots.subspan(begin, end - begin), whole, parts_[block]);
     });
+    for (std::size_t i = 0; i < spots.size(); ++i) {
+        spot_at_[pixel_of(spots[i])] = static_cast<std::uint32_t>(i + 1);
+        spots[i].irradiance = elements(spots[i]);
+    }
     visit_blocks(spots, [&](std::size_t block, std::size_t begin, std::size_t end) {
+        split_block(block);
+        if (split_[block].is_split) fill_open(spots, block);
         for (std::size_t i = begin; i < end; ++i) {
-            spot_at_[pixel_of(spots[i])] = static_cast<std::uint32_t>(i + 1);
             Spectrum light;
             settled_[i] = first_guess(spots[i], known_[block], light);
-            rest_[i] = elements(spots[i]) + spots[i].meshed.value_or(Spectrum());
+            rest_[i] = spots[i].irradiance + spots[i].meshed.value_or(Spectrum());
             spots[i].irradiance = rest_[i] + light;
         }
     });
@@ -251,6 +270,7 @@ void TileLight::evaluate_region(std::span<Spot> spots) {
         const auto direct_at = [&](std::uint32_t k) { return direct(spot, known, points_[spot.first + k]); };
         spot.irradiance = rest_[i] + probed_mean(spot.count, rest_[i], direct_at);
     }
+    for (const Spot& spot : spots) is_found_[pixel_of(spot)] = 0;
 }
 
 void TileLight::evaluate(std::span<const Point> points, std::vector<Spot>& spots) {

@@ -47,6 +47,9 @@ class TileLight {
     void show(const std::function<Spectrum(RegionId, const Point&)>& shown) {
         shown_ = &shown, direct_share_ = Spectrum();
     }
+    /// Interpolates light without shadow edges between pixels if the light at the centre of a cell of pixels differs
+    /// from it by at most this share; 0: never.
+    void interpolate_below(double difference) { interpolation_ = difference; }
     /// Sets a stop request, which must outlive the object: after a stop, evaluate() returns at once with unfinished
     /// spots.
     void use(const StopRequest& stop) { stop_ = &stop; }
@@ -74,6 +77,18 @@ class TileLight {
         }
     }
 
+    /// The prepared light of a block in two parts.
+    struct SplitLight {
+        bool is_split = false;
+        ReceiverLight open;      ///< Emitters that are fully visible from the whole block: smooth.
+        ReceiverLight shadowed;  ///< Emitters and lights that something may block.
+    };
+    /// Rules by which light is interpolated in a cell of pixels, relative to the light of the cell.
+    struct CellRule {
+        double even;    ///< Difference of the corners below which light is interpolated.
+        double middle;  ///< Allowed difference between the light at the centre and the interpolated light.
+    };
+
     bool is_stopped() const { return stop_ && stop_->requested(); }
     void evaluate_region(std::span<Spot> spots);
     const ReceiverLight* look_at_block(std::span<const Spot> spots, const ReceiverLight* whole, ReceiverLight& room);
@@ -86,12 +101,22 @@ class TileLight {
     bool looks_small(const Spot& spot, const ReceiverLight& known, const Point& middle) const;
     void evaluate_by_rays(std::span<Spot> spots);
     const Spot* spot_at(std::span<const Spot> spots, int x, int y) const;
+    Point centre_of(const Spot& spot) const;
     LightAccuracy accuracy(double rest) const;
     Spectrum light_by_rays(const Spot& spot);
     Spectrum light_of_samples(const Spot& spot);
     void fill_all(std::span<Spot> spots);
-    void fill(std::span<Spot> spots, int x0, int y0, int x1, int y1);
-    bool interpolate(std::span<Spot> spots, int x0, int y0, int x1, int y1);
+    /// A cell of pixels, corners included, in pixels of the tile.
+    struct Cell {
+        int x0, y0, x1, y1;
+    };
+    template <class LightAt>
+    void fill(std::span<Spot> spots, const Cell& cell, const CellRule& rule, const LightAt& light_at);
+    template <class LightAt>
+    bool interpolate(std::span<Spot> spots, const Cell& cell, const CellRule& rule, const LightAt& light_at);
+    void split_block(std::size_t block);
+    void fill_open(std::span<Spot> spots, std::size_t block);
+    Spectrum open_light(const Spot& spot, std::size_t block);
     bool differs_from_neighbours(std::span<const Spot> spots, std::size_t i) const;
     bool bends_between_neighbours(std::span<const Spot> spots, std::size_t i) const;
     Spectrum mirrored_mean(const Spot& spot, const Spectrum& rest, const ReceiverLight* known);
@@ -104,19 +129,22 @@ class TileLight {
     unsigned gather_;
     std::uint64_t seed_;
     SpotPoints kind_;
-    double brightness_;      ///< W/m^2
+    double brightness_;  ///< W/m^2
+    double interpolation_ = 0;
     Spectrum direct_share_;  ///< Factor of exact direct light.
     std::span<const Point> points_;
     std::vector<Point> outline_;
     ReceiverLight whole_;
     std::array<ReceiverLight, blocks> parts_;
     std::array<const ReceiverLight*, blocks> known_;  ///< Prepared light of each block; null if none could be prepared.
+    std::array<SplitLight, blocks> split_;
     /// For each pixel of the current region, the spot's index plus one; 0: none.
     std::array<std::uint32_t, tile_side * tile_side> spot_at_;
     std::vector<std::uint8_t> settled_;
-    std::vector<Spectrum> rest_;                         ///< All light except exact direct light, for every spot.
-    std::array<Spectrum, tile_side * tile_side> found_;  ///< Direct light of each pixel by rays.
-    std::array<double, tile_side * tile_side> noise_;    ///< Its standard deviation, W/m^2.
+    std::vector<Spectrum> rest_;  ///< All light except exact direct light, for every spot.
+    /// Direct light of each pixel by rays, or that of the open part of its block's light.
+    std::array<Spectrum, tile_side * tile_side> found_;
+    std::array<double, tile_side * tile_side> noise_;           ///< Its standard deviation, W/m^2.
     std::array<std::uint8_t, tile_side * tile_side> is_found_;  ///< True where it is known.
     DirectLight::Workspace visibility_;
     PlaceLight::Workspace place_;
