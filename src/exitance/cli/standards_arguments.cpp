@@ -22,17 +22,19 @@ PlaneRequest read_request(const std::string& option, const std::string& words) {
         const std::size_t at = word.find('=');
         const std::string key = word.substr(0, at);
         const double value = at == std::string::npos ? -1 : read_number(option, word.substr(at + 1));
-        const bool known = key == "height" || key == "border" || key == "spacing" || key == "around";
-        if (!known || !(value >= 0) || ((key == "spacing" || key == "around") && value == 0))
-            throw CLI::ValidationError(option,
-                                       fmt::format("'{}' is not height=H, border=B, spacing=S or around=W", word));
+        const bool is_width = key == "spacing" || key == "around" || key == "background";
+        const bool known = is_width || key == "height" || key == "border";
+        if (!known || !(value >= 0) || (is_width && value == 0))
+            throw CLI::ValidationError(
+                option, fmt::format("'{}' is not height=H, border=B, spacing=S, around=W or background=W", word));
         if (key == "height") out.height = value;
         if (key == "border") out.border = value;
         if (key == "spacing") out.spacing = value;
         if (key == "around") out.surroundings = value;
+        if (key == "background") out.background = value;
     }
-    if (out.surroundings && out.group.empty())
-        throw CLI::ValidationError(option, "around=W needs a task area: the name of faces");
+    if ((out.surroundings || out.background) && out.group.empty())
+        throw CLI::ValidationError(option, "around=W and background=W need a task area: the name of faces");
     return out;
 }
 
@@ -90,7 +92,8 @@ void declare_standards(CLI::App& app, ReportArguments& arguments) {
     add_planes(app, "--plane", arguments.working_planes, false,
                "Working plane of EN 12464-1: '0.75' (metres above the floor), or named faces: 'desk' (on them) or "
                "'hall,height=0.75'; further border=B (default 0.5 m above floors) and spacing=S (default: the "
-               "standard's); around=0.5 also measures the surroundings of named faces. May be given several times");
+               "standard's); around=0.5 also measures the surroundings of named faces, and background=3 the background "
+               "around these. May be given several times");
     add_planes(app, "--cylindrical", arguments.working_planes, true,
                "Plane for cylindrical illuminance, '1.2' or 'hall,height=1.6'. May be given several times");
     add_positive(app, "--maintenance", arguments.maintenance, "FACTOR",

@@ -151,7 +151,7 @@ TEST(RoomObservers, StandInRoomsAndNotInFurniture) {
     const FloorRooms rooms(scene, stage.tracer);
     const std::vector<Observer> observers = room_observers(stage, rooms);
     ASSERT_EQ(observers.size(), 8u);
-    EXPECT_EQ(observers[0].name, "room 1 (kitchen), along u");
+    EXPECT_EQ(observers[0].name, "room 1 (kitchen), looking 23°");
     for (const Observer& o : observers) {
         ASSERT_TRUE(o.room);
         EXPECT_EQ(rooms.at(o.eye), *o.room) << o.name;

@@ -22,6 +22,18 @@ std::vector<Normal> around() {
 
 }  // namespace
 
+const char* name_of(PlaneZone zone) {
+    switch (zone) {
+        case PlaneZone::task:
+            return "task";
+        case PlaneZone::surroundings:
+            return "surroundings";
+        case PlaneZone::background:
+            return "background";
+    }
+    return "";
+}
+
 double en_12464_spacing(double length, double width) {
     const double longer = std::max(length, width), shorter = std::min(length, width);
     const double d = longer >= 2 * shorter ? shorter : longer;

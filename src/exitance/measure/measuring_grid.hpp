@@ -22,6 +22,11 @@ struct MeasuringPlane {
 /// shorter one if the longer one has at least twice its length. Metres.
 double en_12464_spacing(double length, double width);
 
+/// Part of a working place that a plane measures, by EN 12464-1: the task area or a whole room, the band around the
+/// task area, and the band around that.
+enum class PlaneZone : std::uint8_t { task, surroundings, background };
+const char* name_of(PlaneZone zone);
+
 /// Light on a plane, measured at the centres of equal cells.
 struct GridLight {
     MeasuringPlane plane;
@@ -35,6 +40,7 @@ struct GridLight {
     std::vector<bool> counts;  ///< For every point, true if it belongs to the measured area. Empty: all do.
     /// True for cylindrical illuminance E_z, the mean over vertical planes of all directions.
     bool is_cylindrical = false;
+    PlaneZone zone = PlaneZone::task;
     std::string name;                 ///< Empty: no name.
     std::optional<std::size_t> room;  ///< Index of the room that contains the plane; none: not in a room.
 };

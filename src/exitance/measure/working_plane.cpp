@@ -78,32 +78,56 @@ Result<std::vector<GridLight>> planes_of_rooms(const FloorRooms& rooms, const Pl
     return out;
 }
 
-/// True if a point of the floor's plane is outside its outline, but within a distance from it.
-bool is_around(const Floor& floor, const Point& p, double width) {
-    constexpr int places = 24, rings = 4;  // derived from a tenth of the width
-    if (floor.holds(p)) return false;
-    const Frame frame(floor.shapes[0].plane.n);
-    for (int ring = 1; ring <= rings; ++ring)
-        for (int i = 0; i < places; ++i) {
-            const double a = 2 * pi * i / places, r = width * ring / rings;
-            if (floor.holds(p + r * frame.to_world(std::cos(a), std::sin(a), 0))) return true;
-        }
-    return false;
+/// Distance from a point to a segment, metres.
+double distance_to_edge(const Point& p, const Point& a, const Point& b) {
+    const Vec3 edge = b - a;
+    const double t = std::clamp(dot(p - a, edge) / squared_norm(edge), 0.0, 1.0);
+    return norm(p - a - t * edge);
 }
 
-/// Makes the grid of the immediate surroundings of a task area: a band around it, inside the same room.
-Result<GridLight> make_surroundings(const PlaneRequest& request, const Floor& floor, const FloorRooms& rooms,
-                                    const std::optional<std::size_t>& room) {
-    const double width = *request.surroundings;
+/// Distance from a point of the floor's plane to the floor, metres; 0 inside.
+double distance_to_floor(const Floor& floor, const Point& p) {
+    if (floor.holds(p)) return 0;
+    double nearest = HUGE_VAL;
+    for (const FloorShape& shape : floor.shapes)
+        for (const std::vector<Point>& loop : shape.loops)
+            for (std::size_t i = 0; i < loop.size(); ++i)
+                nearest = std::min(nearest, distance_to_edge(p, loop[i], loop[(i + 1) % loop.size()]));
+    return nearest;
+}
+
+/// Makes the grid of a band around a task area, inside the same room: of the points that are more than `from` and at
+/// most `to` metres away from it.
+Result<GridLight> make_band(const PlaneRequest& request, const Floor& floor, const FloorRooms& rooms,
+                            const std::optional<std::size_t>& room, double from, double to) {
     MeasuringPlane plane = rectangle_about(floor);
     const Vec3 u = normalized(plane.u), v = normalized(plane.v), n = cross(u, v);
-    plane.origin = plane.origin - width * (u + v);
-    plane.u = plane.u + 2 * width * u, plane.v = plane.v + 2 * width * v;
+    plane.origin = plane.origin - to * (u + v);
+    plane.u = plane.u + 2 * to * u, plane.v = plane.v + 2 * to * v;
     PlaneRequest band = request;
     band.border = 0;
     return make_plane(band, plane, [&](const Point& p, double) {
-        return is_around(floor, p, width) && (!room || rooms.at(p + request.height.value_or(0) * n) == *room);
+        const double distance = distance_to_floor(floor, p);
+        return distance > from && distance <= to && (!room || rooms.at(p + request.height.value_or(0) * n) == *room);
     });
+}
+
+/// Adds the requested bands around a task area, whose grid is the last one.
+Result<void> add_bands(const PlaneRequest& request, const Floor& floor, const FloorRooms& rooms,
+                       std::vector<GridLight>& out) {
+    const GridLight task = out.back();
+    const double inner = request.surroundings.value_or(0);
+    const auto add = [&](PlaneZone zone, double from, double to) -> Result<void> {
+        Result<GridLight> band = make_band(request, floor, rooms, task.room, from, to);
+        if (!band) return band.error();
+        band->name = fmt::format("{}, {}", task.name, name_of(zone)), band->room = task.room, band->zone = zone;
+        out.push_back(std::move(*band));
+        return {};
+    };
+    if (request.surroundings)
+        if (const Result<void> added = add(PlaneZone::surroundings, 0, inner); !added) return added;
+    if (request.background) return add(PlaneZone::background, inner, inner + *request.background);
+    return {};
 }
 
 Result<std::vector<GridLight>> planes_of_group(const Scene& scene, const FloorRooms& rooms,
@@ -128,11 +152,7 @@ Result<std::vector<GridLight>> planes_of_group(const Scene& scene, const FloorRo
         const std::size_t room = rooms.at(grid->plane.origin + 0.5 * (grid->plane.u + grid->plane.v));
         if (room < rooms.count()) grid->room = room;
         out.push_back(std::move(*grid));
-        if (!request.surroundings) continue;
-        Result<GridLight> band = make_surroundings(request, floor, rooms, out.back().room);
-        if (!band) return band.error();
-        band->name = out.back().name + ", surroundings", band->room = out.back().room;
-        out.push_back(std::move(*band));
+        if (const Result<void> added = add_bands(request, floor, rooms, out); !added) return added.error();
     }
     return out;
 }

@@ -19,6 +19,8 @@ struct PlaneRequest {
     double spacing = 0;  ///< See MeasuringPlane::spacing.
     /// Width of the immediate surroundings to be measured around named faces, metres; none: they are not measured.
     std::optional<double> surroundings;
+    /// Width of the background to be measured around the surroundings, metres; none: it is not measured.
+    std::optional<double> background;
     bool is_cylindrical = false;  ///< Measure E_z, the mean illuminance of vertical planes of all directions.
 };
 

@@ -102,8 +102,23 @@ TEST(WorkingPlane, SurroundingsAreABandAroundTheTaskArea) {
     ASSERT_EQ(planes->size(), 2u);
     EXPECT_EQ(planes->back().name, "table, surroundings");
     const double cell = planes->back().step_u * planes->back().step_v;
-    // Four rings of places, 15 degrees apart, miss up to 3% of the band, at its round corners.
-    EXPECT_NEAR(static_cast<double>(counted(planes->back())) * cell, 2 + pi / 4, 0.08);
+    EXPECT_NEAR(static_cast<double>(counted(planes->back())) * cell, 2 + pi / 4, 0.02);  // by cells of 0.02 m
+    EXPECT_EQ(planes->back().zone, PlaneZone::surroundings);
+}
+
+TEST(WorkingPlane, TheBackgroundIsABandAroundTheSurroundings) {
+    // Around the table of 1 x 1 m: 4 m x 0.4 m, and a ring with radii of 0.5 and 0.9 m.
+    const Scene scene = scene_of({{{0, 0}, {6, 0}, {6, 4}, {0, 4}}});
+    PlaneRequest request;
+    request.group = "table", request.surroundings = 0.5, request.background = 0.4, request.spacing = 0.02;
+    const auto planes = planes_of(scene, request);
+    ASSERT_TRUE(planes);
+    ASSERT_EQ(planes->size(), 3u);
+    const GridLight& background = planes->back();
+    EXPECT_EQ(background.name, "table, background");
+    EXPECT_EQ(background.zone, PlaneZone::background);
+    const double cell = background.step_u * background.step_v;
+    EXPECT_NEAR(static_cast<double>(counted(background)) * cell, 1.6 + pi * (0.9 * 0.9 - 0.5 * 0.5), 0.03);
 }
 
 TEST(WorkingPlane, SeparateRoomsHaveOnePlaneEach) {

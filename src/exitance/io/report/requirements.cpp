@@ -24,6 +24,28 @@ Error misuse(const std::string& words, const std::string& why) {
             "for example: --require 'desk: Em 500, U0 0.6' or 'UGR 19'"};
 }
 
+/// Illuminance that the immediate surroundings of a task area need, lx: one step below that of the task on the scale of
+/// EN 12464-1, but no more than 500 lx, and as much as the task's up to 200 lx. Source: TRILUX, "Illuminance in the
+/// immediate surrounding area".
+double light_of_surroundings(double task) {
+    constexpr std::array<std::pair<double, double>, 3> steps{
+        {{750, 500}, {500, 300}, {300, 200}}};  // lx, derived from the table: least light of the task, surroundings
+    for (const auto& [least, surroundings] : steps)
+        if (task >= least) return surroundings;
+    return std::min(task, steps.back().second);
+}
+
+/// Number that a zone around a task area needs where the task area needs `task`. Sources: TRILUX, "Background lighting"
+/// (a third of the surroundings, U_0 0.10) and "Uniformity of illuminance" (U_0 0.40).
+double required_in(PlaneZone zone, const std::string& quantity, double task) {
+    constexpr double uniform_surroundings = 0.4, uniform_background = 0.1;  // derived from these sources
+    constexpr double background_share = 1.0 / 3;                            // derived from these sources
+    if (zone == PlaneZone::task) return task;
+    const bool is_near = zone == PlaneZone::surroundings;
+    if (quantity == "U0") return is_near ? uniform_surroundings : uniform_background;
+    return (is_near ? 1 : background_share) * light_of_surroundings(task);
+}
+
 Fulfilment verdict_on(double reached, double required, double error, bool is_upper_limit) {
     const double excess = is_upper_limit ? required - reached : reached - required;
     if (excess >= 0) return Fulfilment::reached;
@@ -49,13 +71,14 @@ class Judge {
         const bool is_cylindrical = limit.quantity == "Ez";
         for (const ReportFigures::Grid& grid : figures_.grids) {
             if (grid.light->is_cylindrical != is_cylindrical) continue;
-            if (!asked.plane.empty() && grid.light->name != asked.plane && !is_in(place, grid.light->room)) continue;
+            const std::optional<double> required = required_of(*grid.light, asked, place, limit);
+            if (!required) continue;
             const bool is_uniformity = limit.quantity == "U0";
             const double reached = is_uniformity ? grid.levels.uniformity() : grid.levels.mean;
             // A quotient has the errors of two numbers.
             const double error = (is_uniformity ? 2 : 1) * error_ * reached;
             out_.push_back({grid.light->name.empty() ? "plane" : grid.light->name, limit.quantity, place.task,
-                            limit.value, reached, verdict_on(reached, limit.value, error, false)});
+                            *required, reached, verdict_on(reached, *required, error, false)});
         }
         if (out_.size() == before) add_unmeasured(place, limit, "planes");
     }
@@ -100,6 +123,16 @@ class Judge {
             if (asked.plane.starts_with(label + ": ")) return {label, asked.plane.substr(label.size() + 2), i};
         }
         return {asked.plane, "", std::nullopt};
+    }
+    /// Number that a requirement demands of a plane; none if it does not concern the plane.
+    std::optional<double> required_of(const GridLight& light, const Requirement& asked, const Place& place,
+                                      const Requirement::Limit& limit) const {
+        if (!asked.plane.empty() && light.name == asked.plane) return limit.value;
+        const bool is_around_it = light.zone != PlaneZone::task && light.name.starts_with(asked.plane + ", ");
+        if (!asked.plane.empty() && !is_around_it && !is_in(place, light.room)) return std::nullopt;
+        // The steps of surroundings are in lx, and for horizontal light.
+        if (light.zone != PlaneZone::task && (!content_.unit.is_lux() || light.is_cylindrical)) return std::nullopt;
+        return required_in(light.zone, limit.quantity, limit.value);
     }
     static bool is_in(const Place& place, const std::optional<std::size_t>& room) {
         return place.room && room == place.room;

@@ -30,9 +30,17 @@ bool is_free(const Stage& stage, const Point& eye) {
     return is_in_open(stage, eye, {0, 0, 1}, RegionId());
 }
 
+/// Names a horizontal line of sight: "looking +x", or by its angle from +x towards +y, "looking 30°".
+std::string words_of_view(const Vec3& view) {
+    constexpr double parallel = 0.999;  // derived from 2.5 degrees
+    for (const auto& [axis, name] : {std::pair(Vec3{1, 0, 0}, 'x'), std::pair(Vec3{0, 1, 0}, 'y')})
+        if (std::abs(dot(view, axis)) > parallel)
+            return fmt::format("looking {}{}", dot(view, axis) > 0 ? '+' : '-', name);
+    return fmt::format("looking {:.0f}°", std::atan2(view.y, view.x) / degree);
+}
+
 /// A side of a room: the middle of the wall, the direction along it, and the direction across the room.
 struct Side {
-    const char* name;
     Point middle;
     Vec3 along, across;
 };
@@ -70,16 +78,16 @@ std::vector<Observer> room_observers(const Stage& stage, const FloorRooms& rooms
     for (std::size_t room = 0; room < rooms.count(); ++room) {
         const MeasuringPlane& r = rooms[room].rectangle;
         const Point middle = r.origin + 0.5 * (r.u + r.v);
-        const std::array<Side, 4> sides{{{"along u", middle - 0.5 * r.u, r.v, r.u},
-                                         {"against u", middle + 0.5 * r.u, r.v, -1 * r.u},
-                                         {"along v", middle - 0.5 * r.v, r.u, r.v},
-                                         {"against v", middle + 0.5 * r.v, r.u, -1 * r.v}}};
+        const std::array<Side, 4> sides{{{middle - 0.5 * r.u, r.v, r.u},
+                                         {middle + 0.5 * r.u, r.v, -1 * r.u},
+                                         {middle - 0.5 * r.v, r.u, r.v},
+                                         {middle + 0.5 * r.v, r.u, -1 * r.v}}};
         for (const Side& side : sides) {
             const std::optional<Point> eye = place_at(stage, rooms, room, side);
             if (!eye) continue;
-            const std::string name =
-                rooms.count() > 1 ? fmt::format("{}, {}", rooms.label(room), side.name) : side.name;
-            out.push_back({name, *eye, normalized(side.across)});
+            const Vec3 view = normalized(side.across);
+            const std::string words = words_of_view(view);
+            out.push_back({rooms.count() > 1 ? fmt::format("{}, {}", rooms.label(room), words) : words, *eye, view});
             out.back().room = room;
         }
     }
