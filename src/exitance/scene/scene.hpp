@@ -10,6 +10,7 @@
 #include "exitance/base/result.hpp"
 #include "exitance/base/spectrum.hpp"
 #include "exitance/scene/emission_profile.hpp"
+#include "exitance/scene/luminaire.hpp"
 #include "exitance/scene/pane.hpp"
 #include "exitance/scene/point_light.hpp"
 #include "exitance/scene/scene_camera.hpp"
@@ -122,6 +123,8 @@ struct SceneDescription {
     DistantLight distant;
     std::vector<Pane> panes;
     std::vector<SceneCamera> cameras;
+    std::vector<LuminaireType> luminaire_types;
+    std::vector<InstalledLuminaire> luminaires;
     bool photometric = false;  ///< The light is in lumens, not watts.
 };
 
@@ -192,6 +195,10 @@ class Scene {
 
     /// Returns the views that came with the scene; used only for pictures.
     const std::vector<SceneCamera>& cameras() const { return cameras_; }
+    /// Returns the luminaires with photometric files, in the order of the input, and their types; used only for
+    /// reports.
+    const std::vector<InstalledLuminaire>& luminaires() const { return luminaires_; }
+    const std::vector<LuminaireType>& luminaire_types() const { return luminaire_types_; }
 
   private:
     friend class SceneBuilder;
@@ -208,6 +215,8 @@ class Scene {
     DistantLight distant_;
     std::vector<Pane> panes_;
     std::vector<SceneCamera> cameras_;
+    std::vector<LuminaireType> luminaire_types_;
+    std::vector<InstalledLuminaire> luminaires_;
     bool photometric_ = false;
     Box box_;
 };

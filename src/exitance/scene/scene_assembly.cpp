@@ -78,6 +78,7 @@ Scene SceneBuilder::make() {
     scene.distant_ = std::move(in_.distant);
     scene.panes_ = convex_panes(in_.panes);
     scene.cameras_ = std::move(in_.cameras);
+    scene.luminaire_types_ = std::move(in_.luminaire_types), scene.luminaires_ = std::move(in_.luminaires);
     scene.photometric_ = in_.photometric;
     return scene;
 }

@@ -26,6 +26,7 @@
 namespace exitance {
 namespace {
 
+constexpr double unseen_difference = 0.003;  ///< Share of the light; derived from steps of 8-bit pictures, 0.8%.
 constexpr int picture_samples = 2;  ///< Rays per pixel; derived from pages that show pictures at a third of their size.
 
 /// The requested views; by default an automatic one and up to three cameras of the scene.
@@ -45,6 +46,7 @@ std::vector<RenderArguments> views(const ReportArguments& arguments, const Scene
 void add_pictures(const ReportArguments& arguments, const RadiosityFunction& light, const Camera& camera,
                   ReportContent& content, Terminal& terminal, const StopRequest& stop) {
     PictureOptions options{camera, arguments.size, picture_samples};
+    options.interpolation = unseen_difference;
     const TimedPicture taken = take_picture_in_time(light, options, terminal.progress(), stop);
     if (taken.block == 0) return content.unfinished.push_back("pictures from " + describe(camera));
     const std::string note =
@@ -100,9 +102,10 @@ void add_viewer(const RadiosityFunction& light, ReportContent& content, Terminal
         content.viewer = std::move(*maps);
 }
 
-/// True if the rooms of the scene are needed for planes or observers.
-bool needs_rooms(const ReportArguments& arguments) {
-    return need_rooms(arguments.observers) || !arguments.working_planes.empty() || !arguments.tasks.empty();
+/// True if the rooms of the scene are needed for planes, observers or the schedule of luminaires.
+bool needs_rooms(const ReportArguments& arguments, const Scene& scene) {
+    return need_rooms(arguments.observers) || !arguments.working_planes.empty() || !arguments.tasks.empty() ||
+           !scene.luminaires().empty();
 }
 
 Result<void> add_working_planes(const ReportArguments& arguments, const Scene& scene, const FloorRooms& rooms,
@@ -205,7 +208,7 @@ Result<void> add_page(const ReportArguments& arguments, const RadiosityFunction&
         cameras.push_back(*camera);
     }
     content.view = cameras.front();
-    constexpr std::size_t surface_points = 50000, error_points = 400;
+    constexpr std::size_t surface_points = 20000, error_points = 400;
     constexpr unsigned error_rays = 2048;
     const std::vector<SurfaceId> faces = largest_faces(scene, content.surfaces_left_out);
     content.surfaces = measure_surfaces(light, faces, surface_points, terminal.progress(), stop);
@@ -250,7 +253,7 @@ ExitCode make_report(const ReportArguments& arguments, std::span<const LightingT
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
     const RadiosityFunction light(*solution);
-    if (needs_rooms(arguments)) content.rooms = FloorRooms(solution->scene, light.stage().tracer);
+    if (needs_rooms(arguments, solution->scene)) content.rooms = FloorRooms(solution->scene, light.stage().tracer);
     const FloorRooms& rooms = content.rooms;
     Result<std::vector<Requirement>> required = require_tasks(arguments.tasks, tasks, content.rooms);
     if (!required) return terminal.fail(required.error());

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "exitance/io/photometry/luminaire_body.hpp"
+#include "exitance/io/photometry/luminaire_type.hpp"
 #include "exitance/io/photometry/photometric_file.hpp"
 #include "exitance/io/photometry/placed_luminaire.hpp"
 #include "exitance/scene/photometric_units.hpp"
@@ -29,6 +30,7 @@ class Luminaires {
         Photometry photometry;
         LuminaireBody body;
         ProfileId profile;
+        std::uint32_t type = 0;  ///< Row of its type in the scene.
     };
     const Lamp* lamp_of(const PlacedLuminaire& luminaire);
     std::uint32_t material_of(const Lamp& lamp, const PlacedLuminaire& luminaire, double table_exitance, double factor);
@@ -62,6 +64,8 @@ void Luminaires::use_photometry(const std::string& path, Photometry photometry) 
     lamp.body = make_luminaire_body(lamp.photometry);
     lamp.profile = ProfileId(scene_.profiles.size());
     scene_.profiles.push_back(lamp.body.profile);
+    lamp.type = static_cast<std::uint32_t>(scene_.luminaire_types.size());
+    scene_.luminaire_types.push_back(luminaire_type_of(lamp.photometry));
     lamp.is_read = true;
 }
 
@@ -95,9 +99,12 @@ void Luminaires::add(const PlacedLuminaire& luminaire) {
     const Lamp* lamp = lamp_of(luminaire);
     ++count_;
     if (!lamp) return;
-    double factor = luminaire.dimming * luminaire.maintenance * lumens_to_light;
-    if (luminaire.lumens) factor *= *luminaire.lumens / lamp->photometry.lamp_lumens.value_or(lamp->photometry.flux());
+    const Photometry& photometry = lamp->photometry;
+    const double output = luminaire.lumens ? *luminaire.lumens / photometry.lamp_lumens.value_or(photometry.flux()) : 1;
+    const double factor = output * luminaire.dimming * luminaire.maintenance * lumens_to_light;
     const auto group = static_cast<std::uint32_t>(scene_.groups.size());
+    scene_.luminaires.push_back({lamp->type, group, luminaire.position,
+                                 output * scene_.luminaire_types[lamp->type].flux, luminaire.maintenance});
     scene_.groups.push_back(fmt::format("{} #{}", luminaire.group.empty() ? "luminaire" : luminaire.group, count_));
     for (const LuminaireBody::Face& face : lamp->body.faces) {
         SceneDescription::Face out;

@@ -17,7 +17,18 @@ Quantity quantity(const LightUnit& unit) {
     return unit.is_lux() ? Quantity::illuminance : Quantity::irradiance;
 }
 
-std::string lines(const Picture& picture, Vec2 plan, const ColourScale& scale) {
+/// Place of a line's label: the one that is farthest from the numbers in the middles of the cells.
+Vec2 place_of_label(std::span<const ContourSegment> segments, Vec2 cell) {
+    const auto from_middle = [](double x, double width) { return width * (x / width - std::floor(x / width) - 0.5); };
+    const auto distance = [&](const ContourSegment& s) {
+        return std::hypot(from_middle(s.a.x, cell.x), from_middle(s.a.y, cell.y));
+    };
+    return std::max_element(segments.begin(), segments.end(),
+                            [&](const auto& a, const auto& b) { return distance(a) < distance(b); })
+        ->a;
+}
+
+std::string lines(const Picture& picture, Vec2 plan, Vec2 cell, const ColourScale& scale) {
     std::string svg;
     for (std::size_t i = 0; i < scale.steps.size(); ++i) {
         const std::vector<ContourSegment> segments = contour(picture, plan, scale.steps[i]);
@@ -25,11 +36,18 @@ std::string lines(const Picture& picture, Vec2 plan, const ColourScale& scale) {
         std::string path;
         for (const ContourSegment& s : segments)
             fmt::format_to(std::back_inserter(path), "M{:.1f} {:.1f}L{:.1f} {:.1f}", s.a.x, s.a.y, s.b.x, s.b.y);
-        const ContourSegment& middle = segments[segments.size() / 2];
+        const Vec2 label = place_of_label(segments, cell);
         svg += fmt::format("<path class=\"line\" d=\"{}\"/><text class=\"level\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>",
-                           path, middle.a.x, middle.a.y + 4, scale.names()[i]);
+                           path, label.x, label.y + 4, scale.names()[i]);
     }
     return svg;
+}
+
+/// Size of the letters of the numbers in cells, in SVG units.
+double size_of_numbers(Vec2 cell) {
+    constexpr double smallest = 11, largest = 18;            // derived from print on A4
+    constexpr double per_width = 1.0 / 3, per_height = 0.5;  // derived from numbers of four digits
+    return std::clamp(std::min(per_width * cell.x, per_height * cell.y), smallest, largest);
 }
 
 /// Prints the value of every point if cells are wide enough.
@@ -37,13 +55,14 @@ std::string values(const ReportFigures::Grid& grid, Vec2 cell) {
     constexpr double min_cell_width = 34;
     const GridLight& light = *grid.light;
     if (cell.x < min_cell_width) return "";
+    const double size = size_of_numbers(cell);
     std::string svg;
     for (int y = 0; y < light.rows; ++y)
         for (int x = 0; x < light.columns; ++x) {
             const auto i = static_cast<std::size_t>(y * light.columns + x);
             if (!light.is_open[i]) continue;
             svg += fmt::format("<text class=\"point\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", (x + 0.5) * cell.x,
-                               (light.rows - y - 0.5) * cell.y + 3, short_figure(grid.values[i]));
+                               (light.rows - y - 0.5) * cell.y + 0.35 * size, short_figure(grid.values[i]));
         }
     return svg;
 }
@@ -106,12 +125,13 @@ std::string grid_plan(const ReportFigures::Grid& grid, const LightUnit& unit, co
     const double edge = 4 + to_plan * light.plane.margin;  // shows the walls at the border
     const Picture coarse = smooth_picture(points, contour_width);
     return fmt::format(
-        "<svg class=\"plan\" viewBox=\"{8:.1f} {8:.1f} {0:.1f} {1:.1f}\" style=\"max-width:{0:.0f}px\" role=\"img\" "
+        "<svg class=\"plan\" viewBox=\"{8:.1f} {8:.1f} {0:.1f} {1:.1f}\" "
+        "style=\"max-width:{9:.0f}px;--size:{10:.1f}px\" role=\"img\" "
         "aria-label=\"plan of the light\"><image href=\"{2}\" width=\"{3:.1f}\" height=\"{4:.1f}\" "
         "preserveAspectRatio=\"none\"/>{5}{6}</svg>{7}",
         plan.x + 2 * edge, plan.y + 2 * edge, picture ? *picture : "", plan.x, plan.y,
-        surroundings(light, scene, to_plan, plan) + lines(coarse, plan, scale), values(grid, cell), legend(scale, unit),
-        -edge);
+        surroundings(light, scene, to_plan, plan) + lines(coarse, plan, cell, scale), values(grid, cell),
+        legend(scale, unit), -edge, shown_width(plan.x + 2 * edge, plan.y + 2 * edge), size_of_numbers(cell));
 }
 
 }  // namespace exitance

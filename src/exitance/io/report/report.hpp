@@ -75,6 +75,7 @@ Result<void> write_report(const ReportContent& content, const std::string& path)
 ///     plane_1.csv, ...     one row per point: position, normal, value
 ///     plane_1.svg, .pdf    a plan to scale with isolines
 ///     observers.csv        one row per observer: position, line of sight, UGR, background, sources (if there are any)
+///     luminaires.csv       one row per luminaire: type, file, room, position, flux, power (if there are any)
 ///     requirements.csv     one row per required number: where, quantity, required, reached, verdict (if there are any)
 ///     surfaces.csv         one row per surface: name, material, area, illuminances (if there is a page)
 Result<void> write_report_tables(const ReportContent& content, const std::string& folder);

@@ -75,16 +75,17 @@ std::string grid_json(const ReportFigures::Grid& grid) {
         values += fmt::format("{}{}", i > 0 ? ", " : "", light.is_open[i] ? figure(grid.values[i]) : "null");
     }
     return fmt::format(
-        "{{\"name\": {}, \"room\": {}, \"kind\": \"{}\", \"origin\": {}, \"u\": {}, \"v\": {}, \"normal\": {}, "
+        "{{\"name\": {}, \"room\": {}, \"kind\": \"{}\", \"zone\": \"{}\", \"origin\": {}, \"u\": {}, \"v\": {}, "
+        "\"normal\": {}, "
         "\"margin\": {}, "
         "\"columns\": {}, \"rows\": {}, "
         "\"spacing\": [{}, {}], {}, \"diversity\": {}, \"hidden\": {},\n     \"points\": [{}],\n     \"values\": "
         "[{}]}}",
         json_text(light.name), light.room ? std::to_string(*light.room + 1) : "null",
-        light.is_cylindrical ? "cylindrical" : "plane", point(light.plane.origin), point(light.plane.u),
-        point(light.plane.v), point(light.n), figure(light.plane.margin), light.columns, light.rows,
-        figure(light.step_u), figure(light.step_v), levels(grid.levels), figure(grid.levels.diversity()), grid.hidden,
-        points, values);
+        light.is_cylindrical ? "cylindrical" : "plane", name_of(light.zone), point(light.plane.origin),
+        point(light.plane.u), point(light.plane.v), point(light.n), figure(light.plane.margin), light.columns,
+        light.rows, figure(light.step_u), figure(light.step_v), levels(grid.levels), figure(grid.levels.diversity()),
+        grid.hidden, points, values);
 }
 
 std::string rooms_json(const FloorRooms& rooms) {
@@ -127,6 +128,12 @@ std::string short_figure(double value) {
                                                            : fmt::format("{:.3g}", value);
 }
 
+double shown_width(double width, double height) {
+    constexpr double widest = 640,
+                     highest = 400;  // pixels, derived from two drawings on a page, 267 mm at 96 pixels per inch
+    return std::min(widest, highest * width / height);
+}
+
 Result<std::string> data_address(const Image& image) {
     const Result<std::string> png = encode_png(image, {});
     if (!png) return png.error();
@@ -149,6 +156,7 @@ ReportFigures find_figures(const ReportContent& content) {
         out.grids.push_back(std::move(grid));
     }
     for (const Surface& surface : content.solution->scene.surfaces()) out.area += surface.area;
+    out.luminaires = find_schedule(content, out);
     return out;
 }
 
@@ -163,7 +171,8 @@ std::string report_json(const ReportContent& content, const ReportFigures& figur
         "  \"error\": {{\"median\": {}, \"error_p99\": {}, \"check_noise\": {}, \"check_points\": {}}},\n"
         "  \"heading\": {{\"title\": {}, \"project\": {}, \"client\": {}, \"author\": {}, \"date\": {}}},\n"
         "  \"requirements\": {},\n"
-        "  \"pictures\": {},\n  \"rooms\": {},\n  \"grids\": {},\n  \"maintenance\": {},\n  \"observers\": {},\n  "
+        "  \"pictures\": {},\n  \"rooms\": {},\n  \"luminaires\": {},\n  \"grids\": {},\n  \"maintenance\": {},\n  "
+        "\"observers\": {},\n  "
         "\"materials\": {},\n  "
         "\"surfaces\": {},\n"
         "  \"surfaces_left_out\": {},\n  \"unfinished\": {},\n  \"statistics\": {},\n  \"options\": {}\n}}\n",
@@ -184,8 +193,8 @@ std::string report_json(const ReportContent& content, const ReportFigures& figur
              [](const ReportPicture& p) {
                  return fmt::format("{{\"caption\": {}, \"camera\": {}}}", json_text(p.caption), json_text(p.camera));
              }),
-        rooms_json(content.rooms), list(figures.grids, grid_json), figure(content.maintenance),
-        list(content.observers, observer_json),
+        rooms_json(content.rooms), schedule_json(figures.luminaires), list(figures.grids, grid_json),
+        figure(content.maintenance), list(content.observers, observer_json),
         list(figures.materials,
              [](const ReportFigures::MaterialUse& m) {
                  return fmt::format(

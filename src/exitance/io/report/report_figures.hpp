@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/io/report/report.hpp"
+#include "exitance/io/report/luminaire_schedule.hpp"
 
 namespace exitance {
 
@@ -30,6 +30,7 @@ struct ReportFigures {
     std::vector<Face> faces;  ///< From the largest to the smallest.
     std::vector<MaterialUse> materials;
     std::vector<Grid> grids;
+    LuminaireSchedule luminaires;
     double area = 0;  ///< Total area of the surfaces, m^2.
 };
 
@@ -43,6 +44,10 @@ std::string figure(double value);
 
 /// Formats a number with three significant digits for narrow cells, without exponents up to a million.
 std::string short_figure(double value);
+
+/// Width at which the page shows a drawing of this width and height, pixels: at most 640, and so low that an A4 page
+/// has room for two.
+double shown_width(double width, double height);
 
 /// Formats the numbers as JSON.
 std::string report_json(const ReportContent& content, const ReportFigures& figures);

@@ -24,17 +24,21 @@ img, canvas, svg.plan { width: 100%; height: auto; display: block; } img, canvas
 figure { margin: 1rem 0; break-inside: avoid; } figcaption, .note { color: #555; font-size: .85rem; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .85rem; margin: .6rem 0; }
 th, td { padding: .15rem .7rem .15rem 0; text-align: right; vertical-align: top; border-bottom: 1px solid #eee; }
-th { border-bottom: 1px solid #999; } td.text, th.text { text-align: left; overflow-wrap: anywhere; }
+th { border-bottom: 1px solid #999; } td.text, th.text { text-align: left; } td.text { overflow-wrap: anywhere; min-width: 5.5em; } td.label { min-width: 0; font-weight: bold; } td.name { white-space: nowrap; }
 .facts td { text-align: left; overflow-wrap: anywhere; } .facts td:first-child { color: #555; white-space: nowrap; }
+.polar { width: 5.2rem; display: block; } .schedule td { vertical-align: middle; } .schedule td.text.product { min-width: 9em; } .total td { font-weight: bold; border-top: 1px solid #999; }
+svg.layout { width: 100%; height: auto; display: block; background: #f4f4f6; } .layout .cut { fill: none; stroke: #222; stroke-width: 1.4; } .layout .lamp { fill: #ffd45e; stroke: #7a5200; stroke-width: 1; }
+.layout text { font: bold 12px sans-serif; text-anchor: middle; fill: #101014; paint-order: stroke; stroke: #fff; stroke-width: 2.5px; }
+.reached, .missed, .unknown { white-space: nowrap; }
 .reached { color: #0a6b2d; } .missed { color: #a4161a; font-weight: bold; } .unknown { color: #777; }
 .warning { border-left: .3rem solid #c77700; padding-left: .6rem; margin: .3rem 0; }
 .legend { font-size: .85rem; } .legend span { white-space: nowrap; margin-right: .8rem; }
 .legend i { display: inline-block; width: 1rem; height: .8rem; margin-right: .3rem; print-color-adjust: exact; -webkit-print-color-adjust: exact; }
-.plan .line { fill: none; stroke: #fff; stroke-width: 1.5; } .plan text { font: 11px sans-serif; text-anchor: middle; fill: #fff; paint-order: stroke; stroke: #000; stroke-width: 2px; }
-.plan .below { fill: none; stroke: #fff; stroke-opacity: .45; stroke-width: .7; } .plan .cut { fill: none; stroke: #000; stroke-width: 2.5; } .plan .level { font-weight: bold; font-size: 13px; }
+.plan .line { fill: none; stroke: #fff; stroke-width: 1.5; } .plan text { font: var(--size) sans-serif; text-anchor: middle; fill: #fff; paint-order: stroke; stroke: #000; stroke-width: 2px; }
+.plan .below { fill: none; stroke: #fff; stroke-opacity: .45; stroke-width: .7; } .plan .cut { fill: none; stroke: #000; stroke-width: 2.5; } .plan .level { font-weight: bold; font-style: italic; }
 .wide { overflow-x: auto; } details { margin: .6rem 0; }
 @page { size: A4; margin: 18mm 16mm; }
-@media print { #surfaces, #walk, details { display: none; } svg.plan { max-height: 10cm; } body { margin: 0; max-width: none; font-size: 10.5pt; } canvas, .viewer { display: none; } h2 { break-after: avoid; } tr { break-inside: avoid; } thead { display: table-header-group; } a { color: inherit; } }
+@media print { #surfaces, #walk, details { display: none; } body { margin: 0; max-width: none; font-size: 10.5pt; } canvas, .viewer { display: none; } .wide { overflow: visible; } h2, h3 { break-after: avoid; } tr { break-inside: avoid; } thead { display: table-header-group; } a { color: inherit; } }
 )css";
 
 std::string percent(double share) {
@@ -153,7 +157,7 @@ std::string one_digit(double error) {
     return fmt::format("{:.6g}", std::round(error / unit) * unit);
 }
 
-std::string place(const Vec3& p) {
+std::string point_words(const Vec3& p) {
     return fmt::format("({:.3g}, {:.3g}, {:.3g})", p.x, p.y, p.z);
 }
 
@@ -178,8 +182,9 @@ std::string grids(const ReportContent& content, const ReportFigures& figures) {
         const GridLight& light = *grid.light;
         html += fmt::format("<h3>Plane {}{}</h3>\n<table class=\"facts\">\n", i + 1,
                             light.name.empty() ? "" : ": " + escaped(light.name));
-        html += fact("Where", fmt::format("from {} along {} and {} m, seen from {}", place(light.plane.origin),
-                                          place(light.plane.u), place(light.plane.v), place(light.n)));
+        html +=
+            fact("Where", fmt::format("from {} along {} and {} m, seen from {}", point_words(light.plane.origin),
+                                      point_words(light.plane.u), point_words(light.plane.v), point_words(light.n)));
         html += fact(
             "Points",
             fmt::format(
@@ -189,16 +194,18 @@ std::string grids(const ReportContent& content, const ReportFigures& figures) {
         const char* unit = symbol(content.unit);
         const double error = content.solution->statistics.relative_error_estimate.value_or(0);
         html +=
-            fact(light.is_cylindrical ? "Mean E_z" : "Mean E_m",
+            fact(light.is_cylindrical ? "Mean E<sub>z</sub>" : "Mean E<sub>m</sub>",
                  fmt::format(
                      "{} ± {} {}{}", short_figure(grid.levels.mean), one_digit(error * grid.levels.mean), unit,
                      content.maintenance < 1 ? fmt::format(" (maintained: factor {:.3g})", content.maintenance) : ""));
         html += fact("Minimum", short_figure(grid.levels.least) + " " + unit);
         html += fact("Maximum", short_figure(grid.levels.most) + " " + unit);
-        html += fact("Uniformity U_0", fmt::format("{:.2f} (minimum / mean)", grid.levels.uniformity()));
-        html += fact("Diversity U_d", fmt::format("{:.2f} (minimum / maximum)", grid.levels.diversity()));
+        html += fact("Uniformity U<sub>0</sub>", fmt::format("{:.2f} (minimum / mean)", grid.levels.uniformity()));
+        html += fact("Diversity U<sub>d</sub>", fmt::format("{:.2f} (minimum / maximum)", grid.levels.diversity()));
         html += "</table>\n<figure>" + grid_plan(grid, content.unit, content.solution->scene) +
-                "<figcaption>u runs to the right, v upwards.</figcaption></figure>\n" + grid_table(grid);
+                "<figcaption>Values at the points, lines of equal light (italic), and what the plane cuts "
+                "(black).</figcaption></figure>\n" +
+                grid_table(grid);
     }
     return html;
 }
@@ -213,8 +220,8 @@ std::string materials(const ReportContent& content, const ReportFigures& figures
         html += fmt::format(
             "<tr><td class=\"text\">{}</td><td>{} {} {}</td><td>{} {} {}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
             escaped(m.name), figure(m.reflectance[0]), figure(m.reflectance[1]), figure(m.reflectance[2]),
-            figure(m.radiance[0]), figure(m.radiance[1]), figure(m.radiance[2]), m.faces, figure(m.area),
-            figure(m.irradiance));
+            short_figure(m.radiance[0]), short_figure(m.radiance[1]), short_figure(m.radiance[2]), m.faces,
+            short_figure(m.area), short_figure(m.irradiance));
     return html + "</table></div>\n";
 }
 
@@ -323,6 +330,7 @@ Result<void> write_report(const ReportContent& content, const std::string& path)
             escaped(title), style) +
         heading(content.heading) + section("requirements", "Requirements", requirements(content, figures)) +
         overview(content, figures) + unfinished(content) + section("rooms", "Rooms", rooms_part(content)) +
+        section("luminaires", "Luminaires", schedule_html(content, figures.luminaires)) +
         section("pictures", "Pictures", *shown) +
         (viewer->empty() ? "" : "<div class=\"viewer\">" + section("walk", "Look around", *viewer) + "</div>") +
         section("grids", "Measuring planes", grids(content, figures)) +

@@ -11,6 +11,12 @@
 namespace exitance {
 namespace {
 
+/// Formats a place or a direction for the page, in metres.
+std::string place(const Vec3& v) {
+    const auto rounded = [](double x) { return std::abs(x) < 0.005 ? 0 : x; };
+    return fmt::format("{:.4g}, {:.4g}, {:.4g}", rounded(v.x), rounded(v.y), rounded(v.z));
+}
+
 std::string triple(const Vec3& v, const char* between) {
     return fmt::format("{:.6g}{}{:.6g}{}{:.6g}", v.x, between, v.y, between, v.z);
 }
@@ -30,7 +36,7 @@ std::string quoted(const std::string& text) {
 std::string planes_csv(const ReportContent& content, const ReportFigures& figures) {
     std::string text =
         "plane,name,kind,unit,x,y,z,nx,ny,nz,border,columns,rows,spacing_u,spacing_v,points,hidden,Em,Emin,Emax,U0,Ud,"
-        "maintenance\n";
+        "maintenance,zone\n";
     for (std::size_t i = 0; i < figures.grids.size(); ++i) {
         const ReportFigures::Grid& grid = figures.grids[i];
         const GridLight& light = *grid.light;
@@ -43,7 +49,7 @@ std::string planes_csv(const ReportContent& content, const ReportFigures& figure
         text += known ? fmt::format("{},{},{},{},{}", figure(l.mean), figure(l.least), figure(l.most),
                                     figure(l.uniformity()), figure(l.diversity()))
                       : ",,,,";
-        text += fmt::format(",{:.6g}\n", content.maintenance);
+        text += fmt::format(",{:.6g},{}\n", content.maintenance, name_of(light.zone));
     }
     return text;
 }
@@ -137,23 +143,21 @@ std::string observer_json(const ObserverGlare& o) {
 std::string observers_html(const ReportContent& content) {
     if (content.observers.empty()) return "";
     std::string html =
-        "<div class=\"wide\"><table>\n<thead><tr><th class=\"text\">Observer</th><th>Eye m</th><th>Looks "
-        "along</th><th>UGR</th><th>Background cd/m²</th><th>Sources that count</th><th>Left out</th><th "
-        "class=\"text\">Worst source"
+        "<div class=\"wide\"><table>\n<thead><tr><th class=\"text\">Observer</th><th>Eye m</th><th>Line of "
+        "sight</th><th>UGR</th><th>Background cd/m²</th><th>Sources (left out)</th><th class=\"text\">Worst source"
         "</th></tr></thead>\n";
+    constexpr std::size_t longest_line = 40;  // characters; longer names may wrap
     bool large = false;
     for (const auto& [observer, glare] : content.observers) {
-        const double rating = glare.rating();
         const GlareSource* worst = glare.sources.empty() ? nullptr : &glare.sources.front();
         large |= glare.has_large_source();
         html += fmt::format(
-            "<tr><td class=\"text\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
-            "class=\"text\">{}</td></tr>\n",
-            escaped(observer.name), triple(observer.eye, ", "), triple(observer.view, ", "), rating_words(rating),
-            figure(glare.background), glare.sources.size(), glare.left_out.size(),
-            worst ? fmt::format("{}: {} cd/m², {} sr, p {:.3g}", escaped(worst->name), figure(worst->luminance),
-                                figure(worst->solid_angle), worst->position)
-                  : "none");
+            "<tr><td class=\"{}\">{}</td><td class=\"name\">{}</td><td class=\"name\">{}</td><td>{}</td><td>{}"
+            "</td><td>{} ({})</td><td class=\"text\">{}</td></tr>\n",
+            observer.name.size() <= longest_line ? "text name" : "text", escaped(observer.name), place(observer.eye),
+            place(observer.view), rating_words(glare.rating()), short_figure(glare.background), glare.sources.size(),
+            glare.left_out.size(),
+            worst ? fmt::format("{}: {} cd/m²", escaped(worst->name), short_figure(worst->luminance)) : "none");
     }
     html +=
         "</table></div>\n<p class=\"note\">Unified glare rating by CIE 117; light as it is new. Luminaires in front of "
@@ -184,6 +188,10 @@ Result<void> write_report_tables(const ReportContent& content, const std::string
               write_file(in(name + ".svg"), svg_of(plan)), write_file(in(name + ".pdf"), pdf_of(plan))})
             if (!written) return written;
     }
+    if (!figures.luminaires.items.empty())
+        if (const Result<void> written = write_file(in("luminaires.csv"), luminaires_csv(content, figures.luminaires));
+            !written)
+            return written;
     if (!content.requirements.empty())
         if (const Result<void> written = write_file(in("requirements.csv"), requirements_csv(judge(content, figures)));
             !written)

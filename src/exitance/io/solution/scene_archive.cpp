@@ -65,12 +65,18 @@ void archive(Archive& a, SceneCamera& c) {
 }
 
 template <class Archive>
+void archive(Archive& a, LuminaireType& t) {
+    a(t.name, t.file, t.flux, t.watts, t.curves.c0, t.curves.c90, t.curves.is_per_kilolumen);
+}
+
+template <class Archive>
 void StoredScene::archive_all(Archive& a, Scene& s) {
     a(s.file_, s.surfaces_, s.corners_, s.emitters_, s.photometric_, s.box_);
     archive_each(a, s.materials_), archive_each(a, s.profiles_), archive_each(a, s.groups_);
     archive_each(a, s.regions_);
     // The facets of a sky are computed on demand and refer to its domes, so they are not stored.
     a(s.lights_, s.distant_.domes, s.distant_.discs, s.panes_, s.cameras_);
+    archive_each(a, s.luminaire_types_), a(s.luminaires_);
 }
 
 std::string StoredScene::bytes_of(const Scene& scene) {

@@ -288,6 +288,7 @@ void StoredScene::write(Hdf5Writer& file, const std::string& group, const Scene&
     write_sky(file, group, scene.distant_);
     write_panes(file, group, scene.panes_);
     write_cameras(file, group, scene.cameras_);
+    write_luminaires(file, group, scene.luminaire_types_, scene.luminaires_);
 }
 
 Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
@@ -309,6 +310,8 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
     scene.distant_ = read_sky(file, group);
     scene.panes_ = read_panes(file, group);
     scene.cameras_ = read_cameras(file, group);
+    scene.luminaire_types_ = read_luminaire_types(file, group);
+    scene.luminaires_ = read_luminaires(file, group, scene.luminaire_types_.size(), group_names.size());
     faces.check_corners(file, group, scene.corners_.size());
     if (file.failed()) return {};
 

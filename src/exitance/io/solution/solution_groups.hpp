@@ -36,6 +36,13 @@ Field<ProfileId, EmissionProfile> read_profiles(Hdf5Reader& file, const std::str
 std::vector<DirectedEmission> read_emission(Hdf5Reader& file, const std::string& group, std::size_t material_count,
                                             std::size_t profile_count);
 
+/// Luminaires with their types; nothing is stored if there are none.
+void write_luminaires(Hdf5Writer& file, const std::string& group, const std::vector<LuminaireType>& types,
+                      const std::vector<InstalledLuminaire>& luminaires);
+std::vector<LuminaireType> read_luminaire_types(Hdf5Reader& file, const std::string& group);
+std::vector<InstalledLuminaire> read_luminaires(Hdf5Reader& file, const std::string& group, std::size_t type_count,
+                                                std::size_t group_count);
+
 /// A tree as the patches of its roots and the split of every element, from which all patches are restored bit for bit,
 /// and the values at the corners of the leaves, in order.
 void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function);
