@@ -52,7 +52,7 @@ const Spot* TileLight::spot_at(std::span<const Spot> spots, int x, int y) const 
 Spectrum TileLight::light_by_rays(const Spot& spot) {
     const std::size_t pixel = pixel_of(spot);
     if (is_stopped()) return {};
-    if (is_found_[pixel]) return found_[pixel];
+    if (by_pixel_.is_known[pixel]) return by_pixel_.light[pixel];
     const Stage& stage = light_.stage();
     Point at = points_[spot.first];
     if (spot.count == samples_) {  // otherwise the centre may be hidden behind another surface in the pixel
@@ -65,8 +65,7 @@ Spectrum TileLight::light_by_rays(const Spot& spot) {
     const double looser = std::sqrt(static_cast<double>(samples_) / spot.count);
     asked.relative *= looser, asked.absolute *= looser;
     const RayLight::Estimate found = stage.place_light.by_rays(at, n, spot.region, asked, place_);
-    is_found_[pixel] = 1, noise_[pixel] = std::sqrt(found.variance);
-    return found_[pixel] = direct_share_ * found.irradiance;
+    return by_pixel_.set(pixel, direct_share_ * found.irradiance, std::sqrt(found.variance));
 }
 
 /// Direct light of a pixel that differs from its neighbours, mean over a few of its samples. Independent noise allows
@@ -88,7 +87,8 @@ Spectrum TileLight::light_of_samples(const Spot& spot) {
 /// Interpolates light between the corners of a cell of pixels. Returns false if it is not uniform or differs at the
 /// centre.
 template <class LightAt>
-bool TileLight::interpolate(std::span<Spot> spots, const Cell& cell, const CellRule& rule, const LightAt& light_at) {
+bool TileLight::interpolate(std::span<Spot> spots, const Cell& cell, const CellRule& rule, PixelLight& out,
+                            const LightAt& light_at) {
     const auto [x0, y0, x1, y1] = cell;
     const std::array<const Spot*, 4> corners = {spot_at(spots, x0, y0), spot_at(spots, x1, y0), spot_at(spots, x0, y1),
                                                 spot_at(spots, x1, y1)};
@@ -97,7 +97,7 @@ bool TileLight::interpolate(std::span<Spot> spots, const Cell& cell, const CellR
     double least = HUGE_VAL, most = 0, noise = 0;
     for (std::size_t i = 0; i < 4; ++i) {
         E[i] = light_at(*corners[i]);
-        noise = std::max(noise, noise_[pixel_of(*corners[i])]);
+        noise = std::max(noise, out.noise[pixel_of(*corners[i])]);
         const double there = mean(E[i] + corners[i]->irradiance);
         least = std::min(least, there), most = std::max(most, there);
     }
@@ -109,29 +109,35 @@ bool TileLight::interpolate(std::span<Spot> spots, const Cell& cell, const CellR
         return (1 - v) * ((1 - u) * E[0] + u * E[1]) + v * ((1 - u) * E[2] + u * E[3]);
     };
     const double to_u = 1.0 / (x1 - x0), to_v = 1.0 / (y1 - y0);
+    const auto agrees_at = [&](int x, int y) {
+        const Spot* spot = spot_at(spots, x, y);
+        return spot && std::abs(mean(light_at(*spot) - between((x - x0) * to_u, (y - y0) * to_v))) <=
+                           std::max(rule.middle * all, max_deviations * noise);
+    };
     const int x = (x0 + x1) / 2, y = (y0 + y1) / 2;
-    const Spot* middle = spot_at(spots, x, y);
-    if (!middle || std::abs(mean(light_at(*middle) - between((x - x0) * to_u, (y - y0) * to_v))) >
-                       std::max(rule.middle * all, max_deviations * noise))
+    if (!agrees_at(x, y)) return false;
+    if (rule.checks_edges && !(agrees_at(x, y0) && agrees_at(x, y1) && agrees_at(x0, y) && agrees_at(x1, y)))
         return false;
     for (int k = y0; k <= y1; ++k)
         for (int i = x0; i <= x1; ++i) {
             const auto pixel = static_cast<std::size_t>(k * tile_side + i);
             const Spot* spot = spot_at(spots, i, k);
-            if (!spot || is_found_[pixel] || spot->count != samples_) continue;
-            found_[pixel] = between((i - x0) * to_u, (k - y0) * to_v), noise_[pixel] = noise, is_found_[pixel] = 1;
+            if (!spot || out.is_known[pixel] || spot->count != samples_) continue;
+            out.set(pixel, between((i - x0) * to_u, (k - y0) * to_v), noise);
+            out.is_interpolated[pixel] = 1;
         }
     return true;
 }
 
 /// Computes the pixels of a cell, corners included: by interpolation, or by its quarters.
 template <class LightAt>
-void TileLight::fill(std::span<Spot> spots, const Cell& cell, const CellRule& rule, const LightAt& light_at) {
+void TileLight::fill(std::span<Spot> spots, const Cell& cell, const CellRule& rule, PixelLight& out,
+                     const LightAt& light_at) {
     const auto [x0, y0, x1, y1] = cell;
-    if (x1 - x0 <= 1 || y1 - y0 <= 1 || interpolate(spots, cell, rule, light_at)) return;
+    if (x1 - x0 <= 1 || y1 - y0 <= 1 || interpolate(spots, cell, rule, out, light_at)) return;
     const int x = (x0 + x1) / 2, y = (y0 + y1) / 2;
-    fill(spots, {x0, y0, x, y}, rule, light_at), fill(spots, {x, y0, x1, y}, rule, light_at);
-    fill(spots, {x0, y, x, y1}, rule, light_at), fill(spots, {x, y, x1, y1}, rule, light_at);
+    fill(spots, {x0, y0, x, y}, rule, out, light_at), fill(spots, {x, y0, x1, y}, rule, out, light_at);
+    fill(spots, {x0, y, x, y1}, rule, out, light_at), fill(spots, {x, y, x1, y1}, rule, out, light_at);
 }
 
 /// Splits the prepared light of a block into the part that no shadow edge crosses and the rest.
@@ -153,9 +159,8 @@ void TileLight::split_block(std::size_t block) {
 Spectrum TileLight::open_light(const Spot& spot, std::size_t block) {
     const std::size_t pixel = pixel_of(spot);
     if (is_stopped()) return {};
-    if (is_found_[pixel]) return found_[pixel];
-    is_found_[pixel] = 1, noise_[pixel] = 0;
-    return found_[pixel] = light_.stage().direct.irradiance(split_[block].open, centre_of(spot), visibility_);
+    if (by_pixel_.is_known[pixel]) return by_pixel_.light[pixel];
+    return by_pixel_.set(pixel, light_.stage().direct.irradiance(split_[block].open, centre_of(spot), visibility_), 0);
 }
 
 /// Interpolates the open part of the light of a block between pixels, where it is uniform. Other pixels stay unknown.
@@ -164,8 +169,39 @@ void TileLight::fill_open(std::span<Spot> spots, std::size_t block) {
     const CellRule rule{steepest, interpolation_};
     constexpr int across = tile_side / block_side;
     const int x = static_cast<int>(block) % across * block_side, y = static_cast<int>(block) / across * block_side;
-    fill(spots, {x, y, x + block_side - 1, y + block_side - 1}, rule,
+    fill(spots, {x, y, x + block_side - 1, y + block_side - 1}, rule, by_pixel_,
          [&](const Spot& spot) { return open_light(spot, block); });
+}
+
+/// Light at the centre of a pixel from all emitters that something may block in its block; computed once per pixel.
+Spectrum TileLight::shadowed_light(const Spot& spot) {
+    const std::size_t pixel = pixel_of(spot);
+    if (is_stopped()) return {};
+    if (shadowed_.is_known[pixel]) return shadowed_.light[pixel];
+    const SplitLight& split = split_[static_cast<std::size_t>(block_of(spot))];
+    return shadowed_.set(pixel,
+                         split.shadowed.is_dark()
+                             ? Spectrum()
+                             : light_.stage().direct.irradiance(split.shadowed, centre_of(spot), visibility_),
+                         0);
+}
+
+/// Interpolates the shadowed part of direct light in small cells, where nine pixels of the cell agree.
+void TileLight::fill_shadowed(std::span<Spot> spots) {
+    constexpr int last = tile_side - 1, side = cell_side;
+    constexpr double steepest = 0.03;  // derived from shadow edges, which change faster
+    const CellRule rule{steepest, interpolation_, true};
+    const auto light_at = [&](const Spot& spot) { return shadowed_light(spot); };
+    const auto is_split_at = [&](int x, int y) {
+        return split_[static_cast<std::size_t>(y / block_side * (tile_side / block_side) + x / block_side)].is_split;
+    };
+    for (int y = 0; y < last; y += side)
+        for (int x = 0; x < last; x += side) {
+            const Cell cell{x, y, std::min(x + side, last), std::min(y + side, last)};
+            if (is_split_at(cell.x0, cell.y0) && is_split_at(cell.x1, cell.y0) && is_split_at(cell.x0, cell.y1) &&
+                is_split_at(cell.x1, cell.y1))
+                fill(spots, cell, rule, shadowed_, light_at);
+        }
 }
 
 void TileLight::fill_all(std::span<Spot> spots) {
@@ -174,7 +210,7 @@ void TileLight::fill_all(std::span<Spot> spots) {
     const auto by_rays = [&](const Spot& spot) { return light_by_rays(spot); };
     for (int y = 0; y < last; y += side)
         for (int x = 0; x < last; x += side)
-            fill(spots, {x, y, std::min(x + side, last), std::min(y + side, last)}, rule, by_rays);
+            fill(spots, {x, y, std::min(x + side, last), std::min(y + side, last)}, rule, by_pixel_, by_rays);
     std::vector<Spectrum>& rest = rest_;
     rest.resize(spots.size());
     for (std::size_t i = 0; i < spots.size(); ++i)
@@ -184,7 +220,7 @@ void TileLight::fill_all(std::span<Spot> spots) {
         settled_[i] = spots[i].count < samples_ || samples_ == 1 || !differs_from_neighbours(spots, i);
     for (std::size_t i = 0; i < spots.size(); ++i) {
         Spot& spot = spots[i];
-        spot_at_[pixel_of(spot)] = 0, is_found_[pixel_of(spot)] = 0;
+        spot_at_[pixel_of(spot)] = 0, by_pixel_.is_known[pixel_of(spot)] = 0;
         if (settled_[i]) continue;
         spot.irradiance = rest[i];
         spot.irradiance += light_of_samples(spot);

@@ -81,7 +81,7 @@ TileLight::TileLight(const RadiosityFunction& light, std::uint32_t samples, unsi
       kind_(kind),
       brightness_(brightness),
       direct_share_(gather > 0 ? Spectrum(1) : light.exact_share()) {
-    spot_at_.fill(0), is_found_.fill(0);
+    spot_at_.fill(0);
 }
 
 /// Sets `outline_` to a convex polygon around spots of one region. Returns false if their area is too small for one.
@@ -161,10 +161,13 @@ Spectrum TileLight::direct(const Spot& spot, const ReceiverLight* known, const P
     if (is_stopped()) return {};
     const Stage& stage = light_.stage();
     const Spectrum meshed = spot.meshed ? mesh_->at(spot.region, x) : Spectrum();
-    if (const std::size_t pixel = pixel_of(spot); known && is_found_[pixel]) {
+    if (const std::size_t pixel = pixel_of(spot); known && by_pixel_.is_known[pixel]) {
         const ReceiverLight& shadowed = split_[static_cast<std::size_t>(block_of(spot))].shadowed;
-        const Spectrum rest = shadowed.is_dark() ? Spectrum() : stage.direct.irradiance(shadowed, x, visibility_);
-        return direct_share_ * (found_[pixel] + rest) - meshed;
+        const bool is_found = shadowed_.is_known[pixel] && (shadowed_.is_interpolated[pixel] || x == centre_of(spot));
+        const Spectrum rest = is_found             ? shadowed_.light[pixel]
+                              : shadowed.is_dark() ? Spectrum()
+                                                   : stage.direct.irradiance(shadowed, x, visibility_);
+        return direct_share_ * (by_pixel_.light[pixel] + rest) - meshed;
     }
     if (known) return direct_share_ * stage.direct.irradiance(*known, x, visibility_) - meshed;
     const Normal& n = stage.scene.regions()[spot.region].plane.n;
@@ -244,9 +247,13 @@ void TileLight::evaluate_region(std::span<Spot> spots) {
         spot_at_[pixel_of(spots[i])] = static_cast<std::uint32_t>(i + 1);
         spots[i].irradiance = elements(spots[i]);
     }
-    visit_blocks(spots, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (SplitLight& split : split_) split.is_split = false;
+    visit_blocks(spots, [&](std::size_t block, std::size_t, std::size_t) {
         split_block(block);
         if (split_[block].is_split) fill_open(spots, block);
+    });
+    if (interpolation_ > 0) fill_shadowed(spots);
+    visit_blocks(spots, [&](std::size_t block, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Spectrum light;
             settled_[i] = first_guess(spots[i], known_[block], light);
@@ -270,7 +277,7 @@ void TileLight::evaluate_region(std::span<Spot> spots) {
         const auto direct_at = [&](std::uint32_t k) { return direct(spot, known, points_[spot.first + k]); };
         spot.irradiance = rest_[i] + probed_mean(spot.count, rest_[i], direct_at);
     }
-    for (const Spot& spot : spots) is_found_[pixel_of(spot)] = 0;
+    for (const Spot& spot : spots) by_pixel_.is_known[pixel_of(spot)] = shadowed_.is_known[pixel_of(spot)] = 0;
 }
 
 void TileLight::evaluate(std::span<const Point> points, std::vector<Spot>& spots) {

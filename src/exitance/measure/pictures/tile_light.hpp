@@ -83,10 +83,22 @@ class TileLight {
         ReceiverLight open;      ///< Emitters that are fully visible from the whole block: smooth.
         ReceiverLight shadowed;  ///< Emitters and lights that something may block.
     };
+    /// Light at the centres of pixels, as far as it is known.
+    struct PixelLight {
+        std::array<Spectrum, tile_side * tile_side> light;  ///< W/m^2
+        std::array<double, tile_side * tile_side> noise;    ///< Its standard deviation, W/m^2.
+        std::array<std::uint8_t, tile_side * tile_side> is_known{}, is_interpolated{};
+
+        const Spectrum& set(std::size_t pixel, const Spectrum& found, double deviation) {
+            is_known[pixel] = 1, is_interpolated[pixel] = 0, noise[pixel] = deviation;
+            return light[pixel] = found;
+        }
+    };
     /// Rules by which light is interpolated in a cell of pixels, relative to the light of the cell.
     struct CellRule {
-        double even;    ///< Difference of the corners below which light is interpolated.
-        double middle;  ///< Allowed difference between the light at the centre and the interpolated light.
+        double even;                ///< Difference of the corners below which light is interpolated.
+        double middle;              ///< Allowed difference between the light at the centre and the interpolated light.
+        bool checks_edges = false;  ///< Compare at the middles of the edges, too.
     };
 
     bool is_stopped() const { return stop_ && stop_->requested(); }
@@ -111,12 +123,15 @@ class TileLight {
         int x0, y0, x1, y1;
     };
     template <class LightAt>
-    void fill(std::span<Spot> spots, const Cell& cell, const CellRule& rule, const LightAt& light_at);
+    void fill(std::span<Spot> spots, const Cell& cell, const CellRule& rule, PixelLight& out, const LightAt& light_at);
     template <class LightAt>
-    bool interpolate(std::span<Spot> spots, const Cell& cell, const CellRule& rule, const LightAt& light_at);
+    bool interpolate(std::span<Spot> spots, const Cell& cell, const CellRule& rule, PixelLight& out,
+                     const LightAt& light_at);
     void split_block(std::size_t block);
     void fill_open(std::span<Spot> spots, std::size_t block);
+    void fill_shadowed(std::span<Spot> spots);
     Spectrum open_light(const Spot& spot, std::size_t block);
+    Spectrum shadowed_light(const Spot& spot);
     bool differs_from_neighbours(std::span<const Spot> spots, std::size_t i) const;
     bool bends_between_neighbours(std::span<const Spot> spots, std::size_t i) const;
     Spectrum mirrored_mean(const Spot& spot, const Spectrum& rest, const ReceiverLight* known);
@@ -142,10 +157,8 @@ class TileLight {
     std::array<std::uint32_t, tile_side * tile_side> spot_at_;
     std::vector<std::uint8_t> settled_;
     std::vector<Spectrum> rest_;  ///< All light except exact direct light, for every spot.
-    /// Direct light of each pixel by rays, or that of the open part of its block's light.
-    std::array<Spectrum, tile_side * tile_side> found_;
-    std::array<double, tile_side * tile_side> noise_;           ///< Its standard deviation, W/m^2.
-    std::array<std::uint8_t, tile_side * tile_side> is_found_;  ///< True where it is known.
+    PixelLight by_pixel_;         ///< Direct light by rays, or that of the open part of its block's light.
+    PixelLight shadowed_;         ///< Direct light of the shadowed part, where it is interpolated.
     DirectLight::Workspace visibility_;
     PlaceLight::Workspace place_;
     GatherWorkspace gathering_;
