@@ -13,8 +13,6 @@
 namespace exitance {
 namespace {
 
-constexpr unsigned default_visibility_samples = 16;
-
 /// Solves on linear elements: collocation at the nodes of every leaf, E = first + H rho E, for the indirect irradiance
 /// E.
 void solve_linear(const MethodInput& input, GlobalLight& light) {

@@ -6,11 +6,6 @@
 #include "exitance/solve/shot_progress.hpp"
 
 namespace exitance {
-namespace {
-
-constexpr unsigned default_visibility_samples = 16;
-
-}  // namespace
 
 std::size_t column_memory_bytes(const SolveOptions& options) {
     constexpr std::size_t max_bytes = std::size_t{1} << 30;
