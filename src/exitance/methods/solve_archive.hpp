@@ -70,13 +70,13 @@ void archive(Archive& a, Certificate& certificate) {
 
 template <class Archive>
 void archive(Archive& a, SolveStatistics& statistics) {
-    auto& [method, basis, schedule, threads, surfaces, elements, leaf_elements, links, rays, form_factors, iterations,
-           converged, residual, estimate, bound, p99, interpolant, rooms, worst_room, bodies, worst_body,
-           surface_errors, standard_error, energy, seconds, peak_memory_bytes, link_memory_bytes, element_memory_bytes,
-           elements_by_level, warnings, discontinuity, figures, stopped_by] = statistics;
-    a(method, basis, schedule, threads, surfaces, elements, leaf_elements, links, rays, form_factors, iterations);
-    a(converged, residual, estimate, bound, p99, interpolant, rooms, worst_room, bodies, worst_body, surface_errors,
-      standard_error, energy, seconds, peak_memory_bytes, link_memory_bytes);
+    auto& [method, basis, schedule, threads, processes, surfaces, elements, leaf_elements, links, rays, form_factors,
+           iterations, refinement_steps, converged, residual, estimate, bound, p99, interpolant, rooms, worst_room,
+           bodies, worst_body, surface_errors, standard_error, energy, seconds, peak_memory_bytes, link_memory_bytes,
+           element_memory_bytes, elements_by_level, warnings, discontinuity, figures, stopped_by] = statistics;
+    a(method, basis, schedule, threads, processes, surfaces, elements, leaf_elements, links, rays, form_factors);
+    a(iterations, refinement_steps, converged, residual, estimate, bound, p99, interpolant, rooms, worst_room, bodies,
+      worst_body, surface_errors, standard_error, energy, seconds, peak_memory_bytes, link_memory_bytes);
     a(element_memory_bytes, elements_by_level, warnings, figures, stopped_by);
 }
 

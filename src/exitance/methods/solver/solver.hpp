@@ -1,5 +1,6 @@
 #pragma once
 
+#include "exitance/base/phase_times.hpp"
 #include "exitance/error/certificate.hpp"
 #include "exitance/evaluate/interpolant.hpp"
 #include "exitance/evaluate/quick_function.hpp"
@@ -156,7 +157,6 @@ class Solver {
     SolveOptions& options_ = plan_.options;  ///< Requested options, with the chosen method.
     Knobs& knobs_ = plan_.knobs;             ///< Settings of the present attempt.
     const bool &has_links_ = plan_.has_links, &sums_ = plan_.sums;
-    Progress& progress_;
     const StopRequest& stop_;
     CheckpointStore* checkpoints_;
     const ShowLight& show_;
@@ -164,6 +164,7 @@ class Solver {
     double requested_error_ = 0;  ///< Requested error; options_.error is larger while intermediate solutions are shown.
     int shown_ = 0;               ///< Number of attempts with a larger target error.
     Solution solution_;
+    PhaseTimes progress_;  ///< Records the times of the phases in the solution.
     Stage stage_;
     DirectProjection direct_;
     UnscaledShare unscaled_;            ///< Unscaled share of the delivered light.
@@ -198,7 +199,6 @@ class Solver {
     std::vector<double> allowed_in_;     ///< Allowed errors of the rooms (`allowed_by_room`).
     std::vector<double> noise_in_;       ///< Factor on the noise of each room (`LocalPassDemand::noise_in`).
     std::string resumed_phase_;
-    double mesh_seconds_ = 0;  ///< Time for the discontinuity mesh and its light.
 };
 
 }  // namespace exitance
