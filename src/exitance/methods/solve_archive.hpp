@@ -39,13 +39,17 @@ void archive(Archive& a, LightFormPointer& form) {
 }
 
 template <class Archive>
+void archive(Archive& a, MethodWork& work) {
+    auto& [rays, form_factors, links, link_memory_bytes, element_memory_bytes, elements_by_level] = work;
+    a(rays, form_factors, links, link_memory_bytes, element_memory_bytes, elements_by_level);
+}
+
+template <class Archive>
 void archive(Archive& a, GlobalLight& light) {
-    auto& [tree, numbering, direct, indirect, indirect_corners, direct_corners, delivers, reflected, on_projection,
-           standard_error, direct_share, holds_direct, kept, limited_by_memory, report, rays, form_factors, links,
-           link_memory_bytes, element_memory_bytes, elements_by_level, kept_links, own_form] = light;
-    a(tree, numbering, direct, indirect, indirect_corners, direct_corners, delivers, reflected, on_projection);
-    a(standard_error, direct_share, holds_direct, kept, limited_by_memory, report, rays, form_factors, links);
-    a(link_memory_bytes, element_memory_bytes, elements_by_level, kept_links, own_form);
+    auto& [tree, numbering, direct, indirect, indirect_corners, direct_corners, delivery, reflected, on_projection,
+           standard_error, direct_share, kept, limited_by_memory, report, work, kept_links, own_form] = light;
+    a(tree, numbering, direct, indirect, indirect_corners, direct_corners, delivery, reflected, on_projection);
+    a(standard_error, direct_share, kept, limited_by_memory, report, work, kept_links, own_form);
 }
 
 template <class Archive>

@@ -35,7 +35,7 @@ GlobalLight coarse_light(const Stage& stage, const ElementFunction& delivered, c
         out.reflected.push_back(stage.scene.material(r).reflectance * out.indirect.back());
     }
     out.direct.resize(out.indirect.size());
-    out.holds_direct = true;
+    out.delivery = MethodDelivery::all_light;
     return out;
 }
 

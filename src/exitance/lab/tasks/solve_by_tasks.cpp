@@ -42,11 +42,12 @@ GlobalLight light_of(const TaskEngine& engine, const Stage& stage) {
         light.reflected.push_back(stage.scene.material(patch.region).reflectance * patch.irradiance);
     }
     light.direct.resize(light.indirect.size());
-    light.holds_direct = true;
-    light.elements_by_level = {};
+    light.delivery = MethodDelivery::all_light;
+    light.work.elements_by_level = {};
     for (std::uint32_t p : patch_of) {
-        light.elements_by_level.resize(std::max<std::size_t>(light.elements_by_level.size(), patches[p].level + 1u));
-        ++light.elements_by_level[patches[p].level];
+        light.work.elements_by_level.resize(
+            std::max<std::size_t>(light.work.elements_by_level.size(), patches[p].level + 1u));
+        ++light.work.elements_by_level[patches[p].level];
     }
     return light;
 }
@@ -63,7 +64,7 @@ void record(const TaskEngine& engine, const TaskReport& report, const GlobalLigh
     s.residual = report.change;
     s.link_memory_bytes = report.interactions * sizeof(Interaction);
     s.element_memory_bytes = patches.memory_bytes();
-    s.elements_by_level = light.elements_by_level;
+    s.elements_by_level = light.work.elements_by_level;
     s.figures["threshold"] = asked.threshold;
     s.figures["min_area"] = asked.min_area;
     s.figures["initial_links"] = static_cast<double>(report.initial_interactions);

@@ -144,7 +144,7 @@ Solver::NextAttempt Solver::next_attempt(double demand) const {
     // A refinement step leaves about a third of the error at first, more if light is reflected often. The first step
     // measures it.
     const double left = steps_.not_local > 0 ? not_local(parts) / steps_.not_local : 0.5;
-    const AttemptForecast forecast = forecast_attempt({.row_rays = static_cast<double>(light_->rays),
+    const AttemptForecast forecast = forecast_attempt({.row_rays = static_cast<double>(light_->work.rays),
                                                        .gather_rays = static_cast<double>(steps_.gather_rays),
                                                        .certificate_rays = static_cast<double>(certificate_.rays),
                                                        .method = not_local(parts),
@@ -365,14 +365,14 @@ void Solver::adopt(ElementFunction indirect, const Spectrum& kept) {
     solution_.own_form = light_->own_form;
     solution_.delivers_own_form = !gathers() && solution_.own_form;
     solution_.direct_share = share_;
-    solution_.direct_in_elements = light_->holds_direct;
+    solution_.direct_in_elements = light_->holds_direct();
     record_method(stage_, *light_, has_links_, statistics());
 }
 
 void Solver::adopt_method_light() {
     solution_.indirect = constant_on_leaves(*light_);
     unscaled_.indirect = unscaled_.direct * light_->report.unscaled;
-    solution_.direct_in_elements = light_->holds_direct;
+    solution_.direct_in_elements = light_->holds_direct();
     record_method(stage_, *light_, has_links_, statistics());
 }
 

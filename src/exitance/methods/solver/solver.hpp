@@ -113,7 +113,7 @@ class Solver {
     std::vector<ElementFunction> refine() const;
     Spectrum direct_share() const;
     /// True if the method's light is gathered; false if its elements are delivered.
-    bool gathers() const { return !light_->holds_direct && !light_->delivers && !options_.smoothing; }
+    bool gathers() const { return light_->delivery == MethodDelivery::gathered && !options_.smoothing; }
     /// True if the light on every body must be accurate, not only that on all surfaces together.
     bool holds_bodies() const { return options_.error_demand() && options_.importance.empty(); }
     const SceneBodies& bodies();
