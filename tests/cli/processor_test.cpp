@@ -5,7 +5,6 @@
 
 #include "cli/small_scene.hpp"
 #include "exitance/base/processor_check.hpp"
-#include "exitance/base/sanitizers.hpp"
 #include "run_program.hpp"
 
 namespace exitance::test {
@@ -28,7 +27,6 @@ TEST(ProgramProcessor, UnknownInstructionSetsAreErrors) {
 #ifdef __x86_64__
 /// Nehalem (2008) has SSE4.2 but no AVX. Only the rays of Embree, which has kernels of its own, may differ there.
 TEST(ProgramProcessor, RunsWithoutAvxOrSaysThatItNeedsIt) {
-    if constexpr (has_address_sanitizer) GTEST_SKIP() << "the emulator has no room for the sanitizer's memory";
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder);
     std::vector<std::string> words = solve_arguments(scene, folder / "old.h5");
