@@ -29,7 +29,7 @@ ExitCode run(const MixArguments& arguments, Terminal& terminal) {
     if (groups.empty()) return terminal.fail(no_light_groups(arguments.solution));
     if (const Result<void> changed = change_light(*solution, groups, change); !changed)
         return terminal.fail(changed.error());
-    solution->statistics.seconds["mix"] = watch.seconds();
+    solution->statistics.seconds[RunPart::mix] = watch.seconds();
     solution->statistics.energy = energy_after_change(*solution);
     if (const Result<void> written = write_solution(arguments.output, *solution, &groups); !written)
         return terminal.fail(written.error());
