@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "exitance/base/parallel.hpp"
+#include "exitance/cli/named_files.hpp"
 #include "exitance/cli/solve/kept_groups.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
@@ -15,6 +16,8 @@ namespace exitance {
 ExitCode run(const MixArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     const Stopwatch watch;
+    if (const Result<void> name = check_solution_name("mix", arguments.output); !name)
+        return terminal.fail(name.error());
     LightChange change;
     for (const std::string& word : arguments.dim)
         if (const Result<void> read = read_dim(word, change); !read) return terminal.fail(read.error());
