@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds everything in Release and runs the whole test suite. With CI set in the environment
-# it also checks the layout of the code, builds the documentation, runs the suite once more under the address and undefined-behaviour sanitizers,
-# and what runs on several threads under the thread sanitizer, both compiled by Clang.
+# it also checks the layout of the code, builds the documentation, runs the tests of units once more under the address and
+# undefined-behaviour sanitizers, and what runs on several threads under the thread sanitizer, both compiled by Clang.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
@@ -28,6 +28,8 @@ if [[ -n ${CI:-} ]]; then
     check_layout
     echo "== documentation"
     scripts/build_docs
+    echo "== one of the configurations, in a light form"
+    scripts/check_configurations --light --number "$(git rev-list --count HEAD)" --jobs "$jobs"
 fi
 run_suite release build
 if [[ -n ${CI:-} ]]; then

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that building, testing and benchmarking need; with CI set in the environment also the
-# formatter, and the compiler with the thread sanitizer. Does nothing when all are there.
+# formatter, the compiler with the thread sanitizer, and a compiler for 64-bit ARM. Does nothing when all are there.
 set -euo pipefail
 
 packages=(
@@ -15,11 +15,12 @@ packages=(
     pybind11-dev python3-dev python3-numpy python3-scipy                     # the Python module
     python3-pytest mypy python3-pip python3-venv python3-setuptools python3-wheel  # its tests and its package
     libgtest-dev librapidcheck-dev python3-h5py python3-vtk9                 # the tests; our files in other readers
+    qemu-user                                                                # the tests; an older processor
     libbenchmark-dev                                                         # the benchmarks
 )
 # The viewer's page is built by node and npm, of any origin; without them everything else is built.
 command -v node >/dev/null && command -v npm >/dev/null || packages+=(nodejs npm)
-[[ -z ${CI:-} ]] || packages+=(clang-format-14 clang-14 libclang-rt-14-dev)
+[[ -z ${CI:-} ]] || packages+=(clang-format-14 clang-14 libclang-rt-14-dev g++-aarch64-linux-gnu)
 
 missing=()
 for package in "${packages[@]}"; do

@@ -73,13 +73,13 @@ auto per_face(const std::vector<double>& (api::TransportOperator::*member)() con
 
 api::Daylight daylight(const api::Scene& scene, const py::object& epw, const py::object& sensors,
                        const py::object& normals, double error, int division, double north, double ground,
-                       const py::object& progress) {
+                       const py::object& states, const py::object& progress) {
     bool is_single = false;
     const std::vector<api::Probe> probes = probes_of(sensors, normals, is_single);
     const std::string path = path_of(epw);
-    return run<api::Daylight>(progress, [&](const api::Control& control) {
-        return api::daylight(scene, path, probes, {error, division, north, ground}, control);
-    });
+    const api::DaylightOptions options{error, division, north, ground, states.is_none() ? "" : path_of(states)};
+    return run<api::Daylight>(
+        progress, [&](const api::Control& control) { return api::daylight(scene, path, probes, options, control); });
 }
 
 /// A property that shows a vector of the object without a copy, one number per sensor.
@@ -124,6 +124,7 @@ error      requested relative RMS error of the daylight factors and of the lux h
 division   parts of Tregenza's sky patches in each direction: 1, 2 or 4
 north      degrees from the y axis to north, clockwise seen from above
 ground     reflectance of the ground
+states     path of a TOML file with groups of panes, their states and rules, as for `exitance daylight --states`
 progress   as for solve())doc";
 
 void add_operator(py::module_& m) {
@@ -164,6 +165,26 @@ void add_measures(py::module_& m) {
     static const std::string factors_doc = std::string(docs::view_factors) + view_factor_arguments;
     m.def("view_factors", &view_factors, "scene"_a, "error"_a = 1e-3, py::kw_only(), "smallest"_a = 0.0, "seed"_a = 1,
           "progress"_a = py::none(), factors_doc.c_str());
+    py::class_<api::PaneGroup>(m, "PaneGroup", docs::PaneGroup::self)
+        .def_readonly("name", &api::PaneGroup::name, "Name of the group.")
+        .def_readonly("states", &api::PaneGroup::states, docs::PaneGroup::states)
+        .def_property_readonly(
+            "chosen",
+            [](const py::object& self) {
+                const std::vector<std::uint8_t>& chosen = self.cast<const api::PaneGroup&>().chosen;
+                return view_of(chosen.data(), {static_cast<py::ssize_t>(chosen.size())}, self);
+            },
+            docs::PaneGroup::chosen);
+    py::class_<api::GlassVariant>(m, "GlassVariant", docs::GlassVariant::self)
+        .def_readonly("name", &api::GlassVariant::name, "Name of the variant.")
+        .def_readonly("spatial_autonomy", &api::GlassVariant::spatial_autonomy, docs::GlassVariant::spatial_autonomy)
+        .def_readonly("spatial_autonomy_bounds", &api::GlassVariant::spatial_autonomy_bounds,
+                      docs::GlassVariant::spatial_autonomy_bounds)
+        .def_readonly("continuous_autonomy", &api::GlassVariant::continuous_autonomy,
+                      docs::GlassVariant::continuous_autonomy)
+        .def_readonly("mean_illuminance", &api::GlassVariant::mean_illuminance, docs::GlassVariant::mean_illuminance)
+        .def_readonly("sunlight_exposure", &api::GlassVariant::sunlight_exposure,
+                      docs::GlassVariant::sunlight_exposure);
     py::class_<api::Daylight>(m, "Daylight", docs::Daylight::self)
         .def_property_readonly(
             "hours",
@@ -201,13 +222,15 @@ void add_measures(py::module_& m) {
         .def_readonly("error_daylight_factor", &api::Daylight::error_daylight_factor,
                       docs::Daylight::error_daylight_factor)
         .def_readonly("error_lux_hours", &api::Daylight::error_lux_hours, docs::Daylight::error_lux_hours)
+        .def_readonly("pane_groups", &api::Daylight::pane_groups, docs::Daylight::pane_groups)
+        .def_readonly("glass_variants", &api::Daylight::glass_variants, docs::Daylight::glass_variants)
         .def_readonly("warnings", &api::Daylight::warnings, docs::Daylight::warnings)
         .def("__repr__", [](const api::Daylight& d) {
             return fmt::format("<exitance.Daylight: {} hours, {} sensors>", d.hours.size(), d.sensors);
         });
     static const std::string daylight_doc = std::string(docs::daylight) + daylight_arguments;
     m.def("daylight", &daylight, "scene"_a, "epw"_a, "sensors"_a, "normals"_a = py::cast(std::vector<double>{0, 0, 1}),
-          "error"_a = 0.02, py::kw_only(), "division"_a = 1, "north"_a = 0.0, "ground"_a = 0.2,
+          "error"_a = 0.02, py::kw_only(), "division"_a = 1, "north"_a = 0.0, "ground"_a = 0.2, "states"_a = py::none(),
           "progress"_a = py::none(), daylight_doc.c_str());
 }
 

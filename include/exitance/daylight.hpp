@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,11 +16,31 @@ struct DaylightOptions {
     int division = 1;     ///< Parts of Tregenza's sky patches in each direction: 1, 2 or 4.
     double north = 0;     ///< Degrees from the y axis to north, clockwise seen from above.
     double ground = 0.2;  ///< Reflectance of the ground.
+    /// Path of a file with groups of panes, their states such as "blinds down", and the rules that choose them, as
+    /// `exitance daylight --states` reads; empty: all panes stay as they are. Needs a scene from files.
+    std::string states = {};
 };
 
 /// One hour of a weather file, in local standard time.
 struct Hour {
     int month = 1, day = 1, hour = 1;  ///< The hour ends at `hour`, 1 to 24.
+};
+
+/// A group of panes whose state changes from hour to hour.
+struct PaneGroup {
+    std::string name;
+    std::vector<std::string> states;   ///< Names of the states; the first is that of the scene.
+    std::vector<std::uint8_t> chosen;  ///< Per hour: index of its state in `states`.
+};
+
+/// Results of all sensors with other glass, which a file of states lists.
+struct GlassVariant {
+    std::string name;
+    double spatial_autonomy = 0;                      ///< sDA(300 lx, 50%): share of the sensors.
+    std::array<double, 2> spatial_autonomy_bounds{};  ///< 95% interval of `spatial_autonomy`.
+    double continuous_autonomy = 0;  ///< Mean over sensors and occupied hours of min(1, illuminance / 300 lx).
+    double mean_illuminance = 0;     ///< Mean over sensors and occupied hours, lx.
+    double sunlight_exposure = 0;    ///< ASE(1000 lx, 250 h): share of the sensors.
 };
 
 /// Illuminances of sensors in every hour of a weather file, and their annual figures.
@@ -34,12 +55,16 @@ struct Daylight {
     std::vector<std::array<double, 2>> autonomy_bounds;         ///< 95% interval of `autonomy`.
     /// Per sensor: shares of the occupied hours below 100 lx, from 100 to 300, from 300 to 3000, and above.
     std::vector<std::array<double, 4>> useful;
-    std::vector<double> sunny_hours;    ///< Per sensor: occupied hours with more than 1000 lx of direct sunlight.
-    double spatial_autonomy = 0;        ///< sDA(300 lx, 50%): share of the sensors.
-    double sunlight_exposure = 0;       ///< ASE(1000 lx, 250 h): share of the sensors.
-    double error_daylight_factor = 0;   ///< Relative RMS error of the daylight factors.
-    double error_lux_hours = 0;         ///< Relative RMS error of the sums of all hours' illuminances.
-    std::vector<std::string> warnings;  ///< Sentences about the weather file, and about an error above the requested.
+    std::vector<double> sunny_hours;     ///< Per sensor: occupied hours with more than 1000 lx of direct sunlight.
+    double spatial_autonomy = 0;         ///< sDA(300 lx, 50%): share of the sensors.
+    double sunlight_exposure = 0;        ///< ASE(1000 lx, 250 h): share of the sensors.
+    double error_daylight_factor = 0;    ///< Relative RMS error of the daylight factors.
+    double error_lux_hours = 0;          ///< Relative RMS error of the sums of all hours' illuminances.
+    std::vector<PaneGroup> pane_groups;  ///< The groups of `DaylightOptions::states`.
+    std::vector<GlassVariant> glass_variants;  ///< Its variants.
+    /// Sentences about the weather file, about light that crosses several groups of panes, and about an error above the
+    /// requested one.
+    std::vector<std::string> warnings;
 };
 
 /// Computes the daylight of a year at sensors by daylight coefficients: one transport for all sky patches, and exact
@@ -47,8 +72,8 @@ struct Daylight {
 /// elements are added until the requested error is reached.
 /// epw      weather file
 /// sensors  points and normals
-/// Errors: cannot_read, bad_input for the weather file; usage for options out of range or no sensors; limit after a
-/// stop.
+/// Errors: cannot_read, bad_input for the weather file and the file of states; usage for options out of range or no
+/// sensors; limit after a stop.
 Result<Daylight> daylight(const Scene& scene, const std::string& epw, std::span<const Probe> sensors,
                           const DaylightOptions& options = {}, const Control& control = {});
 

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include "cli/small_scene.hpp"
@@ -141,7 +142,8 @@ TEST(ProgramBake, RejectsInvalidOptions) {
     EXPECT_NE(large.err.find("--density"), std::string::npos) << large.err;
     EXPECT_FALSE(std::filesystem::exists(out));
     // A file has the name of the output folder.
-    EXPECT_EQ(run_program({"bake", solution, "-o", solution, "--density", "4"}).status, 5);
+    std::ofstream(folder / "taken") << "a file";
+    EXPECT_EQ(run_program({"bake", solution, "-o", folder / "taken", "--density", "4"}).status, 5);
     EXPECT_EQ(run_program({"bake", folder / "absent.h5", "-o", out}).status, 3);
 }
 

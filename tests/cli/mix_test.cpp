@@ -66,6 +66,8 @@ TEST_F(ProgramMix, ListsLightGroups) {
     const Finished wrong = run_program({"mix", path("s.h5"), "middle=1", "-o", path("x.h5")});
     EXPECT_EQ(wrong.status, 2);
     EXPECT_NE(wrong.err.find("there are left, right"), std::string::npos) << wrong.err;
+    EXPECT_EQ(run_program({"mix", path("s.h5"), "left=1", "left=2", "-o", path("x.h5")}).status, 2);
+    EXPECT_EQ(run_program({"mix", path("s.h5"), "left=1", "-o", path("s.mtl")}).status, 2) << "not a solution's name";
     EXPECT_EQ(run_program({"mix", path("s.h5"), "left=-1", "-o", path("x.h5")}).status, 2);
     EXPECT_EQ(run_program({"mix", path("s.h5"), "--reflectance", "wall=1,1,1", "-o", path("x.h5")}).status, 2);
     ASSERT_EQ(run_program({"solve", path("s.obj"), "--error", "0.2", "-o", path("n.h5")}).status, 0);

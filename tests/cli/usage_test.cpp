@@ -100,6 +100,15 @@ TEST(ProgramUsage, AMissingValueOrInputIsAUsageError) {
     EXPECT_EQ(first_line(run_program({"solve", "room.obj", "--error", "1", "--error", "2"}).err),
               "error: --error: is given more than once");
     EXPECT_EQ(run_program({"solve"}).status, 2);
+    for (const auto& [words, where] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+             {{"solve", "room.obj", "--sky", "", "-o", "s.h5"}, "--sky"},
+             {{"solve", "room.obj", "-o", ""}, "--output"},
+             {{"solve", "", "-o", "s.h5"}, "SCENE"},
+             {{"probe", "s.h5", "--points="}, "--points"}}) {
+        const Finished run = run_program(words);
+        EXPECT_EQ(run.status, 2) << where;
+        EXPECT_NE(first_line(run.err).find(where + ": its value is"), std::string::npos) << run.err;
+    }
     EXPECT_EQ(run_program({"export", "room.h5"}).status, 2);
     EXPECT_EQ(run_program({"stats", "a.h5", "b.h5"}).status, 2);
 }

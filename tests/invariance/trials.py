@@ -50,7 +50,7 @@ class Program:
     """Runs the program, with a limit on processor time in seconds."""
 
     def __init__(self, path, time_limit):
-        self.path, self.time_limit = path, time_limit
+        self.path, self.time_limit, self.environment = path, time_limit, None  # None: that of this process
         self.last = ""
 
     def limit(self):
@@ -59,7 +59,8 @@ class Program:
     def __call__(self, *arguments, text=None):
         command = [self.path, *map(str, arguments)]
         self.last = " ".join(f"'{w}'" if re.search(r"[^\w./=,:+-]", w) else w for w in command)
-        ran = subprocess.run(command, input=text, capture_output=True, text=True, preexec_fn=self.limit)
+        ran = subprocess.run(command, input=text, capture_output=True, text=True, env=self.environment,
+                             preexec_fn=self.limit)
         if ran.returncode == -signal.SIGXCPU:
             ran.stderr = f"error: no end within {self.time_limit} s of processor time"
         return ran

@@ -79,6 +79,45 @@ def write_weather(path, hours=24):
     path.write_text("\n".join(header + rows) + "\n")
 
 
+def write_glazed_room(folder):
+    """A room of 4 x 3 x 2.5 m whose south wall is glass."""
+    corners = [(x, y, z) for z in (0, 2.5) for y in (0, 3) for x in (0, 4)]
+    faces = ["1 3 4 2", "5 6 8 7", "3 7 8 4", "1 5 7 3", "2 4 8 6"]  # floor, ceiling, north, west and east
+    lines = ["mtllib room.mtl"] + [f"v {x} {y} {z}" for x, y, z in corners] + ["usemtl wall"]
+    lines += [f"f {face}" for face in faces] + ["usemtl glass", "f 1 2 6 5"]
+    (folder / "room.obj").write_text("\n".join(lines) + "\n")
+    (folder / "room.mtl").write_text("newmtl wall\nKd 0.5 0.5 0.5\nnewmtl glass\nKd 0 0 0\nd 0\nTf 0.8 0.8 0.8\n")
+    return folder / "room.obj"
+
+
+def test_daylight_follows_the_states_of_panes(tmp_path):
+    write_weather(tmp_path / "town.epw")
+    scene = ex.load(write_glazed_room(tmp_path))
+    group = '[[group]]\nname = "south"\nrule = "constant"\nstays = "dim"\n'
+    group += '[[group.state]]\nname = "open"\n[[group.state]]\nname = "dim"\nfactor = 0.25\n'
+    (tmp_path / "states.toml").write_text(group + '[[variant]]\nname = "dark"\nfactors = [0.5]\n')
+    places = [[2, 1, 0.8], [2, 2, 0.8]]
+    whole = ex.daylight(scene, tmp_path / "town.epw", places)
+    dimmed = ex.daylight(scene, tmp_path / "town.epw", places, states=tmp_path / "states.toml")
+    lit = whole.illuminance > 0
+    # All light comes through the panes: a quarter of it, to the rounding of single precision.
+    assert np.allclose(dimmed.illuminance[lit], 0.25 * whole.illuminance[lit], rtol=1e-4)
+    (south,) = dimmed.pane_groups
+    assert south.name == "south" and south.states == ["open", "dim"]
+    assert south.chosen.shape == (24,) and (south.chosen == 1).all()
+    (dark,) = dimmed.glass_variants
+    occupied = (whole.hours[:, 2] > 8) & (whole.hours[:, 2] <= 18)
+    assert dark.name == "dark"
+    assert dark.mean_illuminance == pytest.approx(0.125 * whole.illuminance[occupied].mean(), rel=1e-3)
+    assert whole.pane_groups == [] and whole.glass_variants == []
+    with pytest.raises(ex.UsageError):  # a scene of arrays has no panes with names
+        flat = ex.Scene([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2, 3]], reflectance=0.2)
+        ex.daylight(flat, tmp_path / "town.epw", places, states=tmp_path / "states.toml")
+    (tmp_path / "states.toml").write_text(group.replace("dim", "shut", 1))
+    with pytest.raises(ex.Error, match="shut"):
+        ex.daylight(scene, tmp_path / "town.epw", places, states=tmp_path / "states.toml")
+
+
 def test_daylight_on_open_ground_is_that_of_the_sky(tmp_path):
     write_weather(tmp_path / "town.epw")
     ground = ex.Scene([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2, 3]], reflectance=0.2)

@@ -100,7 +100,7 @@ inline Solution sample_solution(int cuts = 40, bool photometric = false) {
     t.rays = 7, t.form_factors = 8, t.iterations = 9, t.converged = true, t.residual = 1e-5;
     t.relative_error_estimate = 0.011, t.relative_error_bound = 0.02, t.relative_error_estimate_interpolant = 0.03;
     t.energy = {100, 99.5, 0.005};
-    t.seconds = {{"total", 1.5}, {"read", 0.1}, {"link", 1.0 / 3}};
+    t.seconds[RunPart::total] = 1.5, t.seconds[RunPart::read] = 0.1, t.seconds[RunPart::link] = 1.0 / 3;
     t.peak_memory_bytes = 1000000, t.link_memory_bytes = 2000;
     t.warnings = {"the room is open", "it is dark in there"};
     return s;

@@ -218,6 +218,32 @@ class Solution:
         progress: _Progress = None,
     ) -> LightMaps: ...
 
+class PaneGroup:
+    """A group of panes whose state changes from hour to hour."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def states(self) -> list[str]: ...
+    @property
+    def chosen(self) -> NDArray[np.uint8]: ...
+
+class GlassVariant:
+    """Results of all sensors with other glass, which a file of states lists."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def spatial_autonomy(self) -> float: ...
+    @property
+    def spatial_autonomy_bounds(self) -> list[float]: ...
+    @property
+    def continuous_autonomy(self) -> float: ...
+    @property
+    def mean_illuminance(self) -> float: ...
+    @property
+    def sunlight_exposure(self) -> float: ...
+
 class Daylight:
     """Illuminances of sensors in every hour of a weather file, and their annual figures."""
 
@@ -247,6 +273,10 @@ class Daylight:
     def error_daylight_factor(self) -> float: ...
     @property
     def error_lux_hours(self) -> float: ...
+    @property
+    def pane_groups(self) -> list[PaneGroup]: ...
+    @property
+    def glass_variants(self) -> list[GlassVariant]: ...
     @property
     def warnings(self) -> list[str]: ...
 
@@ -319,6 +349,7 @@ def daylight(
     division: int = 1,
     north: float = 0.0,
     ground: float = 0.2,
+    states: Union[None, _Path] = None,
     progress: _Progress = None,
 ) -> Daylight:
     """Computes the daylight of a year at sensors."""

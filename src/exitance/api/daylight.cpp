@@ -3,6 +3,7 @@
 #include "exitance/api/inside.hpp"
 #include "exitance/io/files/wea_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
+#include "exitance/io/scenes/states_file.hpp"
 #include "exitance/what_if/daylight/daylight_results.hpp"
 
 namespace exitance::api {
@@ -40,7 +41,28 @@ void add_metrics(const DaylightResults& results, Daylight& out) {
     }
 }
 
-Result<Daylight> compute(const exitance::Scene& scene, const Weather& weather, std::span<const ProbePoint> sensors,
+/// Reads the groups of panes, if the options name a file; else returns none.
+Result<std::optional<DaylightStates>> states_for(const DaylightOptions& options, const SceneData& scene,
+                                                 const DaylightTask& task) {
+    if (options.states.empty()) return std::optional<DaylightStates>();
+    if (scene.files.empty())
+        return usage("needs a scene that was read from files, which name its panes", "states", "load() reads them");
+    exitance::Result<DaylightStates> states = read_states(
+        options.states, {scene.files, scene.load, *scene.scene, scene.panes, task.sensors.size(), task.hours.size()});
+    if (!states) return to_api(states.error());
+    return std::optional(std::move(*states));
+}
+
+std::vector<PaneGroup> pane_groups(const DaylightStates& states, std::vector<std::vector<std::uint8_t>> chosen) {
+    std::vector<PaneGroup> out;
+    for (std::size_t g = 0; g < states.groups.size(); ++g) {
+        out.push_back({states.groups[g].name, {}, std::move(chosen[g])});
+        for (const PaneState& state : states.groups[g].states) out.back().states.push_back(state.name);
+    }
+    return out;
+}
+
+Result<Daylight> compute(const SceneData& scene, const Weather& weather, std::span<const ProbePoint> sensors,
                          const DaylightOptions& options, Run& run) {
     DaylightTask task;
     task.sensors.assign(sensors.begin(), sensors.end());
@@ -57,7 +79,10 @@ Result<Daylight> compute(const exitance::Scene& scene, const Weather& weather, s
                  .ground = options.ground,
                  .efficacy_diffuse = efficacy_of_sky,
                  .efficacy_direct = efficacy_of_sun};
-    exitance::Result<DaylightResults> found = collect_year(scene, task, run.progress(), run.stop());
+    const Result<std::optional<DaylightStates>> states = states_for(options, scene, task);
+    if (!states) return states.error();
+    if (*states) task.states = &**states;
+    exitance::Result<DaylightResults> found = collect_year(*scene.scene, task, run.progress(), run.stop());
     if (!found) return stopped("the computation of daylight");
     DaylightResults& results = *found;
     add_metrics(results, out);
@@ -65,6 +90,17 @@ Result<Daylight> compute(const exitance::Scene& scene, const Weather& weather, s
     out.illuminance = std::move(results.year.illuminance), out.sun = std::move(results.year.sun);
     out.spatial_autonomy = results.summary.spatial_autonomy;
     out.sunlight_exposure = results.summary.sunlight_exposure;
+    if (*states) out.pane_groups = pane_groups(**states, std::move(results.states));
+    for (std::size_t v = 0; v < results.variants.size(); ++v) {
+        const VariantSummary& s = results.variants[v];
+        out.glass_variants.push_back({(*states)->variants[v].name,
+                                      s.autonomy,
+                                      {s.bounds.low, s.bounds.high},
+                                      s.continuous,
+                                      s.illuminance,
+                                      s.exposure});
+    }
+    out.warnings = std::move(results.warnings);
     const DaylightError error = worst_of(results.summary.errors);
     out.error_daylight_factor = error.factor, out.error_lux_hours = error.lux_hours;
     if (error.largest() > options.error)
@@ -82,8 +118,10 @@ Result<Daylight> daylight(const Scene& scene, const std::string& epw, std::span<
         if (!points) return points.error();
         const exitance::Result<Weather> weather = load_weather(epw);
         if (!weather) return to_api(weather.error());
-        Result<Daylight> out = compute(*scene.data().scene, *weather, *points, options, run);
-        if (out) out->warnings = warnings_of(*weather, epw);
+        Result<Daylight> out = compute(scene.data(), *weather, *points, options, run);
+        if (!out) return out;
+        const std::vector<std::string> warnings = warnings_of(*weather, epw);
+        out->warnings.insert(out->warnings.begin(), warnings.begin(), warnings.end());
         return out;
     });
 }

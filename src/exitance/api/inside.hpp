@@ -17,6 +17,7 @@
 #include "exitance/base/vec.hpp"
 #include "exitance/error.hpp"
 #include "exitance/evaluate/radiosity_function.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/progress.hpp"
 #include "exitance/scene.hpp"
 #include "exitance/scene/scene.hpp"
@@ -37,6 +38,9 @@ struct SceneData {
     std::vector<exitance::Finding> engine_findings;         ///< Like `findings`, for the statistics of a solve.
     std::vector<exitance::Spectrum> reflectance_deviation;  ///< See LoadedScene.
     bool light_groups = false;
+    std::vector<std::string> files = {};  ///< Files that it comes from, for files of states of panes,
+    exitance::LoadOptions load = {};      ///< the options with which they were read,
+    std::vector<NamedPane> panes = {};    ///< and the panes with their names.
 };
 
 struct SolutionData {

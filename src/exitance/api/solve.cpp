@@ -71,7 +71,7 @@ void record_run(const SolveRequest& request, const SceneData& scene, const Stopw
     SolveStatistics& statistics = solution.statistics;
     add_findings(statistics.warnings, scene.engine_findings, solution.scene.file());
     statistics.warnings.insert(statistics.warnings.begin(), request.warnings.begin(), request.warnings.end());
-    statistics.seconds["total"] = watch.seconds();
+    statistics.seconds[RunPart::total] = watch.seconds();
     statistics.peak_memory_bytes = peak_memory_bytes();
 }
 

@@ -94,9 +94,7 @@ EXITANCE_INLINE Real angle_over_tangent(const Real& z) {
                               -0.04348052215716462,
                               0.021135373157693246};
     const Real w = z * z, v = w * w;
-    const auto pair = [&](int k) __attribute__((always_inline)) {
-        return fused(Real{} + c[k + 1], z, Real{} + c[k]);
-    };
+    const auto pair = [&](int k) EXITANCE_INLINE_LAMBDA { return fused(Real{} + c[k + 1], z, Real{} + c[k]); };
     // Estrin's scheme: short chains, so that edges overlap in the pipeline.
     const Real low = fused(w, pair(2), pair(0)), middle = fused(w, pair(6), pair(4)),
                high = fused(w, Real{} + c[10], pair(8));
@@ -130,18 +128,21 @@ using Real = double __attribute__((vector_size(32)));
 using Mask = long long __attribute__((vector_size(32)));
 using Vec = lanes_of::VecOf<Real>;
 
-inline Real load(const double* p) {
+EXITANCE_INLINE Real load(const double* p) {
     return lanes_of::load<Real>(p);
 }
 /// Returns a bit for each lane whose sign bit is set; comparisons set it where they hold.
 EXITANCE_INLINE int bits(const Mask& m) {
-#ifdef __AVX__
-    return __builtin_ia32_movmskpd256(reinterpret_cast<const Real&>(m));
+#ifdef __SSE2__  // by halves, which every target has
+    using Half = double __attribute__((vector_size(16)));
+    Half half[2];
+    __builtin_memcpy(half, &m, sizeof m);
+    return __builtin_ia32_movmskpd(half[0]) | __builtin_ia32_movmskpd(half[1]) << 2;
 #else
     return (m[0] < 0 ? 1 : 0) | (m[1] < 0 ? 2 : 0) | (m[2] < 0 ? 4 : 0) | (m[3] < 0 ? 8 : 0);
 #endif
 }
-inline bool any(const Mask& m) {
+EXITANCE_INLINE bool any(const Mask& m) {
     return bits(m) != 0;
 }
 EXITANCE_INLINE Mask less(const Real& a, const Real& b) {

@@ -1,21 +1,22 @@
 #pragma once
 
-#include <initializer_list>
-#include <map>
-#include <string>
+#include <optional>
+#include <string_view>
 
 #include "exitance/base/progress.hpp"
+#include "exitance/base/run_seconds.hpp"
 
 namespace exitance {
 
-/// Forwards everything to another Progress and measures the time of every phase. Must not outlive that Progress.
+/// Forwards everything to another Progress and adds the time of every phase to the part of the run that it belongs to.
+/// The time before the first phase is not counted. Must not outlive that Progress and the seconds.
 class PhaseTimes : public Progress {
   public:
-    explicit PhaseTimes(Progress& progress) : progress_(progress) {}
+    PhaseTimes(Progress& progress, RunSeconds& seconds) : progress_(progress), seconds_(seconds) {}
 
     void phase(std::string_view name) override {
         close();
-        name_ = name;
+        part_ = part_of(name);
         progress_.phase(name);
     }
     void advance(double fraction, std::string_view detail = {}) override { progress_.advance(fraction, detail); }
@@ -23,25 +24,31 @@ class PhaseTimes : public Progress {
     void warn(std::string_view message) override { progress_.warn(message); }
     Progress& inner() { return progress_; }
 
-    /// Returns the total time in phases of these names so far, seconds. The current phase is included only after the
-    /// next one begins or after close().
-    double seconds(std::initializer_list<const char*> names) const {
-        double sum = 0;
-        for (const char* name : names)
-            if (const auto at = seconds_.find(name); at != seconds_.end()) sum += at->second;
-        return sum;
-    }
+    /// Ends the current phase.
     void close() {
-        if (!name_.empty()) seconds_[name_] += watch_.seconds();
+        if (part_) seconds_[*part_] += watch_.seconds();
         watch_.restart();
-        name_.clear();
+        part_.reset();
     }
 
   private:
+    /// None for phases whose work is timed in detail by what does it.
+    static std::optional<RunPart> part_of(std::string_view phase) {
+        if (phase == "discontinuities") return {};
+        if (phase == "mesh") return RunPart::mesh;
+        if (phase == "direct light") return RunPart::direct;
+        for (const std::string_view links : {"link", "refine", "look again", "correct", "check by rays"})
+            if (phase == links) return RunPart::link;
+        if (phase == "gather") return RunPart::gather;
+        if (phase == "certify") return RunPart::certify;
+        if (phase == "reconstruct" || phase == "local pass") return RunPart::reconstruct;
+        return RunPart::solve;  // shooting, growing, solving: a name per method
+    }
+
     Progress& progress_;
-    std::string name_;
+    RunSeconds& seconds_;
+    std::optional<RunPart> part_;
     Stopwatch watch_;
-    std::map<std::string, double, std::less<>> seconds_;
 };
 
 }  // namespace exitance

@@ -1,7 +1,5 @@
 #include "exitance/base/random.hpp"
 
-#include "exitance/base/processor.hpp"
-
 namespace exitance {
 namespace {
 
@@ -70,19 +68,15 @@ EXITANCE_INLINE void ScrambledSobol::fill_reversed(std::uint32_t first, std::spa
     }
 }
 
-EXITANCE_AVX512 void ScrambledSobol::fill_wide(std::uint32_t first, int dimension,
-                                               std::span<double> coordinates) const {
-    dimension == 0 ? fill_reversed<0>(first, coordinates) : fill_reversed<1>(first, coordinates);
-}
-
-void ScrambledSobol::fill(std::uint32_t first, int dimension, std::span<double> coordinates) const {
-    static const bool wide = has_avx512();
-    if (dimension > 1)
+void ScrambledSobol::fill(std::uint32_t first, int dimension, std::span<double> coordinates,
+                          Processor processor) const {
+    if (dimension > 1) {
         for (std::uint32_t k = 0; k < coordinates.size(); ++k) coordinates[k] = (*this)(first + k, dimension);
-    else if (wide)
-        fill_wide(first, dimension, coordinates);
-    else
+        return;
+    }
+    call_for(processor, [&]() EXITANCE_INLINE_LAMBDA {
         dimension == 0 ? fill_reversed<0>(first, coordinates) : fill_reversed<1>(first, coordinates);
+    });
 }
 
 }  // namespace exitance

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "exitance/base/processor.hpp"
+
 namespace exitance {
 
 /// Hashes 64 bits so that every input bit affects every output bit (the finaliser of splitmix64).
@@ -56,7 +58,8 @@ class ScrambledSobol {
     }
     /// Writes coordinate `dimension` of the points from `first` on, one per entry of `coordinates`. A few times as fast
     /// as single calls.
-    void fill(std::uint32_t first, int dimension, std::span<double> coordinates) const;
+    void fill(std::uint32_t first, int dimension, std::span<double> coordinates,
+              Processor processor = Processor::fastest) const;
 
   private:
     static constexpr std::uint32_t reverse(std::uint32_t v) {
@@ -84,7 +87,6 @@ class ScrambledSobol {
     static std::uint32_t sobol(std::uint32_t index, int dimension);
     template <int dimension>
     void fill_reversed(std::uint32_t first, std::span<double> coordinates) const;
-    void fill_wide(std::uint32_t first, int dimension, std::span<double> coordinates) const;
 
     std::uint32_t shuffle_;
     std::array<std::uint32_t, 4> scramble_;

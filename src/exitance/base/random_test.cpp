@@ -7,15 +7,16 @@
 namespace exitance {
 namespace {
 
-TEST(ScrambledSobol, FillAgreesWithSinglePoints) {
+TEST(ScrambledSobol, FillAgreesWithSinglePointsOnAnyProcessor) {
     for (std::uint64_t seed : {1u, 77u}) {
         const ScrambledSobol points(seed);
         for (std::uint32_t first : {0u, 5u, 4096u, 0xfffffff0u})
-            for (int dimension = 0; dimension < 4; ++dimension) {
-                std::vector<double> many(37);
-                points.fill(first, dimension, many);
-                for (std::uint32_t k = 0; k < many.size(); ++k) ASSERT_EQ(many[k], points(first + k, dimension));
-            }
+            for (int dimension = 0; dimension < 4; ++dimension)
+                for (const Processor processor : {Processor::any, Processor::avx2, Processor::fastest}) {
+                    std::vector<double> many(37);
+                    points.fill(first, dimension, many, processor);
+                    for (std::uint32_t k = 0; k < many.size(); ++k) ASSERT_EQ(many[k], points(first + k, dimension));
+                }
     }
 }
 

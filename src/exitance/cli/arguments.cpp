@@ -6,6 +6,7 @@
 
 #include "exitance/base/nearest.hpp"
 #include "exitance/base/version.hpp"
+#include "exitance/cli/named_files.hpp"
 #include "exitance/cli/option_kinds.hpp"
 #include "exitance/cli/reference/pages.hpp"
 #include "exitance/methods/options/solve_option_table.hpp"
@@ -114,6 +115,29 @@ VerbFacts facts_of_verb(const std::string& name, const std::string& does, const 
     return out;
 }
 
+/// Error for an option or input with an empty value, such as that of an unset variable of the shell.
+Result<void> check_values(const CLI::App& app) {
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& value : option->results())
+            if (value.empty() && option->get_items_expected_max() > 0)
+                return Error{ErrorCode::usage, "its value is empty", option->get_name(),
+                             "give a value, or leave the option out"};
+    return {};
+}
+
+/// The values of options and inputs, which may be names of files.
+std::vector<NamedFile> named_files(const CLI::App& app) {
+    constexpr std::string_view outputs[]{"--output",  "OUT",      "--operator", "--exchange",
+                                         "--gebhart", "--charts", "--picture",  "--trace"};
+    std::vector<NamedFile> out;
+    for (const CLI::Option* option : app.get_options()) {
+        const std::string name = option->get_name();
+        const bool is_output = std::find(std::begin(outputs), std::end(outputs), name) != std::end(outputs);
+        for (const std::string& value : option->results()) out.push_back({name, value, is_output});
+    }
+    return out;
+}
+
 template <class Arguments>
 Result<Parsed> parse_verb(CLI::App& app, const std::vector<std::string>& words, const std::string& at_limit) {
     Arguments arguments;
@@ -128,6 +152,10 @@ Result<Parsed> parse_verb(CLI::App& app, const std::vector<std::string>& words, 
         return usage_error(app, error.what());
     }
     if (const std::vector<std::string> extras = app.remaining(); !extras.empty()) return unexpected(app, extras);
+    if (const Result<void> given = check_values(app); !given) return given.error();
+    // A mixed solution keeps the groups as they were, so that it may replace its input.
+    if constexpr (!std::is_same_v<Arguments, MixArguments>)
+        if (const Result<void> fit = check_named_files(named_files(app)); !fit) return fit.error();
     return Parsed(Command(std::move(arguments)));
 }
 

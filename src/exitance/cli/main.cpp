@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <new>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <type_traits>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "exitance/base/memory.hpp"
+#include "exitance/base/processor.hpp"
 #include "exitance/cli/arguments.hpp"
 #include "exitance/cli/processes.hpp"
 #include "exitance/cli/signals.hpp"
@@ -58,6 +60,7 @@ int main(int argc, char** argv) {
     using namespace exitance;
     leave_at_signals();
     install_laboratory();
+    if (const std::optional<Error> error = processor_error()) return static_cast<int>(Terminal({}).fail(*error));
     keep_large_arrays_apart();
     if (const Result<void> joined = join_processes(); !joined)
         return static_cast<int>(Terminal({}).fail(joined.error()));

@@ -106,9 +106,9 @@ constexpr std::array<std::pair<double, std::string_view>, 5> length_unit_names{{
 constexpr std::array<std::pair<bool, std::string_view>, 2> up_names{{{true, "y"}, {false, "z"}}};
 
 void declare_scene(CLI::App& app, SceneArguments& scene) {
-    app.add_option(
-           "SCENE", scene.files,
-           "Scene (.obj with its .mtl, .gltf, .glb, .rad, .vs3, .stl, .ply, .hbjson); several files make one scene")
+    app.add_option("SCENE", scene.files,
+                   "Scene (.obj with its .mtl, .gltf, .glb, .rad, .vs3, .stl, .ply, .hbjson, .json); several files "
+                   "make one scene")
         ->required();
     app.add_flag_callback(
            "--strict", [&scene] { scene.load.faults = Faults::refuse; },

@@ -62,10 +62,10 @@ void record_processes(SolveStatistics& statistics) {
     const auto own = static_cast<double>(peak_memory_bytes());
     if (processes() == 1) return;
     statistics.peak_memory_bytes = static_cast<std::size_t>(largest_of_all(own));
+    statistics.processes = processes();
     auto& figures = statistics.figures;
     figures["peak_memory_bytes_of_all"] = sum_of_all(own);
     figures["shared_memory_bytes"] = largest_of_all(static_cast<double>(shared_memory_bytes()));
-    figures["processes"] = static_cast<double>(processes());
     const ExchangeTime time = exchange_time();
     figures["waiting_seconds_of_all"] = sum_of_all(time.waiting);
     figures["sending_seconds_of_all"] = sum_of_all(time.sending);

@@ -191,8 +191,8 @@ void record_run(Solution& solution, const SolveArguments& arguments, const std::
     if (!arguments.classical.any()) solution.options = options_json(arguments);
     solution.options = with_scene_options(solution.options, arguments.scene.load);
     add_findings(statistics.warnings, findings, solution.scene.file());
-    statistics.seconds["read"] = read_seconds;
-    statistics.seconds["total"] = run_time.seconds();
+    statistics.seconds[RunPart::read] = read_seconds;
+    statistics.seconds[RunPart::total] = run_time.seconds();
     statistics.peak_memory_bytes = peak_memory_bytes();
     record_processes(statistics);
 }
@@ -209,9 +209,9 @@ Result<void> save(const SolveArguments& arguments, Solution& solution, const Lig
         !written)
         return written;
     SolveStatistics& statistics = solution.statistics;
-    statistics.seconds["write"] = writing.seconds();
+    statistics.seconds[RunPart::write] = writing.seconds();
     if (processes() > 1) record_processor_time(statistics);
-    statistics.seconds["total"] = run_time.seconds();
+    statistics.seconds[RunPart::total] = run_time.seconds();
     statistics.peak_memory_bytes = std::max(statistics.peak_memory_bytes, peak_memory_bytes());
     return {};
 }

@@ -10,17 +10,14 @@
 namespace exitance {
 namespace {
 
-std::string seconds_line(const std::map<std::string, double>& seconds) {
+std::string seconds_line(const RunSeconds& seconds) {
+    constexpr double least = 0.0005;  // derived from the three digits of the numbers: shorter parts would be zeros
     std::string parts;
-    for (const char* phase :
-         {"read", "mesh", "direct", "link", "solve", "gather", "certify", "reconstruct", "light_groups", "write"}) {
-        const auto at = seconds.find(phase);
-        if (at == seconds.end() || at->second < 0.0005) continue;
-        parts += fmt::format("{}{} {:.3g}", parts.empty() ? "" : ", ", phase, at->second);
-    }
-    const auto total = seconds.find("total");
-    return fmt::format("{:.3g} s{}", total == seconds.end() ? 0.0 : total->second,
-                       parts.empty() ? "" : " (" + parts + ")");
+    RunSeconds::for_parts([&](RunPart part) {
+        if (part == RunPart::total || seconds[part] < least) return;
+        parts += fmt::format("{}{} {:.3g}", parts.empty() ? "" : ", ", RunSeconds::name(part), seconds[part]);
+    });
+    return fmt::format("{:.3g} s{}", seconds[RunPart::total], parts.empty() ? "" : " (" + parts + ")");
 }
 
 /// Area, mean radiosity and error of the four largest rooms.
@@ -104,17 +101,14 @@ std::string summary(const Solution& solution) {
     if (s.standard_error > 0)
         line("noise", fmt::format("standard error {} of the method's light", percent(s.standard_error)));
     const std::string apart = percent(s.energy.defect);
-    const auto found = s.figures.find("energy_defect_before");
-    const std::string before = found != s.figures.end() ? percent(found->second) : apart;
+    const std::string before = s.energy.defect_before ? percent(*s.energy.defect_before) : apart;
     line("energy",
          fmt::format("{:.6g} {} emitted, {:.6g} {} absorbed, {}{} apart{}", s.energy.emitted, unit.power(),
                      s.energy.absorbed, unit.power(),
                      s.energy.escaped > 0 ? fmt::format("{:.4g} {} escaped, ", s.energy.escaped, unit.power()) : "",
                      apart, before != apart ? fmt::format(" ({} before light was scaled)", before) : ""));
-    const auto processes = s.figures.find("processes");
     line("time", fmt::format("{} on {} thread{}{}", seconds_line(s.seconds), s.threads, s.threads == 1 ? "" : "s",
-                             processes != s.figures.end() ? fmt::format(" of {} processes each", processes->second)
-                                                          : std::string()));
+                             s.processes > 1 ? fmt::format(" of {} processes each", s.processes) : std::string()));
     line("memory", bytes(s.peak_memory_bytes) + " at most");
     for (const std::string& warning : s.warnings) line("warning", warning);
     return text;

@@ -39,7 +39,7 @@ EXITANCE_INLINE VecOf<Real> around(const Frame& frame, const Real& a, const Real
     const Real x = radius * (wide ? cosine : sine), y = radius * (wide ? sine : cosine);
     // Keep the direction above the plane: a ray in the plane itself would never leave it.
     const Real rest = 1 - x * x - y * y, least = rest * 0 + 1e-12, z = sqrt(max(least, rest));
-    const auto to_world = [&](double u, double v, double n) { return x * u + y * v + z * n; };
+    const auto to_world = [&](double u, double v, double n) EXITANCE_INLINE_LAMBDA { return x * u + y * v + z * n; };
     return {to_world(frame.u.x, frame.v.x, frame.n.x), to_world(frame.u.y, frame.v.y, frame.n.y),
             to_world(frame.u.z, frame.v.z, frame.n.z)};
 }
@@ -60,9 +60,10 @@ EXITANCE_INLINE void add_directions(const Frame& frame, std::span<const double> 
     for (std::size_t i = 0; i < count; ++i) directions[k + i] = {d.x[i], d.y[i], d.z[i]};
 }
 
-EXITANCE_AVX512 void cosine_directions_by_eight(const Frame& frame, std::span<const double> a,
-                                                std::span<const double> b, std::span<Vec3> directions) {
-    for (std::size_t k = 0; k < a.size(); k += 8) add_directions<EightReals>(frame, a, b, k, directions);
+template <class Real>
+EXITANCE_INLINE void add_all_directions(const Frame& frame, std::span<const double> a, std::span<const double> b,
+                                        std::span<Vec3> directions) {
+    for (std::size_t k = 0; k < a.size(); k += lanes<Real>) add_directions<Real>(frame, a, b, k, directions);
 }
 
 }  // namespace
@@ -76,9 +77,11 @@ Vec3 cosine_direction(const Frame& frame, double a, double b) {
 void cosine_directions(const Frame& frame, std::span<const double> a, std::span<const double> b,
                        std::span<Vec3> directions, Processor processor) {
     EXI_CHECK(a.size() == directions.size() && b.size() == directions.size());
-    static const bool has_eight = has_avx512();
-    if (has_eight && processor == Processor::fastest) return cosine_directions_by_eight(frame, a, b, directions);
-    for (std::size_t k = 0; k < a.size(); k += four::lanes) add_directions<four::Real>(frame, a, b, k, directions);
+    if (usable(processor) == Processor::avx512) {
+        call_for_avx512([&]() EXITANCE_INLINE_LAMBDA { add_all_directions<EightReals>(frame, a, b, directions); });
+        return;
+    }
+    call_for(processor, [&]() EXITANCE_INLINE_LAMBDA { add_all_directions<four::Real>(frame, a, b, directions); });
 }
 
 }  // namespace exitance

@@ -12,7 +12,7 @@ TEST(CosineDirections, AgreeWithSingleCallsOnAnyProcessorAndHaveUnitLength) {
     std::vector<double> a = {0.5, 0, 0.5, 1 - 0x1p-32}, b = {0.5, 0, 0.2, 0.3};  // centre, corner, diagonal, edge
     const ScrambledSobol points(1);
     for (std::uint32_t k = 0; k < 31; ++k) a.push_back(points(k, 0)), b.push_back(points(k, 1));
-    for (const Processor processor : {Processor::fastest, Processor::any}) {
+    for (const Processor processor : {Processor::fastest, Processor::avx2, Processor::any}) {
         std::vector<Vec3> many(a.size());
         cosine_directions(frame, a, b, many, processor);
         for (std::size_t i = 0; i < a.size(); ++i) {

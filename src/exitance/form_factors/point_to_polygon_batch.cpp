@@ -19,7 +19,7 @@ constexpr std::size_t max_lanes = lanes<EightReals>;
 template <class Real>
 EXITANCE_INLINE Quads<Real> load_quads(const Point& x, const double* const (&column)[16], std::size_t k) {
     const VecOf<Real> origin = {Real{} + x.x, Real{} + x.y, Real{} + x.z};
-    const auto at = [&](std::size_t i) __attribute__((always_inline)) {
+    const auto at = [&](std::size_t i) EXITANCE_INLINE_LAMBDA {
         return VecOf<Real>{load<Real>(column[i] + k), load<Real>(column[i + 1] + k), load<Real>(column[i + 2] + k)} -
                origin;
     };
@@ -42,7 +42,7 @@ struct PointsView {
 template <class Real>
 EXITANCE_INLINE PointsView<Real> load_points(const OneQuad& quad, const double* const (&column)[6], std::size_t k) {
     const VecOf<Real> x = {load<Real>(column[0] + k), load<Real>(column[1] + k), load<Real>(column[2] + k)};
-    const auto from_x = [&](const Point& p) __attribute__((always_inline)) {
+    const auto from_x = [&](const Point& p) EXITANCE_INLINE_LAMBDA {
         return VecOf<Real>{p.x - x.x, p.y - x.y, p.z - x.z};
     };
     return {{{from_x(quad.corner[0]), from_x(quad.corner[1]), from_x(quad.corner[2]), from_x(quad.corner[3])},
@@ -104,12 +104,13 @@ struct Kernels {
         {NAME##_points<Rule::narrow_edges>, NAME##_points<Rule::points>, NAME##_points<Rule::edges>}};
 
 EXITANCE_KERNELS(plain, four::Real, )
-#ifdef EXITANCE_HAS_WIDE_KERNELS
-EXITANCE_KERNELS(wide, EightReals, EXITANCE_AVX512)
-const Kernels& fastest = has_avx512() ? wide : plain;
-#else
-const Kernels& fastest = plain;
-#endif
+EXITANCE_KERNELS(with_avx2, four::Real, EXITANCE_AVX2)
+EXITANCE_KERNELS(with_avx512, EightReals, EXITANCE_AVX512)
+
+const Kernels& kernels_of(Processor processor) {
+    const Kernels* const of[] = {&plain, &with_avx2, &with_avx512};
+    return *of[static_cast<std::size_t>(usable(processor))];
+}
 
 void copy_taken(int taken, const std::array<double, max_lanes>& F, double* out) {
     for (std::size_t i = 0; i < F.size(); ++i)
@@ -129,12 +130,14 @@ double EdgeTerms::sum() {
         if (count_ == squared_sine_.size()) grow();
         squared_sine_[count_] = 1, cosine_[count_] = 1, share_[count_++] = 0;
     }
-    four::Real total{};
-    for (std::size_t k = 0; k < count_; k += four::lanes) {
-        const four::Real sine = max(sqrt(four::load(&squared_sine_[k])), four::Real{} + 1e-200);
-        total -= angle_over_sine(sine, four::load(&cosine_[k])) * four::load(&share_[k]);
-    }
-    return ((total[0] + total[1]) + (total[2] + total[3])) * (1 / (2 * pi));
+    return call_for_four([&]() EXITANCE_INLINE_LAMBDA {
+        four::Real total{};
+        for (std::size_t k = 0; k < count_; k += four::lanes) {
+            const four::Real sine = max(sqrt(four::load(&squared_sine_[k])), four::Real{} + 1e-200);
+            total -= angle_over_sine(sine, four::load(&cosine_[k])) * four::load(&share_[k]);
+        }
+        return ((total[0] + total[1]) + (total[2] + total[3])) * (1 / (2 * pi));
+    });
 }
 
 void QuadBatch::clear() {
@@ -181,7 +184,7 @@ std::array<const double*, 16> QuadBatch::columns() const {
 void point_to_quads(const Point& x, const Normal& n, const QuadBatch& quads, std::span<double> out,
                     Processor processor) {
     EXI_CHECK(out.size() == quads.size());
-    const Kernels& kernels = processor == Processor::any ? plain : fastest;
+    const Kernels& kernels = kernels_of(processor);
     const std::size_t count = quads.size();
     const auto evaluate = [&](const double* const(&column)[16], std::size_t k, std::size_t last, double* F) {
         while (k + kernels.lanes <= last) {
@@ -243,7 +246,7 @@ void points_to_quad(const ReceiverBatch& receivers, const std::array<Point, 4>& 
     double squared_radius = 0;
     for (const Point& corner : quad) squared_radius = std::max(squared_radius, squared_norm(corner - middle));
     const OneQuad one = {quad, middle, std::sqrt(squared_radius)};
-    const Kernels& kernels = processor == Processor::any ? plain : fastest;
+    const Kernels& kernels = kernels_of(processor);
     const double* column[6];
     for (std::size_t i = 0; i < 6; ++i) column[i] = receivers.column_[i].data();
     for (std::size_t first = 0; first < out.size(); first += kernels.lanes) {

@@ -47,8 +47,10 @@ TEST(PointToQuads, AreBitIdenticalOnAnyProcessor) {
         std::vector<double> fastest(size), plain(size);
         const Normal n = normalized({0.2, -0.3, 0.9});
         point_to_quads({0.01, 0.02, 0.03}, n, batch, fastest);
-        point_to_quads({0.01, 0.02, 0.03}, n, batch, plain, Processor::any);
-        EXPECT_EQ(fastest, plain);
+        for (const Processor processor : {Processor::any, Processor::avx2}) {
+            point_to_quads({0.01, 0.02, 0.03}, n, batch, plain, processor);
+            EXPECT_EQ(fastest, plain);
+        }
     }
 }
 
@@ -62,7 +64,7 @@ TEST(PointToQuads, DependNeitherOnPositionNorOnNeighbours) {
         QuadBatch batch;
         for (std::size_t k = first; k < quads.size(); ++k) batch.add(quads[k]);
         std::vector<double> F(batch.size()), alone(1);
-        for (Processor processor : {Processor::fastest, Processor::any}) {
+        for (Processor processor : {Processor::fastest, Processor::avx2, Processor::any}) {
             point_to_quads(x, n, batch, F, processor);
             for (std::size_t k = first; k < quads.size(); ++k) {
                 QuadBatch one;
@@ -89,8 +91,10 @@ TEST(PointsToQuad, AgreesWithSingleReceiversOnAnyProcessor) {
             }
             std::vector<double> F(size), plain(size);
             points_to_quad(receivers, quad, F);
-            points_to_quad(receivers, quad, plain, Processor::any);
-            EXPECT_EQ(F, plain);
+            for (const Processor processor : {Processor::any, Processor::avx2}) {
+                points_to_quad(receivers, quad, plain, processor);
+                EXPECT_EQ(F, plain);
+            }
             for (std::size_t k = 0; k < size; ++k) {  // neighbours make no difference
                 ReceiverBatch one;
                 one.add(x[k], n[k]);

@@ -58,6 +58,7 @@ class ElementGather {
         void set(std::size_t lane, const Node& node);
         Group quarters(std::size_t lane) const;
     };
+    Spectrum sum(const Point& x, const Normal& n, RegionId own, double share, Workspace& workspace) const;
     static void open_pieces(const Group& group, int uneven, int cuts, Workspace& w);
 
     std::vector<Group> groups_;                           ///< The groups of the roots come first.

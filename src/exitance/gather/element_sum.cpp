@@ -21,13 +21,13 @@ EXITANCE_INLINE four::Vec lanes_at(const std::array<std::array<double, four::lan
 }
 
 /// Form factors of four quadrilaterals; the first suitable rule is used for each.
-Real form_factors(const Point& x, const Normal& n, const Quads<Real>& quads) {
+EXITANCE_INLINE Real form_factors(const Point& x, const Normal& n, const Quads<Real>& quads) {
     // A corner in the plane of x may be slightly below it due to rounding.
     constexpr double rounding = 1e-12;  // derived from double precision
     const double sunk = rounding * (std::abs(x.x) + std::abs(x.y) + std::abs(x.z) + quads.radius[0]);
     Real F{};
     int taken = 0;
-    const auto take = [&](int more, const Real& by_rule) {
+    const auto take = [&](int more, const Real& by_rule) EXITANCE_INLINE_LAMBDA {
         for (std::size_t i = 0; i < four::lanes; ++i)
             if (more & ~taken & 1 << i) F[i] = by_rule[i];
         taken |= more;
@@ -111,16 +111,17 @@ void ElementGather::open_pieces(const Group& group, int uneven, int cuts, Worksp
     }
 }
 
-Spectrum ElementGather::operator()(const Point& x, const Normal& n, RegionId own, double share, Workspace& w) const {
+EXITANCE_INLINE Spectrum ElementGather::sum(const Point& x, const Normal& n, RegionId own, double share,
+                                            Workspace& w) const {
     constexpr int most_cuts = 12;  // of a leaf
     const four::Vec origin = {Real{} + x.x, Real{} + x.y, Real{} + x.z};
-    const auto seen_from_x = [&](const Group& group) __attribute__((always_inline)) {
+    const auto seen_from_x = [&](const Group& group) EXITANCE_INLINE_LAMBDA {
         return Quads<Real>{{lanes_at(group.corners[0]) - origin, lanes_at(group.corners[1]) - origin,
                             lanes_at(group.corners[2]) - origin, lanes_at(group.corners[3]) - origin},
                            lanes_at(group.centre) - origin,
                            lanes_at(group.radius)};
     };
-    const auto form_factors_of = [&](std::uint32_t group, const Quads<Real>& quads) __attribute__((always_inline)) {
+    const auto form_factors_of = [&](std::uint32_t group, const Quads<Real>& quads) EXITANCE_INLINE_LAMBDA {
         Real F = form_factors(x, n, quads);
         if (group < of_region_.size())
             for (std::size_t i = 0; i < lanes; ++i)
@@ -166,6 +167,10 @@ Spectrum ElementGather::operator()(const Point& x, const Normal& n, RegionId own
     Spectrum sum;
     for (std::size_t k = 0; k < bands; ++k) sum[k] = (E[k][0] + E[k][1]) + (E[k][2] + E[k][3]);
     return sum;
+}
+
+Spectrum ElementGather::operator()(const Point& x, const Normal& n, RegionId own, double share, Workspace& w) const {
+    return call_for_four([&]() EXITANCE_INLINE_LAMBDA { return sum(x, n, own, share, w); });
 }
 
 }  // namespace exitance

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "exitance/base/parallel.hpp"
+#include "exitance/base/processor.hpp"
 #include "exitance/base/trace.hpp"
 #include "exitance/links/link_layout.hpp"
 #include "exitance/links/links.hpp"
@@ -25,21 +26,21 @@ template <std::size_t lanes>
 using Doubles = typename LanesOf<lanes>::Doubles;
 
 template <std::size_t lanes>
-Floats<lanes> load(const float* p) {
+EXITANCE_INLINE Floats<lanes> load(const float* p) {
     Floats<lanes> out;
     __builtin_memcpy(&out, p, sizeof out);
     return out;
 }
 
 template <class Lanes>
-Lanes positive(const Lanes& v) {
+EXITANCE_INLINE Lanes positive(const Lanes& v) {
     return v > 0 ? v : Lanes{};
 }
 
 /// Forces an array into memory: broadcasting one value to all lanes from there is a single load, from registers two
 /// shuffles.
 template <class Array>
-void keep_in_memory(Array& array) {
+EXITANCE_INLINE void keep_in_memory(Array& array) {
     asm volatile("" : "+m"(array));
 }
 
@@ -118,7 +119,7 @@ class ReceivedLight {
     }
 
     /// Adds a link with a recomputed, scaled kernel; `visible` as in Links.
-    void add(const SourceRecord<n>& q, float scale, const std::uint32_t* visible) {
+    EXITANCE_INLINE void add(const SourceRecord<n>& q, float scale, const std::uint32_t* visible) {
         float D[3];
         for (std::size_t axis = 0; axis < 3; ++axis)
             D[axis] = static_cast<float>(scale_ * (q.centre[axis] - centre_[axis]));
@@ -140,7 +141,7 @@ class ReceivedLight {
     }
 
     /// Adds a link with an integrated block.
-    void add(const float* block, const NodalField& b, ElementId q) {
+    EXITANCE_INLINE void add(const float* block, const NodalField& b, ElementId q) {
         for (std::size_t band = 0; band < bands; ++band) {
             const float* const light = b.at(q, band);
             Lanes arrived{};
@@ -152,7 +153,7 @@ class ReceivedLight {
     }
 
     /// Moves the sums to double precision, before single precision loses accuracy.
-    void put_by() {
+    EXITANCE_INLINE void put_by() {
         for (std::size_t band = 0; band < bands; ++band) {
             for (std::size_t k = 0; k < lanes; ++k) total_[k][band] += static_cast<double>(sum_[band][k]);
             sum_[band] = Lanes{};
@@ -167,7 +168,7 @@ class ReceivedLight {
     const NodalValues& total() const { return total_; }
 
   private:
-    static Lanes mask(const std::uint32_t* visible, std::size_t group) {
+    EXITANCE_INLINE static Lanes mask(const std::uint32_t* visible, std::size_t group) {
         const std::size_t bit = group * lanes;
         const std::uint32_t bits = visible[bit / 32] >> (bit % 32) & ((1u << lanes) - 1);
         return load<lanes>(lane_masks.of[bits]);
@@ -175,7 +176,8 @@ class ReceivedLight {
 
     /// Computes the positions of the source's nodes relative to the receiver's centre, and the light that each emits
     /// towards the receiver's plane.
-    void send(const SourceRecord<n>& q, const float (&D)[3], float (&y)[3][n], float (&light)[bands][n]) const {
+    EXITANCE_INLINE void send(const SourceRecord<n>& q, const float (&D)[3], float (&y)[3][n],
+                              float (&light)[bands][n]) const {
         Lanes here{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const Lanes at = D[axis] + load<lanes>(q.node[axis]);
@@ -198,8 +200,8 @@ class ReceivedLight {
         }
     }
 
-    void add_rest(const SourceRecord<n>& q, const float (&D)[3], const float (&y)[3][n], const float (&light)[bands][n],
-                  float scale, const std::uint32_t* visible) {
+    EXITANCE_INLINE void add_rest(const SourceRecord<n>& q, const float (&D)[3], const float (&y)[3][n],
+                                  const float (&light)[bands][n], float scale, const std::uint32_t* visible) {
         float there = 0;
         for (std::size_t axis = 0; axis < 3; ++axis) there += q.normal[axis] * (rest_[axis] - D[axis]);
         if (there <= 0) return;
@@ -291,15 +293,17 @@ void Links::gather_kernels(const NodalField& b, NodalField& E) const {
     parallel_for(sources.size(), 256, [&](std::size_t i) { fill(records[i], *sites_, b, sources[i], scale); });
     kernels_.for_each(sites_->tree(), [&](std::size_t row) {
         ReceivedLight<Layout> light(*sites_, receiver[row], scale);
-        for (std::size_t i = first[row]; i < first[row + 1]; ++i) {
-            prefetch(records[source[std::min(i + ahead, source.size() - 1)]]);
-            if (Link::is_far(block_[i]))
-                light.add(records[source[i]], Link::scale(block_[i]), &visible_[i * words_]);
-            else
-                light.add(&blocks_[block_[i]], b, sources[source[i]]);
-            if (i % at_a_time == 0) light.put_by();
-        }
-        light.put_by();
+        call_for_four([&]() EXITANCE_INLINE_LAMBDA {
+            for (std::size_t i = first[row]; i < first[row + 1]; ++i) {
+                prefetch(records[source[std::min(i + ahead, source.size() - 1)]]);
+                if (Link::is_far(block_[i]))
+                    light.add(records[source[i]], Link::scale(block_[i]), &visible_[i * words_]);
+                else
+                    light.add(&blocks_[block_[i]], b, sources[source[i]]);
+                if (i % at_a_time == 0) light.put_by();
+            }
+            light.put_by();
+        });
         E.add(receiver[row], light.total());
     });
 }

@@ -74,7 +74,7 @@ void relax_constant_elements(const MethodInput& input, const TransportOperator& 
         F.gather(light.reflected, light.indirect);
         agree_with_direct_share(input, F, rho, area, light);
     }
-    light.link_memory_bytes = F.memory_bytes();
+    light.work.link_memory_bytes = F.memory_bytes();
 }
 
 }  // namespace exitance

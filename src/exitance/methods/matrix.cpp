@@ -13,8 +13,6 @@
 namespace exitance {
 namespace {
 
-constexpr unsigned default_visibility_samples = 16;
-
 /// Solves on linear elements: collocation at the nodes of every leaf, E = first + H rho E, for the indirect irradiance
 /// E.
 void solve_linear(const MethodInput& input, GlobalLight& light) {
@@ -36,8 +34,8 @@ void solve_linear(const MethodInput& input, GlobalLight& light) {
         light.indirect.push_back(H.mean(i, E));
         light.reflected.push_back(rho[i] * (light.direct[i] + light.indirect[i]));
     }
-    light.rays = light.links = H.rays();
-    light.link_memory_bytes = H.memory_bytes();
+    light.work.rays = light.work.links = H.rays();
+    light.work.link_memory_bytes = H.memory_bytes();
 }
 
 /// Default resolution of a hemicube: about 200 times as many rays as a row has with random directions.
@@ -81,14 +79,14 @@ GlobalLight solve_matrix(const MethodInput& input) {
                         Dealing::by_element, RowsHeld::by_owner);
         if (options.bounces < 0) light.kept = kept_light(F, stage.scene);
         relax_constant_elements(input, F, light);
-        light.rays = light.links = F.rays();
+        light.work.rays = light.work.links = F.rays();
     } else if (*options.form_factors == FormFactorKind::hemicube) {
         const ElementLocator locator(light.tree, stage.scene.regions().size());
         const HemicubeRows F(stage, light.tree, light.numbering, locator, hemicube_cells(input));
         const PassedLight passed(stage.scene, light.tree, light.numbering.leaves);
         relax_constant_elements(input, PassingTransport(F, passed), light);
-        light.rays = F.rays();
-        light.links = light.form_factors = F.entries();
+        light.work.rays = F.rays();
+        light.work.links = light.work.form_factors = F.entries();
     } else {
         const PatchLevel patches(light.tree, light.numbering, 1);
         const auto samples = options.visibility_samples.value_or(default_visibility_samples);
@@ -96,9 +94,9 @@ GlobalLight solve_matrix(const MethodInput& input) {
         const DenseTransport F(transfer, light.numbering, patches, progress, stop);
         const PassedLight passed(stage.scene, light.tree, light.numbering.leaves);
         relax_constant_elements(input, PassingTransport(F, passed), light);
-        light.rays = transfer.rays();
-        light.form_factors = transfer.form_factors();
-        light.links = F.entries();
+        light.work.rays = transfer.rays();
+        light.work.form_factors = transfer.form_factors();
+        light.work.links = F.entries();
     }
     return light;
 }

@@ -140,7 +140,7 @@ GlobalLight solve_monte_carlo(const MethodInput& input) {
             .on_projection = true,
             .standard_error = std::move(standard_error),
             .report = {.iterations = sweeps, .residual = left_over, .converged = left_over <= knobs.residual},
-            .rays = shooter.rays_shot};
+            .work = {.rays = shooter.rays_shot}};
 }
 
 }  // namespace exitance

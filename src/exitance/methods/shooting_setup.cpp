@@ -6,11 +6,6 @@
 #include "exitance/solve/shot_progress.hpp"
 
 namespace exitance {
-namespace {
-
-constexpr unsigned default_visibility_samples = 16;
-
-}  // namespace
 
 std::size_t column_memory_bytes(const SolveOptions& options) {
     constexpr std::size_t max_bytes = std::size_t{1} << 30;
@@ -165,11 +160,11 @@ GlobalLight ShootingSetup::finish(const SolveReport& report) {
     for (std::size_t i = 0; i < irradiance.size(); ++i) out.reflected[i] = reflectance[i] * (direct[i] + irradiance[i]);
     out.direct = std::move(direct);
     out.indirect = std::move(irradiance);
-    out.holds_direct = shoots_direct_light();
+    if (shoots_direct_light()) out.delivery = MethodDelivery::all_light;
     out.report = report;
-    out.rays = transfer_.rays();
-    out.form_factors = transfer_.form_factors();
-    out.link_memory_bytes = kept_bytes_;
+    out.work.rays = transfer_.rays();
+    out.work.form_factors = transfer_.form_factors();
+    out.work.link_memory_bytes = kept_bytes_;
     return out;
 }
 

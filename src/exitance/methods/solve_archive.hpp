@@ -39,13 +39,17 @@ void archive(Archive& a, LightFormPointer& form) {
 }
 
 template <class Archive>
+void archive(Archive& a, MethodWork& work) {
+    auto& [rays, form_factors, links, link_memory_bytes, element_memory_bytes, elements_by_level] = work;
+    a(rays, form_factors, links, link_memory_bytes, element_memory_bytes, elements_by_level);
+}
+
+template <class Archive>
 void archive(Archive& a, GlobalLight& light) {
-    auto& [tree, numbering, direct, indirect, indirect_corners, direct_corners, delivers, reflected, on_projection,
-           standard_error, direct_share, holds_direct, kept, limited_by_memory, report, rays, form_factors, links,
-           link_memory_bytes, element_memory_bytes, elements_by_level, kept_links, own_form] = light;
-    a(tree, numbering, direct, indirect, indirect_corners, direct_corners, delivers, reflected, on_projection);
-    a(standard_error, direct_share, holds_direct, kept, limited_by_memory, report, rays, form_factors, links);
-    a(link_memory_bytes, element_memory_bytes, elements_by_level, kept_links, own_form);
+    auto& [tree, numbering, direct, indirect, indirect_corners, direct_corners, delivery, reflected, on_projection,
+           standard_error, direct_share, kept, limited_by_memory, report, work, kept_links, own_form] = light;
+    a(tree, numbering, direct, indirect, indirect_corners, direct_corners, delivery, reflected, on_projection);
+    a(standard_error, direct_share, kept, limited_by_memory, report, work, kept_links, own_form);
 }
 
 template <class Archive>
@@ -70,13 +74,13 @@ void archive(Archive& a, Certificate& certificate) {
 
 template <class Archive>
 void archive(Archive& a, SolveStatistics& statistics) {
-    auto& [method, basis, schedule, threads, surfaces, elements, leaf_elements, links, rays, form_factors, iterations,
-           converged, residual, estimate, bound, p99, interpolant, rooms, worst_room, bodies, worst_body,
-           surface_errors, standard_error, energy, seconds, peak_memory_bytes, link_memory_bytes, element_memory_bytes,
-           elements_by_level, warnings, discontinuity, figures, stopped_by] = statistics;
-    a(method, basis, schedule, threads, surfaces, elements, leaf_elements, links, rays, form_factors, iterations);
-    a(converged, residual, estimate, bound, p99, interpolant, rooms, worst_room, bodies, worst_body, surface_errors,
-      standard_error, energy, seconds, peak_memory_bytes, link_memory_bytes);
+    auto& [method, basis, schedule, threads, processes, surfaces, elements, leaf_elements, links, rays, form_factors,
+           iterations, refinement_steps, converged, residual, estimate, bound, p99, interpolant, rooms, worst_room,
+           bodies, worst_body, surface_errors, standard_error, energy, seconds, peak_memory_bytes, link_memory_bytes,
+           element_memory_bytes, elements_by_level, warnings, discontinuity, figures, stopped_by] = statistics;
+    a(method, basis, schedule, threads, processes, surfaces, elements, leaf_elements, links, rays, form_factors);
+    a(iterations, refinement_steps, converged, residual, estimate, bound, p99, interpolant, rooms, worst_room, bodies,
+      worst_body, surface_errors, standard_error, energy, seconds, peak_memory_bytes, link_memory_bytes);
     a(element_memory_bytes, elements_by_level, warnings, figures, stopped_by);
 }
 

@@ -9,16 +9,16 @@ namespace exitance {
 
 void record_work(const GlobalLight& light, SolveStatistics& statistics) {
     statistics.iterations += light.report.iterations;
-    statistics.rays += light.rays;
-    statistics.form_factors += light.form_factors;
+    statistics.rays += light.work.rays;
+    statistics.form_factors += light.work.form_factors;
 }
 
 void record_method(const Stage& stage, const GlobalLight& light, bool has_links, SolveStatistics& statistics) {
     statistics.residual = light.report.residual;
-    statistics.links = light.links;
-    statistics.link_memory_bytes = light.link_memory_bytes;
-    statistics.element_memory_bytes = light.element_memory_bytes;
-    statistics.elements_by_level = light.elements_by_level;
+    statistics.links = light.work.links;
+    statistics.link_memory_bytes = light.work.link_memory_bytes;
+    statistics.element_memory_bytes = light.work.element_memory_bytes;
+    statistics.elements_by_level = light.work.elements_by_level;
     // Links found by rays connect constant elements, whatever basis the method has otherwise.
     const bool sharp = statistics.method == name_in(method_names, Method::discontinuity);
     if (has_links && !sharp && light.indirect_corners.empty()) statistics.basis = name_in(basis_names, BasisKind::haar);
@@ -49,7 +49,7 @@ std::string describe(const Certificate& certificate, const GlobalLight& light, c
         light.numbering.leaves.size(), delivered.tree.leaves().size(), certificate.mean_reflected,
         100 * certificate.estimate, 100 * certificate.bound, 100 * certificate.residual, certificate.constant,
         100 * certificate.method, scale * gathered.whole.noise, scale * gathered.whole.interpolation,
-        100 * certificate.local, light.rays, gathered.rays, certificate.rays);
+        100 * certificate.local, light.work.rays, gathered.rays, certificate.rays);
 }
 
 }  // namespace exitance

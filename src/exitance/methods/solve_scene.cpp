@@ -2,7 +2,6 @@
 
 #include "exitance/base/memory.hpp"
 #include "exitance/base/parallel.hpp"
-#include "exitance/base/phase_times.hpp"
 #include "exitance/methods/carried_light.hpp"
 #include "exitance/methods/diffusing_panes.hpp"
 #include "exitance/methods/extensions.hpp"
@@ -10,17 +9,6 @@
 
 namespace exitance {
 namespace {
-
-/// Separates the times of direct light, links and gathering from those of the mesh, the solve and the reconstruction.
-void part_times(const PhaseTimes& phases, std::map<std::string, double>& seconds) {
-    const auto move = [&](double part, const char* from, const char* to) {
-        const double moved = std::min(part, seconds[from]);
-        seconds[from] -= moved, seconds[to] += moved;
-    };
-    move(phases.seconds({"direct light"}), "mesh", "direct");
-    move(phases.seconds({"link", "refine", "look again", "correct", "check by rays"}), "solve", "link");
-    move(phases.seconds({"gather"}), "reconstruct", "gather");
-}
 
 /// Returns the solution of a scene without surfaces. All light at its points is direct and evaluated exactly.
 Solution without_surfaces(Scene scene) {
@@ -49,12 +37,9 @@ Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress&
     for (const WholeSolve& whole : extensions().solves)
         if (whole.is_selected(options)) return whole.solve(scene, options, progress, stop);
     const Stopwatch watch;
-    PhaseTimes phases(progress);
-    Result<Solution> solution = Solver(std::move(scene), options, phases, stop, checkpoints, show).run();
+    Result<Solution> solution = Solver(std::move(scene), options, progress, stop, checkpoints, show).run();
     if (!solution) return solution;
-    phases.close();
-    part_times(phases, solution->statistics.seconds);
-    solution->statistics.seconds["total"] = watch.seconds();
+    solution->statistics.seconds[RunPart::total] = watch.seconds();
     solution->statistics.peak_memory_bytes = peak_memory_bytes();
     return solution;
 }

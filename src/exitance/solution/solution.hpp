@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "exitance/base/run_seconds.hpp"
 #include "exitance/links/kept_link.hpp"
 #include "exitance/mesh/discontinuity/six_node_mesh.hpp"
 #include "exitance/solution/light_form.hpp"
@@ -31,6 +32,8 @@ struct EnergyBalance {
     double absorbed = 0;  ///< int (1 - rho) E dA
     double escaped = 0;   ///< Part of int B dA that meets no front, estimated by few rays; 0 in closed scenes.
     double defect = 0;    ///< |emitted - absorbed - escaped| / emitted
+    std::optional<double> defect_before =
+        {};  ///< The defect before light was scaled to conserve it; none if not known.
 };
 
 /// Light of a room (LightRooms) and its error.
@@ -74,11 +77,12 @@ struct DiscontinuityCounts {
 /// Resources and results of a solve: the keys of `solve --json` and `stats --json`, in their order.
 struct SolveStatistics {
     std::string method, basis, schedule;
-    int threads = 1;
+    int threads = 1, processes = 1;
     std::size_t surfaces = 0, elements = 0, leaf_elements = 0, links = 0;
     std::size_t rays = 0, form_factors = 0, iterations = 0;
-    bool converged = false;  ///< True if the required error was reached, or none was required.
-    double residual = 0;     ///< Residual of the discrete system, relative to its right-hand side.
+    std::size_t refinement_steps = 0;  ///< Refinements of the delivered light that replaced a new solve.
+    bool converged = false;            ///< True if the required error was reached, or none was required.
+    double residual = 0;               ///< Residual of the discrete system, relative to its right-hand side.
     /// Error of the light that `probe` evaluates, and an upper bound on it; none if a run was stopped before its first
     /// estimate.
     std::optional<double> relative_error_estimate, relative_error_bound;
@@ -93,7 +97,7 @@ struct SolveStatistics {
     /// Relative RMS standard error of the light on the elements of a Monte Carlo method; 0 for other methods.
     double standard_error = 0;
     EnergyBalance energy;
-    std::map<std::string, double> seconds;  ///< total, read, mesh, link, solve, certify, reconstruct, write
+    RunSeconds seconds;
     std::size_t peak_memory_bytes = 0, link_memory_bytes = 0;
     /// For hierarchies: memory of the elements down to the deepest links, with their light, and the number of these
     /// elements at each depth.

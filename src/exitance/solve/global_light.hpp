@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "exitance/links/kept_link.hpp"
@@ -9,6 +10,24 @@
 #include "exitance/solve/relaxation.hpp"
 
 namespace exitance {
+
+/// What the elements of a method hold, and what is left to do for the delivered light.
+enum class MethodDelivery : std::uint8_t {
+    gathered,     ///< Reflected light; a final gather of it is delivered.
+    polynomials,  ///< Reflected light as polynomials that are as accurate as required: no gather is needed.
+    /// The method transported the emitters' own light through its elements: `indirect` is all arriving light, and
+    /// `direct` is zero. No gather follows.
+    all_light
+};
+
+/// Resources that a method used.
+struct MethodWork {
+    std::size_t rays = 0, form_factors = 0, links = 0, link_memory_bytes = 0;
+    /// For hierarchies: memory of the elements down to the deepest links, with the light that they hold, and the number
+    /// of these elements at each depth.
+    std::size_t element_memory_bytes = 0;
+    std::vector<std::size_t> elements_by_level = {};
+};
 
 /// Result of a method: the light that every element reflects, constant on each leaf of its mesh.
 struct GlobalLight {
@@ -22,8 +41,7 @@ struct GlobalLight {
     /// Projected direct light at the corners of each leaf's patch, W/m^2, by leaf number; empty if the method's leaves
     /// are those of the projection.
     std::vector<std::array<Spectrum, 4>> direct_corners = {};
-    /// True if the polynomials of `indirect_corners` are as accurate as required, so that no final gather is needed.
-    bool delivers = false;
+    MethodDelivery delivery = MethodDelivery::gathered;
     /// Reflected radiosity b = rho (E_dir + E_ind), by leaf number, W/m^2.
     std::vector<Spectrum> reflected = {};
     /// True if `tree` is the mesh of the direct projection, leaf for leaf.
@@ -34,10 +52,6 @@ struct GlobalLight {
     /// c of `find_direct_share` if the method used it, so that its elements suit b + c M; else 0.
     Spectrum direct_share = {};
 
-    /// True if the method transported the emitters' own light through its elements: then `indirect` is all arriving
-    /// light, and `direct` is zero.
-    bool holds_direct = false;
-
     /// Share of the light leaving each leaf that arrives at some front, by leaf number; empty unless the method
     /// conserved light (`ConservingTransport`).
     std::vector<double> kept = {};
@@ -46,19 +60,17 @@ struct GlobalLight {
     bool limited_by_memory = false;
 
     SolveReport report = {};
-    std::size_t rays = 0, form_factors = 0, links = 0, link_memory_bytes = 0;
-    /// For hierarchies: memory of the elements down to the deepest links, with the light that they hold, and the number
-    /// of these elements at each depth.
-    std::size_t element_memory_bytes = 0;
-    std::vector<std::size_t> elements_by_level = {};
+    MethodWork work = {};
 
     /// For hierarchies, if requested: links, sorted by receiver, then by source.
     std::vector<KeptLink> kept_links = {};
 
     /// For methods with a representation of their own (growing cells): the light in that form. It is all light with
-    /// `holds_direct`, otherwise the indirect light; `indirect` is its projection.
+    /// `all_light`, otherwise the indirect light; `indirect` is its projection.
     LightFormPointer own_form = {};
 
+    bool delivers() const { return delivery == MethodDelivery::polynomials; }
+    bool holds_direct() const { return delivery == MethodDelivery::all_light; }
     /// Mean of `reflected` over all bands and all reflecting surfaces, W/m^2. `surface_area`: their area, m^2.
     double mean_reflected(double surface_area) const;
 };

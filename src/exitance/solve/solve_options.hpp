@@ -133,6 +133,8 @@ constexpr std::string_view name_in(const std::array<std::pair<Choice, std::strin
 
 inline constexpr int all_bounces = -1;
 inline constexpr double default_error = 0.02;  ///< Relative RMS error, of radiosity.
+/// Rays per pair of elements of methods that sample the visibility of pairs.
+inline constexpr std::size_t default_visibility_samples = 16;
 
 /// A point at which irradiance is wanted, and the unit normal of the receiving plane there.
 struct ImportantPoint {

@@ -19,11 +19,22 @@ struct Polygon {
     Vec corner[most_corners];
 };
 
-inline Vec spread(const Vec3& p) {
+EXITANCE_INLINE Vec spread(const Vec3& p) {
     return {Real{} + p.x, Real{} + p.y, Real{} + p.z};
 }
-inline Real absolute(const Real& v) {
+EXITANCE_INLINE Real absolute(const Real& v) {
     return max(v, -v);
+}
+
+/// Lambert's contour sum over a polygon, without its factor 1 / (2 pi).
+EXITANCE_INLINE void sum_edges(const Polygon& polygon, const Normal& n, Real& sum) {
+    sum = Real{};
+    for (std::size_t i = 0; i < polygon.count; ++i) {
+        const Vec &a = polygon.corner[i], &b = polygon.corner[i + 1 == polygon.count ? 0 : i + 1];
+        const Vec c = cross(a, b - a);
+        const Real sine = max(sqrt(dot(c, c)), Real{} + 1e-200);
+        sum -= angle_over_sine(sine, dot(a, b)) * dot(n, c);
+    }
 }
 
 }  // namespace
@@ -170,13 +181,8 @@ class VisibleFromFour::Work {
     }
 
     void add_edges(const Polygon& polygon, double weight) {
-        Real sum{};
-        for (std::size_t i = 0; i < polygon.count; ++i) {
-            const Vec &a = polygon.corner[i], &b = polygon.corner[i + 1 == polygon.count ? 0 : i + 1];
-            const Vec c = cross(a, b - a);
-            const Real sine = max(sqrt(dot(c, c)), Real{} + 1e-200);
-            sum -= angle_over_sine(sine, dot(a, b)) * dot(n_, c);
-        }
+        Real sum;
+        call_for_four([&]() EXITANCE_INLINE_LAMBDA { sum_edges(polygon, n_, sum); });
         total_ += weight * sum;
     }
 

@@ -27,6 +27,40 @@ void look(const SightTables& tables, const double* u, const double* v, std::size
 
 #ifdef EXITANCE_HAS_WIDE_KERNELS
 #pragma GCC push_options
+#pragma GCC target("avx2,fma")
+namespace of_four_by_avx2 {
+
+using four::any;
+using four::differ;
+using four::less;
+using four::load;
+using four::Mask;
+using four::pick;
+using four::Real;
+using four::Vec;
+using lanes_of::angle_over_sine;
+using lanes_of::angle_over_tangent;
+using lanes_of::fused;
+using lanes_of::max;
+using lanes_of::min;
+using lanes_of::sqrt;
+using lanes_of::store;
+constexpr int all_lanes = 15;
+
+EXITANCE_INLINE int bits(const Mask& m) {
+    return _mm256_movemask_pd(reinterpret_cast<const __m256d&>(m));
+}
+#include "exitance/visibility/visible_lanes_group.inc"
+
+void look(const SightTables& tables, const double* u, const double* v, std::size_t first, Views& views) {
+    Group group(tables, u + first, v + first);
+    group.run(views, first);
+}
+
+}  // namespace of_four_by_avx2
+#pragma GCC pop_options
+
+#pragma GCC push_options
 #pragma GCC target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")
 namespace of_eight {
 
@@ -90,22 +124,25 @@ void look(const SightTables& tables, const double* u, const double* v, Views& vi
 
 }  // namespace of_eight
 #pragma GCC pop_options
-
-const bool has_eight = has_avx512();
 #endif
 
 }  // namespace
 
 Views look_from_points(const SightTables& tables, const double* u, const double* v, std::size_t count,
-                       [[maybe_unused]] Processor processor) {
+                       Processor processor) {
     Views views;
+    auto* look = &of_four::look;
 #ifdef EXITANCE_HAS_WIDE_KERNELS
-    if (has_eight && processor == Processor::fastest && count > four::lanes) {
+    processor = usable(processor);
+    if (processor == Processor::avx512 && count > four::lanes) {
         of_eight::look(tables, u, v, views);
         return views;
     }
+    if (processor != Processor::any) look = &of_four_by_avx2::look;
+#else
+    (void)processor;
 #endif
-    for (std::size_t first = 0; first < count; first += four::lanes) of_four::look(tables, u, v, first, views);
+    for (std::size_t first = 0; first < count; first += four::lanes) look(tables, u, v, first, views);
     return views;
 }
 

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "exitance/cli/named_files.hpp"
 #include "exitance/cli/processes.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/probe_file.hpp"
@@ -20,22 +21,6 @@ Result<void> check_output(const std::string& path) {
     if (path.empty()) return Error{ErrorCode::usage, "is missing", "-o", "exitance solve room.obj -o room.h5"};
     const Result<AtomicFile> file = AtomicFile::create(path);
     return file ? Result<void>() : Result<void>(file.error());
-}
-
-/// Error (usage) if the output has the file name extension of a mesh or a picture, which other verbs write.
-Result<void> check_ending(const std::string& path) {
-    for (const char* end : {".vtu", ".vtkhdf", ".hdf", ".glb", ".gltf", ".obj", ".csv", ".png", ".exr", ".hdr"})
-        if (path.ends_with(end)) {
-            const bool picture =
-                std::string_view(end) == ".png" || std::string_view(end) == ".exr" || std::string_view(end) == ".hdr";
-            return Error{ErrorCode::usage,
-                         fmt::format("solve writes a solution (.h5), from which `{}` makes a {}",
-                                     picture ? "render" : "export", end),
-                         "-o",
-                         fmt::format("exitance solve SCENE -o S.h5, then exitance {} S.h5 -o {}",
-                                     picture ? "render" : "export", path)};
-        }
-    return {};
 }
 
 /// Reads the file of --importance into the options.
@@ -84,7 +69,7 @@ Result<void> settle_options(SolveArguments& arguments) {
     if (settled) settled = check_processes(arguments);
     if (settled) settled = read_importance(arguments);
     if (settled) settled = read_sky(arguments);
-    if (settled) settled = check_ending(arguments.output);
+    if (settled) settled = check_solution_name("solve", arguments.output);
     if (!settled) return settled;
     // by_first() is collective: it must run before the condition on `dry_run`.
     if (const Result<void> output = by_first([&] { return check_output(arguments.output); });

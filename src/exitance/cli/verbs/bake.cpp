@@ -4,6 +4,7 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/common_stop.hpp"
+#include "exitance/cli/named_files.hpp"
 #include "exitance/cli/solve/kept_groups.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/export/light_map_files.hpp"
@@ -92,6 +93,16 @@ void note_curved(const CurvedDifferences& curved, Terminal& terminal) {
                     curved.regions.size(), 100 * curved.rms()));
 }
 
+/// Error if the model in the folder would replace the scene's file.
+Result<void> check_model(const BakeArguments& arguments, const Scene& scene) {
+    const std::string scene_file = find_scene_file(scene, arguments.solution);
+    const bool unwraps = arguments.uv == "unwrap";
+    if (unwraps || arguments.uv.empty())
+        if (const Result<void> kept = check_scene_is_kept(arguments.output + "/scene.glb", scene_file); !kept)
+            return kept;
+    return unwraps ? check_scene_is_kept(arguments.output + "/scene.obj", scene_file) : Result<void>();
+}
+
 /// Reads texture coordinates from the scene's file, or makes them.
 Result<UvTarget> find_uv_target(const BakeArguments& arguments, const Scene& scene, const std::string& scene_file) {
     if (arguments.uv != "unwrap" && arguments.format.material != LightMapMaterial::emissive)
@@ -169,6 +180,8 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
         all_or_none(load_solution(arguments.solution, Rehearsed::not_yet, arguments.light_groups ? &groups : nullptr));
     if (!solution) return terminal.fail(solution.error());
     if (arguments.light_groups && groups.empty()) return terminal.fail(no_light_groups(arguments.solution));
+    if (const Result<void> kept = by_first([&] { return check_model(arguments, solution->scene); }); !kept)
+        return terminal.fail(kept.error());
     const CurvedFaces curved = find_curved_faces(arguments, solution->scene);
     if (!arguments.uv.empty()) return bake_into_uvs(arguments, *solution, curved, groups, terminal);
     const RadiosityFunction light(*solution);

@@ -236,16 +236,7 @@ Result<GlareSummary> write_year_of_glare(const DaylightSimulation& simulation, c
 Result<void> tell_states(const DaylightSimulation& simulation, const DaylightRequest& request,
                          const DaylightArguments& arguments, Terminal& terminal) {
     if (!simulation.states()) return {};
-    constexpr double small_share = 0.01;  // 1% of the light: below the default error
-    if (simulation.states()->twice > small_share)
-        terminal.progress().warn(fmt::format(
-            "{:.2g}% of the light crosses panes of groups twice, and counts as if it crossed them once: intervals of "
-            "hours with changed states are wider by it",
-            100 * simulation.states()->twice));
-    if (simulation.error_of_states() > arguments.error)
-        terminal.progress().warn(
-            fmt::format("the error of {:.2g}% with the geometry of a state is above the requested {:.2g}%",
-                        100 * simulation.error_of_states(), 100 * arguments.error));
+    for (const std::string& warning : simulation.warnings()) terminal.progress().warn(warning);
     return write_states(arguments.output, *request.states, *simulation.states(), request.task.hours);
 }
 

@@ -33,13 +33,13 @@ std::vector<DaylightHour> hours_of(const Weather& weather) {
 std::string sensor_file(const DaylightArguments& arguments) {
     if (!arguments.points.empty()) return arguments.points;
     for (const std::string& file : arguments.scene.files)
-        if (ending(file) == ".hbjson") return file;
+        if (is_honeybee_file(file)) return file;
     return "";
 }
 
 /// The grids of a Honeybee model; one without a name for other files.
 std::vector<SensorGrid> grids_of(const std::string& sensors, std::size_t count) {
-    if (ending(sensors) != ".hbjson") return {{"", count}};
+    if (!is_honeybee_file(sensors)) return {{"", count}};
     std::vector<SensorGrid> grids;
     for (const HoneybeeGrid& grid : read_honeybee_model(sensors).grids)
         grids.push_back({grid.name, grid.points.size()});
@@ -105,7 +105,9 @@ Result<SceneWithNames> read_daylight_scene(const DaylightArguments& arguments, T
         if (!solution) return solution.error();
         return SceneWithNames{std::move(solution->scene), {}};
     }
-    LoadedScene loaded = load_for_all(arguments.scene);
+    SceneArguments scene = arguments.scene;
+    scene.load.needs_light = false;  // the skies of the year are its light
+    LoadedScene loaded = load_for_all(scene);
     std::erase_if(loaded.findings, [&](const Finding& f) {
         return f.kind == Finding::Kind::warning &&
                (f.message.starts_with("nothing emits light") ||
@@ -159,7 +161,7 @@ Result<DaylightRequest> read_daylight_request(const DaylightArguments& arguments
     Result<std::vector<std::uint8_t>> occupied = read_occupancy(arguments.occupied, out.task.hours);
     if (!occupied) return occupied.error();
     out.task.criteria.occupied = std::move(*occupied);
-    out.formats = {arguments.hours, arguments.matrix, ending(sensors) == ".hbjson"};
+    out.formats = {arguments.hours, arguments.matrix, is_honeybee_file(sensors)};
     return out;
 }
 

@@ -1,6 +1,8 @@
 #include "exitance/io/export/export.hpp"
+#include "exitance/cli/named_files.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/export/export_links.hpp"
+#include "exitance/io/scenes/textures/scene_textures.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 
 namespace exitance {
@@ -9,6 +11,9 @@ namespace exitance {
 ExitCode run(const ExportArguments& arguments, Terminal& terminal) {
     const Result<Solution> solution = load_solution(arguments.solution);
     if (!solution) return terminal.fail(solution.error());
+    const std::string scene_file = find_scene_file(solution->scene, arguments.solution);
+    if (const Result<void> kept = check_scene_is_kept(arguments.output, scene_file); !kept)
+        return terminal.fail(kept.error());
     const Result<void> written = arguments.links.empty() ? export_solution(*solution, arguments.output)
                                                          : export_links(*solution, arguments.links, arguments.output);
     if (!written) return terminal.fail(written.error());

@@ -5,7 +5,6 @@
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/files/atomic_file.hpp"
-#include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/view_factors/operator_file.hpp"
 #include "exitance/io/view_factors/thermal_table.hpp"
 
@@ -56,15 +55,6 @@ Result<void> write_exchange(const HeatArguments& arguments, const SparseFactors&
 
 /// Runs `exitance heat FACTORS --table TABLE`.
 ExitCode run(const HeatArguments& arguments, Terminal& terminal) {
-    for (const std::string& output : {arguments.output, arguments.exchange, arguments.gebhart})
-        if (!output.empty() && (is_same_file(output, arguments.factors) || is_same_file(output, arguments.table)))
-            return terminal.fail({ErrorCode::usage, "is an input", output, "choose another name for the output"});
-    if (!arguments.exchange.empty() &&
-        (arguments.exchange == arguments.output || arguments.exchange == arguments.gebhart))
-        return terminal.fail(
-            {ErrorCode::usage, "is also the file of another output", "--exchange", "choose another name"});
-    if (!arguments.gebhart.empty() && arguments.gebhart == arguments.output)
-        return terminal.fail({ErrorCode::usage, "is also the file of --output", "--gebhart", "choose another name"});
     const StopRequest& stop = terminal.limits().stop();
     const auto read = read_factors(arguments.factors);
     if (!read) {

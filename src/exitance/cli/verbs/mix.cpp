@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "exitance/base/parallel.hpp"
+#include "exitance/cli/named_files.hpp"
 #include "exitance/cli/solve/kept_groups.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
@@ -15,6 +16,8 @@ namespace exitance {
 ExitCode run(const MixArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
     const Stopwatch watch;
+    if (const Result<void> name = check_solution_name("mix", arguments.output); !name)
+        return terminal.fail(name.error());
     LightChange change;
     for (const std::string& word : arguments.dim)
         if (const Result<void> read = read_dim(word, change); !read) return terminal.fail(read.error());
@@ -26,7 +29,7 @@ ExitCode run(const MixArguments& arguments, Terminal& terminal) {
     if (groups.empty()) return terminal.fail(no_light_groups(arguments.solution));
     if (const Result<void> changed = change_light(*solution, groups, change); !changed)
         return terminal.fail(changed.error());
-    solution->statistics.seconds["mix"] = watch.seconds();
+    solution->statistics.seconds[RunPart::mix] = watch.seconds();
     solution->statistics.energy = energy_after_change(*solution);
     if (const Result<void> written = write_solution(arguments.output, *solution, &groups); !written)
         return terminal.fail(written.error());

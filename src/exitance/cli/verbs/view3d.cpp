@@ -59,9 +59,6 @@ ExitCode run(const View3dArguments& arguments, Terminal& terminal) {
     if (ending(arguments.input) != ".vs3")
         return terminal.fail({ErrorCode::usage, "is not a View3D input file (.vs3)", arguments.input,
                               "use `exitance viewfactors` for other scenes"});
-    if (is_same_file(arguments.output, arguments.input))
-        return terminal.fail(
-            {ErrorCode::usage, "is the scene", arguments.output, "choose another name for the output"});
     const Result<View3dControls> controls = read_view3d_controls(arguments.input);
     if (!controls) return terminal.fail(controls.error());
     if (const auto format = view3d_output({}, *controls); !format) {

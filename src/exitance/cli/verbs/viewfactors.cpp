@@ -323,15 +323,12 @@ class ViewFactorRun {
     std::optional<RawRowFile> rows_;  ///< In the first process.
 };
 
-/// Error if the files to write are inputs, cannot be written, or have options or endings that do not fit.
+/// Error if the files to write cannot be written, or have options or endings that do not fit.
 Result<void> check_outputs(const ViewFactorArguments& arguments) {
     if (arguments.output.empty() && arguments.operator_file.empty())
         return Error{ErrorCode::usage, "is required", "--output", "give -o FILE, or --operator FILE.h5"};
     for (const std::string& output : {arguments.output, arguments.operator_file}) {
         if (output.empty()) continue;
-        for (const std::string& input : arguments.scene.files)
-            if (is_same_file(output, input))
-                return Error{ErrorCode::usage, "is the scene", output, "choose another name for the output"};
         for (const char* of_scenes : {".mtl", ".obj", ".gltf", ".glb", ".rad", ".stl", ".ply", ".vs3", ".hbjson"})
             if (ending(output) == of_scenes)
                 return Error{ErrorCode::usage, "has the ending of a scene's files", output,
@@ -356,7 +353,7 @@ ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal) {
     const Result<void> fit = by_first([&] { return check_outputs(arguments); });
     if (!fit) return terminal.fail(fit.error());
     SceneArguments scene = arguments.scene;
-    scene.load.stop = &asked, scene.load.without_panes = true;
+    scene.load.stop = &asked, scene.load.without_panes = true, scene.load.needs_light = false;
     const LoadedScene checked = load_for_all(scene);
     show_geometry_findings(checked, terminal);
     if (!checked.scene) return terminal.fail(checked);

@@ -69,7 +69,7 @@ Result<ProbeReader> ProbeReader::open_model(const std::string& path) {
 }
 
 Result<ProbeReader> ProbeReader::open(const std::string& path) {
-    if (ending(path) == ".hbjson") return open_model(path);
+    if (is_honeybee_file(path)) return open_model(path);
     Result<LineReader> lines = LineReader::open(path);
     if (!lines) return lines.error();
     const auto first = lines->next_content();

@@ -290,11 +290,11 @@ std::string method_part(const ReportContent& content) {
     rows += fact("Transport", fmt::format("{} links, {} form factors, {} rays", s.links, s.form_factors, s.rays));
     rows += fact("Solution", fmt::format("{} iterations, residual {:.2g}", s.iterations, s.residual));
     std::string parts;
-    for (const auto& [phase, seconds] : s.seconds)
-        if (phase != "total") parts += fmt::format("{}{} {:.3g}", parts.empty() ? "" : ", ", phase, seconds);
-    const auto total = s.seconds.find("total");
-    rows += fact("Time", fmt::format("{:.3g} s on {} threads ({})", total == s.seconds.end() ? 0 : total->second,
-                                     s.threads, escaped(parts)));
+    RunSeconds::for_parts([&](RunPart part) {
+        if (part == RunPart::total || !(s.seconds[part] > 0)) return;
+        parts += fmt::format("{}{} {:.3g}", parts.empty() ? "" : ", ", RunSeconds::name(part), s.seconds[part]);
+    });
+    rows += fact("Time", fmt::format("{:.3g} s on {} threads ({})", s.seconds[RunPart::total], s.threads, parts));
     rows += fact("Memory", fmt::format("{:.3g} MB at most", static_cast<double>(s.peak_memory_bytes) / 1e6));
     return "<table class=\"facts\">\n" + rows + "</table>\n";
 }

@@ -77,8 +77,10 @@ class CityJsonReader {
 
     bool check_version(const Json& city) {
         if (text_of(member(city, "type")) != "CityJSON")
-            return error("is not a CityJSON file: its type is not 'CityJSON'",
-                         "files of features (CityJSONSeq) are combined to CityJSON by the program cjio"),
+            return error("is neither a CityJSON file nor a Honeybee model",
+                         "its type must be 'CityJSON' or 'Model'; files of features (CityJSONSeq) are combined to "
+                         "CityJSON by the "
+                         "program cjio"),
                    false;
         const std::string version = text_of(member(city, "version"));
         if (version.starts_with("1.") || version == "2.0") return true;

@@ -90,7 +90,8 @@ TEST(CityJson, SaysWhatIsWrong) {
         return scene.findings.empty() ? std::string() : scene.findings.front().message;
     };
     EXPECT_NE(first("{").find("is not valid JSON"), std::string::npos);
-    EXPECT_NE(first(R"({"type":"FeatureCollection"})").find("is not a CityJSON file"), std::string::npos);
+    EXPECT_NE(first(R"({"type":"FeatureCollection"})").find("is neither a CityJSON file nor a Honeybee model"),
+              std::string::npos);
     EXPECT_NE(first(R"({"type":"CityJSON","version":"3.0"})").find("version '3.0' is not supported"),
               std::string::npos);
     EXPECT_NE(first(R"({"type":"CityJSON","version":"1.1","vertices":[[0,0]]})").find("vertex 0"), std::string::npos);

@@ -217,15 +217,17 @@ class PlyReader {
     // --- body
 
     void read_body(const Header& header, std::string_view body) {
+        const auto has = [&](std::string_view name) {
+            return std::any_of(header.elements.begin(), header.elements.end(),
+                               [&](const Element& e) { return e.name == name; });
+        };
         for (const std::string_view needed : {"vertex", "face"})
-            if (std::none_of(header.elements.begin(), header.elements.end(),
-                             [&](const Element& e) { return e.name == needed; }))
+            if (!has(needed) && !(needed == "face" && has("tristrips")))
                 return void(error(0, fmt::format("has no element '{}'", needed), "export it as a mesh of polygons"));
         const auto is_vertex = [](const Element& e) { return e.name == "vertex"; };
         if (std::count_if(header.elements.begin(), header.elements.end(), is_vertex) > 1)
             return void(error(0, "has several elements 'vertex'", "export it with one"));
         warn_of_colours(header);
-        warn_of_strips(header);
         Numbers numbers(body, header.encoding);
         for (const Element& element : header.elements)
             if (!read_rows(element, numbers, header.lines)) return;
@@ -249,29 +251,22 @@ class PlyReader {
                          "convert it to OBJ or glTF with a material for each colour"});
     }
 
-    void warn_of_strips(const Header& header) {
-        for (const Element& element : header.elements)
-            if (element.name == "tristrips" && element.count > 0)
-                out_.findings.push_back({Finding::Kind::warning, path_, 0,
-                                         "its triangle strips are ignored; only the faces are read",
-                                         "export it as polygons"});
-    }
-
     /// Reads all rows of an element. False where the file ends early or holds no number.
     bool read_rows(const Element& element, Numbers& numbers, int header_lines) {
         if (element.properties.empty()) return true;  // without properties, its rows take no space in the file
-        const bool is_vertex = element.name == "vertex", is_face = element.name == "face";
+        const bool is_vertex = element.name == "vertex", is_face = element.name == "face",
+                   are_strips = element.name == "tristrips";
         for (std::size_t row = 0; row < element.count; ++row) {
             Point place;
             int coordinates = 0;
             std::vector<double> corners;
             for (const Property& property : element.properties) {
                 const bool is_corners =
-                    is_face && (property.name == "vertex_indices" || property.name == "vertex_index");
+                    (is_face || are_strips) && (property.name == "vertex_indices" || property.name == "vertex_index");
                 std::size_t count = 1;
                 if (property.count) {
                     const std::optional<double> entries = numbers.next(*property.count);
-                    if (!entries || !(*entries >= 0 && *entries <= max_corners))
+                    if (!entries || !(*entries >= 0) || (is_face && is_corners && *entries > max_corners))
                         return broken(element, row, numbers, header_lines);
                     count = static_cast<std::size_t>(*entries);
                 }
@@ -287,6 +282,7 @@ class PlyReader {
             const int line = numbers.line() > 0 ? header_lines + numbers.line() : 0;
             if (is_vertex && !add_vertex(place, coordinates, row, line)) return false;
             if (is_face && !add_face(corners, row, line)) return false;
+            if (are_strips && !add_strips(corners, row, line)) return false;
         }
         return true;
     }
@@ -315,6 +311,22 @@ class PlyReader {
         }
         face.line = line;
         out_.description.faces.push_back(std::move(face));
+        return true;
+    }
+
+    /// Adds the triangles of strips: each corner but the first two makes one with the two before it, whose front is
+    /// that of the strip's first triangle. Negative numbers begin a new strip. Triangles that repeat a corner join
+    /// strips and are left out.
+    bool add_strips(const std::vector<double>& corners, std::size_t row, int line) {
+        std::size_t begin = 0;
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            if (corners[k] < 0) begin = k + 1;
+            if (k < begin + 2) continue;
+            const double a = corners[k - 2], b = corners[k - 1], c = corners[k];
+            if (a == b || b == c || c == a) continue;
+            const bool is_odd = (k - begin) % 2 == 1;
+            if (!add_face(is_odd ? std::vector{b, a, c} : std::vector{a, b, c}, row, line)) return false;
+        }
         return true;
     }
 

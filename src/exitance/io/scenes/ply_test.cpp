@@ -54,6 +54,23 @@ void expect_two_faces(const ReadScene& scene) {
     EXPECT_EQ(scene.description.points[3].z, 2.5);
 }
 
+TEST(Ply, TriangleStripsBecomeTrianglesOfOneOrientation) {
+    const std::string begin =
+        "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+        "property float z\nelement tristrips 1\nproperty list int int vertex_indices\n"
+        "end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n";
+    const ReadScene scene = read_ply_text(begin + "9 0 1 2 3 -1 2 3 4 4\n");
+    ASSERT_TRUE(scene.findings.empty()) << scene.findings[0].message;
+    ASSERT_EQ(scene.description.faces.size(), 3u) << "the last one repeats a corner";
+    EXPECT_EQ(scene.description.faces[0].corners, (std::vector<std::uint32_t>{0, 1, 2}));
+    EXPECT_EQ(scene.description.faces[1].corners, (std::vector<std::uint32_t>{2, 1, 3}));
+    EXPECT_EQ(scene.description.faces[2].corners, (std::vector<std::uint32_t>{2, 3, 4}));
+    EXPECT_FALSE(read_ply_text(begin + "3 0 1 9\n").findings.empty()) << "there is no corner 9";
+    std::string longest = begin + "20002 0";
+    for (int k = 0; k < 20000; ++k) longest += " 1";
+    EXPECT_EQ(read_ply_text(longest + " 2\n").findings.size(), 0u) << "a strip may be longer than a face";
+}
+
 TEST(Ply, TextAndBothByteOrdersGiveTheSameScene) {
     const ReadScene text = read_ply_text(header("ascii") + "0 0 0\n1 0 0\n1 1 0\n0 1 2.5\n3 0 1 2 7\n4 0 1 2 3 7\n");
     expect_two_faces(text);

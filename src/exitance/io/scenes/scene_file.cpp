@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -12,6 +13,7 @@
 #include "exitance/io/scenes/cityjson.hpp"
 #include "exitance/io/scenes/gltf/gltf.hpp"
 #include "exitance/io/scenes/honeybee/honeybee.hpp"
+#include "exitance/io/scenes/honeybee/honeybee_model.hpp"
 #include "exitance/io/scenes/obj/obj.hpp"
 #include "exitance/io/scenes/ply.hpp"
 #include "exitance/io/scenes/radiance/radiance.hpp"
@@ -76,6 +78,18 @@ bool looks_like_gltf(const std::string& path) {
     return std::string_view(magic, sizeof magic) == "glTF";
 }
 
+/// Names what was downloaded in place of a scene, by the first bytes of the file; nullptr for other files.
+const char* stand_in_for_scene(const std::string& path) {
+    constexpr std::size_t looked_at = 256;  // derived from web pages of GitHub: blank lines, then the first tag
+    std::string begin(looked_at, ' ');
+    std::ifstream(path, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+    begin.erase(0, std::min(begin.find_first_not_of(" \t\r\n"), begin.size()));
+    for (char& c : begin) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (begin.starts_with("<!doctype html") || begin.starts_with("<html")) return "a web page";
+    if (begin.starts_with("version https://git-lfs")) return "a pointer of Git LFS";
+    return nullptr;
+}
+
 using Reader = ReadScene (*)(const std::string& path);
 
 ReadScene read_view3d_scene(const std::string& path) {
@@ -94,7 +108,7 @@ Reader reader_of(const std::string& path) {
     if (end == ".vs3") return read_view3d_scene;
     if (end == ".stl") return read_stl;
     if (end == ".ply") return read_ply;
-    if (end == ".hbjson") return read_honeybee;
+    if (is_honeybee_file(path)) return read_honeybee;
     if (end == ".json") return read_city;
     if (end == ".gltf" || end == ".glb" || looks_like_gltf(path)) return read_gltf;
     return nullptr;
@@ -248,14 +262,18 @@ std::vector<NamedPane> named_panes(const ReadScene& read) {
     return out;
 }
 
-/// Reports repairs that remove light from the scene. They are errors if nothing emits then, since all results would be
-/// 0.
-void judge_darkening(ReadScene& read) {
+/// Reports repairs that remove light from the scene. Where light is needed, they are errors if nothing emits then,
+/// since all results would be 0.
+void judge_darkening(ReadScene& read, bool needs_light) {
     const SceneDescription& d = read.description;
     const bool emits = !d.distant.empty() || !d.lights.empty() ||
                        std::any_of(d.materials.begin(), d.materials.end(), [](const Material& m) { return m.emits(); });
     for (Finding& finding : read.darkening) {
-        if (!emits) finding.kind = Finding::Kind::error;
+        if (!emits && needs_light) {
+            finding.kind = Finding::Kind::error;
+            finding.message += ", and nothing else emits: all light would be 0";
+            finding.hint += ", or give the scene a sky (solve --sky)";
+        }
         read.findings.push_back(std::move(finding));
     }
 }
@@ -270,7 +288,10 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
             return refused(ErrorCode::cannot_read, path, "there is no such file", "");
         if (!reader_of(path))
             return refused(ErrorCode::bad_input, path, "this kind of scene file is not known",
-                           "known endings: .obj, .gltf, .glb, .rad, .stl, .ply, .vs3, .hbjson, .city.json");
+                           "known endings: .obj, .gltf, .glb, .rad, .stl, .ply, .vs3, .hbjson, .json");
+        if (const char* const found = stand_in_for_scene(path))
+            return refused(ErrorCode::bad_input, path, fmt::format("holds {} in place of a scene", found),
+                           "download the file itself");
         if (std::find(paths.begin(), paths.begin() + static_cast<std::ptrdiff_t>(i), path) !=
             paths.begin() + static_cast<std::ptrdiff_t>(i))
             return refused(ErrorCode::usage, path, "is named twice", "each file of a scene once");
@@ -280,7 +301,7 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
     ReadScene read = read_files(paths, options);
     if (options.sky) give_sky(*options.sky, read);
     add_luminaires(read, options);
-    judge_darkening(read);
+    judge_darkening(read, options.needs_light);
     if (options.without_panes && !read.description.faces.empty()) read.description.panes.clear();
     if (options.light_groups) part_emitters_by_group(read.description);
     SceneLines lines = std::move(read.lines);

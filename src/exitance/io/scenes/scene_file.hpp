@@ -40,7 +40,10 @@ struct LoadOptions {
     std::optional<double> metres_per_unit = {};
     std::optional<bool> y_is_up = {};
     bool without_panes = false;  ///< Leaves clear glass out, for view factors, which it does not change.
-    std::string lod = {};        ///< Level of detail to read from .city.json files; empty: the highest.
+    /// False where emission does not matter (view factors) or comes with the run (a year of daylight): a material file
+    /// that cannot be read is then a repair even if nothing emits.
+    bool needs_light = true;
+    std::string lod = {};  ///< Level of detail to read from .city.json files; empty: the highest.
 };
 
 /// A pane of a scene file with its names: its outline in the scene's coordinates, metres.
@@ -65,7 +68,7 @@ struct LoadedScene : CheckedScene {
 LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& options);
 
 /// Reads and checks a scene file in the format of its ending (.obj, .gltf, .glb, .rad, .stl, .ply, .vs3, .hbjson,
-/// .city.json). The findings list every error in the file. The error code is cannot_read if the file cannot be read,
+/// .json). The findings list every error in the file. The error code is cannot_read if the file cannot be read,
 /// otherwise bad_input.
 CheckedScene load_scene(const std::string& path, Faults faults = Faults::repair);
 

@@ -106,6 +106,20 @@ TEST(SceneFile, EveryPublishedSceneIsAccepted) {
     }
 }
 
+TEST(SceneFile, WebPagesAndPointersInPlaceOfScenesAreNamed) {
+    const TemporaryFolder folder;
+    const auto said = [&](const std::string& name, const std::string& text) {
+        EXPECT_TRUE(write_file(folder / name, text));
+        const CheckedScene scene = load_scene(folder / name);
+        return scene.scene ? std::string("no error") : scene.scene.error().message;
+    };
+    EXPECT_EQ(said("a.glb", "\n\n\n<!DOCTYPE html>\n<html>"), "holds a web page in place of a scene");
+    EXPECT_EQ(said("a.obj", "<HTML><body>"), "holds a web page in place of a scene");
+    EXPECT_EQ(said("a.stl", "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n"),
+              "holds a pointer of Git LFS in place of a scene");
+    EXPECT_EQ(said("empty.obj", "").find("in place of"), std::string::npos);
+}
+
 TEST(SceneFile, ASkyInLumensMakesTheSceneOneInLumens) {
     const TemporaryFolder folder;
     const std::string square = "v -5 -5 0\nv 5 -5 0\nv 5 5 0\nv -5 5 0\nf 1 2 3 4\n";

@@ -10,6 +10,7 @@
 #include "exitance/io/files/text_table.hpp"
 #include "exitance/io/files/toml_keys.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/honeybee/honeybee_model.hpp"
 #include "exitance/io/scenes/honeybee/honeybee_states.hpp"
 #include "exitance/io/scenes/pane_choice.hpp"
 
@@ -88,8 +89,7 @@ class StatesReader {
     /// Chooses the panes of a dynamic group of the scene's Honeybee model, and takes its states, named by their
     /// numbers.
     void take_dynamic(TomlKeys& keys, const std::string& name, PaneChoice& choice, PaneGroup& group) const {
-        const auto is_model = [](const std::string& file) { return file.ends_with(".hbjson"); };
-        const auto model = std::find_if(in_.files.begin(), in_.files.end(), is_model);
+        const auto model = std::find_if(in_.files.begin(), in_.files.end(), is_honeybee_file);
         if (model == in_.files.end())
             keys.fail(keys.table(), "'dynamic_group' needs a Honeybee model (.hbjson) as scene",
                       "choose panes by materials, objects or a box");

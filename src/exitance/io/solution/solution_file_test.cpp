@@ -251,7 +251,7 @@ TEST_F(SolutionFiles, OfEqualSolutionsAreEqual) {
 
 TEST_F(SolutionFiles, HoldEmptyTextsAndNoWarnings) {
     Solution s = sample_solution();
-    s.options.clear(), s.statistics.warnings.clear(), s.statistics.seconds.clear(), s.statistics.method.clear();
+    s.options.clear(), s.statistics.warnings.clear(), s.statistics.seconds = {}, s.statistics.method.clear();
     ASSERT_TRUE(write_solution(path("s.h5"), s));
     const Result<Solution> t = load_solution(path("s.h5"));
     ASSERT_TRUE(t) << t.error().message;

@@ -17,6 +17,7 @@ void for_figures(Statistics& s, const Visit& visit) {
     visit("basis", s.basis);
     visit("schedule", s.schedule);
     visit("threads", s.threads);
+    visit("processes", s.processes);
     visit("surfaces", s.surfaces);
     visit("elements", s.elements);
     visit("leaf_elements", s.leaf_elements);
@@ -24,6 +25,7 @@ void for_figures(Statistics& s, const Visit& visit) {
     visit("rays", s.rays);
     visit("form_factors", s.form_factors);
     visit("iterations", s.iterations);
+    visit("refinement_steps", s.refinement_steps);
     visit("converged", s.converged);
     visit("residual", s.residual);
     visit("relative_error_estimate", s.relative_error_estimate);
@@ -37,6 +39,7 @@ void for_figures(Statistics& s, const Visit& visit) {
     visit("energy_absorbed", s.energy.absorbed);
     visit("energy_escaped", s.energy.escaped);
     visit("energy_defect", s.energy.defect);
+    visit("energy_defect_before", s.energy.defect_before);
     visit("peak_memory_bytes", s.peak_memory_bytes);
     visit("link_memory_bytes", s.link_memory_bytes);
     visit("element_memory_bytes", s.element_memory_bytes);
@@ -83,8 +86,10 @@ void write_statistics(Hdf5Writer& file, const std::string& group, const SolveSta
     }
     file.set_attribute(group, energy_unit, std::string_view(own.power()));
     file.make_group(group + "/seconds");
-    for (const auto& [phase, seconds] : statistics.seconds)
-        file.set_attribute(group + "/seconds", phase.c_str(), seconds);
+    RunSeconds::for_parts([&](RunPart part) {
+        if (const double seconds = statistics.seconds[part]; seconds > 0)
+            file.set_attribute(group + "/seconds", RunSeconds::name(part), seconds);
+    });
     file.make_group(group + "/figures");
     for (const auto& [name, value] : statistics.figures) file.set_attribute(group + "/figures", name.c_str(), value);
     if (!statistics.elements_by_level.empty()) {
@@ -147,9 +152,9 @@ SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group) {
         });
         counts.mean_radius_ratio = file.number_attribute(of_mesh, "mean_radius_ratio").value_or(0);
     }
-    for (const std::string& phase : file.attribute_names(group + "/seconds"))
-        if (const auto seconds = file.number_attribute(group + "/seconds", phase.c_str()))
-            statistics.seconds[phase] = *seconds;
+    RunSeconds::for_parts([&](RunPart part) {
+        statistics.seconds[part] = file.number_attribute(group + "/seconds", RunSeconds::name(part)).value_or(0);
+    });
     if (const std::string figures = group + "/figures"; file.has(figures))
         for (const std::string& name : file.attribute_names(figures))
             if (const auto value = file.number_attribute(figures, name.c_str())) statistics.figures[name] = *value;

@@ -21,16 +21,17 @@ Json value_or_null(const std::optional<T>& value) {
     return value ? Json(*value) : Json(nullptr);
 }
 
-/// Seconds of every phase; null for the parts `visibility` and `form_factors` if they were not measured separately.
-Json seconds_of(const SolveStatistics& s) {
-    Json seconds;
-    for (const char* phase : {"total", "read", "mesh", "direct", "link", "visibility", "form_factors", "solve",
-                              "gather", "certify", "reconstruct", "write"}) {
-        const auto at = s.seconds.find(phase);
-        const bool is_part = phase == std::string_view("visibility") || phase == std::string_view("form_factors");
-        seconds[phase] = at != s.seconds.end() ? Json(at->second) : is_part ? Json(nullptr) : Json(0.0);
-    }
-    return seconds;
+/// Seconds of every part of the run. Only some runs have `light_groups` and `mix`; `visibility` and `form_factors` are
+/// null if they were not timed.
+Json seconds_of(const RunSeconds& seconds) {
+    Json json;
+    RunSeconds::for_parts([&](RunPart part) {
+        const bool is_timed = seconds[part] > 0;
+        if (!is_timed && (part == RunPart::light_groups || part == RunPart::mix)) return;
+        const bool is_null = !is_timed && (part == RunPart::visibility || part == RunPart::form_factors);
+        json[RunSeconds::name(part)] = is_null ? Json(nullptr) : Json(seconds[part]);
+    });
+    return json;
 }
 
 }  // namespace
@@ -56,7 +57,7 @@ std::string statistics_json(const SolveStatistics& s, const LightUnit& own) {
         {"method", s.method},
         {"basis", s.basis},
         {"threads", s.threads},
-        {"processes", s.figures.contains("processes") ? static_cast<int>(s.figures.at("processes")) : 1},
+        {"processes", s.processes},
         {"schedule", s.schedule},
         {"surfaces", s.surfaces},
         {"elements", s.elements},
@@ -82,7 +83,7 @@ std::string statistics_json(const SolveStatistics& s, const LightUnit& own) {
           {"escaped", s.energy.escaped},
           {"defect", s.energy.defect},
           {"unit", own.power()}}},
-        {"seconds", seconds_of(s)},
+        {"seconds", seconds_of(s.seconds)},
         {"peak_memory_bytes", s.peak_memory_bytes},
         {"link_memory_bytes", s.link_memory_bytes},
         {"bytes_per_link", share(s.link_memory_bytes, s.links)},
@@ -97,6 +98,8 @@ std::string statistics_json(const SolveStatistics& s, const LightUnit& own) {
         json["faces"] = {{"lit", d->lit}, {"penumbra", d->penumbra}, {"umbra", d->umbra}};
         json["triangles"] = d->triangles, json["mean_radius_ratio"] = d->mean_radius_ratio;
     }
+    if (s.energy.defect_before) json["energy_defect_before"] = *s.energy.defect_before;
+    if (s.refinement_steps > 0) json["refinement_steps"] = s.refinement_steps;
     for (const auto& [name, value] : s.figures)
         if (!json.contains(name)) json[name] = value;
     return dump(json);

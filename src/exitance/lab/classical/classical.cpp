@@ -195,7 +195,7 @@ Solution unfinished(const ClassicalInput& input, Method method, const Snapshots:
     ClassicalFacts facts;
     record(input, method, moment.light, out.statistics, facts);
     out.statistics.converged = false;
-    out.statistics.seconds["total"] = moment.seconds;
+    out.statistics.seconds[RunPart::total] = moment.seconds;
     out.statistics.figures[method_key] = moment.seconds;
     out.statistics.figures[processor_key] = moment.processor_seconds;
     return out;
@@ -227,43 +227,41 @@ Result<Solution> solve_classical(const Scene& scene, const SolveOptions& options
     if (options.threads > 0) set_threads(options.threads);
     set_schedule(options.schedule);
     const Stopwatch whole;
-    Stopwatch watch;
+    Solution solution{.scene = scene};
+    SolveStatistics& statistics = solution.statistics;
+    PhaseTimes phases(progress, statistics.seconds);
+    phases.phase("mesh");
     Stage stage(scene);
     const Knobs knobs = knobs_for_error(options.error_target(), stage.pieces, options);
     const ClassicalInput* watched = nullptr;
     Snapshots snapshots(classical.snapshots, [&](const Snapshots::Moment& moment) {
         return sink ? sink(unfinished(*watched, method, moment), moment.number) : Result<void>();
     });
-    PhaseTimes phases(progress);
     const ClassicalInput input{stage, options, classical, knobs, phases, stop, snapshots};
     watched = &input;
-    Solution solution{.scene = scene};
-    SolveStatistics& statistics = solution.statistics;
-    statistics.seconds["mesh"] = watch.restart();
     Result<ClassicalLight> found = find_light(method, input);
     phases.close();
     if (!found) return found.error();
     ClassicalLight& light = *found;
     if (!snapshots.written()) return snapshots.written().error();
-    statistics.seconds["link"] = phases.seconds({"link"});
-    statistics.seconds["solve"] = std::max(0.0, watch.restart() - snapshots.writing() - statistics.seconds["link"]);
+    double& solving = statistics.seconds[RunPart::solve];
+    solving = std::max(0.0, solving - snapshots.writing());
     record(input, method, light, statistics, facts);
     solution.direct_in_elements = classical.carried();
     solution.indirect = std::move(light.irradiance);
     if (classical.gather.value_or(true) && stage.has_indirect_light() && !stop.requested())
         solution.indirect = gathered(input, solution.indirect, statistics);
-    statistics.seconds["gather"] = watch.restart();
     if (options.smoothing.value_or(false))
         solution.indirect = averaged_at_vertices(solution.indirect, 1e-6 * scene.size());
     statistics.figures[method_key] = snapshots.seconds();
     statistics.figures[processor_key] = snapshots.processor_seconds();
-    progress.phase("reconstruct");
+    phases.phase("reconstruct");
     const DirectProjection direct = direct_on(stage, input.carries(), solution.indirect.tree);
     solution.interpolant = with_direct(solution.indirect, direct);
     stage.rooms = find_light_rooms(stage, options.seed, stop);  // the energy balance needs rooms to find escaping light
     statistics.energy = energy_balance(solution, direct, stage);
-    statistics.seconds["reconstruct"] = watch.restart();
-    statistics.seconds["total"] = whole.seconds() - snapshots.writing();
+    phases.close();
+    statistics.seconds[RunPart::total] = whole.seconds() - snapshots.writing();
     statistics.peak_memory_bytes = peak_memory_bytes();
     return solution;
 }

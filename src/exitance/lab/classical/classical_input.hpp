@@ -6,7 +6,6 @@
 namespace exitance {
 
 // Defaults of options that several classical forms have.
-constexpr std::size_t default_visibility_samples = 16;
 constexpr unsigned default_hemicube_cells = 64;
 /// Default of A_eps, relative to the scene's area: eight cuts into quarters.
 constexpr double default_min_share = 1.0 / 65536;

@@ -87,7 +87,7 @@ GlobalLight solve_growing_cells(const MethodInput& input) {
     const std::vector<Spectrum> rho = leaf_reflectances(input.stage.scene, light.tree, light.numbering);
     light.direct = classic ? std::vector<Spectrum>(rho.size()) : leaf_means(input.direct, light.numbering);
     light.on_projection = !classic;
-    light.holds_direct = classic;
+    if (classic) light.delivery = MethodDelivery::all_light;
     const SurfacePool pool(input.stage,
                            std::max(min_pool, points_per_unit * units_of(input.stage, input.knobs, input.options)),
                            input.options.seed);
@@ -99,7 +99,7 @@ GlobalLight solve_growing_cells(const MethodInput& input) {
     for (std::size_t i = 0; i < rho.size(); ++i)
         light.reflected.push_back(rho[i] * (light.direct[i] + light.indirect[i]));
     light.report = learned.report;
-    light.rays = learned.rays, light.form_factors = learned.kernels;
+    light.work.rays = learned.rays, light.work.form_factors = learned.kernels;
     input.progress.note(fmt::format(
         "{} units of the shading network, {} of the kernel network; on elements the light is "
         "{:.2f}% off from theirs",

@@ -346,7 +346,7 @@ void LineHierarchy::cut_by_direct_light(const StopRequest& stop) {
 }
 
 bool LineHierarchy::solve(Progress& progress, const StopRequest& stop) {
-    progress.phase("discontinuities");
+    progress.phase("shadow lines");
     const BlockerEdges edges(stage_.occluders);
     const CurveFinder finder(stage_, edges, {.stop = &stop});
     const std::size_t regions = stage_.scene.regions().size();

@@ -7,6 +7,7 @@
 
 #include "exitance/base/memory.hpp"
 #include "exitance/base/parallel.hpp"
+#include "exitance/base/phase_times.hpp"
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/discontinuity/discontinuity_mesh.hpp"
 #include "exitance/error/certificate.hpp"
@@ -34,7 +35,7 @@ GlobalLight coarse_light(const Stage& stage, const ElementFunction& delivered, c
         out.reflected.push_back(stage.scene.material(r).reflectance * out.indirect.back());
     }
     out.direct.resize(out.indirect.size());
-    out.holds_direct = true;
+    out.delivery = MethodDelivery::all_light;
     return out;
 }
 
@@ -109,10 +110,8 @@ void record(const LineHierarchy& hierarchy, const LocalPassWork& work, const Six
 /// Runs both passes. Returns false if a stop left no new light.
 bool pass(const Stage& stage, const SolveOptions& options, double error, Solution& solution, Progress& progress,
           const StopRequest& stop) {
-    Stopwatch watch;
     LineHierarchy hierarchy(stage, line_options(options, error));
     const bool whole = hierarchy.solve(progress, stop);
-    solution.statistics.seconds["solve"] += watch.restart();
     if (!whole && !solution.discontinuity.empty()) return false;
     progress.phase("local pass");
     LocalPassWork work;
@@ -124,7 +123,6 @@ bool pass(const Stage& stage, const SolveOptions& options, double error, Solutio
     solution.interpolant = solution.indirect = on_all_regions(linear_elements(mesh, stage.scene), stage);
     record(hierarchy, work, mesh, solution.statistics);
     solution.discontinuity = std::move(mesh);
-    solution.statistics.seconds["reconstruct"] += watch.restart();
     return whole;
 }
 
@@ -155,6 +153,7 @@ Result<Solution> solve_by_lines(const Scene& scene, const SolveOptions& options,
                      "--local-pass a to d carries light between diffuse polygons alone: e carries this light, too"};
     const Stopwatch watch;
     Solution solution{.scene = scene};
+    PhaseTimes phases(progress, solution.statistics.seconds);
     Stage stage(solution.scene);
     if (stage.pieces.size() > LineHierarchy::most_pieces)
         return Error{
@@ -176,15 +175,13 @@ Result<Solution> solve_by_lines(const Scene& scene, const SolveOptions& options,
     double error = demand.value_or(default_error);
     for (int attempt = 1;; ++attempt) {
         const Stopwatch attempt_watch;
-        const bool whole = pass(stage, options, error, solution, progress, stop);
+        const bool whole = pass(stage, options, error, solution, phases, stop);
         if (!whole || stop.requested()) {
             s.stopped_by = stop.interrupted() ? "interrupt" : "time limit";
             break;
         }
-        progress.phase("certify");
-        Stopwatch certifying;
+        phases.phase("certify");
         certify(stage, options, solution);
-        s.seconds["certify"] += certifying.seconds();
         const double found = std::max(*s.relative_error_estimate, s.relative_error_estimate_worst_room.value_or(0));
         progress.note(fmt::format("estimated error {:.2f}%, {:.2f}% in the worst room",
                                   100 * *s.relative_error_estimate, 100 * found));
@@ -198,8 +195,9 @@ Result<Solution> solve_by_lines(const Scene& scene, const SolveOptions& options,
         }
         error *= std::max(min_factor, calibrated::part_aim * *demand / found);
     }
+    phases.close();
     s.energy = balance(solution, stage);
-    s.seconds["total"] = watch.seconds();
+    s.seconds[RunPart::total] = watch.seconds();
     s.peak_memory_bytes = peak_memory_bytes();
     return solution;
 }

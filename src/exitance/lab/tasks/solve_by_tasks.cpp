@@ -6,6 +6,7 @@
 
 #include "exitance/base/memory.hpp"
 #include "exitance/base/parallel.hpp"
+#include "exitance/base/phase_times.hpp"
 #include "exitance/base/trace.hpp"
 #include "exitance/evaluate/energy.hpp"
 #include "exitance/lab/tasks/interaction_forecast.hpp"
@@ -41,11 +42,12 @@ GlobalLight light_of(const TaskEngine& engine, const Stage& stage) {
         light.reflected.push_back(stage.scene.material(patch.region).reflectance * patch.irradiance);
     }
     light.direct.resize(light.indirect.size());
-    light.holds_direct = true;
-    light.elements_by_level = {};
+    light.delivery = MethodDelivery::all_light;
+    light.work.elements_by_level = {};
     for (std::uint32_t p : patch_of) {
-        light.elements_by_level.resize(std::max<std::size_t>(light.elements_by_level.size(), patches[p].level + 1u));
-        ++light.elements_by_level[patches[p].level];
+        light.work.elements_by_level.resize(
+            std::max<std::size_t>(light.work.elements_by_level.size(), patches[p].level + 1u));
+        ++light.work.elements_by_level[patches[p].level];
     }
     return light;
 }
@@ -62,7 +64,7 @@ void record(const TaskEngine& engine, const TaskReport& report, const GlobalLigh
     s.residual = report.change;
     s.link_memory_bytes = report.interactions * sizeof(Interaction);
     s.element_memory_bytes = patches.memory_bytes();
-    s.elements_by_level = light.elements_by_level;
+    s.elements_by_level = light.work.elements_by_level;
     s.figures["threshold"] = asked.threshold;
     s.figures["min_area"] = asked.min_area;
     s.figures["initial_links"] = static_cast<double>(report.initial_interactions);
@@ -72,7 +74,8 @@ void record(const TaskEngine& engine, const TaskReport& report, const GlobalLigh
     s.figures["tasks"] = static_cast<double>(report.tasks);
     s.figures["stolen_tasks"] = static_cast<double>(report.stolen);
     // Processor time of all threads; parts of the solve's time.
-    s.seconds["visibility"] = report.seconds[TaskGraph::vis], s.seconds["form_factors"] = report.seconds[TaskGraph::ff];
+    s.seconds[RunPart::visibility] = report.seconds[TaskGraph::vis],
+    s.seconds[RunPart::form_factors] = report.seconds[TaskGraph::ff];
     for (std::size_t k = 0; k < TaskGraph::cost_names.size(); ++k)
         s.figures[std::string(TaskGraph::cost_names[k]) + "_seconds"] = report.seconds[k];
 }
@@ -112,17 +115,16 @@ Result<Solution> solve_by_tasks(const Scene& scene, const SolveOptions& options,
     const Stopwatch watch;
     Solution solution{.scene = scene};
     SolveStatistics& statistics = solution.statistics;
-    progress.phase("mesh");
-    Stopwatch phase;
+    PhaseTimes phases(progress, statistics.seconds);
+    phases.phase("mesh");
     Stage stage(solution.scene);
-    statistics.seconds["mesh"] = phase.restart();
 
-    progress.phase("tasks");
+    phases.phase("tasks");
     TaskOptions asked = task_options(scene, options);
     asked.record = task_trace() != nullptr;
     TaskEngine engine(stage, asked);
-    const TaskReport report = engine.run(progress, stop, task_trace() ? task_trace()->now() : 0);
-    statistics.seconds["solve"] = phase.restart();
+    const TaskReport report = engine.run(phases, stop, task_trace() ? task_trace()->now() : 0);
+    phases.phase("reconstruct");
     const GlobalLight light = light_of(engine, stage);
     solution.indirect = options.smoothing.value_or(false) ? smoothed_on_leaves(light, scene.regions().size())
                                                           : constant_on_leaves(light);
@@ -139,8 +141,8 @@ Result<Solution> solve_by_tasks(const Scene& scene, const SolveOptions& options,
     stage.rooms = find_light_rooms(stage, options.seed, stop);  // the energy balance needs rooms to find escaping light
     statistics.energy = energy_balance(solution, stage);
     if (task_trace()) task_trace()->add_graph(engine.take_graph());
-    statistics.seconds["reconstruct"] = phase.restart();
-    statistics.seconds["total"] = watch.seconds();
+    phases.close();
+    statistics.seconds[RunPart::total] = watch.seconds();
     statistics.peak_memory_bytes = peak_memory_bytes();
     progress.note(
         fmt::format("{} tasks, {} of them stolen; total radiosity changed by {:.2g} in the last of {} iterations",

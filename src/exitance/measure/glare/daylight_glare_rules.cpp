@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/disjoint_sets.hpp"
 #include "exitance/measure/glare/glare_rules.hpp"
 #include "exitance/measure/glare/near_directions.hpp"
 
@@ -59,13 +60,11 @@ double daylight_position(const Normal& view, const Vec3& d) {
 std::vector<DaylightGlareSource> join_glare_parts(const Normal& view, std::span<const GlarePart> parts) {
     std::vector<Normal> directions;
     for (const GlarePart& part : parts) directions.push_back(part.towards);
-    JoinedSets sets;
-    sets.resize(parts.size());
-    for (std::uint32_t i = 0; i < parts.size(); ++i) sets.start(i);
+    DisjointSets sets(parts.size());
     for (const auto& [i, k] : near_pairs(directions, glare_joining_angle))
-        if (is_peak(parts[i]) == is_peak(parts[k])) sets.join(i, k);
+        if (is_peak(parts[i]) == is_peak(parts[k])) sets.unite(i, k);
     std::vector<std::vector<std::size_t>> members(parts.size());
-    for (std::uint32_t i = 0; i < parts.size(); ++i) members[sets.find(i)].push_back(i);
+    for (std::uint32_t i = 0; i < parts.size(); ++i) members[sets.root(i)].push_back(i);
     std::vector<DaylightGlareSource> out;
     for (const std::vector<std::size_t>& some : members)
         if (!some.empty()) out.push_back(source_of(view, parts, some));

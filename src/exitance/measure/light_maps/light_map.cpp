@@ -14,7 +14,6 @@ namespace {
 
 /// Rings of buried texels that are filled: those read by bilinear lookups on uncovered parts.
 constexpr int buried_reach = 1;
-constexpr double most_texels = 134217728;  ///< 2^27 texels, about 2.5 GB.
 
 /// Makes the triangles and parallelograms of every chart's region.
 std::vector<std::vector<TexelOutline>> make_outlines(const Stage& stage, std::span<const Chart> charts) {

@@ -11,8 +11,6 @@
 namespace exitance {
 namespace {
 
-constexpr double most_uv_texels = 134217728;  ///< 2^27 texels, about 6 GB.
-
 /// Linear parts of the texture coordinates as charts, with their triangles.
 struct LinearCharts {
     std::vector<Chart> charts;
@@ -203,11 +201,11 @@ Result<void> make_empty_maps(const Scene& scene, const UvBakeOptions& options, U
             size = {side, side};
         }
         texels += static_cast<double>(size.texels());
-        if (texels > most_uv_texels)
+        if (texels > most_texels)
             return Error{ErrorCode::usage, "the maps would have more than 134 million texels", "--density",
                          "choose a smaller one, or a smaller --size"};
         covered += static_cast<double>(size.texels()) * map_area[m];
-        if (covered > most_uv_texels)
+        if (covered > most_texels)
             return Error{ErrorCode::usage,
                          "charts overlap so often that " + std::to_string(std::llround(covered / 1e6)) +
                              " million texels would be baked, the most is 134 million",

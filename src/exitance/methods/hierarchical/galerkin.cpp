@@ -24,9 +24,9 @@ GlobalLight solve_galerkin(const MethodInput& input, HierarchyBasis kind) {
         fmt::format("{} links between {} leaves ({:.0f}% of their light in the open), {} rays; error of rules and "
                     "visibility {:.3f}%",
                     h.system.size(), leaves, 100 * found.open_share, found.rays, 100 * found.error / h.light_norm()));
-    h.light.rays += found.rays;
-    h.light.form_factors += found.form_factors;
-    h.light.delivers = h.is_polynomial && found.open_share > mostly_open;
+    h.light.work.rays += found.rays;
+    h.light.work.form_factors += found.form_factors;
+    if (h.is_polynomial && found.open_share > mostly_open) h.light.delivery = MethodDelivery::polynomials;
     input.progress.phase("solve");
     h.relax();
     hand_over(h);

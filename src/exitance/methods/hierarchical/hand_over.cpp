@@ -36,15 +36,15 @@ void hand_over(Hierarchy& h) {
                                       h.refiner.field_bytes() + 2 * h.radiosity.memory_bytes();
     const NodalField F_b = h.gather();
     const NodalLight E = [&](ElementId e) { return h.indirect_light(F_b, e); };
-    if (h.basis.order() > 2 && (light.delivers || h.input.options.smoothing)) cut_for_delivery(h, E);
+    if (h.basis.order() > 2 && (light.delivers() || h.input.options.smoothing)) cut_for_delivery(h, E);
     write_nodal_light(h.sites, E, h.input.direct, light);
-    light.links = h.system.size();
+    light.work.links = h.system.size();
     if (h.input.options.keep_links) light.kept_links = h.system.links().list();
-    light.link_memory_bytes = h.system.memory_bytes();
-    light.element_memory_bytes = element_bytes;
-    light.elements_by_level = h.sites.count_by_level();
-    light.rays += h.rays();
-    light.form_factors = h.refiner.form_factors();
+    light.work.link_memory_bytes = h.system.memory_bytes();
+    light.work.element_memory_bytes = element_bytes;
+    light.work.elements_by_level = h.sites.count_by_level();
+    light.work.rays += h.rays();
+    light.work.form_factors = h.refiner.form_factors();
 }
 
 }  // namespace exitance

@@ -67,10 +67,10 @@ GlobalLight solve_over_links(const MethodInput& input, HierarchyBasis kind) {
     }
     Hierarchy h(input, kind, held_by(input, kind));
     if (wants_clusters(input)) h.make_clusters();
-    h.light.delivers = links_deliver(h);
+    if (links_deliver(h)) h.light.delivery = MethodDelivery::polynomials;
     h.project_direct();
     if (!refine_links(h)) return std::move(h.light);
-    if (h.light.delivers)
+    if (h.light.delivers())
         conserve(h);
     else if (!input.stop.requested())
         correct_by_rays(h);

@@ -25,7 +25,7 @@ Hierarchy::Hierarchy(const MethodInput& input, HierarchyBasis kind, LinkSites::H
 
 void Hierarchy::make_clusters() {
     const Rooms rooms = find_rooms(input.stage, light.tree, input.options.seed);
-    light.rays += rooms.rays;
+    light.work.rays += rooms.rays;
     clusters.emplace(light.tree, rooms.of_root);
     far.emplace(sites, *clusters);
 }

@@ -18,7 +18,7 @@ namespace {
 double first_error(const Hierarchy& h, double demand) {
     const double factor_of_few =
         std::clamp(std::sqrt(h.input.knobs.link_error / calibrated::first_round_fine), 1.0, 2.0);
-    const double share = h.light.delivers       ? calibrated::first_round_delivering
+    const double share = h.light.delivers()     ? calibrated::first_round_delivering
                          : h.basis.order() == 3 ? calibrated::first_round_order_three
                                                 : 1;
     return share * factor_of_few * demand;
@@ -35,14 +35,14 @@ double first_strength(const Hierarchy& h, double error) {
 /// sign; that is irrelevant if rays correct the light.
 double residual_weight(const Hierarchy& h) {
     constexpr double default_weight = 0.5;
-    return h.light.delivers && h.basis.order() == 2 ? calibrated::residual_weight_of_bilinear : default_weight;
+    return h.light.delivers() && h.basis.order() == 2 ? calibrated::residual_weight_of_bilinear : default_weight;
 }
 
 /// Ratio of the permitted error of links to that of the method. If rays correct the means of leaves, links determine
 /// only the variation within them, and light is gathered once more. If links deliver the light, no gather takes a share
 /// of the error.
 double share_of_links(const Hierarchy& h) {
-    if (h.light.delivers) return h.input.options.epsilon ? 1 : calibrated::link_error_without_gather;
+    if (h.light.delivers()) return h.input.options.epsilon ? 1 : calibrated::link_error_without_gather;
     return h.input.options.smoothing ? 1 : calibrated::link_error_under_rays;
 }
 
@@ -59,7 +59,7 @@ std::size_t most_links(const Hierarchy& h) {
 
 /// Weight of an error that is uniform over the receivers: every reflection multiplies it unless rays correct it.
 double systematic_weight(const Hierarchy& h) {
-    if (!h.light.delivers) return 1;
+    if (!h.light.delivers()) return 1;
     constexpr double within_a_sum = 2;
     double reflected = 0;
     for (ElementId e : h.light.tree.roots()) reflected += h.light.tree.area(e) * mean(h.material(e).reflectance);
@@ -70,16 +70,16 @@ double systematic_weight(const Hierarchy& h) {
 class Rounds {
   public:
     explicit Rounds(Hierarchy& h)
-        : h_(h), of_links_(first_exponent(h.light.delivers)), of_receivers_(first_exponent(h.light.delivers)) {
+        : h_(h), of_links_(first_exponent(h.light.delivers())), of_receivers_(first_exponent(h.light.delivers())) {
         // If rays correct the links, every round judges links by light reflected once; otherwise by all light found so
         // far.
-        if (!h.light.delivers && !has_importance_) h.refiner.keep_light();
+        if (!h.light.delivers() && !has_importance_) h.refiner.keep_light();
         const double first = (has_importance_ ? calibrated::first_round_before_importance : 1) *
                              first_error(h, h.input.knobs.link_error * h.light_norm());
         tolerance_ = link_tolerance(h, first);
         tolerance_.oracle = h.input.options.oracle;
         tolerance_.residual_weight = residual_weight(h);
-        tolerance_.corrected = !h.light.delivers;
+        tolerance_.corrected = !h.light.delivers();
         tolerance_.strongest = first_strength(h, first);
     }
 
@@ -97,11 +97,11 @@ class Rounds {
             relax();
             // Errors of links grow with the light, of which the first round has only one reflection. That is irrelevant
             // if rays correct it.
-            const double growth = h_.light.delivers ? h_.light_norm() / judged_by : 1;
+            const double growth = h_.light.delivers() ? h_.light_norm() / judged_by : 1;
             const double by_link = growth * h_.link_error(), by_receiver = growth * h_.refiner.interpolation_error();
             if (is_good_enough(by_link, by_receiver)) break;
             lower_tolerances(by_link, by_receiver);
-            if (!h_.light.delivers && !has_importance_) h_.radiosity = h_.reflected_direct;
+            if (!h_.light.delivers() && !has_importance_) h_.radiosity = h_.reflected_direct;
         }
         return true;
     }
@@ -141,8 +141,8 @@ class Rounds {
                         h_.rays(), 100 * error / norm, 100 * demand_ / norm));
         h_.light.limited_by_memory = h_.refiner.is_limited();
         if (h_.input.stop.requested() || h_.light.limited_by_memory) return true;
-        const bool knows_all_light = round_ > 0 || (!has_importance_ && !h_.light.delivers);
-        return knows_all_light && error <= (h_.light.delivers ? 1 : calibrated::accepted_link_excess) * demand_;
+        const bool knows_all_light = round_ > 0 || (!has_importance_ && !h_.light.delivers());
+        return knows_all_light && error <= (h_.light.delivers() ? 1 : calibrated::accepted_link_excess) * demand_;
     }
 
     /// Lowers both tolerances. The square of each error may be half of the permitted one, plus the part that the other

@@ -63,7 +63,7 @@ std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, bool u
         return std::nullopt;
     const RayRows rows(stage, light.tree, light.numbering, locator, dealt_out(input.knobs.solve_rays),
                        input.options.seed, Dealing::by_piece, RowsHeld::by_owner);
-    light.rays = rows.rays();
+    light.work.rays = rows.rays();
     light.kept = kept_light(rows, stage.scene);
     reflect_again(rows, stage.scene, light);
 
@@ -73,14 +73,15 @@ std::optional<GlobalLight> solve_linked_by_rays(const MethodInput& input, bool u
     for (std::size_t i = 0; i < leaves.size(); ++i) b.set_node(leaves[i], 0, light.reflected[i]);
     b.pull();
     const Links links = link_by_rays(sites, light.numbering, rows, b, allowed_error(input, light, rows.rays()));
-    light.links = static_cast<std::size_t>(sum_of_all(static_cast<double>(links.size())));
-    input.progress.note(fmt::format("{} links found by {} rays of {} leaves", light.links, rows.rays(), leaves.size()));
+    light.work.links = static_cast<std::size_t>(sum_of_all(static_cast<double>(links.size())));
+    input.progress.note(
+        fmt::format("{} links found by {} rays of {} leaves", light.work.links, rows.rays(), leaves.size()));
 
     // Every leaf has links of its own: the part is the whole hierarchy.
     const ElementPart part{sites.inner(), leaves};
     relax_constant_elements(input, LinkOperator(sites, links, nullptr, part, rows.dealt().block()), light);
-    light.element_memory_bytes = light.tree.memory_bytes() + sites.memory_bytes() + b.memory_bytes();
-    light.elements_by_level = sites.count_by_level();
+    light.work.element_memory_bytes = light.tree.memory_bytes() + sites.memory_bytes() + b.memory_bytes();
+    light.work.elements_by_level = sites.count_by_level();
     if (input.options.keep_links) light.kept_links = list_of_all(links, light.numbering);
     return light;
 }

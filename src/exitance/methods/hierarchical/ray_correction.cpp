@@ -21,7 +21,7 @@ void correct_by_rays(Hierarchy& h) {
     const ElementLocator locator(light.tree, h.input.stage.scene.regions().size());
     const RayRows rows(h.input.stage, light.tree, light.numbering, locator, h.input.knobs.solve_rays,
                        h.input.options.seed);
-    light.rays += rows.rays();
+    light.work.rays += rows.rays();
     light.kept = kept_light(rows, h.input.stage.scene);
     const std::size_t before = light.report.iterations;
     relax_constant_elements(h.input, rows, light);

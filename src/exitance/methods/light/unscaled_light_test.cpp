@@ -74,11 +74,11 @@ TEST(UnscaledLight, IsReportedForAClosedScene) {
     const StopRequest stop;
     const Result<Solution> solution = solve_scene(built_scene("gaps"), {.error = 0.05}, progress, stop);
     ASSERT_TRUE(solution);
-    const auto before = solution->statistics.figures.find("energy_defect_before");
-    ASSERT_NE(before, solution->statistics.figures.end());
+    const std::optional<double> before = solution->statistics.energy.defect_before;
+    ASSERT_TRUE(before);
     EXPECT_LT(solution->statistics.energy.defect, 1e-6) << "rounding of values in single precision";
-    EXPECT_GT(before->second, 1e-6) << "noise of rays";
-    EXPECT_LT(before->second, 0.01) << "six times its root mean square over seeds";
+    EXPECT_GT(*before, 1e-6) << "noise of rays";
+    EXPECT_LT(*before, 0.01) << "six times its root mean square over seeds";
 }
 
 }  // namespace

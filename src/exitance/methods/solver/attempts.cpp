@@ -144,7 +144,7 @@ Solver::NextAttempt Solver::next_attempt(double demand) const {
     // A refinement step leaves about a third of the error at first, more if light is reflected often. The first step
     // measures it.
     const double left = steps_.not_local > 0 ? not_local(parts) / steps_.not_local : 0.5;
-    const AttemptForecast forecast = forecast_attempt({.row_rays = static_cast<double>(light_->rays),
+    const AttemptForecast forecast = forecast_attempt({.row_rays = static_cast<double>(light_->work.rays),
                                                        .gather_rays = static_cast<double>(steps_.gather_rays),
                                                        .certificate_rays = static_cast<double>(certificate_.rays),
                                                        .method = not_local(parts),
@@ -184,7 +184,6 @@ void Solver::project_direct() {
     // Share of one element that a body sees: derived from four alike, as around the point below the body's middle.
     // Their squared errors, with those of noise and of interpolation, sum to that of the body.
     constexpr double one_of_four = 0.7;
-    const Stopwatch watch;
     std::optional<BodyViews> views;
     std::vector<double> tolerance_of;
     if (holds_bodies()) {
@@ -209,7 +208,6 @@ void Solver::project_direct() {
         unscaled_.direct = inverse(scale);
         share_on_node(direct_.fit.span());  // not modified from here on
     }
-    statistics().seconds["mesh"] += watch.seconds();
 }
 
 bool Solver::has_memory() {
@@ -242,7 +240,6 @@ void Solver::attempt() {
         reach(Step::gather);
     }
     if (step_ == Step::decide) return;
-    Stopwatch watch;
     NextLight found;
     if (next_.parts.empty()) found.parts.push_back(gathered_light(stage_.scene, direct_, *light_, share_));
     for (const ElementFunction& f : found.parts) share_on_node(std::span(f.values));
@@ -255,7 +252,6 @@ void Solver::attempt() {
     if (step_ == Step::gather) {
         refined_.clear();
         const bool whole = deliver(parts_to_sum(found.parts), b, fresh_);
-        statistics().seconds["reconstruct"] += watch.restart();
         if (!whole) return;
         next_.rest.clear();  // has been gathered
         steps_.gather_rays = std::max(steps_.gather_rays, gathered_.rays);
@@ -264,7 +260,6 @@ void Solver::attempt() {
     if (step_ == Step::refine && refines()) {
         if (refined_.empty()) refined_ = refine();
         const bool whole = deliver(parts_to_sum(refined_), b, true);
-        statistics().seconds["reconstruct"] += watch.restart();
         if (!whole) return;
     }
     reach(Step::certify);
@@ -276,12 +271,11 @@ void Solver::attempt() {
     if (gathers()) look.leaves = &gathered_.leaves, look.gathered = &b.whole();
     look.coarse = &b.method_mesh();
     certify_solution(look, options_.error_demand(), elements);
-    statistics().seconds["certify"] += watch.restart();
     reach(Step::decide);
 }
 
 void Solver::take_step() {
-    const Stopwatch watch;
+    progress_.phase("solve");
     if (next_.parts.empty()) next_.parts.push_back(gathered_light(stage_.scene, direct_, *light_, share_));
     // The delivered light is scaled such that the flux of the converged solution is conserved. A refinement step would
     // apply that correction twice. Its input is therefore scaled to the power that arrives of the light that was
@@ -293,8 +287,7 @@ void Solver::take_step() {
         for (const ElementFunction& f : *functions) share_on_node(std::span(f.values));
     steps_.not_local = not_local(error_parts());
     takes_step_ = false;
-    statistics().figures["refinement_steps"] += 1;
-    statistics().seconds["solve"] += watch.seconds();
+    ++statistics().refinement_steps;
 }
 
 /// Chooses linear elements if much of the light is in gaps. There, elements receive light from few others, which are
@@ -312,7 +305,6 @@ void Solver::choose_basis() {
 }
 
 void Solver::find_light() {
-    const Stopwatch watch;
     if (fresh_) {
         choose_basis();
         light_ = entry_of(options_.method)
@@ -326,7 +318,6 @@ void Solver::find_light() {
         for (const auto* const corners : {&light_->direct_corners, &light_->indirect_corners})
             share_on_node(std::span(*corners));
     }
-    statistics().seconds["solve"] += watch.seconds();
 }
 
 std::vector<ElementGather> Solver::parts_to_sum(std::span<const ElementFunction> functions) const {
@@ -374,14 +365,14 @@ void Solver::adopt(ElementFunction indirect, const Spectrum& kept) {
     solution_.own_form = light_->own_form;
     solution_.delivers_own_form = !gathers() && solution_.own_form;
     solution_.direct_share = share_;
-    solution_.direct_in_elements = light_->holds_direct;
+    solution_.direct_in_elements = light_->holds_direct();
     record_method(stage_, *light_, has_links_, statistics());
 }
 
 void Solver::adopt_method_light() {
     solution_.indirect = constant_on_leaves(*light_);
     unscaled_.indirect = unscaled_.direct * light_->report.unscaled;
-    solution_.direct_in_elements = light_->holds_direct;
+    solution_.direct_in_elements = light_->holds_direct();
     record_method(stage_, *light_, has_links_, statistics());
 }
 

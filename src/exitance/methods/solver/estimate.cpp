@@ -26,8 +26,8 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
     // Every attempt is measured at points of its own, since the previous ones decided how it refines.
     const auto attempts_before = static_cast<std::uint64_t>(attempt_ - 1 + shown_);
     options.seed = attempts_before == 0 ? options_.seed : hash(options_.seed, attempts_before);
-    options.direct_in_elements = light_->holds_direct;
-    options.keeps_flux = gathers() && !light_->holds_direct && keeps_flux() &&
+    options.direct_in_elements = light_->holds_direct();
+    options.keeps_flux = gathers() && !light_->holds_direct() && keeps_flux() &&
                          has_kept_flux(solution_.indirect, stage_.scene, direct_, *light_, solution_.direct_share);
     options.light_in = light_in_, options.allowed_in = allowed_in_;
     options.bounces = options_.bounces;
@@ -39,13 +39,13 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
     if (options_.bounces > 0) older = constant_on_leaves(*light_);
     const ElementFunction& indirect = older ? *older : solution_.indirect;
     const Spectrum c = solution_.direct_share;
-    const Spectrum direct_weight = light_->holds_direct ? Spectrum() : Spectrum(1.0) - c;
+    const Spectrum direct_weight = light_->holds_direct() ? Spectrum() : Spectrum(1.0) - c;
     DeliveredLight delivered(stage_.scene, indirect, direct_, direct_weight, c);
     if (!bright_.empty()) delivered.aim_at(bright_);
     const auto misfit = [&](const HitPoint& hit) {
         return std::sqrt(direct_.fit[delivered.projected().locator().find(hit.region, hit.y).element].misfit_squared);
     };
-    if (!light_->holds_direct) options.projected = {&delivered.projected(), direct_weight, misfit};
+    if (!light_->holds_direct()) options.projected = {&delivered.projected(), direct_weight, misfit};
     // A tenth of the rays so far, but at least about 30 ms of work, so that small solves know the errors of their
     // bodies.
     constexpr std::size_t least_check_rays = 1 << 17;
@@ -93,7 +93,7 @@ bool Solver::may_be_last(double demand) const {
 }
 
 void Solver::add_clustering_error() {
-    if (certificate_.points == 0 || light_->holds_direct) return;
+    if (certificate_.points == 0 || light_->holds_direct()) return;
     const double more =
         clustering_error(stage_, direct_, point_accuracy(certificate_.estimate)) / certificate_.mean_reflected;
     if (!(more > 0)) return;

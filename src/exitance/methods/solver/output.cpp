@@ -28,8 +28,8 @@ bool Solver::make_discontinuity() {
     SafePoints points = safe_points();
     const DiscontinuityReport report =
         add_discontinuity_mesh(stage_, options_, solution_, stop_, checkpoints_ ? &points : nullptr);
-    statistics().seconds["mesh"] += report.mesh_seconds, statistics().seconds["direct"] += report.direct_seconds;
-    mesh_seconds_ = report.mesh_seconds + report.direct_seconds;
+    statistics().seconds[RunPart::mesh] += report.mesh_seconds;
+    statistics().seconds[RunPart::direct] += report.direct_seconds;
     if (report.interrupted) stop_early(stop_.interrupted() ? "interrupt" : "time limit");
     const bool follows_shadows = !solution_.discontinuity.empty();
     // The reported mesh must not depend on whether there was a time limit.
@@ -54,9 +54,8 @@ ElementFunction Solver::plain_elements(InterpolantReport& report) const {
 }
 
 void Solver::make_output_mesh() {
-    const Stopwatch watch;
-    progress_.phase("reconstruct");
     const bool follows_shadows = makes_discontinuity_mesh() && make_discontinuity();
+    progress_.phase("reconstruct");
     if (follows_shadows) {
         // The discontinuity mesh is exported.
     } else if (solution_.direct_in_elements) {
@@ -72,11 +71,11 @@ void Solver::make_output_mesh() {
         progress_.note(fmt::format("{} elements to export, {:.3f}% from the function by themselves",
                                    solution_.interpolant.tree.leaves().size(), 100 * own));
     }
-    const EnergyBalance energy = statistics().energy = energy_balance(solution_, direct_, stage_);
-    statistics().figures["energy_defect_before"] = energy_defect_before(energy, solution_, direct_, unscaled_);
+    EnergyBalance& energy = statistics().energy;
+    energy = energy_balance(solution_, direct_, stage_);
+    energy.defect_before = energy_defect_before(energy, solution_, direct_, unscaled_);
     if (energy.emitted > 0 && energy.absorbed == 0 && !stop_.requested())
         warn("no light reaches the front of any face: they may be turned inside out");
-    statistics().seconds["reconstruct"] += watch.seconds() - mesh_seconds_;
 }
 
 }  // namespace exitance

@@ -23,7 +23,7 @@ TEST(RefinedAttempt, HasTheEstimatedErrorAndKeepsTheMethodsElements) {
     const std::vector<Light> exact = RadiosityFunction(fine).at(points);
     for (const std::uint64_t seed : {1, 2}) {
         const Solution solution = solved(scene, on_whole_walls(0.03, seed));
-        ASSERT_EQ(solution.statistics.figures.at("refinement_steps"), 1);
+        ASSERT_EQ(solution.statistics.refinement_steps, 1u);
         ASSERT_TRUE(solution.statistics.converged);
         EXPECT_EQ(solution.statistics.basis, "constant");
         const std::vector<Light> found = RadiosityFunction(solution).at(points);

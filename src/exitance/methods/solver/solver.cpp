@@ -17,11 +17,11 @@ namespace exitance {
 
 Solver::Solver(Scene scene, const SolveOptions& asked, Progress& progress, const StopRequest& stop,
                CheckpointStore* checkpoints, const ShowLight& show)
-    : progress_(progress),
-      stop_(stop),
+    : stop_(stop),
       checkpoints_(checkpoints),
       show_(show),
       solution_{.scene = std::move(scene)},
+      progress_(progress, solution_.statistics.seconds),
       stage_(solution_.scene) {
     release_freed_memory();
     share_on_node(solution_.scene.surfaces().span());
@@ -70,6 +70,7 @@ Result<Solution> Solver::run() {
     gathered_ = {};
     release_freed_memory();
     make_output_mesh();
+    progress_.close();
     return std::move(solution_);
 }
 

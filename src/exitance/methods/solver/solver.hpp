@@ -1,5 +1,6 @@
 #pragma once
 
+#include "exitance/base/phase_times.hpp"
 #include "exitance/error/certificate.hpp"
 #include "exitance/evaluate/interpolant.hpp"
 #include "exitance/evaluate/quick_function.hpp"
@@ -112,7 +113,7 @@ class Solver {
     std::vector<ElementFunction> refine() const;
     Spectrum direct_share() const;
     /// True if the method's light is gathered; false if its elements are delivered.
-    bool gathers() const { return !light_->holds_direct && !light_->delivers && !options_.smoothing; }
+    bool gathers() const { return light_->delivery == MethodDelivery::gathered && !options_.smoothing; }
     /// True if the light on every body must be accurate, not only that on all surfaces together.
     bool holds_bodies() const { return options_.error_demand() && options_.importance.empty(); }
     const SceneBodies& bodies();
@@ -156,7 +157,6 @@ class Solver {
     SolveOptions& options_ = plan_.options;  ///< Requested options, with the chosen method.
     Knobs& knobs_ = plan_.knobs;             ///< Settings of the present attempt.
     const bool &has_links_ = plan_.has_links, &sums_ = plan_.sums;
-    Progress& progress_;
     const StopRequest& stop_;
     CheckpointStore* checkpoints_;
     const ShowLight& show_;
@@ -164,6 +164,7 @@ class Solver {
     double requested_error_ = 0;  ///< Requested error; options_.error is larger while intermediate solutions are shown.
     int shown_ = 0;               ///< Number of attempts with a larger target error.
     Solution solution_;
+    PhaseTimes progress_;  ///< Records the times of the phases in the solution.
     Stage stage_;
     DirectProjection direct_;
     UnscaledShare unscaled_;            ///< Unscaled share of the delivered light.
@@ -198,7 +199,6 @@ class Solver {
     std::vector<double> allowed_in_;     ///< Allowed errors of the rooms (`allowed_by_room`).
     std::vector<double> noise_in_;       ///< Factor on the noise of each room (`LocalPassDemand::noise_in`).
     std::string resumed_phase_;
-    double mesh_seconds_ = 0;  ///< Time for the discontinuity mesh and its light.
 };
 
 }  // namespace exitance

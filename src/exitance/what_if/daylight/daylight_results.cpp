@@ -1,5 +1,7 @@
 #include "exitance/what_if/daylight/daylight_results.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -110,7 +112,7 @@ struct DaylightSimulation::Data {
     SceneLight open;                                   ///< With all groups in their first states.
     std::vector<std::unique_ptr<SceneLight>> changed;  ///< The scenes of states.
     HourlyStates states;
-    double error_of_states = 0;
+    double error_of_states = 0;  ///< Largest error of a grid in the scenes of states.
 };
 
 DaylightSimulation::DaylightSimulation(const Scene& scene, const DaylightTask& task, Progress& progress,
@@ -183,8 +185,19 @@ const HourlyStates* DaylightSimulation::states() const {
     return data_->open.setting.states;
 }
 
-double DaylightSimulation::error_of_states() const {
-    return data_->error_of_states;
+std::vector<std::string> DaylightSimulation::warnings() const {
+    constexpr double small_share = 0.01;  // derived from the default error of 2%, of which it is half
+    const double twice = data_->states.twice, error = data_->error_of_states, wanted = data_->task.error;
+    std::vector<std::string> out;
+    if (twice > small_share)
+        out.push_back(
+            fmt::format("{:.2g}% of the light crosses panes of groups twice, and counts as if it crossed them once: "
+                        "intervals of hours with changed states are wider by it",
+                        100 * twice));
+    if (error > wanted)
+        out.push_back(fmt::format("the error of {:.2g}% with the geometry of a state is above the requested {:.2g}%",
+                                  100 * error, 100 * wanted));
+    return out;
 }
 
 /// Returns the rows of the parts of HourlyStates at consecutive sensors. `through`: those of the task's scene.
@@ -287,9 +300,10 @@ Result<void> evaluate_coefficients(const Scene& scene, const DaylightTask& task,
     return pass_blocks<DaylightBlock>(places.size(), evaluate_some, archive_block, sink, none, stop);
 }
 
-Result<DaylightSummary> simulate_year(const Scene& scene, const DaylightTask& task, const DaylightSink& sink,
-                                      Progress& progress, const StopRequest& stop) {
-    DaylightSimulation simulation(scene, task, progress, stop);
+namespace {
+
+/// Finds the light and evaluates all sensors.
+Result<DaylightSummary> run_year(DaylightSimulation& simulation, const DaylightTask& task, const DaylightSink& sink) {
     if (const Result<void> found = simulation.find_light(); !found) return found.error();
     DaylightTotals totals(task.grids, task.hours, task.site, task.criteria);
     const auto add = [&](const DaylightBlock& block) {
@@ -298,6 +312,14 @@ Result<DaylightSummary> simulate_year(const Scene& scene, const DaylightTask& ta
     };
     if (const Result<void> done = simulation.evaluate({0, task.sensors.size()}, add); !done) return done.error();
     return totals.summary(simulation.light().bias);
+}
+
+}  // namespace
+
+Result<DaylightSummary> simulate_year(const Scene& scene, const DaylightTask& task, const DaylightSink& sink,
+                                      Progress& progress, const StopRequest& stop) {
+    DaylightSimulation simulation(scene, task, progress, stop);
+    return run_year(simulation, task, sink);
 }
 
 Result<DaylightResults> collect_year(const Scene& scene, const DaylightTask& task, Progress& progress,
@@ -309,7 +331,11 @@ Result<DaylightResults> collect_year(const Scene& scene, const DaylightTask& tas
     const auto append = [](std::vector<float>& all, const std::vector<float>& more) {
         all.insert(all.end(), more.begin(), more.end());
     };
+    const std::size_t variants = task.states ? task.states->variants.size() : 0;
+    VariantTotals of_variants(variants);
     const auto keep = [&](const DaylightBlock& block) -> Result<void> {
+        for (std::size_t i = 0; i < block.variants.size(); i += variants)
+            of_variants.add(std::span(block.variants).subspan(i, variants));
         out.matrix.patches = block.matrix.patches;
         append(out.matrix.direct, block.matrix.direct), append(out.matrix.reflected, block.matrix.reflected);
         for (std::size_t k = 0; k < daylight_replicates; ++k)
@@ -322,9 +348,13 @@ Result<DaylightResults> collect_year(const Scene& scene, const DaylightTask& tas
         out.sensors.insert(out.sensors.end(), block.results.begin(), block.results.end());
         return {};
     };
-    Result<DaylightSummary> summary = simulate_year(scene, task, keep, progress, stop);
+    DaylightSimulation simulation(scene, task, progress, stop);
+    Result<DaylightSummary> summary = run_year(simulation, task, keep);
     if (!summary) return summary.error();
     out.summary = std::move(*summary);
+    if (const HourlyStates* const states = simulation.states()) out.states = states->state;
+    if (variants > 0) out.variants = of_variants.summaries();
+    out.warnings = simulation.warnings();
     return out;
 }
 

@@ -56,8 +56,8 @@ class DaylightSimulation {
     const DaylightLight& light() const;
     /// The states of all hours, which find_light() chooses; null if the task has none.
     const HourlyStates* states() const;
-    /// Largest error of a grid in the scenes of states; 0 without such scenes.
-    double error_of_states() const;
+    /// Sentences about light of states that may be wrong.
+    std::vector<std::string> warnings() const;
 
     /// Passes the results of sensors to `sink`, block by block. The bits of a sensor's results do not depend on the
     /// range in which it is. Errors: ErrorCode::limit after a stop request, or that of the sink.
@@ -100,6 +100,9 @@ struct DaylightResults {
     DaylightYear year;
     std::vector<SensorResults> sensors;
     DaylightSummary summary;
+    std::vector<std::vector<std::uint8_t>> states;  ///< Per group of panes and hour; empty without states.
+    std::vector<VariantSummary> variants;           ///< One per variant of the states.
+    std::vector<std::string> warnings;              ///< See DaylightSimulation::warnings().
 };
 
 /// Runs simulate_year() and keeps all results. About 75 kB per sensor.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/processor.hpp"
 #include "exitance/scene/sky/perez_sky.hpp"
 
 namespace exitance {
@@ -80,7 +81,7 @@ void YearSky::add(std::span<const float> luminances, std::span<const float> coef
     const std::size_t sensors = coefficients.size() / patches_, rows = bright_.size();
     EXI_ASSERT(lux.size() == sensors * hours());
     std::vector<float> columns(patches_ * tile_sensors);  // coefficients of a tile, a row per patch
-    for (std::size_t first = 0; first < sensors; first += tile_sensors) {
+    const auto add_tile = [&](std::size_t first) EXITANCE_INLINE_LAMBDA {
         const std::size_t count = std::min(tile_sensors, sensors - first);
         for (std::size_t i = 0; i < count; ++i)
             for (std::size_t p = 0; p < patches_; ++p)
@@ -102,7 +103,9 @@ void YearSky::add(std::span<const float> luminances, std::span<const float> coef
                 for (std::size_t i = 0; i < count; ++i)
                     lux[(first + i) * hours() + bright_[row + k]] += sums[2 * k + i / width][i % width];
         }
-    }
+    };
+    for (std::size_t first = 0; first < sensors; first += tile_sensors)
+        call_for_four([&]() EXITANCE_INLINE_LAMBDA { add_tile(first); });
 }
 
 std::vector<double> overcast_luminances(const SkyPatches& patches, double ground) {

@@ -68,14 +68,12 @@ void GlareView::join(const std::vector<Piece>& pieces) {
     std::vector<Normal> directions;
     for (const Piece& piece : pieces) directions.push_back(piece.towards);
     const std::vector<std::pair<std::uint32_t, std::uint32_t>> near = near_pairs(directions, glare_joining_angle);
-    JoinedSets sets;
-    sets.resize(pieces.size());
-    for (std::uint32_t i = 0; i < pieces.size(); ++i) sets.start(i);
+    DisjointSets sets(pieces.size());
     for (const auto& [a, b] : near)
-        if (pieces[a].patch == pieces[b].patch) sets.join(a, b);
+        if (pieces[a].patch == pieces[b].patch) sets.unite(a, b);
     std::vector<std::uint32_t> part_of(pieces.size());
     for (std::uint32_t i = 0; i < pieces.size(); ++i) {
-        const std::uint32_t first = sets.find(i);
+        const std::uint32_t first = sets.root(i);
         if (first == i)
             part_of[i] = static_cast<std::uint32_t>(parts_.size()), parts_.emplace_back().patch = pieces[i].patch;
         part_of[i] = part_of[first];
@@ -120,13 +118,13 @@ void GlareView::collect(std::span<const float> sky, std::span<const BrightElemen
 double GlareView::terms(std::span<const float> sky, std::span<const BrightElements::Entry> elements, double threshold,
                         Workspace& w) const {
     collect(sky, elements, threshold, w);
-    w.sets.resize(parts_.size());
+    w.sets.make_room(parts_.size());
     const auto is_peak = [&](std::uint32_t p) { return double(w.luminance[p]) >= peak_luminance; };
     for (const std::uint32_t p : w.lit) {
-        w.sets.start(p);
+        w.sets.isolate(p);
         for (std::uint32_t k = p == 0 ? 0 : parts_[p - 1].next; k < parts_[p].next; ++k)
             if (const std::uint32_t q = neighbours_[k]; w.luminance[q] > 0 && is_peak(p) == is_peak(q))
-                w.sets.join(p, q);
+                w.sets.unite(p, q);
     }
     struct Sum {
         double light = 0, solid_angle = 0;
@@ -134,7 +132,7 @@ double GlareView::terms(std::span<const float> sky, std::span<const BrightElemen
     };
     std::vector<std::pair<std::uint32_t, Sum>> sums;
     for (const std::uint32_t p : w.lit) {
-        const std::uint32_t first = w.sets.find(p);
+        const std::uint32_t first = w.sets.root(p);
         auto at = std::find_if(sums.begin(), sums.end(), [&](const auto& s) { return s.first == first; });
         if (at == sums.end()) at = sums.insert(sums.end(), {first, {}});
         const double L = double(w.luminance[p]);

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "exitance/measure/glare/near_directions.hpp"
+#include "exitance/base/disjoint_sets.hpp"
 #include "exitance/what_if/daylight/bright_elements.hpp"
 
 namespace exitance {
@@ -21,7 +21,7 @@ class GlareView {
     struct Workspace {
         std::vector<float> luminance;
         std::vector<std::uint32_t> lit;
-        JoinedSets sets;
+        DisjointSets sets;
     };
     /// Returns the sum of L^2 omega / P^2 over the sources of an hour, without the sun. `sky`: luminances of the
     /// patches; `elements`: the bright elements; `threshold`: cd/m^2.

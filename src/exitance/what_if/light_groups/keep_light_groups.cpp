@@ -29,7 +29,7 @@ Result<LightGroups> keep_light_groups(Solution& solution, const SolveOptions& op
     Result<LightGroups> groups = solve_light_groups(solution, options, progress, stop);
     if (!groups && stop.requested()) return not_kept(groups.error().message);
     if (!groups) return groups;
-    s.seconds["light_groups"] = watch.seconds();
+    s.seconds[RunPart::light_groups] = watch.seconds();
     s.figures["light_groups"] = static_cast<double>(groups->groups.size());
     s.figures["light_group_bytes"] = static_cast<double>(groups->light_bytes());
     s.figures["repaint_bytes"] = static_cast<double>(groups->transport.bytes());

@@ -20,14 +20,23 @@ Error not_understood(std::string_view word, const char* example) {
     return {ErrorCode::usage, fmt::format("'{}' is not understood", word), std::string(word), example};
 }
 
+/// Adds a named value; an error if the name has one already, since one of the two would be ignored.
+template <class Value>
+Result<void> add_once(std::vector<std::pair<std::string, Value>>& all, std::string_view name, const Value& value) {
+    for (const auto& known : all)
+        if (known.first == name)
+            return Error{ErrorCode::usage, "is given more than once", std::string(name), "leave all but one out"};
+    all.emplace_back(name, value);
+    return {};
+}
+
 }  // namespace
 
 Result<void> read_dim(std::string_view word, LightChange& change, char parted_by) {
     const std::size_t at = word.rfind(parted_by);
     const auto factor = at == word.npos ? std::nullopt : number(word.substr(at + 1));
     if (!factor || at == 0) return not_understood(word, "GROUP=FACTOR: lamp=0.5");
-    change.dim.emplace_back(word.substr(0, at), *factor);
-    return {};
+    return add_once(change.dim, word.substr(0, at), *factor);
 }
 
 Result<void> read_reflectance(std::string_view word, LightChange& change, char parted_by, char between_bands) {
@@ -49,8 +58,7 @@ Result<void> read_reflectance(std::string_view word, LightChange& change, char p
         rho = Spectrum(rho[0]);
     else if (band + 1 != bands)
         return not_understood(word, example);
-    change.reflectance.emplace_back(word.substr(0, at), rho);
-    return {};
+    return add_once(change.reflectance, word.substr(0, at), rho);
 }
 
 }  // namespace exitance

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -168,7 +169,7 @@ class ModelReader {
         RadPrimitive p;
         p.modifier = "void", p.name = text(json, "identifier");
         if (p.name.empty() || !names_.insert(p.name).second) return;
-        const std::string type = text(json, "type");
+        const std::string type = type_of_modifier(json);
         if (member(json, "modifier").is_object() && text(member(json, "modifier"), "type") != "Void")
             find(Finding::Kind::warning, 0,
                  fmt::format("the pattern that changes material '{}' is left out", shown(p.name)));
@@ -187,7 +188,7 @@ class ModelReader {
             p.type = type == "Plastic" ? "plastic" : type == "Metal" ? "metal" : "trans";
         } else if (type == "Glass") {
             take({"r_transmissivity", "g_transmissivity", "b_transmissivity"});
-            if (member(json, "refraction_index").is_number()) take({"refraction_index"});
+            take_refraction(json, p);
             p.type = "glass";
         } else if (type == "Light" || type == "Glow") {
             take({"r_emittance", "g_emittance", "b_emittance"});
@@ -204,6 +205,28 @@ class ModelReader {
             return error(fmt::format("material '{}' is of the unknown type '{}'", shown(p.name), shown(type)));
         }
         out_.modifiers.push_back(std::move(p));
+    }
+
+    /// The type of a modifier in the spelling of today's schema; older models have small letters.
+    static std::string type_of_modifier(const Json& json) {
+        const auto small = [](std::string word) {
+            for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+            return word;
+        };
+        const std::string said = text(json, "type");
+        for (const char* known : {"Plastic", "Metal", "Trans", "Glass", "Light", "Glow", "Mirror", "BSDF", "Void"})
+            if (small(said) == small(known)) return known;
+        return said;
+    }
+
+    /// Takes the index of refraction of glass. Some programs write 0 where none was chosen.
+    void take_refraction(const Json& json, RadPrimitive& p) {
+        const Json& index = member(json, "refraction_index");
+        if (!index.is_number()) return;
+        if (index.get<double>() != 0) return p.numbers.push_back(index.get<double>());
+        find(Finding::Kind::warning, 0,
+             fmt::format("glass '{}' has an index of refraction of 0: that of window glass is taken", shown(p.name)),
+             "give the modifier a refraction_index, or none");
     }
 
     static double default_of(const std::string& type, std::string_view key) {
@@ -466,6 +489,24 @@ class ModelReader {
 };
 
 }  // namespace
+
+bool is_honeybee_file(const std::string& path) {
+    const std::string end = ending(path);
+    if (end != ".json" || path.ends_with(".city.json")) return end == ".hbjson";
+    const Result<std::string> bytes = read_whole_file(path);
+    if (!bytes) return false;
+    const auto says_type = [&](std::string_view wanted) {
+        constexpr std::string_view key = "\"type\"", blanks = " \t\r\n";
+        for (std::size_t at = bytes->find(key); at != bytes->npos; at = bytes->find(key, at + 1)) {
+            const std::size_t colon = bytes->find_first_not_of(blanks, at + key.size());
+            if (colon == bytes->npos || (*bytes)[colon] != ':') continue;
+            const std::size_t value = bytes->find_first_not_of(blanks, colon + 1);
+            if (value != bytes->npos && bytes->compare(value, wanted.size(), wanted) == 0) return true;
+        }
+        return false;
+    };
+    return !says_type("\"CityJSON\"") && says_type("\"Model\"");
+}
 
 HoneybeeModel read_honeybee_model(const std::string& path) {
     return ModelReader(path).read();

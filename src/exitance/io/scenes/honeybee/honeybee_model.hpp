@@ -60,6 +60,9 @@ struct HoneybeeModel {
     std::vector<Finding> findings;  ///< Errors, and warnings about omitted parts.
 };
 
+/// True for files of Honeybee models: .hbjson, and .json files whose JSON names the type "Model" but not "CityJSON".
+bool is_honeybee_file(const std::string& path);
+
 /// Reads a Honeybee model (HBJSON, schema 1 and 2). Objects without a material get that of their room's modifier set,
 /// the model's global set, or Honeybee's generic set, as Honeybee itself chooses it. Dynamic apertures, doors and
 /// shades are in their first state. Air boundaries are open. Energy properties are ignored. O(size of the file).

@@ -9,6 +9,7 @@
 #include "exitance/base/polygon.hpp"
 #include "exitance/io/scenes/honeybee/honeybee_model.hpp"
 #include "exitance/io/scenes/honeybee/punched_outline.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace exitance {
@@ -194,6 +195,37 @@ TEST(Honeybee, GridsAndViewsAreRead) {
     ASSERT_EQ(model.views.size(), 1u);
     EXPECT_EQ(model.views[0].fov, 50);
     EXPECT_EQ(model.views[0].eye.z, 1);
+}
+
+TEST(Honeybee, OldModelsWithSmallLettersAndUnknownGlassAreRead) {
+    const std::string glass =
+                          "{'type': 'glass', 'identifier': 'pane', 'r_transmissivity': 0.5, 'g_transmissivity': "
+                          "0.5, 'b_transmissivity': 0.5, 'refraction_index': 0.0}",
+                      paint =
+                          "{'type': 'plastic', 'identifier': 'paint', 'r_reflectance': 0.3, 'g_reflectance': 0.3, "
+                          "'b_reflectance': 0.3}";
+    const ReadScene scene = read(model("'orphaned_shades': [" + sheet("s", wall, own("paint")) +
+                                           "], 'orphaned_apertures': [" + sheet("a", window, own("pane")) + "]",
+                                       paint + "," + glass));
+    ASSERT_EQ(scene.findings.size(), 1u);
+    EXPECT_NE(scene.findings[0].message.find("an index of refraction of 0"), std::string::npos);
+    EXPECT_EQ(scene.findings[0].kind, Finding::Kind::warning);
+    EXPECT_EQ(material_of(scene.description, "s").reflectance[0], 0.3);
+    ASSERT_EQ(scene.description.panes.size(), 1u);
+    EXPECT_EQ(scene.description.panes[0].index, Pane().index);
+}
+
+TEST(Honeybee, ModelsInJsonFilesAreFoundByTheirType) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "m.json") << model("'orphaned_shades': [" + sheet("s", wall, "'x': 0") + "]");
+    std::ofstream(folder / "c.json") << quoted("{'note': {'type': 'Model'}, 'type' :\n 'CityJSON'}");
+    std::ofstream(folder / "d.json") << quoted("{'type': 'Models', 'name': 'type'}");
+    EXPECT_TRUE(is_honeybee_file(folder / "m.json"));
+    EXPECT_TRUE(is_honeybee_file(folder / "not_there.hbjson"));
+    EXPECT_FALSE(is_honeybee_file(folder / "c.json"));
+    EXPECT_FALSE(is_honeybee_file(folder / "d.json"));
+    EXPECT_FALSE(is_honeybee_file(folder / "not_there.json"));
+    EXPECT_GT(load_scene(folder / "m.json").scene->surfaces().size(), 0u);
 }
 
 TEST(Honeybee, FaultsAreNamed) {

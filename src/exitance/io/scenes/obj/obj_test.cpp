@@ -101,6 +101,16 @@ TEST_F(ObjFiles, WithoutAMaterialFileEverythingIsGreyWithAWarning) {
         std::string::npos);
 }
 
+TEST_F(ObjFiles, AMissingMaterialFileIsRepairedWhereEmissionDoesNotMatter) {
+    const std::vector<std::string> files{write("s.obj", "mtllib none.mtl\nusemtl grey\n" + points + "f 1 2 3\n")};
+    LoadOptions options;
+    EXPECT_FALSE(load_scene(files, options).scene);
+    options.needs_light = false;
+    const LoadedScene scene = load_scene(files, options);
+    ASSERT_TRUE(scene.scene);
+    EXPECT_EQ(scene.scene->material(SurfaceId(0)).reflectance[0], 0.5);
+}
+
 TEST_F(ObjFiles, UnknownMaterialsReflectOneHalfAndAreReportedOnce) {
     const auto s =
         load("mtllib m.mtl\n" + points + "usemtl light\nf 1 2 3\nusemtl red\nf 1 3 4\nusemtl blue\nf 4 3 2 1\n");
