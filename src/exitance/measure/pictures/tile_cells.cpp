@@ -111,7 +111,7 @@ bool TileLight::interpolate(std::span<Spot> spots, const Cell& cell, const CellR
     const double to_u = 1.0 / (x1 - x0), to_v = 1.0 / (y1 - y0);
     const auto agrees_at = [&](int x, int y) {
         const Spot* spot = spot_at(spots, x, y);
-        return spot && std::abs(mean(light_at(*spot) - between((x - x0) * to_u, (y - y0) * to_v))) <=
+        return spot && std::abs(mean(light_at(*spot) - between((x - cell.x0) * to_u, (y - cell.y0) * to_v))) <=
                            std::max(rule.middle * all, max_deviations * noise);
     };
     const int x = (x0 + x1) / 2, y = (y0 + y1) / 2;
