@@ -11,7 +11,7 @@
 
 namespace exitance {
 
-/// What the elements of a method hold, and what is left to do for the delivered light.
+/// Content of a method's elements, and the work that is left for the delivered light.
 enum class MethodDelivery : std::uint8_t {
     gathered,     ///< Reflected light; a final gather of it is delivered.
     polynomials,  ///< Reflected light as polynomials that are as accurate as required: no gather is needed.
