@@ -82,7 +82,7 @@ TEST(ProgramOperator, SaysWhatIsWrong) {
     };
     EXPECT_NE(message({}).find("--operator FILE.h5"), std::string::npos);
     EXPECT_NE(message({"--operator", folder / "F.csv"}).find(".h5"), std::string::npos);
-    EXPECT_NE(message({"--operator", scene}).find("scene"), std::string::npos);
+    EXPECT_NE(message({"--operator", scene}).find("SCENE"), std::string::npos);
     EXPECT_NE(message({"--operator", folder / "F.h5", "-o", folder / "F.h5"}).find("--output"), std::string::npos);
     EXPECT_NE(message({"--operator", folder / "F.h5", "--nodes", "group"}).find("-o FILE"), std::string::npos);
     EXPECT_NE(message({"--operator", folder / "F.h5", "--tolerance", "1e-3"}).find("--tolerance"), std::string::npos);

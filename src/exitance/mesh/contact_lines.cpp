@@ -1,6 +1,7 @@
 #include "exitance/mesh/contact_lines.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace exitance {
 namespace {
@@ -24,14 +25,16 @@ void contact_of_tilted_edge(const Point& p, const Point& q, const Plane& plane, 
 }
 
 /// Adds the line of an edge that is in a plane or above it by less than `gap`. In the latter case also adds a line on
-/// each side, at a distance equal to the edge's height: the width of the strip in which light changes.
+/// each side, at a distance equal to the edge's height: the width of the strip in which light changes. There is no such
+/// strip if `leads_away(height)`.
+template <class LeadsAway>
 void contacts_of_edge(const Point& p, const Point& q, const Plane& plane, double tolerance, double gap,
-                      std::vector<Segment>& out) {
+                      std::vector<Segment>& out, const LeadsAway& leads_away) {
     const double hp = plane.signed_distance(p), hq = plane.signed_distance(q);
     if (!hovers(hp, hq, tolerance, gap)) return;
     const double height = std::max({hp, hq, 0.0});
     out.push_back({p, q, height});
-    if (height <= 10 * tolerance) return;
+    if (height <= 10 * tolerance || leads_away(height)) return;
     const Vec3 across = (height / norm(q - p)) * cross(plane.n, q - p);
     out.push_back({p + across, q + across, height});
     out.push_back({p - across, q - across, height});
@@ -117,6 +120,37 @@ bool clip_to_domain(const std::vector<Vec2>& domain, Vec2& a, Vec2& b) {
     return true;
 }
 
+/// Part of a line inside an element, in its coordinates.
+std::optional<std::pair<Vec2, Vec2>> part_inside(const ElementTree& tree, ElementId e, const Point& p, const Point& q) {
+    Vec2 a = tree.patch(e).coordinates(p), b = tree.patch(e).coordinates(q);
+    if (!clip_to_domain(tree.domain(e), a, b)) return {};
+    return std::pair(a, b);
+}
+
+/// True if a contact in a single point, which separates nothing, remains of a line.
+bool is_point(const std::pair<Vec2, Vec2>& line) {
+    constexpr double min_length = 1e-3;  // share of the element
+    return !(length(line.second - line.first) > min_length);
+}
+
+/// True if an edge begins at a corner of the element's own region and leads away from the element: an edge of the next
+/// faces of a curved surface, on which no light changes here. `height`: of the edge above the element, metres.
+bool leads_away(const ElementTree& tree, ElementId e, const Region& region, const Point& p, const Point& q,
+                double height) {
+    constexpr double near = 0.1;  // derived from the strip of light, as wide as the height: corners of nearly coplanar
+                                  // faces, which may have been moved into one plane, are a small part of it apart
+    const auto is_corner = [&](const Point& x) {
+        if (std::abs(region.plane.signed_distance(x)) > near * height) return false;
+        return std::any_of(region.loops.begin(), region.loops.end(), [&](const std::vector<Point>& loop) {
+            return std::any_of(loop.begin(), loop.end(),
+                               [&](const Point& corner) { return norm(corner - x) <= near * height; });
+        });
+    };
+    if (!is_corner(p) && !is_corner(q)) return false;
+    const std::optional<std::pair<Vec2, Vec2>> part = part_inside(tree, e, p, q);
+    return !part || is_point(*part);
+}
+
 }  // namespace
 
 ContactLines::ContactLines(const Scene& scene) : scene_(&scene), tolerance_(1e-7 * scene.size()) {
@@ -160,7 +194,10 @@ std::vector<ContactLines::Line> ContactLines::around(const ElementTree& tree, El
     box.hi += Vec3{tolerance_, tolerance_, tolerance_};
     std::vector<Line> out;
     borders_.visit_box(box, [&](std::uint32_t i) {
-        if (edges_[i].region != own) contacts_of_edge(edges_[i].a, edges_[i].b, plane, tolerance_, gap, out);
+        const auto& [a, b, region] = edges_[i];
+        if (region != own)
+            contacts_of_edge(a, b, plane, tolerance_, gap, out,
+                             [&](double height) { return leads_away(tree, e, scene_->regions()[own], a, b, height); });
     });
     gaps_.visit_box(box, [&](std::uint32_t i) {
         const GapLine& line = gap_lines_[i];
@@ -183,15 +220,11 @@ std::vector<std::pair<Vec2, Vec2>> ContactLines::inside(const ElementTree& tree,
     // The slivers between contacts that differ by tiny angles are too thin to be split accurately.
     constexpr double min_width_in_tolerances = 100;  // times the tolerance: 1e-5 of the scene's size
     if (tree.area(e) <= min_width_in_tolerances * tolerance_ * longest) lines.clear();
-    const std::vector<Vec2> domain = tree.domain(e);
-    const Patch& patch = tree.patch(e);
     std::vector<std::pair<Vec2, Vec2>> out;
     std::erase_if(lines, [&](const Line& line) {
-        Vec2 a = patch.coordinates(line.a), b = patch.coordinates(line.b);
-        if (!clip_to_domain(domain, a, b)) return true;
-        constexpr double min_length = 1e-3;  // share of the element: a contact in a single point separates nothing
-        if (std::hypot(b.x - a.x, b.y - a.y) > min_length) out.emplace_back(a, b);
-        return false;
+        const std::optional<std::pair<Vec2, Vec2>> part = part_inside(tree, e, line.a, line.b);
+        if (part && !is_point(*part)) out.push_back(*part);
+        return !part;
     });
     return out;
 }
@@ -225,7 +258,7 @@ std::vector<ContactLines::Line> ContactLines::over_plane(std::span<const RegionI
         const auto& [a, b, region] = edges_[i];
         if (!is_of_others(region)) return;
         if (hovers(plane.signed_distance(a), plane.signed_distance(b), near, highest))
-            contacts_of_edge(a, b, plane, near, highest, out);
+            contacts_of_edge(a, b, plane, near, highest, out, [](double) { return false; });
         else
             contact_of_tilted_edge(a, b, plane, near, out);
     });

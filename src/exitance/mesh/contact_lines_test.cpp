@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+
+#include "exitance/mesh/pieces.hpp"
+#include "support/motion.hpp"
 
 namespace exitance {
 namespace {
@@ -48,6 +52,53 @@ TEST(ContactLines, AnElementIsCutAlongAPaneOnIt) {
     cut_along_contacts(tree, {ElementId(0)}, ContactLines(scene));
     ASSERT_EQ(tree.leaves().size(), 2u);
     EXPECT_NEAR(tree.area(tree.leaf_at(ElementId(0), {0.2499, 0.5}).element), 4, 1e-9) << "on its one side";
+}
+
+/// A shallow bowl of triangles, seen from inside: over the plane of each, edges of the next faces rise slowly.
+Scene shallow_bowl(const Motion& motion) {
+    constexpr int side = 12;
+    SceneDescription d;
+    // Irregular, so that edges of neighbours are nearly parallel to borders here and there.
+    for (int j = 0; j <= side; ++j)
+        for (int i = 0; i <= side; ++i) {
+            const double x = i + 0.2 * std::sin(3.0 * i + 5.0 * j), y = j + 0.2 * std::sin(7.0 * i + 2.0 * j);
+            d.points.push_back(motion({x, y, 0.01 * ((x - 6) * (x - 6) + (y - 6) * (y - 6))}));
+        }
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
+    d.groups = {"all"};
+    const auto at = [](int i, int j) { return static_cast<std::uint32_t>(j * (side + 1) + i); };
+    for (int j = 0; j < side; ++j)
+        for (int i = 0; i < side; ++i) {
+            d.faces.push_back({{at(i, j), at(i + 1, j), at(i + 1, j + 1)}, 0, 0, 1});
+            d.faces.push_back({{at(i, j), at(i + 1, j + 1), at(i, j + 1)}, 0, 0, 1});
+        }
+    return std::move(*make_scene(std::move(d)).scene);
+}
+
+TEST(ContactLines, TheNextFacesOfACurvedSurfaceCutNothing) {
+    for (const Motion& motion : {as_written, turned_and_moved}) {
+        const Scene scene = shallow_bowl(motion);
+        ElementTree tree;
+        for (const Piece& piece : cut_into_pieces(scene)) tree.add_root(piece.region, piece.patch);
+        const std::vector<ElementId> faces = tree.leaves();
+        cut_along_contacts(tree, faces, ContactLines(scene));
+        EXPECT_EQ(tree.leaves().size(), faces.size());
+    }
+}
+
+/// A leaf that stands up by 1% from the corner of a floor: it shares a corner, and its edges are above the floor.
+TEST(ContactLines, ALeafThatBeginsAtACornerCutsWhatItCovers) {
+    SceneDescription d;
+    d.points = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {2, 1, 0.02}, {1, 2, 0.02}};
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
+    d.groups = {"all"};
+    d.faces = {{{0, 1, 2, 3}, 0, 0, 1}, {{0, 4, 5}, 0, 0, 2}};
+    const Scene scene = std::move(*make_scene(std::move(d)).scene);
+    ElementTree tree;
+    tree.add_root(RegionId(0), {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, Patch::Shape::parallelogram});
+    cut_along_contacts(tree, {ElementId(0)}, ContactLines(scene));
+    EXPECT_NE(tree.leaf_at(ElementId(0), {0.25, 0.25}).element, tree.leaf_at(ElementId(0), {0.5, 0.1}).element);
+    EXPECT_NE(tree.leaf_at(ElementId(0), {0.25, 0.25}).element, tree.leaf_at(ElementId(0), {0.6, 0.6}).element);
 }
 
 TEST(ContactLines, NothingIsCutAfterAStopRequest) {
