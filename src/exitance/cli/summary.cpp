@@ -40,13 +40,18 @@ std::string bound_line(const SolveStatistics& s) {
            "amplify all of it as much as any light";
 }
 
-/// Whether the requested error was reached. The recorded options have no error if none was requested.
+/// Whether the requested error was reached, and in which part it was not. The recorded options have no error if none
+/// was requested.
 std::string reached_line(const Solution& solution) {
     const SolveStatistics& s = solution.statistics;
     const bool is_requested = solution.options.find("\"error\":null") == std::string::npos;
     if (s.stopped_by.empty() && !is_requested) return "no error was requested";
     if (s.converged) return is_requested ? "yes" : "no error was requested";
-    return s.stopped_by.empty() ? "no" : fmt::format("no, stopped by {}", s.stopped_by);
+    std::string why = s.stopped_by.empty() ? "" : fmt::format(", stopped by {}", s.stopped_by);
+    // The whole may be accurate enough while a room is not.
+    const double whole = s.relative_error_estimate.value_or(0), room = s.relative_error_estimate_worst_room.value_or(0);
+    if (s.rooms.size() > 1 && room > whole) why += fmt::format("; {} in the worst room", percent(room));
+    return "no" + why;
 }
 
 }  // namespace

@@ -74,6 +74,7 @@ TEST_F(ProbeFiles, ReportTheLineOfAnError) {
         {"f.csv", "x,y,z,nx,ny\n", "f.csv:1", "the header has no column nz"},
         {"g.csv", "", "g.csv:0", "holds no points"},
         {"h.csv", "1,2,3,0,0,1\n", "h.csv:1", "the header has no column x"},
+        {"s.csv", "x;y;z;nx;ny;nz\n1,5;2;3;0;0;1\n", "s.csv:1", "the header has no column x"},
         {"i.pts", "1 2 3 0 0 1\n1 2 3 0 0\n", "i.pts:2", "the line does not begin with six numbers"},
         {"j.pts", "1 2 3 0 0 0\n", "j.pts:1", "the normal has no direction"},
     };
@@ -84,6 +85,7 @@ TEST_F(ProbeFiles, ReportTheLineOfAnError) {
         EXPECT_EQ(read.error().where, folder / c.where);
         EXPECT_EQ(read.error().message, c.message);
     }
+    EXPECT_NE(load_probe_points(folder / "s.csv").error().hint.find("commas"), std::string::npos);
     EXPECT_EQ(load_probe_points(folder / "none.csv").error().code, ErrorCode::cannot_read);
     EXPECT_EQ(load_probe_points(fs::path(folder / "").parent_path().string()).error().code, ErrorCode::cannot_read);
 }

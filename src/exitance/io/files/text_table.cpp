@@ -160,8 +160,9 @@ Result<NumberTable> NumberTable::open(LineReader lines, std::string_view header,
     table.names_ = required;
     table.names_.insert(table.names_.end(), optional.begin(), optional.end());
     std::vector<bool> found(table.names_.size());
+    std::vector<std::string_view> names;
     while (!header.empty()) {
-        const std::string_view name = next_field(header);
+        const std::string_view name = names.emplace_back(next_field(header));
         const auto known = std::find(table.names_.begin(), table.names_.end(), name);
         const auto slot = static_cast<std::size_t>(known - table.names_.begin());
         const bool wanted = known != table.names_.end() && !found[slot];
@@ -172,7 +173,12 @@ Result<NumberTable> NumberTable::open(LineReader lines, std::string_view header,
         if (!found[i]) {
             std::string all;
             for (const std::string& name : required) all += (all.empty() ? "" : ",") + name;
-            return table.lines_.error("the header has no column " + table.names_[i], "it needs " + all);
+            const bool semicolons = std::any_of(names.begin(), names.end(), [](std::string_view name) {
+                return name.find(';') != std::string_view::npos;
+            });
+            return table.lines_.error(
+                "the header has no column " + table.names_[i],
+                semicolons ? "separate columns by commas and write decimal points: " + all : "it needs " + all);
         }
     table.has_.assign(found.begin() + static_cast<std::ptrdiff_t>(table.required_), found.end());
     // Columns after the last requested one are not parsed.
