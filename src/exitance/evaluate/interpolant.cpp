@@ -41,6 +41,7 @@ class Interpolation {
                     DirectFitRoom room;
                     for (std::size_t i = begin; i < end; ++i) {
                         const ElementId e = active[i];
+                        if (is_renewed(e) && stop.requested()) continue;
                         fitted_[e] = round > 0 && stop.requested()
                                          ? Fit(inherited_fit(out_.tree, e, fitted_[out_.tree.parent(e)].as_direct()))
                                          : Fit(fit(e, room));
@@ -94,9 +95,11 @@ class Interpolation {
     DirectFit fit(ElementId e, DirectFitRoom& room) const {
         const Patch& patch = out_.tree.patch(e);
         const RegionId region = out_.tree.region(e);
-        DirectFit out = e.value < direct_.tree.size()
-                            ? direct_.fit[e]
-                            : fit_direct_light(stage_, out_.tree, e, options_.tolerance * options_.tolerance, room);
+        const double counts = options_.light_in.empty() ? 1 : relative_weight(e);
+        DirectFit out =
+            e.value < direct_.tree.size() && !is_renewed(e)
+                ? direct_.fit[e]
+                : fit_direct_light(stage_, out_.tree, e, options_.tolerance * options_.tolerance / counts, room);
         for (Spectrum& corner : out.corners) corner *= direct_weight_;
         out.mean *= direct_weight_;
         const double of_direct = max(direct_weight_ * direct_weight_);
@@ -114,7 +117,6 @@ class Interpolation {
             value[i] = w * (value[i] - indirect.at(rule[i].uv));
             out.misfit_squared += rule[i].weight * squared(value[i]) / static_cast<double>(bands);
         }
-        const double counts = options_.light_in.empty() ? 1 : relative_weight(e);
         out.misfit_squared *= counts, out.noise_squared *= counts;
         const std::array<double, 2> along = misfit_along(out_.tree, e, rule, value, Degree::straight);
         for (std::size_t k = 0; k < 2; ++k) out.misfit_along[k] = counts * (of_direct * out.misfit_along[k] + along[k]);
@@ -190,8 +192,18 @@ class Interpolation {
         return std::sqrt(sum / stage_.area);
     }
 
+    /// True if the direct light of a leaf of the direct projection is computed again, with less noise.
+    bool is_renewed(ElementId e) const { return e.value < renewed_.size() && renewed_[e.value]; }
+
+    /// True if a leaf's projected direct light is mostly noise of rays, which parts of the leaf would have as well.
+    bool is_noisy(ElementId e) const {
+        const Fit& fit = fitted_[e];
+        return e.value < direct_.tree.size() && !is_renewed(e) &&
+               static_cast<double>(fit.noise_squared) > 0.5 * fit.misfit_squared;
+    }
+
     /// Splits the leaves whose squared error exceeds an even share of the allowed one, the largest errors first if
-    /// there would be too many elements; returns the new leaves.
+    /// there would be too many elements. Returns the leaves to fit: new ones, and those that need less noise instead.
     std::vector<ElementId> split_largest(double error) {
         const std::vector<ElementId> leaves = out_.tree.leaves();
         const double allowed = options_.tolerance * options_.tolerance * stage_.area;
@@ -211,6 +223,12 @@ class Interpolation {
         }
         std::vector<ElementId> fresh;
         for (ElementId e : rough) {
+            if (is_noisy(e)) {
+                renewed_.resize(direct_.tree.size());
+                renewed_[e.value] = 1;
+                fresh.push_back(e);
+                continue;
+            }
             const auto& [u, v] = fitted_[e].misfit_along;
             const Cut only = sufficient_cut(fitted_[e].misfit_squared, {u, v}, share / out_.tree.area(e));
             for (ElementId child : refine_element(out_.tree, e, only)) fresh.push_back(child);
@@ -228,6 +246,7 @@ class Interpolation {
     std::size_t max_elements_ = 0;
     ElementFunction out_;
     Field<ElementId, Fit> fitted_;
+    std::vector<std::uint8_t> renewed_;  ///< By leaf of the direct projection; empty: none.
 };
 
 }  // namespace

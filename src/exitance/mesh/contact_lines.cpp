@@ -194,10 +194,11 @@ std::vector<ContactLines::Line> ContactLines::around(const ElementTree& tree, El
     box.hi += Vec3{tolerance_, tolerance_, tolerance_};
     std::vector<Line> out;
     borders_.visit_box(box, [&](std::uint32_t i) {
-        const auto& [a, b, region] = edges_[i];
-        if (region != own)
-            contacts_of_edge(a, b, plane, tolerance_, gap, out,
-                             [&](double height) { return leads_away(tree, e, scene_->regions()[own], a, b, height); });
+        const Edge& edge = edges_[i];
+        if (edge.region == own) return;
+        contacts_of_edge(edge.a, edge.b, plane, tolerance_, gap, out, [&](double height) {
+            return leads_away(tree, e, scene_->regions()[own], edge.a, edge.b, height);
+        });
     });
     gaps_.visit_box(box, [&](std::uint32_t i) {
         const GapLine& line = gap_lines_[i];

@@ -1,5 +1,7 @@
 #include "exitance/transport/direct_projection.hpp"
 
+#include <algorithm>
+
 #include "exitance/base/error_share.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
@@ -118,8 +120,9 @@ class Projector {
         many_ = are_many(active.size());
         // Noise is neglected on small elements, and on large ones it need not decrease with the number of small ones.
         is_crowd_ = stage_.rooms.count() == 0 && ErrorShare::is_crowd(active.size(), stage_.pieces.size());
-        // In scenes of many elements the limit on errors is needed before the first fits.
-        if (active.size() > few_elements)
+        // In scenes of many elements, or if exact light is expensive, the limit on errors is needed before the first
+        // fits.
+        if (active.size() > few_elements || sees_sky_through_panes())
             share_ = share_of(stage_.scene.has_light_apart()
                                   ? estimated_flux_apart(stage_, out_.tree, active, stop_)
                                   : estimated_flux(stage_, out_.tree, active, options_.seed, stop_));
@@ -144,6 +147,15 @@ class Projector {
     // With few elements, few emitters, or large emitters, all emitters are evaluated on all elements.
     // The fits of the first mesh then determine the error share of an element.
     static constexpr std::size_t few_elements = 2000, few_emitters = 8;
+
+    /// True if exact light may need integrals over the sky for every part of it behind a pane.
+    bool sees_sky_through_panes() const {
+        const auto is_open_sky = [](const DirectLight::Emitter& emitter) {
+            return emitter.sky == DirectLight::Emitter::Sky::open;
+        };
+        const std::vector<DirectLight::Emitter>& emitters = stage_.direct.emitters();
+        return !stage_.scene.panes().empty() && std::any_of(emitters.begin(), emitters.end(), is_open_sky);
+    }
 
     /// True if a cut through the tree of emitters is cheaper than all of them.
     bool has_many_sources() const {

@@ -10,8 +10,6 @@
 namespace exitance {
 namespace {
 
-using Schedule = LuminaireSchedule;
-
 constexpr const char* unknown = "unknown";
 
 std::string watts_or(double watts, const char* otherwise) {
@@ -19,19 +17,19 @@ std::string watts_or(double watts, const char* otherwise) {
 }
 
 /// Formats a range of shares in percent: "100%", "50% to 100%".
-std::string percent_range(const Schedule::Range& range) {
+std::string percent_range(const LuminaireSchedule::Range& range) {
     const std::string least = fmt::format("{:.0f}%", 100 * range.least),
                       most = fmt::format("{:.0f}%", 100 * range.most);
     return least == most ? least : fmt::format("{} to {}", least, most);
 }
 
 /// Formats a range of factors: "0.8", "0.8 to 0.9".
-std::string factor_range(const Schedule::Range& range) {
+std::string factor_range(const LuminaireSchedule::Range& range) {
     const std::string least = fmt::format("{:.2g}", range.least), most = fmt::format("{:.2g}", range.most);
     return least == most ? least : fmt::format("{} to {}", least, most);
 }
 
-std::string types_table(const Schedule& schedule) {
+std::string types_table(const LuminaireSchedule& schedule) {
     if (schedule.types.empty()) return "";
     std::string html =
         "<table class=\"schedule\">\n<thead><tr><th class=\"text\">Type</th><th class=\"text\">Distribution</th><th "
@@ -40,7 +38,7 @@ std::string types_table(const Schedule& schedule) {
     std::size_t count = 0;
     double watts = 0, flux = 0;
     bool is_known = true;
-    for (const Schedule::Type& type : schedule.types) {
+    for (const LuminaireSchedule::Type& type : schedule.types) {
         const LuminaireType& facts = *type.facts;
         const double number = static_cast<double>(type.count);
         count += type.count, watts += number * facts.watts, flux += number * type.flux;
@@ -64,23 +62,23 @@ std::string types_table(const Schedule& schedule) {
            "dashed: C90-C270; the number is the outermost circle.</p>\n";
 }
 
-std::string others_table(const Schedule& schedule) {
+std::string others_table(const LuminaireSchedule& schedule) {
     if (schedule.others.empty()) return "";
     std::string html =
         "<h3>Light without a photometric file</h3>\n<table>\n<thead><tr><th class=\"text\">Emitting "
         "material</th><th>Faces</th><th>Area m²</th><th>Flux lm</th></tr></thead>\n";
-    for (const Schedule::Other& other : schedule.others)
+    for (const LuminaireSchedule::Other& other : schedule.others)
         html += fmt::format("<tr><td class=\"text\">{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
                             escaped(other.material), other.faces, short_figure(other.area), short_figure(other.flux));
     return html + "</table>\n<p class=\"note\">The power of these faces is unknown and not in the sums.</p>\n";
 }
 
-std::string rooms_table(const ReportContent& content, const Schedule& schedule) {
+std::string rooms_table(const ReportContent& content, const LuminaireSchedule& schedule) {
     if (schedule.rooms.empty()) return "";
     std::string html =
         "<table>\n<thead><tr><th class=\"text\">Room</th><th class=\"text\">Luminaires</th><th>Power "
         "W</th><th>W/m²</th><th>Mean lx</th><th>W/m² per 100 lx</th></tr></thead>\n";
-    for (const Schedule::Room& room : schedule.rooms) {
+    for (const LuminaireSchedule::Room& room : schedule.rooms) {
         std::string counts;
         for (const auto& [type, count] : room.counts)
             counts += fmt::format("{}{} × {}", counts.empty() ? "" : ", ", count, schedule.types[type].label);
@@ -97,9 +95,9 @@ std::string rooms_table(const ReportContent& content, const Schedule& schedule) 
            "in the room.</p>\n";
 }
 
-std::string layout(const ReportContent& content, const Schedule& schedule) {
+std::string layout(const ReportContent& content, const LuminaireSchedule& schedule) {
     std::string html;
-    for (const Schedule::Room& room : schedule.rooms)
+    for (const LuminaireSchedule::Room& room : schedule.rooms)
         html += fmt::format(
             "<h3>Layout: {}</h3>\n<figure>{}<figcaption>Luminaires (yellow) by type and number; "
             "x to the right, y upwards.</figcaption></figure>\n",
@@ -107,7 +105,7 @@ std::string layout(const ReportContent& content, const Schedule& schedule) {
     return html;
 }
 
-std::string places_table(const ReportContent& content, const Schedule& schedule) {
+std::string places_table(const ReportContent& content, const LuminaireSchedule& schedule) {
     constexpr std::size_t most_rows = 60;  // derived from two columns of a page
     if (schedule.items.empty()) return "";
     std::string html =
@@ -115,7 +113,7 @@ std::string places_table(const ReportContent& content, const Schedule& schedule)
         "m</th><th>y m</th><th>z m</th><th class=\"text\">Name</th></tr></thead>\n";
     const std::size_t count = std::min(most_rows, schedule.items.size());
     for (std::size_t i = 0; i < count; ++i) {
-        const Schedule::Item& item = schedule.items[i];
+        const LuminaireSchedule::Item& item = schedule.items[i];
         const Point& p = item.facts->position;
         html += fmt::format(
             "<tr><td class=\"text\">{}</td><td>{:.2f}</td><td>{:.2f}</td><td>{:.2f}</td><td class=\"text\">{}</td>"
@@ -144,7 +142,7 @@ std::string schedule_html(const ReportContent& content, const LuminaireSchedule&
 
 std::string schedule_json(const LuminaireSchedule& schedule) {
     std::string types, rooms, others;
-    for (const Schedule::Type& type : schedule.types)
+    for (const LuminaireSchedule::Type& type : schedule.types)
         types += fmt::format(
             "{}{{\"label\": {}, \"name\": {}, \"file\": {}, \"count\": {}, \"flux\": {}, \"power\": {}, \"output\": "
             "[{}, {}], \"maintenance\": [{}, {}]}}",
@@ -152,13 +150,13 @@ std::string schedule_json(const LuminaireSchedule& schedule) {
             json_text(type.facts->file), type.count, figure(type.flux),
             type.facts->watts > 0 ? figure(type.facts->watts) : "null", figure(type.output.least),
             figure(type.output.most), figure(type.maintenance.least), figure(type.maintenance.most));
-    for (const Schedule::Room& room : schedule.rooms)
+    for (const LuminaireSchedule::Room& room : schedule.rooms)
         rooms +=
             fmt::format("{}{{\"room\": {}, \"power\": {}, \"power_per_area\": {}, \"power_per_area_100_lux\": {}}}",
                         rooms.empty() ? "" : ",\n      ", room.room + 1, room.watts ? figure(*room.watts) : "null",
                         room.watts ? figure(room.watts_per_area) : "null",
                         room.watts && room.light ? figure(room.per_100_lux()) : "null");
-    for (const Schedule::Other& other : schedule.others)
+    for (const LuminaireSchedule::Other& other : schedule.others)
         others += fmt::format("{}{{\"material\": {}, \"faces\": {}, \"area\": {}, \"flux\": {}}}",
                               others.empty() ? "" : ",\n      ", json_text(other.material), other.faces,
                               figure(other.area), figure(other.flux));
@@ -167,8 +165,8 @@ std::string schedule_json(const LuminaireSchedule& schedule) {
 
 std::string luminaires_csv(const ReportContent& content, const LuminaireSchedule& schedule) {
     std::string text = "luminaire,type,name,file,room,x,y,z,flux,power,maintenance\n";
-    for (const Schedule::Item& item : schedule.items) {
-        const Schedule::Type& type = schedule.types[item.type];
+    for (const LuminaireSchedule::Item& item : schedule.items) {
+        const LuminaireSchedule::Type& type = schedule.types[item.type];
         const Point& p = item.facts->position;
         text +=
             fmt::format("{},{},{},{},{},{:.6g},{:.6g},{:.6g},{},{},{:.6g}\n", item.label, type.label,
