@@ -195,10 +195,11 @@ class Interpolation {
     /// True if the direct light of a leaf of the direct projection is computed again, with less noise.
     bool is_renewed(ElementId e) const { return e.value < renewed_.size() && renewed_[e.value]; }
 
-    /// True if a leaf's projected direct light is mostly noise of rays, which parts of the leaf would have as well.
+    /// True if a leaf's error is mostly noise of rays in its projected direct light, as in dark rooms: the projection
+    /// allows it relative to the light of the whole. Parts of the leaf would have it as well.
     bool is_noisy(ElementId e) const {
         const Fit& fit = fitted_[e];
-        return e.value < direct_.tree.size() && !is_renewed(e) &&
+        return !options_.light_in.empty() && e.value < direct_.tree.size() && !is_renewed(e) &&
                static_cast<double>(fit.noise_squared) > 0.5 * fit.misfit_squared;
     }
 
