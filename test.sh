@@ -28,8 +28,6 @@ if [[ -n ${CI:-} ]]; then
     check_layout
     echo "== documentation"
     scripts/build_docs
-    echo "== one of the configurations, in a light form"
-    scripts/check_configurations --light --number "$(git rev-list --count HEAD)" --jobs "$jobs"
 fi
 run_suite release build
 if [[ -n ${CI:-} ]]; then
