@@ -69,9 +69,7 @@ double LocalPass::noise_for_body(ElementId e, const LocalPassDemand& demand) con
 double LocalPass::misfit_for_body(ElementId e, const LocalPassDemand& demand) const {
     if (!demand.bodies) return HUGE_VAL;
     const std::uint32_t body = body_of(e, demand);
-    const double allowed = demand.allowed_on_body[body], even = allowed * allowed * mean_area_of_[body];
-    const double least = least_share_of_.empty() ? 0 : least_share_of_[body];
-    return std::sqrt(std::max(even, least) / stage_.counted_area(tree_, e));
+    return demand.allowed_on_body[body] * std::sqrt(mean_area_of_[body] / stage_.counted_area(tree_, e));
 }
 
 /// Noise of an element over the allowed noise. Three factors adjust the allowance:
@@ -239,26 +237,16 @@ void LocalPass::look_between(ElementId e, SampledElement& sampled, const Reflect
     sampled.misfit_squared = std::max(sampled.misfit_squared, misfit + 2.3 * sampled.noise_in_misfit);
 }
 
-/// Finds the squared misfits allowed on each of many small elements, from the present misfits of all: for the sake of
-/// the whole, and of every body that consists of so many elements.
-void LocalPass::divide_in_crowd(const LocalPassDemand& demand) {
-    const std::size_t bodies = demand.bodies ? demand.bodies->all.size() : 0;
-    std::vector<double> errors, area_of(bodies);
-    std::vector<std::vector<double>> errors_of(bodies);
+/// Squared misfit allowed on each of many small elements, from the present misfits of all.
+double LocalPass::share_in_crowd(const LocalPassDemand& demand) const {
+    std::vector<double> errors;
     for (ElementId e : tree_.leaves()) {
         const SampledElement& s = sampled_[e];
-        const double light = light_near(e, demand), area = stage_.counted_area(tree_, e);
-        const double error = area * std::max(0.0, s.misfit_squared - s.noise_in_misfit);
-        if (light > 0) errors.push_back(error / (light * light));
-        if (bodies == 0) continue;
-        const std::uint32_t body = body_of(e, demand);
-        errors_of[body].push_back(error), area_of[body] += area;
+        const double light = light_near(e, demand);
+        const double misfit = std::max(0.0, s.misfit_squared - s.noise_in_misfit);
+        if (light > 0) errors.push_back(stage_.counted_area(tree_, e) * misfit / (light * light));
     }
-    least_share_ = share_of_crowd(std::move(errors), demand.tolerance * demand.tolerance * stage_.area);
-    least_share_of_.assign(bodies, 0);
-    for (std::size_t body = 0; body < bodies; ++body)
-        if (const double allowed = demand.allowed_on_body[body]; errors_of[body].size() > ErrorShare::most_even)
-            least_share_of_[body] = share_of_crowd(std::move(errors_of[body]), allowed * allowed * area_of[body]);
+    return share_of_crowd(std::move(errors), demand.tolerance * demand.tolerance * stage_.area);
 }
 
 /// Splits the elements whose misfit exceeds their share; returns the new leaves.
@@ -329,7 +317,7 @@ std::vector<ElementId> LocalPass::to_gather_again(std::vector<ElementId> leaves,
     std::vector<ElementId> kept;
     std::copy_if(leaves.begin(), leaves.end(), std::back_inserter(kept), good);
     std::erase_if(leaves, good);
-    if (is_crowd_) divide_in_crowd(demand);
+    if (is_crowd_) least_share_ = share_in_crowd(demand);
     for (ElementId child : split_where_needed(kept, demand)) leaves.push_back(child);
     return leaves;
 }
@@ -421,7 +409,7 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
         if (demand.elements.empty()) report.rays += rays_of(active) - std::exchange(rays_before, 0);
         if (stop.requested()) report.interrupted = !inherit();
         if (depth == demand.max_depth || stop.requested()) break;
-        if (depth != change && is_crowd_) divide_in_crowd(demand);
+        if (depth != change && is_crowd_) least_share_ = share_in_crowd(demand);
         active = depth == change ? to_gather_again(std::move(active), demand) : split_where_needed(active, demand);
         divide_among_bodies(demand);
     }

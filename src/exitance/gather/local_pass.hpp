@@ -86,8 +86,7 @@ class LocalPass {
     /// Archives mesh and gathers for checkpoints.
     template <class Archive>
     void archive_state(Archive& a) {
-        a(tree_, sampled_, mean_area_, noise_area_, mean_area_of_, is_crowd_, least_share_, least_share_of_, spread_,
-          suspect_);
+        a(tree_, sampled_, mean_area_, noise_area_, mean_area_of_, is_crowd_, least_share_, spread_, suspect_);
     }
 
   private:
@@ -137,7 +136,7 @@ class LocalPass {
     double tolerated_misfit_squared(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
     void tell_parts(LocalPassReport& report) const;
     bool is_too_rough(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
-    void divide_in_crowd(const LocalPassDemand& demand);
+    double share_in_crowd(const LocalPassDemand& demand) const;
     std::vector<ElementId> split_where_needed(const std::vector<ElementId>& candidates, const LocalPassDemand& demand);
     std::vector<ElementId> to_gather_again(std::vector<ElementId> leaves, const LocalPassDemand& demand);
     std::size_t rays_of(std::span<const ElementId> elements) const;
@@ -156,8 +155,6 @@ class LocalPass {
     bool is_crowd_ = false;  ///< True if most elements are whole polygons (`ErrorShare`).
     /// Squared misfit allowed on any element over the squared light of its room, m^2; 0 unless is_crowd_.
     double least_share_ = 0;
-    /// Likewise for every body, (W/m^2)^2 m^2; 0 for bodies of few elements.
-    std::vector<double> least_share_of_;
     Spread spread_;
     Field<ElementId, std::uint8_t> suspect_;  ///< Elements that were looked at closely; their parts are, too.
 };
