@@ -158,13 +158,7 @@ void add_operator(py::module_& m) {
     m.def("load_transport_operator", &load_transport_operator, "path"_a, docs::load_transport_operator);
 }
 
-}  // namespace
-
-void add_measures(py::module_& m) {
-    add_operator(m);
-    static const std::string factors_doc = std::string(docs::view_factors) + view_factor_arguments;
-    m.def("view_factors", &view_factors, "scene"_a, "error"_a = 1e-3, py::kw_only(), "smallest"_a = 0.0, "seed"_a = 1,
-          "progress"_a = py::none(), factors_doc.c_str());
+void add_states_of_panes(py::module_& m) {
     py::class_<api::PaneGroup>(m, "PaneGroup", docs::PaneGroup::self)
         .def_readonly("name", &api::PaneGroup::name, "Name of the group.")
         .def_readonly("states", &api::PaneGroup::states, docs::PaneGroup::states)
@@ -185,6 +179,9 @@ void add_measures(py::module_& m) {
         .def_readonly("mean_illuminance", &api::GlassVariant::mean_illuminance, docs::GlassVariant::mean_illuminance)
         .def_readonly("sunlight_exposure", &api::GlassVariant::sunlight_exposure,
                       docs::GlassVariant::sunlight_exposure);
+}
+
+void add_daylight(py::module_& m) {
     py::class_<api::Daylight>(m, "Daylight", docs::Daylight::self)
         .def_property_readonly(
             "hours",
@@ -232,6 +229,17 @@ void add_measures(py::module_& m) {
     m.def("daylight", &daylight, "scene"_a, "epw"_a, "sensors"_a, "normals"_a = py::cast(std::vector<double>{0, 0, 1}),
           "error"_a = 0.02, py::kw_only(), "division"_a = 1, "north"_a = 0.0, "ground"_a = 0.2, "states"_a = py::none(),
           "progress"_a = py::none(), daylight_doc.c_str());
+}
+
+}  // namespace
+
+void add_measures(py::module_& m) {
+    add_operator(m);
+    static const std::string factors_doc = std::string(docs::view_factors) + view_factor_arguments;
+    m.def("view_factors", &view_factors, "scene"_a, "error"_a = 1e-3, py::kw_only(), "smallest"_a = 0.0, "seed"_a = 1,
+          "progress"_a = py::none(), factors_doc.c_str());
+    add_states_of_panes(m);
+    add_daylight(m);
 }
 
 }  // namespace python

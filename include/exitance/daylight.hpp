@@ -17,7 +17,7 @@ struct DaylightOptions {
     double north = 0;     ///< Degrees from the y axis to north, clockwise seen from above.
     double ground = 0.2;  ///< Reflectance of the ground.
     /// Path of a file with groups of panes, their states such as "blinds down", and the rules that choose them, as
-    /// `exitance daylight --states` reads; empty: all panes stay as they are. Needs a scene from files.
+    /// `exitance daylight --states` reads; empty: no pane changes. Needs a scene from files.
     std::string states = {};
 };
 

@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "cli/input_files.hpp"
-#include "exitance/base/sanitizers.hpp"
 #include "run_program.hpp"
 #include "support/places.hpp"
 
@@ -137,7 +136,6 @@ void write_inputs(const TemporaryFolder& folder) {
 }  // namespace
 
 TEST(DocumentedCommands, RunAsWritten) {
-    if (has_address_sanitizer) GTEST_SKIP() << "takes ten minutes with the sanitizer";
     std::size_t count = 0;
     for (const std::string& page : pages()) {
         const std::vector<std::string> blocks = blocks_of(read_text(root / page));
