@@ -17,7 +17,7 @@ function(group_units target)
     list(SORT sources)
     set(folders "")
     foreach(source IN LISTS sources)
-        # Names without the path of the repository, so that the compiler cache finds the units of another copy of it.
+        # Names without the path of the repository are equal in every copy of it.
         get_filename_component(folder ${source} ABSOLUTE)
         file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${folder})
         get_filename_component(folder ${folder} DIRECTORY)
