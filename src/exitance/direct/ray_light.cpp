@@ -283,74 +283,110 @@ double RayLight::find_parts(const Receiver& at, const LightAccuracy& accuracy, W
     return open;
 }
 
-/// Adds the rays of a part up to number `last` to the batch.
-void RayLight::add_rays(const Receiver& at, Part& part, std::uint32_t last, std::uint64_t key, Workspace& room) const {
-    const auto number = static_cast<std::uint32_t>(&part - room.parts_.data());
-    const std::size_t count = last - part.rays;
-    const ScrambledSobol places(hash(key, part.sequence()));
-    room.s_.resize(count), room.t_.resize(count), room.u_.resize(count);
-    places.fill(part.rays, 0, room.s_), places.fill(part.rays, 1, room.t_);
-    if (part.kind == Part::Kind::others) places.fill(part.rays, 2, room.u_);
-    part.blocks.resize(last / part.block);
-    const Occluders& occluders = direct_->occluders();
-    const double reach = 2 * (size_ + norm(at.x - occluders.middle()));
-    const auto add = [&](std::uint32_t i, const Point& to, RegionId region, const Spectrum& weight, bool is_distant,
-                         PieceId window) {
-        part.blocks[i / part.block].all += weight;
-        room.rays_.push_back({number, i / part.block, is_distant, window, weight});
-        room.from_.push_back({at.x, at.own}), room.to_.push_back({to, region});
-    };
+/// Makes the rays of one part and adds them to the batch. `i`: number of a ray; s, t, u in [0, 1) choose it.
+class RayLight::RayMaker {
+  public:
+    RayMaker(const RayLight& light, const Receiver& at, Part& part, Workspace& room)
+        : light_(light),
+          occluders_(light.direct_->occluders()),
+          at_(at),
+          part_(part),
+          room_(room),
+          reach_(2 * (light.size_ + norm(at.x - occluders_.middle()))) {}
+
+    void make(std::uint32_t i, double s, double t, double u) {
+        switch (part_.kind) {
+            case Part::Kind::sky:
+                return to_sky(i, s, t);
+            case Part::Kind::openings:
+                return through_openings(i, s, t);
+            case Part::Kind::piece: {
+                const Point y = part_.seen->at(s, t);
+                return towards(i, part_.source, y, part_.from, part_.seen->weight(y - part_.from, at_.n));
+            }
+            case Part::Kind::others:
+                return to_others(i, s, t, u);
+        }
+    }
+
+  private:
+    void add(std::uint32_t i, const Point& to, RegionId region, const Spectrum& weight, bool is_distant,
+             PieceId window) {
+        part_.blocks[i / part_.block].all += weight;
+        const auto number = static_cast<std::uint32_t>(&part_ - room_.parts_.data());
+        room_.rays_.push_back({number, i / part_.block, is_distant, window, weight});
+        room_.from_.push_back({at_.x, at_.own}), room_.to_.push_back({to, region});
+    }
+
+    void to_sky(std::uint32_t i, double s, double t) {
+        const SkyTree::Direction to = light_.sky_.direction(room_.aim_, s, t);
+        const double cosine = dot(at_.n, to.w);
+        if (cosine <= 0) return;
+        const Spectrum weight = cosine / (pi * to.density) * occluders_.scene().distant().radiosity(to.w, false);
+        if (room_.portals_.is_aimed_at(to.w))
+            part_.blocks[i / part_.block].all += weight;  // its light belongs to the part `openings`
+        else
+            add(i, at_.x + reach_ * to.w, RegionId(), weight, true, PieceId());
+    }
+
+    void through_openings(std::uint32_t i, double s, double t) {
+        const PortalAim::Ray ray = room_.portals_.aimed(s, t);
+        if (!(ray.weight > 0)) return;
+        const Spectrum light = occluders_.scene().distant().radiosity(ray.direction, false);
+        add(i, at_.x + reach_ * ray.direction, RegionId(), ray.weight * light, true, PieceId());
+    }
+
     /// Adds a ray to a point y of an emitter. `weight`: cosines / (pi r^2 density), or that times any constant if only
     /// the ratio of weights matters.
-    const auto add_towards = [&](std::uint32_t i, const DirectLight::SourceName& source, const Point& y,
-                                 const Point& from, double weight) {
-        const DirectLight::Emitter& emitter = direct_->emitters()[source.emitter];
+    void towards(std::uint32_t i, const DirectLight::SourceName& source, const Point& y, const Point& from,
+                 double weight) {
+        const DirectLight& direct = *light_.direct_;
+        const DirectLight::Emitter& emitter = direct.emitters()[source.emitter];
         const Vec3 d = y - from;
         weight *= emitter.radiance.towards(from, y);
         if (!(weight > 0)) return;
         const bool is_window = emitter.sky == DirectLight::Emitter::Sky::window;
         constexpr double before = 1e-5;  // share of the scene's size: rays end in front of a window's pane
         const double length = norm(d);
-        const double way = direct_->looks_far(source.emitter) ? std::min(1.0, reach / length)
-                           : is_window                        ? std::max(0.5, 1 - before * size_ / length)
-                                                              : 1;
-        add(i, at.x + way * d, emitter.region, weight * emitter.exitance, direct_->is_distant(source.emitter),
-            is_window && looks_out_on_faces(occluders, source.piece) ? source.piece : PieceId());
-    };
-    for (std::uint32_t k = 0; k < count; ++k) {
-        const std::uint32_t i = part.rays + k;
-        const double s = room.s_[k], t = room.t_[k];
-        if (part.kind == Part::Kind::sky) {
-            const SkyTree::Direction to = sky_.direction(room.aim_, s, t);
-            const double cosine = dot(at.n, to.w);
-            if (cosine <= 0) continue;
-            const Spectrum weight = cosine / (pi * to.density) * occluders.scene().distant().radiosity(to.w, false);
-            if (room.portals_.is_aimed_at(to.w))
-                part.blocks[i / part.block].all += weight;  // its light belongs to the part `openings`
-            else
-                add(i, at.x + reach * to.w, RegionId(), weight, true, PieceId());
-        } else if (part.kind == Part::Kind::openings) {
-            const PortalAim::Ray ray = room.portals_.aimed(s, t);
-            if (!(ray.weight > 0)) continue;
-            const Spectrum light = occluders.scene().distant().radiosity(ray.direction, false);
-            add(i, at.x + reach * ray.direction, RegionId(), ray.weight * light, true, PieceId());
-        } else if (part.kind == Part::Kind::piece) {
-            const Point y = part.seen->at(s, t);
-            add_towards(i, part.source, y, part.from, part.seen->weight(y - part.from, at.n));
-        } else {
-            const DrawnSource drawn = draw_source(tree_, room.cut_, room.chance_before_, room.u_[k]);
-            if (!(drawn.chance > 0)) continue;
-            const EmitterTree::Source& source = *drawn.source;
-            const DirectLight::Emitter& emitter = direct_->emitters()[source.name.emitter];
-            if (!direct_->shines_on(emitter, at.own)) continue;
-            const Point y = uniform_on(occluders.corners(source.name.piece), source.area, s, t);
-            const Vec3 d = y - at.x;
-            const double above = dot(at.n, d), below = -dot(emitter.plane.n, d), squared = squared_norm(d);
-            if (above <= 0 || below <= 0) continue;
-            const double density = drawn.chance / source.area;
-            add_towards(i, source.name, y, at.x, above * below / (pi * squared * squared * density));
-        }
+        const double way = direct.looks_far(source.emitter) ? std::min(1.0, reach_ / length)
+                           : is_window                      ? std::max(0.5, 1 - before * light_.size_ / length)
+                                                            : 1;
+        add(i, at_.x + way * d, emitter.region, weight * emitter.exitance, direct.is_distant(source.emitter),
+            is_window && looks_out_on_faces(occluders_, source.piece) ? source.piece : PieceId());
     }
+
+    void to_others(std::uint32_t i, double s, double t, double u) {
+        const DrawnSource drawn = draw_source(light_.tree_, room_.cut_, room_.chance_before_, u);
+        if (!(drawn.chance > 0)) return;
+        const EmitterTree::Source& source = *drawn.source;
+        const DirectLight::Emitter& emitter = light_.direct_->emitters()[source.name.emitter];
+        if (!light_.direct_->shines_on(emitter, at_.own)) return;
+        const Point y = uniform_on(occluders_.corners(source.name.piece), source.area, s, t);
+        const Vec3 d = y - at_.x;
+        const double above = dot(at_.n, d), below = -dot(emitter.plane.n, d), squared = squared_norm(d);
+        if (above <= 0 || below <= 0) return;
+        const double density = drawn.chance / source.area;
+        towards(i, source.name, y, at_.x, above * below / (pi * squared * squared * density));
+    }
+
+    const RayLight& light_;
+    const Occluders& occluders_;
+    const Receiver& at_;
+    Part& part_;
+    Workspace& room_;
+    double reach_;  ///< Length of rays to the sky, beyond all surfaces, metres.
+};
+
+/// Adds the rays of a part up to number `last` to the batch.
+void RayLight::add_rays(const Receiver& at, Part& part, std::uint32_t last, std::uint64_t key, Workspace& room) const {
+    const std::size_t count = last - part.rays;
+    const ScrambledSobol places(hash(key, part.sequence()));
+    room.s_.resize(count), room.t_.resize(count), room.u_.resize(count);
+    places.fill(part.rays, 0, room.s_), places.fill(part.rays, 1, room.t_);
+    if (part.kind == Part::Kind::others) places.fill(part.rays, 2, room.u_);
+    part.blocks.resize(last / part.block);
+    RayMaker maker(*this, at, part, room);
+    for (std::uint32_t k = 0; k < count; ++k) maker.make(part.rays + k, room.s_[k], room.t_[k], room.u_[k]);
     part.rays = last;
 }
 

@@ -68,6 +68,7 @@ class RayLight {
 
   private:
     struct Part;
+    class RayMaker;
     Estimate on_side(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
                      Workspace& room) const;
     const SkyOpenings& openings() const;
