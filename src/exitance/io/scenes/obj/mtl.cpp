@@ -57,7 +57,7 @@ class MtlReader {
     std::vector<Finding>& findings_;
     Material material_;
     bool open_ = false, has_reflectance_ = false;
-    int line_ = 0;
+    int line_ = 0, reflectance_line_ = 0;
     std::size_t white_materials_ = 0;
     int white_line_ = 0;  ///< Line of the first of these.
     std::string white_name_;
@@ -107,7 +107,7 @@ void MtlReader::start_material() {
     material_ = {};
     material_.name = std::string(lines_.rest());
     if (material_.name.empty()) error("'newmtl' without a name");
-    open_ = true, has_reflectance_ = false;
+    open_ = true, has_reflectance_ = false, reflectance_line_ = lines_.number();
     opacity_ = 1, filter_.reset(), illum_ = 0, texture_.clear(), glow_.clear();
     line_ = lines_.number();
 }
@@ -169,7 +169,6 @@ void MtlReader::take_textures() {
     if (pictures.reflectance) {
         if (!has_reflectance_) material_.reflectance = Spectrum(1.0), has_reflectance_ = true;
         material_.reflectance *= mean_of(*pictures.reflectance);
-        mend_reflectance(material_.reflectance);
     }
     if (!glow_.empty() && material_.emits()) pictures.exitance = picture(glow_, "Ke");
     if (pictures.exitance) material_.exitance *= mean_of(*pictures.exitance);
@@ -193,7 +192,8 @@ void MtlReader::take_glass() {
 void MtlReader::warn_all() {
     if (textured_.count > 0)
         find(Finding::Kind::warning, textured_.line,
-             fmt::format("{} has a texture: a face gets one colour, the mean of its part of the texture",
+             fmt::format("{} has a texture: a face, or a part of a face where it varies, gets the mean of its part of "
+                         "the texture",
                          textured_.names()),
              "");
     if (opaque_.count > 0)
@@ -216,6 +216,8 @@ void MtlReader::end_material() {
         return;
     }
     take_textures();
+    if (mend_reflectance(material_.reflectance) && white_materials_++ == 0)
+        white_line_ = reflectance_line_, white_name_ = material_.name;
     take_glass();
     if (!has_reflectance_)
         find(Finding::Kind::warning, line_,
@@ -251,8 +253,7 @@ void MtlReader::read_values(const std::string& key, Spectrum Material::*value) {
                          "emitted radiance is 0 or more, W/(m^2 sr)");
     }
     material_.*value = reflectance ? spread(values) : exitance_of_radiance(spread(values));
-    if (reflectance && mend_reflectance(material_.reflectance) && white_materials_++ == 0)
-        white_line_ = lines_.number(), white_name_ = material_.name;
+    if (reflectance) reflectance_line_ = lines_.number();
 }
 
 bool MtlReader::read_number(const std::string& key, std::string_view word, std::vector<double>& out) {

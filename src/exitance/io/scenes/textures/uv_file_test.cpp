@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/pictures/png.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/measure/light_maps/uv_light_map.hpp"
 #include "support/gltf_text.hpp"
@@ -200,6 +204,66 @@ TEST_F(UvFile, BacksOfDoubleSidedFacesHaveNoCoordinates) {
     ASSERT_TRUE(uvs) << uvs.error().message;
     EXPECT_EQ(uvs->triangles.size(), 4u);
     EXPECT_EQ(uvs->back_faces, 4u);
+}
+
+/// A picture that is white up to a share of its width and dark beyond it.
+Image two_tones(int size, double share) {
+    Image image(size, size);
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) std::fill_n(image.at(x, y), 3, std::uint8_t(x < share * size ? 230 : 90));
+    return image;
+}
+
+TEST_F(UvFile, PartsOfCutTrianglesKeepTheirCoordinates) {
+    test::GltfText text = square(true);
+    ASSERT_TRUE(write_png(folder_ / "tones.png", two_tones(20, 0.1), {}));
+    text.materials =
+        R"({"doubleSided":true,"pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicFactor":0}})";
+    text.textures = R"({"source":0})", text.images = R"({"uri":"tones.png"})";
+    const std::string path = write("square.glb", text.glb());
+    const Scene scene = load(path);
+    // The border is at x = 0.5: one of both triangles' corners is on it.
+    ASSERT_GT(scene.surfaces().size(), 8u);
+    const Result<UvSet> uvs = load_uv_set(scene, path, "TEXCOORD_2");
+    ASSERT_TRUE(uvs) << uvs.error().message;
+    double area = 0;
+    for (const UvTriangle& t : uvs->triangles) {
+        area += 0.5 * std::abs(cross(t.place[1] - t.place[0], t.place[2] - t.place[0]));
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double x = t.object == 0 ? t.corner[k].x : 3 - t.corner[k].x;
+            EXPECT_NEAR(t.place[k].x, 0.6 * x, 1e-6);
+            EXPECT_NEAR(t.place[k].y, -0.6 * t.corner[k].y, 1e-6);
+        }
+    }
+    EXPECT_NEAR(area, 2 * 0.36, 1e-6);
+    EXPECT_EQ(uvs->back_faces, scene.surfaces().size() / 2);
+}
+
+TEST_F(UvFile, AnObjFileOfCutFacesOnlyKeepsItsCoordinates) {
+    CubeText cube(1000, true);
+    write("cube.mtl", "newmtl wall\nKd 0.8 0.8 0.8\nmap_Kd tones.png\nnewmtl lamp\nKd 0\nKe 2 2 2\nmap_Ke tones.png\n");
+    // The border is in the middle of the charts of two columns.
+    ASSERT_TRUE(write_png(folder_ / "tones.png", two_tones(40, 0.175), {}));
+    for (int f = 0; f < 6; ++f) {
+        const std::string column = "vt " + std::to_string(0.05 + 0.3 * (f % 3));
+        for (std::size_t at = cube.points.find(column); at != std::string::npos; at = cube.points.find(column, at + 1))
+            cube.points.replace(at, column.size(), "vt 0.050000");
+    }
+    for (const char* far : {"vt 0.600000", "vt 0.900000"})
+        for (std::size_t at = cube.points.find(far); at != std::string::npos; at = cube.points.find(far, at + 1))
+            cube.points.replace(at, 11, "vt 0.300000");
+    const std::string path = write("cube.obj", "mtllib cube.mtl\n" + cube.points + cube.faces);
+    LoadOptions options;
+    options.metres_per_unit = 0.001, options.y_is_up = true;
+    const Scene scene = load(path, options);
+    ASSERT_EQ(scene.surfaces().size(), 12u);
+    for (const Surface& s : scene.surfaces()) EXPECT_GT(s.whole, 0u);
+    const Result<UvSet> set = load_uv_set(scene, path, "own");
+    ASSERT_TRUE(set) << set.error().message;
+    double area = 0;
+    for (const UvTriangle& t : set->triangles)
+        area += 0.5 * std::abs(cross(t.place[1] - t.place[0], t.place[2] - t.place[0]));
+    EXPECT_NEAR(area, 6 * 0.0625, 1e-6);
 }
 
 TEST_F(UvFile, TheAtlasOfACubeHasTheLightOfProbes) {
