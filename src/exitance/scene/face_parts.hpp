@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <unordered_map>
 #include <vector>
 
+#include "exitance/scene/locator.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {
@@ -19,6 +21,22 @@ class FaceParts {
     std::vector<SurfaceId> of(SurfaceId s) const {
         const auto parts = parts_.find(scene_->surfaces()[s].whole);
         return parts == parts_.end() ? std::vector<SurfaceId>{s} : parts->second;
+    }
+
+    /// Finds all parts of the face that was a triangle of the file. Empty if there is none. Parts at the triangle's
+    /// centre may be holes that were left out, so that other points are tried.
+    std::vector<SurfaceId> find(const Locator& locator, const std::array<Point, 3>& corner, const Normal& n) const {
+        const SurfaceId middle = locator.find((corner[0] + corner[1] + corner[2]) / 3, n);
+        if (!middle.is_none()) return of(middle);
+        constexpr int steps = 16;  // derived from the size of parts, most of which are larger
+        for (int i = 1; i < steps && !parts_.empty(); ++i)
+            for (int j = 1; i + j < steps; ++j) {
+                const double a = i / double(steps), b = j / double(steps);
+                const Point p = corner[0] + a * (corner[1] - corner[0]) + b * (corner[2] - corner[0]);
+                const SurfaceId s = locator.find(p, n);
+                if (!s.is_none() && scene_->surfaces()[s].whole > 0) return of(s);
+            }
+        return {};
     }
 
   private:

@@ -9,6 +9,7 @@
 #include "exitance/io/photometry/photometric_file.hpp"
 #include "exitance/io/scenes/gltf/gltf.hpp"
 #include "exitance/io/scenes/gltf/gltf_model.hpp"
+#include "exitance/io/scenes/textures/masked_picture.hpp"
 #include "exitance/io/scenes/textures/textured_faces.hpp"
 
 namespace exitance {
@@ -50,6 +51,7 @@ class SceneMaker {
   private:
     void make_materials();
     void report_materials();
+    void read_holes();
     std::uint32_t material_of(int material);
     bool visit_nodes();
     bool add_mesh(const GltfModel::Node& node, const Affine& to_world);
@@ -88,6 +90,7 @@ class SceneMaker {
     std::uint32_t round_ = 0;
     int accessor_ = -1;
     TexturedFaces textured_;
+    std::map<int, MaskedPicture> masked_;                 ///< Base textures with holes, by material.
     std::map<int, std::optional<TextureArea>> pictures_;  ///< Textures in use; empty: cannot be read.
 };
 
@@ -97,6 +100,24 @@ void SceneMaker::make_materials() {
         for (double& v : out.reflectance.value) v = std::clamp(v * std::clamp(1 - m.metallic, 0.0, 1.0), 0.0, 1.0);
         if (max(out.reflectance) > 0) out.through = std::clamp(m.diffuse_transmission, 0.0, 1.0);
         out_.materials.push_back(std::move(out));
+    }
+}
+
+/// Reads base textures with holes. The colour of a material is then that of the opaque part of its texture.
+void SceneMaker::read_holes() {
+    for (std::size_t i = 0; i < in_.materials.size(); ++i) {
+        const GltfModel::Material& m = in_.materials[i];
+        if (!(m.hole_opacity > 0)) continue;
+        const std::span<const std::uint8_t> file = in_.pictures[static_cast<std::size_t>(m.base_texture.picture)];
+        Result<std::optional<MaskedPicture>> masked = decode_masked(file, m.hole_opacity, srgb_curve());
+        const Result<std::array<double, 3>> whole = mean_colour(file, srgb_curve());
+        if (!masked || !*masked || !whole) continue;  // no holes, or a failure that was reported with the material
+        const TextureArea::Colour opaque = (*masked)->colour.mean();
+        const Spectrum before = spread({(*whole)[0], (*whole)[1], (*whole)[2]});
+        const Spectrum after = spread({opaque[0], opaque[1], opaque[2]});
+        for (std::size_t b = 0; b < bands; ++b)
+            if (before[b] > 0) out_.materials[i].reflectance[b] *= after[b] / before[b];
+        masked_.emplace(static_cast<int>(i), std::move(**masked));
     }
 }
 
@@ -183,6 +204,10 @@ FaceColours SceneMaker::colours_of(const GltfModel::Primitive& p, const std::arr
     if (p.material >= 0) {
         const GltfModel::Material& m = in_.materials[static_cast<std::size_t>(p.material)];
         out.reflectance = shown(m.base_texture, p, vertices);
+        if (const auto masked = masked_.find(p.material); masked != masked_.end() && out.reflectance.picture) {
+            out.coverage = out.reflectance;
+            out.reflectance.picture = &masked->second.colour, out.coverage.picture = &masked->second.coverage;
+        }
         if (out_.materials[static_cast<std::size_t>(p.material)].emits())
             out.exitance = shown(m.emission_texture, p, vertices);
     }
@@ -205,7 +230,8 @@ void SceneMaker::add_triangle(std::array<std::uint32_t, 3> c, bool double_sided,
         out_.faces.push_back({{c.begin(), c.end()}, material, group, 0});
         if (colours.vary()) textured_.show(out_.faces.size() - 1, colours);
         std::swap(c[1], c[2]);
-        turn(colours.reflectance.places), turn(colours.exitance.places), turn(colours.corner_factors);
+        turn(colours.reflectance.places), turn(colours.exitance.places), turn(colours.coverage.places),
+            turn(colours.corner_factors);
     }
     ++triangles_;
 }
@@ -343,11 +369,13 @@ bool SceneMaker::visit_nodes() {
 
 void SceneMaker::make() {
     make_materials();
+    read_holes();
     report_materials();
     if (!visit_nodes()) return out_.faces.clear();
     textured_.finish();
     deviation_ = textured_.reflectance_deviation();
-    if (const std::optional<Finding> finding = textured_.finding()) warn(finding->message, finding->hint);
+    for (const std::optional<Finding>& finding : {textured_.finding(), textured_.finding_of_holes()})
+        if (finding) warn(finding->message, finding->hint);
     if (deformed_ > 0)
         warn(fmt::format("{} {} deformed by skins or morph targets: {} in the rest pose", deformed_,
                          deformed_ == 1 ? "node is" : "nodes are", deformed_ == 1 ? "it stays" : "they stay"));

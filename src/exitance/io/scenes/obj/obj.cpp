@@ -334,12 +334,13 @@ void ObjReader::take_textures() {
         FaceColours colours;
         if (shown->reflectance) colours.reflectance = {shown->reflectance.get(), places};
         if (shown->exitance) colours.exitance = {shown->exitance.get(), places};
+        if (shown->coverage) colours.coverage = {shown->coverage.get(), places};
         textured.show(f, std::move(colours));
     }
     textured.finish();
     out_.reflectance_deviation = textured.reflectance_deviation();
-    if (const std::optional<Finding> finding = textured.finding())
-        find(finding->kind, 0, finding->message, finding->hint);
+    for (const std::optional<Finding>& finding : {textured.finding(), textured.finding_of_holes()})
+        if (finding) find(finding->kind, 0, finding->message, finding->hint);
 }
 
 /// Turns faces of glass into panes.

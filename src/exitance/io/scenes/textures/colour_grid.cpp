@@ -72,17 +72,18 @@ ColourGrid::ColourGrid(std::vector<double> columns, std::vector<double> rows, st
     : columns_(std::move(columns)),
       rows_(std::move(rows)),
       emits_(emits),
-      count_(emits ? max_sums : 1 + bands),
+      count_(emits ? max_sums : 2 + bands),
       table_(columns_.size() * rows_.size() * count_) {
     const std::size_t nx = columns_.size() - 1;
     for (std::size_t j = 0; j + 1 < rows_.size(); ++j) {
         Sums row{};
         for (std::size_t i = 0; i < nx; ++i) {
             const Cell& cell = cells[j * nx + i];
-            row[0] += cell.area;
+            const double opaque = cell.area * cell.coverage;
+            row[0] += cell.area, row[1] += opaque;
             for (std::size_t b = 0; b < bands; ++b) {
                 const double r = cell.reflectance[b], m = cell.exitance[b];
-                row[1 + b] += cell.area * r, row[1 + bands + b] += cell.area * m;
+                row[2 + b] += opaque * r, row[2 + bands + b] += opaque * m;
             }
             double* out = table_.data() + ((j + 1) * columns_.size() + i + 1) * count_;
             for (std::size_t k = 0; k < count_; ++k) out[k] = at(i + 1, j)[k] + row[k];
@@ -102,10 +103,12 @@ ColourGrid::Cell ColourGrid::mean(const GridBox& box) const {
     Cell out;
     // Less than this share of the whole is the rounding error of an uncovered box.
     constexpr double rounding = 1e-12;  // derived from the rounding of sums in double precision
-    if (!(s[0] > rounding * at(columns_.size() - 1, rows_.size() - 1)[0])) return out;
-    out.area = s[0];
+    const double least = rounding * at(columns_.size() - 1, rows_.size() - 1)[0];
+    if (!(s[0] > least)) return out;
+    out.area = s[0], out.coverage = s[1] > least ? std::min(1.0, s[1] / s[0]) : 0;
+    if (out.coverage == 0) return out;
     for (std::size_t b = 0; b < bands; ++b)
-        out.reflectance[b] = s[1 + b] / s[0], out.exitance[b] = s[1 + bands + b] / s[0];
+        out.reflectance[b] = std::max(0.0, s[2 + b] / s[1]), out.exitance[b] = std::max(0.0, s[2 + bands + b] / s[1]);
     return out;
 }
 
@@ -116,7 +119,9 @@ PartColour ColourGrid::colour(const GridBox& box) const {
     const std::size_t wide = block_of(columns_.size() - 1), high = block_of(rows_.size() - 1);
     const Cell whole = mean(box);
     PartColour out{{whole.reflectance, {}, whole.reflectance, whole.reflectance},
-                   {whole.exitance, {}, whole.exitance, whole.exitance}};
+                   {whole.exitance, {}, whole.exitance, whole.exitance},
+                   whole.coverage};
+    const double opaque = whole.area * whole.coverage;
     const auto add = [&](ColourRange& range, const Spectrum& value, double area) {
         for (std::size_t b = 0; b < bands; ++b) {
             const double difference = value[b] - range.mean[b];
@@ -129,15 +134,16 @@ PartColour ColourGrid::colour(const GridBox& box) const {
         for (std::size_t i = box.i0; i < box.i1; i = (i / wide + 1) * wide) {
             const Cell block =
                 mean({i, std::min(box.i1, (i / wide + 1) * wide), j, std::min(box.j1, (j / high + 1) * high)});
-            if (!(block.area > 0)) continue;
-            add(out.reflectance, block.reflectance, block.area), add(out.exitance, block.exitance, block.area);
+            const double area = block.area * block.coverage;
+            if (!(area > 0)) continue;
+            add(out.reflectance, block.reflectance, area), add(out.exitance, block.exitance, area);
         }
     for (ColourRange* range : {&out.reflectance, &out.exitance})
         for (std::size_t b = 0; b < bands; ++b) {
             // Even colours would get a deviation from the rounding error of sums.
             constexpr double rounding = 1e-9;  // derived from the rounding of sums in double precision
             const bool is_even = range->highest[b] - range->lowest[b] <= rounding * range->highest[b];
-            range->deviation[b] = is_even || !(whole.area > 0) ? 0 : std::sqrt(range->deviation[b] / whole.area);
+            range->deviation[b] = is_even || !(opaque > 0) ? 0 : std::sqrt(range->deviation[b] / opaque);
         }
     return out;
 }

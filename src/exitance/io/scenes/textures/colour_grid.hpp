@@ -25,8 +25,9 @@ std::vector<double> covered_areas(std::span<const std::vector<Vec2>> polygons, s
 class ColourGrid {
   public:
     struct Cell {
-        double area = 0;  ///< Covered by the faces, m^2.
+        double area = 0;  ///< Area of the faces in the cell, m^2.
         Spectrum reflectance, exitance;
+        double coverage = 1;  ///< Share of the area that is not in holes.
     };
     /// cells   row by row
     /// emits   false: exitances are 0 and are not stored
@@ -37,20 +38,20 @@ class ColourGrid {
     GridBox whole() const { return {0, columns_.size() - 1, 0, rows_.size() - 1}; }
     bool emits() const { return emits_; }
 
-    /// Area and means of a box.
+    /// Area and means of a box; colours are those of the area without holes.
     Cell mean(const GridBox& box) const;
     /// Statistics of a box, of the means of 32 x 32 blocks of the grid.
     PartColour colour(const GridBox& box) const;
 
   private:
-    static constexpr std::size_t max_sums = 1 + 2 * bands;
+    static constexpr std::size_t max_sums = 2 + 2 * bands;
     using Sums = std::array<double, max_sums>;
     Sums sums(const GridBox& box) const;
     const double* at(std::size_t i, std::size_t j) const { return table_.data() + (j * columns_.size() + i) * count_; }
 
     std::vector<double> columns_, rows_;
     bool emits_;
-    std::size_t count_;          ///< Number of sums: area, reflectances and, if it emits, exitances.
+    std::size_t count_;  ///< Number of sums: area, area without holes, reflectances and, if it emits, exitances.
     std::vector<double> table_;  ///< Sums over all cells to the left and above of a grid point.
 };
 

@@ -59,6 +59,11 @@ PartColour part_colour(const Material& material, const FaceColours& colours, std
         multiply(out.reflectance, factors);
     }
     for (double& v : out.reflectance.mean.value) v = std::min(v, whitest);
+    if (colours.coverage.picture) {
+        std::vector<Vec2> outline;
+        for (const std::uint32_t c : corners) outline.push_back(colours.coverage.places[c]);
+        out.coverage = colours.coverage.picture->mean(outline, colours.coverage.wrap_s, colours.coverage.wrap_t)[0];
+    }
     return out;
 }
 

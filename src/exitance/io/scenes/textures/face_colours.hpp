@@ -18,10 +18,11 @@ struct FacePicture {
 /// Colours of a face, relative to its material, whose colours are the means of the whole pictures.
 struct FaceColours {
     FacePicture reflectance, exitance;
+    FacePicture coverage;  ///< 1 where the face is opaque, 0 in holes.
     /// Factors of the reflectance at the corners of a triangle, linear in between; empty: 1.
     std::vector<Spectrum> corner_factors;
 
-    bool vary() const { return reflectance.picture || exitance.picture || !corner_factors.empty(); }
+    bool vary() const { return reflectance.picture || exitance.picture || coverage.picture || !corner_factors.empty(); }
 };
 
 /// Statistics of a quantity over a face or a part of it, per band.
@@ -33,6 +34,7 @@ struct ColourRange {
 /// Reflectance and exitance (W/m^2) of a face or a part of it.
 struct PartColour {
     ColourRange reflectance, exitance;
+    double coverage = 1;  ///< Share of the area that is not in holes.
 };
 
 /// Converts a colour of a picture to a factor of the material's value: the colour divided by the mean of the picture; 0

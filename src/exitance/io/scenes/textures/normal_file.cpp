@@ -36,11 +36,9 @@ std::vector<NormalTriangle> load_gltf_normals(const Scene& scene, const std::str
         if (triangle.primitive->normals.size() == 0) return;
         const std::array<Point, 3>& c = triangle.corners;
         const Normal n = normalized(cross(c[1] - c[0], c[2] - c[0]));
-        const Point middle = (c[0] + c[1] + c[2]) / 3;
         for (const Normal& front : {n, Normal(-1 * n)}) {
-            const SurfaceId s = locator.find(middle, front);
-            if (s.is_none()) continue;
-            for (const SurfaceId part : parts.of(s)) add_triangle({part, c, triangle.normals}, front, out);
+            for (const SurfaceId part : parts.find(locator, c, front))
+                add_triangle({part, c, triangle.normals}, front, out);
         }
     });
     return out;

@@ -5,6 +5,7 @@
 
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/gltf/gltf_model.hpp"
+#include "exitance/io/scenes/textures/masked_picture.hpp"
 #include "exitance/io/scenes/textures/triangle_weights.hpp"
 #include "exitance/scene/face_parts.hpp"
 #include "exitance/scene/locator.hpp"
@@ -35,11 +36,10 @@ class TextureFinder {
         const std::array<Point, 3>& corner = triangle.corners;
         if (p.places[0].size() == 0 && p.places[1].size() == 0) return;
         const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-        const Point middle = (corner[0] + corner[1] + corner[2]) / 3;
         // Faces may have been reversed, or be the back of a double-sided triangle.
         for (const double side : {1.0, -1.0})
-            if (const SurfaceId s = locator_.find(middle, side * normalized(normal)); !s.is_none())
-                for (const SurfaceId part : parts_.of(s)) add_places(p, triangle.vertices, corner, part);
+            for (const SurfaceId part : parts_.find(locator_, corner, side * normalized(normal)))
+                add_places(p, triangle.vertices, corner, part);
     }
 
     void add_places(const GltfModel::Primitive& p, const std::array<std::size_t, 3>& v,
@@ -78,6 +78,7 @@ class TextureFinder {
                 const std::span<const std::uint8_t> file = model_.pictures[source];
                 Result<TexturePixels> pixels = decode_texture(file);
                 if (!pixels || pixels->width == 0) continue;
+                if (material->hole_opacity > 0) fill_holes(*pixels, material->hole_opacity);
                 number[source] = static_cast<int>(out_.pictures.size());
                 out_.pictures.push_back(
                     {{file.begin(), file.end()}, file[0] == 0xff ? "image/jpeg" : "image/png", std::move(*pixels)});

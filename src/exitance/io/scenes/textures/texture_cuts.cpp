@@ -42,7 +42,7 @@ class TextureCutter {
 
     void add(const GridBox& box, double at_most) {
         const std::size_t part = out_.parts.size();
-        out_.parts.push_back({grid_.colour(box)});
+        out_.parts.push_back({grid_.colour(box), grid_.mean(box).area});
         boxes_.push_back(box);
         Choice choice = best_cut(box);
         choice.part = part, choice.benefit = std::min(choice.benefit, at_most);
@@ -73,12 +73,15 @@ class TextureCutter {
 
     /// Differences between parts and their union.
     struct Difference {
-        double squares = 0, flux = 0;
+        double squares = 0, flux = 0, holes = 0;
         void add(const ColourGrid::Cell& part, const ColourGrid::Cell& whole) {
+            const double opaque = part.area * part.coverage;
             for (std::size_t b = 0; b < bands; ++b) {
                 const double r = part.reflectance[b] - whole.reflectance[b], m = part.exitance[b] - whole.exitance[b];
-                squares += part.area * r * r / bands, flux += 0.5 * part.area * std::abs(m) / bands;
+                squares += opaque * r * r / bands, flux += 0.5 * opaque * std::abs(m) / bands;
             }
+            const double c = part.coverage - whole.coverage;
+            holes += part.area * c * c;
         }
     };
 
@@ -87,7 +90,8 @@ class TextureCutter {
         const double near = std::min(1.0, std::sqrt(area / static_cast<double>(count)) / scale_.length);
         const auto cuts = static_cast<double>(count - 1);
         const double moved = difference.flux * near / (cuts * scale_.flux);
-        return difference.squares * near / (cuts * scale_.reflected) + moved * moved;
+        const double variance = difference.squares / scale_.reflected + difference.holes / scale_.area;
+        return variance * near / cuts + moved * moved;
     }
 
     /// Largest benefit per cut of 2^k x 2^k equal boxes.

@@ -9,6 +9,7 @@ namespace exitance {
 /// Measures by which the benefit of a cut is judged.
 struct CutScale {
     double length = 1;       ///< Typical distance between surfaces of the scene, m.
+    double area = 1;         ///< Total area of the faces, m^2.
     double reflected = 1;    ///< (Sum of area times mean reflectance)^2 over the total area, m^2.
     double flux = 1;         ///< Emitted flux of the scene, mean over bands, W.
     double min_benefit = 0;  ///< Cuts with less are not made.
@@ -17,6 +18,7 @@ struct CutScale {
 /// A part of a textured patch: a box in its texture coordinates. A tree of parts by cuts along the axes.
 struct TexturePart {
     PartColour colour;
+    double area = 0;                       ///< m^2
     bool is_cut = false, along_s = false;  ///< Cut at the coordinate `at` of s, else of t.
     double at = 0;
     std::size_t children = 0;  ///< Index of the part below `at`; the next one is above.
@@ -36,6 +38,7 @@ struct TextureCuts {
 /// error of the scene's light that it removes:
 ///
 ///     (variance of reflectance between the parts times area) / reflected  min(1, d / length)
+///     + (variance of coverage between the parts times area) / area of the scene  min(1, d / length)
 ///     + (flux that is in the wrong part / flux  min(1, d / length))^2
 ///
 /// for parts of the size d: others notice a pattern at distances of about its size only. Where a finer pattern, such as

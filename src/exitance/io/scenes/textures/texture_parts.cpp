@@ -28,8 +28,8 @@ CutScale scale_of(const SceneDescription& d) {
     }
     constexpr double walls = 6;  // derived from a cube, whose faces are as far apart as they are wide
     constexpr double none = 1e-300;
-    return {std::max(none, std::sqrt(area / walls)), std::max(none, reflected * reflected / std::max(none, area)),
-            std::max(none, flux), min_benefit};
+    return {std::max(none, std::sqrt(area / walls)), std::max(none, area),
+            std::max(none, reflected * reflected / std::max(none, area)), std::max(none, flux), min_benefit};
 }
 
 /// A corner of a polygon that is cut: its texture coordinates and position.
@@ -89,16 +89,16 @@ class FaceCutter {
           scale_(scale_of(description)),
           all_(find_texture_patches(description, faces)) {}
 
-    std::vector<std::vector<FacePart>> cut(std::size_t max_parts) {
+    CutFaces cut(std::size_t max_parts) {
         for (const std::size_t p : promising_patches(max_parts / 2)) consider(all_.patches[p], max_parts);
         choose(max_parts);
-        std::vector<std::vector<FacePart>> out(faces_.size());
-        std::vector<std::uint8_t> is_cut(faces_.size()), is_done(all_.tiles.size());
+        CutFaces out{std::vector<std::vector<FacePart>>(faces_.size()), std::vector<std::uint8_t>(faces_.size())};
+        std::vector<std::uint8_t> is_done(all_.tiles.size());
         for (const PatchCuts& patch : patches_)
             for (const std::uint32_t t : patch.patch->tiles)
-                if (patch.taken > 0) is_cut[all_.tiles[t].owner] = 1, is_done[t] = 1;
+                if (patch.taken > 0) out.is_cut[all_.tiles[t].owner] = 1, is_done[t] = 1;
         for (std::uint32_t t = 0; t < all_.tiles.size(); ++t)
-            if (is_cut[all_.tiles[t].owner] && !is_done[t]) add_whole(all_.tiles[t], out);
+            if (out.is_cut[all_.tiles[t].owner] && !is_done[t]) add_whole(all_.tiles[t], out);
         for (const PatchCuts& patch : patches_)
             if (patch.taken > 0) add_parts(patch, out);
         return out;
@@ -141,19 +141,21 @@ class FaceCutter {
 
     /// Benefit of a single cut that would remove all variation of a patch: an upper limit.
     double potential_of(const TexturePatch& patch) const {
-        double area = 0, squares = 0, emitted = 0;
+        double area = 0, squares = 0, emitted = 0, holes = 0;
         Spectrum sum, flux;
         for (const std::uint32_t t : patch.tiles) {
             const TextureTile& tile = all_.tiles[t];
             const ColourRange &r = faces_[tile.owner].colour.reflectance, &m = faces_[tile.owner].colour.exitance;
             area += tile.area, sum += tile.area * r.mean, flux += tile.area * m.mean;
+            holes += tile.area * faces_[tile.owner].colour.coverage;
             squares += tile.area * mean(r.mean * r.mean + r.deviation * r.deviation);
             emitted += tile.area * mean(m.mean * m.mean + m.deviation * m.deviation);
         }
         const double near = std::min(1.0, std::sqrt(area) / scale_.length);
         const double variance = std::max(0.0, squares - mean(sum * sum) / area);
         const double moved = std::sqrt(std::max(0.0, emitted * area - mean(flux * flux))) * near / scale_.flux;
-        return variance * near / scale_.reflected + moved * moved;
+        const double shape = holes * (1 - holes / area);  // largest variance of coverage
+        return (variance / scale_.reflected + std::max(0.0, shape) / scale_.area) * near + moved * moved;
     }
 
     /// Lengths of a unit of both texture coordinates on a tile, m.
@@ -208,14 +210,16 @@ class FaceCutter {
         return out;
     }
 
-    void add_whole(const TextureTile& tile, std::vector<std::vector<FacePart>>& out) {
+    void add_whole(const TextureTile& tile, CutFaces& out) {
         const VaryingFace& face = faces_[tile.owner];
         const Material& material = description_.materials[description_.faces[face.face].material];
-        add(tile, polygon_of(tile), part_colour(material, face.colours, tile.corners, whitest_), out);
+        const PartColour colour = part_colour(material, face.colours, tile.corners, whitest_);
+        const bool stays = colour.coverage >= 0.5;
+        out.misplaced += tile.area * (stays ? 1 - colour.coverage : colour.coverage);
+        if (stays) add(tile, polygon_of(tile), colour, out);
     }
 
-    void add(const TextureTile& tile, std::span<const CutCorner> polygon, const PartColour& colour,
-             std::vector<std::vector<FacePart>>& out) {
+    void add(const TextureTile& tile, std::span<const CutCorner> polygon, const PartColour& colour, CutFaces& out) {
         FacePart part{{}, colour};
         std::vector<Point> outline;
         for (const CutCorner& c : polygon) outline.push_back(c.point);
@@ -227,13 +231,40 @@ class FaceCutter {
                 c.index == CutCorner::new_point ? static_cast<std::uint32_t>(description_.points.size()) : c.index);
             if (c.index == CutCorner::new_point) description_.points.push_back(c.point);
         }
-        out[tile.owner].push_back(std::move(part));
+        out.parts[tile.owner].push_back(std::move(part));
     }
 
-    void add_parts(const PatchCuts& patch, std::vector<std::vector<FacePart>>& out) {
+    /// Chooses the parts that stay: those with the fewest holes, until they have the area that is no hole.
+    static std::vector<std::uint8_t> staying_parts(const std::vector<TexturePart>& parts,
+                                                   const std::vector<std::uint8_t>& is_cut, double& misplaced) {
+        std::vector<std::size_t> left, open = {0};
+        double wanted = 0, kept = 0;
+        while (!open.empty()) {
+            const std::size_t p = open.back();
+            open.pop_back();
+            if (is_cut[p]) {
+                open.push_back(parts[p].children + 1), open.push_back(parts[p].children);
+            } else {
+                left.push_back(p), wanted += parts[p].area * parts[p].colour.coverage;
+            }
+        }
+        std::stable_sort(left.begin(), left.end(), [&](std::size_t a, std::size_t b) {
+            return parts[a].colour.coverage > parts[b].colour.coverage;
+        });
+        std::vector<std::uint8_t> stays(parts.size());
+        for (const std::size_t p : left) {
+            const double area = parts[p].area, coverage = parts[p].colour.coverage;
+            stays[p] = coverage >= 1 || (coverage > 0 && kept + 0.5 * area <= wanted);
+            kept += stays[p] ? area : 0, misplaced += area * (stays[p] ? 1 - coverage : coverage);
+        }
+        return stays;
+    }
+
+    void add_parts(const PatchCuts& patch, CutFaces& out) {
         const std::vector<TexturePart>& parts = patch.cuts.parts;
         std::vector<std::uint8_t> is_cut(parts.size());
         for (std::size_t c = 0; c < patch.taken; ++c) is_cut[patch.cuts.cuts[c].part] = 1;
+        const std::vector<std::uint8_t> stays = staying_parts(parts, is_cut, out.misplaced);
         for (const std::uint32_t t : patch.patch->tiles) {
             struct Open {
                 std::size_t part;
@@ -246,7 +277,7 @@ class FaceCutter {
                 open.pop_back();
                 const TexturePart& part = parts[next.part];
                 if (!is_cut[next.part]) {
-                    add(all_.tiles[t], next.polygon, part.colour, out);
+                    if (stays[next.part]) add(all_.tiles[t], next.polygon, part.colour, out);
                     continue;
                 }
                 std::vector<CutCorner> below, above;
@@ -273,9 +304,10 @@ std::size_t default_texture_parts(std::size_t faces) {
     return in_any_scene + faces / faces_per_part;
 }
 
-std::vector<std::vector<FacePart>> cut_textured_faces(SceneDescription& description, std::span<const VaryingFace> faces,
-                                                      double whitest, std::size_t max_parts) {
-    if (faces.empty() || max_parts < 2) return std::vector<std::vector<FacePart>>(faces.size());
+CutFaces cut_textured_faces(SceneDescription& description, std::span<const VaryingFace> faces, double whitest,
+                            std::size_t max_parts) {
+    if (faces.empty() || max_parts < 2)
+        return {std::vector<std::vector<FacePart>>(faces.size()), std::vector<std::uint8_t>(faces.size())};
     return FaceCutter(description, faces, whitest).cut(max_parts);
 }
 

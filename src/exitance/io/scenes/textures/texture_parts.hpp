@@ -16,6 +16,14 @@ struct FacePart {
     double area = 0;  ///< m^2
 };
 
+/// Textured faces that were cut.
+struct CutFaces {
+    std::vector<std::vector<FacePart>> parts;  ///< Per face. A cut face without parts is a hole.
+    std::vector<std::uint8_t> is_cut;          ///< Per face.
+    /// Area of holes that were closed and of opaque parts that were left out, m^2.
+    double misplaced = 0;
+};
+
 /// Largest number of parts by default, for a scene of so many faces.
 std::size_t default_texture_parts(std::size_t faces);
 
@@ -26,8 +34,8 @@ std::size_t default_texture_parts(std::size_t faces);
 /// on the unit of length. Cost: O(faces) for small faces; O(cells) for those that are large enough to be cut.
 /// faces    faces whose colour varies
 /// whitest  upper limit of reflectances
-/// Returns the parts of each face; none if it is not cut.
-std::vector<std::vector<FacePart>> cut_textured_faces(SceneDescription& description, std::span<const VaryingFace> faces,
-                                                      double whitest, std::size_t max_parts);
+/// Parts that are mostly holes are left out, so that as much area remains as the pictures cover.
+CutFaces cut_textured_faces(SceneDescription& description, std::span<const VaryingFace> faces, double whitest,
+                            std::size_t max_parts);
 
 }  // namespace exitance

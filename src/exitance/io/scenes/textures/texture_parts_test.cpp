@@ -239,5 +239,45 @@ TEST(TexturedFaces, ManySmallFacesAreNotCut) {
     EXPECT_EQ(wall.d.faces.size(), side * side);
 }
 
+TEST(TexturedFaces, HolesAreCutOutAndTheAreaIsBalanced) {
+    constexpr int size = 64;
+    const TextureArea ring = grey_picture(size, size, [](std::size_t x, std::size_t y) {
+        return std::hypot(static_cast<double>(x) - 31.5, static_cast<double>(y) - 31.5) < 20 ? 0.0 : 1.0;
+    });
+    Wall wall(ring);
+    wall.d.materials[0].reflectance = Spectrum(0.5);
+    wall.add({0, 1, 2, 3}), wall.add({3, 2, 1, 0});  // with its back
+    TexturedFaces textured(wall.d, most_reflected, {});
+    for (std::size_t f = 0; f < 2; ++f) {
+        FaceColours colours;
+        colours.coverage = wall.colours(f, ring).reflectance;
+        textured.show(f, colours);
+    }
+    textured.finish();
+    EXPECT_NEAR(wall.total_area(), 2 * 12 * ring.mean()[0], 0.02 * 24);
+    const CheckedScene made = make_scene(wall.d);
+    ASSERT_TRUE(made.scene);
+    double front = 0;
+    for (const Surface& s : made.scene->surfaces()) front += s.normal.y < 0 ? s.area : -s.area;
+    EXPECT_NEAR(front, 0, 1e-9) << "both sides are cut alike";
+    ASSERT_TRUE(textured.finding_of_holes());
+    EXPECT_NE(textured.finding_of_holes()->message.find("2 faces with holes"), std::string::npos);
+}
+
+TEST(TexturedFaces, OfManyFacesWithHolesAsManyStayAsThePicturesCover) {
+    const TextureArea leaf = grey_picture(10, 10, [](std::size_t x, std::size_t) { return x < 4 ? 1.0 : 0.0; });
+    Wall wall(leaf);
+    constexpr std::size_t count = 1000;
+    for (std::size_t f = 0; f < count; ++f) wall.add({0, 1, 2, 3});
+    TexturedFaces textured(wall.d, most_reflected, 0);
+    for (std::size_t f = 0; f < count; ++f) {
+        FaceColours colours;
+        colours.coverage = wall.colours(f, leaf).reflectance;
+        textured.show(f, colours);
+    }
+    textured.finish();
+    EXPECT_NEAR(static_cast<double>(wall.d.faces.size()), 400, 20);  // the coverage of a face is known to 0.02
+}
+
 }  // namespace
 }  // namespace exitance

@@ -104,6 +104,7 @@ class PatchFinder {
         const FaceColours& colours = faces_[f].colours;
         if (colours.reflectance.picture) return colours.reflectance.places;
         if (colours.exitance.picture) return colours.exitance.places;
+        if (colours.coverage.picture) return colours.coverage.places;
         const Normal s = normalized(corners[1] - corners[0]), n = normalized(area_vector(corners));
         std::vector<Vec2> out;
         for (const Point& p : corners) out.push_back({dot(s, p - corners[0]), dot(cross(n, s), p - corners[0])});
@@ -177,7 +178,8 @@ class PatchFinder {
         const auto alike = [](const FacePicture& p, const FacePicture& q) {
             return p.picture == q.picture && p.wrap_s == q.wrap_s && p.wrap_t == q.wrap_t;
         };
-        if (!alike(fa.colours.reflectance, fb.colours.reflectance) || !alike(fa.colours.exitance, fb.colours.exitance))
+        if (!alike(fa.colours.reflectance, fb.colours.reflectance) ||
+            !alike(fa.colours.exitance, fb.colours.exitance) || !alike(fa.colours.coverage, fb.colours.coverage))
             return false;
         const std::vector<Point> here = outline_of(a), there = outline_of(b);
         const std::optional<AffinePlaces> function = fit(here, a.places);
@@ -278,7 +280,7 @@ class PatchSampler {
     std::vector<double> borders(bool along_s, double low, double high, std::size_t max_cells) const {
         constexpr std::size_t min_cells = 32;  // derived from the samples of a face's mean
         std::vector<double> out = {low, high};
-        for (const FacePicture* shown : {&colours_.reflectance, &colours_.exitance}) {
+        for (const FacePicture* shown : {&colours_.reflectance, &colours_.exitance, &colours_.coverage}) {
             if (!shown->picture || !is_in_frame(*shown)) continue;
             std::vector<double> found = shown->picture->borders(along_s, low, high, max_cells);
             if (found.size() > out.size()) out = std::move(found);
@@ -294,6 +296,12 @@ class PatchSampler {
         for (std::size_t k = 0; k < out.size(); ++k) out[k] = {areas[k], material_.reflectance, material_.exitance};
         multiply(colours_.reflectance, columns, rows, out, &ColourGrid::Cell::reflectance);
         multiply(colours_.exitance, columns, rows, out, &ColourGrid::Cell::exitance);
+        if (colours_.coverage.picture) {
+            // Holes are in the texture coordinates of the base colour.
+            const std::vector<TextureArea::Colour> means = colours_.coverage.picture->cell_means(
+                columns, rows, colours_.coverage.wrap_s, colours_.coverage.wrap_t);
+            for (std::size_t k = 0; k < out.size(); ++k) out[k].coverage = means[k][0];
+        }
         if (!colours_.corner_factors.empty()) multiply_factors(columns, rows, out);
         for (ColourGrid::Cell& cell : out)
             for (double& v : cell.reflectance.value) v = std::min(v, whitest);

@@ -14,9 +14,6 @@ namespace {
 
 constexpr int code_tolerance = 2;  ///< Tolerance of colours, in codes of 256.
 
-/// Limit on the faces that are candidates for cuts: memory of about 1 kB each.
-constexpr std::size_t max_varying = std::size_t(1) << 18;
-
 /// Area of a face, m^2.
 double area_of(const SceneDescription& d, const SceneDescription::Face& face) {
     std::vector<Point> corners;
@@ -55,26 +52,30 @@ void TexturedFaces::show(std::size_t face, FaceColours colours) {
     const double area = area_of(*out_, out_->faces[face]);
     const bool is_even =
         !varies(colour.reflectance, material.reflectance) && !varies(colour.exitance, material.exitance);
-    if (is_even || max_parts_ == 0) return add(face, colour, area);
+    if (colour.coverage >= 1 && (is_even || max_parts_ == 0)) return add(face, colour, area);
     keep({static_cast<std::uint32_t>(face), std::move(colours), colour, area});
 }
 
 /// Keeps a face for cutting; drops those of least effect if there are too many.
 void TexturedFaces::keep(VaryingFace face) {
     varying_.push_back(std::move(face));
-    if (varying_.size() < 2 * max_varying) return;
+    if (varying_.size() < next_trim_) return;
     const auto effect = [](const VaryingFace& f) {
         const ColourRange &r = f.colour.reflectance, &m = f.colour.exitance;
         const double emitted = max(m.mean) > 0 ? mean(m.deviation * m.deviation) / mean(m.mean * m.mean) : 0;
-        return f.area * (mean(r.deviation * r.deviation) + emitted);
+        // Faces with holes are kept: some of them may have to be left out.
+        return f.colour.coverage < 1 ? HUGE_VAL : f.area * (mean(r.deviation * r.deviation) + emitted);
     };
     const auto last = varying_.begin() + max_varying;
     std::nth_element(varying_.begin(), last, varying_.end(), [&](const VaryingFace& a, const VaryingFace& b) {
         const double ea = effect(a), eb = effect(b);
         return ea != eb ? ea > eb : a.face < b.face;
     });
-    for (auto f = last; f != varying_.end(); ++f) add(f->face, f->colour, f->area);
-    varying_.erase(last, varying_.end());
+    const auto dropped =
+        std::stable_partition(last, varying_.end(), [](const VaryingFace& f) { return f.colour.coverage < 1; });
+    for (auto f = dropped; f != varying_.end(); ++f) add(f->face, f->colour, f->area);
+    varying_.erase(dropped, varying_.end());
+    next_trim_ = 2 * varying_.size();
 }
 
 void TexturedFaces::add(std::size_t face, const PartColour& colour, double area) {
@@ -118,11 +119,39 @@ void TexturedFaces::set_deviation(std::size_t material, const Sum& sum, const Sp
     }
 }
 
+bool TexturedFaces::stays(const VaryingFace& face) {
+    const double coverage = face.colour.coverage;
+    if (coverage >= 1) return true;
+    std::vector<std::uint32_t> corners = out_->faces[face.face].corners;
+    // The back of a face, which follows it, stays if the face does.
+    std::vector<std::uint32_t> turned = corners;
+    std::reverse(turned.begin() + 1, turned.end());
+    const bool is_back = turned == holes_.before;
+    double& balance = holes_.balance[out_->faces[face.face].material];
+    if (!is_back) {
+        balance += coverage * face.area;
+        holes_.before_stays = coverage > 0 && balance >= 0.5 * face.area;
+        if (holes_.before_stays) balance -= face.area;
+    }
+    holes_.before = std::move(corners);
+    holes_.misplaced += face.area * (holes_.before_stays ? 1 - coverage : coverage);
+    return holes_.before_stays;
+}
+
 void TexturedFaces::replace_cut_faces() {
     std::sort(varying_.begin(), varying_.end(),
               [](const VaryingFace& a, const VaryingFace& b) { return a.face < b.face; });
-    const std::vector<std::vector<FacePart>> parts =
+    CutFaces cut =
         cut_textured_faces(*out_, varying_, whitest_, max_parts_.value_or(default_texture_parts(out_->faces.size())));
+    const std::vector<std::vector<FacePart>>& parts = cut.parts;
+    holes_.misplaced += cut.misplaced;
+    for (std::size_t v = 0; v < varying_.size(); ++v) {
+        const bool has_holes = varying_[v].colour.coverage < 1;
+        holes_.faces += has_holes, holes_.area += has_holes ? varying_[v].area : 0;
+        if (cut.is_cut[v]) continue;
+        holes_.uncut += has_holes && varying_[v].colour.coverage > 0;
+        if (!stays(varying_[v])) cut.is_cut[v] = 1;  // without parts: it is left out
+    }
     std::vector<SceneDescription::Face> faces;
     std::vector<std::size_t> place(out_->faces.size());  // of each face in the new list
     std::vector<std::size_t> first_part(varying_.size());
@@ -131,11 +160,11 @@ void TexturedFaces::replace_cut_faces() {
         place[f] = faces.size();
         const bool is_varying = next < varying_.size() && varying_[next].face == f;
         if (is_varying) first_part[next] = faces.size();
-        if (is_varying && !parts[next].empty()) {
+        if (is_varying && cut.is_cut[next]) {
             SceneDescription::Face part = out_->faces[f];
             part.whole = static_cast<std::uint32_t>(f + 1);
             for (const FacePart& p : parts[next]) part.corners = p.corners, faces.push_back(part);
-            ++cut_faces_, parts_ += parts[next].size();
+            if (!parts[next].empty()) ++cut_faces_, parts_ += parts[next].size();
         } else {
             faces.push_back(std::move(out_->faces[f]));
         }
@@ -145,7 +174,7 @@ void TexturedFaces::replace_cut_faces() {
     for (auto& [key, sum] : sums_)
         for (std::size_t& f : sum.faces) f = place[f];
     for (std::size_t v = 0; v < varying_.size(); ++v) {
-        if (parts[v].empty()) add(first_part[v], varying_[v].colour, varying_[v].area);
+        if (!cut.is_cut[v]) add(first_part[v], varying_[v].colour, varying_[v].area);
         for (std::size_t k = 0; k < parts[v].size(); ++k) add(first_part[v] + k, parts[v][k].colour, parts[v][k].area);
     }
     varying_.clear();
@@ -185,6 +214,19 @@ std::optional<Finding> TexturedFaces::finding() const {
             fmt::format(" ({} {} cut into {} parts)", cut_faces_, cut_faces_ == 1 ? "face was" : "faces were", parts_);
     return Finding{Finding::Kind::warning, "", 0, std::move(message),
                    "use more --texture-parts where this matters; the error estimate counts the reflectance"};
+}
+
+std::optional<Finding> TexturedFaces::finding_of_holes() const {
+    if (holes_.faces == 0) return std::nullopt;
+    std::string message = fmt::format(
+        "{} with holes, by opacity, {} cut or left out; as much area stays as the pictures cover",
+        holes_.faces == 1 ? "1 face" : fmt::format("{} faces", holes_.faces), holes_.faces == 1 ? "is" : "are");
+    constexpr double rounding = 1e-9;  // derived from the rounding of sums in double precision
+    if (holes_.misplaced > rounding * holes_.area)
+        message += fmt::format(", but {:.3g}% of it is not where it should be", 100 * holes_.misplaced / holes_.area);
+    if (holes_.uncut > 0) message += fmt::format("; {} of them stay or go as a whole", holes_.uncut);
+    return Finding{Finding::Kind::warning, "", 0, std::move(message),
+                   "use more --texture-parts where the shape of shadows matters"};
 }
 
 }  // namespace exitance

@@ -20,7 +20,7 @@ class TexturedFaces {
     /// whitest    upper limit of the reflectance of faces
     /// max_parts  limit on the parts of all cut faces; none: `default_texture_parts`; 0: no face is cut
     TexturedFaces(SceneDescription& description, double whitest, std::optional<std::size_t> max_parts)
-        : out_(&description), whitest_(whitest), max_parts_(max_parts) {}
+        : out_(&description), whitest_(whitest), max_parts_(max_parts), next_trim_(2 * max_varying) {}
 
     /// Gives a face its colours. The material must not emit if there is a picture of its exitance that is left out.
     void show(std::size_t face, FaceColours colours);
@@ -35,8 +35,12 @@ class TexturedFaces {
     /// Valid after finish(). Returns a warning about variation within faces and parts, which is averaged, or nothing.
     /// The caller sets the warning's file and line.
     std::optional<Finding> finding() const;
+    /// Like finding(), about faces with holes.
+    std::optional<Finding> finding_of_holes() const;
 
   private:
+    /// Limit on the faces that are candidates for cuts: memory of about 1 kB each.
+    static constexpr std::size_t max_varying = std::size_t(1) << 18;
     using Key = std::vector<int>;
     struct Sum {
         Spectrum reflectance, exitance, squares;  ///< Sum of squared reflectances.
@@ -54,6 +58,8 @@ class TexturedFaces {
         void add(const ColourRange& range, double of, bool varies, const std::string& name);
     };
     void keep(VaryingFace face);
+    /// Decides whether a face with holes stays whole: as many stay as the pictures cover, of each material.
+    bool stays(const VaryingFace& face);
     /// Adds a face or a part with its final colour.
     void add(std::size_t face, const PartColour& colour, double area);
     void replace_cut_faces();
@@ -67,6 +73,15 @@ class TexturedFaces {
     std::vector<Spectrum> deviation_;
     Variation reflects_, emits_;
     std::size_t cut_faces_ = 0, parts_ = 0;
+    std::size_t next_trim_;  ///< Number of varying faces at which those of least effect are dropped.
+    /// Faces with holes.
+    struct Holes {
+        std::size_t faces = 0, uncut = 0;
+        double area = 0, misplaced = 0;           ///< m^2
+        std::map<std::uint32_t, double> balance;  ///< Per material: opaque area that was left out so far, m^2.
+        std::vector<std::uint32_t> before;        ///< Corners of the face before, whose back may follow.
+        bool before_stays = false;
+    } holes_;
 };
 
 }  // namespace exitance

@@ -91,17 +91,18 @@ class GltfUvs {
         for (std::size_t k = 0; k < 3; ++k)
             out.place[k] = {places.at(triangle.vertices[k], 0), places.at(triangle.vertices[k], 1)};
         const Normal n = normalized(cross(out.corner[1] - out.corner[0], out.corner[2] - out.corner[0]));
-        const Point middle = (out.corner[0] + out.corner[1] + out.corner[2]) / 3;
-        const SurfaceId front = locator_.find(middle, n), back = locator_.find(middle, -1 * n);
-        if (!front.is_none() && !back.is_none())
-            for (const SurfaceId part : parts_.of(back))
+        std::vector<SurfaceId> found = parts_.find(locator_, out.corner, n);
+        const std::vector<SurfaceId> back = parts_.find(locator_, out.corner, -1 * n);
+        const bool is_turned = found.empty();  // a face whose front is missing was turned when it was read
+        if (!is_turned)
+            for (const SurfaceId part : back)
                 if (matched_[part] == Match::none) matched_[part] = Match::back;
-        // A face whose front is missing was turned when it was read.
-        out.surface = front.is_none() ? back : front;
-        if (out.surface.is_none()) return;
-        if (front.is_none()) std::swap(out.corner[1], out.corner[2]), std::swap(out.place[1], out.place[2]);
+        if (is_turned) found = back;
+        if (found.empty()) return;
+        out.surface = found[0];
+        if (is_turned) std::swap(out.corner[1], out.corner[2]), std::swap(out.place[1], out.place[2]);
         out.object = object_of(triangle.node);
-        for (const SurfaceId part : parts_.of(out.surface)) add_part(part, out);
+        for (const SurfaceId part : found) add_part(part, out);
     }
 
     /// Adds a triangle of the file, or that part of it which became a face.

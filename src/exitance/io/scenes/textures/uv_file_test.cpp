@@ -1,6 +1,7 @@
 #include "exitance/io/scenes/textures/uv_file.hpp"
 
 #include <gtest/gtest.h>
+#include <png.h>
 
 #include <algorithm>
 #include <cmath>
@@ -237,6 +238,33 @@ TEST_F(UvFile, PartsOfCutTrianglesKeepTheirCoordinates) {
     }
     EXPECT_NEAR(area, 2 * 0.36, 1e-6);
     EXPECT_EQ(uvs->back_faces, scene.surfaces().size() / 2);
+}
+
+TEST_F(UvFile, TrianglesWithAHoleInTheMiddleKeepTheirCoordinates) {
+    // Pixels of the picture's left upper 8 x 8, which the square shows, are opaque at the border only.
+    std::string rgba;
+    for (int y = 0; y < 20; ++y)
+        for (int x = 0; x < 20; ++x)
+            rgba += std::string(3, '\x80') + (x < 1 || y < 1 || x > 6 || y > 6 ? '\xff' : '\0');
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION, image.width = image.height = 20, image.format = PNG_FORMAT_RGBA;
+    ASSERT_TRUE(
+        png_image_write_to_file(&image, std::string(folder_ / "frame.png").c_str(), 0, rgba.data(), 0, nullptr));
+    test::GltfText text = square(false);
+    text.materials =
+        R"({"alphaMode":"MASK","pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":1},"metallicFactor":0}})";
+    text.textures = R"({"source":0})", text.images = R"({"uri":"frame.png"})";
+    const std::string path = write("square.glb", text.glb());
+    const Scene scene = load(path);
+    double area = 0;
+    for (const Surface& s : scene.surfaces()) area += s.area;
+    EXPECT_NEAR(area, 2 * (1 - 36.0 / 64), 1e-6);
+    const Result<UvSet> uvs = load_uv_set(scene, path, "TEXCOORD_0");
+    ASSERT_TRUE(uvs) << uvs.error().message;
+    double shown = 0;
+    for (const UvTriangle& t : uvs->triangles)
+        shown += 0.5 * std::abs(cross(t.place[1] - t.place[0], t.place[2] - t.place[0]));
+    EXPECT_NEAR(shown, 0.04 * area, 1e-6);
 }
 
 TEST_F(UvFile, AnObjFileOfCutFacesOnlyKeepsItsCoordinates) {
