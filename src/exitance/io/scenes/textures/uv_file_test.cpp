@@ -240,6 +240,32 @@ TEST_F(UvFile, PartsOfCutTrianglesKeepTheirCoordinates) {
     EXPECT_EQ(uvs->back_faces, scene.surfaces().size() / 2);
 }
 
+TEST_F(UvFile, ObjAndGltfAreCutAlike) {
+    ASSERT_TRUE(write_png(folder_ / "tones.png", two_tones(20, 0.05), {}));
+    test::GltfText text = square(false);
+    text.materials =
+        R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0},"baseColorFactor":[0.5,0.5,0.5,1],"metallicFactor":0}})";
+    text.textures = R"({"source":0})", text.images = R"({"uri":"tones.png"})";
+    text.nodes = R"({"mesh":0})";
+    const Scene gltf = load(write("square.glb", text.glb()));
+    write("m.mtl", "newmtl t\nKd 0.5 0.5 0.5\nmap_Kd tones.png\n");
+    LoadOptions options;
+    options.y_is_up = true;
+    const Scene obj = load(write("square.obj",
+                                 "mtllib m.mtl\nv 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nvt 0 1\nvt 0 0.8\nvt 0.2 0.8\n"
+                                 "vt 0.2 1\nusemtl t\nf 1/1 2/2 3/3 4/4\n"),
+                           options);
+    // The border is at x = 0.25: both are a bright and a dark rectangle, whether of triangles or of one face.
+    ASSERT_EQ(obj.regions().size(), 2u);
+    ASSERT_EQ(gltf.regions().size(), 2u);
+    for (const RegionId r : obj.regions().ids()) {
+        EXPECT_NEAR(obj.regions()[r].area, gltf.regions()[r].area, 1e-6);
+        for (std::size_t b = 0; b < bands; ++b)
+            EXPECT_NEAR(obj.material(r).reflectance[b], gltf.material(r).reflectance[b], 1e-6);
+    }
+    EXPECT_NEAR(std::min(obj.regions()[RegionId(0)].area, obj.regions()[RegionId(1)].area), 0.25, 1e-6);
+}
+
 TEST_F(UvFile, TrianglesWithAHoleInTheMiddleKeepTheirCoordinates) {
     // Pixels of the picture's left upper 8 x 8, which the square shows, are opaque at the border only.
     std::string rgba;
