@@ -109,7 +109,8 @@ api::Scene make(const py::object& vertices, const py::object& faces, const py::o
 
 api::Scene load(const py::args& files, bool strict, const py::object& length_unit, const std::string& up,
                 bool turn_bodies, const py::object& luminaires, const std::optional<std::string>& sky,
-                const py::object& epw, std::optional<bool> photometric, bool light_groups) {
+                const py::object& epw, std::optional<bool> photometric, bool light_groups,
+                std::optional<std::size_t> texture_parts) {
     std::vector<std::string> paths;
     for (const py::handle file : files) paths.push_back(path_of(py::reinterpret_borrow<py::object>(file)));
     api::LoadOptions options;
@@ -123,6 +124,7 @@ api::Scene load(const py::args& files, bool strict, const py::object& length_uni
     if (!epw.is_none()) options.epw = path_of(epw);
     options.photometric = photometric;
     options.light_groups = light_groups;
+    options.texture_parts = texture_parts;
     return run<api::Scene>(py::none(),
                            [&](const api::Control& control) { return api::load(std::span(paths), options, control); });
 }
@@ -211,7 +213,9 @@ luminaires    path of a table (CSV) of luminaires to add
 sky           light from outside, such as "overcast" or "perez,lat=47.4,lon=8.5,time=06-21T12:00,dni=700,dhi=120"
 epw           path of a weather file with place and irradiances for `sky`
 photometric   emission is in lumens; None: as the file says
-light_groups  keeps the emitters of each group apart; solve() then also solves each group, for Solution.mix())doc";
+light_groups  keeps the emitters of each group apart; solve() then also solves each group, for Solution.mix()
+texture_parts limit on the parts into which textured faces are cut where their colour varies; None: 500 and one more
+              for each four faces, 0: faces are not cut)doc";
 
 }  // namespace
 
@@ -243,7 +247,7 @@ void add_scenes(py::module_& m) {
     static const std::string load_doc = std::string(docs::load) + load_arguments;
     m.def("load", &load, "strict"_a = false, "length_unit"_a = py::none(), "up"_a = "", "turn_bodies"_a = false,
           "luminaires"_a = py::none(), "sky"_a = py::none(), "epw"_a = py::none(), "photometric"_a = py::none(),
-          "light_groups"_a = false, load_doc.c_str());
+          "light_groups"_a = false, "texture_parts"_a = py::none(), load_doc.c_str());
 }
 
 }  // namespace python

@@ -15,10 +15,13 @@ struct LoadOptions {
     std::optional<double> length_unit = {};  ///< Metres per unit of .obj, .stl, .ply and .vs3 files; none: 1.
     std::optional<bool> y_is_up = {};        ///< Upright axis of these files is Y; none: Z.
     bool turn_bodies = false;                ///< Reverses the faces of closed bodies that are inside out.
-    std::string luminaires = {};             ///< Table (CSV) of luminaires to add; empty: none.
-    std::string sky = {};                    ///< Light from outside, such as "overcast" or "perez,lat=47,lon=8,...".
-    std::string epw = {};                    ///< Weather file with place and irradiances for `sky`; empty: none.
-    std::optional<bool> photometric = {};    ///< Emission is in lumens; none: as the file says.
+    /// Limit on the parts into which textured faces are cut; none: 500 and one more for each four faces, 0: no face is
+    /// cut.
+    std::optional<std::size_t> texture_parts = {};
+    std::string luminaires = {};           ///< Table (CSV) of luminaires to add; empty: none.
+    std::string sky = {};                  ///< Light from outside, such as "overcast" or "perez,lat=47,lon=8,...".
+    std::string epw = {};                  ///< Weather file with place and irradiances for `sky`; empty: none.
+    std::optional<bool> photometric = {};  ///< Emission is in lumens; none: as the file says.
     /// Keeps the emitters of each group apart; solve() then also solves each group, for Solution::mix. It takes the
     /// time of all these solves.
     bool light_groups = false;

@@ -291,6 +291,7 @@ def load(
     epw: Union[None, _Path] = None,
     photometric: Union[None, bool] = None,
     light_groups: bool = False,
+    texture_parts: Union[None, int] = None,
 ) -> Scene:
     """Reads the files of one scene, checks and repairs it."""
 def load_solution(path: _Path) -> Solution:

@@ -56,6 +56,7 @@ std::string with_scene_options(const std::string& options, const LoadOptions& lo
     if (load.metres_per_unit) json["length_unit"] = *load.metres_per_unit;
     if (load.y_is_up) json["up"] = *load.y_is_up ? "y" : "z";
     if (load.turn_bodies) json["turn_bodies"] = true;
+    if (load.texture_parts) json["texture_parts"] = *load.texture_parts;
     return dump(json, -1);
 }
 

@@ -32,7 +32,8 @@ std::string forecast_json(const Forecast& forecast);
 /// Options that affect the light, as a solution file records them. Threads and limits are not among them.
 std::string options_json(const SolveRequest& request);
 
-/// Adds to `options` (JSON) those options for reading the scene that were given: length_unit (metres), up, turn_bodies.
+/// Adds to `options` (JSON) those options for reading the scene that were given: length_unit (metres), up, turn_bodies,
+/// texture_parts.
 std::string with_scene_options(const std::string& options, const LoadOptions& load);
 
 /// Options of a published form, with the facts about its solve.

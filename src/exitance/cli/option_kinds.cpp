@@ -130,6 +130,12 @@ void declare_scene(CLI::App& app, SceneArguments& scene) {
     app.add_flag("--turn-bodies", scene.load.turn_bodies,
                  "Turn the faces of closed bodies that are inside out. Use it where check reports such bodies")
         ->group("Scene");
+    app.add_option("--texture-parts", scene.load.texture_parts,
+                   "Limit on the parts into which textured faces are cut where their colour varies. Each part reflects "
+                   "and emits the mean of its part of the texture; 0: faces are not cut. Default 500 and one more for "
+                   "each four faces")
+        ->type_name("N")
+        ->group("Scene");
     app.add_flag("--run-commands", scene.load.run_commands,
                  "Run '!' lines of .rad files with the installed Radiance programs")
         ->group("Scene");

@@ -96,7 +96,8 @@ void add_texture_error(Solution& solution, std::span<const Spectrum> deviation, 
     constexpr double reported_share = 0.1;
     if (missed || error > reported_share * before)
         s.warnings.push_back(
-            fmt::format("textures vary within faces, but a face reflects its mean: this causes an error of {:.3g}%, "
+            fmt::format("textures vary within faces, but a face or a part of it reflects its mean: this causes an "
+                        "error of {:.3g}%, "
                         "which the estimate includes; without it the estimate is {:.3g}%",
                         100 * error, 100 * before));
     if (missed) s.converged = false;

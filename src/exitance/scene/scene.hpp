@@ -67,7 +67,8 @@ struct Surface {
     RegionId region;
     int line = 0;  ///< Line in the scene file; 0 if it does not come from a file.
     Normal normal;
-    double area = 0;  ///< m^2
+    double area = 0;          ///< m^2
+    std::uint32_t whole = 0;  ///< For a part of a textured face: a number that all parts of that face share; else 0.
 };
 
 /// Coplanar, edge-sharing faces of one material, treated as one polygon however finely it was subdivided.
@@ -112,6 +113,7 @@ struct SceneDescription {
         std::uint32_t material = 0;          ///< Index into `materials`.
         std::uint32_t group = 0;             ///< Index into `groups`.
         int line = 0;
+        std::uint32_t whole = 0;  ///< For a part of a face: a number that all parts of that face share; else 0.
     };
     std::string file;
     std::vector<Point> points;

@@ -62,7 +62,7 @@ Scene SceneBuilder::make() {
         surface.corner_count = mesh_.first[f + 1] - mesh_.first[f];
         surface.material = MaterialId(face.material);
         surface.group = GroupId(face.group);
-        surface.line = face.line;
+        surface.line = face.line, surface.whole = face.whole;
         surface.area = norm(mesh_.area_vector[f]);
         if (in_.materials[face.material].emits()) scene.emitters_.push_back(SurfaceId(f));
     }

@@ -354,6 +354,8 @@ ExitCode run(const ViewFactorArguments& arguments, Terminal& terminal) {
     if (!fit) return terminal.fail(fit.error());
     SceneArguments scene = arguments.scene;
     scene.load.stop = &asked, scene.load.without_panes = true, scene.load.needs_light = false;
+    // View factors do not depend on colours: rows are faces of the file unless parts are requested.
+    if (!scene.load.texture_parts) scene.load.texture_parts = 0;
     const LoadedScene checked = load_for_all(scene);
     show_geometry_findings(checked, terminal);
     if (!checked.scene) return terminal.fail(checked);

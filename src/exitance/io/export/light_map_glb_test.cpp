@@ -47,7 +47,7 @@ std::string write_textured_floor(const TemporaryFolder& folder) {
 
 Solution lit(const std::string& path) {
     Solution s;
-    CheckedScene checked = make_scene(read_gltf(path).description);
+    CheckedScene checked = make_scene(read_gltf(path, 0).description);
     EXI_CHECK(static_cast<bool>(checked.scene));
     s.scene = std::move(*checked.scene);
     s.indirect = sample_function(s.scene, 1, 0);

@@ -2,6 +2,7 @@
 
 #include <png.h>
 
+#include <algorithm>
 #include <csetjmp>
 #include <cstring>
 
@@ -127,6 +128,9 @@ Result<TexturePixels> decode_png(std::span<const std::uint8_t> file) {
     if (!png_image_finish_read(&image, nullptr, rgba.data(), 0, nullptr)) return unreadable;
     TexturePixels out{image.width, image.height, {}};
     out.rgb.reserve(rgba.size() / 4 * 3);
+    for (std::size_t i = 3; i < rgba.size(); i += 4) out.opacity.push_back(rgba[i]);
+    if (std::all_of(out.opacity.begin(), out.opacity.end(), [](std::uint8_t a) { return a == 255; }))
+        out.opacity.clear();
     for (std::size_t i = 0; i < rgba.size(); i += 4)
         out.rgb.insert(out.rgb.end(), rgba.begin() + static_cast<std::ptrdiff_t>(i),
                        rgba.begin() + static_cast<std::ptrdiff_t>(i + 3));

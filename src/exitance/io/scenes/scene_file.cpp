@@ -96,6 +96,14 @@ ReadScene read_view3d_scene(const std::string& path) {
     return read_view3d(path);
 }
 
+/// Reads textured scenes with the default number of parts; read_files() passes the requested one.
+ReadScene read_obj_scene(const std::string& path) {
+    return read_obj(path);
+}
+ReadScene read_gltf_scene(const std::string& path) {
+    return read_gltf(path);
+}
+
 /// Reads the highest level of detail; read_files() calls read_cityjson() with the requested one.
 ReadScene read_city(const std::string& path) {
     return read_cityjson(path, "");
@@ -103,14 +111,14 @@ ReadScene read_city(const std::string& path) {
 
 Reader reader_of(const std::string& path) {
     const std::string end = ending(path);
-    if (end == ".obj") return read_obj;
+    if (end == ".obj") return read_obj_scene;
     if (end == ".rad") return read_radiance;
     if (end == ".vs3") return read_view3d_scene;
     if (end == ".stl") return read_stl;
     if (end == ".ply") return read_ply;
     if (is_honeybee_file(path)) return read_honeybee;
     if (end == ".json") return read_city;
-    if (end == ".gltf" || end == ".glb" || looks_like_gltf(path)) return read_gltf;
+    if (end == ".gltf" || end == ".glb" || looks_like_gltf(path)) return read_gltf_scene;
     return nullptr;
 }
 
@@ -124,9 +132,12 @@ void append(SceneDescription& all, SceneDescription more) {
     const auto size = [](const auto& pool) { return static_cast<std::uint32_t>(pool.size()); };
     const std::uint32_t points = size(all.points), materials = size(all.materials), groups = size(all.groups),
                         profiles = size(all.profiles);
+    std::uint32_t wholes = 0;
+    for (const SceneDescription::Face& face : all.faces) wholes = std::max(wholes, face.whole);
     for (SceneDescription::Face& face : more.faces) {
         for (std::uint32_t& corner : face.corners) corner += points;
         face.material += materials, face.group += groups;
+        if (face.whole > 0) face.whole += wholes;
     }
     for (Material& material : more.materials)
         if (!material.emission.profile.is_none())
@@ -145,7 +156,7 @@ int last_line(const SceneDescription& description) {
 
 /// True for glTF, which defines metres and Y up, and for Honeybee models, which name their unit and have Z up.
 bool says_units(Reader reader) {
-    return reader == Reader(read_gltf) || reader == Reader(read_honeybee);
+    return reader == Reader(read_gltf_scene) || reader == Reader(read_honeybee);
 }
 
 /// Converts a file without defined units to metres and Z up. Radiances and emission profiles do not depend on the unit
@@ -195,9 +206,11 @@ ReadScene read_files(std::span<const std::string> paths, const LoadOptions& opti
     for (const std::string& path : paths) {
         const Reader read = reader_of(path);
         if (!read || (read == Reader(read_radiance) && path != radiance.front())) continue;
-        ReadScene one = read == Reader(read_radiance) ? read_radiance(radiance, options)
-                        : read == Reader(read_city)   ? read_cityjson(path, options.lod)
-                                                      : read(path);
+        ReadScene one = read == Reader(read_radiance)     ? read_radiance(radiance, options)
+                        : read == Reader(read_city)       ? read_cityjson(path, options.lod)
+                        : read == Reader(read_obj_scene)  ? read_obj(path, options.texture_parts)
+                        : read == Reader(read_gltf_scene) ? read_gltf(path, options.texture_parts)
+                                                          : read(path);
         if (!says_units(read)) convert_units(one, options);
         if (one.lines.empty() && paths.size() > 1) one.lines.add(path, last_line(one.description));
         if (is_first) {

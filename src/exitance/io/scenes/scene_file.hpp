@@ -43,6 +43,8 @@ struct LoadOptions {
     /// False where emission does not matter (view factors) or comes with the run (a year of daylight): a material file
     /// that cannot be read is then a repair even if nothing emits.
     bool needs_light = true;
+    /// Limit on the parts into which textured faces are cut; none: `default_texture_parts`, 0: no face is cut.
+    std::optional<std::size_t> texture_parts = {};
     std::string lod = {};  ///< Level of detail to read from .city.json files; empty: the highest.
 };
 

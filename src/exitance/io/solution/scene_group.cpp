@@ -118,6 +118,9 @@ void write_faces(Hdf5Writer& file, const std::string& group, const Field<Surface
                               {"1", "row of a face's region"});
     face.write<std::int32_t>("face_line", [](const Surface& s) { return s.line; },
                              {"1", "line of a face in the scene's file"});
+    if (std::any_of(faces.begin(), faces.end(), [](const Surface& s) { return s.whole > 0; }))
+        face.write<std::uint32_t>("face_whole", [](const Surface& s) { return s.whole; },
+                                  {"1", "number shared by the parts of a textured face; 0: not a part"});
     face.write<double>("face_area", [](const Surface& s) { return s.area; }, {"m^2", "area of a face"});
     file.write(group + "/face_normal", flat(column<Normal>(faces, [](const Surface& s) { return s.normal; })), 3,
                {"1", "unit normal of a face, towards its front"});
@@ -194,15 +197,19 @@ struct FaceColumns {
     std::vector<std::int32_t> line;
     std::vector<double> area;
     std::vector<Normal> normal;
+    std::vector<std::uint32_t> whole;
 
-    FaceColumns(Columns& in, std::size_t materials, std::size_t groups)
+    FaceColumns(Hdf5Reader& file, const std::string& in_group, Columns& in, std::size_t materials, std::size_t groups)
         : corner_count(in.read<std::uint32_t>("face_corner_count")),
           first_corner(in.read<std::uint32_t>("face_first_corner", 1, size())),
           material(in.indices("face_material", materials, size())),
           group(in.indices("face_group", groups, size())),
           line(in.read<std::int32_t>("face_line", 1, size())),
           area(in.read<double>("face_area", 1, size())),
-          normal(in.normals("face_normal", size())) {}
+          normal(in.normals("face_normal", size())),
+          whole(size()) {
+        if (file.has(in_group + "/face_whole")) whole = in.read<std::uint32_t>("face_whole", 1, size());
+    }
 
     std::size_t size() const { return corner_count.size(); }
 
@@ -299,7 +306,7 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
     scene.corners_ = in.points("corner");
     const MaterialColumns materials(file, group, in);
     const std::vector<std::string> group_names = file.read_texts(group + "/group_name");
-    const FaceColumns faces(in, materials.name.size(), group_names.size());
+    const FaceColumns faces(file, group, in, materials.name.size(), group_names.size());
     const RegionColumns regions(file, group, in, faces.size(), materials.name.size());
     const auto emitters = in.indices("emitter", faces.size());
     const auto box = in.points("box", 2);
@@ -322,7 +329,7 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
     for (std::size_t i = 0; i < faces.size(); ++i)
         scene.surfaces_.add({faces.first_corner[i], faces.corner_count[i], MaterialId(faces.material[i]),
                              GroupId(faces.group[i]), RegionId(regions.of_face[i]), faces.line[i], faces.normal[i],
-                             faces.area[i]});
+                             faces.area[i], faces.whole[i]});
     scene.regions_ = regions.regions();
     for (std::uint32_t s : emitters) scene.emitters_.emplace_back(s);
     scene.box_.lo = box[0], scene.box_.hi = box[1];

@@ -271,6 +271,34 @@ TEST(StoredSceneInMemory, KeepsDiffusingPanesAndTheirOtherSides) {
     for (const RegionId r : scene.regions().ids()) EXPECT_EQ(back->regions()[r].behind, scene.regions()[r].behind);
 }
 
+TEST(StoredScene, KeepsTheWholesOfParts) {
+    SceneDescription d;
+    d.file = "parts.obj";
+    d.materials = {{"lamp", Spectrum(0.5), Spectrum(1)}};
+    d.groups = {"all"};
+    d.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0}};
+    for (const std::uint32_t whole : {0u, 7u}) {
+        d.faces = {{{0, 1, 2, 3}, 0, 0, 3, whole}, {{1, 4, 5, 2}, 0, 0, 3, whole}};
+        const CheckedScene made = make_scene(d);
+        ASSERT_TRUE(made.scene);
+        const TemporaryFolder folder;
+        {
+            Hdf5Writer file(folder / "scene.h5");
+            StoredScene::write(file, "scene", *made.scene);
+            ASSERT_TRUE(file.commit());
+        }
+        Result<Hdf5Reader> file = Hdf5Reader::open(folder / "scene.h5");
+        ASSERT_TRUE(file);
+        EXPECT_EQ(file->has("scene/face_whole"), whole > 0);
+        const Scene back = StoredScene::read(*file, "scene");
+        ASSERT_FALSE(file->failed());
+        for (const Surface& s : back.surfaces()) EXPECT_EQ(s.whole, whole);
+        const Result<Scene> sent = StoredScene::from_bytes(StoredScene::bytes_of(*made.scene));
+        ASSERT_TRUE(sent);
+        for (const Surface& s : sent->surfaces()) EXPECT_EQ(s.whole, whole);
+    }
+}
+
 TEST(StoredSceneInMemory, FingerprintsDependOnWhatPanesTransmit) {
     EXPECT_EQ(scene_fingerprint(scene_with_pane(0.5)), scene_fingerprint(scene_with_pane(0.5)));
     EXPECT_NE(scene_fingerprint(scene_with_pane(0.5)), scene_fingerprint(scene_with_pane(0.4)));

@@ -362,7 +362,12 @@ void GltfReader::read_materials() {
         m.transmission = number_in(in.extensions, "KHR_materials_transmission", "transmissionFactor", 0);
         m.diffuse_transmission =
             number_in(in.extensions, "KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", 0);
-        m.transparent = in.alphaMode == "BLEND" || in.alphaMode == "MASK";
+        // The opacity of the texture is multiplied by that of the base colour.
+        const std::vector<double>& factor = in.pbrMetallicRoughness.baseColorFactor;
+        const double opacity = factor.size() > 3 ? factor[3] : 1;
+        const bool is_mask = in.alphaMode == "MASK" && m.base_texture.picture >= 0 && opacity > 0;
+        if (is_mask) m.hole_opacity = in.alphaCutoff / opacity;
+        m.transparent = in.alphaMode == "BLEND" || (in.alphaMode == "MASK" && !is_mask && opacity < in.alphaCutoff);
         out_.materials.push_back(std::move(m));
     }
 }

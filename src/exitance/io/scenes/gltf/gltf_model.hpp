@@ -90,6 +90,8 @@ struct GltfModel {
         double diffuse_transmission = 0;
         double transmission = 0;  ///< KHR_materials_transmission: share of light that passes without scattering.
         bool double_sided = false, transparent = false;
+        /// For masks: opacity of the base texture below which there are holes; 0: no holes.
+        double hole_opacity = 0;
         TextureUse base_texture, emission_texture;  ///< Set if textures were requested.
     };
     struct View {

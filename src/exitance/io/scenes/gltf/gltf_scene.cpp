@@ -9,6 +9,7 @@
 #include "exitance/io/photometry/photometric_file.hpp"
 #include "exitance/io/scenes/gltf/gltf.hpp"
 #include "exitance/io/scenes/gltf/gltf_model.hpp"
+#include "exitance/io/scenes/textures/masked_picture.hpp"
 #include "exitance/io/scenes/textures/textured_faces.hpp"
 
 namespace exitance {
@@ -37,28 +38,30 @@ bool is_clear_glass(const GltfModel::Material& m) {
 
 class SceneMaker {
   public:
-    SceneMaker(const GltfModel& in, ReadScene& out)
+    SceneMaker(const GltfModel& in, ReadScene& out, std::optional<std::size_t> texture_parts)
         : in_(in),
           out_(out.description),
           findings_(out.findings),
           luminaires_(out.luminaires),
           deviation_(out.reflectance_deviation),
-          pane_labels_(out.pane_labels) {}
+          pane_labels_(out.pane_labels),
+          textured_(out_, max_reflectance, texture_parts) {}
     void make();
 
   private:
     void make_materials();
     void report_materials();
+    void read_holes();
     std::uint32_t material_of(int material);
     bool visit_nodes();
     bool add_mesh(const GltfModel::Node& node, const Affine& to_world);
     bool add_primitive(const GltfModel::Primitive& p, const GltfModel::Mesh& mesh, const Affine& to_world);
     bool add_pane(const std::array<std::uint32_t, 3>& c, std::uint32_t material);
     void add_triangle(std::array<std::uint32_t, 3> corners, bool double_sided, std::uint32_t material,
-                      const ShownColour& colour);
-    ShownColour colour_of(const GltfModel::Primitive& p, const std::array<std::uint32_t, 3>& vertices);
-    ShownPart shown(const GltfModel::TextureUse& texture, const GltfModel::Primitive& p,
-                    const std::array<std::uint32_t, 3>& vertices);
+                      FaceColours colours);
+    FaceColours colours_of(const GltfModel::Primitive& p, const std::array<std::uint32_t, 3>& vertices);
+    FacePicture shown(const GltfModel::TextureUse& texture, const GltfModel::Primitive& p,
+                      const std::array<std::uint32_t, 3>& vertices);
     std::uint32_t corner(const GltfModel::Primitive& p, const Affine& to_world, std::uint32_t index);
     void add_lamp(const GltfModel::Lamp& lamp, const Affine& to_world);
     void add_view(const GltfModel::View& view, const Affine& to_world);
@@ -86,7 +89,8 @@ class SceneMaker {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> used_;
     std::uint32_t round_ = 0;
     int accessor_ = -1;
-    TexturedFaces textured_{out_, max_reflectance};
+    TexturedFaces textured_;
+    std::map<int, MaskedPicture> masked_;                 ///< Base textures with holes, by material.
     std::map<int, std::optional<TextureArea>> pictures_;  ///< Textures in use; empty: cannot be read.
 };
 
@@ -96,6 +100,24 @@ void SceneMaker::make_materials() {
         for (double& v : out.reflectance.value) v = std::clamp(v * std::clamp(1 - m.metallic, 0.0, 1.0), 0.0, 1.0);
         if (max(out.reflectance) > 0) out.through = std::clamp(m.diffuse_transmission, 0.0, 1.0);
         out_.materials.push_back(std::move(out));
+    }
+}
+
+/// Reads base textures with holes. The colour of a material is then that of the opaque part of its texture.
+void SceneMaker::read_holes() {
+    for (std::size_t i = 0; i < in_.materials.size(); ++i) {
+        const GltfModel::Material& m = in_.materials[i];
+        if (!(m.hole_opacity > 0)) continue;
+        const std::span<const std::uint8_t> file = in_.pictures[static_cast<std::size_t>(m.base_texture.picture)];
+        Result<std::optional<MaskedPicture>> masked = decode_masked(file, m.hole_opacity, srgb_curve());
+        const Result<std::array<double, 3>> whole = mean_colour(file, srgb_curve());
+        if (!masked || !*masked || !whole) continue;  // no holes, or a failure that was reported with the material
+        const TextureArea::Colour opaque = (*masked)->colour.mean();
+        const Spectrum before = spread({(*whole)[0], (*whole)[1], (*whole)[2]});
+        const Spectrum after = spread({opaque[0], opaque[1], opaque[2]});
+        for (std::size_t b = 0; b < bands; ++b)
+            if (before[b] > 0) out_.materials[i].reflectance[b] *= after[b] / before[b];
+        masked_.emplace(static_cast<int>(i), std::move(**masked));
     }
 }
 
@@ -158,9 +180,9 @@ bool SceneMaker::add_pane(const std::array<std::uint32_t, 3>& c, std::uint32_t m
     return true;
 }
 
-/// Part of a texture that is shown on a triangle.
-ShownPart SceneMaker::shown(const GltfModel::TextureUse& texture, const GltfModel::Primitive& p,
-                            const std::array<std::uint32_t, 3>& vertices) {
+/// Texture on a triangle.
+FacePicture SceneMaker::shown(const GltfModel::TextureUse& texture, const GltfModel::Primitive& p,
+                              const std::array<std::uint32_t, 3>& vertices) {
     if (texture.picture < 0 || static_cast<std::size_t>(texture.picture) >= in_.pictures.size()) return {};
     const GltfRows& places = p.places[static_cast<std::size_t>(texture.place_set)];
     if (places.size() == 0) return {};
@@ -171,52 +193,45 @@ ShownPart SceneMaker::shown(const GltfModel::TextureUse& texture, const GltfMode
         if (area) picture->second = std::move(*area);  // a failure was reported with the material
     }
     if (!picture->second) return {};
-    std::array<Vec2, 3> outline;
-    for (std::size_t k = 0; k < 3; ++k)
-        outline[k] = texture.moved({places.at(vertices[k], 0), places.at(vertices[k], 1)});
-    return relative(*picture->second, outline, TextureArea::wrap_of(texture.wrap_s),
-                    TextureArea::wrap_of(texture.wrap_t));
+    FacePicture out{&*picture->second, {}, TextureArea::wrap_of(texture.wrap_s), TextureArea::wrap_of(texture.wrap_t)};
+    for (const std::uint32_t v : vertices) out.places.push_back(texture.moved({places.at(v, 0), places.at(v, 1)}));
+    return out;
 }
 
-/// Multiplies a part of a texture by the colours of a triangle's vertices, which vary linearly in between.
-void multiply(ShownPart& part, const GltfRows& colours, const std::array<std::uint32_t, 3>& vertices) {
-    std::array<Spectrum, 3> c;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const auto channel = [&](std::size_t i) { return std::clamp(colours.at(vertices[k], i), 0.0, 1.0); };
-        c[k] = spread({channel(0), channel(1), channel(2)});
+/// Colours of a triangle: its textures, and the colours of its vertices, which multiply the base colour.
+FaceColours SceneMaker::colours_of(const GltfModel::Primitive& p, const std::array<std::uint32_t, 3>& vertices) {
+    FaceColours out;
+    if (p.material >= 0) {
+        const GltfModel::Material& m = in_.materials[static_cast<std::size_t>(p.material)];
+        out.reflectance = shown(m.base_texture, p, vertices);
+        if (const auto masked = masked_.find(p.material); masked != masked_.end() && out.reflectance.picture) {
+            out.coverage = out.reflectance;
+            out.reflectance.picture = &masked->second.colour, out.coverage.picture = &masked->second.coverage;
+        }
+        if (out_.materials[static_cast<std::size_t>(p.material)].emits())
+            out.exitance = shown(m.emission_texture, p, vertices);
     }
-    for (std::size_t b = 0; b < bands; ++b) {
-        const double mean = (c[0][b] + c[1][b] + c[2][b]) / 3;
-        double variance = 0;
-        for (const Spectrum& at : c) variance += (at[b] - mean) * (at[b] - mean) / 12;
-        part.deviation[b] =
-            std::sqrt(std::pow(part.deviation[b], 2) * (mean * mean + variance) + std::pow(part.mean[b], 2) * variance);
-        part.mean[b] *= mean;
-        part.lowest[b] *= std::min({c[0][b], c[1][b], c[2][b]});
-        part.highest[b] *= std::max({c[0][b], c[1][b], c[2][b]});
+    if (p.colours.size() == 0) return out;
+    for (const std::uint32_t v : vertices) {
+        const auto channel = [&](std::size_t i) { return std::clamp(p.colours.at(v, i), 0.0, 1.0); };
+        out.corner_factors.push_back(spread({channel(0), channel(1), channel(2)}));
     }
-}
-
-ShownColour SceneMaker::colour_of(const GltfModel::Primitive& p, const std::array<std::uint32_t, 3>& vertices) {
-    ShownColour out;
-    if (p.material >= 0)
-        out.reflectance = shown(in_.materials[static_cast<std::size_t>(p.material)].base_texture, p, vertices);
-    if (p.colours.size() > 0) multiply(out.reflectance, p.colours, vertices);
-    if (p.material < 0) return out;
-    const GltfModel::Material& m = in_.materials[static_cast<std::size_t>(p.material)];
-    if (out_.materials[static_cast<std::size_t>(p.material)].emits())
-        out.exitance = shown(m.emission_texture, p, vertices);
     return out;
 }
 
 void SceneMaker::add_triangle(std::array<std::uint32_t, 3> c, bool double_sided, std::uint32_t material,
-                              const ShownColour& colour) {
+                              FaceColours colours) {
     if (add_pane(c, material)) return;
+    const auto turn = [](auto& of_corners) {
+        if (!of_corners.empty()) std::swap(of_corners[1], of_corners[2]);
+    };
     const auto group = static_cast<std::uint32_t>(out_.groups.size() - 1);
     for (int side = 0; side < (double_sided ? 2 : 1); ++side) {
         out_.faces.push_back({{c.begin(), c.end()}, material, group, 0});
-        textured_.show(out_.faces.size() - 1, colour);
+        if (colours.vary()) textured_.show(out_.faces.size() - 1, colours);
         std::swap(c[1], c[2]);
+        turn(colours.reflectance.places), turn(colours.exitance.places), turn(colours.coverage.places),
+            turn(colours.corner_factors);
     }
     ++triangles_;
 }
@@ -250,10 +265,10 @@ bool SceneMaker::add_primitive(const GltfModel::Primitive& p, const GltfModel::M
         }
         if (restart || (p.mode != GltfModel::Mode::triangles && (c[0] == c[1] || c[1] == c[2] || c[2] == c[0])))
             continue;  // strips contain triangles without area to change direction
-        const ShownColour colour = colour_of(p, c);
-        for (std::uint32_t& i : c) i = corner(p, to_world, i);
         if (mirrored) std::swap(c[1], c[2]);
-        add_triangle(c, double_sided, material, colour);
+        FaceColours colours = colours_of(p, c);
+        for (std::uint32_t& i : c) i = corner(p, to_world, i);
+        add_triangle(c, double_sided, material, std::move(colours));
     }
     return true;
 }
@@ -354,11 +369,13 @@ bool SceneMaker::visit_nodes() {
 
 void SceneMaker::make() {
     make_materials();
+    read_holes();
     report_materials();
     if (!visit_nodes()) return out_.faces.clear();
     textured_.finish();
     deviation_ = textured_.reflectance_deviation();
-    if (const std::optional<Finding> finding = textured_.finding()) warn(finding->message, finding->hint);
+    for (const std::optional<Finding>& finding : {textured_.finding(), textured_.finding_of_holes()})
+        if (finding) warn(finding->message, finding->hint);
     if (deformed_ > 0)
         warn(fmt::format("{} {} deformed by skins or morph targets: {} in the rest pose", deformed_,
                          deformed_ == 1 ? "node is" : "nodes are", deformed_ == 1 ? "it stays" : "they stay"));
@@ -366,7 +383,7 @@ void SceneMaker::make() {
 
 }  // namespace
 
-ReadScene read_gltf(const std::string& path) {
+ReadScene read_gltf(const std::string& path, std::optional<std::size_t> texture_parts) {
     ReadScene out;
     out.description.file = path;
     Result<GltfModel> model = load_gltf_model(path, out.findings, true);
@@ -375,7 +392,7 @@ ReadScene read_gltf(const std::string& path) {
         out.findings.push_back({Finding::Kind::error, path, 0, e.message, e.hint});
         return out;
     }
-    SceneMaker(*model, out).make();
+    SceneMaker(*model, out, texture_parts).make();
     for (const GltfModel::Material& m : model->materials)
         if (is_clear_glass(m)) out.glazed_by.push_back(fmt::format("material '{}' ({})", m.name, path));
     return out;

@@ -8,6 +8,7 @@
 
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/textures/masked_picture.hpp"
 
 namespace exitance {
 namespace {
@@ -41,7 +42,8 @@ class MtlReader {
     void read_texture(std::string& name);
     void end_material();
     void take_textures();
-    std::shared_ptr<const TextureArea> picture(const std::string& name, const char* otherwise);
+    std::shared_ptr<const TextureArea> picture(const std::string& name, const std::string& otherwise,
+                                               bool is_coverage = false);
     void take_glass();
     void warn_all();
     void find(Finding::Kind kind, int line, std::string message, std::string hint) {
@@ -57,7 +59,7 @@ class MtlReader {
     std::vector<Finding>& findings_;
     Material material_;
     bool open_ = false, has_reflectance_ = false;
-    int line_ = 0;
+    int line_ = 0, reflectance_line_ = 0;
     std::size_t white_materials_ = 0;
     int white_line_ = 0;  ///< Line of the first of these.
     std::string white_name_;
@@ -65,7 +67,7 @@ class MtlReader {
     double opacity_ = 1;              ///< d
     std::optional<Spectrum> filter_;  ///< Tf
     long long illum_ = 0;
-    std::string texture_, glow_;  ///< map_Kd, map_Ke
+    std::string texture_, glow_, holes_;  ///< map_Kd, map_Ke, map_d
     struct Told {
         std::size_t count = 0;
         int line = 0;
@@ -89,8 +91,8 @@ void MtlReader::read() {
             read_values(std::string(key), key == "Kd" ? &Material::reflectance : &Material::exitance);
         else if (key == "d" || key == "Tf" || key == "illum")
             read_filter(key);
-        else if (key == "map_Kd" || key == "map_Ke")
-            read_texture(key == "map_Kd" ? texture_ : glow_);
+        else if (key == "map_Kd" || key == "map_Ke" || key == "map_d")
+            read_texture(key == "map_Kd" ? texture_ : key == "map_Ke" ? glow_ : holes_);
     }
     end_material();
     warn_all();
@@ -107,8 +109,8 @@ void MtlReader::start_material() {
     material_ = {};
     material_.name = std::string(lines_.rest());
     if (material_.name.empty()) error("'newmtl' without a name");
-    open_ = true, has_reflectance_ = false;
-    opacity_ = 1, filter_.reset(), illum_ = 0, texture_.clear(), glow_.clear();
+    open_ = true, has_reflectance_ = false, reflectance_line_ = lines_.number();
+    opacity_ = 1, filter_.reset(), illum_ = 0, texture_.clear(), glow_.clear(), holes_.clear();
     line_ = lines_.number();
 }
 
@@ -142,18 +144,22 @@ void MtlReader::read_texture(std::string& name) {
     while (!lines_.rest().empty()) name = std::string(lines_.word());
 }
 
-std::shared_ptr<const TextureArea> MtlReader::picture(const std::string& name, const char* otherwise) {
+std::shared_ptr<const TextureArea> MtlReader::picture(const std::string& name, const std::string& otherwise,
+                                                      bool is_coverage) {
     const std::string file = found_beside(file_, name);
-    std::shared_ptr<const TextureArea>& out = extras_.read[file];
+    std::shared_ptr<const TextureArea>& out = is_coverage ? extras_.read_coverage[file] : extras_.read[file];
     if (out) return out;
     const Result<std::string> bytes = read_whole_file(file);
-    Result<TextureArea> area =
-        bytes ? TextureArea::of(std::span(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size()),
-                                srgb_curve())
-              : Result<TextureArea>(bytes.error());
+    Result<TextureArea> area = Error{};
+    if (bytes) {
+        const std::span data(reinterpret_cast<const std::uint8_t*>(bytes->data()), bytes->size());
+        area = is_coverage ? decode_coverage(data, 0.5) : TextureArea::of(data, srgb_curve());
+    } else {
+        area = bytes.error();
+    }
     if (area) return out = std::make_shared<const TextureArea>(std::move(*area));
     find(Finding::Kind::warning, line_,
-         fmt::format("the texture '{}' of material '{}' {}: {} is used alone", shown(name), shown(material_.name),
+         fmt::format("the texture '{}' of material '{}' {}: {}", shown(name), shown(material_.name),
                      area.error().message, otherwise),
          "put it in the folder of the material file, as PNG or JPEG");
     return nullptr;
@@ -165,17 +171,17 @@ void MtlReader::take_textures() {
         const TextureArea::Colour c = picture.mean();
         return spread({c[0], c[1], c[2]});
     };
-    if (!texture_.empty()) pictures.reflectance = picture(texture_, "Kd");
+    if (!texture_.empty()) pictures.reflectance = picture(texture_, "Kd is used alone");
     if (pictures.reflectance) {
         if (!has_reflectance_) material_.reflectance = Spectrum(1.0), has_reflectance_ = true;
         material_.reflectance *= mean_of(*pictures.reflectance);
-        mend_reflectance(material_.reflectance);
     }
-    if (!glow_.empty() && material_.emits()) pictures.exitance = picture(glow_, "Ke");
+    if (!glow_.empty() && material_.emits()) pictures.exitance = picture(glow_, "Ke is used alone");
     if (pictures.exitance) material_.exitance *= mean_of(*pictures.exitance);
-    if (!pictures.reflectance && !pictures.exitance) return;
+    if (!holes_.empty()) pictures.coverage = picture(holes_, "its faces are opaque", true);
+    if (!pictures.reflectance && !pictures.exitance && !pictures.coverage) return;
+    if (pictures.reflectance || pictures.exitance) textured_.add(line_, material_.name);
     extras_.pictures.emplace(material_.name, std::move(pictures));
-    textured_.add(line_, material_.name);
 }
 
 void MtlReader::take_glass() {
@@ -193,7 +199,8 @@ void MtlReader::take_glass() {
 void MtlReader::warn_all() {
     if (textured_.count > 0)
         find(Finding::Kind::warning, textured_.line,
-             fmt::format("{} has a texture: a face gets one colour, the mean of its part of the texture",
+             fmt::format("{} has a texture: a face, or a part of a face where it varies, gets the mean of its part of "
+                         "the texture",
                          textured_.names()),
              "");
     if (opaque_.count > 0)
@@ -216,6 +223,8 @@ void MtlReader::end_material() {
         return;
     }
     take_textures();
+    if (mend_reflectance(material_.reflectance) && white_materials_++ == 0)
+        white_line_ = reflectance_line_, white_name_ = material_.name;
     take_glass();
     if (!has_reflectance_)
         find(Finding::Kind::warning, line_,
@@ -251,8 +260,7 @@ void MtlReader::read_values(const std::string& key, Spectrum Material::*value) {
                          "emitted radiance is 0 or more, W/(m^2 sr)");
     }
     material_.*value = reflectance ? spread(values) : exitance_of_radiance(spread(values));
-    if (reflectance && mend_reflectance(material_.reflectance) && white_materials_++ == 0)
-        white_line_ = lines_.number(), white_name_ = material_.name;
+    if (reflectance) reflectance_line_ = lines_.number();
 }
 
 bool MtlReader::read_number(const std::string& key, std::string_view word, std::vector<double>& out) {

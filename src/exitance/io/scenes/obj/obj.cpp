@@ -22,7 +22,8 @@ constexpr long long max_points = 0xfffffffe;
 
 class ObjReader {
   public:
-    ObjReader(const std::string& path, std::string_view text) : path_(path), lines_(text) {
+    ObjReader(const std::string& path, std::string_view text, std::optional<std::size_t> texture_parts = {})
+        : path_(path), lines_(text), texture_parts_(texture_parts) {
         out_.description.file = path;
     }
     ReadScene read();
@@ -61,6 +62,7 @@ class ObjReader {
 
     const std::string& path_;
     TextLines lines_;
+    std::optional<std::size_t> texture_parts_;
     ReadScene out_;
     std::vector<Use> uses_;
     std::unordered_map<std::string, std::uint32_t> use_of_, group_of_;
@@ -315,29 +317,30 @@ std::vector<Vec3> ObjReader::normals_of(std::size_t face) const {
     return out;
 }
 
-/// Gives textured faces the colours of their parts of pictures.
+/// Gives textured faces the colours of their parts of pictures. Glass has none: its faces become panes.
 void ObjReader::take_textures() {
     if (extras_.pictures.empty()) return;
     SceneDescription& d = out_.description;
-    TexturedFaces textured(d, whitest_reflectance);
+    TexturedFaces textured(d, whitest_reflectance, texture_parts_);
     std::vector<const MtlPictures*> pictures(d.materials.size());
     for (std::size_t m = 0; m < pictures.size(); ++m)
-        if (const auto found = extras_.pictures.find(d.materials[m].name); found != extras_.pictures.end())
+        if (const auto found = extras_.pictures.find(d.materials[m].name);
+            found != extras_.pictures.end() && !extras_.glass.contains(d.materials[m].name))
             pictures[m] = &found->second;
-    constexpr auto repeat = TextureArea::Wrap::repeat;
     for (std::size_t f = 0; f < d.faces.size(); ++f) {
         const MtlPictures* shown = pictures[d.faces[f].material];
         const std::vector<Vec2> places = shown ? places_of(f) : std::vector<Vec2>();
         if (places.empty()) continue;
-        ShownColour colour;
-        if (shown->reflectance) colour.reflectance = relative(*shown->reflectance, places, repeat, repeat);
-        if (shown->exitance) colour.exitance = relative(*shown->exitance, places, repeat, repeat);
-        textured.show(f, colour);
+        FaceColours colours;
+        if (shown->reflectance) colours.reflectance = {shown->reflectance.get(), places};
+        if (shown->exitance) colours.exitance = {shown->exitance.get(), places};
+        if (shown->coverage) colours.coverage = {shown->coverage.get(), places};
+        textured.show(f, std::move(colours));
     }
     textured.finish();
     out_.reflectance_deviation = textured.reflectance_deviation();
-    if (const std::optional<Finding> finding = textured.finding())
-        find(finding->kind, 0, finding->message, finding->hint);
+    for (const std::optional<Finding>& finding : {textured.finding(), textured.finding_of_holes()})
+        if (finding) find(finding->kind, 0, finding->message, finding->hint);
 }
 
 /// Turns faces of glass into panes.
@@ -362,10 +365,10 @@ void ObjReader::take_panes() {
 
 }  // namespace
 
-ReadScene read_obj(const std::string& path) {
+ReadScene read_obj(const std::string& path, std::optional<std::size_t> texture_parts) {
     const Result<std::string> text = read_whole_file(path);
     const bool wide = text && (text->starts_with("\xff\xfe") || text->starts_with("\xfe\xff"));
-    if (text && !wide) return ObjReader(path, *text).read();
+    if (text && !wide) return ObjReader(path, *text, texture_parts).read();
     ReadScene out;
     out.description.file = path;
     out.findings.push_back({Finding::Kind::error, path, 0, wide ? "is text in UTF-16" : text.error().message,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,8 @@ struct ReadScene {
 /// 'mtllib' (relative to the file), relative indices, texture coordinates, comments and continued lines; normal indices
 /// are ignored. Faces before the first 'usemtl' get a grey material named 'default', with a warning. All errors are
 /// reported, with file and line. O(size of the file).
-ReadScene read_obj(const std::string& path);
+/// texture_parts  see `TexturedFaces`
+ReadScene read_obj(const std::string& path, std::optional<std::size_t> texture_parts = {});
 
 /// A face of an OBJ file with its texture coordinates and normals.
 struct ObjPlaces {

@@ -275,5 +275,20 @@ TEST_F(ObjFiles, FacesTakeTheirPartOfAnAtlas) {
               1);
 }
 
+TEST_F(ObjFiles, AMapOfOpacityMakesHoles) {
+    Image mask(64, 64);  // white in the left quarter
+    for (int y = 0; y < 64; ++y) std::fill_n(mask.at(0, y), 3 * 16, std::uint8_t(255));
+    ASSERT_TRUE(write_png(folder_ + "/mask.png", mask, {}));
+    write("h.mtl", "newmtl fence\nKd 0.5 0.5 0.5\nmap_d mask.png\nnewmtl bad\nKd 0.5\nmap_d no.png\n");
+    const auto s = load("mtllib h.mtl\n" + points +
+                        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl fence\nf 1/1 2/2 3/3 4/4\nv 0 0 1\nusemtl bad\n"
+                        "f 1/1 2/2 5/3\n");
+    ASSERT_TRUE(s.scene);
+    EXPECT_NEAR(s.scene->surfaces()[SurfaceId(0)].area, 0.25, 1e-9);
+    EXPECT_EQ(s.scene->material(SurfaceId(0)).reflectance[0], 0.5);
+    EXPECT_TRUE(std::any_of(s.findings.begin(), s.findings.end(),
+                            [](const Finding& f) { return f.message.find("its faces are opaque") != f.message.npos; }));
+}
+
 }  // namespace
 }  // namespace exitance

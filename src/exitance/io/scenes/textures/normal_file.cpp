@@ -6,6 +6,7 @@
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/gltf/gltf_model.hpp"
 #include "exitance/io/scenes/textures/obj_match.hpp"
+#include "exitance/scene/face_parts.hpp"
 #include "exitance/scene/locator.hpp"
 
 namespace exitance {
@@ -30,14 +31,14 @@ std::vector<NormalTriangle> load_gltf_normals(const Scene& scene, const std::str
     const Result<GltfModel> model = load_gltf_model(path, findings, true);
     if (!model) return out;
     const Locator locator(scene);
+    const FaceParts parts(scene);
     for_each_triangle(*model, [&](const GltfTriangle& triangle) {
         if (triangle.primitive->normals.size() == 0) return;
         const std::array<Point, 3>& c = triangle.corners;
         const Normal n = normalized(cross(c[1] - c[0], c[2] - c[0]));
-        const Point middle = (c[0] + c[1] + c[2]) / 3;
         for (const Normal& front : {n, Normal(-1 * n)}) {
-            const SurfaceId s = locator.find(middle, front);
-            if (!s.is_none()) add_triangle({s, c, triangle.normals}, front, out);
+            for (const SurfaceId part : parts.find(locator, c, front))
+                add_triangle({part, c, triangle.normals}, front, out);
         }
     });
     return out;
@@ -57,8 +58,14 @@ std::vector<NormalTriangle> load_obj_normals(const Scene& scene, const std::stri
         const std::optional<std::vector<CornerMean>> corners = match.corners(s);
         if (!corners) return {};
         std::vector<Vec3> normals;
-        for (const CornerMean& mean : *corners) normals.push_back(match.direction(mean.of(std::span(face->normals))));
-        const std::span<const Point> outline = scene.outline(s);
+        std::vector<Point> outline(scene.outline(s).begin(), scene.outline(s).end());
+        if (scene.surfaces()[s].whole > 0) {  // a part is curved as the whole face is
+            outline = match.outline(*face);
+            for (const Vec3& n : face->normals) normals.push_back(match.direction(n));
+        } else {
+            for (const CornerMean& mean : *corners)
+                normals.push_back(match.direction(mean.of(std::span(face->normals))));
+        }
         const Normal& front = scene.surfaces()[s].normal;
         for (const auto& [i, j, k] : triangulate(outline, front))
             add_triangle({s, {outline[i], outline[j], outline[k]}, {normals[i], normals[j], normals[k]}}, front, out);

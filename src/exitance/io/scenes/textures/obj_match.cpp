@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace exitance {
 namespace {
 
-double perimeter(std::span<const Point> outline) {
-    double sum = 0;
-    for (std::size_t i = 0; i < outline.size(); ++i) sum += norm(outline[(i + 1) % outline.size()] - outline[i]);
-    return sum;
+/// Diagonal of the bounding box, which is the same whichever axis is upright.
+double diagonal(std::span<const Point> points) {
+    Box box;
+    for (const Point& p : points) box.add(p);
+    return box.diagonal();
 }
 
 double distance_to_corner(std::span<const Point> outline, const Point& p) {
@@ -35,33 +37,46 @@ double ObjMatch::tolerance() const {
     return of_size * scene_.size();
 }
 
+std::vector<Point> ObjMatch::outline(const ObjPlaces& face) const {
+    std::vector<Point> out;
+    for (const Point& c : face.corners) out.push_back(in_scene(c));
+    return out;
+}
+
 bool ObjMatch::align() {
     double longest = 0;
-    SurfaceId best;
+    const ObjPlaces* best = nullptr;
+    std::vector<Point> points;                // of the scene, where the corners of `best` are
+    std::map<int, std::vector<Point>> parts;  // corners of parts of cut faces, by line
     for (SurfaceId s : scene_.surfaces().ids()) {
         const ObjPlaces* face = face_of(s);
-        if (!face || face->corners.size() != scene_.outline(s).size()) continue;
-        if (const double length = perimeter(scene_.outline(s)); length > longest) longest = length, best = s;
+        const std::span<const Point> own = scene_.outline(s);
+        if (face && scene_.surfaces()[s].whole > 0)
+            parts[face->line].insert(parts[face->line].end(), own.begin(), own.end());
+        if (!face || scene_.surfaces()[s].whole > 0 || face->corners.size() != own.size()) continue;
+        if (const double length = diagonal(own); length > longest)
+            longest = length, best = face, points.assign(own.begin(), own.end());
     }
-    if (best.is_none()) return true;  // all faces were repaired, or have no line
-    const std::vector<Point>& corners = face_of(best)->corners;
-    scale_ = perimeter(scene_.outline(best)) / perimeter(corners);
+    const bool has_whole = best != nullptr;
+    for (const auto& [line, own] : parts)
+        if (const double length = diagonal(own); !has_whole && length > longest)
+            longest = length, best = &faces_[face_of_line_.at(line)], points = own;
+    if (!best) return true;  // all faces were repaired, or have no line
+    scale_ = longest / diagonal(best->corners);
     // derived from rounding: units of length differ by more from 1.
     constexpr double rounding = 1e-6;
     if (std::abs(scale_ - 1) < rounding) scale_ = 1;
     for (const bool turns : {false, true}) {
         turns_ = turns;
-        if (std::all_of(corners.begin(), corners.end(), [&](const Point& c) {
-                return distance_to_corner(scene_.outline(best), in_scene(c)) < tolerance();
-            }))
+        if (std::all_of(best->corners.begin(), best->corners.end(),
+                        [&](const Point& c) { return distance_to_corner(points, in_scene(c)) < tolerance(); }))
             return true;
     }
     return false;
 }
 
 std::optional<std::vector<CornerMean>> ObjMatch::corners(SurfaceId s) const {
-    std::vector<Point> corners;
-    for (const Point& c : face_of(s)->corners) corners.push_back(in_scene(c));
+    const std::vector<Point> corners = outline(*face_of(s));
     std::vector<CornerMean> out;
     for (const Point& p : scene_.outline(s)) {
         const std::optional<CornerMean> mean = mean_at(p, corners);

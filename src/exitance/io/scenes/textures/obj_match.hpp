@@ -28,7 +28,7 @@ struct CornerMean {
 class ObjMatch {
   public:
     /// Keeps a reference to the scene. Finds the unit of length and the upright axis with which the file was read, from
-    /// the face with the largest perimeter.
+    /// the largest face that was not cut, or else from the parts of the largest one.
     ObjMatch(const Scene& scene, std::vector<ObjPlaces> faces);
 
     /// False if the file's faces are not where those of the scene are.
@@ -39,6 +39,8 @@ class ObjMatch {
     /// Matches each corner of a face's outline with those of the file's face: the corner there, or a mean of three
     /// corners whose triangle contains the point. None if a point is outside the file's face.
     std::optional<std::vector<CornerMean>> corners(SurfaceId s) const;
+    /// Corners of a face of the file in the scene's coordinates.
+    std::vector<Point> outline(const ObjPlaces& face) const;
     /// Rotates a direction of the file into the scene's axes.
     Vec3 direction(const Vec3& v) const { return turns_ ? Vec3{v.x, -v.z, v.y} : v; }
 

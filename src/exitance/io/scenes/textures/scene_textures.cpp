@@ -5,6 +5,9 @@
 
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/gltf/gltf_model.hpp"
+#include "exitance/io/scenes/textures/masked_picture.hpp"
+#include "exitance/io/scenes/textures/triangle_weights.hpp"
+#include "exitance/scene/face_parts.hpp"
 #include "exitance/scene/locator.hpp"
 #include "exitance/scene/material_name.hpp"
 
@@ -13,7 +16,8 @@ namespace {
 
 class TextureFinder {
   public:
-    TextureFinder(const Scene& scene, const GltfModel& model) : scene_(scene), model_(model), locator_(scene) {}
+    TextureFinder(const Scene& scene, const GltfModel& model)
+        : scene_(scene), model_(model), locator_(scene), parts_(scene) {}
 
     std::optional<SceneTextures> find() {
         std::size_t corners = 0;
@@ -32,16 +36,15 @@ class TextureFinder {
         const std::array<Point, 3>& corner = triangle.corners;
         if (p.places[0].size() == 0 && p.places[1].size() == 0) return;
         const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
-        const Point middle = (corner[0] + corner[1] + corner[2]) / 3;
         // Faces may have been reversed, or be the back of a double-sided triangle.
         for (const double side : {1.0, -1.0})
-            if (const SurfaceId s = locator_.find(middle, side * normalized(normal)); !s.is_none())
-                add_places(p, triangle.vertices, corner, s);
+            for (const SurfaceId part : parts_.find(locator_, corner, side * normalized(normal)))
+                add_places(p, triangle.vertices, corner, part);
     }
 
     void add_places(const GltfModel::Primitive& p, const std::array<std::size_t, 3>& v,
                     const std::array<Point, 3>& corner, SurfaceId s) {
-        const Patch3 patch(corner);
+        const TriangleWeights patch(corner);
         const std::uint32_t first = scene_.surfaces()[s].first_corner;
         const auto material = static_cast<std::size_t>(std::max(p.material, 0));
         for (std::size_t set = 0; set < 2; ++set) {
@@ -50,7 +53,7 @@ class TextureFinder {
             const GltfModel::Material* m = p.material >= 0 ? &model_.materials[material] : nullptr;
             const bool moved = m && m->base_texture.picture >= 0 && m->base_texture.place_set == static_cast<int>(set);
             for (std::size_t k = 0; k < scene_.outline(s).size(); ++k) {
-                const std::array<double, 3> weight = patch.weights(scene_.outline(s)[k]);
+                const std::array<double, 3> weight = patch.at(scene_.outline(s)[k]);
                 Vec2 place;
                 for (std::size_t c = 0; c < 3; ++c)
                     place = place + weight[c] * Vec2{p.places[set].at(v[c], 0), p.places[set].at(v[c], 1)};
@@ -59,20 +62,6 @@ class TextureFinder {
             }
         }
     }
-
-    /// Computes barycentric coordinates in a triangle.
-    struct Patch3 {
-        explicit Patch3(const std::array<Point, 3>& c)
-            : corner(c), n(cross(c[1] - c[0], c[2] - c[0])), area(squared_norm(n)) {}
-        std::array<double, 3> weights(const Point& p) const {
-            const double b = dot(cross(p - corner[0], corner[2] - corner[0]), n) / area;
-            const double c = dot(cross(corner[1] - corner[0], p - corner[0]), n) / area;
-            return {1 - b - c, b, c};
-        }
-        std::array<Point, 3> corner;
-        Vec3 n;
-        double area;
-    };
 
     void add_pictures() {
         out_.coats.resize(scene_.materials().size());
@@ -89,6 +78,7 @@ class TextureFinder {
                 const std::span<const std::uint8_t> file = model_.pictures[source];
                 Result<TexturePixels> pixels = decode_texture(file);
                 if (!pixels || pixels->width == 0) continue;
+                if (material->hole_opacity > 0) fill_holes(*pixels, material->hole_opacity);
                 number[source] = static_cast<int>(out_.pictures.size());
                 out_.pictures.push_back(
                     {{file.begin(), file.end()}, file[0] == 0xff ? "image/jpeg" : "image/png", std::move(*pixels)});
@@ -101,6 +91,7 @@ class TextureFinder {
     const Scene& scene_;
     const GltfModel& model_;
     Locator locator_;
+    FaceParts parts_;
     SceneTextures out_;
     bool found_[2] = {false, false};
 };

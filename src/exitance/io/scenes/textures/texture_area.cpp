@@ -10,13 +10,51 @@ constexpr std::size_t max_held_pixels = std::size_t(1) << 22;  ///< Limit on the
 constexpr int samples_per_side = 32;
 constexpr double golden = 0.6180339887498949;
 
-/// Index of the pixel at a texture coordinate, in a row of `count` pixels.
-std::size_t pixel(double place, std::size_t count, TextureArea::Wrap wrap) {
+/// Number of pixels in a row that is `across` pixels long; the last one may be cut off.
+std::size_t pixel_count(double across) {
+    return static_cast<std::size_t>(std::ceil(across));
+}
+
+/// Index of the pixel at a texture coordinate, in a row that is `across` pixels long.
+std::size_t pixel(double place, double across, TextureArea::Wrap wrap) {
     double t = std::isfinite(place) ? place : 0;
     if (wrap == TextureArea::Wrap::clamp) t = std::clamp(t, 0.0, 1.0);
     if (wrap == TextureArea::Wrap::repeat) t -= std::floor(t);
     if (wrap == TextureArea::Wrap::mirror) t = std::abs(t - 2 * std::round(0.5 * t));
-    return std::min(count - 1, static_cast<std::size_t>(t * static_cast<double>(count)));
+    return std::min(pixel_count(across) - 1, static_cast<std::size_t>(t * across));
+}
+
+/// Pixels that a stretch of texture coordinates covers, with their shares of it, which add up to 1.
+using PixelShares = std::vector<std::pair<std::size_t, double>>;
+
+PixelShares shares_of(double from, double to, double across, TextureArea::Wrap wrap) {
+    PixelShares out;
+    const std::size_t last = pixel_count(across) - 1;
+    // The mean over many repetitions is that of one.
+    constexpr double many_periods = 4;
+    if (wrap != TextureArea::Wrap::clamp && to - from > many_periods) from = 0, to = 1;
+    const double length = to - from;
+    for (double t = from; t < to;) {
+        const double period = std::floor(t), local = t - period;
+        const bool is_mirrored = wrap == TextureArea::Wrap::mirror && std::fmod(std::abs(period), 2) != 0;
+        std::size_t i = 0;
+        double end = 0;
+        if (wrap == TextureArea::Wrap::clamp && (t < 0 || t >= 1)) {
+            i = t < 0 ? 0 : last, end = t < 0 ? std::min(0.0, to) : to;
+        } else if (is_mirrored) {
+            const auto after = static_cast<std::size_t>(std::max(1.0, std::ceil((1 - local) * across)));
+            i = std::min(last, after - 1), end = period + 1 - static_cast<double>(i) / across;
+        } else {
+            i = std::min(last, static_cast<std::size_t>(local * across));
+            end = period + std::min(1.0, static_cast<double>(i + 1) / across);
+        }
+        // A stretch shorter than the rounding of coordinates belongs to the next pixel.
+        constexpr double rounding = 1e-12;  // derived from the rounding of double precision
+        end = std::min(to, std::max(end, t + rounding));
+        out.emplace_back(i, (end - t) / length);
+        t = end;
+    }
+    return out;
 }
 
 /// Averages blocks of `factor` x `factor` pixels; the last blocks of rows and columns may be smaller. `value(x, y,
@@ -52,14 +90,16 @@ TextureArea TextureArea::of(const TexturePixels& pixels, const ByteCurve& decode
     std::size_t factor = 1;
     while (pixels.width * pixels.height / (factor * factor) > max_held_pixels) factor *= 2;
     const auto halved = [](std::size_t n, std::size_t by) { return (n + by - 1) / by; };
+    const auto by = static_cast<double>(factor);
     out.levels_.push_back(
-        {halved(pixels.width, factor), halved(pixels.height, factor),
+        {halved(pixels.width, factor), halved(pixels.height, factor), static_cast<double>(pixels.width) / by,
+         static_cast<double>(pixels.height) / by,
          means_of_blocks(pixels.width, pixels.height, factor, [&](std::size_t x, std::size_t y, std::size_t c) {
              return 65535 * decode.value[pixels.rgb[3 * (y * pixels.width + x) + c]];
          })});
     while (std::max(out.levels_.back().width, out.levels_.back().height) > 1) {
         const Level& fine = out.levels_.back();
-        Level half{halved(fine.width, 2), halved(fine.height, 2),
+        Level half{halved(fine.width, 2), halved(fine.height, 2), 0.5 * fine.across, 0.5 * fine.down,
                    means_of_blocks(fine.width, fine.height, 2, [&](std::size_t x, std::size_t y, std::size_t c) {
                        return static_cast<double>(fine.rgb[3 * (y * fine.width + x) + c]);
                    })};
@@ -79,14 +119,14 @@ TextureArea::Wrap TextureArea::wrap_of(int number) {
 TextureArea::Colour TextureArea::smoothed(const Vec2& place, double size, Wrap wrap_s, Wrap wrap_t) const {
     const double wanted = std::clamp(std::log2(std::max(size, 1.0)), 0.0, static_cast<double>(levels_.size() - 1));
     const Level& level = levels_[static_cast<std::size_t>(std::lround(wanted))];
-    const auto width = static_cast<double>(level.width), height = static_cast<double>(level.height);
+    const double width = level.across, height = level.down;
     const double u = place.x * width - 0.5, i = std::floor(u), v = place.y * height - 0.5, j = std::floor(v);
     Colour sum{};
     for (int b = 0; b < 2; ++b)
         for (int a = 0; a < 2; ++a) {
             const double weight = (a == 0 ? i + 1 - u : u - i) * (b == 0 ? j + 1 - v : v - j);
-            const Colour here = level.at(pixel((i + a + 0.5) / width, level.width, wrap_s),
-                                         pixel((j + b + 0.5) / height, level.height, wrap_t));
+            const Colour here =
+                level.at(pixel((i + a + 0.5) / width, width, wrap_s), pixel((j + b + 0.5) / height, height, wrap_t));
             for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * here[c];
         }
     return sum;
@@ -96,8 +136,7 @@ TextureArea::Colour TextureArea::smoothed(const Vec2& place, double size, Wrap w
 /// from outside the face.
 const TextureArea::Level& TextureArea::level_for(const Vec2& step) const {
     const Level& finest = levels_.front();
-    const double pixels =
-        std::min(step.x * static_cast<double>(finest.width), step.y * static_cast<double>(finest.height));
+    const double pixels = std::min(step.x * finest.across, step.y * finest.down);
     const double level = pixels > 1 ? std::floor(std::log2(pixels)) : 0;
     return levels_[static_cast<std::size_t>(std::min(level, static_cast<double>(levels_.size() - 1)))];
 }
@@ -166,12 +205,66 @@ TextureArea::Part TextureArea::part(std::span<const Vec2> outline, Wrap wrap_s, 
             const double x = low.x + (i + shift) * step.x;
             const auto left = std::lower_bound(crossings.begin(), crossings.end(), x) - crossings.begin();
             if (left % 2 == 0) continue;
-            sum.add(level.at(pixel(x, level.width, wrap_s), pixel(y, level.height, wrap_t)));
+            sum.add(level.at(pixel(x, level.across, wrap_s), pixel(y, level.down, wrap_t)));
         }
     }
     if (sum.count() == 0)
-        return even_part(level.at(pixel(middle.x, level.width, wrap_s), pixel(middle.y, level.height, wrap_t)));
+        return even_part(level.at(pixel(middle.x, level.across, wrap_s), pixel(middle.y, level.down, wrap_t)));
     return sum.part();
+}
+
+std::vector<double> TextureArea::borders(bool along_s, double low, double high, std::size_t max_cells) const {
+    const double across = along_s ? levels_.front().across : levels_.front().down;
+    double block = 1;  // pixels
+    while ((high - low) * across / block > static_cast<double>(max_cells) && block < across) block *= 2;
+    double periods = 1;  // in a cell, if a cell has whole repetitions
+    while ((high - low) / periods > static_cast<double>(max_cells)) periods *= 2;
+    // A cell narrower than this share of the whole would be a sliver without effect.
+    constexpr double min_share = 1e-3;  // derived from the narrowest face that rays hit
+    const double margin = min_share * (high - low);
+    std::vector<double> out = {low};
+    const auto add = [&](double place) {
+        if (place > out.back() + 0.5 * margin && place > low + margin && place < high - margin) out.push_back(place);
+    };
+    for (double period = std::floor(low / periods) * periods; period < high; period += periods) {
+        add(period);
+        if (periods > 1 || block >= across) continue;
+        const double first = std::max(0.0, std::floor((low - period) * across / block));
+        for (double i = first; i * block < across && period + i * block / across < high; ++i)
+            add(period + i * block / across);
+    }
+    out.push_back(high);
+    return out;
+}
+
+std::vector<TextureArea::Colour> TextureArea::cell_means(std::span<const double> columns, std::span<const double> rows,
+                                                         Wrap wrap_s, Wrap wrap_t) const {
+    const std::size_t nx = columns.size() - 1, ny = rows.size() - 1;
+    const Level& level = level_for({(columns.back() - columns.front()) / static_cast<double>(nx),
+                                    (rows.back() - rows.front()) / static_cast<double>(ny)});
+    std::vector<PixelShares> shares(nx);
+    std::vector<std::uint8_t> is_used(level.width);
+    for (std::size_t i = 0; i < nx; ++i) {
+        shares[i] = shares_of(columns[i], columns[i + 1], level.across, wrap_s);
+        for (const auto& [x, share] : shares[i]) is_used[x] = 1;
+    }
+    std::vector<Colour> out, row(level.width);
+    out.reserve(nx * ny);
+    for (std::size_t j = 0; j < ny; ++j) {
+        std::fill(row.begin(), row.end(), Colour{});
+        for (const auto& [y, share] : shares_of(rows[j], rows[j + 1], level.down, wrap_t))
+            for (std::size_t x = 0; x < level.width; ++x) {
+                if (!is_used[x]) continue;
+                const Colour c = level.at(x, y);
+                for (std::size_t k = 0; k < 3; ++k) row[x][k] += share * c[k];
+            }
+        for (std::size_t i = 0; i < nx; ++i) {
+            Colour& mean = out.emplace_back();
+            for (const auto& [x, share] : shares[i])
+                for (std::size_t k = 0; k < 3; ++k) mean[k] += share * row[x][k];
+        }
+    }
+    return out;
 }
 
 }  // namespace exitance

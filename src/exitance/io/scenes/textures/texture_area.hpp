@@ -45,6 +45,17 @@ class TextureArea {
         return part(outline, wrap_s, wrap_t).mean;
     }
 
+    /// Borders of pixels between two texture coordinates, with both ends: of blocks of 2^k x 2^k pixels, or of several
+    /// repetitions of the picture, such that there are at most about `max_cells` cells. Cells narrower than a
+    /// thousandth of the whole are joined with a neighbour.
+    /// along_s  true for coordinates across the picture, false for those down
+    std::vector<double> borders(bool along_s, double low, double high, std::size_t max_cells) const;
+
+    /// Mean colours of the cells between `columns` and `rows` (texture coordinates, ascending, at least two), row by
+    /// row. Exact for the pixels of the coarsest level whose pixels are not wider than an average cell.
+    std::vector<Colour> cell_means(std::span<const double> columns, std::span<const double> rows, Wrap wrap_s,
+                                   Wrap wrap_t) const;
+
     /// Colour at a position, averaged over `size` pixels of the finest level.
     Colour smoothed(const Vec2& place, double size, Wrap wrap_s, Wrap wrap_t) const;
     /// Size of the finest level, pixels.
@@ -54,6 +65,7 @@ class TextureArea {
   private:
     struct Level {
         std::size_t width = 0, height = 0;
+        double across = 0, down = 0;     ///< Size of the picture, pixels: the last column and row may be cut off.
         std::vector<std::uint16_t> rgb;  ///< Linear; 65535 is 1.
         Colour at(std::size_t x, std::size_t y) const {
             const std::uint16_t* c = rgb.data() + 3 * (y * width + x);

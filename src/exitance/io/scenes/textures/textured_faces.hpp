@@ -5,71 +5,83 @@
 #include <string>
 #include <vector>
 
-#include "exitance/io/scenes/textures/texture_area.hpp"
+#include "exitance/io/scenes/textures/texture_parts.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {
 
-/// Statistics per band of the part of a picture that a face shows, relative to the mean of the whole picture.
-struct ShownPart {
-    Spectrum mean{1.0}, deviation;  ///< RMS deviation from the mean over the face.
-    Spectrum lowest{1.0}, highest{1.0};
-};
-
-/// The parts that a face shows of its material's two pictures. The material has the means of the whole pictures.
-struct ShownColour {
-    ShownPart reflectance, exitance;
-};
-
-/// Statistics of a face's part of a picture relative to the whole picture; 0 in bands in which that is black. See
-/// TextureArea::part() for the parameters.
-ShownPart relative(const TextureArea& picture, std::span<const Vec2> outline, TextureArea::Wrap wrap_s,
-                   TextureArea::Wrap wrap_t);
-
-/// Gives faces the colours of their own parts of pictures. Faces of a material with equal colours share a new material,
-/// named by its colour ("bricks #a0522d"), whose reflectance and exitance are the area-weighted means of its faces.
-/// Colours are equal if they differ by at most two of the picture's 256 codes. A face within two codes of its original
-/// material keeps it.
+/// Gives faces the colours of their own parts of pictures, and cuts those where the colour varies
+/// (`cut_textured_faces`). Faces and parts of a material with equal colours share a new material, named by its colour
+/// ("bricks #a0522d"), whose reflectance and exitance are the area-weighted means of its faces. Colours are equal if
+/// they differ by at most two of the picture's 256 codes. A face within two codes of its original material keeps it.
 class TexturedFaces {
   public:
     /// Keeps a reference to `description`.
-    /// whitest  upper limit of the reflectance of faces
-    TexturedFaces(SceneDescription& description, double whitest) : out_(&description), whitest_(whitest) {}
+    /// whitest    upper limit of the reflectance of faces
+    /// max_parts  limit on the parts of all cut faces; none: `default_texture_parts`; 0: no face is cut
+    TexturedFaces(SceneDescription& description, double whitest, std::optional<std::size_t> max_parts)
+        : out_(&description), whitest_(whitest), max_parts_(max_parts), next_trim_(2 * max_varying) {}
 
-    void show(std::size_t face, const ShownColour& colour);
+    /// Gives a face its colours. The material must not emit if there is a picture of its exitance that is left out.
+    void show(std::size_t face, FaceColours colours);
 
-    /// Creates the materials. Returns the number of faces that got a new one.
-    std::size_t finish();
+    /// Cuts faces and creates the materials. Parts of a face replace it in the description's list of faces.
+    void finish();
 
-    /// Valid after finish(). Per material: RMS deviation of reflectance over its textured faces from its own
-    /// reflectance. Materials beyond the end have none.
+    /// Valid after finish(). Per material: RMS deviation of reflectance over its textured faces and parts of faces from
+    /// its own reflectance. Materials beyond the end have none.
     const std::vector<Spectrum>& reflectance_deviation() const { return deviation_; }
 
-    /// Valid after finish(). Returns a warning about variation within faces, which is averaged, or nothing. The caller
-    /// sets the warning's file and line.
+    /// Valid after finish(). Returns a warning about variation within faces and parts, which is averaged, or nothing.
+    /// The caller sets the warning's file and line.
     std::optional<Finding> finding() const;
+    /// Like finding(), about faces with holes.
+    std::optional<Finding> finding_of_holes() const;
 
   private:
+    /// Limit on the faces that are candidates for cuts: memory of about 1 kB each.
+    static constexpr std::size_t max_varying = std::size_t(1) << 18;
     using Key = std::vector<int>;
     struct Sum {
         Spectrum reflectance, exitance, squares;  ///< Sum of squared reflectances.
         double area = 0;
         std::vector<std::size_t> faces;
     };
-    /// The face with the largest variation of a quantity relative to its mean.
-    struct Steepest {
-        double ratio = 0, lowest = 0, highest = 0;
+    /// Variation of a quantity within faces and parts.
+    struct Variation {
+        double area = 0, squares = 0, sum = 0;  ///< Area, area times squared deviation, area times mean.
+        std::size_t faces = 0;                  ///< Number of faces and parts within which the quantity varies.
+        double largest = 0;                     ///< The largest part of `squares`; it is that of `material`.
+        double lowest = 0, highest = 0;
         std::string material;
-        std::size_t faces = 0;  ///< Number of faces of the material on which the quantity varies.
+
+        void add(const ColourRange& range, double of, bool varies, const std::string& name);
     };
-    void note(Steepest& steepest, const Spectrum& whole, const ShownPart& part, const std::string& material) const;
+    void keep(VaryingFace face);
+    /// Decides whether a face with holes stays whole: as many stay as the pictures cover, of each material.
+    bool stays(const VaryingFace& face);
+    /// Adds a face or a part with its final colour.
+    void add(std::size_t face, const PartColour& colour, double area);
+    void replace_cut_faces();
     void set_deviation(std::size_t material, const Sum& sum, const Spectrum& mean);
     SceneDescription* out_;
     double whitest_;
+    std::optional<std::size_t> max_parts_;
+    std::vector<VaryingFace> varying_;
     std::map<Key, Sum> sums_;
     std::map<std::uint32_t, Sum> unchanged_;  ///< Keyed by material: faces that keep their material.
     std::vector<Spectrum> deviation_;
-    Steepest reflects_, emits_;
+    Variation reflects_, emits_;
+    std::size_t cut_faces_ = 0, parts_ = 0;
+    std::size_t next_trim_;  ///< Number of varying faces at which those of least effect are dropped.
+    /// Faces with holes.
+    struct Holes {
+        std::size_t faces = 0, uncut = 0;
+        double area = 0, misplaced = 0;           ///< m^2
+        std::map<std::uint32_t, double> balance;  ///< Per material: opaque area that was left out so far, m^2.
+        std::vector<std::uint32_t> before;        ///< Corners of the face before, whose back may follow.
+        bool before_stays = false;
+    } holes_;
 };
 
 }  // namespace exitance

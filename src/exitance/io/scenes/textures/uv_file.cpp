@@ -10,6 +10,8 @@
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/gltf/gltf_model.hpp"
 #include "exitance/io/scenes/textures/obj_match.hpp"
+#include "exitance/io/scenes/textures/triangle_weights.hpp"
+#include "exitance/scene/face_parts.hpp"
 #include "exitance/scene/locator.hpp"
 
 namespace exitance {
@@ -61,7 +63,7 @@ class UniqueNames {
 class GltfUvs {
   public:
     GltfUvs(const Scene& scene, const GltfModel& model, std::size_t set, const std::string& path)
-        : scene_(scene), model_(model), set_(set), locator_(scene), matched_(scene.surfaces().size()) {
+        : scene_(scene), model_(model), set_(set), locator_(scene), parts_(scene), matched_(scene.surfaces().size()) {
         out_.file = path, out_.name = fmt::format("TEXCOORD_{}", set);
         object_of_.resize(model.nodes.size(), -1);
     }
@@ -89,16 +91,36 @@ class GltfUvs {
         for (std::size_t k = 0; k < 3; ++k)
             out.place[k] = {places.at(triangle.vertices[k], 0), places.at(triangle.vertices[k], 1)};
         const Normal n = normalized(cross(out.corner[1] - out.corner[0], out.corner[2] - out.corner[0]));
-        const Point middle = (out.corner[0] + out.corner[1] + out.corner[2]) / 3;
-        const SurfaceId front = locator_.find(middle, n), back = locator_.find(middle, -1 * n);
-        if (!front.is_none() && !back.is_none() && matched_[back] == Match::none) matched_[back] = Match::back;
-        // A face whose front is missing was turned when it was read.
-        out.surface = front.is_none() ? back : front;
-        if (out.surface.is_none()) return;
-        if (front.is_none()) std::swap(out.corner[1], out.corner[2]), std::swap(out.place[1], out.place[2]);
-        matched_[out.surface] = Match::front;
+        std::vector<SurfaceId> found = parts_.find(locator_, out.corner, n);
+        const std::vector<SurfaceId> back = parts_.find(locator_, out.corner, -1 * n);
+        const bool is_turned = found.empty();  // a face whose front is missing was turned when it was read
+        if (!is_turned)
+            for (const SurfaceId part : back)
+                if (matched_[part] == Match::none) matched_[part] = Match::back;
+        if (is_turned) found = back;
+        if (found.empty()) return;
+        out.surface = found[0];
+        if (is_turned) std::swap(out.corner[1], out.corner[2]), std::swap(out.place[1], out.place[2]);
         out.object = object_of(triangle.node);
-        out_.triangles.push_back(out);
+        for (const SurfaceId part : found) add_part(part, out);
+    }
+
+    /// Adds a triangle of the file, or that part of it which became a face.
+    void add_part(SurfaceId part, const UvTriangle& whole) {
+        matched_[part] = Match::front;
+        if (scene_.surfaces()[part].whole == 0) return out_.triangles.push_back(whole);
+        const TriangleWeights weights(whole.corner);
+        const std::span<const Point> outline = scene_.outline(part);
+        for (const auto& t : triangulate(outline, scene_.surfaces()[part].normal)) {
+            UvTriangle out = whole;
+            out.surface = part;
+            for (std::size_t k = 0; k < 3; ++k) {
+                out.corner[k] = outline[t[k]];
+                const std::array<double, 3> w = weights.at(out.corner[k]);
+                out.place[k] = w[0] * whole.place[0] + w[1] * whole.place[1] + w[2] * whole.place[2];
+            }
+            out_.triangles.push_back(out);
+        }
     }
 
     std::uint32_t object_of(std::size_t node) {
@@ -115,6 +137,7 @@ class GltfUvs {
     const GltfModel& model_;
     std::size_t set_;
     Locator locator_;
+    FaceParts parts_;
     Field<SurfaceId, Match> matched_;
     std::vector<int> object_of_;  ///< Per node; -1: none yet.
     UniqueNames names_;

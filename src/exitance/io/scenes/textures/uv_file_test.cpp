@@ -1,8 +1,13 @@
 #include "exitance/io/scenes/textures/uv_file.hpp"
 
 #include <gtest/gtest.h>
+#include <png.h>
+
+#include <algorithm>
+#include <cmath>
 
 #include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/pictures/png.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/measure/light_maps/uv_light_map.hpp"
 #include "support/gltf_text.hpp"
@@ -200,6 +205,119 @@ TEST_F(UvFile, BacksOfDoubleSidedFacesHaveNoCoordinates) {
     ASSERT_TRUE(uvs) << uvs.error().message;
     EXPECT_EQ(uvs->triangles.size(), 4u);
     EXPECT_EQ(uvs->back_faces, 4u);
+}
+
+/// A picture that is white up to a share of its width and dark beyond it.
+Image two_tones(int size, double share) {
+    Image image(size, size);
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) std::fill_n(image.at(x, y), 3, std::uint8_t(x < share * size ? 230 : 90));
+    return image;
+}
+
+TEST_F(UvFile, PartsOfCutTrianglesKeepTheirCoordinates) {
+    test::GltfText text = square(true);
+    ASSERT_TRUE(write_png(folder_ / "tones.png", two_tones(20, 0.1), {}));
+    text.materials =
+        R"({"doubleSided":true,"pbrMetallicRoughness":{"baseColorTexture":{"index":0},"metallicFactor":0}})";
+    text.textures = R"({"source":0})", text.images = R"({"uri":"tones.png"})";
+    const std::string path = write("square.glb", text.glb());
+    const Scene scene = load(path);
+    // The border is at x = 0.5: one of both triangles' corners is on it.
+    ASSERT_GT(scene.surfaces().size(), 8u);
+    const Result<UvSet> uvs = load_uv_set(scene, path, "TEXCOORD_2");
+    ASSERT_TRUE(uvs) << uvs.error().message;
+    double area = 0;
+    for (const UvTriangle& t : uvs->triangles) {
+        area += 0.5 * std::abs(cross(t.place[1] - t.place[0], t.place[2] - t.place[0]));
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double x = t.object == 0 ? t.corner[k].x : 3 - t.corner[k].x;
+            EXPECT_NEAR(t.place[k].x, 0.6 * x, 1e-6);
+            EXPECT_NEAR(t.place[k].y, -0.6 * t.corner[k].y, 1e-6);
+        }
+    }
+    EXPECT_NEAR(area, 2 * 0.36, 1e-6);
+    EXPECT_EQ(uvs->back_faces, scene.surfaces().size() / 2);
+}
+
+TEST_F(UvFile, ObjAndGltfAreCutAlike) {
+    ASSERT_TRUE(write_png(folder_ / "tones.png", two_tones(20, 0.05), {}));
+    test::GltfText text = square(false);
+    text.materials =
+        R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0},"baseColorFactor":[0.5,0.5,0.5,1],"metallicFactor":0}})";
+    text.textures = R"({"source":0})", text.images = R"({"uri":"tones.png"})";
+    text.nodes = R"({"mesh":0})";
+    const Scene gltf = load(write("square.glb", text.glb()));
+    write("m.mtl", "newmtl t\nKd 0.5 0.5 0.5\nmap_Kd tones.png\n");
+    LoadOptions options;
+    options.y_is_up = true;
+    const Scene obj = load(write("square.obj",
+                                 "mtllib m.mtl\nv 0 0 0\nv 0 0 1\nv 1 0 1\nv 1 0 0\nvt 0 1\nvt 0 0.8\nvt 0.2 0.8\n"
+                                 "vt 0.2 1\nusemtl t\nf 1/1 2/2 3/3 4/4\n"),
+                           options);
+    // The border is at x = 0.25: both are a bright and a dark rectangle, whether of triangles or of one face.
+    ASSERT_EQ(obj.regions().size(), 2u);
+    ASSERT_EQ(gltf.regions().size(), 2u);
+    for (const RegionId r : obj.regions().ids()) {
+        EXPECT_NEAR(obj.regions()[r].area, gltf.regions()[r].area, 1e-6);
+        for (std::size_t b = 0; b < bands; ++b)
+            EXPECT_NEAR(obj.material(r).reflectance[b], gltf.material(r).reflectance[b], 1e-6);
+    }
+    EXPECT_NEAR(std::min(obj.regions()[RegionId(0)].area, obj.regions()[RegionId(1)].area), 0.25, 1e-6);
+}
+
+TEST_F(UvFile, TrianglesWithAHoleInTheMiddleKeepTheirCoordinates) {
+    // Pixels of the picture's left upper 8 x 8, which the square shows, are opaque at the border only.
+    std::string rgba;
+    for (int y = 0; y < 20; ++y)
+        for (int x = 0; x < 20; ++x)
+            rgba += std::string(3, '\x80') + (x < 1 || y < 1 || x > 6 || y > 6 ? '\xff' : '\0');
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION, image.width = image.height = 20, image.format = PNG_FORMAT_RGBA;
+    ASSERT_TRUE(
+        png_image_write_to_file(&image, std::string(folder_ / "frame.png").c_str(), 0, rgba.data(), 0, nullptr));
+    test::GltfText text = square(false);
+    text.materials =
+        R"({"alphaMode":"MASK","pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":1},"metallicFactor":0}})";
+    text.textures = R"({"source":0})", text.images = R"({"uri":"frame.png"})";
+    const std::string path = write("square.glb", text.glb());
+    const Scene scene = load(path);
+    double area = 0;
+    for (const Surface& s : scene.surfaces()) area += s.area;
+    EXPECT_NEAR(area, 2 * (1 - 36.0 / 64), 1e-6);
+    const Result<UvSet> uvs = load_uv_set(scene, path, "TEXCOORD_0");
+    ASSERT_TRUE(uvs) << uvs.error().message;
+    double shown = 0;
+    for (const UvTriangle& t : uvs->triangles)
+        shown += 0.5 * std::abs(cross(t.place[1] - t.place[0], t.place[2] - t.place[0]));
+    EXPECT_NEAR(shown, 0.04 * area, 1e-6);
+}
+
+TEST_F(UvFile, AnObjFileOfCutFacesOnlyKeepsItsCoordinates) {
+    CubeText cube(1000, true);
+    write("cube.mtl", "newmtl wall\nKd 0.8 0.8 0.8\nmap_Kd tones.png\nnewmtl lamp\nKd 0\nKe 2 2 2\nmap_Ke tones.png\n");
+    // The border is in the middle of the charts of two columns.
+    ASSERT_TRUE(write_png(folder_ / "tones.png", two_tones(40, 0.175), {}));
+    for (int f = 0; f < 6; ++f) {
+        const std::string column = "vt " + std::to_string(0.05 + 0.3 * (f % 3));
+        for (std::size_t at = cube.points.find(column); at != std::string::npos; at = cube.points.find(column, at + 1))
+            cube.points.replace(at, column.size(), "vt 0.050000");
+    }
+    for (const char* far : {"vt 0.600000", "vt 0.900000"})
+        for (std::size_t at = cube.points.find(far); at != std::string::npos; at = cube.points.find(far, at + 1))
+            cube.points.replace(at, 11, "vt 0.300000");
+    const std::string path = write("cube.obj", "mtllib cube.mtl\n" + cube.points + cube.faces);
+    LoadOptions options;
+    options.metres_per_unit = 0.001, options.y_is_up = true;
+    const Scene scene = load(path, options);
+    ASSERT_EQ(scene.surfaces().size(), 12u);
+    for (const Surface& s : scene.surfaces()) EXPECT_GT(s.whole, 0u);
+    const Result<UvSet> set = load_uv_set(scene, path, "own");
+    ASSERT_TRUE(set) << set.error().message;
+    double area = 0;
+    for (const UvTriangle& t : set->triangles)
+        area += 0.5 * std::abs(cross(t.place[1] - t.place[0], t.place[2] - t.place[0]));
+    EXPECT_NEAR(area, 6 * 0.0625, 1e-6);
 }
 
 TEST_F(UvFile, TheAtlasOfACubeHasTheLightOfProbes) {
