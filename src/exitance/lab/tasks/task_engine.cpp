@@ -34,7 +34,8 @@ TaskEngine::TaskEngine(const Stage& stage, const TaskOptions& options)
     graph_.workers = options_.threads;
 }
 
-TaskReport TaskEngine::run(Progress& progress, const StopRequest& stop, double origin) {
+TaskReport TaskEngine::run(Progress& progress, const StopRequest& stop, double origin,
+                           const std::function<void(const TaskReport&)>& end_iteration) {
     const Stopwatch clock;
     double total = total_radiosity();
     while (report_.iterations < options_.max_iterations && !report_.converged && !stop.requested()) {
@@ -64,21 +65,24 @@ TaskReport TaskEngine::run(Progress& progress, const StopRequest& stop, double o
         if (options_.record) record(iteration);
         progress.advance(report_.converged ? 1 : std::min(0.9, options_.change / report_.change),
                          fmt::format("iteration {}, total radiosity {:.6g}", report_.iterations, total));
+        if (end_iteration) end_iteration(counted());
     }
     report_.wall = clock.seconds();
-    count();
-    return report_;
+    return counted();
 }
 
-void TaskEngine::count() {
-    report_.initial_interactions = visible_pairs_.size();
-    for (std::uint32_t id = 0; id < patches_.size(); ++id) report_.interactions += patches_[id].list.size();
+/// The report with the counts of patches and workers.
+TaskReport TaskEngine::counted() const {
+    TaskReport out = report_;
+    out.initial_interactions = visible_pairs_.size();
+    for (std::uint32_t id = 0; id < patches_.size(); ++id) out.interactions += patches_[id].list.size();
     for (const TaskWorker& worker : workers_) {
-        report_.rays += worker.rays;
-        report_.form_factors += worker.form_factors;
-        report_.tasks += worker.tasks;
-        for (std::size_t k = 0; k < worker.seconds.size(); ++k) report_.seconds[k] += worker.seconds[k];
+        out.rays += worker.rays;
+        out.form_factors += worker.form_factors;
+        out.tasks += worker.tasks;
+        for (std::size_t k = 0; k < worker.seconds.size(); ++k) out.seconds[k] += worker.seconds[k];
     }
+    return out;
 }
 
 /// Copies the parent's light to patches that were split off for another patch's list in this iteration; tasks processed

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "exitance/base/progress.hpp"
@@ -37,8 +38,10 @@ class TaskEngine {
     TaskEngine(const Stage& stage, const TaskOptions& options);
 
     /// Iterates until the total radiosity has converged. `origin`: offset added to the times of the graph, seconds. A
-    /// stop request ends refinement at once, and the iteration at the next barrier.
-    TaskReport run(Progress& progress, const StopRequest& stop, double origin = 0);
+    /// stop request ends refinement at once, and the iteration at the next barrier. `end_iteration` is called after
+    /// each iteration with the counts so far.
+    TaskReport run(Progress& progress, const StopRequest& stop, double origin = 0,
+                   const std::function<void(const TaskReport&)>& end_iteration = {});
 
     const PatchPool& patches() const { return patches_; }
     /// The recorded graph of tasks; empty unless options.record is set.
@@ -53,7 +56,7 @@ class TaskEngine {
   private:
     void settle_new_patches(std::uint32_t old_size);
     void collect_pairs();
-    void count();
+    TaskReport counted() const;
     void record(TaskGraph::Iteration iteration);
     double total_radiosity() const;
 

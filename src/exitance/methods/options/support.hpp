@@ -10,7 +10,7 @@
 namespace exitance {
 
 /// The form that the options select.
-Form form_of(const SolveRequest& request);
+Form form_of(const SolveOptions& options);
 
 /// True if the way supports the option with its value in the request.
 bool supports(const OptionRow& row, const SolveRequest& request, Way way);
