@@ -37,18 +37,19 @@ std::map<std::string, double> single_mesh_figures(const SixNodeMesh& mesh) {
 constexpr DiscontinuityExtension discontinuity{choose_structures, make_layered_light, single_mesh_figures};
 
 /// A method in a published form, without an estimate of its error.
-constexpr MethodEntry published(Method id, SolveMethod solve, const char* basis, Form form = Form::published) {
-    return {.id = id, .solve = solve, .basis = basis, .form = form, .has_estimate = false};
+constexpr MethodEntry published(Method id, SolveMethod solve, const char* basis, ForecastMethod forecast = nullptr,
+                                Form form = Form::published) {
+    return {.id = id, .solve = solve, .basis = basis, .forecast = forecast, .form = form, .has_estimate = false};
 }
 
 /// The laboratory's rows of the table of methods.
 constexpr MethodEntry lab_methods[] = {
     {.id = Method::growing_cells, .solve = solve_growing_cells, .basis = "gaussian", .forecast = forecast_cells},
     {.id = Method::discontinuity, .solve = solve_by_lines, .basis = "quadratic", .form = Form::local_passes},
-    published(Method::hierarchical, solve_by_tasks, "haar", Form::tasks),
-    published(Method::matrix, solve_classical_matrix, "constant"),
-    published(Method::progressive, solve_classical_shooting, "constant"),
-    published(Method::substructuring, solve_classical_substructuring, "constant"),
+    published(Method::hierarchical, solve_by_tasks, "haar", nullptr, Form::tasks),
+    published(Method::matrix, solve_classical_matrix, "constant", forecast_classical_matrix),
+    published(Method::progressive, solve_classical_shooting, "constant", forecast_classical_shooting),
+    published(Method::substructuring, solve_classical_substructuring, "constant", forecast_classical_shooting),
     published(Method::hierarchical, solve_classical_hierarchical, "haar"),
     published(Method::wavelet, solve_classical_wavelet, "multiwavelet2"),
 };

@@ -46,17 +46,21 @@ using SolveMethod = GlobalLight (*)(const MethodInput&);
 /// Expected cost of a method.
 struct MethodForecast {
     double rays = 0, bytes = 0;
+    double elements = 0;  ///< Elements of the own mesh of a published form.
 };
+
+/// Forecasts by a formula of the method's own. `facing`: share of the pairs of points that face each other; `blocked`:
+/// true if anything lies between any of them.
+using ForecastMethod = MethodForecast (*)(const Stage& stage, const SolveOptions& options, const Knobs& knobs,
+                                          double facing, bool blocked);
 
 /// Row of the table of methods: a recipe that `solve_scene` carries out.
 struct MethodEntry {
     Method id;
     SolveMethod solve;
     const char* basis;  ///< Default basis of its elements.
-    /// Cost by a formula of the method's own; null: the engine's, by elements and links. `facing`: share of the pairs
-    /// of points that face each other; `blocked`: true if anything lies between any of them.
-    MethodForecast (*forecast)(const Stage& stage, const SolveOptions& options, const Knobs& knobs, double facing,
-                               bool blocked) = nullptr;
+    /// Cost by a formula of the method's own; null: the engine's, by elements and links.
+    ForecastMethod forecast = nullptr;
     /// In a form other than `standard`, the method makes its own mesh and its own light of emitters, and its light is
     /// delivered as it is, or gathered once if that is requested.
     Form form = Form::standard;

@@ -25,16 +25,6 @@ Solution without_surfaces(Scene scene) {
     return out;
 }
 
-/// Options with the method of the published form that they select, or unchanged ones. Error (usage): the form does not
-/// support an option.
-Result<SolveOptions> with_published_method(SolveOptions options) {
-    if (form_of(options) == Form::standard) return options;
-    const Result<Way> way = find_way({.options = options});
-    if (!way) return way.error();
-    options.method = way->method;
-    return options;
-}
-
 }  // namespace
 
 Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress& progress, const StopRequest& stop,

@@ -12,14 +12,11 @@ GlobalLight published_light(const MethodInput& input) {
     return light;
 }
 
-ElementTree constant_mesh(const MethodInput& input) {
-    input.progress.phase("mesh");
-    const MeshSize size = input.knobs.solve_mesh;
-    if (input.options.classical.mesh == MeshKind::uniform)
-        return make_mesh(input.stage.pieces, input.stage.concave, {.edge = size.edge});
-    return project_direct_light(input.stage,
-                                {.mesh = size, .tolerance = input.knobs.direct_tolerance, .seed = input.options.seed},
-                                input.stop)
+ElementTree constant_mesh(const Stage& stage, const SolveOptions& options, const Knobs& knobs,
+                          const StopRequest& stop) {
+    const MeshSize size = knobs.solve_mesh;
+    if (options.classical.mesh == MeshKind::uniform) return make_mesh(stage.pieces, stage.concave, {.edge = size.edge});
+    return project_direct_light(stage, {.mesh = size, .tolerance = knobs.direct_tolerance, .seed = options.seed}, stop)
         .tree;
 }
 

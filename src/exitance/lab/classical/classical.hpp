@@ -27,7 +27,15 @@ inline const Material& material_of(const MethodInput& input, const ElementTree& 
 /// A result without light yet: all light if the emitters' light is carried, otherwise that of reflections.
 GlobalLight published_light(const MethodInput& input);
 /// Constant elements to solve on: `uniform` ones of `--mesh-size`, or `aligned` ones, those of the direct projection.
-ElementTree constant_mesh(const MethodInput& input);
+ElementTree constant_mesh(const Stage& stage, const SolveOptions& options, const Knobs& knobs, const StopRequest& stop);
+/// Memory of the columns of form factors that shooting keeps, bytes.
+constexpr std::size_t column_memory = std::size_t{1} << 29;
+/// Rays per row of the matrix if rays find its entries.
+RayBudget ray_budget(const SolveOptions& options, const Knobs& knobs);
+/// Cells along an edge of a hemicube's top; an even number.
+unsigned hemicube_cells(const SolveOptions& options);
+/// Memory of a matrix of n leaves, bytes.
+double matrix_bytes(const SolveOptions& options, const Knobs& knobs, double n);
 /// Mean exact direct light of leaves, W/m^2.
 std::vector<Spectrum> mean_direct_light(const MethodInput& input, const ElementTree& tree,
                                         std::span<const ElementId> leaves);
@@ -43,5 +51,11 @@ GlobalLight solve_classical_shooting(const MethodInput& input);
 GlobalLight solve_classical_substructuring(const MethodInput& input);
 GlobalLight solve_classical_hierarchical(const MethodInput& input);
 GlobalLight solve_classical_wavelet(const MethodInput& input);
+
+// Forecasts, as `MethodEntry::forecast` describes them.
+MethodForecast forecast_classical_matrix(const Stage& stage, const SolveOptions& options, const Knobs& knobs,
+                                         double facing, bool blocked);
+MethodForecast forecast_classical_shooting(const Stage& stage, const SolveOptions& options, const Knobs& knobs,
+                                           double facing, bool blocked);
 
 }  // namespace exitance

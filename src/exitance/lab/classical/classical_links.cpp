@@ -6,6 +6,7 @@
 #include "exitance/lab/classical/classical.hpp"
 #include "exitance/lab/classical/interaction_kernel.hpp"
 #include "exitance/lab/classical/kernel_oracle.hpp"
+#include "exitance/mesh/element_tree_archive.hpp"
 #include "exitance/solve/growth_watch.hpp"
 
 namespace exitance {
@@ -42,6 +43,10 @@ class Numbers {
     std::span<const Spectrum> operator[](ElementId e) const { return std::span(values_).subspan(e.value * n_, n_); }
     void clear() { std::fill(values_.begin(), values_.end(), Spectrum()); }
     std::size_t memory_bytes() const { return values_.size() * sizeof(Spectrum); }
+    template <class Archive>
+    friend void archive(Archive& a, Numbers& numbers) {
+        a(numbers.values_);
+    }
 
   private:
     std::size_t n_;
@@ -79,6 +84,14 @@ class LinkedElements {
     void report(GlobalLight& light) const;
     ElementFunction irradiance() const;
     bool out_of_memory() const { return out_of_memory_; }
+    /// Archives everything that rounds change.
+    template <class Archive>
+    void archive_state(Archive& a) {
+        a(tree_, B_, E_, rhs_, blocks_, free_, initial_links_, link_count_, rays_, form_factors_, out_of_memory_);
+        a(work_.rays);
+        links_.resize(tree_.size());
+        for (ElementId e : tree_.ids()) a(links_[e]);
+    }
 
   private:
     static KernelChoice choice(const MethodInput& input) {
@@ -410,7 +423,15 @@ GlobalLight solve_over_classical_links(const MethodInput& input, HierarchyBasis 
     const std::size_t grids = input.options.classical.multigrid.value_or(1);
     std::size_t grid = 1;
     double change = 1;
-    for (std::size_t round = 0; round < max_rounds + input.knobs.max_iterations; ++round) {
+    std::size_t round = 0;
+    SafePoints safe_points = input.safe_points;
+    const auto state = [&](auto& a) {
+        a(grid, round, light.report.iterations);
+        elements.archive_state(a);
+    };
+    safe_points.resume(state);
+    for (; round < max_rounds + input.knobs.max_iterations; ++round) {
+        safe_points.pass(state);
         const double coarser = std::exp2(static_cast<double>(grids - std::min(grid, grids)));
         const bool cut = round < max_rounds && elements.refine(coarser * input.options.classical.threshold.value_or(0));
         change = elements.gather();

@@ -62,23 +62,9 @@ void solve_with(const MethodInput& input, const ElementTree& tree, const LeafNum
     light.report = report;
 }
 
-unsigned hemicube_cells(const SolveOptions& options) {
-    const auto cells = std::min<std::size_t>(1024, options.hemicube_cells.value_or(default_hemicube_cells));
-    return static_cast<unsigned>(2 * ((cells + 1) / 2));
-}
-
-RayBudget ray_budget(const MethodInput& input) {
-    RayBudget budget = input.knobs.solve_rays;
-    if (input.options.visibility_samples) budget.average = static_cast<double>(*input.options.visibility_samples);
-    return budget;
-}
-
 /// Returns an error if the matrix of n leaves does not fit into the memory limit, or into available memory.
-Result<void> check_memory(const MethodInput& input, FormFactorKind kind, double n) {
-    const double c = hemicube_cells(input.options), cells = 3 * c * c;
-    const double bytes = kind == FormFactorKind::analytic   ? 4 * n * n
-                         : kind == FormFactorKind::hemicube ? 8 * n * std::min(n, cells)
-                                                            : 4 * n * ray_budget(input).average;
+Result<void> check_memory(const MethodInput& input, double n) {
+    const double bytes = matrix_bytes(input.options, input.knobs, n);
     const auto used = static_cast<double>(peak_memory_bytes()),
                limit = static_cast<double>(
                    input.options.memory_limit_bytes.value_or(resident_memory_bytes() + available_memory_bytes()));
@@ -101,14 +87,15 @@ Result<void> check_memory(const MethodInput& input, FormFactorKind kind, double 
 /// O(N^2) entries.
 GlobalLight solve_classical_matrix(const MethodInput& input) {
     GlobalLight light = published_light(input);
-    const ElementTree tree = constant_mesh(input);
+    input.progress.phase("mesh");
+    const ElementTree tree = constant_mesh(input.stage, input.options, input.knobs, input.stop);
     const LeafNumbering numbering(tree);
     light.published->elements = tree.size(), light.published->leaf_elements = numbering.leaves.size();
     input.progress.phase("link");
     const Stage& stage = input.stage;
     const SolveOptions& o = input.options;
     const FormFactorKind kind = o.form_factors.value_or(FormFactorKind::analytic);
-    if (const Result<void> fits = check_memory(input, kind, static_cast<double>(numbering.leaves.size())); !fits) {
+    if (const Result<void> fits = check_memory(input, static_cast<double>(numbering.leaves.size())); !fits) {
         light.published->refusal = fits.error();
         return light;
     }
@@ -129,7 +116,7 @@ GlobalLight solve_classical_matrix(const MethodInput& input) {
         light.work.rays = F.rays(), light.work.form_factors = light.work.links = F.entries();
         return light;
     }
-    const RayRows F(stage, tree, numbering, locator, ray_budget(input), o.seed);
+    const RayRows F(stage, tree, numbering, locator, ray_budget(input.options, input.knobs), o.seed);
     solve_with(input, tree, numbering, F, light);
     light.work.rays = light.work.links = F.rays();
     return light;

@@ -15,7 +15,6 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t column_memory = std::size_t{1} << 29;  // of columns that are kept for later shots, bytes
 constexpr double vertex_rounding = 1e-6;  // of the scene's size: corners of a region that are closer are one vertex
 
 class Shooting {
@@ -78,7 +77,7 @@ class Shooting {
 Shooting::Shooting(const MethodInput& input, bool substructuring)
     : input_(input),
       at_vertices_(input.options.classical.receivers == ShootingReceivers::vertex),
-      tree_(constant_mesh(input)),
+      tree_(constant_mesh(input.stage, input.options, input.knobs, input.stop)),
       patches_(tree_.leaves()),
       patch_of_element_(tree_.size()),
       sent_(patches_.size()),
@@ -175,14 +174,10 @@ void Shooting::make_rows() {
     const LeafNumbering numbering(tree_);
     const SolveOptions& o = input_.options;
     if (o.form_factors == FormFactorKind::hemicube) {
-        const auto cells =
-            static_cast<unsigned>(std::min<std::size_t>(1024, o.hemicube_cells.value_or(default_hemicube_cells)));
-        hemicubes_.emplace(input_.stage, tree_, numbering, locator, 2 * ((cells + 1) / 2));
+        hemicubes_.emplace(input_.stage, tree_, numbering, locator, hemicube_cells(o));
         return;
     }
-    RayBudget budget = input_.knobs.solve_rays;
-    if (o.visibility_samples) budget.average = static_cast<double>(samples());
-    ray_rows_.emplace(input_.stage, tree_, numbering, locator, budget, o.seed);
+    ray_rows_.emplace(input_.stage, tree_, numbering, locator, ray_budget(o, input_.knobs), o.seed);
 }
 
 /// Form factor from a vertex to a patch: exact for the polygon, times the unblocked share of rays from the vertex
@@ -358,7 +353,12 @@ SolveReport Shooting::run() {
     const bool during = refines && c.refine.value_or(RefineWhen::during) == RefineWhen::during;
     const std::size_t max_shots = input_.options.max_iterations.value_or(1'000'000);
     SolveReport report;
+    SafePoints safe_points = input_.safe_points;
+    const auto state = [&](auto& a) { a(shots_, unshot_, sent_, irradiance_, at_vertex_); };
+    // The elements that refinement makes are not saved: with it, a resumed run starts from the beginning.
+    if (!refines) safe_points.resume(state);
     for (;;) {
+        if (!refines) safe_points.pass(state);
         const std::size_t left = shots_;
         report = shoot_once();
         if (report.iterations > 0) {
@@ -441,8 +441,9 @@ void Shooting::report(GlobalLight& light) const {
 /// light is shot or afterwards. One column of form factors per shot.
 GlobalLight shoot_as_published(const MethodInput& input, bool substructuring) {
     GlobalLight light = published_light(input);
-    input.progress.phase("shoot");
+    input.progress.phase("mesh");
     Shooting shooting(input, substructuring);
+    input.progress.phase("shoot");
     light.report = shooting.run();
     shooting.report(light);
     return light;

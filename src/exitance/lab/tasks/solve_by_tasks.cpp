@@ -106,8 +106,11 @@ GlobalLight solve_by_tasks(const MethodInput& input) {
     TaskOptions asked = task_options(input.stage.scene, input.options);
     asked.record = task_trace() != nullptr;
     TaskEngine engine(input.stage, asked);
+    SafePoints safe_points = input.safe_points;
+    safe_points.resume([&](ArchiveReader& a) { engine.restore(a); });
     const auto end_iteration = [&](const TaskReport& so_far) {
         input.end_round([&] { return light_with_counts(engine, so_far, input.stage, asked); });
+        safe_points.pass([&](ArchiveWriter& a) { engine.save(a); });
     };
     const TaskReport report =
         engine.run(input.progress, input.stop, task_trace() ? task_trace()->now() : 0, end_iteration);

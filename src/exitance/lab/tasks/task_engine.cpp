@@ -74,7 +74,7 @@ TaskReport TaskEngine::run(Progress& progress, const StopRequest& stop, double o
 /// The report with the counts of patches and workers.
 TaskReport TaskEngine::counted() const {
     TaskReport out = report_;
-    out.initial_interactions = visible_pairs_.size();
+    out.initial_interactions = visible_pairs_.size(), out.interactions = 0;
     for (std::uint32_t id = 0; id < patches_.size(); ++id) out.interactions += patches_[id].list.size();
     for (const TaskWorker& worker : workers_) {
         out.rays += worker.rays;
@@ -95,6 +95,35 @@ void TaskEngine::settle_new_patches(std::uint32_t old_size) {
         patch.irradiance = parent.irradiance;
         patch.radiosity[iteration_ % 2] = parent.radiosity[iteration_ % 2];
     }
+}
+
+void TaskEngine::save(ArchiveWriter& a) {
+    TaskReport report = counted();
+    std::uint32_t size = patches_.size();
+    a(iteration_, report, visible_pairs_, size);
+    for (std::uint32_t id = 0; id < size; ++id) {
+        TaskPatch& patch = patches_[id];
+        std::uint32_t first_child = patch.first_child.load();
+        a(first_child, patch.list, patch.irradiance, patch.radiosity, patch.reached);
+    }
+}
+
+void TaskEngine::restore(ArchiveReader& a) {
+    std::uint32_t size = 0;
+    a(iteration_, report_, visible_pairs_, size);
+    // Parents come before their children, so that patches are made in the order of their ids, which are new ones.
+    std::vector<std::uint32_t> now(size);
+    for (std::uint32_t root = 0; root < patches_.root_count(); ++root) now[root] = root;
+    for (std::uint32_t id = 0; id < size; ++id) {
+        std::uint32_t first_child = TaskPatch::none;
+        TaskPatch& patch = patches_[now[id]];
+        a(first_child, patch.list, patch.irradiance, patch.radiosity, patch.reached);
+        if (first_child == TaskPatch::none) continue;
+        const std::uint32_t first = patches_.children(now[id], 0);
+        for (std::uint32_t c = 0; c < 4; ++c) now[first_child + c] = first + c;
+    }
+    for (std::uint32_t id = 0; id < patches_.size(); ++id)
+        for (Interaction& i : patches_[id].list) i.source = now[i.source];
 }
 
 double TaskEngine::total_radiosity() const {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "exitance/base/archive.hpp"
 #include "exitance/base/progress.hpp"
 #include "exitance/base/task_graph.hpp"
 #include "exitance/lab/tasks/task_worker.hpp"
@@ -47,6 +48,10 @@ class TaskEngine {
     /// The recorded graph of tasks; empty unless options.record is set.
     const TaskGraph& graph() const { return graph_; }
     TaskGraph take_graph() { return std::move(graph_); }
+    /// Saves or restores the patches with their interactions and light, and the counts so far, between iterations. To
+    /// be restored into an engine that has not run.
+    void save(ArchiveWriter& a);
+    void restore(ArchiveReader& a);
     /// Pairs of visible pieces, sorted by receiver, then by source.
     const std::vector<PiecePair>& visible_pairs() const { return visible_pairs_; }
     /// Radiosity of a patch after the last iteration, W/m^2.

@@ -177,10 +177,10 @@ std::vector<OptionRow> rows_of_published_solvers() {
          .value = snapshots(),
          .does = "Write intermediate solutions S.0001.h5, ...: t=0.5,1 (seconds), shots=10,100 or rounds",
          .group = group::published,
-         .support = {{every_published, "t"},
+         .support = {{every_published | tasks | local_passes, "t"},
                      {published({progressive, substructuring}), "shots"},
-                     {published({matrix, hierarchical, wavelet}), "rounds"}},
-         .excludes = {{"--relaxation cg|gmres|chebyshev|direct"}},
+                     {published({matrix, hierarchical, wavelet}) | tasks | local_passes, "rounds"}},
+         .excludes = {{"--relaxation cg|gmres|chebyshev|direct"}, {"--resume"}},
          .section = "-"},
     };
 }

@@ -269,6 +269,14 @@ Result<Way> find_way(const SolveRequest& request, Form form) {
     return no_method(request, form);
 }
 
+Result<SolveOptions> with_published_method(SolveOptions options) {
+    if (form_of(options) == Form::standard) return options;
+    const Result<Way> way = find_way({.options = options});
+    if (!way) return way.error();
+    options.method = way->method;
+    return options;
+}
+
 bool supports_all(Method method, const SolveOptions& options) {
     const SolveRequest request{.options = options};
     return !first_unsupported(request, {Form::standard, in_force(Form::standard, method, request)});

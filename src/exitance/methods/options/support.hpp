@@ -26,6 +26,10 @@ Result<Way> find_way(const SolveRequest& request);
 /// Like find_way(request), in a given form.
 Result<Way> find_way(const SolveRequest& request, Form form);
 
+/// Options with the method of the published form that they select, or unchanged ones. Error (usage): the form does not
+/// support an option.
+Result<SolveOptions> with_published_method(SolveOptions options);
+
 /// True if the method supports all options. If the number of reflections is limited, `matrix` replaces most methods, as
 /// in find_way().
 bool supports_all(Method method, const SolveOptions& options);

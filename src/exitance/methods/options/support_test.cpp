@@ -95,8 +95,8 @@ TEST(OptionSupport, MessagesSayWhatIsWrongAndWhatSupportsIt) {
         error_of({given("--method", "matrix"), given("--epsilon", "0.1")}),
         "--epsilon is not supported by --method matrix (supported by hierarchical, wavelet, discontinuity; matrix "
         "with --basis galerkin1 to galerkin3)");
-    EXPECT_EQ(error_of({given("--gather", "off"), given("--dry-run")}),
-              "--dry-run cannot be combined with --gather, which selects the method's published form");
+    EXPECT_EQ(error_of({given("--gather", "off"), given("--keep-links")}),
+              "--keep-links cannot be combined with --gather, which selects the method's published form");
     EXPECT_EQ(error_of({given("--ambient"), given("--multigrid", "3")}),
               "no method supports both --multigrid and --ambient");
     EXPECT_EQ(error_of({given("--sor-factor", "1.5")}), "--sor-factor needs --relaxation sor");
