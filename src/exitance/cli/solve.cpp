@@ -128,8 +128,9 @@ void drop_light(Solution& solution) {
 
 /// Writes the solution. If `reads_back` is set and the output is a regular file (unlike /dev/null), frees the light in
 /// memory and reads the file back to verify it.
-Result<void> write_checked(const std::string& path, Solution& solution, const LightGroups& groups, bool reads_back) {
-    if (const Result<void> written = write_solution(path, solution, &groups);
+Result<void> write_checked(const std::string& path, Solution& solution, const LightGroups& groups, VtkGroup vtk,
+                           bool reads_back) {
+    if (const Result<void> written = write_solution(path, solution, &groups, vtk);
         !written || !reads_back || !std::filesystem::is_regular_file(path))
         return written;
     drop_light(solution);
@@ -206,8 +207,9 @@ Result<void> save(const SolveArguments& arguments, Solution& solution, const Lig
     Stopwatch writing;
     if (!is_first_process()) drop_light(solution);
     const bool reads_back = !stop.requested();
+    const VtkGroup vtk = arguments.vtkhdf ? VtkGroup::written : VtkGroup::left_out;
     if (const Result<void> written =
-            by_first([&] { return write_checked(arguments.output, solution, groups, reads_back); });
+            by_first([&] { return write_checked(arguments.output, solution, groups, vtk, reads_back); });
         !written)
         return written;
     SolveStatistics& statistics = solution.statistics;

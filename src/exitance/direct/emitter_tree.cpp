@@ -9,10 +9,10 @@
 
 namespace exitance {
 
-EmitterTree::EmitterTree(const DirectLight& direct) : direct_(&direct) {
+EmitterTree::EmitterTree(const DirectLight& direct, Windows windows) : direct_(&direct) {
     const Occluders& occluders = direct.occluders();
     for (std::uint32_t e = 0; e < direct.emitters().size(); ++e) {
-        if (direct.looks_far(e)) continue;
+        if (windows == Windows::left_out ? direct.is_distant(e) : direct.looks_far(e)) continue;
         const DirectLight::Emitter& emitter = direct.emitters()[e];
         for (PieceId piece : emitter.pieces) {
             const double area = norm(area_vector(occluders.corners(piece)));

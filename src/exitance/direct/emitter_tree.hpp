@@ -12,7 +12,9 @@ namespace exitance {
 /// O(n log^2 n) to build. Source: [Walter05].
 class EmitterTree {
   public:
-    explicit EmitterTree(const DirectLight& direct);
+    /// Whether panes through which the sky shines are emitters.
+    enum class Windows : std::uint8_t { included, left_out };
+    explicit EmitterTree(const DirectLight& direct, Windows windows = Windows::included);
 
     /// A convex piece of an emitter.
     struct Source {

@@ -49,10 +49,11 @@ bool reflects(const Scene& scene) {
                        [&](const Region& region) { return max(scene.materials()[region.material].reflectance) > 0; });
 }
 
-/// The fit takes nine places a leaf or more and all of its ancestors: this is little beside it.
+/// The fit takes nine places a leaf or more and all of its ancestors: this is little beside it. At the maximum, the
+/// standard error of the mean square is some percent.
 std::size_t count_of_places(std::size_t leaves) {
-    constexpr std::size_t min_places = 1024, leaves_a_place = 8;
-    return std::max(min_places, leaves / leaves_a_place);
+    constexpr std::size_t min_places = 1024, max_places = 4096, leaves_a_place = 8;
+    return std::clamp(leaves / leaves_a_place, min_places, max_places);
 }
 
 /// Returns the mean of the values, but at least its standard error: what the noise of rays may hide.

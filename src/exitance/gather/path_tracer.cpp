@@ -1,18 +1,12 @@
 #include "exitance/gather/path_tracer.hpp"
 
+#include "exitance/direct/source_point.hpp"
 #include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/form_factors/met_directions.hpp"
 
 namespace exitance {
 
-PathTracer::PathTracer(const Stage& stage) : stage_(stage) {
-    for (const auto& [region, patch] : stage_.pieces) {
-        const Material& material = stage.scene.material(region);
-        if (!material.emits()) continue;
-        lights_.push_back({region, patch, stage.scene.regions()[region].plane.n, patch.area(), material.exitance,
-                           stage.scene.relative_radiance(region)});
-    }
-}
+PathTracer::PathTracer(const Stage& stage) : stage_(stage), lights_(stage.direct) {}
 
 std::optional<PathTracer::Vertex> PathTracer::first(const Vertex& from, double a, double b) const {
     const Vec3 direction = met_direction(stage_.scene, from.region, from.n, a, b);
@@ -100,77 +94,49 @@ Spectrum PathTracer::light_of_discs(const Vertex& y, RandomStream& random) const
     return sum;
 }
 
-/// How likely each light is to be chosen at y, in proportion to what it would bring if nothing stood between.
-double PathTracer::chances(const Vertex& y, std::vector<double>& chance) const {
-    chance.resize(lights_.size());
-    double total = 0;
-    for (std::size_t i = 0; i < lights_.size(); ++i) {
-        const LightPiece& light = lights_[i];
-        const Vec3 w = light.patch.centre() - y.x;
-        const double radius2 = light.area, r2 = squared_norm(w) + radius2, r = std::sqrt(r2);
-        // Cosines are raised by the light's angular size, so that none that is seen in part has no chance.
-        const double spread = std::sqrt(radius2 / r2);
-        const double at_y = std::min(1.0, std::max(0.0, dot(y.n, w) / r) + spread);
-        const double at_light = dot(light.n, y.x - light.patch.origin) > 0
-                                    ? std::min(1.0, std::max(0.0, -dot(light.n, w) / r) + spread)
-                                    : 0;
-        total += chance[i] = mean(light.exitance) * light.area * at_y * at_light / r2;
-    }
-    return total;
+namespace {
+
+/// Density per solid angle of a point of a light that is uniform in area. `cosine`: at the light.
+double density_of(double chance, double area, double squared_distance, double cosine) {
+    return chance * squared_distance / (area * cosine);
 }
 
-/// The density, per solid angle, with which a shadow ray from y is aimed at `target` on a light.
-double PathTracer::shadow_density(const Vertex& y, const Vertex& target) const {
-    thread_local std::vector<double> chance;
-    const double total = chances(y, chance);
-    if (total <= 0) return 0;
-    const Vec3 w = target.x - y.x;
-    const double r2 = squared_norm(w);
-    if (r2 <= 0) return 0;
-    const double cosine = -dot(target.n, w) / std::sqrt(r2);
-    if (cosine <= 0) return 0;
-    double density = 0;
-    for (std::size_t i = 0; i < lights_.size(); ++i) {
-        if (lights_[i].region != target.region) continue;
-        const Vec2 uv = lights_[i].patch.coordinates(target.x);
-        constexpr double slack = 1e-6;  // given by rounding of hits, in single precision
-        const bool inside =
-            uv.x >= -slack && uv.y >= -slack &&
-            (lights_[i].patch.is_triangle() ? uv.x + uv.y <= 1 + slack : uv.x <= 1 + slack && uv.y <= 1 + slack);
-        if (inside) density = std::max(density, chance[i] / total * r2 / (lights_[i].area * cosine));
-    }
-    return density;
+/// Weight of a sample by the first of two densities, by the balance heuristic.
+double balance(double first, double second) {
+    return first / (first + std::max(second, 1e-300));  // given by rounding: not 0
 }
 
+}  // namespace
+
+/// Weight of a shadow ray from y to `target` on a light, against the path's next ray.
 double PathTracer::weight_of_shadow_ray(const Vertex& y, const Vertex& target) const {
-    const double shadow = shadow_density(y, target);
-    if (shadow <= 0) return 0;  // also where a ray from a corner meets a light at no distance at all
     const Vec3 w = target.x - y.x;
-    const double cosine = dot(y.n, w) / (pi * norm(w));
-    return shadow / (shadow + std::max(cosine, 1e-300));  // given by rounding: not 0
+    const double r2 = squared_norm(w), r = std::sqrt(r2), at_light = -dot(target.n, w);
+    // A ray from a corner meets a light at no distance at all.
+    if (r2 <= 0 || at_light <= 0 || lights_.empty()) return 0;
+    const std::optional<std::uint32_t> source = lights_.source_at(target.region, target.x);
+    const double chance = source ? lights_.chance_of(*source, y.x, y.n) : 0;
+    if (chance <= 0) return 0;
+    return balance(density_of(chance, lights_.source(*source).area, r2, at_light / r), dot(y.n, w) / (pi * r));
 }
 
 /// Direct light at y by one shadow ray, weighted against the ray that the path takes anyway.
 Spectrum PathTracer::shadow_ray(const Vertex& y, RandomStream& random) const {
-    thread_local std::vector<double> chance;
     if (lights_.empty()) return {};
-    const double total = chances(y, chance);
-    const double pick = random.uniform() * total, u = random.uniform(), v = random.uniform();
-    if (total <= 0) return {};
-    std::size_t i = 0;
-    for (double sum = chance[0]; i + 1 < lights_.size() && sum <= pick;) sum += chance[++i];
-    const LightPiece& light = lights_[i];
-    const Vertex target{light.patch.at(uniform_in_shape(light.patch.shape, u, v)), light.n, light.region};
-    const Vec3 w = target.x - y.x;
+    const double pick = random.uniform(), u = random.uniform(), v = random.uniform();
+    const auto [number, chance] = lights_.choose(y.x, y.n, pick);
+    if (chance <= 0) return {};
+    const EmitterTree::Source& source = lights_.source(number);
+    const DirectLight::Emitter& light = stage_.direct.emitters()[source.name.emitter];
+    const Point target = uniform_on(stage_.direct.occluders().corners(source.name.piece), source.area, u, v);
+    const Vec3 w = target - y.x;
     const double r2 = squared_norm(w), r = std::sqrt(r2);
-    const double at_y = dot(y.n, w) / r, at_light = -dot(light.n, w) / r;
-    if (at_y <= 0 || at_light <= 0 || light.region == y.region) return {};
+    const double at_y = dot(y.n, w) / r, at_light = -dot(light.plane.n, w) / r;
+    if (at_y <= 0 || at_light <= 0 || source.region == y.region) return {};
     const std::optional<Vertex> seen = vertex_of(trace(y, w, Mirrored::lost), y, w);
-    if (!seen || seen->region != light.region) return {};
-    const double density = shadow_density(y, target);
-    if (density <= 0) return {};
-    return light.exitance *
-           (light.radiance.towards(y.x, target.x) * at_y / pi / density * weight_of_shadow_ray(y, target));
+    if (!seen || seen->region != source.region) return {};
+    const double density = density_of(chance, source.area, r2, at_light);
+    return light.exitance * (light.radiance.towards(y.x, target) * at_y / pi / density * balance(density, at_y / pi));
 }
 
 }  // namespace exitance

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "exitance/base/random.hpp"
+#include "exitance/gather/light_choice.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {
@@ -45,28 +45,16 @@ class PathTracer {
     double rays_per_step() const;
 
   private:
-    /// A piece of an emitter that shadow rays are aimed at.
-    struct LightPiece {
-        RegionId region;
-        Patch patch;
-        Normal n;
-        double area;
-        Spectrum exitance;
-        RelativeRadiance radiance;
-    };
-
     RayHit trace(const Vertex& from, const Vec3& direction, Mirrored mirrored) const;
     /// Returns the vertex of a hit; none if nothing or a back is hit.
     std::optional<Vertex> vertex_of(const RayHit& hit, const Vertex& from, const Vec3& direction) const;
     Spectrum met_light(const RayHit& hit, const Vertex& from, const Vec3& direction) const;
     Spectrum light_of_discs(const Vertex& y, RandomStream& random) const;
-    double chances(const Vertex& y, std::vector<double>& chance) const;
-    double shadow_density(const Vertex& y, const Vertex& target) const;
     double weight_of_shadow_ray(const Vertex& y, const Vertex& target) const;
     Spectrum shadow_ray(const Vertex& y, RandomStream& random) const;
 
     const Stage& stage_;
-    std::vector<LightPiece> lights_;
+    LightChoice lights_;
 };
 
 }  // namespace exitance

@@ -1,6 +1,7 @@
 #include "exitance/mesh/conforming.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "exitance/base/bvh.hpp"
 #include "exitance/base/disjoint_sets.hpp"
@@ -300,6 +301,16 @@ void PlaneNodes::choose_fans() {
     }
 }
 
+/// A leaf that no other leaf of its plane can share nodes with.
+FoundLeaves alone(const ElementTree& tree, ElementId leaf) {
+    FoundLeaves out;
+    std::vector<std::uint32_t> node(static_cast<std::size_t>(tree.patch(leaf).corner_count()));
+    std::iota(node.begin(), node.end(), 0u);
+    out.node_count = static_cast<std::uint32_t>(node.size());
+    out.add(leaf, {}, node);
+    return out;
+}
+
 /// Reserves memory for fans and nodes: `share` times the numbers in `found`.
 void reserve(const std::vector<FoundLeaves>& found, double share, ElementTree& tree, SharedNodes& nodes) {
     FoundLeaves::Counts counts;
@@ -348,6 +359,7 @@ SharedNodes make_conforming(ElementTree& tree, const Field<RegionId, std::uint32
     for (RegionId r : plane.ids()) regions[plane[r]].push_back(r);
     const auto find = [&](std::size_t p) {
         if (leaves[p].empty() || (stop && stop->requested())) return FoundLeaves();
+        if (leaves[p].size() == 1 && !tree.is_cell(leaves[p][0])) return alone(tree, leaves[p][0]);
         double largest = 0;
         for (ElementId e : leaves[p]) largest = std::max(largest, tree.area(e));
         const PlaneNodes nodes(tree, leaves[p], contacts.over_plane(regions[p], ContactLines::height_of_jump(largest)));

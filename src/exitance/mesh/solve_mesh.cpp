@@ -34,11 +34,15 @@ void cut_leaves(ElementTree& tree, ElementId root, const CutLine& line) {
 /// Splits one piece and its parts until the size is met.
 class Cutter {
   public:
-    Cutter(ElementTree& tree, MeshSize size)
-        : tree_(tree), size_(size), strip_(size.edge / std::pow(2.0, size.grading_levels)) {}
+    Cutter(ElementTree& tree, MeshSize size) : tree_(tree), size_(size) {}
 
-    /// touches  which borders of the element are on a concave border of its piece
-    void refine(ElementId e, std::array<bool, 4> touches) {
+    /// `concave`: of the borders of the piece
+    void refine(ElementId e, const ConcaveBorders& concave) {
+        std::array<bool, 4> touches{};
+        for (std::size_t i = 0; i < concave.size(); ++i) {
+            strip_[i] = strip_width(concave[i]);
+            touches[i] = concave[i] == 1 || strip_[i] < size_.edge;
+        }
         if (!tree_.patch(e).is_triangle()) {
             std::array<bool, 4> open;
             for (std::size_t i = 0; i < 4; ++i) open[i] = !touches[i] && size_.longest_end > 0;
@@ -51,15 +55,25 @@ class Cutter {
     }
 
   private:
+    /// Width of the narrowest elements along a border, metres. The error that a strip of width w leaves is proportional
+    /// to rise w^1.2 (see `knobs_for_error`), and is the same along all borders.
+    double strip_width(double rise) const {
+        constexpr double exponent = 1.2;  // derived from the singularity of the light, as above
+        return size_.edge / std::pow(2.0, size_.grading_levels) / std::pow(rise, 1 / exponent);
+    }
+
     /// open  which borders of the element are on other borders of its piece, whose ends are graded, too
     void refine_parallelogram(ElementId e, std::array<bool, 4> touches, std::array<bool, 4> open) {
         const double a = norm(tree_.patch(e).a), b = norm(tree_.patch(e).b);
-        const bool along_u = touches[0] || touches[2], along_v = touches[1] || touches[3];
-        const bool end_of_u = along_u && (open[1] || open[3]), end_of_v = along_v && (open[0] || open[2]);
-        const bool cut_u = exceeds(a, size_.edge) || (along_v && exceeds(a, strip_)) ||
-                           (end_of_u && exceeds(a, size_.longest_end * std::max(b, strip_)));
-        const bool cut_v = exceeds(b, size_.edge) || (along_u && exceeds(b, strip_)) ||
-                           (end_of_v && exceeds(b, size_.longest_end * std::max(a, strip_)));
+        const auto strip_at = [&](std::size_t i, std::size_t j) {
+            return std::min(touches[i] ? strip_[i] : HUGE_VAL, touches[j] ? strip_[j] : HUGE_VAL);
+        };
+        const double along_u = strip_at(0, 2), along_v = strip_at(1, 3);
+        const bool end_of_u = open[1] || open[3], end_of_v = open[0] || open[2];
+        const bool cut_u = exceeds(a, std::min(size_.edge, along_v)) ||
+                           (end_of_u && exceeds(a, size_.longest_end * std::max(b, along_u)));
+        const bool cut_v = exceeds(b, std::min(size_.edge, along_u)) ||
+                           (end_of_v && exceeds(b, size_.longest_end * std::max(a, along_v)));
         if (!cut_u && !cut_v) return;
         const Cut way = cut_u && cut_v ? Cut::both : cut_u ? Cut::u : Cut::v;
         tree_.split(e, way);
@@ -89,7 +103,7 @@ class Cutter {
         for (std::size_t border = 0; border < 3; ++border) {
             if (!touches[border]) continue;
             const double height = 2 * p.area() / edge[border];
-            for (double d = strip_; d <= std::min(0.5 * size_.edge, 0.4 * height); d *= 2) {
+            for (double d = strip_[border]; d <= std::min(0.5 * size_.edge, 0.4 * height); d *= 2) {
                 const double t = d / height;  // the coordinate that is 0 on the border and 1 at the opposite corner
                 const CutLine lines[3] = {{{0, 1}, t}, {{-1, -1}, t - 1}, {{1, 0}, t}};
                 cut_leaves(tree_, e, lines[border]);
@@ -111,7 +125,7 @@ class Cutter {
 
     ElementTree& tree_;
     MeshSize size_;
-    double strip_;  ///< Width of the narrowest elements along concave borders, metres.
+    std::array<double, 4> strip_{};  ///< Width of the narrowest elements along each border of the piece, metres.
 };
 
 double distance_to_segment(const Point& p, const Point& a, const Point& b) {
@@ -120,21 +134,23 @@ double distance_to_segment(const Point& p, const Point& a, const Point& b) {
     return norm(p - (a + t * d));
 }
 
-/// Returns whether a surface contains `p` or touches it within `tolerance` (metres), extends in front of `plane`, and
-/// faces the point `inside`.
-bool rises_at(const Scene& scene, SurfaceId s, const Point& p, const Plane& plane, const Point& inside,
-              double tolerance) {
+/// Returns how far a surface rises (ConcaveBorders) if it contains `p` or touches it within `tolerance` (metres),
+/// extends in front of `plane`, and faces the point `inside`; else 0.
+double rise_at(const Scene& scene, SurfaceId s, const Point& p, const Plane& plane, const Point& inside,
+               double tolerance) {
     const Surface& surface = scene.surfaces()[s];
     const std::span<const Point> outline = scene.outline(s);
-    if (std::abs(dot(surface.normal, p - outline[0])) > tolerance) return false;
+    if (std::abs(dot(surface.normal, p - outline[0])) > tolerance) return 0;
+    constexpr double rounding = 1e-6;  // of the normals of right angles
+    const double rise = std::min(1.0, (1 + rounding) * (1 - dot(surface.normal, plane.n)));
     const bool in_front = std::any_of(outline.begin(), outline.end(),
                                       [&](const Point& q) { return plane.signed_distance(q) > 4 * tolerance; });
     const bool faces_inside = dot(surface.normal, inside - outline[0]) > 4 * tolerance;
-    if (!in_front || !faces_inside) return false;
-    if (contains(outline, surface.normal, p)) return true;
+    if (!in_front || !faces_inside) return 0;
+    if (contains(outline, surface.normal, p)) return rise;
     for (std::size_t i = 0; i < outline.size(); ++i)
-        if (distance_to_segment(p, outline[i], outline[(i + 1) % outline.size()]) <= tolerance) return true;
-    return false;
+        if (distance_to_segment(p, outline[i], outline[(i + 1) % outline.size()]) <= tolerance) return rise;
+    return 0;
 }
 
 }  // namespace
@@ -151,10 +167,10 @@ std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::
         const Patch& patch = pieces[k].patch;
         const Plane& plane = scene.regions()[region].plane;
         const Point inside = patch.centre();
-        out[k].assign(static_cast<std::size_t>(patch.corner_count()), false);
+        out[k].assign(static_cast<std::size_t>(patch.corner_count()), 0);
         for (int border = 0; border < patch.corner_count(); ++border) {
             const Point a = patch.corner(border), b = patch.corner((border + 1) % patch.corner_count());
-            bool concave = false;
+            double concave = 0;
             for (double t : {0.5, 0.18, 0.83}) {
                 const Point p = a + t * (b - a);
                 Box box;
@@ -162,10 +178,10 @@ std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::
                 box.add(p + Vec3{tolerance, tolerance, tolerance});
                 bvh.visit_box(box, [&](std::uint32_t i) {
                     const SurfaceId s(i);
-                    concave = concave ||
-                              (scene.surfaces()[s].region != region && rises_at(scene, s, p, plane, inside, tolerance));
+                    if (concave < 1 && scene.surfaces()[s].region != region)
+                        concave = std::max(concave, rise_at(scene, s, p, plane, inside, tolerance));
                 });
-                if (concave) break;
+                if (concave > 0) break;
             }
             out[k][static_cast<std::size_t>(border)] = concave;
         }
@@ -179,11 +195,9 @@ ElementTree make_mesh(const std::vector<Piece>& pieces, const std::vector<Concav
     for (const auto& [region, patch] : pieces) tree.add_root(region, patch);
     for (std::size_t k = 0; k < pieces.size(); ++k) {
         if (whole.size() > 0 && whole[pieces[k].region]) continue;
-        std::array<bool, 4> touches{};
-        std::copy(concave[k].begin(), concave[k].end(), touches.begin());
         MeshSize own = size;
         if (!finer.empty()) own.edge /= finer[k];
-        Cutter(tree, own).refine(tree.roots()[k], touches);
+        Cutter(tree, own).refine(tree.roots()[k], concave[k]);
     }
     return tree;
 }

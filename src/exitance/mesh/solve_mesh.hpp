@@ -11,18 +11,21 @@ namespace exitance {
 /// Fineness of the initial mesh, before anything is known about the light.
 struct MeshSize {
     double edge = 0;  ///< Longest edge of an element, metres.
-    /// Elements at a concave edge are split parallel to it down to a width of edge / 2^levels. Near such an edge the
-    /// solution behaves like a fractional power of the distance, which only strips of decreasing width can follow
-    /// [Atkinson00].
+    /// Elements at a concave edge of a right angle are split parallel to it down to a width of edge / 2^levels. Near
+    /// such an edge the solution behaves like a fractional power of the distance, which only strips of decreasing width
+    /// can follow [Atkinson00]. At flatter edges the strips are wider (ConcaveBorders), and there are none between the
+    /// faces of a smooth body.
     int grading_levels = 0;
     /// Maximum ratio of length to width of strips next to a free end of a concave edge, where the light changes within
     /// the width of a strip; 0: unlimited.
     double longest_end = 0;
 };
 
-/// Per border of a piece (border i is from corner i to corner i + 1): true if it meets another surface in front of the
-/// piece's plane at an angle below 180 degrees. Light exchange is singular there.
-using ConcaveBorders = std::vector<bool>;
+/// Per border of a piece (border i is from corner i to corner i + 1): how far another surface rises from it in front of
+/// the piece's plane. This is 1 - cos(angle between the normals), which is proportional to the light that one side of
+/// the fold sends to the other beside it; 1 at a right angle and above, 0 if no surface rises. Light exchange is
+/// singular at such borders.
+using ConcaveBorders = std::vector<double>;
 
 /// Finds the concave borders of each piece. O(n log n).
 std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::vector<Piece>& pieces);

@@ -165,13 +165,50 @@ void write_elements(Hdf5Writer& file, const std::string& group, const ElementTre
                             [&](std::size_t i, std::span<double> row) { row[0] = tree.ratio(ElementId(i)); });
 }
 
+bool are_same(const Vec3& a, const Vec3& b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+bool have_same_roots(const ElementTree& a, const ElementTree& b) {
+    const auto is_same = [&](ElementId i, ElementId j) {
+        const Patch p = a.patch(i), q = b.patch(j);
+        return a.region(i) == b.region(j) && p.shape == q.shape && are_same(p.origin, q.origin) && are_same(p.a, q.a) &&
+               are_same(p.b, q.b);
+    };
+    const auto &roots = a.roots(), &others = b.roots();
+    return std::equal(roots.begin(), roots.end(), others.begin(), others.end(), is_same);
+}
+
+/// Writes the root elements, or refers to those of `other` if they are the same.
+void write_roots(Hdf5Writer& file, const std::string& group, const ElementTree& tree,
+                 const std::optional<WrittenTree>& other) {
+    if (other && have_same_roots(tree, other->tree)) {
+        for (const char* name : {"/root_region", "/root_shape", "/root_patch"})
+            file.link(group + name, other->group + name);
+        return;
+    }
+    std::vector<std::uint32_t> region;
+    std::vector<std::uint8_t> shape;
+    std::vector<double> patches;
+    for (ElementId e : tree.roots()) {
+        const Patch p = tree.patch(e);
+        region.push_back(tree.region(e).value);
+        shape.push_back(p.is_triangle() ? 1 : 0);
+        for (const Vec3& v : {p.origin, p.a, p.b}) patches.insert(patches.end(), {v.x, v.y, v.z});
+    }
+    file.write(group + "/root_region", region, 1, {"1", "region of a root"});
+    file.write(group + "/root_shape", shape, 1, {"1", "shape of a root: 0 parallelogram, 1 triangle"});
+    file.write(group + "/root_patch", patches, 9,
+               {"m", "origin, a and b of a root: its points are origin + u a + v b"});
+}
+
 }  // namespace
 
-void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function) {
+void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function,
+                    const std::optional<WrittenTree>& other) {
     const ElementTree& tree = function.tree;
-    std::vector<std::uint32_t> line_element, fan_element, fan_places, region;
-    std::vector<std::uint8_t> shape;
-    std::vector<double> line, fans, patches;
+    std::vector<std::uint32_t> line_element, fan_element, fan_places;
+    std::vector<double> line, fans;
     for (ElementId e : tree.ids()) {
         if (!tree.parent(e).is_none() && tree.way(tree.parent(e)) == Cut::fan &&
             tree.children(tree.parent(e)).front() == e) {
@@ -185,12 +222,6 @@ void write_function(Hdf5Writer& file, const std::string& group, const ElementFun
         line_element.push_back(e.value);
         line.insert(line.end(), {tree.line(e).normal.x, tree.line(e).normal.y, tree.line(e).offset});
     }
-    for (ElementId e : tree.roots()) {
-        const Patch p = tree.patch(e);
-        region.push_back(tree.region(e).value);
-        shape.push_back(p.is_triangle() ? 1 : 0);
-        for (const Vec3& v : {p.origin, p.a, p.b}) patches.insert(patches.end(), {v.x, v.y, v.z});
-    }
     const auto in = [&](const char* name) { return group + "/" + name; };
     file.make_group(group);
     write_elements(file, group, tree);
@@ -200,9 +231,7 @@ void write_function(Hdf5Writer& file, const std::string& group, const ElementFun
     file.write(in("fan_places"), fan_places, 1, {"1", "how many places of `fan` are such an element's"});
     file.write(in("fan"), fans, 2,
                {"1", "places in the element's coordinates: apex p, then q_1 ... q_n of triangles (p, q_i, q_i+1)"});
-    file.write(in("root_region"), region, 1, {"1", "region of a root"});
-    file.write(in("root_shape"), shape, 1, {"1", "shape of a root: 0 parallelogram, 1 triangle"});
-    file.write(in("root_patch"), patches, 9, {"m", "origin, a and b of a root: its points are origin + u a + v b"});
+    write_roots(file, group, tree, other);
     write_values(file, in("values"), function);
 }
 

@@ -64,6 +64,8 @@ class Hdf5Writer {
     /// Creates a group. It must exist before its members are written. Names are paths from the root, such as
     /// "exitance/scene".
     void make_group(const std::string& name);
+    /// Gives an object a second name, under which readers find the same object.
+    void link(const std::string& name, const std::string& object);
 
     /// Writes numbers in rows of `columns`; with one column, the set is one-dimensional. Large sets are compressed
     /// (shuffled, gzip level 1) or have a checksum; small ones are in the header, under its checksum, so that damage is

@@ -101,6 +101,11 @@ void Hdf5Writer::make_group(const std::string& name) {
     if (group < 0) fail("group " + name);
 }
 
+void Hdf5Writer::link(const std::string& name, const std::string& object) {
+    if (!failure_.empty()) return;
+    if (H5Lcreate_hard(file_, object.c_str(), file_, name.c_str(), H5P_DEFAULT, H5P_DEFAULT) < 0) fail("link " + name);
+}
+
 /// Creates a data set without values and returns its handle; negative on failure.
 std::int64_t Hdf5Writer::make_set(const std::string& name, std::int64_t file_type, std::span<const std::size_t> shape,
                                   std::size_t item_bytes) {

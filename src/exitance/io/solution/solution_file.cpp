@@ -26,10 +26,11 @@ std::span<const LightFormGroup> light_form_groups() {
     return known_groups();
 }
 
-Result<void> write_solution(const std::string& path, const Solution& solution, const LightGroups* groups) {
+Result<void> write_solution(const std::string& path, const Solution& solution, const LightGroups* groups,
+                            VtkGroup vtk) {
     Hdf5Writer file(path);
     if (solution.scene.is_photometric()) file.use_lumens();
-    write_vtkhdf(file, solution);
+    if (vtk == VtkGroup::written) write_vtkhdf(file, solution);
     file.make_group("exitance");
     file.set_attribute("exitance", "format", format);
     file.set_attribute("exitance", "program_version", std::string_view(program_version));
@@ -42,7 +43,8 @@ Result<void> write_solution(const std::string& path, const Solution& solution, c
     const Spectrum& c = solution.direct_share;
     file.write("exitance/direct_share", std::span<const double>(c.value), 1,
                {"1", "share of the direct light that the values of indirect hold too, a value a band"});
-    write_function(file, "exitance/interpolant", solution.interpolant);
+    write_function(file, "exitance/interpolant", solution.interpolant,
+                   WrittenTree{"exitance/indirect", solution.indirect.tree});
     if (!solution.discontinuity.empty()) write_discontinuity(file, "exitance/discontinuity", solution.discontinuity);
     for (const LightFormGroup& form : light_form_groups())
         form.write(file, std::string("exitance/") + form.name, solution);

@@ -136,6 +136,45 @@ TEST_F(SolutionFiles, NameTheUnitsOfEnergyAndLight) {
     }
 }
 
+TEST_F(SolutionFiles, CanLeaveOutTheGroupForOtherPrograms) {
+    const Solution s = sample_solution();
+    ASSERT_TRUE(write_solution(path("whole.h5"), s));
+    ASSERT_TRUE(write_solution(path("small.h5"), s, nullptr, VtkGroup::left_out));
+    Result<Hdf5Reader> file = Hdf5Reader::open(path("small.h5"));
+    ASSERT_TRUE(file) << file.error().message;
+    EXPECT_FALSE(file->has("VTKHDF"));
+    const Result<Solution> whole = load_solution(path("whole.h5")), small = load_solution(path("small.h5"));
+    ASSERT_TRUE(whole && small);
+    expect_same(whole->interpolant, small->interpolant);
+    expect_same(whole->scene, small->scene);
+}
+
+TEST_F(SolutionFiles, HoldEqualRootsOfTwoFunctionsOnce) {
+    Solution shared = sample_solution();
+    shared.interpolant = shared.indirect;
+    ASSERT_TRUE(write_solution(path("shared.h5"), shared));
+    Solution apart = shared;
+    ElementTree moved;
+    for (const ElementId e : shared.indirect.tree.roots()) {
+        Patch patch = shared.indirect.tree.patch(e);
+        patch.a *= 0.5;
+        moved.add_root(shared.indirect.tree.region(e), patch);
+    }
+    apart.interpolant.tree = moved;
+    apart.interpolant.first_value = {}, apart.interpolant.values = {};
+    apart.interpolant.first_value.resize(moved.size());
+    for (const ElementId e : moved.ids()) {
+        apart.interpolant.first_value[e] = static_cast<std::uint32_t>(apart.interpolant.values.size());
+        for (int k = 0; k < moved.patch(e).corner_count(); ++k) apart.interpolant.add_value(Spectrum(1.0));
+    }
+    ASSERT_TRUE(write_solution(path("apart.h5"), apart));
+    for (const auto& [name, solution] : {std::pair("shared.h5", &shared), std::pair("apart.h5", &apart)}) {
+        const Result<Solution> read = load_solution(path(name));
+        ASSERT_TRUE(read) << read.error().message;
+        expect_same(read->interpolant, solution->interpolant);
+    }
+}
+
 TEST_F(SolutionFiles, WithoutEnergyUnitHoldTheSumOfAllBands) {
     Hdf5Writer out(path("old.h5"));
     out.make_group("statistics");

@@ -43,9 +43,17 @@ std::vector<LuminaireType> read_luminaire_types(Hdf5Reader& file, const std::str
 std::vector<InstalledLuminaire> read_luminaires(Hdf5Reader& file, const std::string& group, std::size_t type_count,
                                                 std::size_t group_count);
 
+/// A tree that is in the file.
+struct WrittenTree {
+    std::string group;
+    const ElementTree& tree;
+};
+
 /// A tree as the patches of its roots and the split of every element, from which all patches are restored bit for bit,
-/// and the values at the corners of the leaves, in order.
-void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function);
+/// and the values at the corners of the leaves, in order. If the roots are those of another tree, the file holds them
+/// once.
+void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function,
+                    const std::optional<WrittenTree>& other = {});
 ElementFunction read_function(Hdf5Reader& file, const std::string& group, std::size_t region_count);
 
 /// Links of a hierarchy, with their elements as a function.

@@ -29,6 +29,7 @@ struct SolveRequest {
     std::optional<double> checkpoint_every = {};  ///< Seconds between checkpoints.
     bool resume = false;                          ///< Continue from the checkpoint of the same output.
     bool dry_run = false;                         ///< Print a forecast only.
+    bool vtkhdf = true;                           ///< Write the mesh for ParaView into the solution, too.
     std::string trace = {};                       ///< File for the trace of parallel loops; empty: none.
     std::vector<std::string> warnings = {};       ///< Warnings about old names of options.
 };
