@@ -118,16 +118,18 @@ TEST(PublishedForm, SnapshotsAreTakenAfterEveryRound) {
     lines.error = 0.03;
     for (SolveOptions options : {with_links(false), by_tasks(), lines}) {
         options.snapshots.rounds = true;
-        std::size_t count = 0, with_time = 0;
+        std::size_t count = 0, with_time = 0, rays = 0;
         const Result<Solution> last = solve(options, nullptr, [&](const Solution& s) {
             EXPECT_FALSE(s.statistics.converged);
             EXPECT_GT(s.statistics.leaf_elements, 0u);
             EXPECT_FALSE(s.interpolant.values.empty());
             ++count, with_time += s.statistics.figures.at("method_seconds") > 0;
+            rays = s.statistics.rays;
         });
         ASSERT_TRUE(last);
         EXPECT_GE(count, 1u);
         EXPECT_EQ(with_time, count);
+        EXPECT_LE(rays, last->statistics.rays) << "no work is counted twice";
     }
 }
 

@@ -161,7 +161,7 @@ void Solver::certify_published() {
 void Solver::show_snapshot(const Snapshots::Moment& moment) {
     if (!show_) return;
     Solution shown{.scene = solution_.scene, .statistics = statistics()};
-    record_work(moment.light, shown.statistics);
+    if (step_ == Step::project) record_work(moment.light, shown.statistics);  // afterwards it has been counted
     take_published(moment.light, shown);
     make_published_mesh(shown);
     shown.statistics.converged = false;
