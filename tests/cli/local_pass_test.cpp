@@ -25,7 +25,7 @@ TEST(ProgramLocalPass, OtherMethodsAndUnsupportedOptionsAreUsageErrors) {
         {"--local-pass", "d", "--method", "matrix"},
         {"--local-pass", "f", "--method", "discontinuity"},
         {"--local-pass", "a", "--method", "discontinuity", "--bounces", "0"},
-        {"--local-pass", "c", "--method", "discontinuity", "--resume"}};
+        {"--local-pass", "c", "--method", "discontinuity", "--snapshots", "shots=3"}};
     for (std::vector<std::string> words : wrong) {
         words.insert(words.begin(), {"solve", scene, "-o", output});
         EXPECT_EQ(run_program(words).status, 2) << words.back();

@@ -55,7 +55,7 @@ Result<SolveRequest> request_of(const SolveOptions& options, bool light_groups) 
     if (!request) return to_api(request.error());
     request->options.memory_limit_bytes = options.memory_limit;
     request->light_groups = light_groups;
-    if (form_of(*request) != Form::standard)
+    if (form_of(request->options) != Form::standard)
         return usage("the options select a published form, which is part of the program only", "more",
                      "run `exitance solve`");
     if (const exitance::Result<Way> way = find_way(*request); !way) return to_api(way.error());
@@ -83,7 +83,8 @@ Result<Solution> solve_request(const SceneData& scene, const SolveRequest& reque
     exitance::Result<exitance::Solution> solved =
         solve_scene(*scene.scene, request.options, run.progress(), run.stop());
     if (!solved) return to_api(solved.error());
-    if (const std::optional<exitance::Error> failed = error_of_missing_estimate(solved->statistics, ""))
+    if (const std::optional<exitance::Error> failed =
+            error_of_missing_estimate(solved->statistics, request.options, ""))
         return to_api(*failed);
     add_texture_error(*solved, scene.reflectance_deviation, request.options.error_demand());
     warn_of_useless_light(solved->statistics);

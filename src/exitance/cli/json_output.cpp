@@ -60,19 +60,6 @@ std::string with_scene_options(const std::string& options, const LoadOptions& lo
     return dump(json, -1);
 }
 
-std::string options_json(const SolveRequest& request, const ClassicalFacts& facts) {
-    Json json = Json::parse(recorded_options(request));
-    if (!facts.direct.empty())
-        json["classical"]["facts"] = {
-            {"direct", facts.direct},
-            {"mesh_kind", facts.mesh_kind},
-            {"links_found_by", facts.links_found_by},
-            {"initial_links", facts.initial_links},
-            {"coefficient_memory_bytes", facts.coefficient_memory_bytes},
-        };
-    return dump(json, -1);
-}
-
 std::vector<std::pair<std::string, std::string>> option_facts(const SolveRequest& request) {
     std::vector<std::pair<std::string, std::string>> facts;
     const Json json = Json::parse(recorded_options(request));

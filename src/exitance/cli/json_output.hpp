@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "exitance/io/scenes/scene_file.hpp"
-#include "exitance/lab/classical/classical.hpp"
 #include "exitance/measure/glare/daylight_glare.hpp"
 #include "exitance/methods/options/solve_request.hpp"
 #include "exitance/methods/plan/forecast.hpp"
@@ -35,9 +34,6 @@ std::string options_json(const SolveRequest& request);
 /// Adds to `options` (JSON) those options for reading the scene that were given: length_unit (metres), up, turn_bodies,
 /// texture_parts.
 std::string with_scene_options(const std::string& options, const LoadOptions& load);
-
-/// Options of a published form, with the facts about its solve.
-std::string options_json(const SolveRequest& request, const ClassicalFacts& facts);
 
 /// Names and JSON values of the options that a checkpoint depends on: the recorded options and the memory limit.
 std::vector<std::pair<std::string, std::string>> option_facts(const SolveRequest& request);

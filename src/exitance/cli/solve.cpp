@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <limits>
@@ -7,7 +9,6 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/processes.hpp"
-#include "exitance/cli/solve/classical_solve.hpp"
 #include "exitance/cli/solve/settle_options.hpp"
 #include "exitance/cli/summary.hpp"
 #include "exitance/cli/verbs.hpp"
@@ -152,13 +153,6 @@ ExitCode code_of(const SolveStatistics& statistics, const RunLimits& limits) {
     return statistics.converged ? ExitCode::done : ExitCode::demand_not_reached;
 }
 
-/// Returns the failure of a run that was stopped before the first estimate of its error; none for runs of forms that
-/// have no estimate.
-std::optional<Error> no_estimate(const SolveArguments& arguments, const SolveStatistics& statistics) {
-    if (arguments.classical.any() || arguments.options.task_engine) return {};
-    return error_of_missing_estimate(statistics, arguments.output);
-}
-
 /// Reads the scene with the options of the solve. Programs that generate parts of it are ended at the time limit.
 LoadedScene read_scene(SolveArguments& arguments, const StopRequest& stop) {
     LoadOptions& load = arguments.scene.load;
@@ -178,19 +172,27 @@ Result<void> check_scene(const SolveArguments& arguments, const Scene& scene) {
     return {};
 }
 
-/// Computes the light by a published form or by a method.
+/// Computes the light. Writes requested snapshots as STEM.0001.h5, ... for an output STEM.h5.
 Result<Solution> find_light(const SolveArguments& arguments, Scene scene, std::optional<CheckpointFile>& checkpoint,
                             Progress& progress, const StopRequest& stop) {
-    if (arguments.classical.any()) return run_classical(arguments, scene, progress, stop);
-    return solve_scene(std::move(scene), arguments.options, progress, stop, checkpoint ? &*checkpoint : nullptr);
+    const std::string& output = arguments.output;
+    const std::string stem = output.ends_with(".h5") ? output.substr(0, output.size() - 3) : output;
+    Result<void> written;
+    const auto write = [&, number = 0](Solution snapshot) mutable {
+        snapshot.options = options_json(arguments);
+        if (written) written = write_solution(fmt::format("{}.{:04}.h5", stem, ++number), snapshot);
+    };
+    Result<Solution> solution =
+        solve_scene(std::move(scene), arguments.options, progress, stop, checkpoint ? &*checkpoint : nullptr,
+                    arguments.options.snapshots.any() ? ShowLight(write) : ShowLight());
+    return written ? std::move(solution) : Result<Solution>(written.error());
 }
 
 /// Records options, findings, times and memory of the run so far in the solution.
 void record_run(Solution& solution, const SolveArguments& arguments, const std::vector<Finding>& findings,
                 double read_seconds, const Stopwatch& run_time) {
     SolveStatistics& statistics = solution.statistics;
-    if (!arguments.classical.any()) solution.options = options_json(arguments);
-    solution.options = with_scene_options(solution.options, arguments.scene.load);
+    solution.options = with_scene_options(options_json(arguments), arguments.scene.load);
     add_findings(statistics.warnings, findings, solution.scene.file());
     statistics.seconds[RunPart::read] = read_seconds;
     statistics.seconds[RunPart::total] = run_time.seconds();
@@ -269,7 +271,8 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (!solution && signal) return *signal;
     if (!solution) return terminal.fail(solution.error());
 
-    if (const std::optional<Error> failed = no_estimate(arguments, solution->statistics)) {
+    if (const std::optional<Error> failed =
+            error_of_missing_estimate(solution->statistics, arguments.options, arguments.output)) {
         terminal.progress().finish();
         close_checkpoint(checkpoint, true, terminal);
         const ExitCode failure = terminal.fail(*failed);

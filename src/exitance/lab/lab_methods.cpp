@@ -1,6 +1,7 @@
 #include "exitance/lab/laboratory.hpp"
 
 #include "exitance/lab/bsp/ordered_light.hpp"
+#include "exitance/lab/classical/classical.hpp"
 #include "exitance/lab/dm_tree/tree_cutter.hpp"
 #include "exitance/lab/growing_cells/cell_function.hpp"
 #include "exitance/lab/growing_cells/cells_method.hpp"
@@ -35,21 +36,29 @@ std::map<std::string, double> single_mesh_figures(const SixNodeMesh& mesh) {
 
 constexpr DiscontinuityExtension discontinuity{choose_structures, make_layered_light, single_mesh_figures};
 
-bool selects_local_pass(const SolveOptions& options) {
-    return options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e;
+/// A method in a published form, without an estimate of its error.
+constexpr MethodEntry published(Method id, SolveMethod solve, const char* basis, ForecastMethod forecast = nullptr,
+                                Form form = Form::published) {
+    return {.id = id, .solve = solve, .basis = basis, .forecast = forecast, .form = form, .has_estimate = false};
 }
 
-bool selects_tasks(const SolveOptions& options) {
-    return options.task_engine;
-}
+/// The laboratory's rows of the table of methods.
+constexpr MethodEntry lab_methods[] = {
+    {.id = Method::growing_cells, .solve = solve_growing_cells, .basis = "gaussian", .forecast = forecast_cells},
+    {.id = Method::discontinuity, .solve = solve_by_lines, .basis = "quadratic", .form = Form::local_passes},
+    published(Method::hierarchical, solve_by_tasks, "haar", nullptr, Form::tasks),
+    published(Method::matrix, solve_classical_matrix, "constant", forecast_classical_matrix),
+    published(Method::progressive, solve_classical_shooting, "constant", forecast_classical_shooting),
+    published(Method::substructuring, solve_classical_substructuring, "constant", forecast_classical_shooting),
+    published(Method::hierarchical, solve_classical_hierarchical, "haar"),
+    published(Method::wavelet, solve_classical_wavelet, "multiwavelet2"),
+};
 
 }  // namespace
 
 void install_lab_methods() {
     if (extensions().discontinuity) return;
-    extensions() = {.methods = {{Method::growing_cells, solve_growing_cells, "gaussian", forecast_cells}},
-                    .solves = {{selects_local_pass, solve_by_lines}, {selects_tasks, solve_by_tasks}},
-                    .discontinuity = &discontinuity};
+    extensions() = {.methods = {std::begin(lab_methods), std::end(lab_methods)}, .discontinuity = &discontinuity};
     add_light_form({LayersForm::name, LayersForm::unpack});
     add_light_form({CellsForm::name, CellsForm::unpack});
 }

@@ -1,17 +1,38 @@
 #include "exitance/methods/carried_light.hpp"
 
+#include "exitance/methods/options/support.hpp"
+
 namespace exitance {
+namespace {
+
+/// Advice for scenes with other emitters; null if the options do not carry their light.
+const char* advice_for_other_emitters(const SolveOptions& options) {
+    switch (form_of(options)) {
+        case Form::local_passes:
+            return "--local-pass a to d carries light between diffuse polygons alone: e carries this light, too";
+        case Form::tasks:
+            return "--task-engine carries light between diffuse patches alone: leave it out";
+        case Form::published:
+            return options.classical.carried() ? "--direct apart supports all emitters" : nullptr;
+        case Form::standard:
+            break;
+    }
+    const bool classic = options.method == Method::growing_cells && options.gcs == CellsKind::classic;
+    return classic ? "--gcs classic carries light between diffuse polygons only; --gcs improved supports this scene"
+                   : nullptr;
+}
+
+}  // namespace
 
 bool is_lit_by_diffuse_surfaces(const Scene& scene) {
     return !scene.has_light_apart() && scene.panes().empty() && !scene.has_directed_emission();
 }
 
-Result<void> check_classic_cells(const Scene& scene, const SolveOptions& options) {
-    const bool classic = options.method == Method::growing_cells && options.gcs == CellsKind::classic;
-    if (!classic || is_lit_by_diffuse_surfaces(scene)) return {};
+Result<void> check_carried_light(const Scene& scene, const SolveOptions& options) {
+    const char* const advice = advice_for_other_emitters(options);
+    if (!advice || is_lit_by_diffuse_surfaces(scene)) return {};
     return Error{ErrorCode::bad_input, "has lights without extent, lights that are not diffuse, or clear glass",
-                 scene.file(),
-                 "--gcs classic carries light between diffuse polygons only; --gcs improved supports this scene"};
+                 scene.file(), advice};
 }
 
 }  // namespace exitance

@@ -10,7 +10,8 @@ namespace exitance {
 /// light of emitters from element to element support only such scenes.
 bool is_lit_by_diffuse_surfaces(const Scene& scene);
 
-/// Returns an error if `--gcs classic` is requested for a scene that is not lit by diffuse surfaces only.
-Result<void> check_classic_cells(const Scene& scene, const SolveOptions& options);
+/// Returns an error if the options carry the light of emitters from element to element, but the scene is not lit by
+/// diffuse surfaces only.
+Result<void> check_carried_light(const Scene& scene, const SolveOptions& options);
 
 }  // namespace exitance

@@ -1,24 +1,11 @@
 #include <gtest/gtest.h>
 
 #include "exitance/methods/solve_scene.hpp"
+#include "support/all_states.hpp"
 #include "support/built_scene.hpp"
 
 namespace exitance {
 namespace {
-
-/// Stores every state; optionally starts from a given one.
-class AllStates final : public CheckpointStore {
-  public:
-    explicit AllStates(std::string begin = {}) : begin_(std::move(begin)) {}
-    bool is_due() const override { return true; }
-    void keep(std::string state) override { states.push_back(std::move(state)); }
-    std::string resumed() override { return begin_; }
-
-    std::vector<std::string> states;
-
-  private:
-    std::string begin_;
-};
 
 void expect_same(const ElementFunction& a, const ElementFunction& b) {
     ASSERT_EQ(a.tree.size(), b.tree.size());

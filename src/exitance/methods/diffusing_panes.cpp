@@ -1,16 +1,30 @@
 #include "exitance/methods/diffusing_panes.hpp"
 
+#include "exitance/methods/options/support.hpp"
+
 namespace exitance {
+namespace {
+
+/// The option that selects a form without light through surfaces; null if the form has such light.
+const char* one_sided_option(const SolveOptions& options) {
+    switch (form_of(options)) {
+        case Form::local_passes:
+            return "--local-pass";
+        case Form::tasks:
+            return "--task-engine";
+        case Form::published:
+            return "--recipe";
+        case Form::standard:
+            break;
+    }
+    return options.method == Method::growing_cells && options.gcs == CellsKind::classic ? "--gcs" : nullptr;
+}
+
+}  // namespace
 
 Result<void> check_diffusing_panes(const Scene& scene, const SolveOptions& options) {
     if (!scene.has_diffusing_panes()) return {};
-    const bool by_lines = options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e;
-    const bool classic_cells = options.method == Method::growing_cells && options.gcs == CellsKind::classic;
-    const char* const option = by_lines              ? "--local-pass"
-                               : options.task_engine ? "--task-engine"
-                               : classic_cells       ? "--gcs"
-                                                     : nullptr;
-    if (option)
+    if (const char* const option = one_sided_option(options))
         return Error{ErrorCode::usage, "carries light to one side of a surface, but the scene has diffusing panes",
                      option, "leave the option out: all methods then support both sides, and auto chooses matrix"};
     const Relaxation relaxation = options.relaxation.value_or(Relaxation::gmres);

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "exitance/methods/methods.hpp"
+#include "exitance/methods/options/support.hpp"
 
 namespace exitance {
 namespace {
@@ -22,14 +21,10 @@ Extensions& extensions() {
 }
 
 Result<void> check_extensions(const SolveOptions& options) {
-    if (options.method != Method::automatic && !find_method(options.method))
-        return not_linked(fmt::format("method {}", name_in(method_names, options.method)), "--method");
-    const bool has_other_pass = options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e;
-    const auto& solves = extensions().solves;
-    const bool has_solve =
-        std::any_of(solves.begin(), solves.end(), [&](const WholeSolve& whole) { return whole.is_selected(options); });
-    if ((has_other_pass || options.task_engine) && !has_solve)
-        return not_linked("this form of the method", has_other_pass ? "--local-pass" : "--task-engine");
+    if (options.method != Method::automatic && !find_method(form_of(options), options.method))
+        return not_linked(fmt::format("{} method {}", form_of(options) == Form::standard ? "the" : "this form of the",
+                                      name_in(method_names, options.method)),
+                          "--method");
     const DiscontinuityChoice& c = options.discontinuity;
     const bool needs_lab = c.layers == true ||
                            c.triangulation.value_or(TriangulationScheme::delaunay) != TriangulationScheme::delaunay ||

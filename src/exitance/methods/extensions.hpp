@@ -10,13 +10,6 @@
 
 namespace exitance {
 
-/// A solve that does not consist of the engine's steps, and the options that select it.
-struct WholeSolve {
-    bool (*is_selected)(const SolveOptions& options);
-    Result<Solution> (*solve)(const Scene& scene, const SolveOptions& options, Progress& progress,
-                              const StopRequest& stop);
-};
-
 /// Direct light as the sum of one mesh per source.
 struct LayeredLight {
     LightFormPointer form;
@@ -38,7 +31,6 @@ struct DiscontinuityExtension {
 /// both, fills in this struct.
 struct Extensions {
     std::vector<MethodEntry> methods;
-    std::vector<WholeSolve> solves;
     const DiscontinuityExtension* discontinuity = nullptr;
 };
 

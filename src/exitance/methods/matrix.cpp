@@ -63,7 +63,7 @@ HierarchyBasis galerkin_basis(BasisKind basis) {
 /// With `--basis linear`, rows are cast from nodes and a ray evaluates the polynomial of the element that it hits
 /// [Atkinson00]. With `--basis galerkin1` to `3`, blocks of the Galerkin matrix are integrated pair by pair [Zatz93].
 GlobalLight solve_matrix(const MethodInput& input) {
-    const auto& [stage, options, knobs, direct, progress, stop, safe_points, may_give_up] = input;
+    const auto& [stage, options, knobs, direct, progress, stop, safe_points, may_give_up, aim, snapshots] = input;
     if (options.bounces < 0 && options.basis && is_galerkin(*options.basis))
         return solve_galerkin(input, galerkin_basis(*options.basis));
     GlobalLight light{.tree = direct.tree, .numbering = LeafNumbering(direct.tree)};

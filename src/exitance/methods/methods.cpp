@@ -1,7 +1,10 @@
 #include "exitance/methods/methods.hpp"
 
+#include <algorithm>
+
 #include "exitance/base/check.hpp"
 #include "exitance/methods/extensions.hpp"
+#include "exitance/methods/options/support.hpp"
 
 namespace exitance {
 
@@ -33,18 +36,26 @@ constexpr MethodEntry method_table[] = {
 
 }  // namespace
 
-const MethodEntry* find_method(Method id) {
+const MethodEntry* find_method(Form form, Method id) {
     for (const MethodEntry& method : method_table)
-        if (method.id == id) return &method;
+        if (method.form == form && method.id == id) return &method;
     for (const MethodEntry& method : extensions().methods)
-        if (method.id == id) return &method;
+        if (method.form == form && method.id == id) return &method;
     return nullptr;
 }
 
-const MethodEntry& entry_of(Method id) {
-    const MethodEntry* const method = find_method(id);
+const MethodEntry& entry_of(Method id, Form form) {
+    const MethodEntry* const method = find_method(form, id);
     EXI_CHECK(method);
     return *method;
+}
+
+bool has_estimate(const SolveOptions& options) {
+    const Form form = form_of(options);
+    const auto of_form = [&](const MethodEntry& method) { return method.form == form; };
+    const auto& added = extensions().methods;
+    const auto method = std::find_if(added.begin(), added.end(), of_form);
+    return form == Form::standard || method == added.end() || method->has_estimate;
 }
 
 }  // namespace exitance

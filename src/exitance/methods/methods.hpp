@@ -8,9 +8,12 @@ namespace exitance {
 std::vector<Spectrum> leaf_means(const DirectProjection& direct, const LeafNumbering& numbering);
 
 /// The row of a method in the table: one of the engine's, or one that `Extensions` adds; null where neither has it.
-const MethodEntry* find_method(Method id);
-/// Like `find_method`, for a method that is known to exist.
-const MethodEntry& entry_of(Method id);
+const MethodEntry* find_method(Form form, Method id);
+/// Like `find_method`, for a method that is known to exist. The standard form if no form is given.
+const MethodEntry& entry_of(Method id, Form form = Form::standard);
+
+/// True if the form that the options select estimates the error of its light.
+bool has_estimate(const SolveOptions& options);
 
 GlobalLight solve_matrix(const MethodInput& input);
 GlobalLight solve_progressive(const MethodInput& input);

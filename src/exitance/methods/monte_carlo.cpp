@@ -87,7 +87,7 @@ class Shooter {
 /// one. The number of rays is proportional to the power left; the arriving light is an unbiased estimate. Independent
 /// runs are averaged; their spread yields the standard error. O(rays), no form factors, memory of the elements only.
 GlobalLight solve_monte_carlo(const MethodInput& input) {
-    const auto& [stage, options, knobs, direct_light, progress, stop, safe_points, may_give_up] = input;
+    const auto& [stage, options, knobs, direct_light, progress, stop, safe_points, may_give_up, aim, snapshots] = input;
     ElementTree tree = direct_light.tree;
     LeafNumbering numbering(tree);
     const std::size_t n = numbering.leaves.size();

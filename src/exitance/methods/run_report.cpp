@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "exitance/methods/methods.hpp"
 #include "exitance/scene/findings.hpp"
 
 namespace exitance {
@@ -25,8 +26,9 @@ void warn_of_useless_light(SolveStatistics& statistics) {
                     100 * *statistics.relative_error_estimate));
 }
 
-std::optional<Error> error_of_missing_estimate(const SolveStatistics& statistics, const std::string& where) {
-    if (statistics.relative_error_estimate || statistics.stopped_by.empty()) return {};
+std::optional<Error> error_of_missing_estimate(const SolveStatistics& statistics, const SolveOptions& options,
+                                               const std::string& where) {
+    if (statistics.relative_error_estimate || statistics.stopped_by.empty() || !has_estimate(options)) return {};
     return Error{ErrorCode::limit,
                  fmt::format("the {} ended the run before the first estimate of the error; nothing is written",
                              statistics.stopped_by),

@@ -7,6 +7,7 @@
 
 #include "exitance/scene/scene.hpp"
 #include "exitance/solution/solution.hpp"
+#include "exitance/solve/solve_options.hpp"
 
 namespace exitance {
 
@@ -21,7 +22,8 @@ void add_findings(std::vector<std::string>& warnings, std::span<const Finding> f
 void warn_of_useless_light(SolveStatistics& statistics);
 
 /// Returns the failure of a run that a stop ended before there was light with an estimate of its error; else none.
-/// `where`: the output, or empty.
-std::optional<Error> error_of_missing_estimate(const SolveStatistics& statistics, const std::string& where);
+/// Light of forms that never estimate their error is delivered in any case. `where`: the output, or empty.
+std::optional<Error> error_of_missing_estimate(const SolveStatistics& statistics, const SolveOptions& options,
+                                               const std::string& where);
 
 }  // namespace exitance

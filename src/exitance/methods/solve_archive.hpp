@@ -39,6 +39,20 @@ void archive(Archive& a, LightFormPointer& form) {
 }
 
 template <class Archive>
+void archive(Archive& a, SixNodeMesh& mesh) {
+    auto& [points, values, nodes, region, edge_order, shadow, curves, gradients, gradient_of, slopes] = mesh;
+    a(points, values, nodes, region, edge_order, shadow, curves, gradients, gradient_of, slopes);
+}
+
+/// Forms that refuse to solve are not saved.
+template <class Archive>
+void archive(Archive& a, PublishedLight& light) {
+    auto& [irradiance, mesh, counts, elements, leaf_elements, figures, visibility_seconds, form_factor_seconds,
+           refusal] = light;
+    a(irradiance, mesh, counts, elements, leaf_elements, figures, visibility_seconds, form_factor_seconds);
+}
+
+template <class Archive>
 void archive(Archive& a, MethodWork& work) {
     auto& [rays, form_factors, links, link_memory_bytes, element_memory_bytes, elements_by_level] = work;
     a(rays, form_factors, links, link_memory_bytes, element_memory_bytes, elements_by_level);
@@ -47,9 +61,10 @@ void archive(Archive& a, MethodWork& work) {
 template <class Archive>
 void archive(Archive& a, GlobalLight& light) {
     auto& [tree, numbering, direct, indirect, indirect_corners, direct_corners, delivery, reflected, on_projection,
-           standard_error, direct_share, kept, limited_by_memory, report, work, kept_links, own_form] = light;
+           standard_error, direct_share, kept, limited_by_memory, report, work, kept_links, own_form, published] =
+        light;
     a(tree, numbering, direct, indirect, indirect_corners, direct_corners, delivery, reflected, on_projection);
-    a(standard_error, direct_share, kept, limited_by_memory, report, work, kept_links, own_form);
+    a(standard_error, direct_share, kept, limited_by_memory, report, work, kept_links, own_form, published);
 }
 
 template <class Archive>

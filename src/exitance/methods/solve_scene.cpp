@@ -5,6 +5,7 @@
 #include "exitance/methods/carried_light.hpp"
 #include "exitance/methods/diffusing_panes.hpp"
 #include "exitance/methods/extensions.hpp"
+#include "exitance/methods/options/support.hpp"
 #include "exitance/methods/solver/solver.hpp"
 
 namespace exitance {
@@ -31,13 +32,13 @@ Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress&
     if (options.threads > 0) set_threads(options.threads);
     set_schedule(options.schedule);
     if (scene.surfaces().size() == 0) return without_surfaces(std::move(scene));
-    if (const Result<void> linked = check_extensions(options); !linked) return linked.error();
-    if (const Result<void> passes = check_diffusing_panes(scene, options); !passes) return passes.error();
-    if (const Result<void> carried = check_classic_cells(scene, options); !carried) return carried.error();
-    for (const WholeSolve& whole : extensions().solves)
-        if (whole.is_selected(options)) return whole.solve(scene, options, progress, stop);
+    const Result<SolveOptions> settled = with_published_method(options);
+    if (!settled) return settled.error();
+    if (const Result<void> linked = check_extensions(*settled); !linked) return linked.error();
+    if (const Result<void> passes = check_diffusing_panes(scene, *settled); !passes) return passes.error();
+    if (const Result<void> carried = check_carried_light(scene, *settled); !carried) return carried.error();
     const Stopwatch watch;
-    Result<Solution> solution = Solver(std::move(scene), options, progress, stop, checkpoints, show).run();
+    Result<Solution> solution = Solver(std::move(scene), *settled, progress, stop, checkpoints, show).run();
     if (!solution) return solution;
     solution->statistics.seconds[RunPart::total] = watch.seconds();
     solution->statistics.peak_memory_bytes = peak_memory_bytes();

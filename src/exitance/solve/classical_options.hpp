@@ -1,10 +1,11 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
-#include <string>
-#include <vector>
-
-#include "exitance/solve/solve_options.hpp"
+#include <string_view>
+#include <utility>
 
 namespace exitance {
 
@@ -33,17 +34,7 @@ inline constexpr std::array<std::pair<ShootingReceivers, std::string_view>, 2> s
 inline constexpr std::array<std::pair<ClassicalOracle, std::string_view>, 1> classical_oracle_names{
     {{ClassicalOracle::kernel, "kernel"}}};
 
-/// Times at which intermediate solutions are saved: at these seconds of the method's own time, after these shots, or
-/// after every round (sweep, iteration) of a method.
-struct SnapshotPlan {
-    std::vector<double> seconds;
-    std::vector<std::size_t> shots;
-    bool rounds = false;
-
-    bool any() const { return rounds || !seconds.empty() || !shots.empty(); }
-};
-
-/// Options of classical forms, in addition to SolveOptions. Empty optionals: not set.
+/// Options that only classical forms have. Empty optionals: not set.
 struct ClassicalOptions {
     std::optional<ClassicalDirect> direct;  ///< apart: E_dir exact; carried: transported by the method.
     std::optional<MeshKind> mesh;
@@ -61,12 +52,11 @@ struct ClassicalOptions {
     std::optional<double> sor_factor;  ///< Factor omega of over-relaxation, in (0, 2).
     std::optional<ShootingReceivers> receivers;
     bool ambient = false;
-    SnapshotPlan snapshots;
 
     /// True if any option requests a classical form.
     bool any() const {
         return oracle || direct || mesh || gather || certify == false || threshold || multigrid || kernel ||
-               refine_gradient || refine || relaxation || sor_factor || receivers || ambient || snapshots.any();
+               refine_gradient || refine || relaxation || sor_factor || receivers || ambient;
     }
     bool carried() const { return direct == ClassicalDirect::carried; }
 };

@@ -4,9 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "exitance/links/kept_link.hpp"
 #include "exitance/mesh/solve_mesh.hpp"
-#include "exitance/solution/light_form.hpp"
+#include "exitance/solve/published_light.hpp"
 #include "exitance/solve/relaxation.hpp"
 
 namespace exitance {
@@ -17,7 +16,8 @@ enum class MethodDelivery : std::uint8_t {
     polynomials,  ///< Reflected light as polynomials that are as accurate as required: no gather is needed.
     /// The method transported the emitters' own light through its elements: `indirect` is all arriving light, and
     /// `direct` is zero. No gather follows.
-    all_light
+    all_light,
+    apart  ///< Reflected light as a function of a published form, which is delivered as it is or gathered once.
 };
 
 /// Resources that a method used.
@@ -68,6 +68,9 @@ struct GlobalLight {
     /// For methods with a representation of their own (growing cells): the light in that form. It is all light with
     /// `all_light`, otherwise the indirect light; `indirect` is its projection.
     LightFormPointer own_form = {};
+
+    /// For published forms: what they deliver.
+    std::optional<PublishedLight> published = {};
 
     bool delivers() const { return delivery == MethodDelivery::polynomials; }
     bool holds_direct() const { return delivery == MethodDelivery::all_light; }

@@ -11,6 +11,7 @@
 #include "exitance/base/schedule.hpp"
 #include "exitance/base/vec.hpp"
 #include "exitance/links/error/link_oracle.hpp"
+#include "exitance/solve/classical_options.hpp"
 #include "exitance/solve/discontinuity_choice.hpp"
 #include "exitance/solve/relaxation.hpp"
 
@@ -142,6 +143,16 @@ struct ImportantPoint {
     Normal normal;
 };
 
+/// Times at which a published form shows intermediate solutions: at these seconds of its own time, after these shots,
+/// or after every round (sweep, iteration, attempt).
+struct SnapshotPlan {
+    std::vector<double> seconds = {};
+    std::vector<std::size_t> shots = {};
+    bool rounds = false;
+
+    bool any() const { return rounds || !seconds.empty() || !shots.empty(); }
+};
+
 /// Options of a solve. An empty optional is chosen by the method from the required error. A parameter that is set is
 /// used as given, and no error is then required by default.
 struct SolveOptions {
@@ -182,6 +193,8 @@ struct SolveOptions {
     bool keep_links = false;  ///< Store the links of a hierarchy in the solution, for display.
 
     DiscontinuityChoice discontinuity = {};  ///< Options of discontinuity meshing.
+    ClassicalOptions classical = {};         ///< Options of classical forms; any of them selects such a form.
+    SnapshotPlan snapshots = {};             ///< Intermediate solutions of a published form.
 
     int threads = 0;                         ///< 0: all cores. Results do not depend on it.
     Schedule schedule = Schedule::stealing;  ///< How work is distributed to threads. Results do not depend on it.

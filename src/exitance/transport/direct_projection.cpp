@@ -262,6 +262,17 @@ class Projector {
 
 }  // namespace
 
+DirectProjection direct_light_on(const Stage& stage, const ElementTree& tree) {
+    DirectProjection out{.tree = tree, .fit = Field<ElementId, DirectFit>(tree.size())};
+    const std::vector<ElementId> leaves = tree.leaves();
+    parallel_ranges(leaves.size(), 16, [&](std::size_t first, std::size_t last) {
+        DirectFitRoom room;
+        for (std::size_t i = first; i < last; ++i)
+            out.fit[leaves[i]] = fit_direct_light(stage, tree, leaves[i], 0, room);
+    });
+    return out;
+}
+
 DirectProjection project_direct_light(const Stage& stage, const DirectProjectionOptions& options,
                                       const StopRequest& stop) {
     return Projector(stage, options, stop).run();

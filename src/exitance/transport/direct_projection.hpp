@@ -78,6 +78,9 @@ DirectFit fit_direct_light(const Stage& stage, const ElementTree& tree, ElementI
 /// Restricts the fit of an element's parent to the element, for work that is stopped early.
 DirectFit inherited_fit(const ElementTree& tree, ElementId e, const DirectFit& parent);
 
+/// Fits direct light on all leaves of a given tree. O(elements x nodes x visible emitters).
+DirectProjection direct_light_on(const Stage& stage, const ElementTree& tree);
+
 /// Projects direct light onto an adaptive mesh. O(elements x nodes x visible emitters).
 DirectProjection project_direct_light(const Stage& stage, const DirectProjectionOptions& options,
                                       const StopRequest& stop);

@@ -105,14 +105,25 @@ std::string statistics_json(const SolveStatistics& s, const LightUnit& own) {
     return dump(json);
 }
 
+namespace {
+
+/// Adds the facts about a published form that its recorded options tell. Files of versions before 0.3 hold them.
+void add_published_facts(const Json& options, bool is_linked, Json& facts) {
+    const Json& classical = options["classical"];
+    const auto given = [](const Json& in, const char* key) { return in.contains(key) && !in[key].is_null(); };
+    if (is_linked)
+        facts["mesh_kind"] = name_in(mesh_kind_names, MeshKind::uniform);
+    else if (given(classical, "mesh"))
+        facts["mesh_kind"] = classical["mesh"];
+    if (is_linked && !given(options, "threshold")) facts["links_found_by"] = "leaves";
+    if (given(classical, "facts")) facts.update(classical["facts"]);
+}
+
+}  // namespace
+
 std::string statistics_json(const Solution& solution) {
     Json json = Json::parse(statistics_json(solution.statistics, own_unit(solution.scene.is_photometric())));
     const Json options = Json::parse(solution.options, nullptr, false);
-    const Json* facts = nullptr;
-    if (options.is_object() && options.contains("classical")) {
-        const Json& classical = options["classical"];
-        if (classical.is_object() && classical.contains("facts")) facts = &classical["facts"];
-    }
     const std::string& method = solution.statistics.method;
     const bool is_linked = method == "hierarchical" || method == "wavelet";
     const Json oracle = options.is_object() && options.contains("oracle") ? options["oracle"] : Json(nullptr);
@@ -121,14 +132,14 @@ std::string statistics_json(const Solution& solution) {
              {"links_found_by", is_linked ? oracle : Json("none")},
              {"initial_links", nullptr},
              {"coefficient_memory_bytes", solution.statistics.element_memory_bytes}};
+    if (options.is_object() && options.contains("classical")) add_published_facts(options, is_linked, own);
     if (method == name_in(method_names, Method::discontinuity)) {
         const bool given = options.is_object() && options.contains("local_pass") && options["local_pass"].is_string();
         own["local_pass"] = given ? options["local_pass"] : Json(name_in(local_pass_names, LocalPassRule::e));
         own["links_found_by"] = solution.direct_in_elements ? Json(name_in(oracle_names, LinkOracle::power)) : oracle;
     }
     for (const auto& [name, value] : own.items())
-        if (!solution.statistics.figures.contains(name))
-            json[name] = facts && facts->is_object() && facts->contains(name) ? (*facts)[name] : value;
+        if (!solution.statistics.figures.contains(name)) json[name] = value;
     return dump(json);
 }
 

@@ -3,9 +3,10 @@
 #include <cmath>
 
 #include "exitance/base/parallel.hpp"
-#include "exitance/lab/classical/classical_input.hpp"
+#include "exitance/lab/classical/classical.hpp"
 #include "exitance/lab/classical/interaction_kernel.hpp"
 #include "exitance/lab/classical/kernel_oracle.hpp"
+#include "exitance/mesh/element_tree_archive.hpp"
 #include "exitance/solve/growth_watch.hpp"
 
 namespace exitance {
@@ -42,6 +43,10 @@ class Numbers {
     std::span<const Spectrum> operator[](ElementId e) const { return std::span(values_).subspan(e.value * n_, n_); }
     void clear() { std::fill(values_.begin(), values_.end(), Spectrum()); }
     std::size_t memory_bytes() const { return values_.size() * sizeof(Spectrum); }
+    template <class Archive>
+    friend void archive(Archive& a, Numbers& numbers) {
+        a(numbers.values_);
+    }
 
   private:
     std::size_t n_;
@@ -51,7 +56,7 @@ class Numbers {
 /// Elements, their coefficients, and the links over which each element gathers.
 class LinkedElements {
   public:
-    LinkedElements(const ClassicalInput& input, HierarchyBasis kind)
+    LinkedElements(const MethodInput& input, HierarchyBasis kind)
         : input_(input),
           basis_(kind),
           kernel_(input.stage, basis_, choice(input), input.options.seed),
@@ -75,15 +80,23 @@ class LinkedElements {
     /// Gathers E = F b over the links, pushes it down to the leaves and pulls b up. Returns the relative change of b.
     double gather();
 
-    bool by_oracle() const { return input_.classical.threshold.has_value(); }
-    void report(ClassicalLight& light) const;
+    bool by_oracle() const { return input_.options.classical.threshold.has_value(); }
+    void report(GlobalLight& light) const;
     ElementFunction irradiance() const;
     bool out_of_memory() const { return out_of_memory_; }
+    /// Archives everything that rounds change.
+    template <class Archive>
+    void archive_state(Archive& a) {
+        a(tree_, B_, E_, rhs_, blocks_, free_, initial_links_, link_count_, rays_, form_factors_, out_of_memory_);
+        a(work_.rays);
+        links_.resize(tree_.size());
+        for (ElementId e : tree_.ids()) a(links_[e]);
+    }
 
   private:
-    static KernelChoice choice(const ClassicalInput& input) {
+    static KernelChoice choice(const MethodInput& input) {
         const SolveOptions& o = input.options;
-        return {.kernel = input.classical.kernel.value_or(TransferKernel::exact),
+        return {.kernel = input.options.classical.kernel.value_or(TransferKernel::exact),
                 .visibility = o.visibility,
                 .rays = static_cast<unsigned>(std::min<std::size_t>(4096, o.visibility_samples.value_or(16)))};
     }
@@ -102,7 +115,7 @@ class LinkedElements {
     void keep(ElementId receiver, const Link& link);
     void make_blocks();
 
-    const ClassicalInput& input_;
+    const MethodInput& input_;
     NodalBasis basis_;
     InteractionKernel kernel_;
     KernelOracle oracle_;
@@ -121,8 +134,8 @@ class LinkedElements {
 
 /// Computes the source term of an element: M, or rho E_dir at its nodes.
 void LinkedElements::set_light(ElementId e) {
-    const Material& material = input_.material(tree_, e);
-    if (input_.carries()) {
+    const Material& material = material_of(input_, tree_, e);
+    if (carries_light(input_)) {
         for (Spectrum& value : rhs_[e]) value = material.exitance;
         return;
     }
@@ -171,7 +184,7 @@ double LinkedElements::brightest(ElementId source) const {
 /// [Hanrahan91]. Kernel: the power that the interpolated kernel may miss, W likewise [Gortler93].
 double LinkedElements::strength(ElementId receiver, Link& link) const {
     const ElementId source = link.source;
-    if (input_.classical.oracle == ClassicalOracle::kernel) {
+    if (input_.options.classical.oracle == ClassicalOracle::kernel) {
         if (link.kernel_strength < 0)
             link.kernel_strength =
                 static_cast<float>(oracle_.strength(tree_.patch(receiver), tree_.patch(source), link.share));
@@ -191,7 +204,8 @@ double LinkedElements::strength(ElementId receiver, Link& link) const {
 ElementId LinkedElements::to_cut(ElementId p, Link& link, double threshold) const {
     const ElementId q = link.source;
     if (by_oracle()) {
-        const bool partial = link.share > 0 && link.share < 1 && input_.classical.oracle != ClassicalOracle::kernel;
+        const bool partial =
+            link.share > 0 && link.share < 1 && input_.options.classical.oracle != ClassicalOracle::kernel;
         if (strength(p, link) <= (partial ? 0.5 * threshold : threshold)) return {};
     }
     const bool first = tree_.area(p) >= (1 - rounding) * tree_.area(q) && tree_.area(p) > 0;
@@ -315,7 +329,7 @@ double LinkedElements::gather() {
     for (std::size_t i = tree_.size(); i-- > 0;) {  // reflect, pull
         const ElementId p(i);
         if (tree_.is_leaf(p)) {
-            const Spectrum rho = input_.material(tree_, p).reflectance;
+            const Spectrum rho = material_of(input_, tree_, p).reflectance;
             const auto nodes = basis_.nodes(tree_.patch(p).shape);
             for (std::size_t k = 0; k < n_; ++k) {
                 const Spectrum b = rhs_[p][k] + rho * E_[p][k];
@@ -371,37 +385,59 @@ ElementFunction LinkedElements::irradiance() const {
     return out;
 }
 
-void LinkedElements::report(ClassicalLight& light) const {
-    light.irradiance = irradiance();
-    light.elements = tree_.size(), light.leaf_elements = tree_.leaves().size();
-    light.links = link_count_, light.initial_links = initial_links_;
-    light.rays = rays_ + work_.rays, light.form_factors = form_factors_;
-    light.link_memory_bytes = link_count_ * (sizeof(Link) + n_ * n_ * sizeof(float));
-    light.coefficient_memory_bytes = B_.memory_bytes() + E_.memory_bytes() + rhs_.memory_bytes();
+void LinkedElements::report(GlobalLight& light) const {
+    light.published->irradiance = irradiance();
+    light.published->elements = tree_.size(), light.published->leaf_elements = tree_.leaves().size();
+    light.work.links = link_count_, light.published->figures["initial_links"] = static_cast<double>(initial_links_);
+    light.work.rays = rays_ + work_.rays, light.work.form_factors = form_factors_;
+    light.work.link_memory_bytes = link_count_ * (sizeof(Link) + n_ * n_ * sizeof(float));
+    light.published->figures["coefficient_memory_bytes"] =
+        static_cast<double>(B_.memory_bytes() + E_.memory_bytes() + rhs_.memory_bytes());
 }
 
-}  // namespace
+HierarchyBasis basis_of(const SolveOptions& options) {
+    switch (options.basis.value_or(BasisKind::multiwavelet2)) {
+        case BasisKind::haar:
+            return HierarchyBasis::haar;
+        case BasisKind::flatlet2:
+            return HierarchyBasis::flatlet2;
+        case BasisKind::flatlet3:
+            return HierarchyBasis::flatlet3;
+        case BasisKind::multiwavelet3:
+            return HierarchyBasis::multiwavelet3;
+        default:
+            return HierarchyBasis::multiwavelet2;
+    }
+}
 
 /// Hierarchical and wavelet radiosity as in [Hanrahan91] and [Gortler93]. Starting from whole polygons, links are split
 /// while their strength by the oracle is above a threshold and elements are larger than A_eps; the threshold is halved
 /// for partial visibility. Light is gathered over links, pushed and pulled. This is repeated with the new light until
 /// no link is split and the change is small. With `--multigrid N`, the first threshold is 2^(N-1) times as large and is
 /// halved in each round. Without an oracle, all links connect leaves of `--mesh-size`: a uniform mesh, O(leaves^2).
-ClassicalLight solve_classical_links(const ClassicalInput& input, HierarchyBasis kind) {
-    ClassicalLight light;
+GlobalLight solve_over_classical_links(const MethodInput& input, HierarchyBasis kind) {
+    GlobalLight light = published_light(input);
     input.progress.phase("link");
     LinkedElements elements(input, kind);
     elements.link_roots();
-    const std::size_t grids = input.classical.multigrid.value_or(1);
+    const std::size_t grids = input.options.classical.multigrid.value_or(1);
     std::size_t grid = 1;
     double change = 1;
-    for (std::size_t round = 0; round < max_rounds + input.knobs.max_iterations; ++round) {
+    std::size_t round = 0;
+    SafePoints safe_points = input.safe_points;
+    const auto state = [&](auto& a) {
+        a(grid, round, light.report.iterations);
+        elements.archive_state(a);
+    };
+    safe_points.resume(state);
+    for (; round < max_rounds + input.knobs.max_iterations; ++round) {
+        safe_points.pass(state);
         const double coarser = std::exp2(static_cast<double>(grids - std::min(grid, grids)));
-        const bool cut = round < max_rounds && elements.refine(coarser * input.classical.threshold.value_or(0));
+        const bool cut = round < max_rounds && elements.refine(coarser * input.options.classical.threshold.value_or(0));
         change = elements.gather();
         ++light.report.iterations;
-        input.snapshots.after_round([&] {
-            ClassicalLight so_far = light;
+        input.end_round([&] {
+            GlobalLight so_far = light;
             elements.report(so_far);
             return so_far;
         });
@@ -414,9 +450,19 @@ ClassicalLight solve_classical_links(const ClassicalInput& input, HierarchyBasis
     }
     light.report.residual = change;
     light.report.converged = !light.report.interrupted && change <= input.knobs.residual;
-    if (elements.out_of_memory()) light.stopped_by = "memory limit";
+    light.limited_by_memory = elements.out_of_memory();
     elements.report(light);
     return light;
+}
+
+}  // namespace
+
+GlobalLight solve_classical_hierarchical(const MethodInput& input) {
+    return solve_over_classical_links(input, HierarchyBasis::haar);
+}
+
+GlobalLight solve_classical_wavelet(const MethodInput& input) {
+    return solve_over_classical_links(input, basis_of(input.options));
 }
 
 }  // namespace exitance

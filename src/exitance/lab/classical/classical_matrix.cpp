@@ -7,7 +7,7 @@
 #include "exitance/base/available_memory.hpp"
 #include "exitance/base/memory.hpp"
 #include "exitance/base/parallel.hpp"
-#include "exitance/lab/classical/classical_input.hpp"
+#include "exitance/lab/classical/classical.hpp"
 #include "exitance/solve/dense_relaxation.hpp"
 #include "exitance/transport/hemicube_rows.hpp"
 #include "exitance/transport/patch_transfer.hpp"
@@ -19,11 +19,11 @@ namespace {
 constexpr double default_sor_factor = 1.15;  // radiosity converges fastest with 1.1 to 1.2 [Gortler94]
 
 /// Solves b = rhs + rho F b by the requested relaxation. Calls `swept` after every sweep.
-SolveReport relax(const ClassicalInput& input, const RadiositySystem& system, std::vector<Spectrum>& b,
+SolveReport relax(const MethodInput& input, const RadiositySystem& system, std::vector<Spectrum>& b,
                   const std::function<void()>& swept) {
     const StopRule stop{
         .residual = input.knobs.residual, .max_iterations = input.knobs.max_iterations, .request = &input.stop};
-    const auto& c = input.classical;
+    const auto& c = input.options.classical;
     if (c.relaxation == ClassicalRelaxation::direct) return solve_dense(system, b, input.stop);
     const Relaxation asked = input.options.relaxation.value_or(Relaxation::gauss_seidel);
     if (c.relaxation == ClassicalRelaxation::sor)
@@ -35,49 +35,36 @@ SolveReport relax(const ClassicalInput& input, const RadiositySystem& system, st
 }
 
 /// Solves for b and evaluates E = F b.
-void solve_with(const ClassicalInput& input, const ElementTree& tree, const LeafNumbering& numbering,
-                const TransportOperator& F, ClassicalLight& light) {
+void solve_with(const MethodInput& input, const ElementTree& tree, const LeafNumbering& numbering,
+                const TransportOperator& F, GlobalLight& light) {
     input.progress.phase("solve");
     const std::size_t n = numbering.leaves.size();
     const std::vector<double> area = leaf_areas(tree, numbering);
     const std::vector<Spectrum> rho = leaf_reflectances(input.stage.scene, tree, numbering);
-    std::vector<Spectrum> rhs =
-        input.carries() ? exitances(input, tree, numbering.leaves) : mean_direct_light(input, tree, numbering.leaves);
-    if (!input.carries())
+    std::vector<Spectrum> rhs = carries_light(input) ? exitances(input, tree, numbering.leaves)
+                                                     : mean_direct_light(input, tree, numbering.leaves);
+    if (!carries_light(input))
         for (std::size_t i = 0; i < n; ++i) rhs[i] *= rho[i];
     std::vector<Spectrum> b = rhs, E(n);
-    light.link_memory_bytes = F.memory_bytes();
-    light.coefficient_memory_bytes = 3 * n * sizeof(Spectrum);  // memory of b, E and the source term
+    light.work.link_memory_bytes = F.memory_bytes();
+    light.published->figures["coefficient_memory_bytes"] =
+        static_cast<double>(3 * n * sizeof(Spectrum));  // memory of b, E and the source term
     std::size_t rounds = 0;
     const auto light_so_far = [&] {
         F.gather(b, E);
-        light.irradiance = constant_function(tree, numbering.leaves, E);
+        light.published->irradiance = constant_function(tree, numbering.leaves, E);
         light.report.iterations = rounds;
         return light;
     };
-    const auto swept = [&] { ++rounds, input.snapshots.after_round(light_so_far); };
+    const auto swept = [&] { ++rounds, input.end_round(light_so_far); };
     const SolveReport report = relax(input, {F, rho, rhs, area}, b, swept);
     light_so_far();
     light.report = report;
 }
 
-unsigned hemicube_cells(const SolveOptions& options) {
-    const auto cells = std::min<std::size_t>(1024, options.hemicube_cells.value_or(default_hemicube_cells));
-    return static_cast<unsigned>(2 * ((cells + 1) / 2));
-}
-
-RayBudget ray_budget(const ClassicalInput& input) {
-    RayBudget budget = input.knobs.solve_rays;
-    if (input.options.visibility_samples) budget.average = static_cast<double>(*input.options.visibility_samples);
-    return budget;
-}
-
 /// Returns an error if the matrix of n leaves does not fit into the memory limit, or into available memory.
-Result<void> check_memory(const ClassicalInput& input, FormFactorKind kind, double n) {
-    const double c = hemicube_cells(input.options), cells = 3 * c * c;
-    const double bytes = kind == FormFactorKind::analytic   ? 4 * n * n
-                         : kind == FormFactorKind::hemicube ? 8 * n * std::min(n, cells)
-                                                            : 4 * n * ray_budget(input).average;
+Result<void> check_memory(const MethodInput& input, double n) {
+    const double bytes = matrix_bytes(input.options, input.knobs, n);
     const auto used = static_cast<double>(peak_memory_bytes()),
                limit = static_cast<double>(
                    input.options.memory_limit_bytes.value_or(resident_memory_bytes() + available_memory_bytes()));
@@ -98,36 +85,40 @@ Result<void> check_memory(const ClassicalInput& input, FormFactorKind kind, doub
 /// - `hemicube`, `ray-cast`: rows of hemicubes or rays.
 ///
 /// O(N^2) entries.
-Result<ClassicalLight> solve_classical_matrix(const ClassicalInput& input) {
-    ClassicalLight light;
-    const ElementTree tree = constant_mesh(input);
+GlobalLight solve_classical_matrix(const MethodInput& input) {
+    GlobalLight light = published_light(input);
+    input.progress.phase("mesh");
+    const ElementTree tree = constant_mesh(input.stage, input.options, input.knobs, input.stop);
     const LeafNumbering numbering(tree);
-    light.elements = tree.size(), light.leaf_elements = numbering.leaves.size();
+    light.published->elements = tree.size(), light.published->leaf_elements = numbering.leaves.size();
     input.progress.phase("link");
     const Stage& stage = input.stage;
     const SolveOptions& o = input.options;
     const FormFactorKind kind = o.form_factors.value_or(FormFactorKind::analytic);
-    if (const Result<void> fits = check_memory(input, kind, static_cast<double>(numbering.leaves.size())); !fits)
-        return fits.error();
+    if (const Result<void> fits = check_memory(input, static_cast<double>(numbering.leaves.size())); !fits) {
+        light.published->refusal = fits.error();
+        return light;
+    }
     if (kind == FormFactorKind::analytic) {
         const PatchLevel patches(tree, numbering, 0);
         const PatchTransfer transfer(
             stage, tree, static_cast<unsigned>(o.visibility_samples.value_or(default_visibility_samples)), o.seed);
         const DenseTransport F(transfer, numbering, patches, input.progress, input.stop);
         solve_with(input, tree, numbering, F, light);
-        light.rays = transfer.rays(), light.form_factors = transfer.form_factors(), light.links = F.entries();
+        light.work.rays = transfer.rays(), light.work.form_factors = transfer.form_factors(),
+        light.work.links = F.entries();
         return light;
     }
     const ElementLocator locator(tree, stage.scene.regions().size());
     if (kind == FormFactorKind::hemicube) {
         const HemicubeRows F(stage, tree, numbering, locator, hemicube_cells(o));
         solve_with(input, tree, numbering, F, light);
-        light.rays = F.rays(), light.form_factors = light.links = F.entries();
+        light.work.rays = F.rays(), light.work.form_factors = light.work.links = F.entries();
         return light;
     }
-    const RayRows F(stage, tree, numbering, locator, ray_budget(input), o.seed);
+    const RayRows F(stage, tree, numbering, locator, ray_budget(input.options, input.knobs), o.seed);
     solve_with(input, tree, numbering, F, light);
-    light.rays = light.links = F.rays();
+    light.work.rays = light.work.links = F.rays();
     return light;
 }
 

@@ -4,7 +4,7 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
-#include "exitance/lab/classical/classical_input.hpp"
+#include "exitance/lab/classical/classical.hpp"
 #include "exitance/lab/classical/corner_steps.hpp"
 #include "exitance/lab/classical/element_vertices.hpp"
 #include "exitance/mesh/adaptive.hpp"
@@ -15,16 +15,15 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t column_memory = std::size_t{1} << 29;  // of columns that are kept for later shots, bytes
 constexpr double vertex_rounding = 1e-6;  // of the scene's size: corners of a region that are closer are one vertex
 
 class Shooting {
   public:
-    Shooting(const ClassicalInput& input, bool substructuring);
+    Shooting(const MethodInput& input, bool substructuring);
 
     SolveReport run();
     double unshot_share() const;
-    void report(ClassicalLight& light) const;
+    void report(GlobalLight& light) const;
 
   private:
     std::size_t samples() const { return input_.options.visibility_samples.value_or(default_visibility_samples); }
@@ -47,7 +46,7 @@ class Shooting {
     Spectrum ambient() const;
     Spectrum mean_at_vertices(std::size_t receiver) const;
 
-    const ClassicalInput& input_;
+    const MethodInput& input_;
     bool at_vertices_;
     ElementTree tree_;
     std::vector<ElementId> patches_;
@@ -75,10 +74,10 @@ class Shooting {
     double first_power_ = 0;
 };
 
-Shooting::Shooting(const ClassicalInput& input, bool substructuring)
+Shooting::Shooting(const MethodInput& input, bool substructuring)
     : input_(input),
-      at_vertices_(input.classical.receivers == ShootingReceivers::vertex),
-      tree_(constant_mesh(input)),
+      at_vertices_(input.options.classical.receivers == ShootingReceivers::vertex),
+      tree_(constant_mesh(input.stage, input.options, input.knobs, input.stop)),
       patches_(tree_.leaves()),
       patch_of_element_(tree_.size()),
       sent_(patches_.size()),
@@ -94,7 +93,7 @@ Shooting::Shooting(const ClassicalInput& input, bool substructuring)
     transfer_ =
         std::make_unique<PatchTransfer>(input.stage, tree_, static_cast<unsigned>(samples()), input.options.seed);
     add_receivers(0);
-    if (!input.carries()) direct_ = mean_direct_light(input, tree_, receivers_);
+    if (!carries_light(input)) direct_ = mean_direct_light(input, tree_, receivers_);
     unshot_ = first_light();
     first_power_ = unshot_power(unshot_, patch_area_);
     make_rows();
@@ -121,8 +120,8 @@ void Shooting::add_receivers(std::size_t first_element) {
         receivers_.push_back(e);
         area_.push_back(tree_.area(e));
         patch_of_.push_back(patch_of_element_[e]);
-        reflectance_.push_back(input_.material(tree_, e).reflectance);
-        if (input_.classical.refine_gradient) steps_.add(tree_.region(e), tree_.patch(e));
+        reflectance_.push_back(material_of(input_, tree_, e).reflectance);
+        if (input_.options.classical.refine_gradient) steps_.add(tree_.region(e), tree_.patch(e));
     }
     direct_.resize(receivers_.size()), irradiance_.resize(receivers_.size());
     leaf_count_ += receivers_.size() - first;
@@ -160,7 +159,7 @@ void Shooting::add_vertices(std::span<const ElementId> elements) {
 
 /// Initial unshot light of patches: their exitance, or the reflected direct light.
 std::vector<Spectrum> Shooting::first_light() const {
-    if (input_.carries()) return exitances(input_, tree_, patches_);
+    if (carries_light(input_)) return exitances(input_, tree_, patches_);
     std::vector<Spectrum> out(patches_.size());
     for (std::size_t i = 0; i < direct_.size(); ++i)
         out[patch_of_[i]] += (area_[i] / patch_area_[patch_of_[i]]) * (reflectance_[i] * direct_[i]);
@@ -175,14 +174,10 @@ void Shooting::make_rows() {
     const LeafNumbering numbering(tree_);
     const SolveOptions& o = input_.options;
     if (o.form_factors == FormFactorKind::hemicube) {
-        const auto cells =
-            static_cast<unsigned>(std::min<std::size_t>(1024, o.hemicube_cells.value_or(default_hemicube_cells)));
-        hemicubes_.emplace(input_.stage, tree_, numbering, locator, 2 * ((cells + 1) / 2));
+        hemicubes_.emplace(input_.stage, tree_, numbering, locator, hemicube_cells(o));
         return;
     }
-    RayBudget budget = input_.knobs.solve_rays;
-    if (o.visibility_samples) budget.average = static_cast<double>(samples());
-    ray_rows_.emplace(input_.stage, tree_, numbering, locator, budget, o.seed);
+    ray_rows_.emplace(input_.stage, tree_, numbering, locator, ray_budget(o, input_.knobs), o.seed);
 }
 
 /// Form factor from a vertex to a patch: exact for the polygon, times the unblocked share of rays from the vertex
@@ -312,7 +307,7 @@ std::size_t Shooting::refine() {
     std::vector<std::size_t> steep;
     for (std::size_t i = 0; i < b.size(); ++i)
         if (tree_.is_leaf(receivers_[i]) && area_[i] / 4 >= least &&
-            steps_.largest_step(i) > *input_.classical.refine_gradient)
+            steps_.largest_step(i) > *input_.options.classical.refine_gradient)
             steep.push_back(i);
     if (steep.empty()) return 0;
     const std::size_t elements = tree_.size(), first = receivers_.size();
@@ -326,7 +321,7 @@ std::size_t Shooting::refine() {
 /// Computes direct light and the light of all patches for the receivers from `first` on.
 void Shooting::gather_new(std::size_t first) {
     const std::span<const ElementId> fresh = std::span(receivers_).subspan(first);
-    if (!input_.carries()) {
+    if (!carries_light(input_)) {
         const std::vector<Spectrum> exact = mean_direct_light(input_, tree_, fresh);
         std::copy(exact.begin(), exact.end(), direct_.begin() + static_cast<std::ptrdiff_t>(first));
     }
@@ -353,19 +348,24 @@ double Shooting::unshot_share() const {
 }
 
 SolveReport Shooting::run() {
-    const auto& c = input_.classical;
+    const auto& c = input_.options.classical;
     const bool refines = c.refine_gradient.has_value();
     const bool during = refines && c.refine.value_or(RefineWhen::during) == RefineWhen::during;
     const std::size_t max_shots = input_.options.max_iterations.value_or(1'000'000);
     SolveReport report;
+    SafePoints safe_points = input_.safe_points;
+    const auto state = [&](auto& a) { a(shots_, unshot_, sent_, irradiance_, at_vertex_); };
+    // The elements that refinement makes are not saved: with it, a resumed run starts from the beginning.
+    if (!refines) safe_points.resume(state);
     for (;;) {
+        if (!refines) safe_points.pass(state);
         const std::size_t left = shots_;
         report = shoot_once();
         if (report.iterations > 0) {
             ++shots_;
             if (during) refine();
-            input_.snapshots.after_shot(shots_, [&] {
-                ClassicalLight so_far;
+            input_.end_shot(shots_, [&] {
+                GlobalLight so_far = published_light(input_);
                 this->report(so_far);
                 so_far.report.iterations = shots_;
                 so_far.report.residual = unshot_share();
@@ -403,7 +403,7 @@ Spectrum Shooting::ambient() const {
 }
 
 ElementFunction Shooting::irradiance() const {
-    const Spectrum more = input_.classical.ambient ? ambient() : Spectrum();
+    const Spectrum more = input_.options.classical.ambient ? ambient() : Spectrum();
     ElementFunction out;
     out.tree = tree_;
     out.first_value.resize(tree_.size(), 0);
@@ -424,29 +424,39 @@ ElementFunction Shooting::irradiance() const {
     return out;
 }
 
-void Shooting::report(ClassicalLight& light) const {
-    light.irradiance = irradiance();
-    light.elements = tree_.size(), light.leaf_elements = leaf_count_;
-    light.rays =
+void Shooting::report(GlobalLight& light) const {
+    light.published->irradiance = irradiance();
+    light.published->elements = tree_.size(), light.published->leaf_elements = leaf_count_;
+    light.work.rays =
         transfer_->rays() + rays_ + (hemicubes_ ? hemicubes_->rays() : 0) + (ray_rows_ ? ray_rows_->rays() : 0);
-    light.form_factors = transfer_->form_factors() + form_factors_;
-    light.link_memory_bytes = kept_bytes_;
-    light.coefficient_memory_bytes = sizeof(Spectrum) * (2 * patches_.size() + 2 * leaf_count_ + at_vertex_.size());
+    light.work.form_factors = transfer_->form_factors() + form_factors_;
+    light.work.link_memory_bytes = kept_bytes_;
+    light.published->figures["coefficient_memory_bytes"] =
+        static_cast<double>(sizeof(Spectrum) * (2 * patches_.size() + 2 * leaf_count_ + at_vertex_.size()));
 }
-
-}  // namespace
 
 /// Progressive refinement [Cohen88] and substructuring [Cohen86]: the patch with the most unshot light shoots it to all
 /// elements, either at their centres or at their vertices with (bi)linear interpolation [Wallace89]. With
 /// substructuring, patches are cut into four elements. If `--refine-gradient` is given, these are cut further while
 /// light is shot or afterwards. One column of form factors per shot.
-ClassicalLight solve_classical_shooting(const ClassicalInput& input, bool substructuring) {
-    ClassicalLight light;
-    input.progress.phase("shoot");
+GlobalLight shoot_as_published(const MethodInput& input, bool substructuring) {
+    GlobalLight light = published_light(input);
+    input.progress.phase("mesh");
     Shooting shooting(input, substructuring);
+    input.progress.phase("shoot");
     light.report = shooting.run();
     shooting.report(light);
     return light;
+}
+
+}  // namespace
+
+GlobalLight solve_classical_shooting(const MethodInput& input) {
+    return shoot_as_published(input, false);
+}
+
+GlobalLight solve_classical_substructuring(const MethodInput& input) {
+    return shoot_as_published(input, true);
 }
 
 }  // namespace exitance

@@ -1,28 +1,31 @@
-#include "exitance/lab/classical/classical.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "exitance/evaluate/radiosity_function.hpp"
+#include "exitance/methods/solve_scene.hpp"
 #include "support/built_scene.hpp"
 
 namespace exitance {
 namespace {
 
-struct Solved {
-    Solution solution;
-    ClassicalFacts facts;
-};
-
-Solved solve(const Scene& scene, const SolveOptions& options, const ClassicalOptions& classical,
-             const SnapshotSink& sink = {}) {
+Result<Solution> try_to_solve(const Scene& scene, SolveOptions options, const ClassicalOptions& classical,
+                              const ShowLight& show = {}) {
     Progress progress;
     const StopRequest stop;
-    ClassicalFacts facts;
-    Result<Solution> solution = solve_classical(scene, options, classical, progress, stop, facts, sink);
+    options.classical = classical;
+    return solve_scene(scene, options, progress, stop, nullptr, show);
+}
+
+Solution solve(const Scene& scene, const SolveOptions& options, const ClassicalOptions& classical,
+               const ShowLight& show = {}) {
+    Result<Solution> solution = try_to_solve(scene, options, classical, show);
     EXPECT_TRUE(solution) << solution.error().message;
-    return {std::move(*solution), facts};
+    return std::move(*solution);
+}
+
+std::size_t initial_links(const Solution& solution) {
+    return static_cast<std::size_t>(solution.statistics.figures.at("initial_links"));
 }
 
 ClassicalOptions carried_raw(bool uniform) {
@@ -90,7 +93,7 @@ TEST_P(EveryClassicalMethod, SolvesAFurnace) {
     const Scene scene = box_scene(1, 1, 1, rho, 1, 1);
     SolveOptions o = options(0.25);
     o.residual = 1e-6;
-    const Solution solution = solve(scene, o, raw).solution;
+    const Solution solution = solve(scene, o, raw);
     // E = M / (1 - rho). Form factors of elements at edges are exact, and rows sum to 1.
     const RadiosityFunction light(solution);
     for (const Light& l : light.at(std::vector<ProbePoint>{{{0.4, 0.3, 0}, {0, 0, 1}}, {{1, 0.6, 0.7}, {-1, 0, 0}}}))
@@ -102,8 +105,8 @@ TEST_P(EveryClassicalMethod, SolvesAFurnace) {
 
 TEST_P(EveryClassicalMethod, SolvesABlackSceneThroughItsOwnTransport) {
     const Scene scene = built_scene("blocker", {{"h", "0.7"}});
-    const double coarse = error_of(solve(scene, options(0.5), raw).solution);
-    const double fine = error_of(solve(scene, options(0.25), raw).solution);
+    const double coarse = error_of(solve(scene, options(0.5), raw));
+    const double fine = error_of(solve(scene, options(0.25), raw));
     EXPECT_LT(fine, 0.12);
     EXPECT_LT(fine, 0.75 * coarse);  // one visibility per link makes shadows blocky: first order with any basis
 }
@@ -111,20 +114,18 @@ TEST_P(EveryClassicalMethod, SolvesABlackSceneThroughItsOwnTransport) {
 TEST(Classical, ExactVisibilityMakesHighOrdersMoreAccurate) {
     const Scene scene = built_scene("blocker", {{"h", "0.7"}});
     SolveOptions o{.method = Method::wavelet, .basis = BasisKind::multiwavelet3, .mesh_size = 0.5};
-    const double fractional = error_of(solve(scene, o, raw).solution);
+    const double fractional = error_of(solve(scene, o, raw));
     o.visibility = VisibilityKind::exact;
-    EXPECT_LT(error_of(solve(scene, o, raw).solution), 0.25 * fractional);
+    EXPECT_LT(error_of(solve(scene, o, raw)), 0.25 * fractional);
 }
 
 TEST(Classical, NumberOfLinksIsInverseToTheThreshold) {
     const Scene scene = built_scene("tube", {{"rho", "0.7"}});
     const SolveOptions o{.method = Method::hierarchical, .oracle = LinkOracle::power};
-    const Solved coarse = solve(scene, o, by_power(0.08)), fine = solve(scene, o, by_power(0.02));
-    const double ratio =
-        static_cast<double>(fine.solution.statistics.links) / static_cast<double>(coarse.solution.statistics.links);
+    const Solution coarse = solve(scene, o, by_power(0.08)), fine = solve(scene, o, by_power(0.02));
+    const double ratio = static_cast<double>(fine.statistics.links) / static_cast<double>(coarse.statistics.links);
     EXPECT_NEAR(ratio, 4, 1);
-    EXPECT_EQ(fine.facts.links_found_by, "bf");
-    EXPECT_EQ(fine.facts.initial_links, 30u);  // six polygons that all see each other
+    EXPECT_EQ(initial_links(fine), 30u);  // six polygons that all see each other
 }
 
 TEST(Classical, TheKernelOracleAddsFewerLinksForHigherOrders) {
@@ -133,9 +134,8 @@ TEST(Classical, TheKernelOracleAddsFewerLinksForHigherOrders) {
         ClassicalOptions classical = by_power(0.05);
         classical.oracle = oracle;
         const SolveOptions o{.method = Method::wavelet, .basis = basis, .oracle = LinkOracle::power};
-        const Solved s = solve(scene, o, classical);
-        EXPECT_EQ(s.facts.links_found_by, oracle ? "kernel" : "bf");
-        return static_cast<double>(s.solution.statistics.links) - static_cast<double>(s.facts.initial_links);
+        const Solution s = solve(scene, o, classical);
+        return static_cast<double>(s.statistics.links) - static_cast<double>(initial_links(s));
     };
     const double haar = added(BasisKind::haar, ClassicalOracle::kernel),
                  M2 = added(BasisKind::multiwavelet2, ClassicalOracle::kernel),
@@ -151,20 +151,19 @@ TEST(Classical, NoElementIsSmallerThanTheMinimumArea) {
     const double least = 0.04;
     ClassicalOptions c = by_power(1e-3);
     const Solution solution =
-        solve(scene, {.method = Method::hierarchical, .min_area = least, .oracle = LinkOracle::form_factor}, c)
-            .solution;
+        solve(scene, {.method = Method::hierarchical, .min_area = least, .oracle = LinkOracle::form_factor}, c);
     for (ElementId e : solution.indirect.tree.leaves()) EXPECT_GE(solution.indirect.tree.area(e), least);
 }
 
 TEST(Classical, GatherAndSmoothingDoNotChangeTheSolve) {
     const Scene scene = built_scene("tube", {{"rho", "0.7"}});
     SolveOptions o{.method = Method::progressive, .mesh_size = 0.5};
-    const Solution plain = solve(scene, o, raw).solution;
+    const Solution plain = solve(scene, o, raw);
     ClassicalOptions gathers = raw;
     gathers.gather = true;
-    const Solution gathered = solve(scene, o, gathers).solution;
+    const Solution gathered = solve(scene, o, gathers);
     o.smoothing = true;
-    const Solution smooth = solve(scene, o, raw).solution;
+    const Solution smooth = solve(scene, o, raw);
     for (const Solution* s : {&gathered, &smooth}) {
         EXPECT_EQ(s->statistics.iterations, plain.statistics.iterations);
         EXPECT_EQ(s->statistics.residual, plain.statistics.residual);
@@ -176,19 +175,17 @@ TEST(Classical, GatherAndSmoothingDoNotChangeTheSolve) {
 TEST(Classical, SnapshotsAreTakenAfterShotsAndAmbientLightIsAdded) {
     const Scene scene = built_scene("tube", {{"rho", "0.7"}});
     ClassicalOptions c = raw;
-    c.snapshots.shots = {5, 2};
+    SolveOptions o{.method = Method::progressive, .mesh_size = 0.5, .snapshots = {.shots = {5, 2}}};
     std::vector<double> unshot;
     const auto flux = [&](bool ambient) {
         c.ambient = ambient;
         std::vector<double> out;
         unshot.clear();
-        solve(scene, {.method = Method::progressive, .mesh_size = 0.5}, c, [&](const Solution& s, std::size_t number) {
-            EXPECT_EQ(number, out.size() + 1);
+        solve(scene, o, c, [&](const Solution& s) {
             double sum = 0;
             for (ElementId e : s.indirect.tree.leaves())
                 sum += s.indirect.tree.area(e) * s.indirect.at({e, s.indirect.tree.centre(e)})[0];
             out.push_back(sum), unshot.push_back(s.statistics.residual);
-            return Result<void>();
         });
         return out;
     };
@@ -210,10 +207,10 @@ TEST(Classical, RefinementCutsElementsDuringShootingOrAfter) {
     std::size_t elements[2];
     for (RefineWhen when : {RefineWhen::during, RefineWhen::after}) {
         c.refine = when;
-        elements[when == RefineWhen::after] = solve(scene, o, c).solution.statistics.leaf_elements;
+        elements[when == RefineWhen::after] = solve(scene, o, c).statistics.leaf_elements;
     }
     c.refine.reset(), c.refine_gradient.reset();
-    const std::size_t unrefined = solve(scene, o, c).solution.statistics.leaf_elements;
+    const std::size_t unrefined = solve(scene, o, c).statistics.leaf_elements;
     EXPECT_GT(elements[0], unrefined);
     EXPECT_GT(elements[1], unrefined);
     EXPECT_NE(elements[0], elements[1]);
@@ -229,7 +226,7 @@ TEST(Classical, RefinementDuringShootingComputesNoFormFactorTwice) {
     std::size_t rays[2], elements[2];
     for (RefineWhen when : {RefineWhen::during, RefineWhen::after}) {
         c.refine = when;
-        const SolveStatistics s = solve(scene, o, c).solution.statistics;
+        const SolveStatistics s = solve(scene, o, c).statistics;
         const auto i = static_cast<std::size_t>(when == RefineWhen::after);
         rays[i] = s.rays, elements[i] = s.leaf_elements;
     }
@@ -242,7 +239,7 @@ TEST(Classical, ShootingCutsCellsOfContactLines) {
     const Scene scene = built_scene("cornell");
     const ClassicalOptions aligned = carried_raw(false);
     SolveOptions o{.method = Method::matrix, .mesh_size = 0.3, .residual = 1e-3};
-    const Solution matrix = solve(scene, o, aligned).solution;
+    const Solution matrix = solve(scene, o, aligned);
     const std::vector<ProbePoint> places{
         {{0.45, 0.5, 0}, {0, 0, 1}}, {{0.04, 0.2, 0}, {0, 0, 1}}, {{0.5, 0.05, 0}, {0, 0, 1}}};
     const std::vector<Light> expected = RadiosityFunction(matrix).at(places);
@@ -250,7 +247,7 @@ TEST(Classical, ShootingCutsCellsOfContactLines) {
     for (const ShootingReceivers receivers : {ShootingReceivers::middle, ShootingReceivers::vertex}) {
         ClassicalOptions c = aligned;
         c.receivers = receivers, c.refine_gradient = 5;
-        const Solution shot = solve(scene, o, c).solution;
+        const Solution shot = solve(scene, o, c);
         EXPECT_GT(shot.statistics.leaf_elements, 4 * matrix.statistics.leaf_elements - 1);
         const std::vector<Light> light = RadiosityFunction(shot).at(places);
         // Elements of 0.3 m and of 0.15 m differ by the variation of light across them.
@@ -262,9 +259,9 @@ TEST(Classical, ShootingCutsCellsOfContactLines) {
 TEST(Classical, IsBitwiseIndependentOfThreads) {
     const Scene scene = built_scene("tube", {{"rho", "0.7"}});
     SolveOptions o{.method = Method::wavelet, .oracle = LinkOracle::power, .threads = 1};
-    const Solution one = solve(scene, o, by_power(0.1)).solution;
+    const Solution one = solve(scene, o, by_power(0.1));
     o.threads = 2;
-    EXPECT_TRUE(same_bits(one, solve(scene, o, by_power(0.1)).solution));
+    EXPECT_TRUE(same_bits(one, solve(scene, o, by_power(0.1))));
 }
 
 TEST(Classical, RelaxationsDifferInTheirNumberOfSweeps) {
@@ -274,7 +271,7 @@ TEST(Classical, RelaxationsDifferInTheirNumberOfSweeps) {
         o.relaxation = relaxation;
         ClassicalOptions c = raw;
         c.relaxation = own;
-        const Solution s = solve(scene, o, c).solution;
+        const Solution s = solve(scene, o, c);
         EXPECT_LE(s.statistics.residual, 1e-6);
         return s.statistics.iterations;
     };
@@ -291,14 +288,11 @@ TEST(Classical, RelaxationsDifferInTheirNumberOfSweeps) {
 }
 
 TEST(Classical, AMatrixThatExceedsMemoryIsRejected) {
-    Progress progress;
-    const StopRequest stop;
-    ClassicalFacts facts;
     const Scene scene = built_scene("blocker", {{"h", "0.7"}});
     SolveOptions options{.method = Method::matrix, .mesh_size = 0.5};
-    EXPECT_TRUE(solve_classical(scene, options, raw, progress, stop, facts, {}));
+    EXPECT_TRUE(try_to_solve(scene, options, raw));
     options.memory_limit_bytes = 1 << 20;  // less than any process uses
-    const Result<Solution> none = solve_classical(scene, options, raw, progress, stop, facts, {});
+    const Result<Solution> none = try_to_solve(scene, options, raw);
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().code, ErrorCode::limit);
 }

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "exitance/lab/classical/classical_input.hpp"
-#include "exitance/lab/classical/vertex_averages.hpp"
+#include "exitance/lab/classical/classical.hpp"
+#include "exitance/methods/light/vertex_averages.hpp"
 #include "exitance/transport/stage.hpp"
 #include "support/built_scene.hpp"
 

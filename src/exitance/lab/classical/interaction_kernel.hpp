@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "exitance/basis/nodal_basis.hpp"
-#include "exitance/solve/classical_options.hpp"
+#include "exitance/solve/solve_options.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "exitance/base/parallel.hpp"
-#include "exitance/lab/local_passes/solve_by_lines.hpp"
+#include "exitance/methods/solve_scene.hpp"
 #include "exitance/reference/path_reference.hpp"
 #include "support/built_scene.hpp"
 #include "support/test_scenes.hpp"
@@ -116,12 +116,12 @@ TEST(LocalPasses, AreBitwiseIndependentOfThreads) {
     EXPECT_EQ(one, three);
 }
 
-TEST(SolveByLines, DeliversTheExportedFunction) {
+TEST(LocalPasses, DeliverTheExportedFunction) {
     const Scene scene = table_and_lamp();
     Progress progress;
     SolveOptions options{.method = Method::discontinuity, .error = 0.2};
     options.local_pass = LocalPassRule::d;
-    const Result<Solution> solved = solve_by_lines(scene, options, progress, StopRequest());
+    const Result<Solution> solved = solve_scene(scene, options, progress, StopRequest());
     ASSERT_TRUE(solved);
     ASSERT_TRUE(solved->statistics.relative_error_estimate);
     EXPECT_TRUE(solved->statistics.converged);
@@ -130,7 +130,7 @@ TEST(SolveByLines, DeliversTheExportedFunction) {
     EXPECT_EQ(solved->indirect.values, solved->interpolant.values);
     StopRequest stop;
     stop.interrupt();
-    const Result<Solution> cut_short = solve_by_lines(scene, options, progress, stop);
+    const Result<Solution> cut_short = solve_scene(scene, options, progress, stop);
     ASSERT_TRUE(cut_short);
     EXPECT_EQ(cut_short->statistics.stopped_by, "interrupt");
 }

@@ -4,17 +4,10 @@
 
 #include <algorithm>
 
-#include "exitance/base/memory.hpp"
 #include "exitance/base/parallel.hpp"
-#include "exitance/base/phase_times.hpp"
 #include "exitance/base/trace.hpp"
-#include "exitance/evaluate/energy.hpp"
 #include "exitance/lab/tasks/interaction_forecast.hpp"
 #include "exitance/lab/tasks/task_engine.hpp"
-#include "exitance/methods/carried_light.hpp"
-#include "exitance/methods/light/light_functions.hpp"
-#include "exitance/methods/light/smoothing.hpp"
-#include "exitance/methods/solve_report.hpp"
 
 namespace exitance {
 namespace {
@@ -52,32 +45,33 @@ GlobalLight light_of(const TaskEngine& engine, const Stage& stage) {
     return light;
 }
 
-void record(const TaskEngine& engine, const TaskReport& report, const GlobalLight& light, const TaskOptions& asked,
-            SolveStatistics& s) {
+/// The light of an engine, with its counts.
+GlobalLight light_with_counts(const TaskEngine& engine, const TaskReport& report, const Stage& stage,
+                              const TaskOptions& asked) {
+    GlobalLight light = light_of(engine, stage);
+    light.report = {.iterations = report.iterations, .residual = report.change, .converged = report.converged};
     const PatchPool& patches = engine.patches();
-    s.elements = light.tree.size();
-    s.leaf_elements = light.numbering.leaves.size();
-    s.links = report.interactions;
-    s.rays = report.rays;
-    s.form_factors = report.form_factors;
-    s.iterations = report.iterations;
-    s.residual = report.change;
-    s.link_memory_bytes = report.interactions * sizeof(Interaction);
-    s.element_memory_bytes = patches.memory_bytes();
-    s.elements_by_level = light.work.elements_by_level;
-    s.figures["threshold"] = asked.threshold;
-    s.figures["min_area"] = asked.min_area;
-    s.figures["initial_links"] = static_cast<double>(report.initial_interactions);
-    s.figures["predicted_links"] = predict_interactions(
+    MethodWork& work = light.work;
+    work.rays = report.rays, work.form_factors = report.form_factors;
+    work.links = report.interactions, work.link_memory_bytes = report.interactions * sizeof(Interaction);
+    work.element_memory_bytes = patches.memory_bytes();
+    PublishedLight& published = light.published.emplace();
+    published.elements = light.tree.size(), published.leaf_elements = light.numbering.leaves.size();
+    auto& figures = published.figures;
+    figures["threshold"] = asked.threshold;
+    figures["min_area"] = asked.min_area;
+    figures["initial_links"] = static_cast<double>(report.initial_interactions);
+    figures["predicted_links"] = predict_interactions(
         engine.visible_pairs(), [&](std::uint32_t root) { return patches[root].area; },
         [&](std::uint32_t root) { return max(engine.radiosity(root)); }, asked);
-    s.figures["tasks"] = static_cast<double>(report.tasks);
-    s.figures["stolen_tasks"] = static_cast<double>(report.stolen);
-    // Processor time of all threads; parts of the solve's time.
-    s.seconds[RunPart::visibility] = report.seconds[TaskGraph::vis],
-    s.seconds[RunPart::form_factors] = report.seconds[TaskGraph::ff];
+    figures["tasks"] = static_cast<double>(report.tasks);
+    figures["stolen_tasks"] = static_cast<double>(report.stolen);
+    // Processor time of all threads.
+    published.visibility_seconds = report.seconds[TaskGraph::vis];
+    published.form_factor_seconds = report.seconds[TaskGraph::ff];
     for (std::size_t k = 0; k < TaskGraph::cost_names.size(); ++k)
-        s.figures[std::string(TaskGraph::cost_names[k]) + "_seconds"] = report.seconds[k];
+        figures[std::string(TaskGraph::cost_names[k]) + "_seconds"] = report.seconds[k];
+    return light;
 }
 
 }  // namespace
@@ -107,47 +101,26 @@ TaskOptions task_options(const Scene& scene, const SolveOptions& options) {
     return out;
 }
 
-Result<Solution> solve_by_tasks(const Scene& scene, const SolveOptions& options, Progress& progress,
-                                const StopRequest& stop) {
-    if (!is_lit_by_diffuse_surfaces(scene))
-        return Error{ErrorCode::bad_input, "has lights without extent, or that are not diffuse", scene.file(),
-                     "--task-engine carries light between diffuse patches alone: leave it out"};
-    const Stopwatch watch;
-    Solution solution{.scene = scene};
-    SolveStatistics& statistics = solution.statistics;
-    PhaseTimes phases(progress, statistics.seconds);
-    phases.phase("mesh");
-    Stage stage(solution.scene);
-
-    phases.phase("tasks");
-    TaskOptions asked = task_options(scene, options);
+GlobalLight solve_by_tasks(const MethodInput& input) {
+    input.progress.phase("tasks");
+    TaskOptions asked = task_options(input.stage.scene, input.options);
     asked.record = task_trace() != nullptr;
-    TaskEngine engine(stage, asked);
-    const TaskReport report = engine.run(phases, stop, task_trace() ? task_trace()->now() : 0);
-    phases.phase("reconstruct");
-    const GlobalLight light = light_of(engine, stage);
-    solution.indirect = options.smoothing.value_or(false) ? smoothed_on_leaves(light, scene.regions().size())
-                                                          : constant_on_leaves(light);
-    solution.interpolant = solution.indirect;
-    solution.direct_in_elements = true;
-    statistics.method = "hierarchical", statistics.basis = "haar";
-    statistics.threads = static_cast<int>(asked.threads);
-    statistics.schedule = name_in(schedule_names, asked.schedule);
-    statistics.surfaces = scene.surfaces().size();
-    record(engine, report, light, asked, statistics);
-    statistics.converged = report.converged || options.max_iterations;
-    if (stop.requested()) statistics.stopped_by = stop.interrupted() ? "interrupt" : "time limit";
-    if (!statistics.converged && statistics.stopped_by.empty()) statistics.stopped_by = "iterations";
-    stage.rooms = find_light_rooms(stage, options.seed, stop);  // the energy balance needs rooms to find escaping light
-    statistics.energy = energy_balance(solution, stage);
+    TaskEngine engine(input.stage, asked);
+    SafePoints safe_points = input.safe_points;
+    safe_points.resume([&](ArchiveReader& a) { engine.restore(a); });
+    const auto end_iteration = [&](const TaskReport& so_far) {
+        input.end_round([&] { return light_with_counts(engine, so_far, input.stage, asked); });
+        safe_points.pass([&](ArchiveWriter& a) { engine.save(a); });
+    };
+    const TaskReport report =
+        engine.run(input.progress, input.stop, task_trace() ? task_trace()->now() : 0, end_iteration);
+    GlobalLight light = light_with_counts(engine, report, input.stage, asked);
+    light.report.interrupted = input.stop.requested();
     if (task_trace()) task_trace()->add_graph(engine.take_graph());
-    phases.close();
-    statistics.seconds[RunPart::total] = watch.seconds();
-    statistics.peak_memory_bytes = peak_memory_bytes();
-    progress.note(
+    input.progress.note(
         fmt::format("{} tasks, {} of them stolen; total radiosity changed by {:.2g} in the last of {} iterations",
                     report.tasks, report.stolen, report.change, report.iterations));
-    return solution;
+    return light;
 }
 
 }  // namespace exitance

@@ -34,7 +34,8 @@ TaskEngine::TaskEngine(const Stage& stage, const TaskOptions& options)
     graph_.workers = options_.threads;
 }
 
-TaskReport TaskEngine::run(Progress& progress, const StopRequest& stop, double origin) {
+TaskReport TaskEngine::run(Progress& progress, const StopRequest& stop, double origin,
+                           const std::function<void(const TaskReport&)>& end_iteration) {
     const Stopwatch clock;
     double total = total_radiosity();
     while (report_.iterations < options_.max_iterations && !report_.converged && !stop.requested()) {
@@ -64,21 +65,24 @@ TaskReport TaskEngine::run(Progress& progress, const StopRequest& stop, double o
         if (options_.record) record(iteration);
         progress.advance(report_.converged ? 1 : std::min(0.9, options_.change / report_.change),
                          fmt::format("iteration {}, total radiosity {:.6g}", report_.iterations, total));
+        if (end_iteration) end_iteration(counted());
     }
     report_.wall = clock.seconds();
-    count();
-    return report_;
+    return counted();
 }
 
-void TaskEngine::count() {
-    report_.initial_interactions = visible_pairs_.size();
-    for (std::uint32_t id = 0; id < patches_.size(); ++id) report_.interactions += patches_[id].list.size();
+/// The report with the counts of patches and workers.
+TaskReport TaskEngine::counted() const {
+    TaskReport out = report_;
+    out.initial_interactions = visible_pairs_.size(), out.interactions = 0;
+    for (std::uint32_t id = 0; id < patches_.size(); ++id) out.interactions += patches_[id].list.size();
     for (const TaskWorker& worker : workers_) {
-        report_.rays += worker.rays;
-        report_.form_factors += worker.form_factors;
-        report_.tasks += worker.tasks;
-        for (std::size_t k = 0; k < worker.seconds.size(); ++k) report_.seconds[k] += worker.seconds[k];
+        out.rays += worker.rays;
+        out.form_factors += worker.form_factors;
+        out.tasks += worker.tasks;
+        for (std::size_t k = 0; k < worker.seconds.size(); ++k) out.seconds[k] += worker.seconds[k];
     }
+    return out;
 }
 
 /// Copies the parent's light to patches that were split off for another patch's list in this iteration; tasks processed
@@ -91,6 +95,35 @@ void TaskEngine::settle_new_patches(std::uint32_t old_size) {
         patch.irradiance = parent.irradiance;
         patch.radiosity[iteration_ % 2] = parent.radiosity[iteration_ % 2];
     }
+}
+
+void TaskEngine::save(ArchiveWriter& a) {
+    TaskReport report = counted();
+    std::uint32_t size = patches_.size();
+    a(iteration_, report, visible_pairs_, size);
+    for (std::uint32_t id = 0; id < size; ++id) {
+        TaskPatch& patch = patches_[id];
+        std::uint32_t first_child = patch.first_child.load();
+        a(first_child, patch.list, patch.irradiance, patch.radiosity, patch.reached);
+    }
+}
+
+void TaskEngine::restore(ArchiveReader& a) {
+    std::uint32_t size = 0;
+    a(iteration_, report_, visible_pairs_, size);
+    // Parents come before their children, so that patches are made in the order of their ids, which are new ones.
+    std::vector<std::uint32_t> now(size);
+    for (std::uint32_t root = 0; root < patches_.root_count(); ++root) now[root] = root;
+    for (std::uint32_t id = 0; id < size; ++id) {
+        std::uint32_t first_child = TaskPatch::none;
+        TaskPatch& patch = patches_[now[id]];
+        a(first_child, patch.list, patch.irradiance, patch.radiosity, patch.reached);
+        if (first_child == TaskPatch::none) continue;
+        const std::uint32_t first = patches_.children(now[id], 0);
+        for (std::uint32_t c = 0; c < 4; ++c) now[first_child + c] = first + c;
+    }
+    for (std::uint32_t id = 0; id < patches_.size(); ++id)
+        for (Interaction& i : patches_[id].list) i.source = now[i.source];
 }
 
 double TaskEngine::total_radiosity() const {

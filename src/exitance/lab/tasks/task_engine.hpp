@@ -1,7 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
+#include "exitance/base/archive.hpp"
 #include "exitance/base/progress.hpp"
 #include "exitance/base/task_graph.hpp"
 #include "exitance/lab/tasks/task_worker.hpp"
@@ -37,13 +39,19 @@ class TaskEngine {
     TaskEngine(const Stage& stage, const TaskOptions& options);
 
     /// Iterates until the total radiosity has converged. `origin`: offset added to the times of the graph, seconds. A
-    /// stop request ends refinement at once, and the iteration at the next barrier.
-    TaskReport run(Progress& progress, const StopRequest& stop, double origin = 0);
+    /// stop request ends refinement at once, and the iteration at the next barrier. `end_iteration` is called after
+    /// each iteration with the counts so far.
+    TaskReport run(Progress& progress, const StopRequest& stop, double origin = 0,
+                   const std::function<void(const TaskReport&)>& end_iteration = {});
 
     const PatchPool& patches() const { return patches_; }
     /// The recorded graph of tasks; empty unless options.record is set.
     const TaskGraph& graph() const { return graph_; }
     TaskGraph take_graph() { return std::move(graph_); }
+    /// Saves or restores the patches with their interactions and light, and the counts so far, between iterations. To
+    /// be restored into an engine that has not run.
+    void save(ArchiveWriter& a);
+    void restore(ArchiveReader& a);
     /// Pairs of visible pieces, sorted by receiver, then by source.
     const std::vector<PiecePair>& visible_pairs() const { return visible_pairs_; }
     /// Radiosity of a patch after the last iteration, W/m^2.
@@ -53,7 +61,7 @@ class TaskEngine {
   private:
     void settle_new_patches(std::uint32_t old_size);
     void collect_pairs();
-    void count();
+    TaskReport counted() const;
     void record(TaskGraph::Iteration iteration);
     double total_radiosity() const;
 

@@ -72,7 +72,7 @@ Result<void> check_old_names(std::span<const GivenOption> given, const SolveRequ
 /// The options that replace --smoothing and --gather as given; empty if they can be omitted.
 std::string new_spelling(const GivenOption* smoothing, const GivenOption* gather, const SolveRequest& request) {
     const bool smooths = smoothing && smoothing->word == "on";
-    if (form_of(request) != Form::published)
+    if (form_of(request.options) != Form::published)
         return smooths ? "--output-light smoothed-elements" : "--output-light elements";
     if (!gather) return smooths ? "nothing else" : "";  // the gathered light, smoothed
     const Result<Way> way = find_way(request);
@@ -89,7 +89,7 @@ void warn_of_old_names(std::span<const GivenOption> given, SolveRequest& request
     std::string old;
     for (const GivenOption* option : {gather, smoothing})
         if (option) old += fmt::format("{}{} {}", old.empty() ? "" : " ", option->row->name, option->word);
-    const bool standard_gather = gather && gather->word == "on" && form_of(request) != Form::published;
+    const bool standard_gather = gather && gather->word == "on" && form_of(request.options) != Form::published;
     const std::string now = standard_gather ? "--output-light gathered" : new_spelling(smoothing, gather, request);
     request.warnings.push_back(now.empty()
                                    ? fmt::format("{} is the default and will be removed in 0.4: leave it out", old)
@@ -100,7 +100,7 @@ void warn_of_old_names(std::span<const GivenOption> given, SolveRequest& request
 
 void settle(SolveRequest& request) {
     SolveOptions& o = request.options;
-    ClassicalOptions& c = request.classical;
+    ClassicalOptions& c = request.options.classical;
     if (o.task_engine && c.threshold) o.threshold = std::exchange(c.threshold, std::nullopt);
     // Growing cells have no published form that gathers: `off` delivers the light of their Gaussians.
     if (o.method == Method::growing_cells && c.gather) {
@@ -111,7 +111,7 @@ void settle(SolveRequest& request) {
         c.direct = ClassicalDirect::apart;
     if (!request.output_light) return;
     const OutputLight light = *request.output_light;
-    if (form_of(request) == Form::published) {
+    if (form_of(request.options) == Form::published) {
         c.gather = light == OutputLight::gathered;
         o.smoothing = light == OutputLight::smoothed_elements ? std::optional(true) : std::nullopt;
     } else {

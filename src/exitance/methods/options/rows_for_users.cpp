@@ -68,6 +68,10 @@ OptionValue memory_limit() {
     return out;
 }
 
+bool has_no_gradient(const SolveRequest& r) {
+    return !r.options.classical.refine_gradient;
+}
+
 constexpr std::array<std::pair<bool, std::string_view>, 2> quantity_kinds{
     {{false, "radiometric"}, {true, "photometric"}}};
 
@@ -157,26 +161,24 @@ std::vector<OptionRow> rows_of_scene_and_limits() {
          .does = "Resident memory of the process, such as 4G; if it is exceeded, the light found so far is written, "
                  "with status 4",
          .group = group::limits,
-         .support = {{every_standard | every_published}},
          .section = "-"},
         {.name = "--checkpoint-every",
          .value = positive("SECONDS", at(&R::checkpoint_every)),
          .does = "Keep the state of the solve in FILE.checkpoint beside the output",
          .when = "Use it for solves of hours",
          .group = group::limits,
-         .support = {{every_standard}},
          .section = "-"},
         {.name = "--resume",
          .value = flag(at(&R::resume)),
          .does = "Continue from the checkpoint beside the output, if there is one",
          .group = group::limits,
-         .support = {{every_standard}},
          .section = "-"},
         {.name = "--dry-run",
          .value = flag(at(&R::dry_run)),
          .does = "Print counts and a forecast of time and memory; solve and write nothing",
          .group = group::limits,
-         .support = {{every_standard}},
+         .support = {{every_standard | published({matrix, progressive})},
+                     {published({substructuring}), "", has_no_gradient, "without --refine-gradient"}},
          .one_process = "*",
          .section = "-"},
         {.name = "--threads",

@@ -15,7 +15,7 @@ using namespace option_values;
 OptionValue threshold() {
     OptionValue out = positive("X", at(&ClassicalOptions::threshold));
     const auto value = [](const SolveRequest& r) {
-        return r.classical.threshold ? r.classical.threshold : r.options.threshold;
+        return r.options.classical.threshold ? r.options.classical.threshold : r.options.threshold;
     };
     out.word = [value](const SolveRequest& r) {
         const auto set = value(r);
@@ -33,11 +33,11 @@ OptionValue multigrid() {
     OptionValue out = count(at(&ClassicalOptions::multigrid), 1);
     out.type = "N|off";
     out.read = [](const std::string& word, SolveRequest& r) -> std::string {
-        if (word == "off") return r.classical.multigrid.reset(), "";
+        if (word == "off") return r.options.classical.multigrid.reset(), "";
         const std::optional<double> value = number_in(word);
         if (!value || *value != std::floor(*value) || *value < 1 || *value > max_rounds)
             return fmt::format("must be 'off' or a whole number from 1 to {}, not '{}'", max_rounds, word);
-        r.classical.multigrid = static_cast<std::size_t>(*value);
+        r.options.classical.multigrid = static_cast<std::size_t>(*value);
         return "";
     };
     return out;
@@ -67,11 +67,11 @@ OptionValue snapshots() {
     OptionValue out;
     out.type = "WHEN";
     out.read = [](const std::string& word, SolveRequest& r) {
-        r.classical.snapshots = {};
-        return read_snapshots(word, r.classical.snapshots);
+        r.options.snapshots = {};
+        return read_snapshots(word, r.options.snapshots);
     };
     out.word = [](const SolveRequest& r) -> std::optional<std::string> {
-        const SnapshotPlan& plan = r.classical.snapshots;
+        const SnapshotPlan& plan = r.options.snapshots;
         if (!plan.any()) return {};
         return plan.rounds ? "rounds" : plan.shots.empty() ? "t" : "shots";
     };
@@ -177,10 +177,10 @@ std::vector<OptionRow> rows_of_published_solvers() {
          .value = snapshots(),
          .does = "Write intermediate solutions S.0001.h5, ...: t=0.5,1 (seconds), shots=10,100 or rounds",
          .group = group::published,
-         .support = {{every_published, "t"},
+         .support = {{every_published | tasks | local_passes, "t"},
                      {published({progressive, substructuring}), "shots"},
-                     {published({matrix, hierarchical, wavelet}), "rounds"}},
-         .excludes = {{"--relaxation cg|gmres|chebyshev|direct"}},
+                     {published({matrix, hierarchical, wavelet}) | tasks | local_passes, "rounds"}},
+         .excludes = {{"--relaxation cg|gmres|chebyshev|direct"}, {"--resume"}},
          .section = "-"},
     };
 }

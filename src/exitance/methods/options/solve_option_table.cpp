@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "exitance/methods/options/option_rows.hpp"
+#include "exitance/methods/options/support.hpp"
 #include "exitance/methods/options/value_kinds.hpp"
 
 namespace exitance {
@@ -45,7 +46,8 @@ std::string recorded_options(const SolveRequest& request) {
     std::string out = members("", request);
     if (request.options.discontinuity.any())
         out += fmt::format(", \"discontinuity\": {{{}}}", members("discontinuity", request));
-    if (request.classical.any()) out += fmt::format(", \"classical\": {{{}}}", members("classical", request));
+    if (form_of(request.options) == Form::published)
+        out += fmt::format(", \"classical\": {{{}}}", members("classical", request));
     return "{" + out + "}";
 }
 

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "exitance/solve/classical_options.hpp"
 #include "exitance/solve/solve_options.hpp"
 
 namespace exitance {
@@ -21,7 +20,6 @@ inline constexpr std::array<std::pair<OutputLight, std::string_view>, 3> output_
 /// Everything that the options in `solve_option_table()` set.
 struct SolveRequest {
     SolveOptions options = {};
-    ClassicalOptions classical = {};
     std::optional<OutputLight> output_light = {};
     std::string recipe = {};                      ///< Name of the recipe whose presets are included; empty: none.
     std::string importance = {};                  ///< File with the points of options.importance; empty: none.

@@ -211,10 +211,10 @@ std::string supporting_here(const OptionRow& row, Form form, const std::string& 
 
 }  // namespace
 
-Form form_of(const SolveRequest& request) {
-    if (request.options.task_engine) return Form::tasks;
-    if (request.options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e) return Form::local_passes;
-    return request.classical.any() ? Form::published : Form::standard;
+Form form_of(const SolveOptions& options) {
+    if (options.task_engine) return Form::tasks;
+    if (options.local_pass.value_or(LocalPassRule::e) != LocalPassRule::e) return Form::local_passes;
+    return options.classical.any() || options.snapshots.any() ? Form::published : Form::standard;
 }
 
 bool supports(const OptionRow& row, const SolveRequest& request, Way way) {
@@ -230,7 +230,7 @@ std::string supporting_methods(const OptionRow& row, Form form, const std::strin
 }
 
 Result<Way> find_way(const SolveRequest& request) {
-    return find_way(request, form_of(request));
+    return find_way(request, form_of(request.options));
 }
 
 Result<Way> find_way(const SolveRequest& request, Form form) {
@@ -269,6 +269,14 @@ Result<Way> find_way(const SolveRequest& request, Form form) {
     return no_method(request, form);
 }
 
+Result<SolveOptions> with_published_method(SolveOptions options) {
+    if (form_of(options) == Form::standard) return options;
+    const Result<Way> way = find_way({.options = options});
+    if (!way) return way.error();
+    options.method = way->method;
+    return options;
+}
+
 bool supports_all(Method method, const SolveOptions& options) {
     const SolveRequest request{.options = options};
     return !first_unsupported(request, {Form::standard, in_force(Form::standard, method, request)});
@@ -290,7 +298,7 @@ Result<void> check_one_process(const SolveRequest& request) {
             "use one process, or --form-factors ray-cast, --basis constant or linear, and --relaxation jacobi, "
             "cg, gmres or chebyshev");
     }
-    if (form_of(request) != Form::published) return {};
+    if (form_of(request.options) != Form::published) return {};
     return usage(fmt::format("{} selects a published form, which does not work over several processes",
                              selecting_option(request)),
                  "use one process");

@@ -10,7 +10,7 @@
 namespace exitance {
 
 /// The form that the options select.
-Form form_of(const SolveRequest& request);
+Form form_of(const SolveOptions& options);
 
 /// True if the way supports the option with its value in the request.
 bool supports(const OptionRow& row, const SolveRequest& request, Way way);
@@ -25,6 +25,10 @@ std::string supporting_methods(const OptionRow& row, Form form, const std::strin
 Result<Way> find_way(const SolveRequest& request);
 /// Like find_way(request), in a given form.
 Result<Way> find_way(const SolveRequest& request, Form form);
+
+/// Options with the method of the published form that they select, or unchanged ones. Error (usage): the form does not
+/// support an option.
+Result<SolveOptions> with_published_method(SolveOptions options);
 
 /// True if the method supports all options. If the number of reflections is limited, `matrix` replaces most methods, as
 /// in find_way().

@@ -21,7 +21,7 @@ auto at(T SolveOptions::*member) {
 template <class T>
 auto at(T ClassicalOptions::*member) {
     return [member](auto& request) -> auto& {
-        return request.classical.*member;
+        return request.options.classical.*member;
     };
 }
 template <class T>

@@ -13,6 +13,7 @@
 #include "exitance/gather/gather.hpp"
 #include "exitance/mesh/element_locator.hpp"
 #include "exitance/methods/methods.hpp"
+#include "exitance/methods/options/support.hpp"
 #include "exitance/methods/patch_steps.hpp"
 #include "exitance/methods/plan/memory_plan.hpp"
 #include "exitance/methods/plan/method_memory.hpp"
@@ -30,6 +31,8 @@ constexpr double element_rays = 2.6;     ///< Rays of an element over those of a
 constexpr double shooting_share = 0.48;  ///< Share of the pairs of elements whose form factors shooting needs.
 constexpr double gathered_by_patches = 3;  ///< Gather elements per patch of substructuring.
 constexpr double random_sweeps = 1.9;      ///< Light sent in random directions over the light of the first reflection.
+/// Time of a ray between elements or of a hemicube over that of a gather's ray, which looks up the light that it finds.
+constexpr double published_ray_time = 0.25;
 constexpr unsigned shooting_samples = 16;
 /// Evaluations of direct light per element: nodes of the projection and of the exported mesh, and splits.
 constexpr double lights_an_element = 20;
@@ -175,16 +178,39 @@ double certificate_rays(const Plan& plan, double elements, double gathered, doub
     return rows + 2 * points * std::max(16.0, 0.2 * rays_an_element);
 }
 
+/// Completes the forecast of a published form: its own counts, and those of a gather if it has one.
+Forecast of_published(const Stage& stage, const Plan& plan, const Pilot& pilot, const DirectProjection& direct,
+                      Forecast out) {
+    const SolveOptions& o = plan.options;
+    const MethodForecast own =
+        entry_of(o.method, form_of(o)).forecast(stage, o, plan.knobs, pilot.facing, pilot.blocked);
+    const bool gathers = o.classical.gather.value_or(true) && stage.has_indirect_light();
+    const double gathered = gathers ? gathered_by_solved * static_cast<double>(direct.tree.leaves().size()) : 0;
+    out.solve_elements = static_cast<std::size_t>(own.elements);
+    out.gather_elements = static_cast<std::size_t>((plan.knobs.gather_curved ? straight_by_curved : 1) * gathered);
+    const double gather_rays = gathered * element_rays * pilot.rays;
+    out.rays = own.rays + gather_rays;
+    out.seconds = (published_ray_time * own.rays + gather_rays) * pilot.gather_seconds +
+                  own.elements * lights_an_element * pilot.light_seconds;
+    out.memory_bytes = static_cast<double>(peak_memory_bytes()) + own.bytes +
+                       bytes_a_leaf * (own.elements + static_cast<double>(out.gather_elements));
+    return out;
+}
+
 }  // namespace
 
-Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& options) {
+Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& asked) {
+    const Result<SolveOptions> settled = with_published_method(asked);
+    if (!settled) return settled.error();
+    const SolveOptions& options = *settled;
+    const bool is_published = form_of(options) != Form::standard;
     const StopRequest never;
     Stage stage(scene);
     survey(stage, options, never);
     Plan plan = make_plan(stage, options);
-    if (options.memory_limit_bytes)
+    if (options.memory_limit_bytes && !is_published)
         if (const Result<bool> fits = fit_into_memory(plan.knobs, stage, plan.options); !fits) return fits.error();
-    const bool patches = plan.options.method == Method::substructuring;
+    const bool patches = plan.options.method == Method::substructuring && !is_published;
     MeshSize mesh = plan.knobs.solve_mesh;
     if (patches && !options.mesh_size)
         mesh = {calibrated::patch_edge * mesh.edge, std::max(0, mesh.grading_levels - 1)};
@@ -200,6 +226,7 @@ Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& options)
                  .regions = scene.regions().size(),
                  .emitters = scene.emitters().size() + scene.lights().size()};
     const Pilot pilot = look(stage, plan, direct);
+    if (is_published) return of_published(stage, plan, pilot, direct, std::move(out));
     const double projected = static_cast<double>(direct.tree.leaves().size());
     const double solved = patches ? cut_patches(stage, plan, direct, pilot.mean_light) : projected;
     const bool indirect = plan.options.bounces != 0 && stage.has_indirect_light();

@@ -23,6 +23,9 @@ struct Forecast {
 /// a few hundred points. Their noise gives the number of rays, their time the seconds. Further splitting of elements
 /// for reflected light is estimated by fixed ratios. It is unknown whether the certificate will require another
 /// attempt. Takes as long as direct light does, typically a tenth of the solve.
-Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& options);
+///
+/// For published forms on constant elements, the elements and the rays are those of the form; its rays cost as much
+/// time as those of a gather.
+Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& asked);
 
 }  // namespace exitance

@@ -6,6 +6,7 @@
 
 #include "exitance/base/available_memory.hpp"
 #include "exitance/methods/methods.hpp"
+#include "exitance/methods/options/support.hpp"
 #include "exitance/methods/shooting_setup.hpp"
 #include "exitance/processes/distributed.hpp"
 
@@ -20,7 +21,8 @@ constexpr double bytes_a_galerkin_pair = 60;
 }  // namespace
 
 double method_bytes(const Stage& stage, const SolveOptions& options, const Knobs& knobs, double leaves) {
-    if (const auto own = entry_of(options.method).forecast) return own(stage, options, knobs, 1, true).bytes;
+    if (const auto own = entry_of(options.method, form_of(options)).forecast)
+        return own(stage, options, knobs, 1, true).bytes;
     const double pairs = leaves * leaves;
     switch (options.method) {
         case Method::progressive:

@@ -7,6 +7,8 @@
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/evaluate/unlit_sides.hpp"
 #include "exitance/methods/hierarchical/hierarchical.hpp"
+#include "exitance/methods/methods.hpp"
+#include "exitance/methods/options/support.hpp"
 #include "exitance/methods/plan/choice.hpp"
 
 namespace exitance {
@@ -35,8 +37,9 @@ void fit_links(Plan& plan, const Stage& stage) {
 }  // namespace
 
 void survey(Stage& stage, const SolveOptions& options, const StopRequest& stop) {
-    stage.leave_out(find_unlit_sides(stage, options.seed, stop));
-    stage.rooms = find_light_rooms(stage, options.seed, stop);
+    // Published forms solve on all sides, and know of rooms only if errors are judged by them.
+    if (form_of(options) == Form::standard) stage.leave_out(find_unlit_sides(stage, options.seed, stop));
+    if (has_estimate(options)) stage.rooms = find_light_rooms(stage, options.seed, stop);
 }
 
 Knobs first_knobs(const Plan& plan, const Stage& stage, double error) {
@@ -47,6 +50,11 @@ Knobs first_knobs(const Plan& plan, const Stage& stage, double error) {
 }
 
 Plan make_plan(const Stage& stage, const SolveOptions& asked, double first_error) {
+    if (form_of(asked) != Form::standard) {
+        Plan plan{.options = asked};
+        plan.knobs = first_knobs(plan, stage, asked.error_target());
+        return plan;
+    }
     MethodChoice choice = choose_method(stage, asked);
     Plan plan{.options = std::move(choice.options), .why = std::move(choice.why)};
     const Method method = plan.options.method;

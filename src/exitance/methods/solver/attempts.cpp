@@ -30,7 +30,7 @@ void Solver::solve_indirect_light() {
         const Stopwatch watch;
         attempt();
         if (refusal_) return;
-        if (stop_.requested()) return stop_early(stop_.interrupted() ? "interrupt" : "time limit");
+        if (stop_.requested()) return stop_as_requested();
         const bool is_lowered = show_ && options_.error_demand() && lower_error();
         const std::optional<double> demand = options_.error_demand();
         if (!demand || has_reached(*demand)) {
@@ -42,7 +42,7 @@ void Solver::solve_indirect_light() {
         }
         if (light_->limited_by_memory) stop_early("memory limit");
         if (statistics().stopped_by == "memory limit") return;
-        if (attempt_ == most_attempts + shown_) return stop_early("iterations");
+        if (attempt_ == attempt_limit()) return stop_early("iterations");
         if (show_) show_light();
         std::optional<NextAttempt> next = next_in_time(*demand, watch.seconds());
         // Far from the target error, a new plan for it is faster than refinement steps, each of which leaves about half
@@ -72,7 +72,7 @@ bool Solver::refines_bodies(double demand, double last_seconds) {
     const double limit = max_body_errors * demand, worst = certificate_.worst_body.value_or(0);
     const bool helps = worst_body_before_ == 0 || worst - limit < 0.5 * (worst_body_before_ - limit);
     if (!holds_bodies() || !gathers() || sums_ || worst <= limit || !helps || body_attempts_ == most_for_bodies ||
-        attempt_ == most_attempts + shown_ || (options_.error && *options_.error > requested_error_) ||
+        attempt_ == attempt_limit() || (options_.error && *options_.error > requested_error_) ||
         as_first(last_seconds) > seconds_left(stop_))
         return false;
     ++body_attempts_, worst_body_before_ = worst;
@@ -266,6 +266,7 @@ void Solver::attempt() {
     const std::vector<ElementGather> elements = refines() ? parts_to_sum(refined_) : parts_to_sum(found.parts);
     progress_.phase("certify");
     CertificateOptions look{.error = options_.error_target(),
+                            .seed = certificate_seed(),
                             .points = CertificateOptions::points_for(elements_of_continuous(solution_.indirect.tree))};
     if (sums_) look.points /= 2;  // sums have no noise
     if (gathers()) look.leaves = &gathered_.leaves, look.gathered = &b.whole();
@@ -307,8 +308,9 @@ void Solver::choose_basis() {
 void Solver::find_light() {
     if (fresh_) {
         choose_basis();
-        light_ = entry_of(options_.method)
-                     .solve({stage_, options_, knobs_, direct_, progress_, stop_, safe_points(), has_light()});
+        light_ = entry_of(options_.method, form_of(options_))
+                     .solve({stage_, options_, knobs_, direct_, progress_, stop_, safe_points(), has_light(), aim_,
+                             snapshots_ ? &*snapshots_ : nullptr});
         record_work(*light_, statistics());
         if (!gives_up()) share_ = direct_share();
         light_in_ = light_by_room(stage_, *light_);
@@ -334,7 +336,7 @@ std::vector<ElementFunction> Solver::refine() const {
 
 bool Solver::deliver(std::span<const ElementGather> elements, const ReadNextLight& b, bool fresh) {
     gathered_ = {};
-    ElementFunction indirect = gathers() ? gather(b, elements, fresh) : on_leaves();
+    ElementFunction indirect = gathers() ? gather(b, elements, fresh) : on_leaves(*light_);
     const Spectrum kept =
         gathers() && keeps_flux() ? keep_flux(indirect, stage_.scene, direct_, *light_, share_) : Spectrum(1.0);
     share_on_node(std::span(indirect.values)), share_on_node(indirect.first_value.span());
@@ -349,7 +351,7 @@ bool Solver::deliver(std::span<const ElementGather> elements, const ReadNextLigh
             else
                 adopt_method_light();
         }
-        certify_solution({.error = calibrated::interrupted_error});
+        certify_solution({.error = calibrated::interrupted_error, .seed = certificate_seed()});
         return false;
     }
     adopt(std::move(indirect), kept);
@@ -388,19 +390,28 @@ bool Solver::keeps_flux() const {
     return options_.bounces < 0 && (!light_->kept.empty() || keeps_reflected_light(stage_, *light_, options_.seed));
 }
 
-ElementFunction Solver::on_leaves() const {
+ElementFunction Solver::on_leaves(const GlobalLight& light) const {
     const std::string& basis = solution_.statistics.basis;
-    const bool constant = light_->indirect_corners.empty() || basis == name_in(basis_names, BasisKind::haar) ||
+    const bool constant = light.indirect_corners.empty() || basis == name_in(basis_names, BasisKind::haar) ||
                           basis == name_in(basis_names, BasisKind::galerkin1);
-    if (!constant) return polynomials_on_leaves(*light_);
-    return options_.smoothing.value_or(false) ? smoothed_on_leaves(*light_, stage_.scene.regions().size())
-                                              : constant_on_leaves(*light_);
+    if (!constant) return polynomials_on_leaves(light);
+    return options_.smoothing.value_or(false) ? smoothed_on_leaves(light, stage_.scene.regions().size())
+                                              : constant_on_leaves(light);
 }
 
 Spectrum Solver::direct_share() const {
     if (!gathers() || options_.bounces >= 0) return {};
     const ElementLocator locator(light_->tree, stage_.scene.regions().size());
     return find_direct_share(stage_, *light_, locator, options_.seed);
+}
+
+LocalPassDemand Solver::gather_demand(double scale) const {
+    return {.rays = knobs_.gather_rays,
+            .light = scale,
+            .noise = knobs_.gather_noise * scale,
+            .tolerance = knobs_.gather_tolerance * scale,
+            .curved = knobs_.gather_curved,
+            .relative_tolerance = knobs_.gather_relative_tolerance};
 }
 
 ElementFunction Solver::gather(const ReadNextLight& b, std::span<const ElementGather> elements, bool fresh) {
@@ -413,22 +424,12 @@ ElementFunction Solver::gather(const ReadNextLight& b, std::span<const ElementGa
             allowed_on_body[i] *= body_shares_[i].gathered * knobs_.body_error;
     }
     if (!local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);
-    ElementFunction out = local_pass_->gather(b.whole(), fresh,
-                                              {.rays = knobs_.gather_rays,
-                                               .light = scale,
-                                               .noise = knobs_.gather_noise * scale,
-                                               .tolerance = knobs_.gather_tolerance * scale,
-                                               .curved = knobs_.gather_curved,
-                                               .relative_tolerance = knobs_.gather_relative_tolerance,
-                                               .elements = elements,
-                                               .element_share = knobs_.gather_element_share,
-                                               .light_in = allowed_in_,
-                                               .noise_in = noise_in_,
-                                               .bodies = holds_bodies() ? &bodies() : nullptr,
-                                               .allowed_on_body = allowed_on_body,
-                                               .change = b.change(),
-                                               .rough_places = certificate_.rough_places},
-                                              gathered_, progress_, stop_, safe_points());
+    LocalPassDemand demand = gather_demand(scale);
+    demand.elements = elements, demand.element_share = knobs_.gather_element_share;
+    demand.light_in = allowed_in_, demand.noise_in = noise_in_;
+    demand.bodies = holds_bodies() ? &bodies() : nullptr, demand.allowed_on_body = allowed_on_body;
+    demand.change = b.change(), demand.rough_places = certificate_.rough_places;
+    ElementFunction out = local_pass_->gather(b.whole(), fresh, demand, gathered_, progress_, stop_, safe_points());
     statistics().rays += gathered_.rays;
     return out;
 }

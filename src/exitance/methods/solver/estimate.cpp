@@ -21,11 +21,13 @@ double Solver::margin(std::size_t points) {
     return 1 - calibrated::estimate_margin * (points > 0 ? std::sqrt(first / static_cast<double>(points)) : 1);
 }
 
+std::uint64_t Solver::certificate_seed() const {
+    const auto attempts_before = static_cast<std::uint64_t>(attempt_ - 1 + shown_);
+    return attempts_before == 0 ? options_.seed : hash(options_.seed, attempts_before);
+}
+
 void Solver::certify_solution(CertificateOptions options, std::optional<double> demand,
                               std::span<const ElementGather> gathered) {
-    // Every attempt is measured at points of its own, since the previous ones decided how it refines.
-    const auto attempts_before = static_cast<std::uint64_t>(attempt_ - 1 + shown_);
-    options.seed = attempts_before == 0 ? options_.seed : hash(options_.seed, attempts_before);
     options.direct_in_elements = light_->holds_direct();
     options.keeps_flux = gathers() && !light_->holds_direct() && keeps_flux() &&
                          has_kept_flux(solution_.indirect, stage_.scene, direct_, *light_, solution_.direct_share);
@@ -88,7 +90,7 @@ void Solver::record_darkness() {
 
 bool Solver::may_be_last(double demand) const {
     if (options_.error && *options_.error > requested_error_) return false;  // an intermediate solution
-    return has_reached(demand) || attempt_ == most_attempts || options_.memory_limit_bytes ||
+    return has_reached(demand) || attempt_ == attempt_limit() || options_.memory_limit_bytes ||
            seconds_left(stop_) < HUGE_VAL;
 }
 

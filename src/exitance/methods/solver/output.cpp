@@ -8,6 +8,7 @@
 #include "exitance/evaluate/energy.hpp"
 #include "exitance/evaluate/interpolant.hpp"
 #include "exitance/methods/light/discontinuity_light.hpp"
+#include "exitance/methods/methods.hpp"
 #include "exitance/methods/solve_report.hpp"
 
 namespace exitance {
@@ -58,8 +59,11 @@ void Solver::make_output_mesh() {
     progress_.phase("reconstruct");
     if (follows_shadows) {
         // The discontinuity mesh is exported.
-    } else if (solution_.direct_in_elements) {
-        solution_.interpolant = solution_.indirect;
+    } else if (is_published() || solution_.direct_in_elements) {
+        if (is_published())
+            direct_ = make_published_mesh(solution_);
+        else
+            solution_.interpolant = solution_.indirect;
         statistics().relative_error_estimate_interpolant = statistics().relative_error_estimate;
     } else {
         InterpolantReport report;
@@ -71,9 +75,10 @@ void Solver::make_output_mesh() {
         progress_.note(fmt::format("{} elements to export, {:.3f}% from the function by themselves",
                                    solution_.interpolant.tree.leaves().size(), 100 * own));
     }
+    if (!has_estimate(options_)) stage_.rooms = find_light_rooms(stage_, options_.seed, stop_);  // for escaping light
     EnergyBalance& energy = statistics().energy;
     energy = energy_balance(solution_, direct_, stage_);
-    energy.defect_before = energy_defect_before(energy, solution_, direct_, unscaled_);
+    if (!is_published()) energy.defect_before = energy_defect_before(energy, solution_, direct_, unscaled_);
     if (energy.emitted > 0 && energy.absorbed == 0 && !stop_.requested())
         warn("no light reaches the front of any face: they may be turned inside out");
 }

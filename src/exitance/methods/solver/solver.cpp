@@ -34,7 +34,8 @@ Solver::Solver(Scene scene, const SolveOptions& asked, Progress& progress, const
     constexpr double first_shown_error = 0.32;  // given by the error at which a scene is recognizable
     plan_ = make_plan(stage_, asked, show ? first_shown_error : hurries ? calibrated::hurried_error : 0);
     requested_error_ = options_.error_target();
-    if (show && options_.error_demand()) options_.error = std::max(first_shown_error, requested_error_);
+    if (show && options_.error_demand() && !is_published())
+        options_.error = std::max(first_shown_error, requested_error_);
     for (const std::string& notice : plan_.notices) warn(notice);
     if (!plan_.why.empty())
         progress.note(fmt::format("method {}: {}", name_in(method_names, options_.method), plan_.why));
@@ -44,24 +45,23 @@ Solver::Solver(Scene scene, const SolveOptions& asked, Progress& progress, const
 }
 
 Result<Solution> Solver::run() {
-    if (options_.memory_limit_bytes) {
-        const Result<bool> fits = fit_into_memory(knobs_, stage_, options_);
-        if (!fits) return fits.error();
-        if (!*fits) stop_early("memory limit");
+    const bool reflects = options_.bounces != 0 && stage_.has_indirect_light();
+    if (const Result<void> fits = fit_memory(); !fits) return fits.error();
+    resume();
+    if (step_ == Step::output) {
+        // The light has been found by the run that this one continues.
+    } else if (is_published()) {
+        solve_published();
+        warn_of_bodies();
+    } else if (reflects) {
+        solve_indirect_light();
+        warn_of_bodies();
+    } else {
+        solve_direct_light();
     }
-    if (options_.bounces != 0 && stage_.has_indirect_light()) {
-        resume();
-        if (step_ != Step::output) solve_indirect_light(), warn_of_bodies();
-        if (refusal_ && !has_light()) return *refusal_;
-        if (refusal_) stop_early("memory limit");
-        if (light_ && has_diverged(light_->report)) warn(divergence_warning);
-    } else if (resume(); step_ != Step::output) {
-        if (!makes_discontinuity_mesh() || solution_.scene.has_light_from_outside()) project_direct();
-        statistics().elements = direct_.tree.size();
-        statistics().leaf_elements = direct_.tree.leaves().size();
-        tell_exact();
-        tell_clustering_error();
-    }
+    if (refusal_ && !has_light()) return *refusal_;
+    if (refusal_) stop_early("memory limit");
+    if (light_ && has_diverged(light_->report)) warn(divergence_warning);
     if (light_ && !light_->kept_links.empty())
         solution_.links = {constant_on_leaves(*light_), std::move(light_->kept_links)};
     // Frees the data that only attempts need before the output mesh is created.
@@ -74,8 +74,24 @@ Result<Solution> Solver::run() {
     return std::move(solution_);
 }
 
+Result<void> Solver::fit_memory() {
+    if (!options_.memory_limit_bytes || is_published()) return {};  // published forms stop refining at the limit
+    const Result<bool> fits = fit_into_memory(knobs_, stage_, options_);
+    if (!fits) return fits.error();
+    if (!*fits) stop_early("memory limit");
+    return {};
+}
+
+void Solver::solve_direct_light() {
+    if (!makes_discontinuity_mesh() || solution_.scene.has_light_from_outside()) project_direct();
+    statistics().elements = direct_.tree.size();
+    statistics().leaf_elements = direct_.tree.leaves().size();
+    tell_exact();
+    tell_clustering_error();
+}
+
 void Solver::record_plan() {
-    const MethodEntry& method = entry_of(options_.method);
+    const MethodEntry& method = entry_of(options_.method, form_of(options_));
     solution_.bounces = options_.bounces;
     statistics().method = name_in(method_names, method.id);
     const bool chosen =
@@ -90,11 +106,11 @@ void Solver::record_plan() {
 template <class Archive>
 void Solver::archive_state(Archive& a, std::string& phase) {
     a(attempt_, step_, fresh_, share_, knobs_, direct_, unscaled_, light_, refined_, gathered_, certificate_, phase,
-      steps_);
+      steps_, aim_);
     next_.archive_state(a);
     a(body_attempts_, worst_body_before_, body_shares_, light_in_, allowed_in_, noise_in_, solution_.indirect,
       solution_.links, solution_.own_form, solution_.delivers_own_form, solution_.direct_share,
-      solution_.direct_in_elements, solution_.statistics);
+      solution_.direct_in_elements, solution_.discontinuity, solution_.statistics);
     bool has_local_pass = local_pass_.has_value();
     a(has_local_pass);
     if (has_local_pass && !local_pass_) local_pass_.emplace(stage_, knobs_.gather_mesh, options_.seed);

@@ -8,14 +8,16 @@
 #include "exitance/gather/local_pass.hpp"
 #include "exitance/methods/light/next_light.hpp"
 #include "exitance/methods/light/unscaled_light.hpp"
+#include "exitance/methods/method_entry.hpp"
+#include "exitance/methods/options/support.hpp"
 #include "exitance/methods/plan/plan.hpp"
 #include "exitance/methods/solve_scene.hpp"
 
 namespace exitance {
 
 /// State and steps of one run of `solve_scene`. `solver.cpp` runs the steps and saves and restores the state,
-/// `attempts.cpp` computes and delivers the light, `estimate.cpp` estimates its error, and `output.cpp` creates the
-/// exported mesh.
+/// `attempts.cpp` computes and delivers the light, `published.cpp` that of published forms, `estimate.cpp` estimates
+/// its error, and `output.cpp` creates the exported mesh.
 class Solver {
   public:
     Solver(Scene scene, const SolveOptions& asked, Progress& progress, const StopRequest& stop,
@@ -25,6 +27,12 @@ class Solver {
   private:
     /// Next step of an attempt.
     enum class Step : std::uint8_t { project, solve, gather, refine, certify, decide, output };
+
+    /// Coarsens the settings until the predicted memory is within the limit. An error if even the coarsest ones exceed
+    /// it.
+    Result<void> fit_memory();
+    /// Projects direct light, for scenes and requests without reflected light.
+    void solve_direct_light();
 
     // State, checkpoints and messages.
     SolveStatistics& statistics() { return solution_.statistics; }
@@ -45,8 +53,11 @@ class Solver {
     /// `refusal_` is set.
     void record_darkness();
     void stop_early(const char* why);
+    /// Records that a stop was requested, as an interrupt or a time limit.
+    void stop_as_requested() { stop_early(stop_.interrupted() ? "interrupt" : "time limit"); }
 
-    static constexpr int most_attempts = 9;
+    static constexpr int most_attempts = 9, most_published_attempts = 4;
+    int attempt_limit() const { return is_published() ? most_published_attempts : most_attempts + shown_; }
 
     // Interactive display of intermediate solutions.
     /// Lowers the target error of the attempts if it has been reached. Certifies the present solution again with the
@@ -61,6 +72,8 @@ class Solver {
     void tighten_bodies(double limit);
     /// Passes the delivered light to the `show` callback, on the elements of the export.
     void show_light();
+    /// Passes the light of a published form to the `show` callback.
+    void show_snapshot(const Snapshots::Moment& moment);
 
     // Attempts: method, local pass and certificate, until the estimated error is small enough.
     void solve_indirect_light();
@@ -96,6 +109,28 @@ class Solver {
     /// True if a stop was requested and an earlier attempt has a result to keep.
     bool gives_up() const { return stop_.requested() && has_light(); }
 
+    // Published forms: the light of the form, a gather if requested, and a certificate if the form has one.
+    bool is_published() const { return form_of(options_) != Form::standard; }
+    void solve_published();
+    void attempt_published();
+    /// Aims at a smaller error if there is time for another attempt. `last_seconds`: duration of the last one.
+    bool aim_lower(double demand, double last_seconds);
+    /// Records why a published form ended early, unless it did not.
+    void record_end();
+    /// Stores the light and the counts of a published form in a solution.
+    void take_published(const GlobalLight& light, Solution& solution) const;
+    /// Records the time since the form began.
+    void record_method_time(double seconds, double processor_seconds, SolveStatistics& statistics) const;
+    /// Smooths the light of a published form if that is requested, and makes its exported mesh. Returns the direct
+    /// light on that mesh; without elements if the form's light contains it.
+    DirectProjection make_published_mesh(Solution& solution) const;
+    /// Gathers the light of a published form once.
+    ElementFunction gather_published();
+    /// Estimates the error of light that contains that of emitters.
+    void certify_published();
+    /// The error that the light of a published form must not exceed: that of the exported mesh, too, as it is exported.
+    std::optional<double> published_demand() const;
+
     // The delivered function.
     /// Computes indirect light on all surfaces by gathering `b` and delivers it. `elements`: `b` as element gathers, if
     /// light is summed. `fresh`: `b` is neither the light gathered last nor a small change of it. Returns false if a
@@ -106,7 +141,9 @@ class Solver {
     /// Delivers the method's solution on its own elements.
     void adopt_method_light();
     ElementFunction gather(const ReadNextLight& b, std::span<const ElementGather> elements, bool fresh);
-    ElementFunction on_leaves() const;
+    ElementFunction on_leaves(const GlobalLight& light) const;
+    /// Settings of a gather for light whose mean is `scale`, W/m^2.
+    LocalPassDemand gather_demand(double scale) const;
     /// Returns functions as element gathers; empty if light is sampled by rays.
     std::vector<ElementGather> parts_to_sum(std::span<const ElementFunction> functions) const;
     /// Returns the light to gather after one refinement step on the delivered light, in parts (`refined_light`).
@@ -128,6 +165,9 @@ class Solver {
     /// Returns the share of the demand below which an estimate from this many points must be. The estimate is itself
     /// uncertain: by a fifth with the initial number of points, by less with more.
     static double margin(std::size_t points);
+    /// Seed of the points at which an attempt is measured: one per attempt, since the previous ones decided how it
+    /// refines.
+    std::uint64_t certificate_seed() const;
     void certify_solution(CertificateOptions options, std::optional<double> demand = {},
                           std::span<const ElementGather> gathered = {});
     bool has_reached(double demand) const { return certificate_.largest() <= margin(certificate_.points) * demand; }
@@ -183,6 +223,8 @@ class Solver {
     BrightPlaces bright_;  ///< Bright places of the light that is gathered, at which rays are aimed.
     LocalPassReport gathered_;
     Certificate certificate_;
+    double aim_ = default_error;          ///< Error at which an attempt of a published form aims.
+    std::optional<Snapshots> snapshots_;  ///< Set for published forms.
     int attempt_ = 1;
     int body_attempts_ = 0;         ///< Number of attempts for the sake of bodies.
     double worst_body_before_ = 0;  ///< `worst_body` before the last of them; 0: there was none.

@@ -2,25 +2,25 @@
 
 #include <algorithm>
 #include <ctime>
+#include <functional>
 #include <utility>
 
-#include "exitance/lab/classical/classical.hpp"
+#include "exitance/base/progress.hpp"
+#include "exitance/solve/global_light.hpp"
+#include "exitance/solve/solve_options.hpp"
 
 namespace exitance {
 
-struct ClassicalLight;
-
-/// Passes intermediate results of a solve to a sink when a snapshot of the plan is due. The sink's time is not part of
-/// the method's time.
+/// Passes intermediate light of a published form to a sink when a snapshot of the plan is due. The sink's time is not
+/// part of the form's time.
 class Snapshots {
   public:
     /// Intermediate result of a method, and its time so far.
     struct Moment {
-        const ClassicalLight& light;
-        std::size_t number;                 ///< Counted from 1.
+        const GlobalLight& light;
         double seconds, processor_seconds;  ///< Time of the method only.
     };
-    using Sink = std::function<Result<void>(const Moment& moment)>;
+    using Sink = std::function<void(const Moment& moment)>;
 
     Snapshots(SnapshotPlan plan, Sink sink) : plan_(std::move(plan)), sink_(std::move(sink)) {
         std::sort(plan_.seconds.begin(), plan_.seconds.end());
@@ -42,7 +42,6 @@ class Snapshots {
         if (due || plan_.rounds) take(light);
     }
 
-    const Result<void>& written() const { return written_; }
     double seconds() const { return watch_.seconds() - writing_; }
     double processor_seconds() const { return processor_clock() - begun_ - processor_writing_; }
     /// Seconds spent in the sink so far.
@@ -58,11 +57,11 @@ class Snapshots {
     }
     template <class Light>
     void take(const Light& light) {
-        if (!sink_ || !written_) return;
+        if (!sink_) return;
         const double seconds = this->seconds(), processor = processor_seconds();
         const Stopwatch writing;
         const double before = processor_clock();
-        written_ = sink_({light(), ++taken_, seconds, processor});
+        sink_({light(), seconds, processor});
         writing_ += writing.seconds(), processor_writing_ += processor_clock() - before;
     }
 
@@ -70,8 +69,7 @@ class Snapshots {
     Sink sink_;
     Stopwatch watch_;
     double writing_ = 0, begun_ = processor_clock(), processor_writing_ = 0;
-    std::size_t second_ = 0, shot_ = 0, taken_ = 0;
-    Result<void> written_;
+    std::size_t second_ = 0, shot_ = 0;
 };
 
 }  // namespace exitance

@@ -1,4 +1,4 @@
-#include "exitance/lab/classical/vertex_averages.hpp"
+#include "exitance/methods/light/vertex_averages.hpp"
 
 #include <cmath>
 #include <map>
