@@ -105,6 +105,8 @@ constexpr std::array<std::pair<double, std::string_view>, 5> length_unit_names{{
 }};
 constexpr std::array<std::pair<bool, std::string_view>, 2> up_names{{{true, "y"}, {false, "z"}}};
 
+constexpr int max_texture_parts = 10'000'000;  ///< A solve of so many faces takes tens of gigabytes.
+
 void declare_scene(CLI::App& app, SceneArguments& scene) {
     app.add_option("SCENE", scene.files,
                    "Scene (.obj with its .mtl, .gltf, .glb, .rad, .vs3, .stl, .ply, .hbjson, .json); several files "
@@ -134,6 +136,7 @@ void declare_scene(CLI::App& app, SceneArguments& scene) {
                    "Limit on the parts into which textured faces are cut where their colour varies. Each part reflects "
                    "and emits the mean of its part of the texture; 0: faces are not cut. Default 500 and one more for "
                    "each four faces")
+        ->check(CLI::Range(0, max_texture_parts))
         ->type_name("N")
         ->group("Scene");
     app.add_flag("--run-commands", scene.load.run_commands,

@@ -104,11 +104,11 @@ Confusion confusion(const Scene& scene, const SixNodeMesh& mesh, std::uint64_t s
 
 SixNodeMesh mesh_of(const Scene& scene, const DiscontinuityChoice& choice,
                     std::optional<LocalPassRule> local_pass = {}) {
-    SolveOptions options{.method = Method::discontinuity, .bounces = 0};
+    SolveOptions options{.method = Method::discontinuity};
     options.discontinuity = choice;
     constexpr double error = 0.01;
     options.local_pass = local_pass;
-    if (!local_pass) options.error_interpolant = error;
+    if (!local_pass) options.bounces = 0, options.error_interpolant = error;  // local passes always carry all light
     return solved(scene, options).discontinuity;
 }
 
