@@ -82,7 +82,7 @@ void Solver::attempt_published() {
         solving = std::max(0.0, solving - snapshots_->writing());
         if ((refusal_ = light_->published->refusal)) return;
         record_end();
-        if (gives_up()) return;
+        if (gives_up()) return stop_as_requested();
         take_published(*light_, solution_);
         reach(Step::gather);
     }

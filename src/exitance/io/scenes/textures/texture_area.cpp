@@ -50,7 +50,7 @@ PixelShares shares_of(double from, double to, double across, TextureArea::Wrap w
         }
         // A stretch shorter than the rounding of coordinates belongs to the next pixel.
         constexpr double rounding = 1e-12;  // derived from the rounding of double precision
-        end = std::min(to, std::max(end, t + rounding));
+        end = std::min(to, std::max(end, t + rounding * std::max(1.0, std::abs(t))));
         out.emplace_back(i, (end - t) / length);
         t = end;
     }
@@ -117,7 +117,7 @@ TextureArea::Wrap TextureArea::wrap_of(int number) {
 }
 
 TextureArea::Colour TextureArea::smoothed(const Vec2& place, double size, Wrap wrap_s, Wrap wrap_t) const {
-    const double wanted = std::clamp(std::log2(std::max(size, 1.0)), 0.0, static_cast<double>(levels_.size() - 1));
+    const double wanted = std::clamp(std::log2(std::max(1.0, size)), 0.0, static_cast<double>(levels_.size() - 1));
     const Level& level = levels_[static_cast<std::size_t>(std::lround(wanted))];
     const double width = level.across, height = level.down;
     const double u = place.x * width - 0.5, i = std::floor(u), v = place.y * height - 0.5, j = std::floor(v);

@@ -239,6 +239,53 @@ TEST(TexturedFaces, ManySmallFacesAreNotCut) {
     EXPECT_EQ(wall.d.faces.size(), side * side);
 }
 
+TEST(TexturedFaces, PartsOfAnEvenEmitterWithABasePictureKeepItsFlux) {
+    const TextureArea tones = grey_picture(100, 10, [](std::size_t x, std::size_t) { return x < 50 ? 0.2 : 0.9; });
+    Wall wall(tones);
+    wall.add({0, 1, 2, 3});
+    wall.d.materials[0].exitance = Spectrum(10);
+    wall.cut(tones);
+    ASSERT_EQ(wall.d.faces.size(), 2u);
+    for (const SceneDescription::Face& f : wall.d.faces)
+        EXPECT_NEAR(mean(wall.d.materials[f.material].exitance), 10, 1e-9);
+}
+
+TEST(TexturedFaces, CoordinatesFarFromThePictureAreCutAsNearOnes) {
+    const TextureArea tones = grey_picture(100, 10, [](std::size_t x, std::size_t) { return x < 50 ? 0.2 : 0.9; });
+    for (const double far : {0.0, 20'000.0, -300'000.0}) {
+        Wall wall(tones);
+        wall.add({0, 1, 2, 3});
+        TexturedFaces textured(wall.d, most_reflected, {});
+        FaceColours colours = wall.colours(0, tones);
+        for (Vec2& place : colours.reflectance.places) place.x += far;
+        textured.show(0, colours);
+        textured.finish();
+        EXPECT_EQ(wall.d.faces.size(), 2u) << far;
+    }
+}
+
+TEST(TexturedFaces, BothSidesOfASheetAreCutAlikeWithinAnyBudget) {
+    const TextureArea dots = grey_picture(
+        64, 64, [](std::size_t x, std::size_t y) { return (x / 16 + y / 16) % 2 == 0 && x < 48 ? 0.0 : 1.0; });
+    for (const std::size_t budget : {2, 3, 5, 9, 20}) {
+        Wall wall(dots);
+        wall.d.materials[0].reflectance = Spectrum(0.5);
+        wall.add({0, 1, 2, 3}), wall.add({3, 2, 1, 0});
+        TexturedFaces textured(wall.d, most_reflected, budget);
+        for (std::size_t f = 0; f < 2; ++f) {
+            FaceColours colours;
+            colours.coverage = wall.colours(f, dots).reflectance;
+            textured.show(f, colours);
+        }
+        textured.finish();
+        const CheckedScene made = make_scene(wall.d);
+        ASSERT_TRUE(made.scene) << budget;
+        double front = 0;
+        for (const Surface& s : made.scene->surfaces()) front += s.normal.y < 0 ? s.area : -s.area;
+        EXPECT_NEAR(front, 0, 1e-9) << budget;
+    }
+}
+
 TEST(TexturedFaces, HolesAreCutOutAndTheAreaIsBalanced) {
     constexpr int size = 64;
     const TextureArea ring = grey_picture(size, size, [](std::size_t x, std::size_t y) {

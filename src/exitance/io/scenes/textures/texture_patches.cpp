@@ -384,9 +384,12 @@ ColourGrid sample_patch(const SceneDescription& description, std::span<const Var
     std::vector<double> rows = sampler.borders(false, low.y, high.y, max_cells);
     std::vector<double> areas = covered_areas(polygons, columns, rows);
     for (const double a : areas) covered += a;
-    for (double& a : areas) a *= area / covered;
+    // A patch that has no area in the picture is not cut.
+    constexpr double rounding = 1e-9;  // derived from the rounding of sums of differences
+    const bool has_area = covered > rounding * (high.x - low.x) * (high.y - low.y);
+    for (double& a : areas) a *= has_area ? area / covered : 0;
     const std::vector<ColourGrid::Cell> cells = sampler.cells(columns, rows, areas, whitest);
-    return {std::move(columns), std::move(rows), cells, face.colours.exitance.picture != nullptr};
+    return {std::move(columns), std::move(rows), cells, material.emits()};
 }
 
 }  // namespace exitance

@@ -119,14 +119,41 @@ void TexturedFaces::set_deviation(std::size_t material, const Sum& sum, const Sp
     }
 }
 
+namespace {
+
+/// Corners of the other side of a face, from the smallest on.
+std::vector<std::uint32_t> turned(std::vector<std::uint32_t> corners) {
+    std::reverse(corners.begin(), corners.end());
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    return corners;
+}
+
+/// True if two faces are the sides of one sheet.
+bool are_sides(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+    return a.size() == b.size() && !a.empty() && turned(turned(a)) == turned(b);
+}
+
+}  // namespace
+
+/// Cuts both sides of a face alike: a side that stays whole would close the holes of the other.
+void TexturedFaces::cut_backs_like_fronts(CutFaces& cut) const {
+    for (std::size_t back = 1; back < varying_.size(); ++back) {
+        const std::size_t front = back - 1;
+        const SceneDescription::Face &a = out_->faces[varying_[front].face], &b = out_->faces[varying_[back].face];
+        if (!(cut.is_cut[front] || cut.is_cut[back]) || a.material != b.material || !are_sides(a.corners, b.corners))
+            continue;
+        const auto [from, to] = cut.is_cut[front] ? std::pair(front, back) : std::pair(back, front);
+        cut.parts[to] = cut.parts[from], cut.is_cut[to] = 1;
+        for (FacePart& part : cut.parts[to]) part.corners = turned(part.corners);
+    }
+}
+
 bool TexturedFaces::stays(const VaryingFace& face) {
     const double coverage = face.colour.coverage;
     if (coverage >= 1) return true;
     std::vector<std::uint32_t> corners = out_->faces[face.face].corners;
     // The back of a face, which follows it, stays if the face does.
-    std::vector<std::uint32_t> turned = corners;
-    std::reverse(turned.begin() + 1, turned.end());
-    const bool is_back = turned == holes_.before;
+    const bool is_back = are_sides(corners, holes_.before);
     double& balance = holes_.balance[out_->faces[face.face].material];
     if (!is_back) {
         balance += coverage * face.area;
@@ -143,6 +170,7 @@ void TexturedFaces::replace_cut_faces() {
               [](const VaryingFace& a, const VaryingFace& b) { return a.face < b.face; });
     CutFaces cut =
         cut_textured_faces(*out_, varying_, whitest_, max_parts_.value_or(default_texture_parts(out_->faces.size())));
+    cut_backs_like_fronts(cut);
     const std::vector<std::vector<FacePart>>& parts = cut.parts;
     holes_.misplaced += cut.misplaced;
     for (std::size_t v = 0; v < varying_.size(); ++v) {

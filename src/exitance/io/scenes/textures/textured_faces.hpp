@@ -62,6 +62,7 @@ class TexturedFaces {
     bool stays(const VaryingFace& face);
     /// Adds a face or a part with its final colour.
     void add(std::size_t face, const PartColour& colour, double area);
+    void cut_backs_like_fronts(CutFaces& cut) const;
     void replace_cut_faces();
     void set_deviation(std::size_t material, const Sum& sum, const Spectrum& mean);
     SceneDescription* out_;
