@@ -16,7 +16,7 @@ class LightChoice {
     std::size_t size() const { return tree_.sources().size(); }
     const EmitterTree::Source& source(std::uint32_t number) const { return tree_.sources()[number]; }
 
-    /// A source, by its number, and the probability of its choice; none if all light is behind the receiver.
+    /// A source, by its number, and the probability of its choice; 0 if the receiver is behind the source.
     struct Chosen {
         std::uint32_t number = 0;
         double chance = 0;

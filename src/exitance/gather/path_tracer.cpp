@@ -112,7 +112,7 @@ double balance(double first, double second) {
 double PathTracer::weight_of_shadow_ray(const Vertex& y, const Vertex& target) const {
     const Vec3 w = target.x - y.x;
     const double r2 = squared_norm(w), r = std::sqrt(r2), at_light = -dot(target.n, w);
-    // A ray from a corner meets a light at no distance at all.
+    // The points may coincide, at a corner of the light.
     if (r2 <= 0 || at_light <= 0 || lights_.empty()) return 0;
     const std::optional<std::uint32_t> source = lights_.source_at(target.region, target.x);
     const double chance = source ? lights_.chance_of(*source, y.x, y.n) : 0;

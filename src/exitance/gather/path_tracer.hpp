@@ -8,11 +8,15 @@
 
 namespace exitance {
 
-/// Follows paths of light from the place where it arrives [Kajiya86]. At every vertex the direct light is estimated by
-/// one shadow ray to an emitter, chosen by its unoccluded contribution, by one ray to each distant disc, and by the
-/// path's next ray (weighted by the balance heuristic [Veach95]; a lost ray sees the sky), which panes mirror. Sun and
-/// lights without extent are also estimated by one of their mirror images in panes. Paths end by Russian
-/// roulette with the reflectance as survival. The stage must outlive the tracer.
+/// Follows paths of light from the place where it arrives [Kajiya86]. The direct light at a vertex is the sum of
+///
+/// 1. one shadow ray to an emitter (`LightChoice`),
+/// 2. one ray to each distant disc,
+/// 3. emission and sky that the path's next ray meets, straight or mirrored by panes, and
+/// 4. one mirror image, in a pane, of the sun or of a light without extent.
+///
+/// The balance heuristic [Veach95] weights 1 and 3. Paths end by Russian roulette with the reflectance as survival. The
+/// stage must outlive the tracer.
 class PathTracer {
   public:
     /// A point that a path has reached.
@@ -41,7 +45,7 @@ class PathTracer {
     /// Takes a step from `y`, from either side of a diffusing pane in proportion to the light that leaves `y` by it.
     Step step(const Vertex& y, RandomStream& random) const;
 
-    /// Upper limit of the rays of a step.
+    /// Approximate number of rays of a step, without those to lights without extent and mirror images.
     double rays_per_step() const;
 
   private:

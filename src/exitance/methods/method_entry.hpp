@@ -54,7 +54,7 @@ struct MethodForecast {
 using ForecastMethod = MethodForecast (*)(const Stage& stage, const SolveOptions& options, const Knobs& knobs,
                                           double facing, bool blocked);
 
-/// Row of the table of methods: a recipe that `solve_scene` carries out.
+/// Row of the table of methods.
 struct MethodEntry {
     Method id;
     SolveMethod solve;

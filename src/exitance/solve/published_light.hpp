@@ -15,7 +15,7 @@ struct PublishedLight {
     std::map<std::string, double> figures = {};  ///< Further results, by JSON key.
     /// Processor time of parts that the form times, seconds; 0: not timed.
     double visibility_seconds = 0, form_factor_seconds = 0;
-    std::optional<Error> refusal = {};  ///< Set if there is no light at all.
+    std::optional<Error> refusal = {};  ///< Set if the form rejects the scene; there is no light then.
 };
 
 }  // namespace exitance

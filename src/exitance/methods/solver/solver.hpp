@@ -128,7 +128,7 @@ class Solver {
     ElementFunction gather_published();
     /// Estimates the error of light that contains that of emitters.
     void certify_published();
-    /// The error that the light of a published form must not exceed: that of the exported mesh, too, as it is exported.
+    /// Returns the smaller of the requested errors of the light and of the exported mesh, which are one here.
     std::optional<double> published_demand() const;
 
     // The delivered function.

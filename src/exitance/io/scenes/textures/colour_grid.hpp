@@ -40,7 +40,7 @@ class ColourGrid {
 
     /// Area and means of a box; colours are those of the area without holes.
     Cell mean(const GridBox& box) const;
-    /// Statistics of a box, of the means of 32 x 32 blocks of the grid.
+    /// Mean, deviation and range over a box, of the means of blocks: the grid has about 32 x 32 of them.
     PartColour colour(const GridBox& box) const;
 
   private:

@@ -15,7 +15,7 @@ struct FacePicture {
     TextureArea::Wrap wrap_s = TextureArea::Wrap::repeat, wrap_t = TextureArea::Wrap::repeat;
 };
 
-/// Colours of a face, relative to its material, whose colours are the means of the whole pictures.
+/// Colours of a face, as factors of those of its material, which has the means of the whole pictures.
 struct FaceColours {
     FacePicture reflectance, exitance;
     FacePicture coverage;  ///< 1 where the face is opaque, 0 in holes.

@@ -9,7 +9,7 @@ namespace exitance {
 
 /// A picture with holes.
 struct MaskedPicture {
-    TextureArea colour;    ///< Holes have the mean colour of the rest, so that they do not change the colour of parts.
+    TextureArea colour;  ///< Holes have the mean of all opaque pixels, so that they hardly change the colour of parts.
     TextureArea coverage;  ///< 1 where the picture is opaque, 0 in holes.
 };
 

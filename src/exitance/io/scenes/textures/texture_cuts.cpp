@@ -64,14 +64,14 @@ class TextureCutter {
             }
         };
         try_cuts(true, box.i0, box.i1), try_cuts(false, box.j0, box.j1);
-        // A single cut is judged by more than it does if a pattern shows only after several.
+        // If several cuts do far more per cut than the best single one, cut in the middle and count their benefit.
         constexpr double min_gain = 2;
         const double later = pattern_benefit(box, whole);
         if (later > min_gain * best.benefit) best = middle_cut(box, later);
         return best;
     }
 
-    /// Differences between parts and their union.
+    /// Sums of squared differences of reflectance and coverage, and of misplaced flux, between parts and their union.
     struct Difference {
         double squares = 0, flux = 0, holes = 0;
         void add(const ColourGrid::Cell& part, const ColourGrid::Cell& whole) {

@@ -10,7 +10,8 @@ namespace exitance {
 namespace {
 
 /// Squared relative error of the scene's light below which a cut is not worth a part.
-constexpr double min_benefit = 1e-6;  // derived from a gradient on a wall: it is cut until 2% are left
+constexpr double min_benefit =
+    1e-6;  // derived from a gradient on a wall: the reflectance within a part then varies by 2% of the mean
 /// Limit on the parts of emitting faces: direct light is computed for each emitter.
 constexpr std::size_t max_emitting_parts = 128;  // derived from rooms with 128 luminaires, which solve in seconds
 
@@ -105,8 +106,8 @@ class FaceCutter {
     }
 
   private:
-    /// Returns the patches of which removing all variation would be of use, ascending: at most so many, those of most
-    /// use. The first cut of a patch makes two parts.
+    /// Returns the patches whose potential is at least `min_benefit`, ascending; at most `max_patches`, those of
+    /// largest potential.
     std::vector<std::size_t> promising_patches(std::size_t max_patches) const {
         std::vector<std::pair<double, std::size_t>> found;  // by use, then in the order of the file
         for (std::size_t p = 0; p < all_.patches.size(); ++p)
@@ -139,7 +140,7 @@ class FaceCutter {
         if (!found.cuts.cuts.empty()) patches_.push_back(std::move(found));
     }
 
-    /// Benefit of a single cut that would remove all variation of a patch: an upper limit.
+    /// Benefit of a single cut that would remove all variation of a patch, estimated from 32 x 32 samples.
     double potential_of(const TexturePatch& patch) const {
         double area = 0, squares = 0, emitted = 0, holes = 0;
         Spectrum sum, flux;
@@ -175,7 +176,7 @@ class FaceCutter {
         return out;
     }
 
-    /// Takes the most beneficial cuts of all patches, as many as there may be parts.
+    /// Takes the most beneficial cuts of all patches, as many as there may be parts of patches.
     void choose(std::size_t max_parts) {
         struct Offer {
             double benefit;

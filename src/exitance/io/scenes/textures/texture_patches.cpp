@@ -26,7 +26,7 @@ struct AffinePlaces {
     double height(const Point& p) const { return dot(n, p - origin); }
 };
 
-/// Fits the function to the triangle of three corners with the largest area. Empty if there is none with an area.
+/// Fits the function to the largest triangle that contains the first corner. Empty if no such triangle has an area.
 std::optional<AffinePlaces> fit(std::span<const Point> corners, std::span<const Vec2> places) {
     double largest = 0;
     std::array<std::size_t, 3> best{};
@@ -44,7 +44,7 @@ std::optional<AffinePlaces> fit(std::span<const Point> corners, std::span<const 
                         places[o]};
 }
 
-/// Box of points.
+/// Extent of points along an axis.
 template <class T, class Axis>
 double extent(std::span<const T> points, Axis&& axis) {
     double low = HUGE_VAL, high = -HUGE_VAL;
@@ -63,7 +63,7 @@ double size_of(std::span<const Point> corners) {
                      extent(corners, [](const Point& p) { return p.z; })});
 }
 
-/// True if corners are in the plane of a function, which has their texture coordinates.
+/// True if the function has the height 0 and the texture coordinates of all corners, within the tolerance.
 bool fits(const AffinePlaces& function, std::span<const Point> corners, std::span<const Vec2> places) {
     const double in_space = affine_tolerance * size_of(corners), in_picture = affine_tolerance * size_of(places);
     for (std::size_t k = 0; k < corners.size(); ++k)
@@ -73,7 +73,7 @@ bool fits(const AffinePlaces& function, std::span<const Point> corners, std::spa
     return true;
 }
 
-/// Area of the largest triangle at a corner of an outline in the picture.
+/// True if an outline has an area in the picture, relative to its squared size.
 bool has_area(std::span<const Vec2> places) {
     double sum = 0;
     for (std::size_t i = 2; i < places.size(); ++i)
@@ -211,7 +211,7 @@ class PatchFinder {
         }
         std::sort(edges.begin(), edges.end());
         DisjointSets sets(out_.tiles.size());
-        // More faces than this at one edge are a knot, in which only neighbours in the order of the file are joined.
+        // A tile is compared with at most the next seven at the same edge.
         constexpr std::size_t max_faces = 8;
         for (std::size_t first = 0; first < edges.size(); ++first)
             for (std::size_t k = first + 1; k < std::min(edges.size(), first + max_faces); ++k) {
@@ -258,7 +258,7 @@ class AffineOfPlaces {
     T base_, along_s_{}, along_t_{};
 };
 
-/// Divides intervals so that there are at least `min_cells`.
+/// Divides every interval equally, so that there are at least `min_cells` cells.
 std::vector<double> divided(const std::vector<double>& borders, std::size_t min_cells) {
     const std::size_t cells = borders.size() - 1, by = (min_cells + cells - 1) / cells;
     std::vector<double> out;

@@ -27,7 +27,7 @@ struct TextureTile {
 /// Adjacent tiles of one plane whose texture coordinates are one affine function of the position, and which show the
 /// same pictures: a rectangle of two triangles, for example.
 struct TexturePatch {
-    std::vector<std::uint32_t> tiles;  ///< Ascending. Several tiles have no `corner_factors`.
+    std::vector<std::uint32_t> tiles;  ///< Ascending. A patch of several tiles has no `corner_factors`.
     std::uint32_t largest = 0;         ///< Index of the largest tile.
 };
 

@@ -241,7 +241,8 @@ std::optional<Finding> TexturedFaces::finding() const {
         message +=
             fmt::format(" ({} {} cut into {} parts)", cut_faces_, cut_faces_ == 1 ? "face was" : "faces were", parts_);
     return Finding{Finding::Kind::warning, "", 0, std::move(message),
-                   "use more --texture-parts where this matters; the error estimate counts the reflectance"};
+                   "use more --texture-parts where this matters; the error estimate includes variation of reflectance, "
+                   "not of emission"};
 }
 
 std::optional<Finding> TexturedFaces::finding_of_holes() const {

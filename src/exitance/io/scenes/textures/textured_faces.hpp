@@ -18,11 +18,12 @@ class TexturedFaces {
   public:
     /// Keeps a reference to `description`.
     /// whitest    upper limit of the reflectance of faces
-    /// max_parts  limit on the parts of all cut faces; none: `default_texture_parts`; 0: no face is cut
+    /// max_parts  limit on the parts of all patches (a part may consist of several faces); none:
+    /// `default_texture_parts`; 0: no face is cut
     TexturedFaces(SceneDescription& description, double whitest, std::optional<std::size_t> max_parts)
         : out_(&description), whitest_(whitest), max_parts_(max_parts), next_trim_(2 * max_varying) {}
 
-    /// Gives a face its colours. The material must not emit if there is a picture of its exitance that is left out.
+    /// Gives a face its colours. If its material emits by a picture, `colours.exitance` must have that picture.
     void show(std::size_t face, FaceColours colours);
 
     /// Cuts faces and creates the materials. Parts of a face replace it in the description's list of faces.
@@ -51,7 +52,7 @@ class TexturedFaces {
     struct Variation {
         double area = 0, squares = 0, sum = 0;  ///< Area, area times squared deviation, area times mean.
         std::size_t faces = 0;                  ///< Number of faces and parts within which the quantity varies.
-        double largest = 0;                     ///< The largest part of `squares`; it is that of `material`.
+        double largest = 0;  ///< Largest contribution of one face to `squares`; `material` is that of the face.
         double lowest = 0, highest = 0;
         std::string material;
 
@@ -79,7 +80,7 @@ class TexturedFaces {
     struct Holes {
         std::size_t faces = 0, uncut = 0;
         double area = 0, misplaced = 0;           ///< m^2
-        std::map<std::uint32_t, double> balance;  ///< Per material: opaque area that was left out so far, m^2.
+        std::map<std::uint32_t, double> balance;  ///< Per material: opaque area left out less holes closed so far, m^2.
         std::vector<std::uint32_t> before;        ///< Corners of the face before, whose back may follow.
         bool before_stays = false;
     } holes_;
