@@ -105,7 +105,7 @@ constexpr std::array<std::pair<double, std::string_view>, 5> length_unit_names{{
 }};
 constexpr std::array<std::pair<bool, std::string_view>, 2> up_names{{{true, "y"}, {false, "z"}}};
 
-constexpr int max_texture_parts = 10'000'000;  ///< A solve of so many faces takes tens of gigabytes.
+constexpr int max_texture_parts = 10'000'000;  ///< Largest number of parts; a solve of so many takes about 80 GB.
 
 void declare_scene(CLI::App& app, SceneArguments& scene) {
     app.add_option("SCENE", scene.files,

@@ -230,17 +230,22 @@ void tell(const SolveArguments& arguments, const Solution& solution, Terminal& t
 
 }  // namespace
 
+/// Prints the warnings about the options, and sets threads and schedule.
+void begin(const SolveArguments& arguments, Terminal& terminal) {
+    for (const std::string& warning : arguments.warnings) terminal.progress().warn(warning);
+    if (arguments.scene.load.sky)
+        for (const std::string& warning : arguments.scene.load.sky->warnings) terminal.progress().warn(warning);
+    set_threads(arguments.options.threads);
+    set_schedule(arguments.options.schedule);
+}
+
 /// Runs `exitance solve SCENE -o SOLUTION`.
 ExitCode run(const SolveArguments& given, Terminal& terminal) {
     const Stopwatch run_time;
     RunLimits& limits = terminal.limits();
     SolveArguments arguments = given;
-    for (const std::string& warning : arguments.warnings) terminal.progress().warn(warning);
     if (const Result<void> settled = settle_options(arguments); !settled) return terminal.fail(settled.error());
-    if (arguments.scene.load.sky)
-        for (const std::string& warning : arguments.scene.load.sky->warnings) terminal.progress().warn(warning);
-    set_threads(arguments.options.threads);
-    set_schedule(arguments.options.schedule);
+    begin(arguments, terminal);
     Tracing tracing(arguments.trace, terminal.progress());
 
     const Stopwatch reading;

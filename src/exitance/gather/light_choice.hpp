@@ -4,7 +4,7 @@
 
 namespace exitance {
 
-/// Chooses emitters for shadow rays, each by about the light that it would bring if nothing stood between: by a descent
+/// Chooses emitters for shadow rays, each by about its unoccluded light: by a descent
 /// through the tree of emitters. Every emitter that may be visible has a chance. O(log emitters) per choice. Windows to
 /// the sky are left out.
 class LightChoice {

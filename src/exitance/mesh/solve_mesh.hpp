@@ -22,9 +22,8 @@ struct MeshSize {
 };
 
 /// Per border of a piece (border i is from corner i to corner i + 1): how far another surface rises from it in front of
-/// the piece's plane. This is 1 - cos(angle between the normals), which is proportional to the light that one side of
-/// the fold sends to the other beside it; 1 at a right angle and above, 0 if no surface rises. Light exchange is
-/// singular at such borders.
+/// the piece's plane. The light that both sides of the fold exchange is proportional to this, 1 - cos(angle between
+/// their normals); 1 from a right angle on, 0 if no surface rises. Light exchange is singular at such borders.
 using ConcaveBorders = std::vector<double>;
 
 /// Finds the concave borders of each piece. O(n log n).

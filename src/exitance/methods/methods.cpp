@@ -52,9 +52,11 @@ const MethodEntry& entry_of(Method id, Form form) {
 
 bool has_estimate(const SolveOptions& options) {
     const Form form = form_of(options);
-    const auto of_form = [&](const MethodEntry& method) { return method.form == form; };
+    const auto is_selected = [&](const MethodEntry& method) {
+        return method.form == form && (options.method == Method::automatic || options.method == method.id);
+    };
     const auto& added = extensions().methods;
-    const auto method = std::find_if(added.begin(), added.end(), of_form);
+    const auto method = std::find_if(added.begin(), added.end(), is_selected);
     return form == Form::standard || method == added.end() || method->has_estimate;
 }
 

@@ -9,7 +9,7 @@ std::vector<Spectrum> leaf_means(const DirectProjection& direct, const LeafNumbe
 
 /// The row of a method in the table: one of the engine's, or one that `Extensions` adds; null where neither has it.
 const MethodEntry* find_method(Form form, Method id);
-/// Like `find_method`, for a method that is known to exist. The standard form if no form is given.
+/// Returns the row of a method that is in the table.
 const MethodEntry& entry_of(Method id, Form form = Form::standard);
 
 /// True if the form that the options select estimates the error of its light.

@@ -1,5 +1,6 @@
 #include "exitance/io/solution/statistics_json.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -34,13 +35,15 @@ Json seconds_of(const RunSeconds& seconds) {
     return json;
 }
 
-}  // namespace
-
-std::string statistics_json(const SolveStatistics& s, const LightUnit& own) {
+Json rooms_of(const SolveStatistics& s) {
     Json rooms = Json::array();
     for (const RoomError& room : s.rooms)
         rooms.push_back(
             {{"area", room.area}, {"mean", room.mean}, {"reference", room.reference}, {"error", room.error}});
+    return rooms;
+}
+
+Json bodies_of(const SolveStatistics& s) {
     Json bodies = Json::array();
     for (const BodyError& body : s.bodies)
         bodies.push_back({{"surfaces", body.surfaces},
@@ -48,6 +51,19 @@ std::string statistics_json(const SolveStatistics& s, const LightUnit& own) {
                           {"mean", body.mean},
                           {"error", value_or_null(body.error)},
                           {"points", body.points}});
+    return bodies;
+}
+
+/// Counts among the further results are written as whole numbers.
+Json number_of(double value) {
+    constexpr double exact = 0x1p53;  // derived from double precision: larger whole numbers are not exact
+    if (std::abs(value) < exact && value == std::floor(value)) return static_cast<std::int64_t>(value);
+    return value;
+}
+
+}  // namespace
+
+std::string statistics_json(const SolveStatistics& s, const LightUnit& own) {
     const std::size_t elements =
         std::accumulate(s.elements_by_level.begin(), s.elements_by_level.end(), std::size_t(0));
     const auto share = [](std::size_t whole, std::size_t parts) {
@@ -74,8 +90,8 @@ std::string statistics_json(const SolveStatistics& s, const LightUnit& own) {
         {"relative_error_estimate_worst_room", value_or_null(s.relative_error_estimate_worst_room)},
         {"relative_error_estimate_worst_body", value_or_null(s.relative_error_estimate_worst_body)},
         {"error_p99", value_or_null(s.error_p99)},
-        {"rooms", rooms},
-        {"bodies", bodies},
+        {"rooms", rooms_of(s)},
+        {"bodies", bodies_of(s)},
         {"standard_error", s.standard_error > 0 ? Json(s.standard_error) : Json(nullptr)},
         {"energy",
          {{"emitted", s.energy.emitted},
@@ -101,7 +117,7 @@ std::string statistics_json(const SolveStatistics& s, const LightUnit& own) {
     if (s.energy.defect_before) json["energy_defect_before"] = *s.energy.defect_before;
     if (s.refinement_steps > 0) json["refinement_steps"] = s.refinement_steps;
     for (const auto& [name, value] : s.figures)
-        if (!json.contains(name)) json[name] = value;
+        if (!json.contains(name)) json[name] = number_of(value);
     return dump(json);
 }
 
