@@ -1,5 +1,6 @@
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
@@ -38,6 +39,8 @@ class Shooting {
     void keep_end(std::vector<float>& kept, std::span<const float> column);
     float factor_at(std::size_t vertex, std::size_t patch) const;
     void add_vertices(std::span<const ElementId> elements);
+    void note_change(const Spectrum& sent, std::span<const float> column);
+    double least_area() const { return input_.options.min_area.value_or(default_min_share * input_.stage.area); }
     std::size_t refine();
     void gather_new(std::size_t first);
     void gather_new_at_centres(std::size_t first);
@@ -64,6 +67,7 @@ class Shooting {
     std::vector<Spectrum> reflectance_, direct_, irradiance_;
     std::size_t leaf_count_ = 0;
     CornerSteps steps_;  ///< Steps of receivers, if they are refined.
+    double change_ = 0;  ///< Bound on the change of light on any receiver since the last look at the steps, W/m^2.
     ElementVertices vertices_;
     std::vector<Spectrum> at_vertex_;
     std::vector<float> column_, vertex_column_;                ///< The columns computed last.
@@ -121,7 +125,8 @@ void Shooting::add_receivers(std::size_t first_element) {
         area_.push_back(tree_.area(e));
         patch_of_.push_back(patch_of_element_[e]);
         reflectance_.push_back(material_of(input_, tree_, e).reflectance);
-        if (input_.options.classical.refine_gradient) steps_.add(tree_.region(e), tree_.patch(e));
+        if (input_.options.classical.refine_gradient)
+            steps_.add(tree_.region(e), tree_.patch(e), area_.back() / 4 >= least_area());
     }
     direct_.resize(receivers_.size()), irradiance_.resize(receivers_.size());
     leaf_count_ += receivers_.size() - first;
@@ -273,8 +278,9 @@ std::span<const float> Shooting::column(std::size_t patch) {
 SolveReport Shooting::shoot_once() {
     const std::vector<Spectrum> before = unshot_;
     std::size_t shooter = patches_.size();
+    std::span<const float> to_receivers;
     const ShootingProblem problem{patch_of_, area_, patch_area_, reflectance_,
-                                  [&](std::size_t patch) { return shooter = patch, column(patch); }};
+                                  [&](std::size_t patch) { return shooter = patch, to_receivers = column(patch); }};
     const SolveReport report = shoot(problem,
                                      {.overshooting = input_.options.overshooting,
                                       .unshot = input_.knobs.residual,
@@ -285,6 +291,7 @@ SolveReport Shooting::shoot_once() {
     if (shooter == patches_.size()) return report;
     const Spectrum sent = before[shooter] - unshot_[shooter];
     sent_[shooter] += sent;
+    if (input_.options.classical.refine_gradient) note_change(sent, to_receivers);
     if (at_vertices_) {
         const std::span<const float> factors = vertex_column(shooter);
         for (std::size_t v = 0; v < at_vertex_.size(); ++v) at_vertex_[v] += static_cast<double>(factors[v]) * sent;
@@ -292,23 +299,28 @@ SolveReport Shooting::shoot_once() {
     return report;
 }
 
+/// Adds to `change_` the largest change of light on a receiver by a shot.
+void Shooting::note_change(const Spectrum& sent, std::span<const float> column) {
+    double largest_sent = 0, change = 0;
+    for (double s : sent.value) largest_sent = std::max(largest_sent, std::abs(s));
+    for (std::size_t i = 0; i < column.size(); ++i) {
+        const double rho = max(reflectance_[i]);
+        change = std::max(change, (rho > 0 ? rho : 1) * static_cast<double>(column[i]));
+    }
+    change_ += change * largest_sent;
+}
+
 /// Cuts elements across which radiosity changes by more than the requested gradient; their parts gather the light that
 /// all patches have sent. Returns the number of elements cut. O(receivers), and one form factor per new receiver and
 /// patch.
 std::size_t Shooting::refine() {
-    const double least = input_.options.min_area.value_or(default_min_share * input_.stage.area);
-    std::vector<Spectrum> b(receivers_.size());
-    for (std::size_t i = 0; i < b.size(); ++i) {
-        b[i] = direct_[i] + irradiance_[i];
-        // For black surfaces, irradiance is used instead of radiosity.
-        if (max(reflectance_[i]) > 0) b[i] = reflectance_[i] * b[i];
-    }
-    steps_.average(b);
-    std::vector<std::size_t> steep;
-    for (std::size_t i = 0; i < b.size(); ++i)
-        if (tree_.is_leaf(receivers_[i]) && area_[i] / 4 >= least &&
-            steps_.largest_step(i) > *input_.options.classical.refine_gradient)
-            steep.push_back(i);
+    // For black surfaces, irradiance is used instead of radiosity.
+    const auto light = [&](std::size_t i) {
+        const Spectrum arriving = direct_[i] + irradiance_[i];
+        return max(reflectance_[i]) > 0 ? reflectance_[i] * arriving : arriving;
+    };
+    const std::vector<std::size_t> steep =
+        steps_.steeper_than(*input_.options.classical.refine_gradient, std::exchange(change_, 0), light);
     if (steep.empty()) return 0;
     const std::size_t elements = tree_.size(), first = receivers_.size();
     for (std::size_t i : steep) cut(receivers_[i]), drop_receiver(i);

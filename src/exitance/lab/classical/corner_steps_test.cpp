@@ -51,15 +51,42 @@ TEST(CornerSteps, EqualThoseOfRecomputedAveragesWhileElementsAreCut) {
         for (std::size_t i = 0; i < elements.size(); ++i)
             if (tree.is_leaf(elements[i])) leaves.push_back(elements[i]), of_leaves.push_back(values[i]);
         const ElementFunction anew = averaged_at_vertices(constant_function(tree, leaves, of_leaves), rounding);
-        steps.average(values);
         const std::size_t size = tree.size(), count = elements.size();
-        for (std::size_t i = 0; i < count; ++i) {
-            if (!tree.is_leaf(elements[i])) continue;
-            ASSERT_EQ(steps.largest_step(i), step_of(anew, elements[i])) << round << " " << i;
-            if (i % 5 == 0) tree.split(elements[i], Cut::both), steps.remove(i);
-        }
+        constexpr double limit = 0.4;
+        const auto value = [&](std::size_t i) { return values[i]; };
+        const std::vector<std::size_t> steep = steps.steeper_than(limit, 0, value);
+        std::vector<std::size_t> expected;
+        for (std::size_t i = 0; i < count; ++i)
+            if (tree.is_leaf(elements[i]) && step_of(anew, elements[i]) > limit) expected.push_back(i);
+        ASSERT_EQ(steep, expected) << round;
+        ASSERT_GT(steep.size(), count / 8);
+        for (std::size_t i = 0; i < count; ++i)
+            if (tree.is_leaf(elements[i]) && i % 5 == 0) tree.split(elements[i], Cut::both), steps.remove(i);
         add_leaves(size);
     }
+}
+
+TEST(CornerSteps, AreFoundAgainAsSoonAsTheChangesMayHaveMadeThemTooLarge) {
+    const auto half = [&](double x) { return Patch{{x, 0, 0}, {1, 0, 0}, {0, 1, 0}, Patch::Shape::parallelogram}; };
+    CornerSteps steps(1e-6);
+    for (int k = 0; k < 3; ++k) steps.add(RegionId(0), half(k), k != 2);
+    std::array<double, 3> values{};
+    std::size_t calls = 0;
+    const auto value = [&](std::size_t i) { return ++calls, Spectrum(values[i]); };
+    const auto grow = [&](double by) {
+        values[2] += by;
+        return steps.steeper_than(1, by, value);
+    };
+    EXPECT_TRUE(grow(0).empty());
+    EXPECT_GT(calls, 0u);
+    calls = 0;
+    EXPECT_TRUE(grow(0.4).empty());
+    EXPECT_EQ(calls, 0u);  // two corners cannot have moved apart by more than 0.8
+    EXPECT_TRUE(grow(1.5).empty());
+    EXPECT_GT(calls, 0u);
+    // The corner between the elements 1 and 2 has the mean of both, here 1.05; element 2 is steep, too, but not
+    // watched.
+    EXPECT_EQ(grow(0.2), std::vector<std::size_t>{1});
 }
 
 }  // namespace
