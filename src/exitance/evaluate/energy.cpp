@@ -187,4 +187,30 @@ EnergyBalance energy_balance(const Solution& solution, const Stage& stage) {
     return energy_balance(solution, none, stage);
 }
 
+bool shines_on_backs(const Stage& stage) {
+    constexpr std::uint32_t rays = 64;
+    const ScrambledSobol points(hash(static_cast<std::uint64_t>(Stream::shooting), rays));
+    const auto meets_back = [&](const Point& x, const Vec3& w, RegionId own) {
+        RayHit hit;
+        stage.tracer.nearest(std::span(&x, 1), std::span(&w, 1), own, std::span(&hit, 1), Mirrored::followed);
+        return !hit.surface.is_none() && !hit.front;
+    };
+    for (const Piece& piece : stage.pieces) {
+        if (!stage.scene.material(piece.region).emits()) continue;
+        const Frame frame(stage.scene.regions()[piece.region].plane.n);
+        for (std::uint32_t i = 0; i < rays; ++i) {
+            const Point y = piece.patch.at(uniform_in_shape(piece.patch.shape, points(i, 2), points(i, 3)));
+            if (meets_back(y, cosine_direction(frame, points(i, 0), points(i, 1)), piece.region)) return true;
+        }
+    }
+    for (const PunctualLight& light : stage.scene.lights()) {
+        if (light.is_directional()) continue;  // only what reaches faces counts as emitted
+        for (const double side : {1.0, -1.0})
+            for (std::uint32_t i = 0; i < rays; ++i)
+                if (meets_back(light.position, cosine_direction(Frame({0, 0, side}), points(i, 0), points(i, 1)), {}))
+                    return true;
+    }
+    return false;
+}
+
 }  // namespace exitance

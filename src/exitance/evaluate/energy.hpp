@@ -27,4 +27,9 @@ struct DirectMeans {
 };
 DirectMeans mean_direct_light(const Stage& stage, const DirectProjection& direct);
 
+/// True if a ray from an emitting face or from a lamp without extent meets the back of a face. If all light of a scene
+/// is lost, its faces may then be turned the wrong way; otherwise there is nothing that it could reach. Some rays for
+/// every emitter.
+bool shines_on_backs(const Stage& stage);
+
 }  // namespace exitance

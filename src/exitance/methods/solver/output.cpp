@@ -80,7 +80,8 @@ void Solver::make_output_mesh() {
     energy = energy_balance(solution_, direct_, stage_);
     if (!is_published()) energy.defect_before = energy_defect_before(energy, solution_, direct_, unscaled_);
     if (energy.emitted > 0 && energy.absorbed == 0 && !stop_.requested())
-        warn("no light reaches the front of any face: they may be turned inside out");
+        warn(shines_on_backs(stage_) ? "no light reaches the front of any face: they may be turned inside out"
+                                     : "no light reaches any face: all of it leaves the scene");
 }
 
 }  // namespace exitance
