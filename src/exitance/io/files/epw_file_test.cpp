@@ -94,6 +94,9 @@ TEST_F(EpwFile, HoursAreFoundAfterAnyHeader) {
     std::string dos;
     for (const char c : location + comments + periods + day) dos += c == '\n' ? "\r\n" : std::string(1, c);
     expect_no_warning(dos, "CRLF");
+    std::string mac = location + comments + periods + day;
+    std::replace(mac.begin(), mac.end(), '\n', '\r');
+    expect_no_warning(mac, "CR");
     expect_no_warning(dos + "\x1a", "control-Z on a line of its own");
     expect_no_warning(location + day.substr(0, day.size() - 1) + "\x1a", "control-Z behind the last hour");
     expect_no_warning(location + day + "\x1a\nrest of a sector, 1, 2", "text behind control-Z");

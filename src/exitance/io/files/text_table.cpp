@@ -53,6 +53,8 @@ Result<LineReader> LineReader::open(const std::string& path) {
     out.error_ = out.file_ < 0 ? errno : 0;
     if (out.error_ == 0) out.fill();  // a folder can be opened, but not read
     if (out.failed()) return out.read_error();
+    const std::string_view begin(out.buffer_.data(), out.end_);
+    if (begin.find('\n') == begin.npos && begin.find('\r') != begin.npos) out.line_end_ = '\r';
     if (std::string_view(out.buffer_).substr(0, out.end_).starts_with("\xef\xbb\xbf")) out.begin_ = 3;
     return out;
 }
@@ -65,7 +67,8 @@ LineReader::LineReader(LineReader&& other) noexcept
       file_(std::exchange(other.file_, -1)),
       line_(other.line_),
       error_(other.error_),
-      at_end_(other.at_end_) {}
+      at_end_(other.at_end_),
+      line_end_(other.line_end_) {}
 
 LineReader::~LineReader() {
     if (file_ >= 0) ::close(file_);
@@ -101,7 +104,7 @@ std::optional<std::string_view> LineReader::next() {
     std::size_t looked_at = 0;
     for (;;) {
         const char* start = buffer_.data() + begin_;
-        const void* found = std::memchr(start + looked_at, '\n', end_ - begin_ - looked_at);
+        const void* found = std::memchr(start + looked_at, line_end_, end_ - begin_ - looked_at);
         std::size_t length = end_ - begin_;
         if (found) length = static_cast<std::size_t>(static_cast<const char*>(found) - start);
         if (!found) {

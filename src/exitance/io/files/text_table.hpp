@@ -19,8 +19,8 @@ class LineReader {
     LineReader& operator=(LineReader&&) = delete;
     ~LineReader();
 
-    /// Returns the next line without its end (LF or CRLF); empty at the end of the file and after a read error. Valid
-    /// until the next call.
+    /// Returns the next line without its end (LF, CRLF, or CR in files without LF); empty at the end of the file and
+    /// after a read error. Valid until the next call.
     std::optional<std::string_view> next();
     /// Returns the next line that is neither blank nor a comment (#).
     std::optional<std::string_view> next_content();
@@ -38,6 +38,7 @@ class LineReader {
     std::size_t begin_ = 0, end_ = 0;
     int file_ = -1, line_ = 0, error_ = 0;
     bool at_end_ = false;
+    char line_end_ = '\n';
 };
 
 /// Parses `text`, apart from blanks around it, as one number; empty if it is not a number or is too large.
