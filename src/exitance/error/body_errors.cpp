@@ -10,21 +10,10 @@ namespace exitance {
 /// Smallest error that is distinguished from noise, as a multiple of the requested error.
 constexpr double resolved_errors = 1.5;  // given by the warning at 3: half of it
 
-void BodyMeasure::add(double weight, double squared, double reflected, double light_of_room) {
-    ++points_, weight_ += weight, squared_ += weight * squared;
-    reflected_ += weight * reflected, light_ += weight * light_of_room;
-    ww_ += weight * weight, wws_ += weight * weight * squared, wwss_ += weight * weight * squared * squared;
-}
-
 double BodyMeasure::standard_error() const {
-    if (points_ < 2 || weight_ <= 0) return 0;
+    if (points_ < 2) return 0;
     const double m = mean_square(), n = static_cast<double>(points_);
-    const double spread = std::max(0.0, wwss_ - 2 * m * wws_ + m * m * ww_);  // sum of w^2 (s - m)^2
-    return std::sqrt(spread * n / (n - 1)) / weight_;
-}
-
-double BodyMeasure::reference() const {
-    return weight_ > 0 ? std::max(mean_reflected(), least_body_light * light_ / weight_) : 0;
+    return std::sqrt(std::max(0.0, squares_ / n - m * m) / (n - 1));
 }
 
 std::optional<double> BodyMeasure::error(double requested) const {
@@ -71,7 +60,7 @@ class BodySurvey {
           error_(error),
           left_(max_rays),
           leaves_(leaves_of_bodies(check)),
-          measured_(check.bodies.all.size()),
+          measured_(unmeasured_bodies()),
           is_known_(check.bodies.all.size(), false),
           is_unknown_(check.bodies.all.size(), false) {}
 
@@ -80,8 +69,10 @@ class BodySurvey {
     std::vector<BodyError> errors() const;
     std::vector<PointError> close_points() const { return close_points_; }
     std::size_t rays_left() const { return left_; }
+    HiddenErrors hidden() const;
 
   private:
+    std::vector<BodyMeasure> unmeasured_bodies() const;
     /// Chooses the parameters of the checks. `requested`: requested error, W/m^2.
     CheckPlan plan(std::span<const PilotPlace> at, std::uint64_t name, double requested) const {
         // A body is measured by at least 8 x 16 rays: 16 checks miss a feature that a sixth of its view has once in
@@ -106,6 +97,34 @@ class BodySurvey {
     std::vector<bool> is_known_;    ///< Bodies measured by `look_closely_at`.
     std::vector<bool> is_unknown_;  ///< Bodies that would need it, but for which the rays do not suffice.
 };
+
+/// Returns the reflected light of every body, without points. It is a mean over many places of the delivered light,
+/// which takes no rays: at the few points of a measurement, a sunlit edge of a dark plate would count too much or not
+/// at all.
+std::vector<BodyMeasure> BodySurvey::unmeasured_bodies() const {
+    constexpr std::size_t places_in_all = 1 << 16, fewest_places = 64, most_places = 4096;
+    const std::size_t count =
+        std::clamp(places_in_all / std::max<std::size_t>(1, leaves_.size()), fewest_places, most_places);
+    std::vector<BodyMeasure> out(leaves_.size());
+    shared_ranges(
+        out.size(), 1,
+        [&](std::size_t begin, std::size_t end) {
+            ResidualSampler::Workspace w;
+            for (std::size_t body = begin; body < end; ++body) {
+                if (leaves_[body].empty()) continue;
+                double reflected = 0, light = 0;
+                const std::uint64_t name = hash(c_.seed, static_cast<std::uint64_t>(Stream::certificate), 3, body);
+                for (const WeightedSample& place : places_on_body(c_.indirect.tree, leaves_[body], count, name)) {
+                    ResidualSample s;
+                    c_.sampler.locate(place, s, w);
+                    reflected += place.weight * s.reflected, light += place.weight * light_of_room_(s.room);
+                }
+                out[body] = {reflected, light};
+            }
+        },
+        [&](std::size_t i) -> BodyMeasure& { return out[i]; }, {"certificate"});
+    return out;
+}
 
 std::vector<PilotPlace> BodySurvey::pilots(std::uint32_t body, std::size_t count, std::uint64_t name) const {
     std::vector<PilotPlace> out;
@@ -148,7 +167,7 @@ std::vector<PointError> BodySurvey::add(std::span<const BodyPoint> points) {
         if (!s.is_measured) continue;
         const double squared = mean((s.r1 + c_.late[s.leaf]) * (s.r2 + c_.late[s.leaf])),
                      light = light_of_room_(s.room);
-        measured_[points[i].body].add(1, squared, s.reflected, light);
+        measured_[points[i].body].add(squared);
         out.push_back({s.surface, 1, squared / (light * light)});
     }
     return out;
@@ -172,15 +191,7 @@ void BodySurvey::look_at_all() {
     for (const auto& [chance, body] : order) {
         const std::vector<WeightedSample> places =
             places_on_body(c_.indirect.tree, leaves_[body], points, hash(name, body));
-        // The reference of the errors follows from the delivered light, without any rays.
-        BodyMeasure dark;
-        ResidualSampler::Workspace w;
-        for (const WeightedSample& place : places) {
-            ResidualSample s;
-            c_.sampler.locate(place, s, w);
-            dark.add(1, 0, s.reflected, light_of_room_(s.room));
-        }
-        const double allowed = resolved_errors * error_ * dark.reference();
+        const double allowed = resolved_errors * error_ * measured_[body].reference();
         if (allowed <= 0) continue;
         const double noise = allowed * allowed * std::sqrt(static_cast<double>(points));
         const unsigned rays = certificate_rays((common_plan.gather_variance + common_plan.variance) / noise);
@@ -207,7 +218,7 @@ bool BodySurvey::look_closely_at(std::uint32_t body) {
     const CheckPlan of_body = plan(pilots(body, 16, name), name, std::sqrt(requested));
     const double seems = std::max(requested, before.mean_square());
     const unsigned rays = certificate_rays((of_body.gather_variance + of_body.variance) / seems);
-    measured_[body] = {};
+    measured_[body] = before.without_points();
     for (std::size_t k = 0; k < max_batches && !c_.is_stopped(); ++k) {
         if (work(of_body, rays, batch) > left_) break;
         left_ -= work(of_body, rays, batch);
@@ -234,6 +245,17 @@ void BodySurvey::look_closely() {
     }
 }
 
+HiddenErrors BodySurvey::hidden() const {
+    HiddenErrors out;
+    for (std::uint32_t b = 0; b < measured_.size(); ++b) {
+        const double possible = measured_[b].suspected();
+        if (!is_unknown_[b] || possible <= max_body_errors * error_) continue;
+        ++out.bodies;
+        if (possible > out.at_most) out.at_most = possible, out.first = c_.bodies.all[b].first;
+    }
+    return out;
+}
+
 std::vector<BodyError> BodySurvey::errors() const {
     std::vector<BodyError> out;
     for (std::size_t b = 0; b < measured_.size(); ++b) {
@@ -253,7 +275,7 @@ MeasuredBodies measure_bodies(const BodyCheck& check, const std::function<double
     BodySurvey survey(check, light_of_room, error, max_rays);
     survey.look_at_all();
     survey.look_closely();
-    return {survey.errors(), survey.close_points(), max_rays - survey.rays_left()};
+    return {survey.errors(), survey.close_points(), max_rays - survey.rays_left(), survey.hidden()};
 }
 
 }  // namespace exitance

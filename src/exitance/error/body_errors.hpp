@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "exitance/error/hidden_errors.hpp"
 #include "exitance/error/residual_samples.hpp"
 #include "exitance/error/surface_errors.hpp"
 #include "exitance/scene/bodies.hpp"
@@ -16,18 +18,23 @@ namespace exitance {
 /// Error of one body, accumulated from points on it.
 class BodyMeasure {
   public:
-    /// Adds a point: its weight, an unbiased estimate of the squared error of radiosity, (W/m^2)^2, the reflected
-    /// radiosity at the point and that of its room, both W/m^2.
-    void add(double weight, double squared, double reflected, double light_of_room);
+    BodyMeasure() = default;
+    /// `mean_reflected`: mean reflected radiosity of the body. `light_of_room`: that of its room. Both W/m^2.
+    BodyMeasure(double mean_reflected, double light_of_room) : reflected_(mean_reflected), light_(light_of_room) {}
+
+    /// Adds a point: an unbiased estimate of the squared error of radiosity, (W/m^2)^2.
+    void add(double squared) { ++points_, sum_ += squared, squares_ += squared * squared; }
+    /// Returns a measure of the same body without points.
+    BodyMeasure without_points() const { return {reflected_, light_}; }
 
     std::size_t points() const { return points_; }
-    double mean_square() const { return weight_ > 0 ? squared_ / weight_ : 0; }  ///< (W/m^2)^2
+    double mean_square() const { return points_ > 0 ? sum_ / static_cast<double>(points_) : 0; }  ///< (W/m^2)^2
     /// Returns the standard error of `mean_square`, from the spread of the points; 0 for fewer than two points.
     double standard_error() const;
-    double mean_reflected() const { return weight_ > 0 ? reflected_ / weight_ : 0; }  ///< W/m^2
+    double mean_reflected() const { return reflected_; }  ///< W/m^2
     /// Returns the radiosity to which the body's error is relative, W/m^2: the body's mean reflected radiosity, but at
     /// least a tenth of its room's.
-    double reference() const;
+    double reference() const { return std::max(reflected_, least_body_light * light_); }
     /// Returns the RMS error relative to `reference`, but at least the size that the standard error may hide. Empty
     /// below `min_points` points, and if noise hides the error: if the standard error of the mean square exceeds both
     /// half of it and the square of 1.5 times the error `requested`.
@@ -38,9 +45,9 @@ class BodyMeasure {
     static constexpr std::size_t min_points = 8;
 
   private:
+    double reflected_ = 0, light_ = 0;
     std::size_t points_ = 0;
-    double weight_ = 0, squared_ = 0, reflected_ = 0, light_ = 0;
-    double ww_ = 0, wws_ = 0, wwss_ = 0;  ///< Sums of w^2, w^2 s and w^2 s^2.
+    double sum_ = 0, squares_ = 0;  ///< Sums of the squared errors and of their squares.
 };
 
 /// Inputs of the measurement of bodies.
@@ -72,6 +79,7 @@ struct MeasuredBodies {
     std::vector<BodyError> errors;   ///< One per body, in descending order of area.
     std::vector<PointError> points;  ///< Points of the second stage, relative to the room's light.
     std::size_t rays = 0;            ///< Number of rays cast.
+    HiddenErrors hidden = {};        ///< Bodies that the rays did not suffice for.
 };
 MeasuredBodies measure_bodies(const BodyCheck& check, const std::function<double(std::size_t)>& light_of_room,
                               double error, std::size_t max_rays);

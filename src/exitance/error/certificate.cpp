@@ -79,8 +79,9 @@ struct Certifier::Content {
     const ElementLocator& coarse;
     std::vector<Spectrum> rho;
     std::vector<double> area;
-    RayRows H;                       ///< Form factors between the leaves of `light`.
-    std::optional<RayRows> other_H;  ///< Estimated with other rays; only for several rooms.
+    std::vector<std::uint32_t> room_of;  ///< Room of every leaf of the coarse mesh; empty if the scene is one room.
+    RayRows H;                           ///< Form factors between the leaves of `light`.
+    std::optional<RayRows> other_H;      ///< Estimated with other rays; only for several rooms.
     /// Irradiance from light that arrives uniformly on all surfaces; in each room in proportion to the room's light.
     std::vector<Spectrum> even;
     std::size_t looks = 0;
@@ -103,6 +104,7 @@ struct Certifier::Content {
           coarse(options.coarse ? *options.coarse : own_coarse.emplace(light.tree, stage.scene.regions().size())),
           rho(leaf_reflectances(stage.scene, light.tree, light.numbering)),
           area(leaf_areas(light.tree, light.numbering)),
+          room_of(rooms_of_leaves()),
           H(rows(options.seed + 1)),
           paths(stage),
           check(stage, paths, options.projected, check_accuracy(options.error)) {
@@ -120,6 +122,8 @@ struct Certifier::Content {
         return {stage, light.tree,          light.numbering,   coarse, {.average = 16, .least = 8, .most = 64},
                 seed,  Dealing::by_element, RowsHeld::by_owner};
     }
+    std::vector<std::uint32_t> rooms_of_leaves() const;
+    std::size_t room_of_leaf(std::size_t i) const { return room_of.empty() ? 0 : room_of[i]; }
     std::vector<Spectrum> light_of_rooms() const;
     ResidualSampler sampler() const { return {stage, indirect, b, check, options, constant, coarse, light.numbering}; }
     /// Returns the mean reflected light of a room, W/m^2, to which its errors are relative.
@@ -146,10 +150,19 @@ struct Certifier::Content {
     std::vector<PointError> body_points;  ///< Points of the bodies that were measured at further points.
 };
 
+std::vector<std::uint32_t> Certifier::Content::rooms_of_leaves() const {
+    if (stage.rooms.count() == 0) return {};
+    std::vector<std::uint32_t> out(light.numbering.leaves.size());
+    parallel_for(out.size(), 1024, [&](std::size_t i) {
+        out[i] = static_cast<std::uint32_t>(stage.rooms.of(light.tree, light.numbering.leaves[i]));
+    });
+    return out;
+}
+
 /// Returns, for every leaf of the coarse mesh, the light of its room divided by the mean light.
 std::vector<Spectrum> Certifier::Content::light_of_rooms() const {
     std::vector<Spectrum> out;
-    for (ElementId e : light.numbering.leaves) out.emplace_back(options.light_in[stage.rooms.of(light.tree, e)]);
+    for (std::size_t i = 0; i < rho.size(); ++i) out.emplace_back(options.light_in[room_of_leaf(i)]);
     return out;
 }
 
@@ -179,7 +192,7 @@ std::vector<double> Certifier::Content::mean_by_room() const {
     if (stage.rooms.count() == 0) return {mean_reflected};
     std::vector<double> out(stage.rooms.count());
     for (std::size_t i = 0; i < light.reflected.size(); ++i) {
-        const std::size_t room = stage.rooms.of(light.tree, light.numbering.leaves[i]);
+        const std::size_t room = room_of_leaf(i);
         out[room] += area[i] * mean(light.reflected[i]) / stage.rooms.area(room);
     }
     return out;
@@ -212,9 +225,9 @@ std::vector<Spectrum> Certifier::Content::mean_residuals(double first) const {
         known.push_back({s.leaf, static_cast<std::uint32_t>(s.room * regions + s.region.value),
                          s.weight * static_cast<double>(options.points), first * s.r1 + (1 - first) * s.r2});
     std::vector<std::uint32_t> group_of_leaf;
-    for (ElementId e : light.numbering.leaves)
+    for (std::size_t i = 0; i < rho.size(); ++i)
         group_of_leaf.push_back(
-            static_cast<std::uint32_t>(stage.rooms.of(light.tree, e) * regions + light.tree.region(e).value));
+            static_cast<std::uint32_t>(room_of_leaf(i) * regions + light.tree.region(light.numbering.leaves[i]).value));
     return exitance::mean_residuals(light.tree, light.numbering, group_of_leaf, regions * rooms, known);
 }
 
@@ -261,15 +274,13 @@ std::vector<Spectrum> Certifier::Content::late_response() const {
     const std::vector<Spectrum> other = response_to(0, *other_H);
     const std::size_t count = stage.rooms.count();
     std::vector<double> agreed(count), all(count);
-    std::vector<std::size_t> room(one.size());
     for (std::size_t i = 0; i < one.size(); ++i) {
-        room[i] = stage.rooms.of(light.tree, light.numbering.leaves[i]);
-        agreed[room[i]] += area[i] * mean(one[i] * other[i]);
+        agreed[room_of[i]] += area[i] * mean(one[i] * other[i]);
         one[i] = 0.5 * (one[i] + other[i]);
-        all[room[i]] += area[i] * mean(one[i] * one[i]);
+        all[room_of[i]] += area[i] * mean(one[i] * one[i]);
     }
     for (std::size_t i = 0; i < one.size(); ++i)
-        one[i] *= all[room[i]] > 0 ? std::sqrt(std::clamp(agreed[room[i]] / all[room[i]], 0.0, 1.0)) : 0.0;
+        one[i] *= all[room_of[i]] > 0 ? std::sqrt(std::clamp(agreed[room_of[i]] / all[room_of[i]], 0.0, 1.0)) : 0.0;
     return one;
 }
 
@@ -399,6 +410,7 @@ void Certifier::Content::look_at_bodies(Certificate& out) {
         const auto light = [&](std::size_t room) { return light_of_room(room); };
         MeasuredBodies found = measure_bodies(body_check, light, options.error, options.check_rays);
         bodies = std::move(found.errors), body_points = std::move(found.points), out.rays += found.rays;
+        out.hidden = found.hidden;
     }
     for (const BodyError& body : bodies)
         if (body.error) out.worst_body = std::max(out.worst_body.value_or(0), *body.error);

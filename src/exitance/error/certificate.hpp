@@ -6,6 +6,7 @@
 
 #include "exitance/base/progress.hpp"
 #include "exitance/error/direct_check.hpp"
+#include "exitance/error/hidden_errors.hpp"
 #include "exitance/gather/local_pass.hpp"
 #include "exitance/gather/rough_places.hpp"
 #include "exitance/scene/bodies.hpp"
@@ -88,6 +89,7 @@ struct Certificate {
     std::optional<std::size_t> largest_room = {};
     double largest_light = 0;
     std::optional<double> worst_body = {};  ///< Largest error of a body; set by `look_at_bodies`.
+    HiddenErrors hidden = {};               ///< Bodies whose error remained unknown; set by `look_at_bodies`.
     /// Returns the larger of the errors of the whole scene and of the worst room.
     double largest() const { return std::max(estimate, worst_room); }
     double largest_uncertainty() const { return estimate < worst_room ? room_uncertainty : uncertainty; }

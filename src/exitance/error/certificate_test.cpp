@@ -334,7 +334,7 @@ TEST(Certificate, IgnoresDeliveredLightOnCoveredParts) {
 Scene bright_and_dark_furnace() {
     SceneDescription d;
     d.materials = {{"bright", Spectrum(0.5), Spectrum(1.0)}, {"dark", Spectrum(0.5), Spectrum(0.01)}};
-    d.groups = {"all"};
+    d.groups = {"bright", "dark"};
     const std::vector<std::vector<std::uint32_t>> box = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1},
                                                          {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
     for (std::uint32_t room = 0; room < 2; ++room) {
@@ -343,7 +343,7 @@ Scene bright_and_dark_furnace() {
             d.points.insert(d.points.end(), {{x, 0, z}, {x + size, 0, z}, {x + size, size, z}, {x, size, z}});
         for (std::vector<std::uint32_t> face : box) {
             for (std::uint32_t& corner : face) corner += 8 * room;
-            d.faces.push_back({face, room, 0, 1});
+            d.faces.push_back({face, room, room, 1});
         }
     }
     return std::move(*make_scene(std::move(d)).scene);
@@ -403,6 +403,36 @@ TEST(Certificate, MeasuresSmallBodiesAtAdditionalPoints) {
         EXPECT_NEAR(*found.worst_body, 0.1 / 1.1, 0.15 * 0.1);
         EXPECT_LT(certifier.bodies()[0].error.value_or(1), 0.01);
         EXPECT_LT(found.estimate, 0.03);  // weighted by area, the error is negligible
+    }
+}
+
+/// A box with a strip of a twentieth of its area that is thirty times as bright as the rest.
+TEST(Certificate, MeansOfBodiesCountBrightStripsByTheirArea) {
+    const auto bright = [](const Point& p) { return p.z < 0.25 ? 29.0 : 0.0; };
+    const PlantedError planted(bright, 0.25, bright_and_dark_furnace());
+    const SceneBodies bodies = find_bodies(planted.scene);
+    ASSERT_EQ(bodies.all.size(), 2u);
+    const ElementLocator locator(planted.delivered.tree, planted.scene.regions().size());
+    const PointwiseLight b(
+        [&](RegionId region, const Point& y) { return Spectrum(planted.reflected(locator, region, y)); });
+    std::array<double, 2> flux{}, area{};
+    const ElementTree& tree = planted.delivered.tree;
+    for (ElementId e : tree.leaves()) {
+        const std::uint32_t body = bodies.of(planted.scene, tree.region(e));
+        area[body] += tree.area(e);
+        flux[body] += tree.area(e) * planted.rho * mean(planted.delivered.at({e, tree.centre(e)}));
+    }
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        CertificateOptions options{.error = 0.02, .seed = seed};
+        options.bodies = &bodies;
+        options.light_in = {1, 1}, options.allowed_in = {1, 1};
+        Certifier certifier(planted.stage, planted.light, planted.delivered, b, options);
+        Certificate found = certifier.look();
+        certifier.look_at_bodies(found);
+        ASSERT_EQ(certifier.bodies().size(), 2u);
+        // Thousands of places know the mean to about a percent; eight would miss it by a third and more.
+        for (std::size_t i = 0; i < 2; ++i)
+            EXPECT_NEAR(certifier.bodies()[i].mean, flux[i] / area[i], 0.02 * flux[i] / area[i]);
     }
 }
 

@@ -111,9 +111,22 @@ void Solver::tell_clustering_error() {
             error / mean_direct_light(stage_, direct_).of_errors();
 }
 
+void Solver::warn_of_hidden_errors() {
+    const HiddenErrors& hidden = certificate_.hidden;
+    if (hidden.bodies == 0) return;
+    const Scene& scene = stage_.scene;
+    const Point at = centroid(scene.outline(hidden.first));
+    warn(
+        fmt::format("the light of '{}' (near {:.4g}, {:.4g}, {:.4g}) may be wrong by up to {:.3g}%{}: measuring the "
+                    "errors of all bodies would take too many rays; a smaller --error makes more of them known",
+                    scene.groups()[scene.surfaces()[hidden.first].group], at.x, at.y, at.z, 100 * hidden.at_most,
+                    hidden.bodies > 1 ? fmt::format(", and that of {} more by less", hidden.bodies - 1) : ""));
+}
+
 void Solver::warn_of_bodies() {
     const std::optional<double> demand = options_.error_demand();
     if (!demand) return;
+    warn_of_hidden_errors();
     const BodyError* worst = nullptr;
     std::size_t wrong = 0;
     for (const BodyError& body : statistics().bodies) {

@@ -179,6 +179,7 @@ class Solver {
     void tell_clustering_error();
     /// Warns of the worst body if its error is more than three times the requested one.
     void warn_of_bodies();
+    void warn_of_hidden_errors();
     ErrorParts error_parts() const;
 
     // Exported mesh.
