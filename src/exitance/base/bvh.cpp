@@ -1,39 +1,101 @@
 #include "exitance/base/bvh.hpp"
 
+#include "exitance/base/parallel.hpp"
+
 namespace exitance {
 
-/// Builds the tree in storage order: a node, the subtree of its first child, the subtree of its second child.
+/// Builds the tree in storage order: a node, the subtree of its first child, the subtree of its second child. Large
+/// ranges of items are split level by level, and the subtrees of small ones are built at a time, all on every thread.
 class BvhBuilder {
   public:
     explicit BvhBuilder(Bvh& bvh) : bvh_(bvh) {}
 
     void build() {
+        std::vector<Top> tops = {{.first = 0, .last = static_cast<std::uint32_t>(bvh_.items_.size()), .depth = 0}};
+        for (std::size_t level = 0, end = 1; level < end; level = end, end = tops.size()) {
+            parallel_for(end - level, 1, [&](std::size_t i) { open(tops[level + i]); });
+            for (std::size_t i = level; i < end; ++i) {
+                const Top top = tops[i];
+                if (top.middle == top.first) continue;
+                tops[i].children = static_cast<std::uint32_t>(tops.size());
+                tops.push_back({.first = top.first, .last = top.middle, .depth = top.depth + 1});
+                tops.push_back({.first = top.middle, .last = top.last, .depth = top.depth + 1});
+            }
+        }
+        store(tops);
+    }
+
+  private:
+    /// A node whose children are stored in the list, or the root of a subtree with all of its nodes.
+    struct Top {
+        std::uint32_t first, last, depth;        ///< Its items are [first, last).
+        std::uint32_t middle = 0, children = 0;  ///< First item of the second child, and the position of both children.
+        Box box = {};
+        std::vector<Bvh::Node> nodes = {};  ///< All nodes of a subtree, with positions relative to its root.
+    };
+
+    void open(Top& top) {
+        constexpr std::uint32_t largest_subtree = 4096;
+        if (top.last - top.first > largest_subtree) {
+            top.middle = split(top.first, top.last, top.depth, top.box);
+        } else {
+            top.middle = top.first;
+            top.nodes = subtree(top.first, top.last, top.depth);
+        }
+    }
+
+    std::vector<Bvh::Node> subtree(std::uint32_t first_item, std::uint32_t last_item, std::uint32_t top_depth) {
         struct Task {
             std::uint32_t first, last, depth, parent;  // parent: the node whose second child this becomes
         };
         constexpr std::uint32_t nobody = 0xffffffffu;
-        std::vector<Task> tasks;
-        tasks.push_back({0, static_cast<std::uint32_t>(bvh_.items_.size()), 0, nobody});
-        bvh_.nodes_.reserve(bvh_.items_.size());
+        std::vector<Bvh::Node> nodes;
+        std::vector<Task> tasks = {{first_item, last_item, top_depth, nobody}};
         while (!tasks.empty()) {
             const Task task = tasks.back();
             tasks.pop_back();
-            const std::uint32_t at = static_cast<std::uint32_t>(bvh_.nodes_.size());
-            if (task.parent != nobody) bvh_.nodes_[task.parent].second = at;
-            bvh_.nodes_.emplace_back();
-            const std::uint32_t middle = split(task.first, task.last, task.depth, bvh_.nodes_.back().box);
+            const std::uint32_t at = static_cast<std::uint32_t>(nodes.size());
+            if (task.parent != nobody) nodes[task.parent].second = at;
+            nodes.emplace_back();
+            const std::uint32_t middle = split(task.first, task.last, task.depth, nodes.back().box);
             if (middle == task.first) {
-                bvh_.nodes_.back().second = task.first;
-                bvh_.nodes_.back().count = task.last - task.first;
+                nodes.back().second = task.first;
+                nodes.back().count = task.last - task.first;
                 continue;
             }
             tasks.push_back({middle, task.last, task.depth + 1, at});
             tasks.push_back({task.first, middle, task.depth + 1, nobody});
         }
-        bvh_.nodes_.shrink_to_fit();
+        return nodes;
     }
 
-  private:
+    /// Copies all nodes to the tree, depth first.
+    void store(const std::vector<Top>& tops) {
+        struct Task {
+            std::uint32_t top, parent;
+        };
+        constexpr std::uint32_t nobody = 0xffffffffu;
+        std::size_t count = 0;
+        for (const Top& top : tops) count += std::max<std::size_t>(1, top.nodes.size());
+        bvh_.nodes_.reserve(count);
+        for (std::vector<Task> tasks = {{0, nobody}}; !tasks.empty();) {
+            const Task task = tasks.back();
+            tasks.pop_back();
+            const Top& top = tops[task.top];
+            const auto at = static_cast<std::uint32_t>(bvh_.nodes_.size());
+            if (task.parent != nobody) bvh_.nodes_[task.parent].second = at;
+            if (top.nodes.empty()) {
+                bvh_.nodes_.push_back({.box = top.box});
+                tasks.push_back({top.children + 1, at}), tasks.push_back({top.children, nobody});
+                continue;
+            }
+            for (Bvh::Node node : top.nodes) {
+                if (node.count == 0) node.second += at;
+                bvh_.nodes_.push_back(node);
+            }
+        }
+    }
+
     static constexpr std::size_t bins = 16;
     struct Bin {
         Box box;

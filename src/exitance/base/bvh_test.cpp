@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
 
 namespace exitance {
@@ -79,6 +81,30 @@ TEST(Bvh, HoldsAnyNumberOfEqualBoxes) {
     EXPECT_EQ(count, boxes.size());
     Bvh(std::span<const Box>()).visit_box(boxes[0], [&](std::uint32_t) { ++count; });
     EXPECT_EQ(count, boxes.size());
+}
+
+/// Sizes around that of the largest subtree that one thread builds.
+TEST(Bvh, IsTheSameOnAnyNumberOfThreads) {
+    for (const std::size_t size : {4096u, 4097u, 50000u}) {
+        const std::vector<Box> boxes = random_boxes(size, 0.02);
+        Box query;
+        query.add(Point{0.2, 0.3, 0.1}), query.add(Point{0.7, 0.6, 0.9});
+        const auto visits = [&](int count) {
+            set_threads(count);
+            const Bvh bvh(boxes);
+            std::vector<std::uint32_t> out;
+            bvh.visit_box(query, [&](std::uint32_t i) { out.push_back(i); });
+            return out;
+        };
+        const std::vector<std::uint32_t> alone = visits(1);
+        EXPECT_EQ(alone, visits(3));
+        set_threads(0);
+        const auto meets = [&](const Box& b) {
+            return b.lo.x <= query.hi.x && query.lo.x <= b.hi.x && b.lo.y <= query.hi.y && query.lo.y <= b.hi.y &&
+                   b.lo.z <= query.hi.z && query.lo.z <= b.hi.z;
+        };
+        EXPECT_EQ(static_cast<std::ptrdiff_t>(alone.size()), std::count_if(boxes.begin(), boxes.end(), meets));
+    }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "exitance/error/certificate_places.hpp"
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/calibration/numbers.hpp"
 
 namespace exitance {
@@ -22,28 +23,36 @@ std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementT
     const std::vector<ElementId> leaves = tree.leaves();
     // If rooms are judged separately, all get equally dense points, and errors are weighted by the allowed error of the
     // room.
-    const auto error_at = [&](ElementId e) {
-        const double allowed = options.allowed_in.empty() ? 1 : options.allowed_in[stage.rooms.of(tree, e)];
-        return std::pow(LocalPassReport::known(*known, tree, e).expected_error / allowed, 2);
+    struct Leaf {
+        double counted, error;
     };
+    std::vector<Leaf> own(leaves.size());
+    parallel_for(leaves.size(), 1024, [&](std::size_t i) {
+        const ElementId e = leaves[i];
+        const double allowed = options.allowed_in.empty() ? 1 : options.allowed_in[stage.rooms.of(tree, e)];
+        own[i] = {stage.counted_area(tree, e),
+                  known ? std::pow(LocalPassReport::known(*known, tree, e).expected_error / allowed, 2) : 0};
+    });
     double area = 0, error = 0, in_gaps = 0;
-    for (ElementId e : leaves) {
-        area += stage.counted_area(tree, e);
-        error += known ? stage.counted_area(tree, e) * error_at(e) : 0;
-        in_gaps += narrow[e] ? stage.counted_area(tree, e) : 0;
+    for (std::size_t i = 0; i < leaves.size(); ++i) {
+        area += own[i].counted;
+        error += own[i].counted * own[i].error;
+        in_gaps += narrow[leaves[i]] ? own[i].counted : 0;
     }
     constexpr int excluded_divisor = 10;  // density of points on excluded sides, as a divisor
     const double mean_error = error / area;
     const double share = calibrated::narrow_points;
     const double of_narrow = in_gaps > 0 ? share / (1 - share) * area / in_gaps : 0;
     const std::size_t count = options.points;
-    const auto density = [&](ElementId e) {
+    std::vector<double> density(leaves.size());
+    parallel_for(leaves.size(), 1024, [&](std::size_t i) {
+        const ElementId e = leaves[i];
         const double reduction = stage.is_left_out(tree.region(e)) ? 1.0 / excluded_divisor : 1;
-        const double expected = mean_error > 0 ? 0.5 + 0.5 * error_at(e) / mean_error : 1.0;
-        return reduction * stage.rooms.weight(tree, e) * (expected + (narrow[e] ? of_narrow : 0));
-    };
+        const double expected = mean_error > 0 ? 0.5 + 0.5 * own[i].error / mean_error : 1.0;
+        density[i] = reduction * stage.rooms.weight(tree, e) * (expected + (narrow[e] ? of_narrow : 0));
+    });
     double total = 0;
-    for (ElementId e : leaves) total += tree.area(e) * density(e);
+    for (std::size_t i = 0; i < leaves.size(); ++i) total += tree.area(leaves[i]) * density[i];
     const double share_of_all = total / stage.area;  // 1 if no leaf is excluded or narrow
     const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::certificate)));
     std::vector<WeightedSample> out;
@@ -51,12 +60,12 @@ std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementT
     std::size_t leaf = 0;
     for (std::uint32_t k = 0; k < count; ++k) {
         const double wanted = total * (k + points(k, 0)) / static_cast<double>(count);
-        const auto share_of = [&] { return tree.area(leaves[leaf]) * density(leaves[leaf]); };
+        const auto share_of = [&] { return tree.area(leaves[leaf]) * density[leaf]; };
         while (leaf + 1 < leaves.size() && before + share_of() <= wanted) before += share_of(), ++leaf;
         const ElementId e = leaves[leaf];
         const TowardsEnds s(points(k, 1)), t(points(k, 2));
         out.push_back({{e, tree.uniform(e, s.at, t.at)},
-                       share_of_all * s.share * t.share / (density(e) * static_cast<double>(count))});
+                       share_of_all * s.share * t.share / (density[leaf] * static_cast<double>(count))});
     }
     return out;
 }

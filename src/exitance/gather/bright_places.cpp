@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/gather/gather.hpp"
 
 namespace exitance {
@@ -128,17 +129,20 @@ std::vector<LeafLight> light_of_leaves(const ElementTree& tree, std::span<const 
     constexpr double inside = 0.1;  // derived from the border between elements: on its side of it
     constexpr std::array<Vec2, 5> places{
         {{0.5, 0.5}, {inside, inside}, {1 - inside, inside}, {inside, 1 - inside}, {1 - inside, 1 - inside}}};
-    std::vector<HitPoint> points;
-    for (ElementId e : leaves)
-        for (const Vec2& p : places) points.push_back({tree.region(e), tree.patch(e).at(tree.uniform(e, p.x, p.y))});
-    std::vector<Spectrum> values(points.size());
-    b.read(points, values);
     std::vector<LeafLight> out(leaves.size());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        LeafLight& leaf = out[i / places.size()];
-        const double value = mean(values[i]);
-        leaf.mean += value / static_cast<double>(places.size()), leaf.largest = std::max(leaf.largest, value);
-    }
+    parallel_ranges(leaves.size(), 1024, [&](std::size_t first, std::size_t last) {
+        std::vector<HitPoint> points;
+        for (std::size_t i = first; i < last; ++i)
+            for (const Vec2& p : places)
+                points.push_back({tree.region(leaves[i]), tree.patch(leaves[i]).at(tree.uniform(leaves[i], p.x, p.y))});
+        std::vector<Spectrum> values(points.size());
+        b.read(points, values);
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            LeafLight& leaf = out[first + k / places.size()];
+            const double value = mean(values[k]);
+            leaf.mean += value / static_cast<double>(places.size()), leaf.largest = std::max(leaf.largest, value);
+        }
+    });
     return out;
 }
 

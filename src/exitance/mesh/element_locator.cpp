@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/base/shared_results.hpp"
 
 namespace exitance {
@@ -66,12 +67,14 @@ ElementLocator::ElementLocator(const ElementTree& tree, std::size_t region_count
         const double scale = 1 / squared_norm(n);
         roots_[next[tree.region(e).value]++] = {origin, scale * cross(b, n), scale * cross(n, a), i, shape};
     }
+    std::vector<RegionId> searched;
     for (std::size_t r = 0; r < region_count; ++r) {
-        const std::span<const Root> mine = roots(RegionId(r));
-        if (mine.size() <= max_searched_roots) continue;
-        grid_of_[r] = static_cast<std::int32_t>(grids_.size());
-        grids_.push_back(make_grid(mine));
+        if (roots(RegionId(r)).size() <= max_searched_roots) continue;
+        grid_of_[r] = static_cast<std::int32_t>(searched.size());
+        searched.emplace_back(r);
     }
+    grids_.resize(searched.size());
+    parallel_for(searched.size(), 1, [&](std::size_t i) { grids_[i] = make_grid(roots(searched[i])); });
     share_on_node(std::span(roots_)), share_on_node(std::span(first_root_)), share_on_node(std::span(grid_of_));
 }
 

@@ -3,6 +3,8 @@
 #include <array>
 #include <bit>
 
+#include "exitance/base/parallel.hpp"
+
 namespace exitance {
 
 /// Coordinates in an element, relative to those of its root: (root's - origin) x scale. All elements except triangles
@@ -76,25 +78,65 @@ class LeafFinder::FanWalk {
     Frame frame_;
 };
 
-/// Traverses the tree from its roots and records cuts and leaves in the coordinates of the root.
+/// The deepest part below `part` that contains a whole box.
+std::uint32_t LeafFinder::deepest_around(std::span<const Node> nodes, std::uint32_t part, Vec2 lo, Vec2 hi) {
+    const Vec2 middle = 0.5 * (lo + hi), half = 0.5 * (hi - lo);
+    while (!(part & is_leaf)) {
+        const Node& node = nodes[part];
+        const double height = dot(node.normal, middle) - node.offset;
+        const double reach = std::abs(node.normal.x) * half.x + std::abs(node.normal.y) * half.y;
+        // Most cuts are along a side of the box and leave it whole; the far sides of the box belong to its neighbours.
+        const double rounding = 1e-12 * (std::abs(node.normal.x) + std::abs(node.normal.y));
+        if (std::abs(height) < reach - rounding) break;
+        part = node.part[height > 0 ? 1 : 0];
+    }
+    return part;
+}
+
+/// Records the cuts and leaves below a block of consecutive roots, in the coordinates of each root. Positions of nodes
+/// and fans count from the first of the block.
 struct LeafFinder::Builder {
     const ElementTree& tree;
-    LeafFinder& out;
-    Field<ElementId, std::uint32_t> number;
+    const Field<ElementId, std::uint32_t>& number;
+    std::span<Leaf> leaves;  ///< All leaves of the tree; a block sets its own.
+    std::vector<Node> nodes = {};
+    std::vector<Leaf> fans = {};
+    std::vector<Grid> grids = {};
+    std::vector<std::uint32_t> start = {};
     std::size_t leaves_met = 0;
+
+    void add_root(ElementId root) {
+        const std::size_t before = leaves_met;
+        const std::uint32_t whole = add(root, {{0, 0}, {1, 1}});
+        // About four cells per leaf, as square as the root's shape allows.
+        const double cells = 4.0 * static_cast<double>(leaves_met - before);
+        const double aspect = norm(tree.patch(root).a) / norm(tree.patch(root).b);
+        const auto power = [](double wanted) {
+            constexpr double max_cells = 1024;
+            return std::bit_floor(static_cast<std::uint32_t>(std::clamp(wanted, 1.0, max_cells)));
+        };
+        Grid grid{static_cast<std::uint32_t>(start.size())};
+        if (cells > 4) grid.columns = power(std::sqrt(cells * aspect)), grid.rows = power(cells / grid.columns);
+        for (std::uint32_t row = 0; row < grid.rows; ++row)
+            for (std::uint32_t column = 0; column < grid.columns; ++column) {
+                const Vec2 lo = {static_cast<double>(column) / grid.columns, static_cast<double>(row) / grid.rows};
+                start.push_back(deepest_around(nodes, whole, lo, lo + Vec2{1.0 / grid.columns, 1.0 / grid.rows}));
+            }
+        grids.push_back(grid);
+    }
 
     std::uint32_t add_node(const Frame& frame, Vec2 normal, double offset) {
         return add_node(frame.line(normal, offset));
     }
     std::uint32_t add_node(const Node& node) {
-        out.nodes_.push_back(node);
-        return static_cast<std::uint32_t>(out.nodes_.size() - 1);
+        nodes.push_back(node);
+        return static_cast<std::uint32_t>(nodes.size() - 1);
     }
-    void set(std::uint32_t node, std::size_t side, std::uint32_t part) { out.nodes_[node].part[side] = part; }
+    void set(std::uint32_t node, std::size_t side, std::uint32_t part) { nodes[node].part[side] = part; }
 
     std::uint32_t add_leaf(const Leaf& leaf) {
         ++leaves_met;
-        out.leaves_[number[leaf.id]] = leaf;
+        leaves[number[leaf.id]] = leaf;
         return is_leaf | number[leaf.id];
     }
 
@@ -120,8 +162,8 @@ struct LeafFinder::Builder {
     std::uint32_t add_fan(ElementId e, const Frame& frame) {
         if (tree.children(e).front().value < number.size()) return FanWalk(tree, e, frame).add_nodes(*this);
         ++leaves_met;
-        out.fans_.push_back({frame.origin, {frame.scale.x, 0}, {0, frame.scale.y}, e, tree.patch(e).shape});
-        return is_leaf | is_fan | static_cast<std::uint32_t>(out.fans_.size() - 1);
+        fans.push_back({frame.origin, {frame.scale.x, 0}, {0, frame.scale.y}, e, tree.patch(e).shape});
+        return is_leaf | is_fan | static_cast<std::uint32_t>(fans.size() - 1);
     }
 
     /// Cuts off the corners at (1, 0) and (0, 1); a third line then separates the corner at (0, 0) from the inverted
@@ -183,32 +225,52 @@ LeafFinder::LeafFinder(const ElementTree& tree) {
     const bool by_fans = tree.size() - tree.first_of_fans().value > max_stored_triangles;
     const std::size_t stored = by_fans ? tree.first_of_fans().value : tree.size();
     if (by_fans) tree_ = tree;
-    Builder builder{tree, *this, Field<ElementId, std::uint32_t>(stored)};
+    Field<ElementId, std::uint32_t> number(stored);
     std::uint32_t count = 0;
-    for (ElementId e : builder.number.ids())
-        if (tree.is_leaf(e)) builder.number[e] = count++;
+    for (ElementId e : number.ids())
+        if (tree.is_leaf(e)) number[e] = count++;
     leaves_.resize(count);
-    nodes_.reserve(stored);
-    for (ElementId root : tree.roots()) {
-        const std::size_t before = builder.leaves_met;
-        const std::uint32_t whole = builder.add(root, {{0, 0}, {1, 1}});
-        // About four cells per leaf, as square as the root's shape allows.
-        const double cells = 4.0 * static_cast<double>(builder.leaves_met - before);
-        const double aspect = norm(tree.patch(root).a) / norm(tree.patch(root).b);
-        const auto power = [](double wanted) {
-            constexpr double max_cells = 1024;
-            return std::bit_floor(static_cast<std::uint32_t>(std::clamp(wanted, 1.0, max_cells)));
-        };
-        Grid grid{static_cast<std::uint32_t>(start_.size())};
-        if (cells > 4) grid.columns = power(std::sqrt(cells * aspect)), grid.rows = power(cells / grid.columns);
-        for (std::uint32_t row = 0; row < grid.rows; ++row)
-            for (std::uint32_t column = 0; column < grid.columns; ++column) {
-                const Vec2 lo = {static_cast<double>(column) / grid.columns, static_cast<double>(row) / grid.rows};
-                start_.push_back(deepest_around(whole, lo, lo + Vec2{1.0 / grid.columns, 1.0 / grid.rows}));
-            }
-        grids_.push_back(grid);
+    const std::span<const ElementId> roots = tree.roots();
+    constexpr std::size_t most_blocks = 256;
+    const std::size_t length = roots.size() / most_blocks + 1;
+    std::vector<Builder> blocks((roots.size() + length - 1) / length, Builder{tree, number, leaves_});
+    parallel_for(blocks.size(), 1, [&](std::size_t b) {
+        for (std::size_t i = b * length; i < std::min((b + 1) * length, roots.size()); ++i)
+            blocks[b].add_root(roots[i]);
+    });
+    join(blocks);
+}
+
+/// Appends the arrays of all blocks, so that positions count from the first node and fan of all.
+void LeafFinder::join(std::vector<Builder>& blocks) {
+    struct Size {
+        std::size_t nodes = 0, fans = 0, grids = 0, start = 0;
+    };
+    std::vector<Size> before(1);
+    for (const Builder& b : blocks) {
+        const Size& last = before.back();
+        before.push_back({last.nodes + b.nodes.size(), last.fans + b.fans.size(), last.grids + b.grids.size(),
+                          last.start + b.start.size()});
     }
-    nodes_.shrink_to_fit(), start_.shrink_to_fit(), fans_.shrink_to_fit();
+    nodes_.resize(before.back().nodes), fans_.resize(before.back().fans);
+    grids_.resize(before.back().grids), start_.resize(before.back().start);
+    parallel_for(blocks.size(), 1, [&](std::size_t k) {
+        Builder& b = blocks[k];
+        const Size& at = before[k];
+        const auto moved = [&](std::uint32_t part) {
+            if (!(part & is_leaf)) return part + static_cast<std::uint32_t>(at.nodes);
+            return part & is_fan ? part + static_cast<std::uint32_t>(at.fans) : part;
+        };
+        for (Node& node : b.nodes) node.part[0] = moved(node.part[0]), node.part[1] = moved(node.part[1]);
+        for (std::uint32_t& part : b.start) part = moved(part);
+        for (Grid& grid : b.grids) grid.first += static_cast<std::uint32_t>(at.start);
+        const auto append = [](const auto& from, auto& to, std::size_t first) {
+            std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(first));
+        };
+        append(b.nodes, nodes_, at.nodes), append(b.fans, fans_, at.fans);
+        append(b.grids, grids_, at.grids), append(b.start, start_, at.start);
+        b.nodes = {}, b.fans = {}, b.grids = {}, b.start = {};  // frees memory before all blocks are copied
+    });
 }
 
 /// Returns the leaf of a part, and its index.
@@ -222,21 +284,6 @@ LeafFinder::Leaf LeafFinder::leaf_at(std::uint32_t part, Vec2 uv, std::uint32_t&
     const Leaf triangle = walk.leaf(walk.find(uv));
     number = static_cast<std::uint32_t>(leaves_.size() + (triangle.id.value - tree_.first_of_fans().value));
     return triangle;
-}
-
-/// The deepest part below `part` that contains a whole box.
-std::uint32_t LeafFinder::deepest_around(std::uint32_t part, Vec2 lo, Vec2 hi) const {
-    const Vec2 middle = 0.5 * (lo + hi), half = 0.5 * (hi - lo);
-    while (!(part & is_leaf)) {
-        const Node& node = nodes_[part];
-        const double height = dot(node.normal, middle) - node.offset;
-        const double reach = std::abs(node.normal.x) * half.x + std::abs(node.normal.y) * half.y;
-        // Most cuts are along a side of the box and leave it whole; the far sides of the box belong to its neighbours.
-        const double rounding = 1e-12 * (std::abs(node.normal.x) + std::abs(node.normal.y));
-        if (std::abs(height) < reach - rounding) break;
-        part = node.part[height > 0 ? 1 : 0];
-    }
-    return part;
 }
 
 /// Index in `start_` of the cell that contains a point.

@@ -74,7 +74,8 @@ class LeafFinder {
     class FanWalk;
     Leaf leaf_at(std::uint32_t part, Vec2 uv, std::uint32_t& number) const;
     std::size_t cell(std::size_t root, Vec2 uv) const;
-    std::uint32_t deepest_around(std::uint32_t part, Vec2 lo, Vec2 hi) const;
+    void join(std::vector<Builder>& blocks);
+    static std::uint32_t deepest_around(std::span<const Node> nodes, std::uint32_t part, Vec2 lo, Vec2 hi);
 
     static constexpr std::uint32_t is_leaf = 0x80000000u, is_fan = 0x40000000u;
     std::vector<Node> nodes_;

@@ -67,6 +67,28 @@ TEST(LeafFinder, FindsTheSameLeavesAsTheTree) {
     }
 }
 
+/// More roots than are built together, some with fans and some without cuts.
+TEST(LeafFinder, FindsLeavesOfVeryManyRoots) {
+    ElementTree tree;
+    constexpr std::uint32_t count = 1000;
+    for (std::uint32_t i = 0; i < count; ++i)
+        tree.add_root(RegionId(i), {{0, 0, 1.0 * i}, {1, 0, 0}, {0, 1, 0}, Patch::Shape::parallelogram});
+    for (std::uint32_t i = 0; i < count; i += 3) tree.split(tree.roots()[i], Cut::both);
+    for (std::uint32_t i = 1; i < count; i += 3) tree.split(tree.roots()[i], Cut::u, 0.3);
+    for (ElementId leaf : tree.leaves()) {
+        std::vector<Vec2> corners = tree.domain(leaf);
+        corners.push_back(corners[0]);
+        if (leaf.value % 5 == 0) tree.split_fan(leaf, {tree.centre(leaf), corners});
+    }
+    const LeafFinder finder(tree);
+    ASSERT_EQ(finder.size(), tree.leaves().size());
+    RandomStream random(7, Stream::mesh);
+    for (std::uint32_t root = 0; root < count; ++root) {
+        const double u = random.uniform(), v = random.uniform();
+        EXPECT_EQ(finder.id(finder.find(root, {u, v}).leaf), tree.leaf_at(tree.roots()[root], {u, v}).element);
+    }
+}
+
 TEST(LeafFinder, FindsTrianglesOfFansStoredOrNot) {
     const ElementTree tree = cut_at_random(60, 4, true);
     ASSERT_LT(tree.first_of_fans().value, tree.size());

@@ -1,6 +1,7 @@
 #include "exitance/mesh/solve_mesh.hpp"
 
 #include "exitance/base/bvh.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {
@@ -161,31 +162,31 @@ std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::
         for (const Point& corner : scene.outline(s)) boxes[s.value].add(corner);
     const Bvh bvh(boxes);
     const double tolerance = 1e-7 * scene.size();
-    std::vector<ConcaveBorders> out(pieces.size());
-    for (std::size_t k = 0; k < pieces.size(); ++k) {
-        const RegionId region = pieces[k].region;
-        const Patch& patch = pieces[k].patch;
-        const Plane& plane = scene.regions()[region].plane;
+    const auto rise_beside = [&](const Piece& piece, int border) {
+        const Patch& patch = piece.patch;
+        const Plane& plane = scene.regions()[piece.region].plane;
         const Point inside = patch.centre();
-        out[k].assign(static_cast<std::size_t>(patch.corner_count()), 0);
-        for (int border = 0; border < patch.corner_count(); ++border) {
-            const Point a = patch.corner(border), b = patch.corner((border + 1) % patch.corner_count());
-            double concave = 0;
-            for (double t : {0.5, 0.18, 0.83}) {
-                const Point p = a + t * (b - a);
-                Box box;
-                box.add(p - Vec3{tolerance, tolerance, tolerance});
-                box.add(p + Vec3{tolerance, tolerance, tolerance});
-                bvh.visit_box(box, [&](std::uint32_t i) {
-                    const SurfaceId s(i);
-                    if (concave < 1 && scene.surfaces()[s].region != region)
-                        concave = std::max(concave, rise_at(scene, s, p, plane, inside, tolerance));
-                });
-                if (concave > 0) break;
-            }
-            out[k][static_cast<std::size_t>(border)] = concave;
+        const Point a = patch.corner(border), b = patch.corner((border + 1) % patch.corner_count());
+        double rise = 0;
+        for (double t : {0.5, 0.18, 0.83}) {
+            const Point p = a + t * (b - a);
+            Box box;
+            box.add(p - Vec3{tolerance, tolerance, tolerance});
+            box.add(p + Vec3{tolerance, tolerance, tolerance});
+            bvh.visit_box(box, [&](std::uint32_t i) {
+                const SurfaceId s(i);
+                if (rise < 1 && scene.surfaces()[s].region != piece.region)
+                    rise = std::max(rise, rise_at(scene, s, p, plane, inside, tolerance));
+            });
+            if (rise > 0) break;
         }
-    }
+        return rise;
+    };
+    std::vector<ConcaveBorders> out(pieces.size());
+    parallel_for(pieces.size(), 64, [&](std::size_t k) {
+        for (int border = 0; border < pieces[k].patch.corner_count(); ++border)
+            out[k].push_back(rise_beside(pieces[k], border));
+    });
     return out;
 }
 

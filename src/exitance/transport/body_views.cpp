@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "exitance/base/parallel.hpp"
@@ -158,39 +159,57 @@ class SquaredWeight {
 }  // namespace
 
 void BodyNeeds::find_limits(const ElementTree& tree) {
-    most_ = Field<ElementId, Limits>(tree.size());
     const std::span<const BodyViews::Hit> hits = views_.hits();
-    std::vector<std::uint32_t> of_body;  // hits of one body, those of an element together
-    for (std::uint32_t first = 0, last = 0; first < hits.size(); first = last) {
-        const std::uint32_t body = hits[first].body;
-        of_body.clear();
-        for (; last < hits.size() && hits[last].body == body; ++last) of_body.push_back(last);
-        std::sort(of_body.begin(), of_body.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return std::pair(at_[a].element.value, a) < std::pair(at_[b].element.value, b);
-        });
-        for (std::size_t k = 0; k < of_body.size();) {
-            const ElementId e = at_[of_body[k]].element;
-            // Rays that hit the cells of the element: all, and those from nearer than its width.
-            std::array<SquaredWeight, cells> all{}, near{};
-            for (; k < of_body.size() && at_[of_body[k]].element == e; ++k) {
-                const BodyViews::Hit& hit = hits[of_body[k]];
-                const std::size_t cell = cell_of(at_[of_body[k]].uv);
-                all[cell].add(hit.weight);
-                if (hit.distance * hit.distance < tree.area(e)) near[cell].add(hit.weight);
-            }
-            const auto lower = [](double& limit, double to) { limit = std::min(limit, to); };
-            const auto largest = [](const std::array<SquaredWeight, cells>& of) {
-                double out = 0;
-                for (const SquaredWeight& w : of) out = std::max(out, w.value());
-                return std::sqrt(out);
-            };
-            double squares = 0;
-            for (const SquaredWeight& w : all) squares += w.value();
-            lower(most_[e].everywhere, allowed_[body] / std::sqrt(cells * squares));
-            lower(most_[e].in_a_cell, allowed_[body] / largest(all));
-            lower(most_[e].in_a_near_cell, allowed_[body] / (room_light_[body] * largest(near)));
+    std::vector<std::uint32_t> first = {0};  // hit of every body, and the number of hits
+    for (std::uint32_t i = 1; i < hits.size(); ++i)
+        if (hits[i].body != hits[i - 1].body) first.push_back(i);
+    if (!hits.empty()) first.push_back(static_cast<std::uint32_t>(hits.size()));
+    std::vector<std::vector<ElementLimits>> found(first.size() - 1);
+    parallel_for(found.size(), 1, [&](std::size_t k) { found[k] = limits_of_body(tree, first[k], first[k + 1]); });
+    most_ = Field<ElementId, Limits>(tree.size());
+    const auto lower = [](double& limit, double to) { limit = std::min(limit, to); };
+    for (const std::vector<ElementLimits>& of_body : found)
+        for (const auto& [e, limits] : of_body) {
+            lower(most_[e].everywhere, limits.everywhere);
+            lower(most_[e].in_a_cell, limits.in_a_cell);
+            lower(most_[e].in_a_near_cell, limits.in_a_near_cell);
         }
+}
+
+/// Returns the limits that one body demands of the elements that it sees. Its hits are [first, last).
+std::vector<BodyNeeds::ElementLimits> BodyNeeds::limits_of_body(const ElementTree& tree, std::uint32_t first,
+                                                                std::uint32_t last) const {
+    const std::span<const BodyViews::Hit> hits = views_.hits();
+    const std::uint32_t body = hits[first].body;
+    std::vector<std::uint32_t> of_body(last - first);  // those of an element together
+    std::iota(of_body.begin(), of_body.end(), first);
+    std::sort(of_body.begin(), of_body.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return std::pair(at_[a].element.value, a) < std::pair(at_[b].element.value, b);
+    });
+    std::vector<ElementLimits> out;
+    for (std::size_t k = 0; k < of_body.size();) {
+        const ElementId e = at_[of_body[k]].element;
+        // Rays that hit the cells of the element: all, and those from nearer than its width.
+        std::array<SquaredWeight, cells> all{}, near{};
+        for (; k < of_body.size() && at_[of_body[k]].element == e; ++k) {
+            const BodyViews::Hit& hit = hits[of_body[k]];
+            const std::size_t cell = cell_of(at_[of_body[k]].uv);
+            all[cell].add(hit.weight);
+            if (hit.distance * hit.distance < tree.area(e)) near[cell].add(hit.weight);
+        }
+        const auto largest = [](const std::array<SquaredWeight, cells>& of) {
+            double largest_value = 0;
+            for (const SquaredWeight& w : of) largest_value = std::max(largest_value, w.value());
+            return std::sqrt(largest_value);
+        };
+        double squares = 0;
+        for (const SquaredWeight& w : all) squares += w.value();
+        out.push_back({e,
+                       {.everywhere = allowed_[body] / std::sqrt(cells * squares),
+                        .in_a_cell = allowed_[body] / largest(all),
+                        .in_a_near_cell = allowed_[body] / (room_light_[body] * largest(near))}});
     }
+    return out;
 }
 
 double BodyNeeds::allowed_squared(ElementId e) const {

@@ -64,7 +64,9 @@ class BodyNeeds {
     void follow(const ElementTree& tree);
 
   private:
+    struct ElementLimits;
     void find_limits(const ElementTree& tree);
+    std::vector<ElementLimits> limits_of_body(const ElementTree& tree, std::uint32_t first, std::uint32_t last) const;
 
     const BodyViews& views_;
     std::size_t regions_;
@@ -77,6 +79,10 @@ class BodyNeeds {
         double in_a_cell = std::numeric_limits<double>::infinity();
         /// The latter for indirect light at near places, over the mean light of the body's room.
         double in_a_near_cell = std::numeric_limits<double>::infinity();
+    };
+    struct ElementLimits {
+        ElementId e;
+        Limits limits;
     };
     Field<ElementId, Limits> most_;
 };

@@ -27,18 +27,29 @@ double weighted_flux(const Stage& stage, const ElementTree& tree, std::span<cons
 double estimated_flux(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,
                       std::uint64_t seed, const StopRequest& stop) {
     constexpr double samples = 2000;
-    SampledLight sampled(stage.direct, stage.tracer, seed);
-    double flux = 0, area = 0, next = 0.5 * stage.area / samples;
+    struct Sample {
+        ElementId e;
+        double share, flux = 0;
+    };
+    std::vector<Sample> at;
+    double area = 0, next = 0.5 * stage.area / samples;
     for (ElementId e : leaves) {
         area += tree.area(e);
         if (area <= next) continue;
-        if (stop.requested()) return 0;
         const double steps = std::ceil((area - next) * samples / stage.area);
         next += steps * stage.area / samples;
-        const Spectrum w = light_weight(stage.scene.material(tree.region(e)));
-        flux += steps / samples * mean(w * sampled(tree, e, w, HUGE_VAL, rays_an_element).weak);
+        at.push_back({e, steps / samples});
     }
-    return flux * stage.area;
+    parallel_ranges(at.size(), 8, [&](std::size_t first, std::size_t last) {
+        SampledLight sampled(stage.direct, stage.tracer, seed);
+        for (std::size_t i = first; i < last && !stop.requested(); ++i) {
+            const Spectrum w = light_weight(stage.scene.material(tree.region(at[i].e)));
+            at[i].flux = at[i].share * mean(w * sampled(tree, at[i].e, w, HUGE_VAL, rays_an_element).weak);
+        }
+    });
+    double flux = 0;
+    for (const Sample& sample : at) flux += sample.flux;
+    return stop.requested() ? 0 : flux * stage.area;
 }
 
 /// Estimate of weighted_flux() for scenes with a sky, beams or other light without emitting polygons. Fits some of the
@@ -47,15 +58,22 @@ double estimated_flux_apart(const Stage& stage, const ElementTree& tree, std::sp
                             const StopRequest& stop) {
     constexpr std::size_t samples = 512;
     constexpr double no_limit = 1e300;
-    DirectFitRoom room;
+    struct Sample {
+        double flux = 0, area = 0;
+    };
+    const std::size_t step = std::max<std::size_t>(1, leaves.size() / samples), from = step / 2;
+    std::vector<Sample> found((leaves.size() - from + step - 1) / step);
+    parallel_ranges(found.size(), 4, [&](std::size_t first, std::size_t last) {
+        DirectFitRoom room;
+        for (std::size_t i = first; i < last && !stop.requested(); ++i) {
+            const ElementId e = leaves[from + i * step];
+            const Spectrum w = light_weight(stage.scene.material(tree.region(e)));
+            const double area = tree.area(e);
+            found[i] = {area * mean(w * fit_direct_light(stage, tree, e, no_limit, room).mean), area};
+        }
+    });
     double flux = 0, area = 0;
-    const std::size_t step = std::max<std::size_t>(1, leaves.size() / samples);
-    for (std::size_t i = step / 2; i < leaves.size() && !stop.requested(); i += step) {
-        const ElementId e = leaves[i];
-        const Spectrum w = light_weight(stage.scene.material(tree.region(e)));
-        flux += tree.area(e) * mean(w * fit_direct_light(stage, tree, e, no_limit, room).mean);
-        area += tree.area(e);
-    }
+    for (const Sample& sample : found) flux += sample.flux, area += sample.area;
     return area > 0 ? flux * stage.area / area : 0;
 }
 

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "exitance/base/disjoint_sets.hpp"
+#include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
 #include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/processes/distributed.hpp"
@@ -111,28 +112,36 @@ class RoomFinder {
     }
 
   private:
-    Part part_of(LeafNumbers leaves) const {
+    Part part_of(LeafNumbers leaves) {
         Part part;
         part.leaves = std::move(leaves);
-        std::vector<std::uint8_t> within(flow_.area.size());
-        for (std::uint32_t i : part.leaves) within[i] = 1;
-        for (std::uint32_t i : part.leaves) {
+        within_.resize(flow_.area.size(), 0);
+        for (std::uint32_t i : part.leaves) within_[i] = 1;
+        std::vector<double> height(part.leaves.size());
+        const auto find_heights = [&](std::size_t first, std::size_t last) {
+            for (std::size_t k = first; k < last; ++k) height[k] = height_seen(part.leaves[k]);
+        };
+        constexpr std::size_t grain = 256;
+        height.size() > grain ? parallel_ranges(height.size(), grain, find_heights) : find_heights(0, height.size());
+        for (std::size_t k = 0; k < height.size(); ++k) {
+            const std::uint32_t i = part.leaves[k];
             part.area += flow_.area[i];
-            part.volume += flow_.area[i] * height_seen(i, within);
+            part.volume += flow_.area[i] * height[k];
             for (const Point& p : tree_.outline(numbering_.leaves[i])) part.box.add(p);
         }
+        for (std::uint32_t i : part.leaves) within_[i] = 0;
         return part;
     }
 
-    /// Mean height, over an element's rays, of the elements of its part that it sees above its plane, metres. Elements
-    /// outside the part, seen through the mouth of a gap, are ignored: they say nothing about the gap.
-    double height_seen(std::uint32_t i, const std::vector<std::uint8_t>& within) const {
+    /// Mean height, over an element's rays, of the elements within its part that it sees above its plane, metres.
+    /// Elements outside the part, seen through the mouth of a gap, are ignored: they say nothing about the gap.
+    double height_seen(std::uint32_t i) const {
         const Patch& patch = tree_.patch(numbering_.leaves[i]);
         const Normal n = patch.normal();
         double sum = 0;
         std::size_t met = 0;
         for (std::uint32_t j : flow_.rows.hits(i))
-            if (j != RayRows::missed && within[j])
+            if (j != RayRows::missed && within_[j])
                 sum += std::max(0.0, dot(n, tree_.patch(numbering_.leaves[j]).centre() - patch.centre())), ++met;
         return met > 0 ? sum / static_cast<double>(met) : std::sqrt(flow_.area[i]);
     }
@@ -239,10 +248,11 @@ class RoomFinder {
     const ElementTree& tree_;
     const LeafNumbering& numbering_;
     std::vector<Part> parts_;
-    Box inner_, whole_;        ///< Bounds of all rooms but the largest, and of the whole scene.
-    double total_ = 0;         ///< Area of the scene, m^2.
-    double indoor_area_ = 0;   ///< Area of the elements that see little of the sky, m^2.
-    std::uint16_t fresh_ = 1;  ///< Number of the next part.
+    std::vector<std::uint8_t> within_;  ///< For every leaf, 1 while it belongs to the part that is being made.
+    Box inner_, whole_;                 ///< Bounds of all rooms but the largest, and of the whole scene.
+    double total_ = 0;                  ///< Area of the scene, m^2.
+    double indoor_area_ = 0;            ///< Area of the elements that see little of the sky, m^2.
+    std::uint16_t fresh_ = 1;           ///< Number of the next part.
 };
 
 /// For every leaf, 1 if all its rays hit backs. Rows do not distinguish backs from the sky; if there is a sky, a few

@@ -55,15 +55,15 @@ LinearRows::LinearRows(const Stage& stage, const DirectProjection& direct, const
 /// Numbers the nodes of all leaves and the rays of the own nodes. Returns the position of every node.
 std::vector<LinearRows::NodePlace> LinearRows::number_nodes(const Stage& stage, const ElementTree& tree,
                                                             const RayBudget& budget) {
-    std::vector<NodePlace> places;
-    std::vector<unsigned> rays;
-    const double mean_area = stage.area / static_cast<double>(ids_.size());
-    for (ElementId e : ids_) {
-        Leaf leaf{.first_node = static_cast<std::uint32_t>(nodes_.size()),
-                  .triangle = tree.patch(e).is_triangle(),
-                  .reflectance = stage.scene.material(tree.region(e)).reflectance};
-        const std::vector<WeightedPlace> nodes = leaf_nodes(tree, e);
-        leaf.node_count = static_cast<std::uint32_t>(nodes.size());
+    std::vector<std::vector<WeightedPlace>> nodes_of(ids_.size());
+    leaves_.resize(ids_.size());
+    parallel_for(ids_.size(), 64, [&](std::size_t i) {
+        const ElementId e = ids_[i];
+        const std::vector<WeightedPlace>& nodes = nodes_of[i] = leaf_nodes(tree, e);
+        Leaf& leaf = leaves_[i];
+        leaf = {.node_count = static_cast<std::uint32_t>(nodes.size()),
+                .triangle = tree.patch(e).is_triangle(),
+                .reflectance = stage.scene.material(tree.region(e)).reflectance};
         for (std::size_t k = 0; k < nodes.size(); ++k) {
             // The polynomial with value 1 at node k and 0 at the others gives the weights of that node.
             std::vector<Spectrum> unit(nodes.size());
@@ -71,12 +71,20 @@ std::vector<LinearRows::NodePlace> LinearRows::number_nodes(const Stage& stage, 
             const ElementFit fit(tree, e, nodes, unit);
             for (int c = 0; c < tree.patch(e).corner_count(); ++c)
                 leaf.to_corner[static_cast<std::size_t>(c)][k] = static_cast<float>(fit.corner(c)[0]);
-            nodes_.push_back({.area = nodes[k].weight * tree.area(e)});
-            places.push_back({tree.patch(e).at(nodes[k].uv), tree.region(e)});
+        }
+    });
+    std::vector<NodePlace> places;
+    std::vector<unsigned> rays;
+    const double mean_area = stage.area / static_cast<double>(ids_.size());
+    for (std::size_t i = 0; i < ids_.size(); ++i) {
+        const ElementId e = ids_[i];
+        leaves_[i].first_node = static_cast<std::uint32_t>(nodes_.size());
+        for (const WeightedPlace& node : nodes_of[i]) {
+            nodes_.push_back({.area = node.weight * tree.area(e)});
+            places.push_back({tree.patch(e).at(node.uv), tree.region(e)});
             rays.push_back(budget.rays(tree.area(e), mean_area));
             rays_ += rays.back();
         }
-        leaves_.push_back(leaf);
     }
     dealt_ = DealtUnknowns(nodes_.size(), dealt_block(nodes_.size()));
     std::size_t at = 0;
