@@ -47,7 +47,11 @@ inline constexpr double table_share = 0.55, node_share = 0.5, missed_share = 0.3
 
 /// Options of the table of which an operator of a given error is made.
 inline RowFactorOptions operator_table_options(double error, double smallest, std::uint64_t seed) {
-    return {.error = table_share * error, .smallest = smallest, .missed_error = missed_share * error, .seed = seed};
+    return {.error = table_share * error,
+            .deviations = 0,
+            .smallest = smallest,
+            .missed_error = missed_share * error,
+            .seed = seed};
 }
 
 /// Merges the smallest entries of every row of a table into nodes of a tree over the faces. Whatever the occlusion, a
