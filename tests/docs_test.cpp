@@ -232,6 +232,17 @@ TEST(Documentation, ProgramsAreTheReadmesOne) {
     EXPECT_EQ(found, 2u);
 }
 
+TEST(Documentation, PagesThatImportTheModuleNameTheCommandThatBuildsIt) {
+    const fs::path root = test::source_folder();
+    EXPECT_NE(content(root / "demo.sh").find("--target exitance-cli"), std::string::npos)
+        << "it builds the program only";
+    for (const fs::path& page : documents()) {
+        const std::string text = content(page);
+        if (text.find("PYTHONPATH=build/python") == std::string::npos) continue;
+        EXPECT_NE(text.find("-D EXITANCE_PYTHON=ON"), std::string::npos) << page;
+    }
+}
+
 TEST(Documentation, AddingAMethodCountsTheMethods) {
     const std::string text = content(fs::path(test::source_folder()) / "docs/adding_a_method.md");
     const std::string table = "std::pair<Method, std::string_view>, " + std::to_string(method_names.size() + 1) + ">";

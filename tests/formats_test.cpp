@@ -1,6 +1,7 @@
 // Files that released versions of the program wrote, and that every later version reads (docs/developers/releasing.md).
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <cstdlib>
@@ -13,7 +14,9 @@
 
 #include "exitance/base/version.hpp"
 #include "exitance/evaluate/radiosity_function.hpp"
+#include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
+#include "exitance/io/view_factors/operator_file.hpp"
 #include "exitance/io/view_factors/view_factor_file.hpp"
 #include "exitance/what_if/light_groups/light_groups.hpp"
 #include "support/places.hpp"
@@ -92,6 +95,41 @@ TEST(StoredFiles, ViewFactorsOfAllVersionsAreRead) {
         ASSERT_EQ(factors->size(), 7u) << folder;
         // Rows of walls sum to 1, less a share of at most a tenth that meets the back of the lamp.
         for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(factors->row_sums[i], 0.95, 0.1) << folder;
+    }
+}
+
+TEST(StoredFiles, OperatorsOfAllVersionsAreRead) {
+    for (const fs::path& folder : versions()) {
+        const Result<FactorOperator> transport = read_factor_operator(folder / "operator.h5");
+        ASSERT_TRUE(transport) << folder << ": " << transport.error().message;
+        ASSERT_EQ(transport->size(), 7u) << folder;
+        std::vector<double> ones(7, 1), sums(7);
+        transport->apply(ones, sums);
+        for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(sums[i], 0.95, 0.1) << folder;
+    }
+}
+
+/// Light maps are read by other programs: their table keeps its keys while it says version 1.
+TEST(StoredFiles, LightMapsOfAllVersionsKeepTheirForm) {
+    for (const fs::path& folder : versions()) {
+        const auto table = nlohmann::json::parse(bytes_of_file(folder / "light_maps/lightmaps.json"));
+        ASSERT_EQ(table.at("version"), 1) << folder;
+        ASSERT_EQ(table.at("maps").size(), 1u) << folder;
+        const auto& map = table["maps"][0];
+        const std::string image = bytes_of_file(folder / "light_maps" / map.at("file").get<std::string>());
+        EXPECT_EQ(image.substr(0, 4), "\x76\x2f\x31\x01") << "an OpenEXR file";
+        ASSERT_EQ(table.at("charts").size(), 7u) << folder;
+        for (const auto& chart : table["charts"]) {
+            EXPECT_LE(chart.at("x").get<int>() + chart.at("width").get<int>(), map.at("width").get<int>()) << folder;
+            EXPECT_LE(chart.at("y").get<int>() + chart.at("height").get<int>(), map.at("height").get<int>()) << folder;
+            for (const char* vector : {"origin", "du", "dv", "normal"}) EXPECT_EQ(chart.at(vector).size(), 3u);
+        }
+        const std::string model = folder / "light_maps" / table.at("model").get<std::string>();
+        const CheckedScene scene = load_scene(model);
+        ASSERT_TRUE(scene.scene) << folder;
+        double area = 0;
+        for (const Surface& surface : scene.scene->surfaces()) area += surface.area;
+        EXPECT_NEAR(area, 60, 1e-4) << "six walls and the lamp";
     }
 }
 

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <numeric>
+
 #include "arrays.hpp"
 #include "docs.hpp"
 #include "exitance/daylight.hpp"
@@ -19,19 +22,62 @@ py::array vector_of(std::vector<T> values) {
     return array_of(std::move(values), {count});
 }
 
-/// View factors as a scipy.sparse.csr_array.
-py::object view_factors(const api::Scene& scene, double error, double smallest, std::uint64_t seed,
+/// Options that view factors and operators share.
+struct CommonOptions {
+    std::optional<double> time_limit;
+    std::optional<int> threads;
+};
+
+api::ViewFactorOptions options_of(double error, double smallest, std::uint64_t seed, const CommonOptions& common) {
+    api::ViewFactorOptions options;
+    options.error = error, options.smallest = smallest, options.seed = seed;
+    options.time_limit = common.time_limit;
+    options.threads = common.threads.value_or(0);
+    return options;
+}
+
+/// Warns that some rows were not computed.
+void warn_of_missing_rows(const api::ViewFactors& F) {
+    const auto finished = std::count(F.finished.begin(), F.finished.end(), 1);
+    const std::string text = fmt::format(
+        "stopped after {} of {} rows of view factors: the others are empty (F.finished), and the matrix is not "
+        "reciprocal",
+        finished, F.areas.size());
+    if (PyErr_WarnEx(PyExc_RuntimeWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
+
+/// An attribute of the matrix: the array, or None if it is empty.
+template <class T>
+py::object array_or_none(std::vector<T> values) {
+    if (values.empty()) return py::none();
+    return vector_of(std::move(values));
+}
+
+/// View factors as a scipy.sparse.csr_array, with attributes.
+py::object view_factors(const api::Scene& scene, std::optional<double> error, double smallest, std::uint64_t seed,
+                        std::optional<double> tolerance, std::optional<double> time_limit, std::optional<int> threads,
                         const py::object& progress) {
+    if (error && tolerance) raise_usage("cannot be combined with error", "tolerance", "give one of them");
     const py::object make = py::module_::import("scipy.sparse").attr("csr_array");
-    const api::ViewFactorOptions options{error, smallest, seed};
+    const api::ViewFactorOptions standard;
+    api::ViewFactorOptions options = options_of(error.value_or(standard.error), smallest, seed, {time_limit, threads});
+    options.tolerance = tolerance;
     api::ViewFactors F = run<api::ViewFactors>(
         progress, [&](const api::Control& control) { return api::view_factors(scene, options, control); });
+    if (!F.is_complete) warn_of_missing_rows(F);
     const std::size_t n = F.areas.size();
     std::vector<std::int64_t> starts(F.starts.begin(), F.starts.end());
     std::vector<std::int64_t> columns(F.columns.begin(), F.columns.end());
-    return make(
+    const py::object out = make(
         py::make_tuple(vector_of(std::move(F.values)), vector_of(std::move(columns)), vector_of(std::move(starts))),
         "shape"_a = py::make_tuple(n, n));
+    out.attr("areas") = vector_of(std::move(F.areas));
+    out.attr("emittances") = vector_of(std::move(F.emittances));
+    out.attr("sky") = array_or_none(std::move(F.sky));
+    out.attr("back") = array_or_none(std::move(F.back));
+    out.attr("row_errors") = array_or_none(std::move(F.row_errors));
+    out.attr("finished") = vector_of(std::move(F.finished)).attr("astype")("bool");
+    return out;
 }
 
 /// A scipy.sparse.linalg.LinearOperator with the attribute `transport`.
@@ -42,8 +88,10 @@ py::object linear_operator(api::TransportOperator transport) {
     return out;
 }
 
-py::object transport_operator(const api::Scene& scene, double error, std::uint64_t seed, const py::object& progress) {
-    const api::ViewFactorOptions options{error, 0, seed};
+py::object transport_operator(const api::Scene& scene, double error, std::uint64_t seed,
+                              std::optional<double> time_limit, std::optional<int> threads,
+                              const py::object& progress) {
+    const api::ViewFactorOptions options = options_of(error, 0, seed, {time_limit, threads});
     return linear_operator(run<api::TransportOperator>(
         progress, [&](const api::Control& control) { return api::transport_operator(scene, options, control); }));
 }
@@ -102,16 +150,25 @@ auto per_hour(const std::vector<float> api::Daylight::*member) {
 
 constexpr const char* view_factor_arguments = R"doc(
 
-error      limit on the error of every row
+error      limit on the error of every row; None: 1e-3 unless there is a tolerance
 smallest   smaller entries are dropped
 seed       seed of the random points
+tolerance  relative error of every entry above 1e-6, in place of error; entries are then computed without rays
+time_limit seconds. After it, or if progress stops the work, unfinished rows are empty and a RuntimeWarning tells their
+           number; without a finished row an Error is raised
+threads    number of threads; None: all cores, or as set by set_threads()
 progress   as for solve()
-returns    scipy.sparse.csr_array (n, n): entry (i, j) is the share of the flux leaving face i that reaches face j)doc";
+returns    scipy.sparse.csr_array (n, n): entry (i, j) is the share of the flux leaving face i that reaches face j.
+           Attributes, one number per face: areas (m^2), emittances, finished (False: the row was not computed), and
+           without a tolerance sky, back (shares that leave the scene or reach backs of faces) and row_errors. Matrices
+           that are computed from it do not have them)doc";
 
 constexpr const char* transport_arguments = R"doc(
 
 error      limit on the error of products for |x| <= 1
 seed       seed of the random points
+time_limit seconds. After it, or if progress stops the work, an Error is raised: an operator needs all rows
+threads    number of threads; None: all cores, or as set by set_threads()
 progress   as for solve()
 returns    scipy.sparse.linalg.LinearOperator (n, n): F @ x and F.rmatvec(x); its attribute `transport` is the
            TransportOperator with areas, errors and save())doc";
@@ -152,9 +209,15 @@ void add_operator(py::module_& m) {
                 const std::string file = path_of(path);
                 without_lock<void>([&] { return t.save(file); });
             },
-            "path"_a, docs::TransportOperator::save);
+            "path"_a, docs::TransportOperator::save)
+        .def("__repr__", [](const TransportOperator& t) {
+            const std::vector<double>& errors = t.row_errors();
+            const double error = errors.empty() ? 0 : *std::max_element(errors.begin(), errors.end());
+            return fmt::format("<exitance.TransportOperator: {} faces, {:.4g} m^2, error of rows at most {:.2g}>",
+                               t.size(), std::accumulate(t.areas().begin(), t.areas().end(), 0.0), error);
+        });
     m.def("transport_operator", &transport_operator, "scene"_a, "error"_a = 1e-2, py::kw_only(), "seed"_a = 1,
-          "progress"_a = py::none(), doc.c_str());
+          "time_limit"_a = py::none(), "threads"_a = py::none(), "progress"_a = py::none(), doc.c_str());
     m.def("load_transport_operator", &load_transport_operator, "path"_a, docs::load_transport_operator);
 }
 
@@ -236,7 +299,8 @@ void add_daylight(py::module_& m) {
 void add_measures(py::module_& m) {
     add_operator(m);
     static const std::string factors_doc = std::string(docs::view_factors) + view_factor_arguments;
-    m.def("view_factors", &view_factors, "scene"_a, "error"_a = 1e-3, py::kw_only(), "smallest"_a = 0.0, "seed"_a = 1,
+    m.def("view_factors", &view_factors, "scene"_a, "error"_a = py::none(), py::kw_only(), "smallest"_a = 0.0,
+          "seed"_a = 1, "tolerance"_a = py::none(), "time_limit"_a = py::none(), "threads"_a = py::none(),
           "progress"_a = py::none(), factors_doc.c_str());
     add_states_of_panes(m);
     add_daylight(m);

@@ -22,9 +22,11 @@ std::uint32_t index_of(double value, const std::string& name) {
     return static_cast<std::uint32_t>(value);
 }
 
-/// Adds faces: an array (m, k) of indices, or a sequence of sequences of different lengths.
+/// Adds faces: an array (m, k) of indices, or a sequence of sequences of different lengths. A row of fewer than k
+/// corners ends with -1, as in trimesh.
 void add_faces(const py::object& faces, api::SceneDescription& d) {
     const auto add = [&](const double* row, py::ssize_t count) {
+        while (count > 0 && row[count - 1] == -1) --count;
         d.corner_counts.push_back(static_cast<std::uint32_t>(count));
         for (py::ssize_t k = 0; k < count; ++k) d.corners.push_back(index_of(row[k], "faces"));
     };
@@ -110,7 +112,7 @@ api::Scene make(const py::object& vertices, const py::object& faces, const py::o
 api::Scene load(const py::args& files, bool strict, const py::object& length_unit, const std::string& up,
                 bool turn_bodies, const py::object& luminaires, const std::optional<std::string>& sky,
                 const py::object& epw, std::optional<bool> photometric, bool light_groups,
-                std::optional<std::size_t> texture_parts) {
+                std::optional<std::size_t> texture_parts, const std::optional<std::string>& lod) {
     std::vector<std::string> paths;
     for (const py::handle file : files) paths.push_back(path_of(py::reinterpret_borrow<py::object>(file)));
     api::LoadOptions options;
@@ -125,6 +127,7 @@ api::Scene load(const py::args& files, bool strict, const py::object& length_uni
     options.photometric = photometric;
     options.light_groups = light_groups;
     options.texture_parts = texture_parts;
+    options.lod = lod.value_or("");
     return run<api::Scene>(py::none(),
                            [&](const api::Control& control) { return api::load(std::span(paths), options, control); });
 }
@@ -191,7 +194,8 @@ constexpr const char* scene_arguments = R"doc(
 Scene(vertices, faces, ...) makes a scene from arrays. It gives the same light, to the last bit, as a file with the same
 content.
 vertices      (n, 3) metres
-faces         (m, k) indices of corners, counter-clockwise seen from the front; or a list of lists
+faces         (m, k) indices of corners, counter-clockwise seen from the front, where -1 fills up rows of fewer corners;
+              or a list of lists
 reflectance   (m, bands), or of a shape that NumPy extends to it: one number, (bands,), (m, 1)
 exitance      W/m^2, of such a shape
 material      (m,) indices of materials; `reflectance` and `exitance` then have one row per material. Coplanar
@@ -215,7 +219,8 @@ epw           path of a weather file with place and irradiances for `sky`
 photometric   emission is in lumens; None: as the file says
 light_groups  keeps the emitters of each group apart; solve() then also solves each group, for Solution.mix()
 texture_parts limit on the parts into which textured faces are cut where their colour varies; None: 500 and one more
-              for each four faces, 0: faces are not cut)doc";
+              for each four faces, 0: faces are not cut
+lod           level of detail to read from CityJSON files, such as "1.3"; None: the highest level of each object)doc";
 
 }  // namespace
 
@@ -247,7 +252,7 @@ void add_scenes(py::module_& m) {
     static const std::string load_doc = std::string(docs::load) + load_arguments;
     m.def("load", &load, "strict"_a = false, "length_unit"_a = py::none(), "up"_a = "", "turn_bodies"_a = false,
           "luminaires"_a = py::none(), "sky"_a = py::none(), "epw"_a = py::none(), "photometric"_a = py::none(),
-          "light_groups"_a = false, "texture_parts"_a = py::none(), load_doc.c_str());
+          "light_groups"_a = false, "texture_parts"_a = py::none(), "lod"_a = py::none(), load_doc.c_str());
 }
 
 }  // namespace python

@@ -14,6 +14,7 @@ struct LoadOptions {
     bool strict = false;                     ///< Repairs and unknown materials are errors.
     std::optional<double> length_unit = {};  ///< Metres per unit of .obj, .stl, .ply and .vs3 files; none: 1.
     std::optional<bool> y_is_up = {};        ///< Upright axis of these files is Y; none: Z.
+    std::string lod = {};                    ///< Level of detail to read from CityJSON files; empty: the highest.
     bool turn_bodies = false;                ///< Reverses the faces of closed bodies that are inside out.
     /// Limit on the parts into which textured faces are cut; none: 500 and one more for each four faces, 0: no face is
     /// cut.

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,9 +14,14 @@ namespace exitance::api {
 
 /// Options of view factors.
 struct ViewFactorOptions {
-    double error = 1e-3;     ///< Limit on the error of every row: sqrt(sum of variances) + sum of bounds.
+    double error = 1e-3;     ///< Limit on the error of every row, which one row in 100 exceeds.
     double smallest = 0;     ///< Smaller entries are dropped.
     std::uint64_t seed = 1;  ///< Seed of the random points.
+    /// Relative error of every entry above 1e-6. It replaces `error`. Entries are then computed without rays, which is
+    /// slower. Not for operators.
+    std::optional<double> tolerance = {};
+    std::optional<double> time_limit = {};  ///< Seconds; then the computation stops.
+    int threads = 0;                        ///< 0: as set by set_threads().
 };
 
 /// View factors between the faces of a scene as compressed sparse rows: F_ij is the share of the diffuse flux leaving
@@ -27,12 +33,16 @@ struct ViewFactors {
     std::vector<std::uint32_t> columns;  ///< Ascending within a row.
     std::vector<double> values;
     std::vector<double> row_sums;    ///< Never normalized: 1 up to the error in a closed scene.
-    std::vector<double> row_errors;  ///< Estimated error of every row.
+    std::vector<double> row_errors;  ///< Standard deviation of every row, with its bounds; empty with a tolerance.
+    std::vector<double> sky = {};    ///< Per face: share of its flux that leaves the scene; empty with a tolerance.
+    std::vector<double> back = {};   ///< Per face: share that reaches the backs of faces; empty with a tolerance.
+    std::vector<std::uint8_t> finished = {};  ///< 1 for each row that was computed before a stop; empty: all.
+    bool is_complete = true;  ///< False after a stop: other rows are empty, and the finished ones are not reciprocal.
 };
 
 /// Computes the view factors of a scene. Faces block light from both sides and receive it at their front. Same bits on
-/// any number of threads.
-/// Errors: usage for options out of range; limit after a stop.
+/// any number of threads. A stop or the time limit keeps the finished rows.
+/// Errors: usage for options out of range; limit after a stop before the first row.
 Result<ViewFactors> view_factors(const Scene& scene, const ViewFactorOptions& options = {},
                                  const Control& control = {});
 
@@ -69,8 +79,8 @@ class TransportOperator {
 /// Computes the transport between the faces of a scene: the view factors of each face from rays and closed forms, of
 /// which the small ones are merged in a tree over the faces. `options.error` bounds products for |x| <= 1. Time and
 /// memory grow in proportion to the number of faces. Same bits on any number of threads.
-/// Errors: usage for options out of range; limit after a stop.
-Result<TransportOperator> transport_operator(const Scene& scene, const ViewFactorOptions& options = {1e-2, 0, 1},
+/// Errors: usage for options out of range; limit after a stop, since an operator needs all rows.
+Result<TransportOperator> transport_operator(const Scene& scene, const ViewFactorOptions& options = {.error = 1e-2},
                                              const Control& control = {});
 
 /// Reads a file of TransportOperator::save() or of `exitance viewfactors --operator`.

@@ -152,6 +152,40 @@ TEST(ProgramView3d, EmittancesGiveExchangeFactors) {
     }
 }
 
+/// Two unit squares 1 m apart; a square of 0.5 m hides the middle half-way.
+std::string hidden_plates(const std::string& controls) {
+    return "T plates\nF 3\nC " + controls +
+           "\nV 1 0 0 0\nV 2 1 0 0\nV 3 1 1 0\nV 4 0 1 0\nV 5 0 0 1\nV 6 1 0 1\nV 7 1 1 1\nV 8 0 1 1\n"
+           "V 9 .25 .25 .5\nV 10 .75 .25 .5\nV 11 .75 .75 .5\nV 12 .25 .75 .5\n"
+           "S 1 1 2 3 4 0 0 0.9 low\nS 2 8 7 6 5 0 0 0.9 high\nO 3 9 10 11 12\nE\n";
+}
+
+TEST(ProgramView3d, HonoursEps) {
+    const TemporaryFolder folder;
+    constexpr double exact = 0.0995062947;  // by `viewfactors --tolerance 1e-9`
+    for (const char* controls : {"eps=1e-5", "EPS=1e-5", "out=0"}) {
+        write_text(folder / "plates.vs3", hidden_plates(controls));
+        const Finished run = run_program({"view3d", folder / "plates.vs3", folder / "plates.vf"});
+        ASSERT_EQ(run.status, 0) << run.err;
+        EXPECT_EQ(run.err, "");
+        EXPECT_NEAR(numbers_in(read_text(folder / "plates.vf"))[3], exact, 1.5e-6) << controls;  // six digits
+    }
+}
+
+TEST(ProgramView3d, WarnsOfUnknownControlsByName) {
+    const TemporaryFolder folder;
+    write_text(folder / "plates.vs3", hidden_plates("epz=1e-5 bananas=7 maxU=8 MAXO=8 minO=0 list=0 prjD=0 maxV=64"));
+    const Finished run = run_program({"view3d", folder / "plates.vs3", folder / "plates.vf"});
+    EXPECT_EQ(run.status, 0);
+    std::size_t warnings = 0;
+    for (std::size_t at = run.err.find("has no control"); at != std::string::npos;
+         at = run.err.find("has no control", at + 1))
+        ++warnings;
+    EXPECT_EQ(warnings, 2u) << run.err;
+    EXPECT_NE(run.err.find("'epz=1e-05'"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("'bananas=7'"), std::string::npos) << run.err;
+}
+
 TEST(ProgramView3d, AnswersToTheNameOfView3d) {
     const TemporaryFolder folder;
     write_text(folder / "cube.vs3", cube(""));

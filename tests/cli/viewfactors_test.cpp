@@ -174,8 +174,8 @@ TEST(ProgramViewFactors, ALimitBeforeTheFirstRowLeavesNoFile) {
     }
 }
 
-/// Sends a signal once the first rows are in the work file next to the output. Returns the exit status.
-int interrupt_after_rows(const std::vector<std::string>& words, const std::string& rows, int signal) {
+/// Sends a signal once the first rows are in the work file next to the output.
+Finished interrupt_after_rows(const std::vector<std::string>& words, const std::string& rows, int signal) {
     RunningProgram program(words);
     std::error_code none;
     for (int k = 0; k < 60'000; ++k) {
@@ -183,14 +183,16 @@ int interrupt_after_rows(const std::vector<std::string>& words, const std::strin
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     program.send(signal);
-    return program.finish().status;
+    return program.finish();
 }
 
 TEST(ProgramViewFactors, ASignalKeepsFinishedRowsAndResumeGivesTheSameBytes) {
     const TemporaryFolder folder;
     const std::string scene = write_long_work(folder);
     const std::vector<std::string> work{"viewfactors", scene, "-o", folder / "f.h5", "--error", "1e-2", "--check", "0"};
-    EXPECT_EQ(interrupt_after_rows(work, folder / "f.h5.rows", SIGTERM), 4);
+    const Finished stopped = interrupt_after_rows(work, folder / "f.h5.rows", SIGTERM);
+    EXPECT_EQ(stopped.status, 4);
+    EXPECT_EQ(stopped.out.find("defect"), std::string::npos) << "was not computed: " << stopped.out;
     EXPECT_TRUE(std::filesystem::exists(folder / "f.h5"));
     std::vector<std::string> on = work;
     on.push_back("--resume");
@@ -212,6 +214,60 @@ TEST(ProgramViewFactors, ResumeOfOtherWorkIsAnError) {
     const Finished other = run_program({"viewfactors", scene, "-o", output, "--error", "2e-2", "--resume"});
     EXPECT_EQ(other.status, 3);
     EXPECT_NE(other.err.find("other options"), std::string::npos) << other.err;
+}
+
+TEST(ProgramViewFactors, ARunThatStartsAgainSaysSoAndKeepsTheRowsUntilItIsComplete) {
+    const TemporaryFolder folder;
+    const std::vector<std::string> work{
+        "viewfactors", write_long_work(folder), "-o", folder / "f.h5", "--error", "1e-2", "--check", "0"};
+    const std::string rows = folder / "f.h5.rows";
+    interrupt_after_rows(work, rows, SIGKILL);
+    std::vector<std::string> limited = work;
+    limited.insert(limited.end(), {"--time-limit", "1e-4"});
+    const Finished none = run_program(limited);
+    EXPECT_EQ(none.status, 5);
+    EXPECT_NE(none.err.find("f.h5.rows has "), std::string::npos) << none.err;
+    EXPECT_NE(none.err.find("--resume"), std::string::npos) << none.err;
+    EXPECT_TRUE(std::filesystem::exists(rows)) << "a run without a row leaves those of the earlier one";
+    EXPECT_FALSE(std::filesystem::exists(rows + ".old"));
+    EXPECT_EQ(run_program(work).status, 0);
+    EXPECT_EQ(files_in(folder), 2u);  // the scene and the result
+}
+
+TEST(ProgramViewFactors, SaysWhichErrorsItsCheckFinds) {
+    const TemporaryFolder folder;
+    const Finished run = run_program(
+        {"viewfactors", write_small_room(folder), "-o", folder / "f.csv", "--error", "1e-2", "--check-rays", "100000"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    const std::string words = "where these rays find any error above ";
+    const std::size_t at = run.out.find(words);
+    ASSERT_NE(at, std::string::npos) << run.out;
+    const double found = std::stod(run.out.substr(at + words.size()));
+    EXPECT_GT(found, 1e-2);
+    EXPECT_LT(found, 2e-2);  // ten times the default number of rays
+}
+
+TEST(ProgramViewFactors, ReadsALevelOfDetailOfCityJson) {
+    const TemporaryFolder folder;
+    write_text(folder / "c.city.json", R"({"type":"CityJSON","version":"2.0",
+"transform":{"scale":[1,1,1],"translate":[0,0,0]},"vertices":[[0,0,0],[1,0,0],[1,1,0],[0,1,0]],
+"CityObjects":{"b":{"type":"Building","geometry":[
+{"type":"MultiSurface","lod":"1.2","boundaries":[[[0,1,2,3]]]},
+{"type":"MultiSurface","lod":"2.0","boundaries":[[[0,1,2]],[[0,2,3]]]}]}}})");
+    const auto surfaces = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> words{"viewfactors", folder / "c.city.json", "-o", folder / "f.csv", "--check", "0"};
+        words.insert(words.end(), options.begin(), options.end());
+        const Finished run = run_program(words);
+        EXPECT_EQ(run.status, 0) << run.err;
+        return run.out.substr(0, run.out.find(' '));
+    };
+    EXPECT_EQ(surfaces({}), "2");
+    EXPECT_EQ(surfaces({"--lod", "1.2"}), "1");
+    EXPECT_EQ(surfaces({"--lod", "2"}), "2");
+    EXPECT_EQ(run_program({"check", folder / "c.city.json", "--lod", "x"}).status, 2);
+    const Finished other = run_program({"check", write_small_room(folder), "--lod", "2"});
+    EXPECT_EQ(other.status, 2);
+    EXPECT_NE(other.err.find("none of the files is CityJSON"), std::string::npos) << other.err;
 }
 
 TEST(ProgramViewFactors, ReadsView3dAndStl) {

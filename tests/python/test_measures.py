@@ -28,6 +28,41 @@ def test_view_factors_of_a_cube_are_those_of_the_textbooks():
     assert F.sum(axis=1) == pytest.approx(np.ones(6), abs=2e-3)
 
 
+def test_view_factors_have_the_columns_of_the_file(room):
+    F = ex.view_factors(room, error=1e-2, threads=1)
+    assert F.areas == pytest.approx(room.areas) and F.finished.all()
+    assert np.allclose(F.sum(axis=1) + F.sky + F.back, 1, atol=1e-9)  # rows are closed
+    assert F.back[:6].max() > 0 and F.sky.max() < 1e-3  # the lamp's back in a closed room
+    assert 0 < F.row_errors.max() <= 1e-2 and F.emittances[0] == pytest.approx(0.6)
+    assert np.array_equal(F.toarray(), ex.view_factors(room, error=1e-2, threads=2).toarray())
+
+
+def test_view_factors_to_a_tolerance_have_no_noise(room):
+    F = ex.view_factors(room, tolerance=1e-4)
+    other = ex.view_factors(room, tolerance=1e-4, seed=2)
+    assert np.array_equal(F.toarray(), other.toarray()) and F.sky is None and F.row_errors is None
+    assert np.abs(ex.view_factors(room, error=1e-3).toarray() - F.toarray()).max() < 3e-3
+    for wrong in dict(error=1e-3, tolerance=1e-3), dict(tolerance=1), dict(time_limit=0), dict(threads=-1):
+        with pytest.raises(ex.UsageError):
+            ex.view_factors(room, **wrong)
+
+
+def test_a_stop_keeps_finished_rows_or_says_that_it_cannot():
+    rng = np.random.default_rng(1)
+    corners = rng.uniform(size=(400, 1, 3)) + 0.05 * rng.normal(size=(400, 3, 3))
+    scene = ex.Scene(corners.reshape(-1, 3), np.arange(1200).reshape(-1, 3))
+    progress = lambda phase, fraction: fraction == 0  # stops at the first report of finished rows
+    with pytest.warns(RuntimeWarning, match="of 400 rows"):
+        F = ex.view_factors(scene, error=2e-4, progress=progress)
+    assert 0 < F.finished.sum() < 400
+    assert F.sum(axis=1)[~F.finished].max() == 0 < F.sum(axis=1)[F.finished].max()
+    with pytest.raises(ex.Error, match="first row") as caught:
+        ex.view_factors(scene, error=1e-5, time_limit=1e-3)
+    assert caught.value.code == "limit"
+    with pytest.raises(ex.Error, match="all rows"):
+        ex.transport_operator(scene, error=1e-4, time_limit=0.05)
+
+
 def test_scenes_with_clear_glass_are_refused(tmp_path):
     (tmp_path / "s.mtl").write_text("newmtl grey\nKd 0.5 0.5 0.5\nnewmtl glass\nKd 0 0 0\nd 0.2\n")
     (tmp_path / "s.obj").write_text("mtllib s.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\n"
@@ -48,6 +83,7 @@ def test_the_transport_operator_is_a_linear_operator(room, tmp_path):
     assert y @ (F @ x) == pytest.approx(F.rmatvec(y) @ x, rel=1e-12)
     assert np.allclose(F @ np.stack([x, y], axis=1), np.stack([F @ x, F @ y], axis=1))
     transport = F.transport
+    assert repr(transport).startswith("<exitance.TransportOperator: 7 faces, ")
     assert transport.areas == pytest.approx(room.areas)
     assert np.allclose(F @ np.ones(7) + transport.sky + transport.back, 1, atol=1e-2)
     assert transport.closure_defect <= 1e-2 and transport.row_errors.max() <= 1e-2

@@ -1,5 +1,7 @@
 """Scenes from arrays and from files."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -67,7 +69,9 @@ def test_triangles_and_quadrilaterals_mix():
     (dict(vertices=VERTICES, faces=[[0, 1, 99]]), "corner 2"),
     (dict(vertices=VERTICES, faces=[[0, 1]]), "face 0"),
     (dict(vertices=VERTICES, faces=[[0, 1, 2.5]]), "faces"),
-    (dict(vertices=VERTICES, faces=[[0, 1, -1]]), "faces"),
+    (dict(vertices=VERTICES, faces=[[0, -1, 1]]), "faces"),
+    (dict(vertices=VERTICES, faces=[[0, 1, -1]]), "face 0"),
+    (dict(vertices=[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, np.nan, 0]], faces=[[0, 1, 2], [0, 2, 3]]), "face 1"),
     (dict(vertices=VERTICES[:, :2], faces=FACES), "vertices"),
     (dict(vertices=VERTICES, faces=FACES, reflectance=[0.5, 0.5]), "reflectance"),
     (dict(vertices=VERTICES, faces=FACES, reflectance="white"), "reflectance"),
@@ -80,6 +84,26 @@ def test_arrays_that_do_not_fit_are_errors(arguments, where):
         ex.Scene(**arguments)
     assert caught.value.where == where and caught.value.code == "usage"
     assert isinstance(caught.value, ValueError)
+
+
+def test_faces_of_fewer_corners_are_padded_as_in_trimesh():
+    vertices = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0]]
+    scene = ex.Scene(vertices, np.array([[0, 1, 2, 3], [1, 4, 2, -1]]), exitance=1.0)
+    assert scene.areas == pytest.approx([1, 0.5])
+
+
+def test_a_level_of_detail_of_cityjson_is_read(tmp_path, room_file):
+    (tmp_path / "c.city.json").write_text(json.dumps({
+        "type": "CityJSON", "version": "2.0",
+        "transform": {"scale": [1, 1, 1], "translate": [0, 0, 0]},
+        "vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]],
+        "CityObjects": {"b": {"type": "Building", "geometry": [
+            {"type": "MultiSurface", "lod": "1.2", "boundaries": [[[0, 1, 2, 3]]]},
+            {"type": "MultiSurface", "lod": "2.0", "boundaries": [[[0, 1, 2]], [[0, 2, 3]]]}]}}}))
+    assert len(ex.load(tmp_path / "c.city.json", lod="1.2")) == 1
+    assert len(ex.load(tmp_path / "c.city.json", lod="2")) == len(ex.load(tmp_path / "c.city.json")) == 2
+    with pytest.raises(ex.UsageError, match="CityJSON"):
+        ex.load(room_file, lod="2")
 
 
 def test_scenes_that_cannot_be_repaired_are_errors():

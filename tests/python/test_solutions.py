@@ -111,6 +111,9 @@ def test_files_for_other_programs_are_written(solution, tmp_path):
         assert (tmp_path / name).stat().st_size > 100
     with pytest.raises(ex.UsageError):
         solution.export(tmp_path / "room.doc")
+    with pytest.raises(ex.UsageError) as caught:
+        solution.save(tmp_path / "room.png")
+    assert "Picture.save()" in caught.value.hint and not (tmp_path / "room.png").exists()
     with pytest.raises(ex.Error) as caught:
         solution.save(tmp_path / "no folder" / "room.h5")
     assert caught.value.code == "cannot_write"

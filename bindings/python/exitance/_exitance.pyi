@@ -292,6 +292,7 @@ def load(
     photometric: Union[None, bool] = None,
     light_groups: bool = False,
     texture_parts: Union[None, int] = None,
+    lod: Union[None, str] = None,
 ) -> Scene:
     """Reads the files of one scene, checks and repairs it."""
 def load_solution(path: _Path) -> Solution:
@@ -312,9 +313,17 @@ def solve(
 ) -> Solution:
     """Computes the light of a scene until its estimated error is below the requested one."""
 def view_factors(
-    scene: Scene, error: float = 1e-3, *, smallest: float = 0.0, seed: int = 1, progress: _Progress = None
+    scene: Scene,
+    error: Union[None, float] = None,
+    *,
+    smallest: float = 0.0,
+    seed: int = 1,
+    tolerance: Union[None, float] = None,
+    time_limit: Union[None, float] = None,
+    threads: Union[None, int] = None,
+    progress: _Progress = None,
 ) -> Any:
-    """View factors between the faces of a scene, as a scipy.sparse.csr_array."""
+    """View factors between the faces of a scene, as a scipy.sparse.csr_array with attributes."""
 class TransportOperator:
     @property
     def shape(self) -> tuple[int, int]: ...
@@ -336,7 +345,15 @@ class TransportOperator:
     def closure_defect(self) -> float: ...
     def save(self, path: _Path) -> None: ...
 
-def transport_operator(scene: Scene, error: float = 1e-2, *, seed: int = 1, progress: _Progress = None) -> Any:
+def transport_operator(
+    scene: Scene,
+    error: float = 1e-2,
+    *,
+    seed: int = 1,
+    time_limit: Union[None, float] = None,
+    threads: Union[None, int] = None,
+    progress: _Progress = None,
+) -> Any:
     """Transport between the faces of a scene, as a scipy.sparse.linalg.LinearOperator."""
 def load_transport_operator(path: _Path) -> Any:
     """Reads an operator, as a scipy.sparse.linalg.LinearOperator."""

@@ -34,6 +34,14 @@ Error stopped(std::string_view what) {
     return {ErrorCode::limit, fmt::format("a stop was requested during {}", what), "", "allow more time"};
 }
 
+void Run::limit_time(const std::optional<double>& seconds) {
+    if (!seconds) return;
+    constexpr double most_seconds = 1e9;  ///< derived from the range of the clock, 2^63 ns
+    const std::chrono::duration<double> limit(std::min(*seconds, most_seconds));
+    stop_.set_deadline(exitance::StopRequest::Clock::now() +
+                       std::chrono::duration_cast<exitance::StopRequest::Clock::duration>(limit));
+}
+
 Result<std::vector<ProbePoint>> to_engine(std::span<const Probe> probes) {
     constexpr double rounding = 1e-11;  // a normal that has length 1 up to rounding keeps its digits, as in probe files
     std::vector<ProbePoint> out;

@@ -120,6 +120,8 @@ class Run {
 
     exitance::Progress& progress() { return progress_; }
     exitance::StopRequest& stop() { return stop_; }
+    /// Requests a stop after some seconds from now; none: no limit.
+    void limit_time(const std::optional<double>& seconds);
 
   private:
     PassedProgress progress_;

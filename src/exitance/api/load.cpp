@@ -27,6 +27,7 @@ Result<Scene> load_files(std::span<const std::string> files, const LoadOptions& 
     in.turn_bodies = options.turn_bodies;
     in.metres_per_unit = options.length_unit;
     in.y_is_up = options.y_is_up;
+    in.lod = options.lod;
     in.texture_parts = options.texture_parts;
     LoadedScene loaded = load_scene(files, in);
     if (!loaded.scene) return to_api(loaded.scene.error());

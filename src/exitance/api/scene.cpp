@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "exitance/api/inside.hpp"
 #include "exitance/api/sky.hpp"
 #include "exitance/scene/emitter_groups.hpp"
@@ -26,6 +28,14 @@ std::optional<Error> find_misfit(const SceneDescription& d) {
         if (d.corners[c] >= d.vertices.size())
             return usage(fmt::format("is {}, but there are {} vertices", d.corners[c], d.vertices.size()),
                          fmt::format("corner {}", c), "indices start at 0");
+    std::size_t first = 0;
+    for (std::size_t f = 0; f < faces; first += d.corner_counts[f++])
+        for (std::size_t c = first; c < first + d.corner_counts[f]; ++c) {
+            const Vec3& v = d.vertices[d.corners[c]];
+            if (!std::isfinite(v.x) || !std::isfinite(v.y) || !std::isfinite(v.z))
+                return usage(fmt::format("has vertex {} at ({}, {}, {})", d.corners[c], v.x, v.y, v.z),
+                             fmt::format("face {}", f), "coordinates are finite numbers, in metres");
+        }
     if (d.material.size() != faces)
         return usage(fmt::format("has {} entries for {} faces", d.material.size(), faces), "material");
     if (!d.group.empty() && d.group.size() != faces)

@@ -5,6 +5,7 @@
 #include "exitance/api/inside.hpp"
 #include "exitance/io/export/conforming_mesh.hpp"
 #include "exitance/io/export/export.hpp"
+#include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/io/solution/statistics_json.hpp"
 #include "exitance/what_if/light_groups/keep_light_groups.hpp"
@@ -95,6 +96,9 @@ Result<void> Solution::export_mesh(const std::string& path) const {
 }
 
 Result<void> Solution::save(const std::string& path) const {
+    if (ending(path) != ".h5" && ending(path) != ".hdf5")
+        return usage("a solution is saved as .h5", path,
+                     "use render() and Picture.save() for pictures, export() for meshes and tables");
     return take_turn<void>([&] { return to_api(write_solution(path, data_->solution, &data_->groups)); });
 }
 

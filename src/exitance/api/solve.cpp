@@ -108,11 +108,7 @@ Result<Solution> solve(const Scene& scene, const SolveOptions& options, const Co
     return take_turn<Solution>(control, [&](Run& run) -> Result<Solution> {
         const Result<SolveRequest> request = request_of(options, scene.has_light_groups());
         if (!request) return request.error();
-        if (options.time_limit) {
-            const std::chrono::duration<double> limit(std::min(*options.time_limit, 1e9));  // the clock represents it
-            run.stop().set_deadline(exitance::StopRequest::Clock::now() +
-                                    std::chrono::duration_cast<exitance::StopRequest::Clock::duration>(limit));
-        }
+        run.limit_time(options.time_limit);
         return solve_request(scene.data(), *request, run);
     });
 }

@@ -69,10 +69,14 @@ Result<TransportOperator> transport_operator(const Scene& scene, const ViewFacto
                                              const Control& control) {
     return take_turn<TransportOperator>(control, [&](Run& run) -> Result<TransportOperator> {
         if (const std::optional<Error> misuse = find_misuse(scene, options)) return *misuse;
+        if (options.tolerance)
+            return usage("is not supported by operators, whose far faces share entries", "tolerance", "give an error");
+        const ThreadsOfCall threads(options.threads);
+        run.limit_time(options.time_limit);
         const RowFactorOptions in = operator_table_options(options.error, options.smallest, options.seed);
         const exitance::Scene& inside = *scene.data().scene;
         SparseFactors table = compute_row_factors(inside, in, nullptr, run.progress(), run.stop());
-        if (run.stop().requested()) return stopped("the computation of the operator");
+        if (!table.combined) return stopped("the computation of the operator, which needs all rows");
         return wrapped(make_factor_operator(make_view_faces(inside), std::move(table), node_share * options.error));
     });
 }

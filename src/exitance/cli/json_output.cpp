@@ -55,6 +55,7 @@ std::string with_scene_options(const std::string& options, const LoadOptions& lo
     Json json = Json::parse(options);
     if (load.metres_per_unit) json["length_unit"] = *load.metres_per_unit;
     if (load.y_is_up) json["up"] = *load.y_is_up ? "y" : "z";
+    if (!load.lod.empty()) json["lod"] = load.lod;
     if (load.turn_bodies) json["turn_bodies"] = true;
     if (load.texture_parts) json["texture_parts"] = *load.texture_parts;
     return dump(json, -1);
@@ -115,7 +116,9 @@ Json json_of(const RowCheck& check) {
             {"rays", check.rays},
             {"wrong", check.wrong},
             {"wrong_sums", check.wrong_sums},
-            {"largest_sum_error", check.sum_error}};
+            {"largest_sum_error", check.sum_error},
+            {"detectable_error", check.detectable_error},
+            {"detectable_sum_error", check.detectable_sum}};
 }
 
 }  // namespace
@@ -132,18 +135,15 @@ std::string heat_json(const GrayExchange& exchange) {
 
 std::string view_factors_json(const ViewFactorFacts& facts) {
     Json json{
-        {"surfaces", facts.surfaces},
-        {"rows_finished", facts.finished_rows},
-        {"entries", facts.entries},
-        {"smallest", facts.smallest},
-        {"dropped", facts.dropped},
-        {"reciprocity_defect", facts.reciprocity_defect},
-        {"row_sum", {{"least", facts.least_row_sum}, {"most", facts.most_row_sum}}},
+        {"surfaces", facts.surfaces}, {"rows_finished", facts.finished_rows},
+        {"entries", facts.entries},   {"smallest", facts.smallest},
+        {"dropped", facts.dropped},   {"row_sum", {{"least", facts.least_row_sum}, {"most", facts.most_row_sum}}},
         {"seconds", facts.seconds},
     };
+    if (facts.has_defects) json["reciprocity_defect"] = facts.reciprocity_defect;
     if (facts.tolerance) {
         json["tolerance"] = *facts.tolerance;
-        json["entry_reciprocity_defect"] = facts.entry_defect;
+        if (facts.has_defects) json["entry_reciprocity_defect"] = facts.entry_defect;
         json["pairs_computed_again"] = facts.mended;
         json["pairs_unsettled"] = facts.unsettled;
         json["check"] = json_of(facts.check);
@@ -151,8 +151,7 @@ std::string view_factors_json(const ViewFactorFacts& facts) {
         json["error"] = facts.error;
         json["row_error"] = facts.row_error;
         json["row_error_checked"] = facts.row_check.rows.empty() ? Json() : Json(facts.row_check.error);
-        json["closure_defect"] = facts.closure_defect;
-        json["rows_unclosed"] = facts.unclosed;
+        if (facts.has_defects) json["closure_defect"] = facts.closure_defect, json["rows_unclosed"] = facts.unclosed;
         json["check"] = json_of(facts.row_check);
     }
     if (facts.transport)

@@ -31,8 +31,8 @@ std::string forecast_json(const Forecast& forecast);
 /// Options that affect the light, as a solution file records them. Threads and limits are not among them.
 std::string options_json(const SolveRequest& request);
 
-/// Adds to `options` (JSON) those options for reading the scene that were given: length_unit (metres), up, turn_bodies,
-/// texture_parts.
+/// Adds to `options` (JSON) those options for reading the scene that were given: length_unit (metres), up, lod,
+/// turn_bodies, texture_parts.
 std::string with_scene_options(const std::string& options, const LoadOptions& load);
 
 /// Names and JSON values of the options that a checkpoint depends on: the recorded options and the memory limit.
@@ -55,6 +55,7 @@ struct OperatorFacts {
 struct ViewFactorFacts {
     std::size_t surfaces = 0;
     double seconds = 0;
+    bool has_defects = true;  ///< False after a stop: the defects, which need all rows, were not computed.
     double reciprocity_defect = 0;
     double closure_defect = 0;
     double least_row_sum = HUGE_VAL, most_row_sum = 0;

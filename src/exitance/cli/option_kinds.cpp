@@ -129,6 +129,12 @@ void declare_scene(CLI::App& app, SceneArguments& scene) {
     add_choice(app, "--up", up_names, scene.load.y_is_up,
                "Upright axis of .obj, .stl, .ply and .vs3 files. Default z. Points, cameras and tables have Z up")
         ->group("Scene");
+    app.add_option("--lod", scene.load.lod,
+                   "Level of detail to read from CityJSON files, such as 1.3. Objects without it are left out, with a "
+                   "warning. Default: the highest level of each object")
+        ->check([](const std::string& word) { return read_number("--lod", word) >= 0 ? "" : "must not be negative"; })
+        ->type_name("LEVEL")
+        ->group("Scene");
     app.add_flag("--turn-bodies", scene.load.turn_bodies,
                  "Turn the faces of closed bodies that are inside out. Use it where check reports such bodies")
         ->group("Scene");

@@ -245,7 +245,9 @@ void declare(CLI::App& app, View3dArguments& arguments) {
     app.add_option("OUT", arguments.output, "File with the factors (.vf) to write")->type_name("OUT")->required();
     app.add_option_function<double>(
            "--error", [&arguments](double e) { arguments.error = e; },
-           "Error of every row. Default: ten times the file's eps, from 1e-4 to 1e-2")
+           "Error of every row, found by rays. Default: the file's eps, at least 1e-3. An eps below 1e-4, or below "
+           "1e-3 in "
+           "scenes of up to 40 faces, is the tolerance of every factor, without rays")
         ->type_name("R")
         ->check(CLI::Range(1e-6, 1.0));
     declare_work(app, arguments, arguments.threads);
@@ -319,9 +321,10 @@ void declare(CLI::App& app, ViewFactorArguments& arguments) {
         };
         return app.add_option_function<std::string>(name, read, help)->type_name("R");
     };
-    CLI::Option* const error = add_range("--error", arguments.error, 1e-7, 0.5,
-                                         "Error of every row: standard deviation of its sampled entries plus bounds of "
-                                         "the others. Default 1e-3. Use it for heat balances");
+    CLI::Option* const error =
+        add_range("--error", arguments.error, 1e-7, 0.5,
+                  "Limit on the error of every row, which at most one row in 100 exceeds. Default 1e-3. "
+                  "Use it for heat balances");
     add_range(
         "--tolerance", arguments.tolerance, 1e-12, 0.1,
         "Relative error of every entry above 1e-6, instead of --error. It is slower; use it if single entries matter")

@@ -226,19 +226,23 @@ class RowAppender {
         out_.starts.push_back(out_.values.size());
         out_.row_sums.push_back(sum_), out_.dropped.push_back(dropped_);
         out_.row_errors.push_back(std::sqrt(variance) + bound + dropped_);
+        limits_.push_back(std::sqrt(variance_.limit(missed_variance, options_.deviations)) + bound + dropped_);
         sum_ = dropped_ = 0, variance_ = {};
     }
+    /// Per row: the limit that its error exceeds rarely.
+    std::vector<double> take_limits() { return std::move(limits_); }
 
   private:
     const CombineOptions& options_;
     SparseFactors& out_;
     double sum_ = 0, dropped_ = 0;
     ClosedVariance variance_;
+    std::vector<double> limits_;
 };
 
 }  // namespace
 
-void combine_rows(std::vector<RawRow>& rows, const CombineOptions& options, SparseFactors& out) {
+std::vector<double> combine_rows(std::vector<RawRow>& rows, const CombineOptions& options, SparseFactors& out) {
     if (out.starts.size() == 1) find_defects(rows, options.error, out);  // after the first pass
     Combination combination(rows, out.areas);
     combination.combine();
@@ -255,6 +259,7 @@ void combine_rows(std::vector<RawRow>& rows, const CombineOptions& options, Spar
         combination.release(i);
     }
     out.finished.assign(rows.size(), 1), out.combined = true;
+    return appender.take_limits();
 }
 
 void store_raw_rows(const std::vector<RawRow>& rows, const std::vector<std::uint8_t>& finished,

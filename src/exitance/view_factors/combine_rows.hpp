@@ -8,8 +8,9 @@
 namespace exitance {
 
 struct CombineOptions {
-    double smallest = 0;  ///< Smaller entries are dropped.
-    double error = 1e-3;  ///< R; closure defects are computed for rows with at most this error of the missed share.
+    double smallest = 0;    ///< Smaller entries are dropped.
+    double deviations = 0;  ///< See ClosedVariance::limit().
+    double error = 1e-3;    ///< R; closure defects are computed for rows with at most this error of the missed share.
 };
 
 /// Combines the two estimates of every pair of faces, weighted by their numbers of samples. These were fixed before
@@ -21,7 +22,8 @@ struct CombineOptions {
 /// variance, it is distributed over the entries: by the smallest change, relative to the variances, that closes all
 /// rows and keeps reciprocity. Sets all of `out` except areas and emittances. Memory: that of the rows, half of it
 /// again, and the result. rows  one per face, in order; entries of 0 are added so that each pair has two or none
-void combine_rows(std::vector<RawRow>& rows, const CombineOptions& options, SparseFactors& out);
+/// Returns per row the limit that its error exceeds rarely (ClosedVariance::limit), with its bounds.
+std::vector<double> combine_rows(std::vector<RawRow>& rows, const CombineOptions& options, SparseFactors& out);
 
 /// Stores the finished rows without combining them.
 /// rows      one per face, in order

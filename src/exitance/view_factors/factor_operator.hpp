@@ -43,11 +43,15 @@ struct FactorOperator {
 /// sum over a row or one of 16 groups is off by more than R, where shares of 0.8 and 0.6 miss R in 2% of the rows.
 /// The sum of a row is off by as much as its shares of the sky and of backs: these get 0.3, derived from 3.3 standard
 /// deviations, which one value in 1,000 exceeds.
-inline constexpr double table_share = 0.55, node_share = 0.5, missed_share = 0.3;
+inline constexpr double table_share = 0.5, node_share = 0.5, missed_share = 0.3;
 
 /// Options of the table of which an operator of a given error is made.
 inline RowFactorOptions operator_table_options(double error, double smallest, std::uint64_t seed) {
-    return {.error = table_share * error, .smallest = smallest, .missed_error = missed_share * error, .seed = seed};
+    return {.error = table_share * error,
+            .deviations = 0,
+            .smallest = smallest,
+            .missed_error = missed_share * error,
+            .seed = seed};
 }
 
 /// Merges the smallest entries of every row of a table into nodes of a tree over the faces. Whatever the occlusion, a

@@ -82,6 +82,7 @@ CheckedRow check_row(const RowScene& ready, const std::vector<double>& F, std::s
             sum += (F[j] - 0.5 * (G1[j] + G2[j])) * x[j], share += 0.5 * (G1[j] + G2[j]) * x[j];
         const double deviation = std::sqrt(std::max(0.0, share * (1 - share)) / (2 * n) + 0.25 * one);
         checked.largest_sum_error = std::max(checked.largest_sum_error, std::abs(sum));
+        checked.largest_sum_deviation = std::max(checked.largest_sum_deviation, deviation);
         checked.largest_sum_excess = std::max(checked.largest_sum_excess, (std::abs(sum) - options.error) / deviation);
     }
     return checked;
@@ -158,6 +159,10 @@ RowCheck check_rows_by_rays(const Scene& scene, std::span<const std::uint8_t> fi
         sum += row.squared_error / static_cast<double>(faces.size());
         check.wrong_sums += row.largest_sum_excess > RowCheck::beyond_noise;
         check.sum_error = std::max(check.sum_error, row.largest_sum_error);
+        check.detectable_error =
+            std::max(check.detectable_error, row.detectable(options.error, RowCheck::beyond_noise));
+        check.detectable_sum =
+            std::max(check.detectable_sum, options.error + RowCheck::beyond_noise * row.largest_sum_deviation);
         check.wrong += std::max(row.squared_excess(options.error), row.largest_sum_excess) > RowCheck::beyond_noise;
     }
     check.rays = 2 * options.rays * faces.size();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -29,21 +30,29 @@ struct CheckedRow {
     /// Maximum over x of (|sum_j (F - G)_j x_j| - R) in standard errors, for x = 1 and for the indicators of the
     /// groups.
     double largest_sum_excess = 0;
-    double largest_sum_error = 0;  ///< Maximum over x of |sum_j (F - G)_j x_j|, including the noise of the rays.
+    double largest_sum_error = 0;      ///< Maximum over x of |sum_j (F - G)_j x_j|, including the noise of the rays.
+    double largest_sum_deviation = 0;  ///< Maximum over x of the noise of that sum.
     /// Excess of the squared error over R^2 in standard errors; negative if it is below.
     double squared_excess(double R) const { return (squared_error - R * R) / squared_error_deviation; }
+    /// Smallest error of the row that the rays distinguish from R, by `deviations` standard errors of the squared
+    /// error.
+    double detectable(double R, double deviations) const {
+        return std::sqrt(R * R + deviations * squared_error_deviation);
+    }
 };
 
 /// Result of checking rows by rays. A table of zeros would pass checks of entries, but fails those of sums over rows
 /// and groups.
 struct RowCheck {
     std::vector<CheckedRow> rows;
-    std::size_t rays = 0;        ///< Rays of all rows together.
-    std::size_t wrong = 0;       ///< Number of rows with an excess above `beyond_noise`.
-    std::size_t wrong_sums = 0;  ///< Number of rows with such an excess of a sum over the row or a group.
-    double error = 0;            ///< Root mean squared error of the rows; 0 if noise makes the mean negative.
-    double sum_error = 0;        ///< Largest difference of a sum over a row or group, including the noise of the rays.
-    bool is_complete = true;     ///< False if a stop was requested before the last row.
+    std::size_t rays = 0;         ///< Rays of all rows together.
+    std::size_t wrong = 0;        ///< Number of rows with an excess above `beyond_noise`.
+    std::size_t wrong_sums = 0;   ///< Number of rows with such an excess of a sum over the row or a group.
+    double error = 0;             ///< Root mean squared error of the rows; 0 if noise makes the mean negative.
+    double sum_error = 0;         ///< Largest difference of a sum over a row or group, including the noise of the rays.
+    double detectable_error = 0;  ///< Every larger error of a row would have been found; maximum over the rows.
+    double detectable_sum = 0;    ///< Like detectable_error, for the error of a sum over a row or group.
+    bool is_complete = true;      ///< False if a stop was requested before the last row.
     static constexpr double beyond_noise = 3.5;
 };
 

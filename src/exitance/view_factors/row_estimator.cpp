@@ -7,6 +7,7 @@
 #include "exitance/base/random.hpp"
 #include "exitance/form_factors/pair_form_factor.hpp"
 #include "exitance/view_factors/closed_variance.hpp"
+#include "exitance/view_factors/pooled_row.hpp"
 
 namespace exitance {
 namespace {
@@ -49,13 +50,26 @@ double cast_rays_for(double share, double variance) {
     return std::pow(share / (0.5 * variance), 1 / cast_rate);
 }
 
+/// Number of further samples, in units of those taken, after which the pooled estimates have `ratio` times the
+/// deviation: (1 + r^(2 - rate)) / (1 + r)^2 = ratio^2.
+double further_samples(double ratio) {
+    constexpr double safety = 0.95, least = 0.1, most = 64;  // the pilot's predictions err by some 20%
+    const double wanted = safety * ratio * ratio;
+    double low = least, high = most;
+    for (int step = 0; step < 30; ++step) {
+        const double r = std::sqrt(low * high);
+        ((1 + std::pow(r, 2 - cast_rate)) / ((1 + r) * (1 + r)) > wanted ? low : high) = r;
+    }
+    return high;
+}
+
 }  // namespace
 
-RowEstimator::RowEstimator(const RowScene& scene, double error, double missed_error, std::uint64_t seed,
-                           const StopRequest& stop)
+RowEstimator::RowEstimator(const RowScene& scene, const RowDemand& demand, std::uint64_t seed, const StopRequest& stop)
     : scene_(scene),
-      error_(error),
-      missed_error_(missed_error),
+      error_(demand.error),
+      missed_error_(demand.missed_error),
+      deviations_(demand.deviations),
       seed_(seed),
       stop_(stop),
       caster_(scene, stop),
@@ -82,8 +96,8 @@ double RowEstimator::left_of_pair(std::size_t face, std::uint32_t column) const 
     return std::pow(1 + std::pow(ratio, 2 / (1 + pair_rate)), -pair_rate);
 }
 
-/// Expected error of a row after it is combined.
-double RowEstimator::combined_error(const RawRow& row) const {
+/// Limit on the error of a row after it is combined.
+double RowEstimator::combined_limit(const RawRow& row) const {
     ClosedVariance sum;
     auto pair = pairs_.begin();
     for (const RowEntry& entry : row.entries) {
@@ -91,7 +105,7 @@ double RowEstimator::combined_error(const RawRow& row) const {
         const bool by_pair = pair != pairs_.end() && pair->column == entry.column && !pair->to_cast;
         sum.add(double(entry.variance) * (by_pair ? pair->left : left_of_cast(row.face, entry.column)));
     }
-    return std::sqrt(sum.closed(row.missed_variance)) + row.bound;
+    return std::sqrt(sum.limit(row.missed_variance, deviations_)) + row.bound;
 }
 
 /// True if `other` may cover part of the face, so that rays starting there are blocked at once (Occluders::is_covered).
@@ -203,7 +217,7 @@ void RowEstimator::classify(std::size_t face, std::uint32_t round) {
     }
     std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) { return a.column < b.column; });
     const double n = static_cast<double>(pilot_batches * pilot_rays_a_batch);
-    rest_ = rest_squares_ = 0;
+    rest_ = rest_squares_ = rest_cubes_ = 0;
     add_rest(1 / n);
     for (const RowCaster::Count& count : pilot_) {
         const auto at = std::lower_bound(pairs_.begin(), pairs_.end(), count.column,
@@ -213,9 +227,9 @@ void RowEstimator::classify(std::size_t face, std::uint32_t round) {
     }
 }
 
-/// Numbers of samples that reach a variance at the least cost: for variances a^2 n^-r, one more sample must reduce the
-/// variance by the same amount per cost in all estimators.
-RowEstimator::Plan RowEstimator::plan(double variance) {
+/// Numbers of samples that reach a limit on the squared error at the least cost: for variances a^2 n^-r, one more
+/// sample must reduce the variance by the same amount per cost in all estimators.
+RowEstimator::Plan RowEstimator::plan(double limit) {
     const double for_sky = std::pow(missed_deviation_ / (missed_error_ * missed_error_), 1 / cast_rate);
     const double min_cast = std::max({double(min_batches * min_rays_a_batch), std::min(for_sky, max_sky_rays),
                                       std::min(sky_rays_per_error / error_, min_sky_rays)});
@@ -227,21 +241,21 @@ RowEstimator::Plan RowEstimator::plan(double variance) {
     const auto cast_samples = [&](double price) {
         return std::max<double>(min_cast, std::pow(cast_rate * rest_ / price, 1 / (1 + cast_rate)));
     };
-    const auto variance_at = [&](double price) {
+    const auto limit_at = [&](double price) {
         const double each = std::pow(cast_samples(price), -cast_rate);
         ClosedVariance sum;
-        sum.add(rest_ * each, rest_squares_ * each * each);
+        sum.add(rest_ * each, rest_squares_ * each * each, rest_cubes_ * each * each * each);
         for (const Pair& pair : pairs_) {
             if (pair.is_exact || pair.to_cast) continue;
             const double a = pair.deviation();
             sum.add(a * a * std::pow(pair_samples(pair, price), -pair_rate));
         }
-        return sum.closed(missed_ * each);
+        return sum.limit(missed_ * each, deviations_);
     };
     double low = 1e-40, high = 1;  // bounds on the variance that a unit of cost removes
     for (int step = 0; step < 60; ++step) {
         const double price = std::sqrt(low * high);
-        (variance_at(price) > variance ? high : low) = price;
+        (limit_at(price) > limit ? high : low) = price;
     }
     for (Pair& pair : pairs_) std::tie(pair.batches, pair.rays_a_batch) = batches_of(pair_samples(pair, low), 4, 4);
     Plan plan;
@@ -292,7 +306,8 @@ RawRow RowEstimator::measure(std::size_t face, std::uint32_t round, const Plan& 
     return row;
 }
 
-std::optional<RawRow> RowEstimator::operator()(std::size_t face, std::uint32_t round, double share) {
+std::optional<RawRow> RowEstimator::operator()(std::size_t face, std::uint32_t round, double share,
+                                               const RawRow* before) {
     find_candidates(face);
     caster_.cast(face, pilot_batches, pilot_rays_a_batch, under_others_,
                  hash(seed_, face, round, std::uint64_t(Use::pilot), std::uint64_t(0)));
@@ -301,18 +316,24 @@ std::optional<RawRow> RowEstimator::operator()(std::size_t face, std::uint32_t r
     missed_ = sky + back, missed_deviation_ = std::max(sky * (1 - sky), back * (1 - back));
     classify(face, round);
     const double wanted = share * error_;
-    double aim = wanted;
     RawRow row;
-    for (int attempt = 0; attempt < max_attempts; ++attempt) {
-        if (stop_.requested()) return {};
-        const std::uint64_t key = hash(round, static_cast<std::uint64_t>(attempt));
-        row = measure(face, static_cast<std::uint32_t>(key), plan(aim * aim));
-        if (stop_.requested()) return {};
-        row.round = round;
-        const double error = combined_error(row);
-        if (error <= wanted) break;
-        aim *= std::min(0.8, 0.9 * wanted / error);
+    double samples = 0;  // of the row, as a multiple of those that the plan for `wanted` has
+    if (before) {
+        row = *before;
+        samples = std::pow(wanted / std::max(combined_limit(row), wanted), 2 / cast_rate);
     }
+    for (int attempt = 0; attempt < max_attempts; ++attempt) {
+        const double limit = samples > 0 ? combined_limit(row) : HUGE_VAL;
+        if (limit <= wanted) break;
+        const double more = samples > 0 ? samples * further_samples(wanted / limit) : 1;
+        const std::uint64_t key = hash(round, static_cast<std::uint64_t>(attempt));
+        const double aim = wanted * wanted * std::pow(more, -cast_rate);
+        const RawRow measured = measure(face, static_cast<std::uint32_t>(key), plan(aim));
+        if (stop_.requested()) return {};
+        row = samples > 0 ? pooled(row, measured) : measured;
+        samples += more;
+    }
+    row.round = round;
     return row;
 }
 

@@ -12,9 +12,16 @@
 
 namespace exitance {
 
-/// Computes one row of view factors with the error R that it has after it is combined with the other rows: sqrt(sum_j
-/// v_ij) + sum_j |c_ij| <= R, where v is the variance of sampled entries and c the error bound of integrated ones. A
-/// row uses three estimators:
+/// Required accuracy of rows.
+struct RowDemand {
+    double error = 1e-3;         ///< R, limit on the error of a row.
+    double missed_error = 1e-3;  ///< Limit on the standard deviations of the shares of the sky and of backs.
+    double deviations = 0;       ///< A row exceeds R as rarely as a normal variable exceeds this, see ClosedVariance.
+};
+
+/// Computes one row of view factors with the error R that it has after it is combined with the other rows: sqrt(L) +
+/// sum_j |c_ij| <= R, where L is the limit of the sampled entries (ClosedVariance::limit) and c the error bound of
+/// integrated ones. A row uses three estimators:
 ///
 ///   - for unoccluded pairs, the closed form (PairFormFactor);
 ///   - for partly hidden pairs that are not near, the unoccluded factor times a visible share by shadow rays
@@ -26,13 +33,13 @@ namespace exitance {
 /// object serves one thread.
 class RowEstimator {
   public:
-    /// missed_error  limit on the standard deviations of the shares of the sky and of backs
-    RowEstimator(const RowScene& scene, double error, double missed_error, std::uint64_t seed, const StopRequest& stop);
+    RowEstimator(const RowScene& scene, const RowDemand& demand, std::uint64_t seed, const StopRequest& stop);
 
     /// Computes the row of a face; empty if a stop is requested meanwhile.
     /// round  repetitions use other random numbers
     /// share  share of R that the row may use
-    std::optional<RawRow> operator()(std::size_t face, std::uint32_t round, double share);
+    /// before  an estimate of the row with which the new samples are pooled; null: none
+    std::optional<RawRow> operator()(std::size_t face, std::uint32_t round, double share, const RawRow* before);
 
   private:
     /// A pair that is treated individually, unless `to_cast` returns it to the cast rays.
@@ -52,18 +59,20 @@ class RowEstimator {
     void find_candidates(std::size_t face);
     double left_of_cast(std::size_t face, std::uint32_t column) const;
     double left_of_pair(std::size_t face, std::uint32_t column) const;
-    double combined_error(const RawRow& row) const;
+    double combined_limit(const RawRow& row) const;
     bool may_be_under(std::size_t face, std::size_t other) const;
     double smallest_candidate(std::size_t face, double variance);
     void classify(std::size_t face, std::uint32_t round);
     View view_of(std::size_t face, std::size_t other);
     void classify_pair(std::size_t face, Pair& pair, std::uint32_t round);
-    Plan plan(double variance);
-    void add_rest(double share) { rest_ += share, rest_squares_ += share * share; }
+    Plan plan(double limit);
+    void add_rest(double share) {
+        rest_ += share, rest_squares_ += share * share, rest_cubes_ += share * share * share;
+    }
     RawRow measure(std::size_t face, std::uint32_t round, const Plan& plan);
 
     const RowScene& scene_;
-    double error_, missed_error_;
+    double error_, missed_error_, deviations_;
     std::uint64_t seed_;
     const StopRequest& stop_;
     RowCaster caster_;
@@ -79,9 +88,9 @@ class RowEstimator {
     std::vector<RowCaster::Count> pilot_;
     std::vector<double> seen_by_pilot_;  ///< Scratch of smallest_candidate(), one entry per face; zero between calls.
     std::vector<Pair> pairs_;
-    double rest_squares_ = 0;      ///< Sum of the squares of the terms of rest_.
-    double missed_ = 0;            ///< Pilot's share of rays that hit no front.
-    double missed_deviation_ = 0;  ///< The larger variance of one ray's sky and back.
+    double rest_squares_ = 0, rest_cubes_ = 0;  ///< Sums of the squares and cubes of the terms of rest_.
+    double missed_ = 0;                         ///< Pilot's share of rays that hit no front.
+    double missed_deviation_ = 0;               ///< The larger variance of one ray's sky and back.
     /// Pilot's sum of F (1 - F) over the entries F that are left to cast rays, each times left_of_cast.
     double rest_ = 0;
 };

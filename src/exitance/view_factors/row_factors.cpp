@@ -44,32 +44,34 @@ class RowRun {
             out.areas.push_back(scene_.surfaces()[s].area);
             out.emittances.push_back(1 - mean(scene_.material(s).reflectance));
         }
-        rows_.resize(out.size()), shares_.assign(out.size(), first_share);
+        rows_.resize(out.size()), shares_.assign(out.size(), first_share), is_pooled_.assign(out.size(), 0);
         finished_.assign(out.size(), 0);
         resumed_ = resumed_rows(store_);
         std::vector<std::size_t> faces(out.size());
         std::iota(faces.begin(), faces.end(), 0);
-        const CombineOptions combine{options_.smallest, options_.error};
+        const CombineOptions combine{options_.smallest, options_.deviations, options_.error};
         for (std::uint32_t round = 0; compute_rows(faces, round); ++round) {
             progress_.phase("combine rows");
-            combine_rows(rows_, combine, out);
-            faces = round < max_repeats ? faces_above(out) : std::vector<std::size_t>();
+            const std::vector<double> limits = combine_rows(rows_, combine, out);
+            faces = round < max_repeats ? faces_above(out, limits) : std::vector<std::size_t>();
             if (faces.empty()) return out;
         }
         store_raw_rows(rows_, finished_, combine, out);
+        out.is_settled = false;  // even if all rows have been computed once
         return out;
     }
 
   private:
-    /// Rows whose combined error, without dropped entries, is above R, or that miss 1 by more than R with the sky and
+    /// Rows whose combined limit, without dropped entries, is above R, or that miss 1 by more than R with the sky and
     /// backs of faces: rare events of a distribution with a long tail, which the variance of the row's own samples does
     /// not show. Sets the share of R that they may use next.
-    std::vector<std::size_t> faces_above(const SparseFactors& out) {
+    std::vector<std::size_t> faces_above(const SparseFactors& out, const std::vector<double>& limits) {
         std::vector<std::size_t> faces;
         for (std::size_t i = 0; i < out.size(); ++i) {
             const double missing = 1 - out.row_sums[i] - out.dropped[i] - out.sky[i] - out.back[i];
-            const double error = std::max(out.row_errors[i] - out.dropped[i], std::abs(missing));
+            const double error = std::max(limits[i] - out.dropped[i], std::abs(missing));
             if (error <= options_.error) continue;
+            is_pooled_[i] = std::abs(missing) <= options_.error;
             shares_[i] *= std::max(least_factor, repeated_share * options_.error / error);
             faces.push_back(i);
         }
@@ -118,9 +120,12 @@ class RowRun {
                 std::unique_ptr<RowEstimator>& estimator = estimators_[from / rows_a_range / processes()];
                 if (!estimator)
                     estimator = std::make_unique<RowEstimator>(
-                        *ready_, options_.error, options_.missed_error.value_or(options_.error), options_.seed, stop_);
+                        *ready_,
+                        RowDemand{options_.error, options_.missed_error.value_or(options_.error), options_.deviations},
+                        options_.seed, stop_);
                 for (std::size_t k = from; k < to && !stop_.requested(); ++k)
-                    made[k] = (*estimator)(faces[k], round, shares_[faces[k]]);
+                    made[k] = (*estimator)(faces[k], round, shares_[faces[k]],
+                                           is_pooled_[faces[k]] ? &rows_[faces[k]] : nullptr);
             },
             {"rows"});
         exchange_archived(
@@ -152,6 +157,8 @@ class RowRun {
     std::array<std::unique_ptr<RowEstimator>, rows_a_step / rows_a_range> estimators_;
     std::vector<RawRow> rows_, resumed_;
     std::vector<double> shares_;  ///< Share of R that each row may use on its own.
+    /// 1 for each row that gets further samples in the next round; 0 if all of them are new, because the row misses 1.
+    std::vector<std::uint8_t> is_pooled_;
     std::vector<std::uint8_t> finished_;
 };
 

@@ -10,8 +10,15 @@
 
 namespace exitance {
 
+/// Standard deviations that a normal variable exceeds in one case of 100; derived from its distribution.
+inline constexpr double one_row_in_a_hundred = 2.33;
+
 struct RowFactorOptions {
-    double error = 1e-3;  ///< R: limit for every row on sqrt(sum of variances) + sum of bounds.
+    double error = 1e-3;  ///< R: limit for every row on its error, with its bounds.
+    /// Rows exceed R as rarely as a normal variable exceeds its mean by that many standard deviations, both in the root
+    /// of their squared error and in sums over groups of faces: see ClosedVariance::limit(). 0: R limits sqrt(sum of
+    /// variances), which half of all rows exceed.
+    double deviations = one_row_in_a_hundred;
     double smallest = 0;  ///< Smaller entries are dropped; their sum is added to their row's error.
     /// Limit on the standard deviations of the shares of the sky and of backs; empty: `error`. If they are off by d, so
     /// is the row's sum, since rows are closed.

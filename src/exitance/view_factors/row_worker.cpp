@@ -24,7 +24,7 @@ constexpr double min_crowding_ratio = 8;  ///< Ratio of crowding() of two faces 
 constexpr double max_area_ratio = 16;     ///< Ratio of areas above which the smaller face is the receiver.
 constexpr double max_area_ratio_cluttered = 2;  ///< Like max_area_ratio, with more than few_blockers.
 /// Contour sums of faces of very different sizes cancel: with a tenth of the tolerance one was wrong by 0.6%.
-constexpr double contour_share = 1e-4;
+constexpr double entry_contour_share = 1e-4;
 
 /// Limit on the cells into which critical lines may cut a receiver. Cells cost the same at any tolerance; without lines
 /// the work grows with the given power of 1 / tolerance. In an office at 1e-3, up to 300 cells took 0.02 to 2 ms per
@@ -102,7 +102,8 @@ void RowWorker::flush_batches(std::size_t i, std::span<double> row) {
         batch.faces.clear();
     }
     for (std::uint32_t j : exact_)
-        row[j] = exchange_area(receiver.outline, pairs_.faces()[j].outline, contour_share * tolerance_) / receiver.area;
+        row[j] = exchange_area(receiver.outline, pairs_.faces()[j].outline, entry_contour_share * tolerance_) /
+                 receiver.area;
     exact_.clear();
 }
 
@@ -188,7 +189,7 @@ double RowWorker::occluded(std::size_t i, std::size_t j, std::span<const std::ui
                 part = occluded_pieces(receiver, source, front_r_, front_s_, free);
             standing_between_ = between;
             all &= free;
-            if (free) part = exchange_area(front_r_, front_s_, contour_share * tolerance_);
+            if (free) part = exchange_area(front_r_, front_s_, entry_contour_share * tolerance_);
             total += part;
         }
     unoccluded = all;
@@ -207,7 +208,8 @@ double RowWorker::entry(std::size_t i, std::size_t j, double tolerance, Means me
     bool unoccluded = of_pair_.empty();
     double F = unoccluded ? 0 : occluded(i, j, of_pair_, unoccluded);
     const ViewFace &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
-    if (unoccluded) F = exchange_area(receiver.outline, source.outline, contour_share * tolerance_) / receiver.area;
+    if (unoccluded)
+        F = exchange_area(receiver.outline, source.outline, entry_contour_share * tolerance_) / receiver.area;
     tolerance_ = usual, is_alone_ = false, most_evaluations_ = usual_evaluations;
     return std::clamp(F, 0.0, 1.0);
 }

@@ -233,9 +233,9 @@ ExitCode run(const ViewArguments& arguments, Terminal& terminal) {
     });
     if (!solves) {
         const LoadOptions& load = arguments.scene.load;
-        if (load.metres_per_unit || load.y_is_up || load.turn_bodies || load.texture_parts)
+        if (load.metres_per_unit || load.y_is_up || !load.lod.empty() || load.turn_bodies || load.texture_parts)
             return terminal.fail(
-                {ErrorCode::usage, "--length-unit, --up, --turn-bodies and --texture-parts are for scenes",
+                {ErrorCode::usage, "--length-unit, --up, --lod, --turn-bodies and --texture-parts are for scenes",
                  arguments.scene.files[0], "a solution is in metres, with Z up, and its faces are cut"});
         Result<Solution> solution = load_solution(arguments.scene.files[0], Rehearsed::not_yet, &groups);
         if (!solution) return terminal.fail(solution.error());

@@ -44,6 +44,7 @@ ViewFactorFacts facts_of(const SparseFactors& table, double seconds) {
     ViewFactorFacts facts;
     facts.surfaces = table.size(), facts.entries = table.entries(), facts.seconds = seconds;
     facts.finished_rows = table.size() - unfinished_rows(table);
+    facts.has_defects = facts.finished_rows == facts.surfaces && table.is_settled;
     facts.reciprocity_defect = table.reciprocity_defect, facts.closure_defect = table.closure_defect;
     facts.entry_defect = table.entry_defect;
     facts.mended = table.mended, facts.unsettled = table.unsettled, facts.unclosed = table.unclosed;
@@ -68,9 +69,10 @@ std::string words_of_rows(const ViewFactorFacts& facts) {
                                    facts.error, facts.entries);
     if (facts.dropped > 0)
         text += fmt::format("dropped: entries below {:g}, at most {:.3g} in a row\n", facts.smallest, facts.dropped);
-    text += fmt::format(
-        "rows computed independently: reciprocity defect {:.2g} of a row's largest entry, closure defect {:.2g}\n",
-        facts.reciprocity_defect, facts.closure_defect);
+    if (facts.has_defects)
+        text += fmt::format(
+            "rows computed independently: reciprocity defect {:.2g} of a row's largest entry, closure defect {:.2g}\n",
+            facts.reciprocity_defect, facts.closure_defect);
     if (facts.transport)
         text += fmt::format(
             "operator: {} entries, {} of them nodes; error of rows at most {:.3g}, closure defect {:.2g}; product "
@@ -81,10 +83,10 @@ std::string words_of_rows(const ViewFactorFacts& facts) {
     if (!facts.row_check.rows.empty())
         text += fmt::format(
             "rays: {} random rows, {} rays each: error {:.2g}, sums over rows and groups {:.2g}; {} rows above the "
-            "error "
-            "requested\n",
+            "error requested, where these rays find any error above {:.2g}\n",
             facts.row_check.rows.size(), facts.row_check.rays / facts.row_check.rows.size(), facts.row_check.error,
-            facts.row_check.sum_error, wrong_rows(facts));
+            facts.row_check.sum_error, wrong_rows(facts),
+            facts.transport ? facts.row_check.detectable_sum : facts.row_check.detectable_error);
     return text;
 }
 
@@ -103,9 +105,11 @@ OperatorFacts facts_of(const FactorOperator& transport) {
 }
 
 std::string words_of_entries(const ViewFactorFacts& facts) {
-    std::string text = fmt::format(
-        "reciprocity: entries above 1e-6 agree to {:.2g}, {:.2g} of their rows' largest; {} pairs computed again\n",
-        facts.entry_defect, facts.reciprocity_defect, facts.mended);
+    std::string text;
+    if (facts.has_defects)
+        text = fmt::format(
+            "reciprocity: entries above 1e-6 agree to {:.2g}, {:.2g} of their rows' largest; {} pairs computed again\n",
+            facts.entry_defect, facts.reciprocity_defect, facts.mended);
     const RayCheck& check = facts.check;
     if (check.entries > 0)
         text += fmt::format(
@@ -205,6 +209,11 @@ class ViewFactorRun {
                                                    scene_.surfaces().size());
         if (!file) return file.error();
         rows_.emplace(std::move(*file));
+        if (rows_->set_aside() > 0)
+            terminal_.note(fmt::format(
+                "warning: {} has {} finished rows of a stopped run, and this run starts again; to continue from them, "
+                "stop it, rename {} to {} and add --resume",
+                rows_->path(), rows_->set_aside(), rows_->set_aside_path(), rows_->path()));
         return {};
     }
 
@@ -261,7 +270,7 @@ class ViewFactorRun {
     }
 
     ExitCode no_rows() {
-        if (rows_) rows_->remove();
+        if (rows_) rows_->withdraw();
         if (const std::optional<ExitCode> signal = common_stop_.signal()) return *signal;
         return terminal_.fail({ErrorCode::limit, "stopped before the first row of view factors was finished", "",
                                "allow more time or memory, or a larger error"});

@@ -151,7 +151,7 @@ class CityJsonReader {
                 error(fmt::format("object '{}' uses a template that does not exist", shown(id)));
                 continue;
             }
-            if (lod_of(shape) != lod) continue;
+            if (number_of_lod(lod_of(shape)) != number_of_lod(lod)) continue;  // "2" is "2.0"
             has_lod = true;
             read_geometry(geometry, shape);
         }

@@ -180,8 +180,8 @@ void convert_units(ReadScene& read, const LoadOptions& options) {
     }
 }
 
-/// Returns an error if --length-unit or --up cannot be used with these files.
-std::optional<Error> refuse_units(std::span<const std::string> paths, const LoadOptions& options) {
+/// Returns an error if --length-unit, --up or --lod cannot be used with these files.
+std::optional<Error> refuse_options(std::span<const std::string> paths, const LoadOptions& options) {
     const auto all = [&](const auto& is) {
         return std::all_of(paths.begin(), paths.end(), [&](const std::string& p) { return is(reader_of(p)); });
     };
@@ -193,6 +193,9 @@ std::optional<Error> refuse_units(std::span<const std::string> paths, const Load
     if (options.y_is_up.value_or(false) && has_radiance)
         return Error{ErrorCode::usage, "Radiance's files have Z up: their skies and suns say where up is", "--up",
                      "turn the geometry with !xform -rx 90"};
+    if (!options.lod.empty() && all([](Reader r) { return r != Reader(read_city); }))
+        return Error{ErrorCode::usage, "none of the files is CityJSON, which alone has levels of detail", "--lod",
+                     "leave the option out"};
     return std::nullopt;
 }
 
@@ -309,7 +312,7 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
             paths.begin() + static_cast<std::ptrdiff_t>(i))
             return refused(ErrorCode::usage, path, "is named twice", "each file of a scene once");
     }
-    if (std::optional<Error> e = refuse_units(paths, options))
+    if (std::optional<Error> e = refuse_options(paths, options))
         return {{*e, {{Finding::Kind::error, e->where, 0, e->message, e->hint}}}};
     ReadScene read = read_files(paths, options);
     if (options.sky) give_sky(*options.sky, read);

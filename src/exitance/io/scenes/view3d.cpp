@@ -11,6 +11,7 @@
 #include "exitance/base/polygon.hpp"
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/io/scenes/view3d_controls.hpp"
 #include "exitance/scene/findings.hpp"
 #include "exitance/scene/joining/outline.hpp"
 #include "exitance/scene/joining/uncross.hpp"
@@ -96,10 +97,14 @@ class View3dReader {
 
     void read_controls(TextLines& items) {
         while (!items.rest().empty()) {
-            const std::string name(items.word());
+            const std::string written(items.word()), name = view3d_control_name(written);
             double value = 0;
             if (number_of_word(items.word(), value) != NumberKind::finite)
-                return find(Finding::Kind::warning, line_, fmt::format("control '{}' has no value", shown(name)));
+                return find(Finding::Kind::warning, line_, fmt::format("control '{}' has no value", shown(written)));
+            if (!is_view3d_control(name))
+                find(Finding::Kind::warning, line_,
+                     fmt::format("'{}={}' is ignored: View3D has no control of this name", shown(written), value),
+                     "its controls are eps, out, encl, emit, row, col, list, maxU, maxO, minO, maxV and prjD");
             if ((name == "encl" || name == "emit" || name == "row" || name == "col") && value != 0)
                 find(Finding::Kind::warning, line_,
                      fmt::format("'{}={}' is ignored: all rows are computed, without adjustment", shown(name), value));

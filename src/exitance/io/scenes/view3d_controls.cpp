@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <map>
@@ -24,6 +25,18 @@ std::string title_of(std::string_view line) {
 
 }  // namespace
 
+std::string view3d_control_name(std::string_view word) {
+    std::string name(word);
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    return name;
+}
+
+bool is_view3d_control(std::string_view name) {
+    static constexpr std::array<std::string_view, 12> names{"eps",  "out",  "encl", "emit", "row",  "col",
+                                                            "list", "maxu", "maxo", "mino", "maxv", "prjd"};
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 Result<View3dControls> read_view3d_controls(const std::string& path) {
     const Result<std::string> text = read_whole_file(path);
     if (!text) return text.error();
@@ -42,7 +55,7 @@ Result<View3dControls> read_view3d_controls(const std::string& path) {
         if (kind == 'e' || kind == '*') break;
         if (kind != 'c') continue;
         while (!items.rest().empty()) {
-            const auto control = known.find(std::string(items.word()));
+            const auto control = known.find(view3d_control_name(items.word()));
             double value = 0;
             if (number_of_word(items.word(), value) != NumberKind::finite) break;  // read_view3d() warns of it
             if (control == known.end()) continue;

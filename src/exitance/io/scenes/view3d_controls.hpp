@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "exitance/base/result.hpp"
 
@@ -15,6 +16,12 @@ struct View3dControls {
     int out = 0;                  ///< Format of the result; 0: text, 1: binary, 2: exchange areas with names.
     std::string title;            ///< Text of the last `T` line.
 };
+
+/// Name of a control in lower case; View3D accepts either case.
+std::string view3d_control_name(std::string_view word);
+
+/// True if View3D has a control of this name, which is in lower case.
+bool is_view3d_control(std::string_view name);
 
 /// Reads the `C` and `T` lines of a .vs3 file; the last value of a control counts. Errors: cannot_read, and bad_input
 /// for an integer control whose value is not one.

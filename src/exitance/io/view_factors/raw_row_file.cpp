@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -14,7 +15,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::array<char, 8> magic = {'E', 'X', 'I', 'R', 'O', 'W', 'S', '2'};
+constexpr std::array<char, 8> magic = {'E', 'X', 'I', 'R', 'O', 'W', 'S', '3'};
 
 /// Header of a record, followed by its entries.
 struct RecordHead {
@@ -45,6 +46,33 @@ Error refused(const std::string& path, int error) {
     return {ErrorCode::cannot_write, std::string("cannot be written: ") + std::strerror(error), path, ""};
 }
 
+Error not_rows(const std::string& path) {
+    return {ErrorCode::bad_input, "is not a file of rows of view factors", path, "remove it"};
+}
+
+/// Number of records in a work file, which may be of any scene; 0 if there is no file. Error: it is of another kind.
+Result<std::size_t> count_rows(const std::string& path) {
+    const std::unique_ptr<std::FILE, decltype(&std::fclose)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+    if (!file) return 0;
+    std::array<char, magic.size()> found{};
+    const std::size_t bytes = std::fread(found.data(), 1, found.size(), file.get());
+    if (bytes == 0) return 0;
+    if (bytes < found.size() || !std::equal(found.begin(), found.end() - 1, magic.begin())) return not_rows(path);
+    if (found != magic) return 0;  // of another version, which no program of this one resumes
+    std::fseek(file.get(), sizeof(std::array<std::uint64_t, 2>), SEEK_CUR);
+    std::size_t rows = 0;
+    for (RecordHead head; std::fread(&head, sizeof head, 1, file.get()) == 1; ++rows) {
+        if (head.entries > UINT32_MAX) break;  // damaged
+        if (head.entries > 0) {
+            RowEntry last;
+            const long skipped = static_cast<long>((head.entries - 1) * sizeof last);
+            if (std::fseek(file.get(), skipped, SEEK_CUR) != 0 || std::fread(&last, sizeof last, 1, file.get()) != 1)
+                break;
+        }
+    }
+    return rows;
+}
+
 }  // namespace
 
 long RawRowFile::read_records(std::size_t faces) {
@@ -70,6 +98,12 @@ long RawRowFile::read_records(std::size_t faces) {
 Result<RawRowFile> RawRowFile::open(const std::string& path, const std::string& work, bool resume, std::size_t faces) {
     RawRowFile out;
     out.path_ = path;
+    if (!resume) {
+        const Result<std::size_t> rows = count_rows(path);
+        if (!rows) return rows.error();
+        if (*rows > 0 && std::rename(path.c_str(), out.set_aside_path().c_str()) != 0) return refused(path, errno);
+        out.set_aside_ = *rows;
+    }
     const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (descriptor < 0) return refused(path, errno);
     out.file_.reset(::fdopen(descriptor, "r+b"));
@@ -82,8 +116,7 @@ Result<RawRowFile> RawRowFile::open(const std::string& path, const std::string& 
         std::array<char, magic.size()> found_magic;
         std::array<std::uint64_t, 2> found_id;
         const bool any = std::fread(found_magic.data(), found_magic.size(), 1, file) == 1;
-        if (any && found_magic != magic)
-            return Error{ErrorCode::bad_input, "is not a file of rows of view factors", path, "remove it"};
+        if (any && found_magic != magic) return not_rows(path);
         if (any && std::fread(found_id.data(), sizeof found_id, 1, file) == 1) {
             if (found_id != id)
                 return Error{ErrorCode::bad_input, "holds rows of another scene, other options or another program",
@@ -128,6 +161,15 @@ void RawRowFile::flush() {
 void RawRowFile::remove() {
     file_.reset();
     ::unlink(path_.c_str());
+    if (set_aside_ > 0) ::unlink(set_aside_path().c_str());
+    set_aside_ = 0;
+}
+
+void RawRowFile::withdraw() {
+    file_.reset();
+    ::unlink(path_.c_str());
+    if (set_aside_ > 0) std::rename(set_aside_path().c_str(), path_.c_str());
+    set_aside_ = 0;
 }
 
 }  // namespace exitance

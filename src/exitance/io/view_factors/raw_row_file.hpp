@@ -15,7 +15,7 @@ namespace exitance {
 class RawRowFile final : public RawRowStore {
   public:
     /// Opens the work file.
-    /// path    the file; without `resume` its content is deleted
+    /// path    the file; without `resume`, one that has rows is renamed, see set_aside()
     /// work    a line that identifies the scene, the options and the program
     /// resume  whether to read the rows of an earlier run with the same `work`
     /// faces   number of faces of the scene
@@ -29,8 +29,13 @@ class RawRowFile final : public RawRowStore {
     /// False if a write has failed: rows after that point are not in the file.
     bool is_whole() const { return !failed_; }
     const std::string& path() const { return path_; }
-    /// Closes and removes the file.
+    /// Number of rows of an earlier run that open() did not resume but renamed to set_aside_path().
+    std::size_t set_aside() const { return set_aside_; }
+    std::string set_aside_path() const { return path_ + ".old"; }
+    /// Closes and removes the file, and the rows that were set aside.
     void remove();
+    /// Closes and removes the file; restores the rows that were set aside.
+    void withdraw();
 
   private:
     struct Close {
@@ -43,6 +48,7 @@ class RawRowFile final : public RawRowStore {
     std::string path_;
     std::unique_ptr<std::FILE, Close> file_;
     std::vector<RawRow> resumed_;
+    std::size_t set_aside_ = 0;
     bool failed_ = false;
 };
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "support/temporary_folder.hpp"
 
@@ -60,7 +61,7 @@ TEST(RawRowFile, TruncatedAndDamagedRowsAreIgnoredAndOverwritten) {
     }
 }
 
-TEST(RawRowFile, RowsOfOtherWorkAreRejectedOrWithoutResumeDeleted) {
+TEST(RawRowFile, RowsOfOtherWorkAreRejectedOrWithoutResumeSetAside) {
     const TemporaryFolder folder;
     const std::string path = write_two(folder);
     const Result<RawRowFile> other = RawRowFile::open(path, "other work", true, 3);
@@ -69,8 +70,30 @@ TEST(RawRowFile, RowsOfOtherWorkAreRejectedOrWithoutResumeDeleted) {
     Result<RawRowFile> fresh = RawRowFile::open(path, "other work", false, 3);
     ASSERT_TRUE(fresh);
     EXPECT_TRUE(fresh->resumed().empty());
+    EXPECT_EQ(fresh->set_aside(), 2U);
+    EXPECT_TRUE(std::filesystem::exists(fresh->set_aside_path()));
     fresh->remove();
     EXPECT_FALSE(std::filesystem::exists(path));
+    EXPECT_FALSE(std::filesystem::exists(path + ".old"));
+}
+
+TEST(RawRowFile, WithdrawnWorkRestoresTheRowsThatWereSetAside) {
+    const TemporaryFolder folder;
+    const std::string path = write_two(folder);
+    RawRowFile::open(path, "work", false, 3)->withdraw();
+    EXPECT_FALSE(std::filesystem::exists(path + ".old"));
+    EXPECT_EQ(RawRowFile::open(path, "work", true, 3)->resumed().size(), 2U);
+}
+
+TEST(RawRowFile, FilesOfAnotherKindAreNotOverwritten) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "F.rows") << "notes on rows of chairs";
+    for (const bool resume : {false, true}) {
+        const Result<RawRowFile> file = RawRowFile::open(folder / "F.rows", "work", resume, 3);
+        ASSERT_FALSE(file);
+        EXPECT_EQ(file.error().code, ErrorCode::bad_input);
+    }
+    EXPECT_EQ(std::filesystem::file_size(folder / "F.rows"), 23U);
 }
 
 }  // namespace
