@@ -112,6 +112,67 @@ TEST_F(StatesOfCourt, SaysWhySdaIsNotThatOfLm83) {
     EXPECT_EQ(deviations[0], "the weather is not that of a whole year");
 }
 
+/// A court of 4 x 3 x 2.5 m with a pane over half of it, in a Honeybee model: the pane has a state with a lid below it,
+/// and the shade 'lid', which is below the open half, is black or missing.
+std::string court_model() {
+    const auto sheet = [](const std::string& name, const std::string& corners, const std::string& radiance) {
+        return "{\"identifier\": \"" + name + "\", \"geometry\": {\"boundary\": [" + corners +
+               "]}, \"properties\": {\"radiance\": {" + radiance + "}}}";
+    };
+    const std::string wall = "\"modifier\": \"generic_wall_0.50\"", black = "{\"modifier\": \"black\"}";
+    std::string out =
+        "{\"type\": \"Model\", \"properties\": {\"radiance\": {\"modifiers\": [{\"type\": \"Plastic\", "
+        "\"identifier\": \"black\"}, {\"type\": \"Void\", \"identifier\": \"none\"}]}},\n\"orphaned_shades\": [";
+    for (const std::string corners : {"[0,0,0],[4,0,0],[4,3,0],[0,3,0]", "[0,0,0],[0,0,2.5],[4,0,2.5],[4,0,0]",
+                                      "[4,0,0],[4,0,2.5],[4,3,2.5],[4,3,0]", "[4,3,0],[4,3,2.5],[0,3,2.5],[0,3,0]",
+                                      "[0,3,0],[0,3,2.5],[0,0,2.5],[0,0,0]"})
+        out += sheet("wall", corners, wall) + ",\n";
+    out += sheet("lid", "[2,0,2.4],[4,0,2.4],[4,3,2.4],[2,3,2.4]",
+                 "\"dynamic_group_identifier\": \"cover\", \"states\": [{\"modifier\": \"none\"}, " + black + "]");
+    const std::string glass = "\"modifier\": \"generic_exterior_window_vis_0.64\"";
+    return out + "],\n\"orphaned_apertures\": [" +
+           sheet("roof", "[0,0,2.5],[2,0,2.5],[2,3,2.5],[0,3,2.5]",
+                 "\"dynamic_group_identifier\": \"roofs\", \"states\": [{" + glass + "}, {" + glass +
+                     ", \"shades\": [" +
+                     sheet("blind", "[0,0,2.4],[2,0,2.4],[2,3,2.4],[0,3,2.4]", "\"modifier\": \"black\"") + "]}]") +
+           "]}\n";
+}
+
+TEST_F(StatesOfCourt, OfHoneybeeModelsMayHaveShades) {
+    write_text(folder_ / "court.hbjson", court_model());
+    const auto daylight = [&](const std::string& name, const std::string& state, const std::string& more = "") {
+        write_text(folder_ / "states.toml", "# a comment\n\n[[group]]\nname = 'a'\ndynamic_group = '" + name +
+                                                "'\nrule = 'constant'\nstays = '" + state + "'\n" + more);
+        return run_program({"daylight", folder_ / "court.hbjson", "--epw", folder_ / "w.epw", "--points",
+                            folder_ / "p.csv", "--error", "0.1", "-o", folder_ / "year", "--json", "--target", "20000",
+                            "--states", folder_ / "states.toml"});
+    };
+    const auto electric = [&](const std::string& name, const std::string& state) {
+        const Finished ran = daylight(name, state);
+        EXPECT_EQ(ran.status, 0) << ran.err;
+        EXPECT_EQ(ran.err.find("twice"), std::string::npos) << ran.err;
+        return number(ran, "mean_electric_hours");
+    };
+    const double open = electric("roofs", "0");
+    EXPECT_EQ(electric("cover", "0"), open);
+    // The sensors are below the glass: a blind there takes more light than a lid over the other half.
+    const double covered = electric("cover", "1"), blind = electric("roofs", "1");
+    EXPECT_GT(covered, 1.1 * open);
+    EXPECT_GT(blind, covered);
+
+    const std::string second = "[[group]]\nname = 'b'\ndynamic_group = 'roofs'\nrule = 'lm83'\n";
+    const Finished both = daylight("cover", "1", second);
+    EXPECT_EQ(both.status, 3);
+    EXPECT_NE(both.err.find("states.toml:8: group 'a' has shades, which change the light of all groups"),
+              std::string::npos)
+        << both.err;
+    const Finished own_states = daylight("cover", "1", open_and_shut);
+    EXPECT_NE(own_states.err.find("'cover' has shades, whose states are those of the model"), std::string::npos);
+    const Finished none = daylight("nothing", "1");
+    EXPECT_NE(none.err.find("states.toml:3: the model has no dynamic objects of group 'nothing'"), std::string::npos)
+        << none.err;
+}
+
 TEST_F(StatesOfCourt, FaultsOfTheFileAreErrorsWithTheirLine) {
     const std::vector<std::pair<std::string, std::string>> faults{
         {"", "has no groups of panes"},

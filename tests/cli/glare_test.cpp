@@ -72,6 +72,36 @@ TEST(ProgramGlare, RefusesWrongInput) {
     EXPECT_EQ(run_program({"glare", folder / "none.h5", "--observers", "0,0,1.2 0,1,0"}).status, 3);
 }
 
+TEST(ProgramGlare, TablesMayNameNormalsAndHoneybeeModelsHaveViews) {
+    const TemporaryFolder folder;
+    const std::string sky = write_sky(folder);
+    const auto observers = [&](const std::string& words) {
+        const Finished run = run_program({"glare", sky, "--observers", words, "--json"});
+        EXPECT_EQ(run.status, 0) << run.err;
+        return nlohmann::json::parse(run.out)["observers"];
+    };
+    const std::string rows = "0,0,1.2,0,-1,0\n0,0,1.2,1,0,0\n";
+    write_text(folder / "d.csv", "x,y,z,dx,dy,dz\n" + rows);
+    write_text(folder / "n.csv", "x,y,z,nx,ny,nz\n" + rows);
+    write_text(folder / "m.hbjson",
+               R"({"type": "Model", "properties": {"radiance": {"views": [
+                 {"identifier": "desk", "position": [0, 0, 1.2], "direction": [0, -1, 0], "up_vector": [0, 0, 1]},
+                 {"identifier": "eye", "view_type": "h", "position": [0, 0, 1.2], "direction": [2, 0, 0],
+                  "up_vector": [0, 0, 1]},
+                 {"identifier": "plan", "view_type": "l", "position": [0, 0, 9], "direction": [0, 0, -1],
+                  "up_vector": [0, 1, 0]}]}}})");
+    const nlohmann::json expected = observers(folder / "d.csv"), by_normals = observers(folder / "n.csv"),
+                         of_model = observers(folder / "m.hbjson");
+    EXPECT_EQ(expected, by_normals);
+    ASSERT_EQ(of_model.size(), 2u) << "a parallel view has no eye";
+    EXPECT_EQ(of_model[1]["name"], "eye");
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_EQ(of_model[i]["dgp"], expected[i]["dgp"]);
+    write_text(folder / "part.csv", "x,y,z,nx,ny\n0,0,1.2,0,-1\n");
+    write_text(folder / "none.csv", "x,y,z\n0,0,1.2\n");
+    for (const std::string file : {"part.csv", "none.csv"})
+        EXPECT_EQ(run_program({"glare", sky, "--observers", folder / file}).status, 3);
+}
+
 TEST(ProgramGlare, OfAYearIsWrittenPerViewAndHour) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder);
@@ -94,6 +124,12 @@ TEST(ProgramGlare, OfAYearIsWrittenPerViewAndHour) {
     EXPECT_NE(hours.find("6,21,1,0,0,0,0,0,0,0,0,0\n"), std::string::npos) << "no light at night";
     EXPECT_EQ(daylight({"--views", folder / "v.csv"}).status, 0);
     EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(folder / "year/glare_hours.npy")));
+    write_text(folder / "n.csv", "x,y,z,nx,ny,nz\n10,1,1.2,0,1,0\n");
+    EXPECT_EQ(daylight({"--views", folder / "n.csv"}).status, 0);
+    const std::string one = read_text(folder / "year/glare.csv");
+    EXPECT_EQ(std::count(one.begin(), one.end(), '\n'), 2);
+    EXPECT_EQ(one.substr(0, one.find('\n', one.find('\n') + 1)),
+              views.substr(0, views.find('\n', views.find('\n') + 1)));
     EXPECT_EQ(daylight({"--views", folder / "v.csv", "--part", "1/2"}).status, 2);
     EXPECT_EQ(daylight({"--views", folder / "none.csv"}).status, 3);
     write_text(folder / "bad.csv", "x,y,z,dx,dy,dz\n10,1,1.2,0,0,0\n");

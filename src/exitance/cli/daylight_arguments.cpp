@@ -114,7 +114,7 @@ void declare_en_17037(CLI::App& app, DaylightArguments& arguments) {
         app.add_option(
                "--views", arguments.views,
                "Views at which daylight glare (DGP) is evaluated in every hour: CSV x,y,z,dx,dy,dz, or x,y,z for "
-               "eight directions each; written to glare.csv and glare_hours.npy")
+               "eight directions each, or a Honeybee model with views; written to glare.csv and glare_hours.npy")
             ->type_name("FILE");
     for (const char* other : {"--coefficients", "--part", "--merge"}) views->excludes(app.get_option(other));
     app.add_option_function<std::string>(

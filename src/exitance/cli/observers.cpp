@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 #include "exitance/io/files/text_table.hpp"
+#include "exitance/io/scenes/honeybee/honeybee_model.hpp"
 #include "exitance/measure/floor_rooms.hpp"
 #include "exitance/measure/glare/room_observers.hpp"
 #include "exitance/transport/stage.hpp"
@@ -19,28 +21,59 @@ namespace {
 constexpr std::array<Vec3, 8> around_the_horizon{
     {{0, 1, 0}, {1, 1, 0}, {1, 0, 0}, {1, -1, 0}, {0, -1, 0}, {-1, -1, 0}, {-1, 0, 0}, {-1, 1, 0}}};
 
+/// Returns the eyes of a Honeybee model's views.
+Result<std::vector<Observer>> eyes_of_model(const std::string& path) {
+    const HoneybeeModel model = read_honeybee_model(path);
+    for (const Finding& finding : model.findings)
+        if (finding.kind == Finding::Kind::error)
+            return Error{ErrorCode::bad_input, finding.message, path, finding.hint};
+    std::vector<Observer> out;
+    for (const HoneybeeEye& eye : model.eyes) out.push_back({eye.name, eye.at, eye.direction});
+    if (out.empty())
+        return Error{ErrorCode::bad_input, "holds no views", path,
+                     "add a perspective or fisheye view to the model, or name a table of eyes"};
+    return out;
+}
+
+/// Returns the position in a row of the direction: that of dx, dy, dz or that of nx, ny, nz, as in tables of sensors;
+/// none if the table has neither. Error: some of three columns.
+Result<std::optional<std::size_t>> find_direction(const NumberTable& table) {
+    for (const std::size_t first : {0, 3}) {
+        const int count = int(table.has(first)) + int(table.has(first + 1)) + int(table.has(first + 2));
+        if (count == 3) return std::optional<std::size_t>(3 + first);
+        if (count > 0)
+            return table.lines().error("the header has no three columns of a direction",
+                                       "name them dx,dy,dz or nx,ny,nz");
+    }
+    return std::optional<std::size_t>();
+}
+
 /// Reads rows with an eye and a direction. `around`: rows without a direction are eight views.
 Result<std::vector<Observer>> load_table(const std::string& path, bool around) {
-    std::vector<std::string> eye{"x", "y", "z"}, direction{"dx", "dy", "dz"};
-    if (!around) eye.insert(eye.end(), direction.begin(), direction.end()), direction.clear();
-    Result<NumberTable> table = NumberTable::open(path, eye, direction);
+    if (is_honeybee_file(path)) return eyes_of_model(path);
+    Result<NumberTable> table = NumberTable::open(path, {"x", "y", "z"}, {"dx", "dy", "dz", "nx", "ny", "nz"});
     if (!table) return table.error();
+    const Result<std::optional<std::size_t>> direction = find_direction(*table);
+    if (!direction) return direction.error();
+    if (!around && !*direction) return table->lines().error("the header has no column dx", "it needs x,y,z,dx,dy,dz");
     std::vector<Observer> out;
     const auto add = [&](const Point& x, const Normal& view) {
         out.push_back({fmt::format("{}", out.size() + 1), x, view});
     };
-    for (std::array<double, 6> row{};;) {
+    for (std::array<double, 9> row{};;) {
         const Result<bool> more = table->next(row);
         if (!more) return more.error();
         if (!*more) break;
         const Point x{row[0], row[1], row[2]};
-        const Vec3 view{row[3], row[4], row[5]};
-        if (std::isnan(view.x) && std::isnan(view.y) && std::isnan(view.z)) {
+        const std::size_t first = direction->value_or(3);
+        const Vec3 view{row[first], row[first + 1], row[first + 2]};
+        if (around && std::isnan(view.x) && std::isnan(view.y) && std::isnan(view.z)) {
             for (const Vec3& way : around_the_horizon) add(x, normalized(way));
             continue;
         }
         if (!(norm(view) > 0))
-            return table->lines().error("has a line of sight without a direction", "dx, dy, dz must not all be 0");
+            return table->lines().error("has a line of sight without a direction",
+                                        "its three components must not all be 0");
         add(x, normalized(view));
     }
     if (out.empty())

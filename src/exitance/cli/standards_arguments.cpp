@@ -72,10 +72,9 @@ GlareThreshold read_threshold(const std::string& word) {
 
 void declare(CLI::App& app, GlareArguments& arguments) {
     app.add_option("SOLUTION", arguments.solution, "Solution file (.h5), as solve writes it")->required();
-    add_observers(
-        app, arguments.observers,
-        "Observers: 'x,y,z dx,dy,dz' (eye and line of sight), a table (CSV x,y,z,dx,dy,dz), or auto: at 1.2 m "
-        "in the middle of each wall. May be given several times")
+    add_observers(app, arguments.observers,
+                  "Observers: 'x,y,z dx,dy,dz' (eye and line of sight), a table (CSV x,y,z,dx,dy,dz), a Honeybee model "
+                  "with views, or auto: at 1.2 m in the middle of each wall. May be given several times")
         ->required();
     app.add_option_function<std::string>(
            "--threshold", [&arguments](const std::string& word) { arguments.threshold = read_threshold(word); },
@@ -99,9 +98,10 @@ void declare_standards(CLI::App& app, ReportArguments& arguments) {
     add_positive(app, "--maintenance", arguments.maintenance, "FACTOR",
                  "Maintenance factor of light on planes, at most 1. Default 1")
         ->check(CLI::Range(0.0, 1.0));
-    add_observers(app, arguments.observers,
-                  "Observers for glare (UGR): 'x,y,z dx,dy,dz' (eye and line of sight), a table (CSV x,y,z,dx,dy,dz), "
-                  "or auto: at 1.2 m in the middle of each wall. May be given several times");
+    add_observers(
+        app, arguments.observers,
+        "Observers for glare (UGR): 'x,y,z dx,dy,dz' (eye and line of sight), a table (CSV x,y,z,dx,dy,dz), "
+        "a Honeybee model with views, or auto: at 1.2 m in the middle of each wall. May be given several times");
     app.add_option(
            "--tables", arguments.tables,
            "Folder for planes.csv, plane_1.csv, plans with isolux lines (plane_1.svg, .pdf), ..., observers.csv")

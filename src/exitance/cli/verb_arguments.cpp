@@ -3,12 +3,6 @@
 namespace exitance {
 namespace {
 
-constexpr std::array<std::pair<Component, std::string_view>, 3> component_names{{
-    {Component::total, "total"},
-    {Component::direct, "direct"},
-    {Component::indirect, "indirect"},
-}};
-
 constexpr std::array<std::pair<FactorFormat, std::string_view>, 7> factor_format_names{{
     {FactorFormat::csv, "csv"},
     {FactorFormat::vf, "vf"},
@@ -48,7 +42,7 @@ void declare(CLI::App& app, ProbeArguments& arguments) {
                  "Evaluate direct light by closed forms even where rays are cheaper, so that it has no noise. Slow in "
                  "scenes of thousands of faces under a sky");
     add_choice(
-        app, "--component", component_names, arguments.component,
+        app, "--component", light_component_names, arguments.component,
         "Part of the light: all of it, light straight from emitters, or light that was reflected. Default total");
     declare_unit(app, arguments.unit);
     CLI::Option* const reference = add_count(app, "--reference", arguments.reference_paths, 1,
@@ -173,6 +167,10 @@ void declare(CLI::App& app, BakeArguments& arguments) {
         ->check(CLI::Range(1, 256));
     add_choice(app, "--quantity", light_map_quantity_names, format.quantity,
                "Quantity in the maps, W/m^2. Default irradiance");
+    add_choice(
+        app, "--component", light_component_names, format.component,
+        "Part of the light: all of it, light straight from emitters, or light that was reflected. Default total");
+    app.add_flag("--hdr", format.with_hdr, "Also write Radiance pictures (.hdr, RGBE), with 1% of relative precision");
     app.add_flag_callback(
         "--half", [&format] { format.precision = Precision::half; },
         "Write EXR files of 16-bit instead of 32-bit numbers");

@@ -272,7 +272,7 @@ void add_form_factors_through(const PaneGroups& groups, const Occluders& occlude
     const GlazedSum sum(at.n, diffuse);
     const std::vector<PaneInView> panes = panes_in_view(occluders, at, n, dot(n, visible[0]));
     for (const Part& part : parts_behind(panes, visible)) {
-        PaneGroups::Mask crossed = 0;
+        PaneGroups::Mask crossed = groups.has_all_light() ? 1 : 0;
         for (const Pane* pane : part.panes)
             crossed |= groups.mask_of(static_cast<std::size_t>(pane - occluders.scene().panes().data()));
         if (crossed == 0) continue;

@@ -110,6 +110,7 @@ Result<UvTarget> find_uv_target(const BakeArguments& arguments, const Scene& sce
                      "--uv", "use --uv unwrap, or leave --uv out"};
     UvBakeOptions options;
     options.density = arguments.density, options.padding = static_cast<int>(arguments.padding);
+    options.component = arguments.format.component;
     if (arguments.size) options.size = {arguments.size->width, arguments.size->height};
     return find_uv_target(scene, scene_file, arguments.uv, options);
 }
@@ -188,7 +189,7 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     const Stopwatch watch;
     BakeOptions options;
     options.density = arguments.density, options.padding = static_cast<int>(arguments.padding);
-    options.curved = &curved;
+    options.curved = &curved, options.component = arguments.format.component;
     const CommonStop common(terminal, terminal.limits().keep());
     const StopRequest& stop = common.request();
     const Result<LightMaps> maps = bake_light_maps(light, options, terminal.progress(), stop);

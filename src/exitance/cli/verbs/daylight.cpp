@@ -240,11 +240,18 @@ Result<void> tell_states(const DaylightSimulation& simulation, const DaylightReq
     return write_states(arguments.output, *request.states, *simulation.states(), request.task.hours);
 }
 
+/// Warns of sensors that are probably in the wrong place.
+void warn_of_sensors(const DaylightSimulation& simulation, Terminal& terminal) {
+    if (!is_first_process()) return;
+    for (const std::string& warning : simulation.sensor_warnings()) terminal.progress().warn(warning);
+}
+
 /// Evaluates and writes all sensors.
 Result<DaylightSummary> run_whole(const Scene& scene, const DaylightRequest& request, std::span<const ViewOut> views,
                                   const DaylightArguments& arguments, const StopRequest& stop, Terminal& terminal) {
     if (!arguments.coefficients.empty()) return run_coefficients(scene, request, views, arguments, stop);
     DaylightSimulation simulation(scene, request.task, terminal.progress(), stop);
+    warn_of_sensors(simulation, terminal);
     if (const Result<void> found = simulation.find_light(); !found) return found.error();
     if (const Result<void> told = tell_states(simulation, request, arguments, terminal); !told) return told.error();
     std::optional<GlareSummary> glare;

@@ -83,17 +83,18 @@ std::string chart_json(const Scene& scene, SurfaceId s, const Chart& chart, cons
         curved ? fmt::format(", \"curved_difference\": {:.6g}", curved->value()) : std::string());
 }
 
-std::string manifest(const Scene& scene, const LightMaps& light, LightMapQuantity quantity, const ToneMap& tones,
+std::string manifest(const Scene& scene, const LightMaps& light, const LightMapFormat& format, const ToneMap& tones,
                      std::span<const std::string> groups) {
     std::string text = fmt::format(
-        "{{\n  \"version\": 1,\n  \"generator\": \"exitance {}\",\n  \"quantity\": \"{}\",\n  \"unit\": \"{}\",\n"
-        "  \"texels_per_metre\": {},\n  \"padding\": {},\n  \"model\": \"scene.glb\",\n  \"exposure\": {},\n  "
+        "{{\n  \"version\": 1,\n  \"generator\": \"exitance {}\",\n  \"quantity\": \"{}\",\n  \"component\": \"{}\",\n"
+        "  \"unit\": \"{}\",\n  \"texels_per_metre\": {},\n  \"padding\": {},\n  \"model\": \"scene.glb\",\n  "
+        "\"exposure\": {},\n  "
         "\"maps\": [",
-        program_version, name_of(quantity), unit_of(scene, quantity), light.density, light.padding, tones.scale);
+        program_version, name_of(format.quantity), name_of(format.component), unit_of(scene, format.quantity),
+        light.density, light.padding, tones.scale);
     for (std::size_t m = 0; m < light.maps.size(); ++m)
-        text += fmt::format("{}\n    {{\"file\": \"{}.exr\", \"preview\": \"{}.png\", \"width\": {}, \"height\": {}}}",
-                            m > 0 ? "," : "", light_map_stem(m), light_map_stem(m), light.maps[m].size.width,
-                            light.maps[m].size.height);
+        text += fmt::format("{}\n    {{{}, \"width\": {}, \"height\": {}}}", m > 0 ? "," : "",
+                            map_files_json(m, format), light.maps[m].size.width, light.maps[m].size.height);
     text += groups_json(groups, light.maps.size());
     text += "\n  ]," + curved_json(light.curved) + "\n  \"charts\": [";
     Field<RegionId, const CurvedDifference*> curved(scene.regions().size());
@@ -109,15 +110,11 @@ std::string manifest(const Scene& scene, const LightMaps& light, LightMapQuantit
 Result<void> write_pictures(const Scene& scene, const LightMaps& light, std::optional<std::size_t> group,
                             const LightMapFormat& format, const std::string& folder) {
     const ToneMap tones = preview_tones(scene, light, format.quantity);
-    const std::string unit =
-        fmt::format("R, G, B: {} in {}", name_of(format.quantity), unit_of(scene, format.quantity));
     for (std::size_t m = 0; m < light.maps.size(); ++m) {
         const std::string stem = folder + "/" + light_map_stem(m, group);
         const LinearImage image = numbers(scene, light, m, format.quantity);
-        const ImageFacts facts{{"software", "exitance"}, {"units", unit}};
-        if (const Result<void> written = write_exr(stem + ".exr", image, facts, format.precision); !written)
-            return written;
-        const std::string exposure = fmt::format("{} in {} times {:.6g}, then a filmic curve", name_of(format.quantity),
+        if (const Result<void> written = write_map_numbers(stem, image, scene, format); !written) return written;
+        const std::string exposure = fmt::format("{} in {} times {:.6g}, then a filmic curve", values_name(format),
                                                  unit_of(scene, format.quantity), tones.scale);
         const ImageTexts texts{{"Software", "exitance"}, {"Exposure", exposure}};
         const Result<void> written = write_png(stem + ".png", preview(scene, light, m, format.quantity, tones), texts);
@@ -155,6 +152,30 @@ std::string_view name_of(LightMapQuantity quantity) {
     return light_map_quantity_names[static_cast<std::size_t>(quantity)].second;
 }
 
+std::string_view name_of(Component component) {
+    return light_component_names[static_cast<std::size_t>(component)].second;
+}
+
+std::string values_name(const LightMapFormat& format) {
+    return format.component == Component::total
+               ? std::string(name_of(format.quantity))
+               : fmt::format("{} {}", name_of(format.component), name_of(format.quantity));
+}
+
+Result<void> write_map_numbers(const std::string& stem, const LinearImage& image, const Scene& scene,
+                               const LightMapFormat& format) {
+    const std::string units = fmt::format("R, G, B: {} in {}", values_name(format), unit_of(scene, format.quantity));
+    const ImageFacts facts{{"software", "exitance"}, {"units", units}};
+    const Result<void> written = write_exr(stem + ".exr", image, facts, format.precision);
+    return written && format.with_hdr ? write_hdr(stem + ".hdr", image, facts) : written;
+}
+
+std::string map_files_json(std::size_t map, const LightMapFormat& format) {
+    const std::string stem = light_map_stem(map);
+    return fmt::format("\"file\": \"{0}.exr\"{1}, \"preview\": \"{0}.png\"", stem,
+                       format.with_hdr ? fmt::format(", \"hdr\": \"{}.hdr\"", stem) : std::string());
+}
+
 const char* unit_of(const Scene& scene, LightMapQuantity quantity) {
     const LightUnit own = own_unit(scene.is_photometric());
     return quantity == LightMapQuantity::irradiance ? own.irradiance() : own.radiosity();
@@ -174,7 +195,8 @@ Spectrum texel_value(const Scene& scene, const LightMap& map, const Chart& chart
     const Spectrum irradiance = map.at(index);
     if (quantity == LightMapQuantity::irradiance) return irradiance;
     const Material& material = scene.material(chart.region);
-    return material.exitance + material.reflectance * irradiance;
+    const Spectrum emitted = map.has_emission ? material.exitance : Spectrum();
+    return emitted + material.reflectance * irradiance;
 }
 
 Result<void> write_group_light_maps(const Scene& lit_by_group, const LightMaps& light, std::size_t group,
@@ -192,7 +214,7 @@ Result<void> write_light_maps(const Solution& solution, const LightMaps& light, 
     tone.curve = ToneCurve::filmic;
     const Result<void> written = write_light_map_glb(solution, light, format, tone, folder + "/scene.glb");
     if (!written) return written;
-    return write_file(folder + "/lightmaps.json", manifest(scene, light, format.quantity, tone, groups));
+    return write_file(folder + "/lightmaps.json", manifest(scene, light, format, tone, groups));
 }
 
 }  // namespace exitance

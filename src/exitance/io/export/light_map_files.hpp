@@ -18,6 +18,9 @@ enum class LightMapQuantity : std::uint8_t { irradiance, radiosity };
 constexpr std::array<std::pair<LightMapQuantity, std::string_view>, 2> light_map_quantity_names{
     {{LightMapQuantity::irradiance, "irradiance"}, {LightMapQuantity::radiosity, "radiosity"}}};
 
+constexpr std::array<std::pair<Component, std::string_view>, 3> light_component_names{
+    {{Component::total, "total"}, {Component::direct, "direct"}, {Component::indirect, "indirect"}}};
+
 /// Representation of light in the .glb (write_light_map_glb).
 enum class LightMapMaterial : std::uint8_t {
     emissive,      ///< Light is the emission of black surfaces.
@@ -27,7 +30,9 @@ enum class LightMapMaterial : std::uint8_t {
 
 struct LightMapFormat {
     LightMapQuantity quantity = LightMapQuantity::irradiance;
+    Component component = Component::total;
     Precision precision = Precision::single;
+    bool with_hdr = false;  ///< Also writes every map as .hdr (write_hdr).
     LightMapMaterial material = LightMapMaterial::emissive;
     std::string scene_file;  ///< glTF file with the scene's own textures; empty: none.
 };
@@ -42,6 +47,14 @@ std::string curved_json(const CurvedDifferences& curved);
 /// Unit of a quantity in a scene's maps.
 const char* unit_of(const Scene& scene, LightMapQuantity quantity);
 std::string_view name_of(LightMapQuantity quantity);
+std::string_view name_of(Component component);
+/// Names the values of maps: "irradiance", or "direct irradiance" for a part of the light.
+std::string values_name(const LightMapFormat& format);
+/// Writes the numbers of a map as STEM.exr, and as STEM.hdr if requested.
+Result<void> write_map_numbers(const std::string& stem, const LinearImage& image, const Scene& scene,
+                               const LightMapFormat& format);
+/// Formats the file names of a map for lightmaps.json: `file`, `preview`, and `hdr` if it is written.
+std::string map_files_json(std::size_t map, const LightMapFormat& format);
 /// Creates a folder for maps if it does not exist.
 Result<void> make_map_folder(const std::string& folder);
 
@@ -53,6 +66,7 @@ Result<void> write_group_light_maps(const Scene& lit_by_group, const LightMaps& 
 /// Writes all files of a folder of light maps, and creates the folder if necessary:
 ///
 ///     lightmap_N.exr   values: R, G, B in W/m^2; `coverage`: share of a texel that is on its surface
+///     lightmap_N.hdr   R, G, B with a common exponent, if the format has it
 ///     lightmap_N.png   the same as a tone-mapped picture
 ///     scene.glb        the scene with texture coordinates for the maps
 ///     lightmaps.json   texels of each face, and the `groups` that were written; written last

@@ -93,13 +93,11 @@ Result<void> write_uv_pictures(const Scene& scene, const UvLightMaps& light, std
     if (const Result<void> made = make_map_folder(folder); !made) return made;
     const ToneMap tones = uv_tones(light, format.quantity);
     const std::string_view unit = unit_of(scene, format.quantity);
-    const std::string_view quantity = name_of(format.quantity);
+    const std::string quantity = values_name(format);
     for (std::size_t m = 0; m < light.maps.size(); ++m) {
         const std::string stem = folder + "/" + light_map_stem(m, group);
-        const ImageFacts facts{{"software", "exitance"}, {"units", fmt::format("R, G, B: {} in {}", quantity, unit)}};
         const LinearImage image = uv_numbers(light.maps[m], format.quantity);
-        if (const Result<void> written = write_exr(stem + ".exr", image, facts, format.precision); !written)
-            return written;
+        if (const Result<void> written = write_map_numbers(stem, image, scene, format); !written) return written;
         const ImageTexts texts{
             {"Software", "exitance"},
             {"Exposure", fmt::format("{} in {} times {:.6g}, then a filmic curve", quantity, unit, tones.scale)}};
@@ -114,17 +112,17 @@ Result<void> write_uv_manifest(const Scene& scene, const UvSet& set, const UvLig
                                std::span<const std::string> charts, const Unwrapped* unwrapped,
                                const std::string& folder) {
     std::string text = fmt::format(
-        "{{\n  \"version\": 1,\n  \"generator\": \"exitance {}\",\n  \"quantity\": \"{}\",\n  \"unit\": \"{}\",\n"
-        "  \"uv\": {{\"file\": {}, \"set\": \"{}\"}},\n  \"padding\": {},\n  \"maps\": [",
-        program_version, name_of(format.quantity), unit_of(scene, format.quantity), json_text(set.file), set.name,
-        light.padding);
+        "{{\n  \"version\": 1,\n  \"generator\": \"exitance {}\",\n  \"quantity\": \"{}\",\n  \"component\": \"{}\",\n"
+        "  \"unit\": \"{}\",\n  \"uv\": {{\"file\": {}, \"set\": \"{}\"}},\n  \"padding\": {},\n  \"maps\": [",
+        program_version, name_of(format.quantity), name_of(format.component), unit_of(scene, format.quantity),
+        json_text(set.file), set.name, light.padding);
     for (std::size_t m = 0; m < light.maps.size(); ++m) {
         const UvLightMap& map = light.maps[m];
         text += fmt::format(
-            "{}\n    {{\"file\": \"{}.exr\", \"preview\": \"{}.png\", \"width\": {}, \"height\": {}, "
+            "{}\n    {{{}, \"width\": {}, \"height\": {}, "
             "\"texels_per_metre\": {:.6g}, \"shared_texels\": {}, \"close_texels\": {}{}}}",
-            m > 0 ? "," : "", light_map_stem(m), light_map_stem(m), map.light.size.width, map.light.size.height,
-            map.density, map.shared_texels, map.close_texels,
+            m > 0 ? "," : "", map_files_json(m, format), map.light.size.width, map.light.size.height, map.density,
+            map.shared_texels, map.close_texels,
             charts.empty() ? std::string() : fmt::format(", \"charts\": {}", json_text(charts[m])));
     }
     text += groups_json(groups, light.maps.size());
@@ -219,7 +217,9 @@ std::vector<std::string> chart_warnings(const UvSet& set, const UvLightMaps& lig
         if (sum > 0) out.push_back(fmt::format("{} {}: {}", sum, what, names));
     };
     list(&UvObject::overlapping,
-         "triangles overlap others of their object in the map, where both get the mean of their light");
+         "triangles overlap others of their object in the map, where both get the mean of their light (--uv unwrap "
+         "makes "
+         "coordinates that do not overlap)");
     list(&UvObject::outside, "triangles are partly outside of the map, and have no texels there");
     list(&UvObject::moved_charts, "charts were moved into the map by whole numbers, as repeated textures are read");
     list(&UvObject::mirrored, "triangles are mirrored in the map");

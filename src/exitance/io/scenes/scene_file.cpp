@@ -104,6 +104,11 @@ ReadScene read_gltf_scene(const std::string& path) {
     return read_gltf(path);
 }
 
+/// Reads dynamic objects in their first state; read_files() passes the chosen ones.
+ReadScene read_honeybee_scene(const std::string& path) {
+    return read_honeybee(path);
+}
+
 /// Reads the highest level of detail; read_files() calls read_cityjson() with the requested one.
 ReadScene read_city(const std::string& path) {
     return read_cityjson(path, "");
@@ -116,7 +121,7 @@ Reader reader_of(const std::string& path) {
     if (end == ".vs3") return read_view3d_scene;
     if (end == ".stl") return read_stl;
     if (end == ".ply") return read_ply;
-    if (is_honeybee_file(path)) return read_honeybee;
+    if (is_honeybee_file(path)) return read_honeybee_scene;
     if (end == ".json") return read_city;
     if (end == ".gltf" || end == ".glb" || looks_like_gltf(path)) return read_gltf_scene;
     return nullptr;
@@ -156,7 +161,7 @@ int last_line(const SceneDescription& description) {
 
 /// True for glTF, which defines metres and Y up, and for Honeybee models, which name their unit and have Z up.
 bool says_units(Reader reader) {
-    return reader == Reader(read_gltf_scene) || reader == Reader(read_honeybee);
+    return reader == Reader(read_gltf_scene) || reader == Reader(read_honeybee_scene);
 }
 
 /// Converts a file without defined units to metres and Z up. Radiances and emission profiles do not depend on the unit
@@ -209,11 +214,12 @@ ReadScene read_files(std::span<const std::string> paths, const LoadOptions& opti
     for (const std::string& path : paths) {
         const Reader read = reader_of(path);
         if (!read || (read == Reader(read_radiance) && path != radiance.front())) continue;
-        ReadScene one = read == Reader(read_radiance)     ? read_radiance(radiance, options)
-                        : read == Reader(read_city)       ? read_cityjson(path, options.lod)
-                        : read == Reader(read_obj_scene)  ? read_obj(path, options.texture_parts)
-                        : read == Reader(read_gltf_scene) ? read_gltf(path, options.texture_parts)
-                                                          : read(path);
+        ReadScene one = read == Reader(read_radiance)         ? read_radiance(radiance, options)
+                        : read == Reader(read_city)           ? read_cityjson(path, options.lod)
+                        : read == Reader(read_obj_scene)      ? read_obj(path, options.texture_parts)
+                        : read == Reader(read_gltf_scene)     ? read_gltf(path, options.texture_parts)
+                        : read == Reader(read_honeybee_scene) ? read_honeybee(path, options.honeybee_states)
+                                                              : read(path);
         if (!says_units(read)) convert_units(one, options);
         if (one.lines.empty() && paths.size() > 1) one.lines.add(path, last_line(one.description));
         if (is_first) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "exitance/base/progress.hpp"
+#include "exitance/io/scenes/honeybee/honeybee_choice.hpp"
 #include "exitance/io/scenes/scene_lines.hpp"
 #include "exitance/scene/scene.hpp"
 
@@ -45,7 +46,8 @@ struct LoadOptions {
     bool needs_light = true;
     /// Limit on the parts into which textured faces are cut; none: `default_texture_parts`, 0: no face is cut.
     std::optional<std::size_t> texture_parts = {};
-    std::string lod = {};  ///< Level of detail to read from .city.json files; empty: the highest.
+    std::string lod = {};                  ///< Level of detail to read from .city.json files; empty: the highest.
+    HoneybeeChoices honeybee_states = {};  ///< States of dynamic objects of Honeybee models.
 };
 
 /// A pane of a scene file with its names: its outline in the scene's coordinates, metres.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <set>
 
 #include "exitance/io/files/text_table.hpp"
@@ -32,8 +33,9 @@ class StatesReader {
                   [&](TomlKeys& variant, GlassVariant& target) { read_variant(variant, target); });
         keys.finish();
         if (out_.groups.empty()) keys.fail(table, "has no groups of panes", "begin each with [[group]]");
-        out_.has_all_panes = std::find(out_.group_of_pane.begin(), out_.group_of_pane.end(), PaneGroups::no_group) ==
-                             out_.group_of_pane.end();
+        const bool has_all_light = out_.groups.front().has_all_light;
+        out_.has_all_panes = !has_all_light && std::find(out_.group_of_pane.begin(), out_.group_of_pane.end(),
+                                                         PaneGroups::no_group) == out_.group_of_pane.end();
         return std::move(out_);
     }
 
@@ -64,8 +66,9 @@ class StatesReader {
         PaneChoice choice = read_choice(keys);
         std::string dynamic;
         keys.take("dynamic_group", dynamic);
-        if (!dynamic.empty()) take_dynamic(keys, dynamic, choice, group);
-        add_panes(keys, group.name, choice);
+        HoneybeeStates of_model;
+        if (!dynamic.empty()) of_model = take_dynamic(keys, dynamic, choice, group);
+        if (!group.has_all_light) add_panes(keys, group.name, choice);
         for_each_table(keys, "state", [&](TomlKeys& state) {
             group.states.push_back(read_state(state, group.states.empty(), choice)), state.finish();
         });
@@ -74,10 +77,22 @@ class StatesReader {
                       "give each a [[group.state]] with a name; the first is the scene as it is");
         if (group.states.size() > max_states) keys.fail(keys.table(), "a group has at most 255 states");
         read_rule(keys, group);
+        add_scenes(of_model, choice, group);
         out_.groups.push_back(std::move(group));
+        if (out_.groups.size() > 1) check_light(keys);
+    }
+
+    /// Throws an error if a group has all light, which no other group may change.
+    void check_light(const TomlKeys& keys) const {
+        for (const PaneGroup& group : out_.groups)
+            if (group.has_all_light)
+                keys.fail(keys.table(),
+                          fmt::format("group '{}' has shades, which change the light of all groups", group.name),
+                          "give it a file and a run of its own");
     }
 
     void read_variant(TomlKeys& keys, GlassVariant& variant) const {
+        check_light(keys);
         keys.need("name", variant.name), keys.need("factors", variant.factors);
         if (variant.factors.size() != out_.groups.size() ||
             !std::all_of(variant.factors.begin(), variant.factors.end(), [](double f) { return f >= 0 && f <= 1; }))
@@ -88,17 +103,43 @@ class StatesReader {
 
     /// Chooses the panes of a dynamic group of the scene's Honeybee model, and takes its states, named by their
     /// numbers.
-    void take_dynamic(TomlKeys& keys, const std::string& name, PaneChoice& choice, PaneGroup& group) const {
+    HoneybeeStates take_dynamic(TomlKeys& keys, const std::string& name, PaneChoice& choice, PaneGroup& group) const {
         const auto model = std::find_if(in_.files.begin(), in_.files.end(), is_honeybee_file);
         if (model == in_.files.end())
             keys.fail(keys.table(), "'dynamic_group' needs a Honeybee model (.hbjson) as scene",
                       "choose panes by materials, objects or a box");
-        const Result<HoneybeeStates> found =
-            find_honeybee_states(read_honeybee_model(*model), name, keys.find("state") != nullptr);
+        const bool has_states = keys.find("state") != nullptr;
+        Result<HoneybeeStates> found = find_honeybee_states(read_honeybee_model(*model), name, has_states);
         if (!found) keys.fail(keys.table(), found.error().message, found.error().hint);
+        group.has_all_light = found->has_shades;
+        if (has_states && found->has_shades)
+            keys.fail(*keys.find("state"), fmt::format("'{}' has shades, whose states are those of the model", name),
+                      "leave [[group.state]] out");
+        if (found->has_shades && !(choice.objects.empty() && choice.materials.empty() && !choice.box))
+            keys.fail(keys.table(), fmt::format("'{}' has shades, so that the group cannot have further panes", name),
+                      "leave materials, objects and box out");
         choice.objects.insert(choice.objects.end(), found->objects.begin(), found->objects.end());
         for (std::size_t k = 0; k < found->factors.size(); ++k)
             group.states.push_back({fmt::format("{}", k), found->factors[k], {}});
+        return std::move(*found);
+    }
+
+    /// Adds the scenes of those states of a Honeybee model that need one and that the rule may choose.
+    void add_scenes(const HoneybeeStates& of_model, const PaneChoice& choice, PaneGroup& group) {
+        std::map<std::size_t, std::size_t> scenes;  // by HoneybeeStates::scene
+        for (std::size_t k = 0; k < of_model.scene.size(); ++k) {
+            const std::size_t scene = of_model.scene[k];
+            const std::vector<std::uint8_t>& plan = group.rule.schedule;
+            const bool is_possible =
+                group.rule.kind != StateRule::Kind::schedule || std::find(plan.begin(), plan.end(), k) != plan.end();
+            if (scene == 0 || !is_possible) continue;
+            if (!scenes.contains(scene)) {
+                LoadOptions load = in_.load;
+                load.honeybee_states = of_model.choices(k);
+                scenes[scene] = add_scene(in_.files, load, choice);
+            }
+            group.states[k].scene = scenes[scene];
+        }
     }
 
     static PaneChoice read_choice(TomlKeys& keys) {
@@ -161,7 +202,11 @@ class StatesReader {
                       "give the scene files instead of the solution");
         std::vector<std::string> files(in_.files.begin(), in_.files.end());
         for (const std::string& file : added) files.push_back(beside(file));
-        LoadedScene loaded = load_scene(files, in_.load);
+        return add_scene(files, in_.load, choice);
+    }
+
+    std::size_t add_scene(std::span<const std::string> files, const LoadOptions& load, const PaneChoice& choice) {
+        LoadedScene loaded = load_scene(files, load);
         if (!loaded.scene) throw WrongToml{loaded.scene.error()};
         std::vector<std::int32_t> group_of_pane;
         for (const bool is_chosen : chosen_panes(choice, *loaded.scene, loaded.panes))

@@ -12,6 +12,9 @@ namespace {
 /// Rays of a node. derived from the n^(-3/4) of stratified rays: 0.5% of what a uniform surround would give.
 constexpr unsigned node_rays = 512;
 constexpr int max_steps = 256;
+/// Rays of direct light at a place, at most. derived from those of a pixel of a flat texel
+/// (measure/pictures/tile_cells.cpp)
+constexpr unsigned most_rays = 1024;
 constexpr double alike = 0.01;  ///< Relative difference of light that is linear. derived from TileLight::alike
 
 constexpr std::size_t node_count(int steps) {
@@ -29,17 +32,23 @@ double longest_side(const NormalTriangle& t) {
     return longest;
 }
 
-bool are_alike(std::span<const Spectrum> values) {
+/// True if values differ by less than 1%, or by less than the noise of their rays explains.
+/// variance  largest variance of a value, (W/m^2)^2
+bool are_alike(std::span<const Spectrum> values, double variance) {
+    constexpr double range_of_noise = 4;  // standard deviations, within which 97% of sets of four values are
     double least = HUGE_VAL, most = 0;
     for (const Spectrum& v : values) least = std::min(least, mean(v)), most = std::max(most, mean(v));
-    return most - least <= alike * most;
+    return most - least <= alike * most + range_of_noise * std::sqrt(variance);
 }
 
 }  // namespace
 
 CurvedLight::CurvedLight(const RadiosityFunction& light, const CurvedFaces& faces, double spacing,
                          const StopRequest& stop)
-    : light_(light), faces_(faces) {
+    : light_(light),
+      faces_(faces),
+      accuracy_(point_accuracy(light.solution().statistics.relative_error_estimate.value_or(1))) {
+    accuracy_.most_rays = most_rays;
     std::size_t nodes = 0;
     for (const NormalTriangle& t : faces.triangles()) {
         const double steps = std::clamp(std::ceil(longest_side(t) / spacing), 1.0, 1.0 * max_steps);
@@ -137,24 +146,37 @@ Spectrum CurvedLight::reflected(const CurvedPlace& place, Workspace& workspace) 
     return out;
 }
 
-Spectrum CurvedLight::at(const MeasuredPlace& place, Workspace& workspace) const {
+CurvedLight::PlaceParts CurvedLight::at(const MeasuredPlace& place, Component component, Workspace& workspace) const {
     const std::optional<CurvedPlace> curved = faces_.find(place.surface, place.x);
     if (!curved) {
         const ProbePoint flat{place.x, light_.stage().scene.regions()[place.region].plane.n};
-        return light_.at(std::span(&flat, 1)).front().irradiance;
+        const Spectrum all = light_.at(std::span(&flat, 1)).front().irradiance;
+        return {all,
+                component == Component::total ? all : light_.at(std::span(&flat, 1), component).front().irradiance};
     }
     const Point x = off_face(place.x, *curved, place.region);
-    return light_.direct_at({x, curved->n}, RegionId(), workspace.direct_) + reflected(*curved, workspace);
+    const PlaceLight::Estimate estimate =
+        light_.stage().place_light.at(x, curved->n, RegionId(), accuracy_, workspace.direct_);
+    const Spectrum& direct = estimate.irradiance;
+    const Spectrum indirect = reflected(*curved, workspace), all = direct + indirect;
+    return {all,
+            component == Component::total    ? all
+            : component == Component::direct ? direct
+                                             : indirect,
+            estimate.variance};
 }
 
-CurvedLight::Mean CurvedLight::mean_at(std::span<const MeasuredPlace> places, bool is_whole,
+CurvedLight::Mean CurvedLight::mean_at(std::span<const MeasuredPlace> places, bool is_whole, Component component,
                                        Workspace& workspace) const {
     std::vector<Spectrum> values;
     Spectrum sum;
+    double variance = 0;
     for (const MeasuredPlace& place : places) {
-        values.push_back(at(place, workspace)), sum += values.back();
+        const PlaceParts light = at(place, component, workspace);
+        values.push_back(light.all), sum += light.component;
+        variance = std::max(variance, light.variance);
         const bool may_end = (values.size() == 2 && is_whole) || values.size() == 4;
-        if (may_end && are_alike(values)) break;
+        if (may_end && are_alike(values, variance)) break;
     }
     return {values.empty() ? sum : sum / static_cast<double>(values.size()), values.size()};
 }

@@ -31,13 +31,14 @@ class CurvedLight {
     bool is_curved(RegionId region) const { return faces_.is_curved(region); }
 
     struct Mean {
-        Spectrum irradiance;     ///< W/m^2
+        Spectrum irradiance;     ///< Of the component, W/m^2.
         std::size_t places = 0;  ///< Number of places that were evaluated, the first ones.
     };
     /// Returns the mean irradiance at places of a curved region that are not covered. The first two and the first four
-    /// must be well distributed; if light at them differs by less than 1%, the others are not evaluated.
+    /// must be well distributed; if all light at them differs by less than 1% and the noise of rays, the others are not
+    /// evaluated.
     /// is_whole  true if places 0 and 1 are mirror images about the middle
-    Mean mean_at(std::span<const MeasuredPlace> places, bool is_whole, Workspace& workspace) const;
+    Mean mean_at(std::span<const MeasuredPlace> places, bool is_whole, Component component, Workspace& workspace) const;
 
   private:
     struct Lattice {
@@ -51,13 +52,19 @@ class CurvedLight {
     };
 
     void gather_nodes(std::size_t triangle, Workspace& workspace);
-    Spectrum at(const MeasuredPlace& place, Workspace& workspace) const;
+    /// Irradiance at a place, W/m^2.
+    struct PlaceParts {
+        Spectrum all, component;
+        double variance = 0;  ///< Variance of the mean over bands from rays of direct light, (W/m^2)^2; 0: exact.
+    };
+    PlaceParts at(const MeasuredPlace& place, Component component, Workspace& workspace) const;
     Spectrum reflected(const CurvedPlace& place, Workspace& workspace) const;
     Point off_face(const Point& on_face, const CurvedPlace& place, RegionId region) const;
     NodeLight gather(std::size_t triangle, const std::array<double, 3>& weight, Workspace& workspace) const;
 
     const RadiosityFunction& light_;
     const CurvedFaces& faces_;
+    LightAccuracy accuracy_;            ///< Accuracy of direct light by rays.
     std::vector<Lattice> lattices_;     ///< One per triangle of `faces_`.
     std::vector<NodeLight> reflected_;  ///< Row by row, lattice by lattice.
 };

@@ -49,8 +49,10 @@ void add_polygon(SceneDescription& d, std::span<const Point> corners, std::uint3
 /// `normal(p)`: normal at a corner; `walls`: further grey polygons.
 template <class NormalAt>
 CurvedScene curved_scene(const std::vector<std::array<Point, 3>>& triangles, const NormalAt& normal,
-                         const Motion& motion = as_written, const std::vector<std::vector<Point>>& walls = {}) {
+                         const Motion& motion = as_written, const std::vector<std::vector<Point>>& walls = {},
+                         const DistantLight& sky = {}) {
     SceneDescription d;
+    d.distant = sky;
     d.file = "test.obj", d.groups = {"all"};
     d.materials = {{"grey", Spectrum(0.5), Spectrum()}, {"lamp", Spectrum(), Spectrum(8)}};
     for (const auto& t : triangles) add_polygon(d, t, 0, motion);
@@ -79,10 +81,11 @@ Solution quick_solution(const Scene& scene) {
     return solved(scene, options);
 }
 
-LightMaps bake(const Solution& solution, const CurvedFaces* curved, double density) {
+LightMaps bake(const Solution& solution, const CurvedFaces* curved, double density,
+               Component component = Component::total) {
     Progress progress;
     BakeOptions options;
-    options.density = density, options.curved = curved;
+    options.density = density, options.curved = curved, options.component = component;
     Result<LightMaps> maps = bake_light_maps(RadiosityFunction(solution), options, progress, StopRequest());
     EXI_CHECK(static_cast<bool>(maps));
     return std::move(*maps);
@@ -203,7 +206,7 @@ TEST(CurvedLight, NoLightLeaksThroughAWallInFrontOfAPatch) {
         const MeasuredPlace middle = light.places().find((t.corner[0] + t.corner[1] + t.corner[2]) / 3, region.plane.n);
         ASSERT_EQ(middle.surface, t.surface);
         // All light is at the far side of the wall, except for that which passes around it, 5 m away.
-        EXPECT_LT(mean(curved.mean_at(std::span(&middle, 1), false, workspace).irradiance), 0.02);
+        EXPECT_LT(mean(curved.mean_at(std::span(&middle, 1), false, Component::total, workspace).irradiance), 0.02);
     }
 }
 
@@ -244,13 +247,72 @@ TEST(CurvedLight, ReflectedLightIsThatOfTheSmoothNormal) {
         const Point middle = (t.corner[0] + t.corner[1] + t.corner[2]) / 3;
         const MeasuredPlace place = function.places().find(middle, n);
         const Normal smooth = normalized(middle);
-        const double E =
-            mean(curved.mean_at(std::span(&place, 1), false, workspace).irradiance) - exact_light(middle, as_written);
+        const double E = mean(curved.mean_at(std::span(&place, 1), false, Component::total, workspace).irradiance) -
+                         exact_light(middle, as_written);
         squares += std::pow(E - 0.5 * 2 * (1 - smooth.z) / 2, 2);
     }
     // Irradiance is from 0 to 1. Rays leave 0.3%, and the sum over nodes interpolates it by 0.2%; the horizon of a
     // floor of 200 m is at 0.4 degrees.
     EXPECT_LT(std::sqrt(squares / 512), 0.006);
+
+    const LightMaps all = bake(solution, &faces, 16), direct = bake(solution, &faces, 16, Component::direct),
+                    indirect = bake(solution, &faces, 16, Component::indirect);
+    EXPECT_FALSE(all.curved.empty());
+    EXPECT_TRUE(direct.curved.empty());
+    double reflected = 0;
+    for (std::size_t c = 0; c < 512; ++c) {
+        const Chart& chart = all.charts[c];
+        const LightMap& map = all.maps[chart.map];
+        for (int y = 0; y < chart.height; ++y)
+            for (int x = 0; x < chart.width; ++x) {
+                const std::size_t i = map.index(chart.x + x, chart.y + y);
+                if (map.share[i] < 1) continue;  // light at borders is extrapolated to the centre, with limits
+                const double D = mean(direct.maps[chart.map].at(i)), I = mean(indirect.maps[chart.map].at(i));
+                EXPECT_NEAR(D + I, mean(map.at(i)), 1e-5 * (D + I));
+                reflected = std::max(reflected, I);
+            }
+    }
+    EXPECT_NEAR(reflected, 1, 0.05);
+}
+
+/// Two spheres side by side block the sky from each other, so that their light is that of rays.
+TEST(CurvedLight, NoiseOfRaysNeedsNoFurtherPlaces) {
+    std::vector<std::array<Point, 3>> triangles = sphere_triangles(3);
+    const Vec3 shift{2.3, 0, 0};
+    for (std::size_t i = 0; i < 512; ++i) {
+        const auto [a, b, c] = triangles[i];
+        triangles.push_back({a + shift, b + shift, c + shift});
+    }
+    const auto normal = [&](const Point& p) { return normalized(norm(p) < 1.001 ? p : p - shift); };
+    DistantLight sky;
+    sky.domes.push_back({{}, Spectrum(100)});
+    const CurvedScene s = curved_scene(triangles, normal, as_written, {}, sky);
+    Solution solution = quick_solution(s.scene);
+    solution.statistics.relative_error_estimate = 0.05;  // rays have a fifth of it
+    const CurvedFaces faces(solution.scene, s.triangles);
+    const RadiosityFunction function(solution);
+    const StopRequest stop;
+    const CurvedLight curved(function, faces, 1, stop);
+    CurvedLight::Workspace workspace;
+    std::size_t noisy = 0, places = 0;
+    for (std::size_t t = 0; t < 512; ++t) {
+        const NormalTriangle& face = faces.triangles()[t];
+        const Point middle = (face.corner[0] + face.corner[1] + face.corner[2]) / 3;
+        std::vector<MeasuredPlace> close;
+        double least = HUGE_VAL, most = 0;
+        for (int k = 0; k < 16; ++k) {
+            const Point x =
+                middle + 1e-3 * (k % 4) * (face.corner[0] - middle) + 1e-3 * (k / 4) * (face.corner[1] - middle);
+            close.push_back(function.places().find(x, solution.scene.surfaces()[face.surface].normal));
+            if (k >= 4) continue;
+            const auto [E, count] = curved.mean_at(std::span(&close.back(), 1), false, Component::total, workspace);
+            least = std::min(least, mean(E)), most = std::max(most, mean(E));
+        }
+        if (most - least < 0.01 * most) continue;  // certainly alike
+        ++noisy, places += curved.mean_at(close, true, Component::total, workspace).places;
+    }
+    ASSERT_GT(noisy, 30u);
+    EXPECT_LT(places, 5 * noisy) << "of 16 places per texel";
 }
 
 }  // namespace

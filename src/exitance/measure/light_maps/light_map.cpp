@@ -75,12 +75,23 @@ Result<LightMaps> make_empty_maps(const Scene& scene, const BakeOptions& options
         map.irradiance.resize(size.texels());
         map.source.resize(size.texels(), LightMap::Source::nothing);
         map.share.resize(size.texels());
+        map.has_emission = options.component != Component::indirect;
         out.maps.push_back(std::move(map));
     }
     return out;
 }
 
 }  // namespace
+
+bool is_divisible(const Solution& solution) {
+    return !solution.direct_in_elements;
+}
+
+Result<void> check_component(const Solution& solution, Component component) {
+    if (component == Component::total || is_divisible(solution)) return {};
+    return Error{ErrorCode::usage, "the solution holds direct and indirect light as one", "--component",
+                 "solve without --output-light elements and --gather off, or leave --component out"};
+}
 
 double automatic_density(const Scene& scene) {
     constexpr double max_texels = 1e6, usual_density = 64, texels_along_scene = 512;
@@ -94,6 +105,7 @@ double automatic_density(const Scene& scene) {
 
 Result<LightMaps> bake_light_maps(const RadiosityFunction& light, const BakeOptions& options, Progress& progress,
                                   const StopRequest& stop) {
+    if (const Result<void> fit = check_component(light.solution(), options.component); !fit) return fit.error();
     Result<LightMaps> made = make_empty_maps(light.solution().scene, options);
     if (!made) return made;
     LightMaps& out = *made;
@@ -108,7 +120,9 @@ Result<LightMaps> bake_light_maps(const RadiosityFunction& light, const BakeOpti
     for (std::size_t m = 0; curved && m < out.maps.size(); ++m) curved_texels[m].resize(out.maps[m].size.texels());
     const std::vector<ChartTile> tiles = cut_into_tiles(out.charts);
     const auto map_of = [&](std::size_t m) -> const LightMap& { return out.maps[m]; };
-    const auto make_baker = [&] { return TileBaker(light, outlines, &mesh, curved ? &*curved : nullptr, stop); };
+    const auto make_baker = [&] {
+        return TileBaker(light, outlines, &mesh, curved ? &*curved : nullptr, options.component, stop);
+    };
     const std::size_t at_once = 256 * processes();
     for (std::size_t first = 0; first < tiles.size() && !stop.requested(); first += at_once) {
         progress.advance(static_cast<double>(first) / static_cast<double>(tiles.size()));
@@ -123,7 +137,7 @@ Result<LightMaps> bake_light_maps(const RadiosityFunction& light, const BakeOpti
         }
     }
     if (stop.requested()) return made;
-    out.curved = compare_curved(light.solution(), options.curved, out);
+    if (options.component == Component::total) out.curved = compare_curved(light.solution(), options.curved, out);
     parallel_for(out.charts.size(), 1, [&](std::size_t c) {
         if (curved && curved->is_curved(out.charts[c].region)) fit_curved(curved_texels, out.charts[c], out);
         extrapolate_texels(out.charts[c], buried_reach, out.maps[out.charts[c].map]);

@@ -12,10 +12,11 @@
 namespace exitance {
 
 struct BakeOptions {
-    double density = 0;                   ///< Texels per metre; 0: `automatic_density`.
-    int padding = 4;                      ///< Texels around every chart, at least 1.
-    int most = 8192;                      ///< Limit on texels along a side of a map, for display hardware.
-    const CurvedFaces* curved = nullptr;  ///< Faces with the normals of the scene's file; null: all are flat.
+    double density = 0;                      ///< Texels per metre; 0: `automatic_density`.
+    int padding = 4;                         ///< Texels around every chart, at least 1.
+    int most = 8192;                         ///< Limit on texels along a side of a map, for display hardware.
+    const CurvedFaces* curved = nullptr;     ///< Faces with the normals of the scene's file; null: all are flat.
+    Component component = Component::total;  ///< Part of the light.
 };
 
 /// One image of irradiance, rows from top to bottom.
@@ -32,6 +33,7 @@ struct LightMap {
     std::vector<std::array<float, bands>> irradiance;  ///< W/m^2
     std::vector<Source> source;
     std::vector<float> share;  ///< Share of every texel that its region covers; 0 outside.
+    bool has_emission = true;  ///< True if radiosity contains the surfaces' emission, which is direct light.
 
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(x);
@@ -49,9 +51,14 @@ struct LightMaps {
     int padding = 0;
     std::vector<Chart> charts;  ///< One per region, in the order of their ids.
     std::vector<LightMap> maps;
-    std::size_t texels = 0;  ///< Number of texels that are on surfaces, wholly or in part.
-    CurvedDifferences curved;
+    std::size_t texels = 0;    ///< Number of texels that are on surfaces, wholly or in part.
+    CurvedDifferences curved;  ///< Empty for maps of a part of the light.
 };
+
+/// True if direct and indirect light of a solution can be told apart.
+bool is_divisible(const Solution& solution);
+/// Returns an error of code `usage` if the solution is not divisible and a part of its light is requested.
+Result<void> check_component(const Solution& solution, Component component);
 
 /// Automatic density: 64 texels per metre. In scenes smaller than 4 m it is higher, with 256 to 512 texels along the
 /// diagonal; it is lower if the surfaces would have more than a million texels. A power of two.
@@ -67,7 +74,9 @@ double automatic_density(const Scene& scene);
 /// linearly in the first ring outside, else by means (extrapolate_texels). Curved regions have the light of the surface
 /// that their faces approximate (CurvedLight), from two to sixteen points.
 /// Same bits on any number of threads. About 5 us per texel in a room with few lamps.
-/// Returns an error of code `usage` if the maps would have more than 2^27 texels; after a stop request the maps are
+/// Maps of direct and indirect light add up to that of all light, but for rounding.
+/// Returns an error of code `usage` if the maps would have more than 2^27 texels, or if the solution is not divisible
+/// and a part of its light is requested; after a stop request the maps are
 /// incomplete.
 Result<LightMaps> bake_light_maps(const RadiosityFunction& light, const BakeOptions& options, Progress& progress,
                                   const StopRequest& stop);

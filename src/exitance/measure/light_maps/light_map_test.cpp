@@ -89,6 +89,61 @@ TEST(LightMap, ATexelIsTheMeanOfTheFunction) {
     EXPECT_LT(std::sqrt(difference / level), 0.02);
 }
 
+/// Bakes one component.
+LightMaps bake_component(const Solution& s, Component component) {
+    Progress progress;
+    const StopRequest stop;
+    BakeOptions options;
+    options.density = 16, options.component = component;
+    Result<LightMaps> maps = bake_light_maps(RadiosityFunction(s), options, progress, stop);
+    EXI_CHECK(static_cast<bool>(maps));
+    return std::move(*maps);
+}
+
+TEST(LightMap, DirectAndIndirectLightAddUpToAllLight) {
+    SolveOptions solve;
+    solve.error = 0.1;
+    const Solution s = solved(built_scene("blocker"), solve);
+    const LightMaps all = bake_component(s, Component::total), direct = bake_component(s, Component::direct),
+                    indirect = bake_component(s, Component::indirect);
+    const RadiosityFunction light(s);
+    double largest_direct = 0, largest_indirect = 0;
+    for (const Chart& chart : all.charts)
+        for (int y = 0; y < chart.height; ++y)
+            for (int x = 0; x < chart.width; ++x) {
+                const LightMap& map = all.maps[chart.map];
+                const std::size_t i = map.index(chart.x + x, chart.y + y);
+                if (map.source[i] != Source::computed) continue;
+                const double D = mean(direct.maps[chart.map].at(i)), I = mean(indirect.maps[chart.map].at(i));
+                EXPECT_NEAR(D + I, mean(map.at(i)), 1e-5 * (D + I));
+                largest_direct = std::max(largest_direct, D), largest_indirect = std::max(largest_indirect, I);
+            }
+    EXPECT_GT(largest_direct, 0);
+    EXPECT_GT(largest_indirect, 0);
+    // In the middle of the floor's chart, each is the component that `probe` evaluates.
+    for (const auto& [component, maps] :
+         {std::pair(Component::direct, &direct), std::pair(Component::indirect, &indirect)}) {
+        const Chart& chart = maps->charts[0];
+        const std::size_t i = maps->maps[chart.map].index(chart.x + chart.width / 2, chart.y + chart.height / 2);
+        const ProbePoint middle{chart.at({chart.width / 2 + 0.5, chart.height / 2 + 0.5}),
+                                s.scene.regions()[chart.region].plane.n};
+        const double expected = mean(light.at(std::span(&middle, 1), component)[0].irradiance);
+        EXPECT_NEAR(mean(maps->maps[chart.map].at(i)), expected,
+                    0.05 * expected + 1e-3 * (largest_direct + largest_indirect));
+    }
+}
+
+TEST(LightMap, ASolutionThatHoldsAllLightAsOneHasNoComponents) {
+    const Solution s = even_light(wall_with_window(), 2);
+    Progress progress;
+    const StopRequest stop;
+    BakeOptions options;
+    options.component = Component::direct;
+    const Result<LightMaps> maps = bake_light_maps(RadiosityFunction(s), options, progress, stop);
+    ASSERT_FALSE(maps);
+    EXPECT_EQ(maps.error().where, "--component");
+}
+
 TEST(LightMap, ChartsOfOnePlaneShareTheirLattice) {
     const Scene scene = wall_with_window();
     const Result<std::vector<Chart>> charts = make_charts(scene, 10, 1000);

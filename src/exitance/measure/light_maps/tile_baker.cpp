@@ -18,16 +18,19 @@ std::vector<ChartTile> cut_into_tiles(std::span<const Chart> charts) {
 }
 
 TileBaker::TileBaker(const RadiosityFunction& light, std::span<const std::vector<TexelOutline>> outlines,
-                     const MeshTexels* mesh, const CurvedLight* curved, const StopRequest& stop)
+                     const MeshTexels* mesh, const CurvedLight* curved, Component component, const StopRequest& stop)
     : stage_(light.stage()),
       finder_(light.places()),
       outlines_(outlines),
       mesh_(mesh),
       curved_(curved),
+      component_(component),
+      exact_share_(light.exact_share()),
       stop_(stop),
       light_(light, texel_points, 0, 1, SpotPoints::mirrored) {
     if (mesh) light_.use(mesh->light());
     light_.use(stop);
+    if (component != Component::total) light_.add_all_direct();
 }
 
 std::span<const BakedTexel> TileBaker::bake(const ChartTile& tile, const Chart& chart, const LightMap& map) {
@@ -59,9 +62,18 @@ std::span<const BakedTexel> TileBaker::bake(const ChartTile& tile, const Chart& 
     for (const Spot& spot : spots_) {
         BakedTexel& texel = texels_[texel_of[static_cast<std::size_t>(spot.y * tile_side + spot.x)]];
         texel.is_open = true;
-        for (std::size_t b = 0; b < bands; ++b) texel.irradiance[b] = std::max(0.0, spot.irradiance[b]);
+        const Spectrum light = component_of(spot);
+        for (std::size_t b = 0; b < bands; ++b) texel.irradiance[b] = std::max(0.0, light[b]);
     }
     return texels_;
+}
+
+/// Returns the component of a spot's light. The sum of direct and indirect light is that of all light, since all of
+/// them are computed at the same points.
+Spectrum TileBaker::component_of(const Spot& spot) const {
+    if (component_ == Component::total) return spot.irradiance;
+    const Spectrum direct = spot.irradiance - spot.elements;
+    return component_ == Component::direct ? direct : spot.elements - (Spectrum(1) - exact_share_) * direct;
 }
 
 /// Finds the uncovered points of a texel. If the first four are all covered or all uncovered, so are the others.
@@ -83,7 +95,7 @@ void TileBaker::bake_curved(const Chart& chart, const TexelCover& cover, BakedTe
     for (MeasuredPlace& place : open_) place.region = chart.region;
     texel.is_open = true;
     const bool is_whole = cover.share == 1 && open_.size() == texel_points;
-    const auto [irradiance, count] = curved_->mean_at(open_, is_whole, curved_work_);
+    const auto [irradiance, count] = curved_->mean_at(open_, is_whole, component_, curved_work_);
     for (std::size_t b = 0; b < bands; ++b) texel.irradiance[b] = std::max(0.0, irradiance[b]);
     Vec2 middle;
     for (std::size_t k = 0; k < count; ++k)

@@ -28,7 +28,7 @@ struct BakedTexel {
     std::size_t index = 0;  ///< In the map.
     double share = 0;       ///< Share of the texel that the chart covers, in (0, 1].
     bool is_open = false;   ///< False: another surface or a body covers that part, so it has no light of its own.
-    Spectrum irradiance;    ///< Mean over the uncovered part, W/m^2; 0 if there is none.
+    Spectrum irradiance;    ///< Mean of the component over the uncovered part, W/m^2; 0 if there is none.
     CurvedTexel curved = {};
 };
 
@@ -38,14 +38,16 @@ class TileBaker {
     /// outlines  triangles and parallelograms of each chart
     /// mesh      exact integrals over a discontinuity mesh; null: points only
     /// curved    light of curved regions; null: all regions are flat
-    /// All arguments must outlive the object.
+    /// All arguments must outlive the object. The light of an indivisible solution (is_divisible) has no other
+    /// component than all of it.
     TileBaker(const RadiosityFunction& light, std::span<const std::vector<TexelOutline>> outlines,
-              const MeshTexels* mesh, const CurvedLight* curved, const StopRequest& stop);
+              const MeshTexels* mesh, const CurvedLight* curved, Component component, const StopRequest& stop);
 
     /// Returns the texels that the chart covers in a tile. The range is valid until the next call.
     std::span<const BakedTexel> bake(const ChartTile& tile, const Chart& chart, const LightMap& map);
 
   private:
+    Spectrum component_of(const Spot& spot) const;
     void find_open_points(const Chart& chart, const TexelCover& cover);
     void bake_curved(const Chart& chart, const TexelCover& cover, BakedTexel& texel);
 
@@ -54,6 +56,8 @@ class TileBaker {
     std::span<const std::vector<TexelOutline>> outlines_;
     const MeshTexels* mesh_;
     const CurvedLight* curved_;
+    Component component_;
+    Spectrum exact_share_;  ///< Factor of exact direct light in all light; the elements hold the rest of it.
     const StopRequest& stop_;
     CurvedLight::Workspace curved_work_;
     TileLight light_;

@@ -139,7 +139,8 @@ class TexelSums {
             curved_[i].x += share * texel.curved.x, curved_[i].y += share * texel.curved.y;
             curved_[i].is_curved = true;
         }
-        const Spectrum radiosity = material.exitance + material.reflectance * texel.irradiance;
+        const Spectrum emitted = map_.light.has_emission ? material.exitance : Spectrum();
+        const Spectrum radiosity = emitted + material.reflectance * texel.irradiance;
         for (std::size_t b = 0; b < bands; ++b) {
             map_.light.irradiance[i][b] += share * static_cast<float>(texel.irradiance[b]);
             map_.radiosity[i][b] += share * static_cast<float>(radiosity[b]);
@@ -215,6 +216,7 @@ Result<void> make_empty_maps(const Scene& scene, const UvBakeOptions& options, U
         map.light.irradiance.resize(size.texels()), map.radiosity.resize(size.texels());
         map.light.source.resize(size.texels(), LightMap::Source::nothing);
         map.light.share.resize(size.texels());
+        map.light.has_emission = options.component != Component::indirect;
         map.chart.resize(size.texels(), UvLayout::no_chart), map.quarters.resize(size.texels());
         map.density = std::sqrt(static_cast<double>(size.texels()) * map_area[m] / std::max(area[m], 1e-300));
         out.maps.push_back(std::move(map));
@@ -230,8 +232,9 @@ double largest_density(const UvLightMaps& light) {
 }
 
 /// Bakes all charts and adds their light to the sums, in the order of the charts.
-void bake_charts(const RadiosityFunction& light, const LinearCharts& linear, const CurvedFaces* faces, UvLightMaps& out,
-                 Progress& progress, const StopRequest& stop) {
+void bake_charts(const RadiosityFunction& light, const LinearCharts& linear, const UvBakeOptions& options,
+                 UvLightMaps& out, Progress& progress, const StopRequest& stop) {
+    const CurvedFaces* const faces = options.curved;
     std::optional<CurvedLight> curved;
     if (faces && !faces->empty()) curved.emplace(light, *faces, node_texels / largest_density(out), stop);
     CurvedSums curved_sums(light.solution().scene, faces);
@@ -240,7 +243,7 @@ void bake_charts(const RadiosityFunction& light, const LinearCharts& linear, con
     const std::vector<ChartTile> tiles = cut_into_tiles(linear.charts);
     const auto map_of = [&](std::size_t m) -> const LightMap& { return out.maps[m].light; };
     const auto make_baker = [&] {
-        return TileBaker(light, linear.outlines, nullptr, curved ? &*curved : nullptr, stop);
+        return TileBaker(light, linear.outlines, nullptr, curved ? &*curved : nullptr, options.component, stop);
     };
     constexpr std::size_t at_once = 1024;
     for (std::size_t first = 0; first < tiles.size() && !stop.requested(); first += at_once) {
@@ -260,7 +263,7 @@ void bake_charts(const RadiosityFunction& light, const LinearCharts& linear, con
         }
     }
     for (TexelSums& sum : sums) sum.finish();
-    out.curved = curved_sums.compare(light.solution());
+    if (options.component == Component::total) out.curved = curved_sums.compare(light.solution());
 }
 
 /// Finds the quarters of texels that a triangle of their chart touches.
@@ -299,12 +302,13 @@ Result<UvLightMaps> bake_uv_light_maps(const RadiosityFunction& light, const UvS
                                        Progress& progress, const StopRequest& stop) {
     UvLightMaps out;
     out.padding = options.padding;
+    if (const Result<void> fit = check_component(light.solution(), options.component); !fit) return fit.error();
     out.layout = lay_out(set);
     const Scene& scene = light.solution().scene;
     if (const Result<void> made = make_empty_maps(scene, options, out); !made) return made.error();
     progress.phase("bake");
     const LinearCharts linear = ChartMaker(scene, set, out.layout, out.maps).make();
-    bake_charts(light, linear, options.curved, out, progress, stop);
+    bake_charts(light, linear, options, out, progress, stop);
     if (stop.requested()) return out;
     mark_quarters(linear, out);
     parallel_for(out.maps.size(), 1, [&](std::size_t m) { fill_gutters(out.maps[m], options.padding); });

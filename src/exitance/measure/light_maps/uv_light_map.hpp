@@ -15,7 +15,8 @@ struct UvBakeOptions {
     double density = 0;  ///< Texels per metre, at least, on average over a map; 0: `automatic_density`.
     int padding = 4;     ///< Texels beyond every chart that are extrapolated, at least 1.
     int most = 8192;     ///< Limit on texels along a side of a map, for display hardware.
-    const CurvedFaces* curved = nullptr;  ///< Faces with the normals of the scene's file; null: all are flat.
+    const CurvedFaces* curved = nullptr;     ///< Faces with the normals of the scene's file; null: all are flat.
+    Component component = Component::total;  ///< Part of the light.
 };
 
 /// Irradiance and radiosity in the texture coordinates of a scene's file.
@@ -45,8 +46,9 @@ struct UvLightMaps {
 /// their uncovered parts in the texel; these are clipped exactly. Texels outside of all charts are extrapolated from
 /// one chart only (fill_gutters). Same bits on any number of threads. A texel costs as much as in bake_light_maps per
 /// region and linear part of the texture coordinates that it touches.
-/// Returns an error of code `usage` if a map would have more than `most` texels along a side, or all maps more than
-/// 2^27 texels, counted once per chart that covers them; after a stop request the maps are incomplete.
+/// Returns an error of code `usage` as check_component() does, if a map would have more than `most` texels along a
+/// side, or all maps more than 2^27 texels, counted once per chart that covers them; after a stop request the maps are
+/// incomplete.
 Result<UvLightMaps> bake_uv_light_maps(const RadiosityFunction& light, const UvSet& set, const UvBakeOptions& options,
                                        Progress& progress, const StopRequest& stop);
 

@@ -232,7 +232,7 @@ void TileLight::fill_all(std::span<Spot> spots) {
 void TileLight::evaluate_by_rays(std::span<Spot> spots) {
     for (std::size_t i = 0; i < spots.size(); ++i) {
         spots[i].meshed.reset();
-        spots[i].irradiance = elements(spots[i]);
+        spots[i].irradiance = spots[i].elements = elements(spots[i]);
         spot_at_[pixel_of(spots[i])] = static_cast<std::uint32_t>(i + 1);
     }
     fill_all(spots);

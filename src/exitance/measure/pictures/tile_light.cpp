@@ -245,7 +245,7 @@ void TileLight::evaluate_region(std::span<Spot> spots) {
     });
     for (std::size_t i = 0; i < spots.size(); ++i) {
         spot_at_[pixel_of(spots[i])] = static_cast<std::uint32_t>(i + 1);
-        spots[i].irradiance = elements(spots[i]);
+        spots[i].irradiance = spots[i].elements = elements(spots[i]);
     }
     for (SplitLight& split : split_) split.is_split = false;
     visit_blocks(spots, [&](std::size_t block, std::size_t, std::size_t) {

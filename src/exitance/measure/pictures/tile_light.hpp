@@ -20,6 +20,7 @@ struct Spot {
     std::uint32_t pixel = 0;             ///< Selects the random numbers of its gather.
     std::uint32_t first = 0, count = 0;  ///< Range of its points, of which the first four are well distributed.
     Spectrum irradiance = {};            ///< Mean over the points, W/m^2.
+    Spectrum elements = {};              ///< The part of it that is not exact direct light, W/m^2.
     /// If the solution's mesh is integrated over the spot: the mean of its MeshLight. Points then only give the
     /// difference from the mesh, which has no edges.
     std::optional<Spectrum> meshed = {};
@@ -47,6 +48,9 @@ class TileLight {
     void show(const std::function<Spectrum(RegionId, const Point&)>& shown) {
         shown_ = &shown, direct_share_ = Spectrum();
     }
+    /// Adds all direct light to that of the elements, even if these hold a share of it, so that the parts of the light
+    /// can be told apart.
+    void add_all_direct() { direct_share_ = Spectrum(1); }
     /// Interpolates light without shadow edges between pixels if the light at the centre of a cell of pixels differs
     /// from it by at most this share; 0: never.
     void interpolate_below(double difference) { interpolation_ = difference; }

@@ -18,7 +18,14 @@ PaneGroups::PaneGroups(const Scene& scene, std::vector<std::int32_t> group_of_pa
     tree_ = Bvh(boxes);
 }
 
+PaneGroups PaneGroups::all_light() {
+    PaneGroups out;
+    out.count_ = 1, out.has_all_light_ = true;
+    return out;
+}
+
 PaneGroups::Mask PaneGroups::crossed(const Point& x, const Point& y, std::int32_t ignored) const {
+    if (has_all_light_) return 1;
     Mask out = 0;
     tree_.visit_segment(x, y - x, 1, [&](std::uint32_t i) {
         const std::uint32_t number = number_[i];

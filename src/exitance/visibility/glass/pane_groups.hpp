@@ -22,10 +22,14 @@ class PaneGroups {
     PaneGroups() = default;
     /// `group_of_pane`: a number below `count`, or `no_group`, for each pane of the scene. At most `max_groups`.
     PaneGroups(const Scene& scene, std::vector<std::int32_t> group_of_pane, std::size_t count);
+    /// Returns one group to which all light belongs, whether it crosses panes or not.
+    static PaneGroups all_light();
 
     std::size_t count() const { return count_; }
+    bool has_all_light() const { return has_all_light_; }
     /// Returns the group of a pane as a mask; 0 if it belongs to none.
     Mask mask_of(std::size_t pane) const {
+        if (has_all_light_) return 1;
         return group_of_pane_[pane] < 0 ? 0 : Mask{1} << static_cast<unsigned>(group_of_pane_[pane]);
     }
     /// Returns the groups that the segment from x to y crosses, without the pane `ignored`. O(log panes).
@@ -40,6 +44,7 @@ class PaneGroups {
     Bvh tree_;
     double reach_ = 0;  ///< Longer than any segment within the scene, metres.
     std::size_t count_ = 0;
+    bool has_all_light_ = false;
 };
 
 /// Adds the part of transmitted_form_factor() (visibility/glazed_part.hpp) that crosses panes of a group to that

@@ -8,6 +8,7 @@
 #include "exitance/processes/exchange_archived.hpp"
 #include "exitance/processes/result_of_all.hpp"
 #include "exitance/scene/place_finder.hpp"
+#include "exitance/what_if/daylight/misplaced_sensors.hpp"
 #include "exitance/what_if/daylight/sensor_places.hpp"
 
 namespace exitance {
@@ -97,7 +98,9 @@ struct DaylightSimulation::Data {
                scene, groups_of(scene, task.states)) {}
 
     static PaneGroups groups_of(const Scene& scene, const DaylightStates* states) {
-        return states ? PaneGroups(scene, states->group_of_pane, states->groups.size()) : PaneGroups();
+        if (!states) return PaneGroups();
+        return states->groups.front().has_all_light ? PaneGroups::all_light()
+                                                    : PaneGroups(scene, states->group_of_pane, states->groups.size());
     }
 
     static constexpr int finest_division = 4;
@@ -120,9 +123,12 @@ DaylightSimulation::DaylightSimulation(const Scene& scene, const DaylightTask& t
     progress.phase("rays");
     data_ = std::make_unique<Data>(scene, task, progress, stop);
     if (!task.states) return;
-    for (const StateScene& state : task.states->scenes)
-        data_->changed.push_back(std::make_unique<SceneLight>(data_->open.setting, state.scene,
-                                                              PaneGroups(state.scene, state.group_of_pane, 1)));
+    for (const StateScene& state : task.states->scenes) {
+        PaneGroups panes = task.states->groups[state.group].has_all_light
+                               ? PaneGroups::all_light()
+                               : PaneGroups(state.scene, state.group_of_pane, 1);
+        data_->changed.push_back(std::make_unique<SceneLight>(data_->open.setting, state.scene, std::move(panes)));
+    }
 }
 
 DaylightSimulation::~DaylightSimulation() = default;
@@ -171,7 +177,8 @@ void DaylightSimulation::choose_states() {
     };
     const StateChooser chooser(*d.task.states, d.open.setting, d.open.transport.stage().occluders, panes, places,
                                open_light);
-    d.states = make_hourly_states(*d.task.states, chooser, d.open.setting, d.open.light.twice);
+    const double twice = panes.has_all_light() ? 0 : d.open.light.twice;
+    d.states = make_hourly_states(*d.task.states, chooser, d.open.setting, twice);
     const std::size_t groups = d.task.states->groups.size();
     for (std::size_t k = 0; k < d.states.parts.size(); ++k) {
         const DaylightTransport& transport = k < groups ? d.open.transport : d.changed[k - groups]->transport;
@@ -198,6 +205,12 @@ std::vector<std::string> DaylightSimulation::warnings() const {
         out.push_back(fmt::format("the error of {:.2g}% with the geometry of a state is above the requested {:.2g}%",
                                   100 * error, 100 * wanted));
     return out;
+}
+
+std::vector<std::string> DaylightSimulation::sensor_warnings() const {
+    const SceneLight& open = data_->open;
+    const std::vector<Receiver> places = open.places(data_->task.sensors);
+    return warnings_of(find_misplaced(open.transport.stage(), places), places);
 }
 
 /// Returns the rows of the parts of HourlyStates at consecutive sensors. `through`: those of the task's scene.

@@ -58,6 +58,8 @@ class DaylightSimulation {
     const HourlyStates* states() const;
     /// Sentences about light of states that may be wrong.
     std::vector<std::string> warnings() const;
+    /// Sentences about sensors outdoors, below floors and inside of bodies (find_misplaced).
+    std::vector<std::string> sensor_warnings() const;
 
     /// Passes the results of sensors to `sink`, block by block. The bits of a sensor's results do not depend on the
     /// range in which it is. Errors: ErrorCode::limit after a stop request, or that of the sink.

@@ -36,13 +36,17 @@ struct PaneGroup {
     std::string name;
     std::vector<PaneState> states;
     StateRule rule;
+    /// True for states of shades, which change all light of the scene and not only that of panes. Such a group is the
+    /// only one.
+    bool has_all_light = false;
 };
 
 /// The scene with additional geometry, for one state of one group.
 struct StateScene {
     Scene scene;
     std::size_t group = 0;
-    std::vector<std::int32_t> group_of_pane;  ///< Per pane: 0 if it belongs to this group, else PaneGroups::no_group.
+    /// Per pane: 0 if it belongs to this group, else PaneGroups::no_group. Not used if the group has all light.
+    std::vector<std::int32_t> group_of_pane;
 };
 
 /// Other glass: factors on the light that has crossed panes of each group, in all states of it.

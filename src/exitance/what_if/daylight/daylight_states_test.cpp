@@ -23,7 +23,7 @@ struct Motion {
 };
 
 /// Fill of the two windows of the room.
-enum class Fill { glass, black, two_panes };
+enum class Fill { none, glass, black, two_panes };
 
 /// A room of 6 x 9 x 3 m with a window in the south (y = 0) and one in the west (x = 0). Panes: south, then west; with
 /// `two_panes`, the south window has a second pane 0.1 m behind the first.
@@ -51,6 +51,7 @@ Scene glazed_room(Fill south = Fill::glass, Fill west = Fill::glass, const Motio
     add(in_south(0, 1, 0.9, 2.4)), add(in_south(5, 6, 0.9, 2.4));
     add(in_west(0, 9, 0, 0.9)), add(in_west(0, 9, 2.4, 3)), add(in_west(0, 2, 0.9, 2.4)), add(in_west(7, 9, 0.9, 2.4));
     const auto fill = [&](Fill how, std::vector<Point> corners) {
+        if (how == Fill::none) return;
         if (how == Fill::black) return add(corners, 1);
         for (Point& p : corners) p = motion(p);
         Pane pane;
@@ -156,6 +157,18 @@ TEST(DaylightStates, AFactorOfAPaneIsAPaneWithLessLight) {
         EXPECT_NEAR(dim[i], open[i] / 2, 1e-3 * open[i]) << i;  // all light comes through the panes
         EXPECT_NEAR(dark[i], 0, 1e-3 * open[i]) << i;           // the last sweep of the solve
     }
+}
+
+TEST(DaylightStates, AStateOfAShadeChangesAllLight) {
+    // A blind in front of the south window, which is a hole here: no light crosses a pane there.
+    const Scene open = glazed_room(Fill::none), shut = glazed_room(Fill::black);
+    DaylightStates states{{constant("blind", 1, 1)}, {PaneGroups::no_group}, {}, false};
+    states.groups[0].has_all_light = true, states.groups[0].states[1].scene = 0;
+    states.scenes.push_back({shut, 0, {}});
+    const DaylightResults changed = year_of(open, task_of(), &states), whole = year_of(shut, task_of(), nullptr);
+    EXPECT_LT(difference(lux_hours(changed), lux_hours(whole)), 0.002);
+    states.groups[0] = constant("blind", 1, 0), states.groups[0].has_all_light = true;
+    EXPECT_EQ(year_of(open, task_of(), &states).year.illuminance, year_of(open, task_of(), nullptr).year.illuminance);
 }
 
 TEST(DaylightStates, TheLightOfGroupsAddsUp) {

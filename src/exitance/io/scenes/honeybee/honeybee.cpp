@@ -95,8 +95,8 @@ class HoneybeeScene {
 
 }  // namespace
 
-ReadScene read_honeybee(const std::string& path) {
-    return HoneybeeScene(path, read_honeybee_model(path)).make();
+ReadScene read_honeybee(const std::string& path, const HoneybeeChoices& choices) {
+    return HoneybeeScene(path, read_honeybee_model(path, choices)).make();
 }
 
 }  // namespace exitance

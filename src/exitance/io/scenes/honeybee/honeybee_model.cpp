@@ -81,7 +81,7 @@ struct Host {
 
 class ModelReader {
   public:
-    explicit ModelReader(const std::string& path) : path_(path) {}
+    ModelReader(const std::string& path, const HoneybeeChoices& choices) : path_(path), choices_(choices) {}
 
     HoneybeeModel read() {
         const Result<std::string> bytes = read_whole_file(path_);
@@ -261,13 +261,19 @@ class ModelReader {
         return generic_modifier_set().at(key);
     }
 
-    /// The material of an object: that of its first state, its own, or that of the sets.
+    /// The material of an object: that of its chosen state, its own, or that of the sets.
     std::string modifier_of(const Json& object, const std::string& key, const Host& host) const {
         const Json& states = entries(radiance(object), "states");
-        if (!states.empty())
-            if (const std::string name = modifier_name(member(states[0], "modifier")); !name.empty()) return name;
+        const std::size_t state = state_of(object);
+        if (state < states.size())
+            if (const std::string name = modifier_name(member(states[state], "modifier")); !name.empty()) return name;
         const std::string name = modifier_name(member(radiance(object), "modifier"));
         return name.empty() ? from_sets(key, host) : name;
+    }
+
+    std::size_t state_of(const Json& object) const {
+        const auto found = choices_.find(text(object, "identifier"));
+        return found == choices_.end() ? 0 : found->second;
     }
 
     // --- geometry
@@ -361,7 +367,7 @@ class ModelReader {
         sheet.outlines = {*outline};
         sheet.partner = partner_of(part);
         out_.sheets.push_back(std::move(sheet));
-        read_state(part, host);
+        read_states(part, host);
         read_shades(part, host);
         return outline;
     }
@@ -389,11 +395,13 @@ class ModelReader {
         sheet.modifier = modifier_of(shade, key, host);
         sheet.outlines.push_back(std::move(*outline));
         out_.sheets.push_back(std::move(sheet));
-        read_state(shade, host);
+        const std::size_t before = out_.dynamic.size();
+        read_states(shade, host);
+        if (out_.dynamic.size() > before) out_.dynamic.back().is_shade = true;
     }
 
-    /// Adds the shades of an object's first state.
-    void read_state(const Json& object, const Host& host) {
+    /// Reads the states of an object, and adds the shades of the chosen one to the scene.
+    void read_states(const Json& object, const Host& host) {
         const Json& states = entries(radiance(object), "states");
         if (states.size() > 1) ++dynamic_;
         if (states.empty()) return;
@@ -403,15 +411,24 @@ class ModelReader {
         for (const Json& state : states) {
             std::string modifier = modifier_name(member(state, "modifier"));
             if (modifier.empty()) modifier = modifier_name(member(radiance(object), "modifier"));
-            dynamic.states.push_back({std::move(modifier), !entries(state, "shades").empty()});
+            dynamic.states.push_back({std::move(modifier), shades_of(state, host)});
         }
-        for (const Json& shade : entries(states[0], "shades")) {
+        const std::size_t chosen = state_of(object);
+        if (chosen >= states.size()) return;
+        const std::vector<HoneybeeSheet>& shades = dynamic.states[chosen].shades;
+        out_.sheets.insert(out_.sheets.end(), shades.begin(), shades.end());
+    }
+
+    std::vector<HoneybeeSheet> shades_of(const Json& state, const Host& host) {
+        std::vector<HoneybeeSheet> out;
+        for (const Json& shade : entries(state, "shades")) {
             std::optional<HoneybeeOutline> outline = outline_of(shade);
             if (!outline) continue;
             std::string modifier = modifier_name(member(shade, "modifier"));
             if (modifier.empty()) modifier = from_sets("shade_set.exterior_modifier", host);
-            out_.sheets.push_back({text(shade, "identifier"), std::move(modifier), {std::move(*outline)}});
+            out.push_back({text(shade, "identifier"), std::move(modifier), {std::move(*outline)}});
         }
+        return out;
     }
 
     void add_mesh(const Json& mesh) {
@@ -460,6 +477,8 @@ class ModelReader {
                                   towards = vector_of(member(view, "direction")),
                                   up = vector_of(member(view, "up_vector"));
         const bool is_parallel = type == "l";
+        if (!is_parallel && at && towards && norm(*towards) > 0)
+            out_.eyes.push_back({name, metres_ * *at, normalized(*towards)});
         if (!type.empty() && type != "v" && !is_parallel)
             return find(
                 Finding::Kind::warning, 0,
@@ -480,6 +499,7 @@ class ModelReader {
     }
 
     const std::string& path_;
+    const HoneybeeChoices& choices_;
     HoneybeeModel out_;
     double metres_ = 1;
     HoneybeeModifierSet global_;
@@ -508,8 +528,8 @@ bool is_honeybee_file(const std::string& path) {
     return !says_type("\"CityJSON\"") && says_type("\"Model\"");
 }
 
-HoneybeeModel read_honeybee_model(const std::string& path) {
-    return ModelReader(path).read();
+HoneybeeModel read_honeybee_model(const std::string& path, const HoneybeeChoices& choices) {
+    return ModelReader(path, choices).read();
 }
 
 }  // namespace exitance

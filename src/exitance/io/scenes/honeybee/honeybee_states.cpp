@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "exitance/scene/photometric_units.hpp"
 
@@ -31,9 +33,6 @@ Result<std::vector<double>> factors_of(const HoneybeeModel& model, const Honeybe
     double first = 0;
     for (std::size_t k = 0; k < object.states.size(); ++k) {
         const HoneybeeState& state = object.states[k];
-        if (k > 0 && state.has_shades)
-            return fault(fmt::format("state {} of '{}' has shades", k, object.object),
-                         "give the states with [[group.state]], and these shades as 'files'");
         const std::optional<double> T = transmittance_of(model, state.modifier);
         if (!T || (k == 0 && !(*T > 0)))
             return fault(fmt::format("the material '{}' of state {} of '{}' is not clear glass", state.modifier, k,
@@ -48,24 +47,72 @@ Result<std::vector<double>> factors_of(const HoneybeeModel& model, const Honeybe
     return out;
 }
 
+std::vector<const HoneybeeDynamic*> objects_of(const HoneybeeModel& model, const std::string& group) {
+    std::vector<const HoneybeeDynamic*> out;
+    for (const HoneybeeDynamic& object : model.dynamic)
+        if (object.group == group || object.object == group) out.push_back(&object);
+    return out;
+}
+
+/// Returns the factors that all windows of a group have in common.
+Result<std::vector<double>> common_factors(const HoneybeeModel& model,
+                                           std::span<const HoneybeeDynamic* const> objects) {
+    constexpr double rounding = 1e-6;  // derived from the digits with which models give transmissivities
+    const auto is_close = [](double a, double b) { return std::abs(a - b) <= rounding; };
+    std::vector<double> out;
+    for (const HoneybeeDynamic* const object : objects) {
+        Result<std::vector<double>> factors = factors_of(model, *object);
+        if (!factors) return factors.error();
+        if (!out.empty() && !std::equal(factors->begin(), factors->end(), out.begin(), out.end(), is_close))
+            return fault(fmt::format("'{}' and '{}' have other states", objects.front()->object, object->object),
+                         "give them groups of their own in the model");
+        out = std::move(*factors);
+    }
+    return out;
+}
+
+/// Returns the first state whose scene shows state k of all windows of a group: 0 if the shades are those of state 0,
+/// so that a factor is enough, else a state with the same shades and materials.
+std::size_t same_scene(std::span<const HoneybeeDynamic* const> objects, std::size_t k) {
+    std::size_t first = 0;
+    const auto is_other = [&](const HoneybeeDynamic* object) {
+        const HoneybeeState &a = object->states[first], &b = object->states[k];
+        return a.shades != b.shades || (first > 0 && a.modifier != b.modifier);
+    };
+    while (std::any_of(objects.begin(), objects.end(), is_other)) ++first;
+    return first;
+}
+
 }  // namespace
 
 Result<HoneybeeStates> find_honeybee_states(const HoneybeeModel& model, const std::string& group, bool objects_only) {
-    constexpr double rounding = 1e-6;  // derived from the digits with which models give transmissivities
+    const std::vector<const HoneybeeDynamic*> objects = objects_of(model, group);
+    if (objects.empty()) return fault(fmt::format("the model has no dynamic objects of group '{}'", group));
     HoneybeeStates out;
-    for (const HoneybeeDynamic& object : model.dynamic) {
-        if (object.group != group && object.object != group) continue;
-        Result<std::vector<double>> factors =
-            objects_only ? Result<std::vector<double>>(std::vector<double>()) : factors_of(model, object);
-        if (!factors) return factors.error();
-        const auto is_close = [&](double a, double b) { return std::abs(a - b) <= rounding; };
-        if (!out.objects.empty() &&
-            !std::equal(factors->begin(), factors->end(), out.factors.begin(), out.factors.end(), is_close))
-            return fault(fmt::format("'{}' and '{}' have other states", out.objects.front(), object.object),
+    for (const HoneybeeDynamic* const object : objects) {
+        out.objects.push_back(object->object), out.has_shades |= object->is_shade;
+        if (!objects_only && object->states.size() != objects.front()->states.size())
+            return fault(fmt::format("'{}' and '{}' have other states", objects.front()->object, object->object),
                          "give them groups of their own in the model");
-        out.objects.push_back(object.object), out.factors = std::move(*factors);
     }
-    if (out.objects.empty()) return fault(fmt::format("the model has no dynamic objects of group '{}'", group));
+    if (objects_only) return out;
+    const std::size_t states = objects.front()->states.size();
+    out.factors.assign(states, 1);
+    if (!out.has_shades) {
+        Result<std::vector<double>> factors = common_factors(model, objects);
+        if (!factors) return factors.error();
+        out.factors = std::move(*factors);
+    }
+    for (std::size_t k = 0; k < states; ++k) {
+        out.scene.push_back(out.has_shades ? k : same_scene(objects, k));
+        if (out.scene[k] > 0) out.factors[k] = 1;
+    }
+    return out;
+}
+
+HoneybeeChoices HoneybeeStates::choices(std::size_t state) const {
+    HoneybeeChoices out;
+    for (const std::string& object : objects) out[object] = scene[state];
     return out;
 }
 

@@ -7,13 +7,21 @@ namespace exitance {
 /// The objects of a dynamic group of a Honeybee model.
 struct HoneybeeStates {
     std::vector<std::string> objects;  ///< Identifiers.
-    /// Per state: its transmittance at normal incidence relative to that of the first state.
+    /// Per state: its transmittance at normal incidence relative to that of the first state; 1 with a scene of its own.
     std::vector<double> factors;
+    /// Per state: 0 if the scene of the first state shows it, else the first state with the same shades and materials,
+    /// which need a scene of their own.
+    std::vector<std::size_t> scene;
+    bool has_shades = false;  ///< True if one of the objects is a shade, whose states change all light of the scene.
+
+    /// The choices that make the scene of a state from the model.
+    HoneybeeChoices choices(std::size_t state) const;
 };
 
-/// Finds the objects with a `dynamic_group_identifier`, or one object with this identifier, and the factors of their
-/// states, unless `objects_only`. Errors (bad_input, without a place): no such objects; states with shades, with other
-/// materials than glass, or brighter than the first; objects whose states differ.
+/// Finds the objects with a `dynamic_group_identifier`, or one object with this identifier, and their states, unless
+/// `objects_only`. States of windows and doors have factors; those of shades, or of windows together with shades, have
+/// a geometry each. Errors (bad_input, without a place): no such objects; states of windows with other materials than
+/// glass, or brighter than the first; objects whose states differ.
 Result<HoneybeeStates> find_honeybee_states(const HoneybeeModel& model, const std::string& group, bool objects_only);
 
 }  // namespace exitance

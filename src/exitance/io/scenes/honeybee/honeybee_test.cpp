@@ -181,6 +181,20 @@ TEST(Honeybee, DynamicObjectsAreInTheirFirstState) {
     EXPECT_EQ(scene.findings[0].message, "1 object with several states is in the first of them");
 }
 
+TEST(Honeybee, DynamicObjectsAreInTheChosenState) {
+    const TemporaryFolder folder;
+    const std::string states =
+        "'properties': {'radiance': {'states': [{'modifier': 'generic_context_0.20'}, {'modifier': "
+        "'generic_wall_0.50', 'shades': [" +
+        sheet("awning", wall, "'x': 0") + "]}]}}";
+    std::ofstream(folder / "m.hbjson") << model("'orphaned_shades': [" + sheet("s", window, states) + "]");
+    for (const std::size_t state : {0, 1}) {
+        const ReadScene scene = read_honeybee(folder / "m.hbjson", {{"s", state}});
+        EXPECT_EQ(material_of(scene.description, "s").reflectance[0], state == 0 ? 0.2 : 0.5);
+        EXPECT_NEAR(extent_of(scene.description, "awning").area, state == 0 ? 0 : 24, 1e-12);
+    }
+}
+
 TEST(Honeybee, GridsAndViewsAreRead) {
     const TemporaryFolder folder;
     std::ofstream(folder / "m.hbjson") << quoted(

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "exitance/transport/stage.hpp"
+#include "exitance/visibility/visible_part.hpp"
+
+namespace exitance {
+
+/// Numbers of sensors whose light is probably not what was meant to be measured.
+struct MisplacedSensors {
+    std::vector<std::size_t> behind;    ///< They see mostly backs of faces: below a floor, or inside of a body.
+    std::vector<std::size_t> outdoors;  ///< They have the open sky above them, and other sensors do not.
+};
+
+/// Finds sensors that see mostly backs of faces, and sensors outdoors if others are indoors. A sensor is outdoors if
+/// neither a face nor a pane is straight above it, nor in at least 30% of the directions above it. Casts 64 rays per
+/// sensor: 5 us each.
+MisplacedSensors find_misplaced(const Stage& stage, std::span<const Receiver> sensors);
+
+/// Returns a sentence for each kind of misplaced sensors, with their count and the first of them.
+std::vector<std::string> warnings_of(const MisplacedSensors& misplaced, std::span<const Receiver> sensors);
+
+}  // namespace exitance
