@@ -35,8 +35,10 @@ export class ScaleControl {
     /** Steps of the colours for values in a range, and the handles where they belong. */
     steps(values: [number, number]): number[] {
         this.limits = values[1] > 0 ? values : [0, 1];
-        const [lo, hi] = this.range, steps = this.chosen ? steps_within(lo, hi, this.log.checked) : round_steps(lo, hi, this.log.checked);
-        if (!this.chosen) this.limits = [steps[0], steps[steps.length - 1]];
+        // The track does not depend on the handles, which would run away from the pointer.
+        const round = round_steps(...this.limits, this.log.checked);
+        this.limits = [round[0], round[round.length - 1]];
+        const [lo, hi] = this.range, steps = this.chosen ? steps_within(lo, hi, this.log.checked) : round;
         this.show();
         return steps;
     }
