@@ -447,4 +447,4 @@ asked_state.then(async state => state.solving ? follow() : load(true, await aske
 // What tests of the page ask for.
 Object.assign(window, {exitance: {words: () => view.words(), exposure: () => shading.uniforms.scale.value as number,
     size: () => [width(), height()], canvas: () => { paint(); return canvas.toDataURL(); }, whole: () => panes.whole,
-    inside: () => view.inside, look: (words: string) => { view.from_words(words); redraw(); }, round_steps}});
+    inside: () => view.inside, back_share: () => panes.back_share(width(), height(), view), look: (words: string) => { view.from_words(words); redraw(); }, round_steps}});

@@ -225,12 +225,26 @@ export class Panes {
         return null;
     }
 
+    /** Share of the picture in which backs of faces are seen, by rays through a coarse grid of pixels. For tests. */
+    back_share(width: number, height: number, view: Viewpoint): number {
+        const layer = this.layer(this.panes(width)[0].source), ray = new THREE.Raycaster();
+        let backs = 0;
+        for (let k = 0; k < visible_rows; ++k)
+            for (let i = 0; i < visible_columns; ++i) {
+                ray.setFromCamera(new THREE.Vector2((2 * i + 1) / visible_columns - 1, (2 * k + 1) / visible_rows - 1), view.camera);
+                const normal = layer.hit(ray, this.shading.seen)?.face?.normal;
+                if (normal && normal.dot(ray.ray.direction) > 0) ++backs;
+            }
+        return backs / (visible_rows * visible_columns);
+    }
+
     /**
      * The light of the surfaces in the camera's picture, one number each from rays through a coarse grid of pixels; without
      * sources. Sorted.
      */
     visible_values(width: number, height: number, view: Viewpoint, radiosity: boolean): number[] {
         const pane = this.panes(width)[0], layer = this.layer(pane.source), ray = new THREE.Raycaster(), values: number[] = [];
+        view.resize(pane.view_width / height);
         for (let k = 0; k < visible_rows; ++k)
             for (let i = 0; i < visible_columns; ++i) {
                 ray.setFromCamera(new THREE.Vector2((2 * i + 1) / visible_columns - 1, (2 * k + 1) / visible_rows - 1), view.camera);
