@@ -103,7 +103,7 @@ TEST(ProgramReport, MaterialsOfOneNameAreOneRow) {
     const nlohmann::json found = nlohmann::json::parse(read_text(folder / "room.json"))["materials"];
     ASSERT_EQ(found.size(), 2u) << found;
     EXPECT_EQ(found[1]["name"], "lamp");
-    EXPECT_EQ(found[1]["faces"], 2);
+    EXPECT_EQ(found[1]["surfaces"], 2);
     EXPECT_NEAR(double(found[1]["area"]), 1.5, 1e-4);
 }
 

@@ -130,7 +130,6 @@ TEST(ProgramUsage, AMissingValueOrInputIsAUsageError) {
 
 TEST(ProgramUsage, OptionsOfDiscontinuityMeshingElsewhereAreNamed) {
     const std::vector<std::vector<std::string>> wrong{
-        {"--eee", "on"},
         {"--triangulation", "shortest", "--method", "matrix"},
         {"--dm-sources", "3", "--method", "discontinuity", "--bounces", "0"},
         {"--premesh", "coarse", "--method", "discontinuity"},

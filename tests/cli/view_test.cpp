@@ -245,7 +245,7 @@ TEST(ProgramView, SolvesASceneUnderASkyWithLightGroupsInLux) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder);
     const int port = free_port();
-    RunningProgram run({"view", scene, "--sky", "uniform", "--light-groups", "--unit", "lux", "--error", "0.3",
+    RunningProgram run({"view", scene, "--sky", "uniform,dhi=50", "--light-groups", "--unit", "lux", "--error", "0.3",
                         "--port", std::to_string(port)});
     ASSERT_TRUE(run.wait_for("ends the viewer"));
     const auto get = [&](const std::string& path) {
@@ -263,7 +263,7 @@ TEST(ProgramView, SolvesASceneUnderASkyWithLightGroupsInLux) {
     run.send(SIGINT);
     EXPECT_EQ(run.finish().status, 130);
     ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
-    EXPECT_EQ(run_program({"view", folder / "s.h5", "--sky", "uniform"}).status, 2);
+    EXPECT_EQ(run_program({"view", folder / "s.h5", "--sky", "uniform,dhi=50"}).status, 2);
     EXPECT_EQ(run_program({"view", scene, "--light-groups", "--method", "discontinuity"}).status, 2);
     EXPECT_NE(run_program({"view", folder / "s.h5", folder / "s.h5"}).err.find("one solution"), std::string::npos);
 }
