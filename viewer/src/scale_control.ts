@@ -48,9 +48,10 @@ export class ScaleControl {
         return this.log.checked ? [above_zero(Math.min(lo, this.range[0]), top), top] : [0, top];
     }
 
+    /** Four digits: with three, steps of the keyboard would be rounded back to where the handle is. */
     private value(position: number): number {
         const [lo, hi] = this.ends(), t = position / track;
-        return Number((this.log.checked ? lo * (hi / lo) ** t : lo + (hi - lo) * t).toPrecision(3));
+        return Number((this.log.checked ? lo * (hi / lo) ** t : lo + (hi - lo) * t).toPrecision(4));
     }
 
     private position(value: number): number {
