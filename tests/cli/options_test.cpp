@@ -42,6 +42,15 @@ TEST(ProgramOptions, OfSolveAreRowsOfTheTableOrSharedWithOtherVerbs) {
     for (const OptionRow& row : solve_option_table()) EXPECT_TRUE(of_solve.contains(row.name)) << row.name;
 }
 
+TEST(ProgramOptions, HelpNamesTheValuesThatAFormSupports) {
+    const std::string help = run_program({"reference", "--format", "markdown"}).out;
+    const std::size_t row = help.find("| `--clusters ");
+    ASSERT_NE(row, std::string::npos);
+    const std::string line = help.substr(row, help.find('\n', row) - row);
+    EXPECT_NE(line.find("all published forms with off"), std::string::npos) << line;
+    EXPECT_NE(line.find("--task-engine with off"), std::string::npos) << line;
+}
+
 TEST(ProgramOptions, HelpShowsThirtyOptionsAtMostAndHelpAllShowsAll) {
     const std::string help = run_program({"solve", "--help"}).out, all = run_program({"solve", "--help-all"}).out;
     const auto shows = [](const std::string& text, const std::string& name) {

@@ -93,6 +93,20 @@ TEST(ProgramReport, IsOnePageWithItsNumbersBesideIt) {
     }
 }
 
+TEST(ProgramReport, MaterialsOfOneNameAreOneRow) {
+    const TemporaryFolder folder;
+    const std::string scene = write_small_room(folder), solution = folder / "room.h5";
+    // A second lamp, of a group of its own: light groups give its faces a material of their own.
+    write_text(scene, read_text(scene) + "v 0.5 1 2.3\nv 1 1 2.3\nv 1 2 2.3\nv 0.5 2 2.3\ng spare\nf 16 15 14 13\n");
+    ASSERT_EQ(run_program({"solve", scene, "-o", solution, "--error", "0.1", "--light-groups", "-q"}).status, 0);
+    ASSERT_EQ(run_program({"report", solution, "-o", folder / "room.html", "--size", "32x20", "-q"}).status, 0);
+    const nlohmann::json found = nlohmann::json::parse(read_text(folder / "room.json"))["materials"];
+    ASSERT_EQ(found.size(), 2u) << found;
+    EXPECT_EQ(found[1]["name"], "lamp");
+    EXPECT_EQ(found[1]["surfaces"], 2);
+    EXPECT_NEAR(double(found[1]["area"]), 1.5, 1e-4);
+}
+
 TEST(ProgramReport, JudgesRequirementsWithTheErrorOfTheLight) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5", page = folder / "room.html";

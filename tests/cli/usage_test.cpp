@@ -76,6 +76,21 @@ TEST(ProgramUsage, AnUnknownOptionIsAUsageErrorThatNamesTheNearest) {
     EXPECT_EQ(run.err, "error: '--eror' is not a known option or argument\nhint: did you mean --error?\n");
 }
 
+TEST(ProgramUsage, AFileOfPointsWithoutItsOptionIsNamedWithIt) {
+    const Finished run = run_program({"probe", "s.h5", "points.csv"});
+    EXPECT_EQ(run.status, 2);
+    EXPECT_NE(run.err.find("--points points.csv"), std::string::npos) << run.err;
+}
+
+TEST(ProgramUsage, ASolutionInPlaceOfASceneIsNamedAsSuch) {
+    const TemporaryFolder folder;
+    for (const char* name : {"a.h5", "b.h5"}) write_text(folder / name, "");
+    const Finished solve = run_program({"solve", folder / "a.h5", "-o", folder / "s.h5"});
+    EXPECT_EQ(solve.status, 3);
+    EXPECT_NE(solve.err.find("is a solution or other HDF5 file"), std::string::npos) << solve.err;
+    EXPECT_NE(solve.err.find("render"), std::string::npos) << solve.err;
+}
+
 TEST(ProgramUsage, ValuesOutOfRangeAreUsageErrorsThatNameTheOptionAndTheValue) {
     const std::vector<std::vector<std::string>> cases{
         {"--error", "-1"},        {"--error", "nan"},    {"--error", "0"},          {"--error", "two"},
@@ -115,7 +130,6 @@ TEST(ProgramUsage, AMissingValueOrInputIsAUsageError) {
 
 TEST(ProgramUsage, OptionsOfDiscontinuityMeshingElsewhereAreNamed) {
     const std::vector<std::vector<std::string>> wrong{
-        {"--eee", "on"},
         {"--triangulation", "shortest", "--method", "matrix"},
         {"--dm-sources", "3", "--method", "discontinuity", "--bounces", "0"},
         {"--premesh", "coarse", "--method", "discontinuity"},

@@ -154,9 +154,16 @@ TEST(ViewerData, AFrameHoldsThePictureFromTheBottomUp) {
 TEST(ViewerData, HasTheWeightsOfColoursInTheScenesUnit) {
     if constexpr (bands != 3) GTEST_SKIP() << "the bands of this build weigh alike";
     const Camera camera{{0.1, 0.1, 0.5}, {1.5, 0.5, 0.5}, 70};
-    const auto facts = [&](bool photometric) { return viewer_scene_json(sample_solution(40, photometric), camera); };
-    EXPECT_NE(facts(true).find("\"weights\":[0.265,0.67,0.065]"), std::string::npos) << facts(true);
-    EXPECT_NE(facts(false).find("\"weights\":[0.333"), std::string::npos) << facts(false);
+    const auto facts = [&](bool photometric, UnitChoice choice) {
+        return viewer_scene_json(sample_solution(40, photometric), camera, LightUnit(choice, photometric));
+    };
+    EXPECT_NE(facts(true, UnitChoice::scene).find("\"weights\":[0.265,0.67,0.065]"), std::string::npos);
+    EXPECT_NE(facts(false, UnitChoice::scene).find("\"weights\":[0.333"), std::string::npos);
+    EXPECT_NE(facts(false, UnitChoice::scene).find("\"lux\":false"), std::string::npos);
+    // In lux, light in watts is multiplied by 179 lm/W, too.
+    EXPECT_NE(facts(false, UnitChoice::lux).find("\"weights\":[47.43"), std::string::npos)
+        << facts(false, UnitChoice::lux);
+    EXPECT_NE(facts(false, UnitChoice::lux).find("\"lux\":true"), std::string::npos);
 }
 
 TEST(ProgramView, AnswersItsOwnPageAndNobodyElse) {
@@ -231,6 +238,34 @@ TEST(ProgramView, ASceneIsReadInItsLengthUnitAndUprightAxis) {
     EXPECT_EQ(run.finish().status, 130);
     ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
     EXPECT_EQ(run_program({"view", folder / "s.h5", "--length-unit", "mm"}).status, 2);
+}
+
+TEST(ProgramView, SolvesASceneUnderASkyWithLightGroupsInLux) {
+    if (!has_page()) GTEST_SKIP() << "the viewer's page was not built";
+    const TemporaryFolder folder;
+    const std::string scene = write_small_room(folder);
+    const int port = free_port();
+    RunningProgram run({"view", scene, "--sky", "uniform,dhi=50", "--light-groups", "--unit", "lux", "--error", "0.3",
+                        "--port", std::to_string(port)});
+    ASSERT_TRUE(run.wait_for("ends the viewer"));
+    const auto get = [&](const std::string& path) {
+        return ask(port, "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) +
+                             "\r\nConnection: close\r\n\r\n");
+    };
+    std::string groups;
+    for (int tries = 0; groups.find("lamp") == groups.npos && tries < 600; ++tries) {
+        groups = get("/groups");
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    EXPECT_NE(groups.find("\"lamp\""), std::string::npos) << groups;
+    EXPECT_NE(groups.find("sky"), std::string::npos) << groups;
+    EXPECT_NE(get("/data/scene").find("\"lux\":true"), std::string::npos);
+    run.send(SIGINT);
+    EXPECT_EQ(run.finish().status, 130);
+    ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
+    EXPECT_EQ(run_program({"view", folder / "s.h5", "--sky", "uniform,dhi=50"}).status, 2);
+    EXPECT_EQ(run_program({"view", scene, "--light-groups", "--method", "discontinuity"}).status, 2);
+    EXPECT_NE(run_program({"view", folder / "s.h5", folder / "s.h5"}).err.find("one solution"), std::string::npos);
 }
 
 TEST(ProgramView, DimsAndPaintsAsMixDoes) {

@@ -1,4 +1,4 @@
-// Palettes and the steps of a colour scale, as the program chooses them (false_colour.cpp), so that both agree.
+// Palettes and the steps of a colour scale, as `render` has them for a given range (false_colour.cpp).
 import type {Triple} from './data';
 
 export const palettes: Record<string, Triple[]> = {
@@ -21,9 +21,12 @@ export function colour_at(palette: string, t: number): Triple {
     return [mix(0), mix(1), mix(2)];
 }
 
+/** The lower end of a logarithmic scale, which cannot be 0. */
+export const above_zero = (lo: number, hi: number) => Math.max(lo, 1e-3 * hi);
+
 function steps_by_ratio(lo: number, hi: number): number[] {
     const steps: number[] = [];
-    lo = Math.max(lo, 1e-4 * hi);
+    lo = above_zero(lo, hi);
     for (let k = Math.floor(Math.log10(lo)); k <= Math.ceil(Math.log10(hi)); ++k)
         for (const digit of [1, 2, 5]) steps.push(Number((digit * 10 ** k).toPrecision(1)));
     while (steps.length > 2 && steps[1] <= lo) steps.shift();
@@ -41,11 +44,8 @@ function even_steps(lo: number, hi: number): number[] {
     return steps;
 }
 
-/** True if values span so much that steps of equal ratio show them better. */
-export const spans_ratios = (lo: number, hi: number) => hi > 30 * lo;
-
 /** Round steps that include the range: 1, 2 or 5 times a power of ten, or 1-2-5 steps. */
-export function round_steps(lo: number, hi: number, by_ratio = spans_ratios(lo, hi)): number[] {
+export function round_steps(lo: number, hi: number, by_ratio = false): number[] {
     if (!(hi > 0)) return [0, 1];
     return (by_ratio ? steps_by_ratio(lo, hi) : even_steps(lo, hi)).slice(0, most_steps);
 }

@@ -4,7 +4,7 @@ export type Triple = [number, number, number];
 export type Layer = 'exported' | 'method' | 'raw';
 
 export interface Facts {
-    file: string; photometric: boolean; units: {irradiance: string; radiosity: string}; weights: Triple; surfaces: number; elements: number; method: string; basis: string;
+    file: string; lux: boolean; units: {irradiance: string; radiosity: string}; weights: Triple; surfaces: number; elements: number; method: string; basis: string;
     materials: {name: string; reflectance: Triple; exitance: Triple}[]; groups: string[];
     exposure: number; camera: {eye: Triple; target: Triple; fov: number}; box: [Triple, Triple];
     parts: Record<Layer, number>; error: number | null; links: number;
@@ -62,7 +62,7 @@ export const post = (path: string) => answer(path, 'POST').then(r => r.text());
 export const load_state = () => answer('/data/state').then(r => r.json() as Promise<{solving: boolean}>);
 export async function load_facts(change: Change = unchanged): Promise<Facts> {
     const facts = await (await answer(query('/data/scene', {}, change))).json() as Facts;
-    return {...facts, units: facts.photometric ? {irradiance: 'lx', radiosity: 'lm/m²'} : {irradiance: 'W/m²', radiosity: 'W/m²'}};
+    return {...facts, units: facts.lux ? {irradiance: 'lx', radiosity: 'lm/m²'} : {irradiance: 'W/m²', radiosity: 'W/m²'}};
 }
 export const load_point = (at: number[], change: Change) =>
     answer(query('/data/point', {at: at.join(',')}, change)).then(r => r.json() as Promise<Light>);

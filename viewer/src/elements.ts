@@ -2,12 +2,14 @@
 import * as THREE from 'three';
 import {acceleratedRaycast, MeshBVH, type MeshBVHOptions} from 'three-mesh-bvh';
 import {face_words, load_light, load_part, no_group, six_nodes, type Change, type Facts, type Layer, type Part, type Seen, type Triple} from './data';
+import {normals_of} from './normals';
 import type {Shading} from './shading';
 
 /** Of edges by the order of the discontinuity along them (CurveOrder), as `render --mesh` has them. */
 export const order_colours: Record<number, [string, Triple]> = {0: ['border', [230, 230, 230]], 1: ['D0 value', [222, 30, 40]],
     2: ['D1 slope', [0, 150, 90]], 3: ['D2 curvature', [40, 110, 245]], 4: ['conic', [170, 60, 200]]};
 const plain: Triple = [64, 64, 72];
+const few_values = 50;  // of which percentiles would be chance
 
 interface Loaded { part: Part; mesh: THREE.Mesh; first: Uint32Array; materials: Float32Array; groups: Float32Array; tree: MeshBVH | null }
 
@@ -105,6 +107,7 @@ export class Elements {
         const scalars = {material: materials, group: groups, shadow};
         geometry.setAttribute('position', new THREE.BufferAttribute(part.positions, 3));
         geometry.setAttribute('irradiance', new THREE.BufferAttribute(part.irradiance, 3));
+        geometry.setAttribute('normal', new THREE.BufferAttribute(normals_of(part.positions, part.faces, first), 4, true));
         for (const [name, values] of Object.entries(scalars)) geometry.setAttribute(name, new THREE.BufferAttribute(values, 1));
         geometry.setIndex(new THREE.BufferAttribute(index, 1));
         const mesh = new THREE.Mesh(geometry, this.shading.material);
@@ -166,12 +169,17 @@ export class Elements {
     /** The group of the face that a ray has hit; the number of groups if it is in none. */
     group(hit: THREE.Intersection): number { return this.of(hit).groups[hit.face!.a]; }
 
-    /** Irradiance there as one number, interpolated between the corners as the picture is. */
+    /** Irradiance as one number. */
     value(hit: THREE.Intersection): number {
+        return this.light(hit)?.reduce((sum, e, c) => sum + this.facts.weights[c] * e, 0) ?? NaN;
+    }
+
+    /** Irradiance at a hit, interpolated between the corners as the picture is. */
+    private light(hit: THREE.Intersection): Triple | null {
         const {a, b, c} = hit.face!, {part} = this.of(hit), corner = (v: number) => new THREE.Vector3().fromArray(part.positions, 3 * v);
         const light = (v: number) => new THREE.Vector3().fromArray(part.irradiance, 3 * v);
         const found = THREE.Triangle.getInterpolation(hit.point, corner(a), corner(b), corner(c), light(a), light(b), light(c), new THREE.Vector3());
-        return found ? found.dot(new THREE.Vector3(...this.facts.weights)) : NaN;
+        return found && found.toArray() as Triple;
     }
 
     /** The corners of the face that a hit of a ray is on. */
@@ -187,7 +195,15 @@ export class Elements {
         return Array.from({length: corners}, (_, i) => new THREE.Vector3().fromArray(found.part.positions, 3 * (found.first[low] + i)));
     }
 
-    /** Values that are shown, some tens of thousands of them; emitters left out. */
+    /** The number that is shown at a hit of a ray, or null on an emitter. */
+    shown_value(hit: THREE.Intersection, radiosity: boolean): number | null {
+        const number = this.of(hit).materials[hit.face!.a];
+        if (Math.max(...this.facts.materials[number].exitance) > 0) return null;
+        const E = this.light(hit), rho = this.shading.reflectances[number];
+        return E && E.reduce((sum, e, c) => sum + (radiosity ? rho[c] : 1) * this.facts.weights[c] * e, 0);
+    }
+
+    /** Values of all surfaces, some tens of thousands of them; emitters left out. */
     private values(radiosity: boolean): number[] {
         const values: number[] = [];
         for (const {part, materials} of this.loaded) {
@@ -205,11 +221,11 @@ export class Elements {
         return values.sort((a, b) => a - b);
     }
 
-    /** The range of what is shown, a hundredth left out at either end. */
-    range(radiosity: boolean): [number, number] {
-        const values = this.values(radiosity);
+    /** Percentiles 2 and 98 of `visible`, sorted values in the picture, or of all surfaces if few are visible. */
+    range(radiosity: boolean, visible: number[]): [number, number] {
+        const values = visible.length >= few_values ? visible : this.values(radiosity);
         if (values.length === 0) return [0, 1];
-        const cut = Math.floor(values.length / 100);
+        const cut = Math.floor(values.length / 50);
         return [values[cut], values[values.length - 1 - cut]];
     }
 }

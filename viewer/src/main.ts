@@ -31,11 +31,11 @@ marks.add(chosen, shooters);
 const box = (id: string) => by_id<HTMLInputElement>(id), choice = (id: string) => by_id<HTMLSelectElement>(id).value;
 let facts: Facts, shading: Shading, panes: Panes, view: Viewpoint, space: Space | null = null, objects: Objects;
 let wanted = true, measuring: {point: THREE.Vector3; normal: THREE.Vector3}[] | null = null, csv = '', told_panes = '';
-let exposure = 1, labelled = '', rested = 0, hovered: [number, number] | null = null;
+let exposure = 1, labelled = '', ranged = '', range: [number, number] = [0, 1], rested = 0, hovered: [number, number] | null = null;
 
 const redraw = () => { wanted = true; };
 const width = () => Math.max(1, place.clientWidth), height = () => Math.max(1, place.clientHeight);
-const scale = new ScaleControl(() => panes && apply());
+const scale = new ScaleControl(() => panes && apply(), () => { ranged = ''; if (panes) apply(); });
 const card = new Card({
     hide: group => { objects.hide(group); card.close(); }, isolate: group => objects.isolate(group),
     copied: words => { void navigator.clipboard.writeText(words); },
@@ -120,6 +120,14 @@ function show_legend(shown: Shown, isolux: boolean): void {
     legend.replaceChildren(...rows);
 }
 
+/** The range of the light in the picture, found again when other light is shown, but not while the camera moves. */
+function visible_range(radiosity: boolean): [number, number] {
+    const words = JSON.stringify([radiosity, panes.change, panes.source, panes.arrangement, panes.layers.delivered.progress]);
+    if (words === ranged) return range;
+    ranged = words;
+    return range = panes.layers.delivered.range(radiosity, panes.visible_values(width(), height(), view, radiosity));
+}
+
 /** Everything that the settings say. */
 function apply(): void {
     const shown = choice('quantity') as Shown, stops = Number(box('exposure').value), isolux = box('isolux').checked;
@@ -130,7 +138,7 @@ function apply(): void {
     by_id('exposure_text').textContent = `${stops >= 0 ? '+' : ''}${stops.toFixed(1)} stops`;
     by_id('values').hidden = !values && !isolux;
     by_id('threshold_unit').textContent = unit();
-    if (values || isolux) shading.set_steps(scale.steps(panes.layers.delivered.range(shown === 'radiosity')), scale.palette);
+    if (values || isolux) shading.set_steps(scale.steps(visible_range(shown === 'radiosity')), scale.palette);
     by_id('tool_colours').setAttribute('aria-pressed', String(values));
     by_id('tool_isolux').setAttribute('aria-pressed', String(isolux));
     show_legend(shown, isolux);
@@ -281,7 +289,7 @@ async function load(first: boolean, known: Facts | null = null): Promise<void> {
     shading = new Shading(facts);
     const fresh: Panes = new Panes(facts, shading, marks, redraw);
     if (old) [fresh.arrangement, fresh.source, fresh.dividers] = [old.arrangement, old.source, old.dividers];
-    exposure = facts.exposure;
+    exposure = facts.exposure, ranged = '';
     // What was there stays in sight until there is something new.
     await fresh.layers.delivered.load(fresh.change, () => {
         performance.mark('buffers');
@@ -439,4 +447,4 @@ asked_state.then(async state => state.solving ? follow() : load(true, await aske
 // What tests of the page ask for.
 Object.assign(window, {exitance: {words: () => view.words(), exposure: () => shading.uniforms.scale.value as number,
     size: () => [width(), height()], canvas: () => { paint(); return canvas.toDataURL(); }, whole: () => panes.whole,
-    inside: () => view.inside, look: (words: string) => { view.from_words(words); redraw(); }, round_steps}});
+    inside: () => view.inside, back_share: () => panes.back_share(width(), height(), view), look: (words: string) => { view.from_words(words); redraw(); }, round_steps}});

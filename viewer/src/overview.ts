@@ -7,6 +7,7 @@ import type {Viewpoint} from './camera';
 type View = [Triple, Triple, number];
 
 const test_width = 60, test_height = 40;  // pixels of a picture that is judged
+const least_shown = 0.1;                  // of the pixels of a good view show the scene
 const enough = 0.5;                       // of the pixels that show the scene, so many are lit in a good view
 const is_lit = 55;                        // of 255: display values above are lit
 
@@ -41,18 +42,19 @@ export function overview(renderer: THREE.WebGLRenderer, panes: Panes, view: View
     const side = Math.atan2(offset.y, offset.x), viewport = renderer.getViewport(new THREE.Vector4());
     const at_rest: View = [facts.camera.eye, facts.camera.target, facts.camera.fov];
     renderer.setScissorTest(false);
-    let best = at_rest, best_lit = 0;
+    let best = at_rest, best_lit = -1;  // a black scene is shown, too
     search: for (const height of [0.55, 1.1])
         for (let i = 0; i < 8; ++i) {
             // 0, 1, -1, 2, -2, ... eighths of a turn from the present side.
             const turn = side + (i % 2 ? 1 : -1) * Math.ceil(i / 2) * Math.PI / 4;
             const away = new THREE.Vector3(Math.cos(turn) * Math.cos(height), Math.sin(turn) * Math.cos(height), Math.sin(height));
             const seen: View = [...view.whole_from(away), view.fov], [shown, lit] = judge(renderer, target, panes, seen);
-            if (shown > 0.1 && lit > best_lit) best = seen, best_lit = lit;
+            if (shown > least_shown && lit > best_lit) best = seen, best_lit = lit;
             if (best_lit >= enough) break search;
         }
     // A building seen from outside may be dark all around: then the view into the room is the one that shows light.
-    if (best_lit < enough && judge(renderer, target, panes, at_rest)[1] > best_lit) best = at_rest;
+    const [shown, lit] = best_lit < enough ? judge(renderer, target, panes, at_rest) : [0, 0];
+    if (shown > least_shown && lit > best_lit) best = at_rest;
     target.dispose();
     renderer.setViewport(viewport);
     return best;

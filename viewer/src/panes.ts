@@ -16,6 +16,9 @@ export interface Found { hit: THREE.Intersection; outline: THREE.Vector3[]; valu
 const order: Source[] = ['raw', 'delivered', 'exact'];
 const still = 150;   // milliseconds without a movement, after which the exact picture is taken
 const coarse = 4;    // a compared picture while one moves has so many times fewer pixels across
+/** Pixels at which a ray is tried: a ray exactly along the corner of two walls may pass between them. */
+const around = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]];
+const visible_columns = 48, visible_rows = 32;  // rays that find the range of the visible light
 const fading = 300;  // milliseconds in which the exact picture appears
 
 export class Panes {
@@ -213,8 +216,41 @@ export class Panes {
         const pane = this.panes(width).find(p => x >= p.left && x <= p.right);
         if (!pane) return null;
         const layer = this.layer(pane.source), ray = new THREE.Raycaster();
-        ray.setFromCamera(new THREE.Vector2(2 * (x - pane.view_left) / pane.view_width - 1, 1 - 2 * y / height), view.camera);
-        const hit = layer.hit(ray, this.shading.seen);
-        return hit ? {hit, outline: layer.outline(hit), value: layer.value(hit), group: layer.group(hit)} : null;
+        for (const [dx, dy] of around) {
+            const at = new THREE.Vector2(2 * (x + dx - pane.view_left) / pane.view_width - 1, 1 - 2 * (y + dy) / height);
+            ray.setFromCamera(at, view.camera);
+            const hit = layer.hit(ray, this.shading.seen);
+            if (hit) return {hit, outline: layer.outline(hit), value: layer.value(hit), group: layer.group(hit)};
+        }
+        return null;
+    }
+
+    /** Share of the picture in which backs of faces are seen, by rays through a coarse grid of pixels. For tests. */
+    back_share(width: number, height: number, view: Viewpoint): number {
+        const layer = this.layer(this.panes(width)[0].source), ray = new THREE.Raycaster();
+        let backs = 0;
+        for (let k = 0; k < visible_rows; ++k)
+            for (let i = 0; i < visible_columns; ++i) {
+                ray.setFromCamera(new THREE.Vector2((2 * i + 1) / visible_columns - 1, (2 * k + 1) / visible_rows - 1), view.camera);
+                const normal = layer.hit(ray, this.shading.seen)?.face?.normal;
+                if (normal && normal.dot(ray.ray.direction) > 0) ++backs;
+            }
+        return backs / (visible_rows * visible_columns);
+    }
+
+    /**
+     * The light of the surfaces in the camera's picture, one number each from rays through a coarse grid of pixels; without
+     * sources. Sorted.
+     */
+    visible_values(width: number, height: number, view: Viewpoint, radiosity: boolean): number[] {
+        const pane = this.panes(width)[0], layer = this.layer(pane.source), ray = new THREE.Raycaster(), values: number[] = [];
+        view.resize(pane.view_width / height);
+        for (let k = 0; k < visible_rows; ++k)
+            for (let i = 0; i < visible_columns; ++i) {
+                ray.setFromCamera(new THREE.Vector2((2 * i + 1) / visible_columns - 1, (2 * k + 1) / visible_rows - 1), view.camera);
+                const hit = layer.hit(ray, this.shading.seen), value = hit && layer.shown_value(hit, radiosity);
+                if (value !== null) values.push(value);
+            }
+        return values.sort((a, b) => a - b);
     }
 }

@@ -1,5 +1,5 @@
 // The range of the colours: two handles on one track, two numbers, linear or logarithmic, palette and threshold.
-import {round_steps, short, spans_ratios, steps_within} from './colours';
+import {above_zero, round_steps, short, steps_within} from './colours';
 import {by_id} from './measure';
 
 const track = 1000;  // positions of a handle
@@ -14,41 +14,44 @@ export class ScaleControl {
     private hi_number = by_id<HTMLInputElement>('scale_hi_number');
     private log = by_id<HTMLInputElement>('scale_log');
     private threshold_number = by_id<HTMLInputElement>('threshold');
-    private log_chosen = false;
 
-    constructor(private changed: () => void) {
+    /** `renewed`: the values are to be found again, and then shown. */
+    constructor(private changed: () => void, renewed: () => void) {
         for (const handle of [this.lo, this.hi]) handle.addEventListener('input', () => this.drag(handle));
         for (const number of [this.lo_number, this.hi_number]) number.addEventListener('change', () => this.type());
-        this.log.addEventListener('change', () => { this.log_chosen = true; changed(); });
+        this.log.addEventListener('change', changed);
         for (const id of ['palette', 'threshold']) by_id(id).addEventListener('input', changed);
-        by_id('scale_auto').addEventListener('click', () => { this.chosen = null, this.log_chosen = false; changed(); });
+        by_id('scale_auto').addEventListener('click', () => { this.chosen = null, this.log.checked = false; renewed(); });
     }
 
     get palette(): string { return by_id<HTMLSelectElement>('palette').value; }
     /** Negative: none. */
     get threshold(): number { return this.threshold_number.value === '' ? -1 : Math.max(0, Number(this.threshold_number.value)); }
-    get range(): [number, number] { return this.chosen ?? this.limits; }
+    get range(): [number, number] {
+        const [lo, hi] = this.chosen ?? this.limits;
+        return [this.log.checked ? above_zero(lo, hi) : lo, hi];
+    }
 
     /** Steps of the colours for values in a range, and the handles where they belong. */
     steps(values: [number, number]): number[] {
         this.limits = values[1] > 0 ? values : [0, 1];
-        const [lo, hi] = this.range;
-        if (!this.log_chosen) this.log.checked = spans_ratios(lo, hi);
-        const steps = this.chosen ? steps_within(this.log.checked ? Math.max(lo, 1e-4 * hi) : lo, hi, this.log.checked)
-            : round_steps(lo, hi, this.log.checked);
-        if (!this.chosen) this.limits = [Math.min(this.limits[0], steps[0]), Math.max(this.limits[1], steps[steps.length - 1])];
+        // The track does not depend on the handles, which would run away from the pointer.
+        const round = round_steps(...this.limits, this.log.checked);
+        this.limits = [round[0], round[round.length - 1]];
+        const [lo, hi] = this.range, steps = this.chosen ? steps_within(lo, hi, this.log.checked) : round;
         this.show();
         return steps;
     }
 
     private ends(): [number, number] {
         const [lo, hi] = this.limits, top = Math.max(1.2 * hi, this.range[1]);
-        return this.log.checked ? [Math.max(Math.min(lo, this.range[0]), 1e-4 * top), top] : [0, top];
+        return this.log.checked ? [above_zero(Math.min(lo, this.range[0]), top), top] : [0, top];
     }
 
+    /** Four digits: with three, steps of the keyboard would be rounded back to where the handle is. */
     private value(position: number): number {
         const [lo, hi] = this.ends(), t = position / track;
-        return Number((this.log.checked ? lo * (hi / lo) ** t : lo + (hi - lo) * t).toPrecision(3));
+        return Number((this.log.checked ? lo * (hi / lo) ** t : lo + (hi - lo) * t).toPrecision(4));
     }
 
     private position(value: number): number {

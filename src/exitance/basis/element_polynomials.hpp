@@ -11,8 +11,8 @@ namespace exitance {
 /// about the centre.
 class ElementPolynomials {
   public:
-    static constexpr std::size_t most = 9;
-    using Values = std::array<double, most>;
+    static constexpr std::size_t max_count = 9;
+    using Values = std::array<double, max_count>;
 
     /// With polynomials of second degree if `curved`.
     ElementPolynomials(const ElementTree& tree, ElementId e, const std::vector<WeightedPlace>& places, bool curved);
@@ -28,7 +28,7 @@ class ElementPolynomials {
     bool square_;
     std::size_t straight_, size_;
     Vec2 middle_, scale_;
-    std::array<Values, most> row_{};  ///< phi_k = sum_j row_[k][j] x monomial j, j <= k.
+    std::array<Values, max_count> row_{};  ///< phi_k = sum_j row_[k][j] x monomial j, j <= k.
 };
 
 }  // namespace exitance

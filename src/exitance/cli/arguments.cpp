@@ -19,12 +19,17 @@ using Parsed = std::variant<Command, Information>;
 
 // -------------------------------------------------------------------------------------------------- parsing
 
-/// Error for the first of `words`, which CLI11 did not recognize. The hint names the most similar option.
+/// Error for the first of `words`, which CLI11 did not recognize. The hint names the most similar option, or --points
+/// for a file of points.
 Error unexpected(const CLI::App& app, const std::vector<std::string>& words) {
     const std::string word = words.empty() ? "" : words.front();
     std::vector<std::string> known;
     for (const CLI::Option* option : app.get_options())
         for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    const bool are_points = word.ends_with(".csv") || word.ends_with(".pts");
+    if (are_points && std::find(known.begin(), known.end(), "--points") != known.end())
+        return {ErrorCode::usage, fmt::format("'{}' is not a known option or argument", word), "",
+                fmt::format("name a file of points by its option: --points {}", word)};
     const std::string near = word.starts_with("--") ? nearest(word.substr(0, word.find('=')), known) : "";
     return {ErrorCode::usage, fmt::format("'{}' is not a known option or argument", word), "",
             near.empty() ? app.get_name() + " --help lists the options" : fmt::format("did you mean {}?", near)};
@@ -60,6 +65,21 @@ Audience audience_of(const std::string& group) {
     return known == std::end(option_groups::all) ? Audience::users : known->audience;
 }
 
+/// " with off" if all methods of a form support the same part of an option's values; otherwise empty.
+std::string supported_values(const OptionRow& row, Form form) {
+    std::optional<std::string> values;
+    for (const OptionSupport& support : row.support)
+        for (const auto& [method, name] : method_names) {
+            if (!support.ways.contains({form, method})) continue;
+            if (values && *values != support.values) return "";
+            values = support.values;
+        }
+    if (!values || values->empty()) return "";
+    std::string out = " with ";
+    for (const char c : *values) out += c == '|' ? std::string(", ") : std::string(1, c);
+    return out;
+}
+
 /// Names of the methods, and of the methods' published forms, that support an option of `solve`; empty: no limitation.
 std::string supported_by(const std::string& option) {
     const OptionRow* const row = find_option(option);
@@ -68,13 +88,15 @@ std::string supported_by(const std::string& option) {
     const auto all = [&](Form form) { return supporting_methods({}, form) == methods(form); };
     std::string out;
     const auto add = [&](const std::string& words) { out += (out.empty() ? "" : "; ") + words; };
+    const auto add_form = [&](Form form, const std::string& words) { add(words + supported_values(*row, form)); };
     if (const std::string found = methods(Form::standard); !found.empty())
-        add(all(Form::standard) ? "all methods" : found);
+        all(Form::standard) ? add_form(Form::standard, "all methods") : add(found);
     if (const std::string found = methods(Form::published); !found.empty())
-        add(all(Form::published) ? "all published forms" : "published: " + found);
+        all(Form::published) ? add_form(Form::published, "all published forms") : add("published: " + found);
     if (option == "--task-engine") return methods(Form::tasks);
-    if (!methods(Form::tasks).empty()) add("--task-engine");
-    if (option != "--local-pass" && !methods(Form::local_passes).empty()) add("--local-pass a to d");
+    if (!methods(Form::tasks).empty()) add_form(Form::tasks, "--task-engine");
+    if (option != "--local-pass" && !methods(Form::local_passes).empty())
+        add_form(Form::local_passes, "--local-pass a to d");
     return out;
 }
 

@@ -263,7 +263,9 @@ struct ViewArguments : CommonArguments {
     SceneArguments scene;  ///< A scene to solve, or one solution (.h5).
     int port = 0;          ///< Port on 127.0.0.1; 0: any free port.
     double error = 0.02;   ///< Requested relative RMS error if a scene is solved.
-    SolveOptions options;  ///< Only the method and the number of threads are set.
+    /// For a scene: its method, its threads, and the options of `view_light_options`.
+    SolveRequest request;
+    UnitArguments unit;
     std::string save = "viewed.h5";
 };
 

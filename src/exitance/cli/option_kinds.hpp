@@ -6,11 +6,14 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "exitance/cli/arguments.hpp"
+#include "exitance/methods/options/make_request.hpp"
 
 namespace exitance {
 
@@ -105,6 +108,12 @@ PictureSize read_size(const std::string& words);
 void declare_scene(CLI::App& app, SceneArguments& scene);
 /// --unit and --efficacy
 void declare_unit(CLI::App& app, UnitArguments& unit);
+
+/// Options of `solve` that set the light of a scene, which `view` has as well.
+inline constexpr std::array<std::string_view, 4> view_light_options{"--sky", "--epw", "--quantity", "--light-groups"};
+/// Declares rows of solve_option_table() by their names, or all rows if there are no names. The returned list, which
+/// the app keeps, has the given options after parsing.
+std::shared_ptr<std::vector<GivenOption>> declare_rows(CLI::App& app, std::span<const std::string_view> names);
 
 // Declare the options for quantities of lighting standards: --plane, --cylindrical, --maintenance, --observers and
 // --tables of `report`; --observers of `glare`; --eyes, --sun-day and --sun-altitude of `daylight`.

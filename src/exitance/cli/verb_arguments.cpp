@@ -348,12 +348,20 @@ void declare(CLI::App& app, ViewArguments& arguments) {
         ->check(CLI::Range(0, 65535));
     add_positive(app, "--error", arguments.error, "R", "Requested relative RMS error of a scene. Default 0.02")
         ->check(CLI::Range(1e-5, 1.0));
-    add_choice(app, "--method", method_names, arguments.options.method,
+    add_choice(app, "--method", method_names, arguments.request.options.method,
                "Method for a scene, as for solve. Default auto");
+    const std::shared_ptr<std::vector<GivenOption>> given = declare_rows(app, view_light_options);
+    app.callback([given, &arguments] {
+        Result<SolveRequest> light = make_request(*given);
+        if (!light) throw CLI::ValidationError(light.error().where, light.error().message);
+        light->options = arguments.request.options;
+        arguments.request = std::move(*light);
+    });
+    declare_unit(app, arguments.unit);
     app.add_option("--save", arguments.save,
                    "File into which the page's button saves the light of a scene. Default viewed.h5")
         ->type_name("FILE");
-    declare_work(app, arguments, arguments.options.threads);
+    declare_work(app, arguments, arguments.request.options.threads);
 }
 
 }  // namespace exitance

@@ -108,10 +108,10 @@ MirroredLight::Estimate MirroredLight::at(const Receiver& place, double E, const
     Panes panes(scene_.panes(), pane_area_, place);
     if (panes.empty()) return images;
     const ScrambledSobol for_sky(hash(key, 2u)), for_emitters(hash(key, 3u));
-    constexpr std::uint32_t least = 32;
+    constexpr std::uint32_t first_samples = 32;
     const bool has_sky = !scene_.distant().domes.empty();
     Sums sky, emitters;
-    for (std::uint32_t first = 0, last = least;; first = last, last *= 2) {
+    for (std::uint32_t first = 0, last = first_samples;; first = last, last *= 2) {
         if (first > 0) sky.halve(), emitters.halve();
         for (std::uint32_t i = first; i < last; ++i) {
             const std::size_t q = 4ull * i / last;

@@ -18,8 +18,8 @@ double mean_square(const Spectrum& s) {
 SampledElement fit_gathered(const ElementTree& tree, ElementId e, const std::vector<WeightedPlace>& places,
                             std::span<const Gathered> gathered, const Spectrum& rho, bool curved, double gain) {
     const ElementPolynomials polynomials(tree, e, places, curved);
-    std::array<Spectrum, ElementPolynomials::most> c{};    ///< of each coefficient, for rho E
-    std::array<double, ElementPolynomials::most> noise{};  // of each coefficient, as of rho E
+    std::array<Spectrum, ElementPolynomials::max_count> c{};    ///< of each coefficient, for rho E
+    std::array<double, ElementPolynomials::max_count> noise{};  // of each coefficient, as of rho E
     std::vector<ElementPolynomials::Values> phi;
     SampledElement out;
     out.curved = curved;
@@ -55,7 +55,7 @@ SampledElement fit_gathered(const ElementTree& tree, ElementId e, const std::vec
     // Shrinking terms loses light as well as noise; the remaining terms keep their noise.
     const double kept = bent > bent_noise ? 1 - bent_noise / bent : 0, lost = 1 - kept;
     out.noise_squared = straight + kept * kept * bent_noise + lost * lost * std::max(0.0, bent - bent_noise);
-    for (std::size_t k = 0; k < ElementPolynomials::most; ++k)
+    for (std::size_t k = 0; k < ElementPolynomials::max_count; ++k)
         for (std::size_t b = 0; b < bands; ++b)
             out.coefficient[k][b] = static_cast<float>((k < polynomials.straight() ? 1 : kept) * c[k][b]);
     return out;

@@ -11,7 +11,7 @@ namespace exitance {
 /// A polynomial fitted to irradiance gathered at the places of an element, and statistics of the places.
 struct SampledElement {
     /// Coefficients of ElementPolynomials, W/m^2.
-    std::array<std::array<float, bands>, ElementPolynomials::most> coefficient;
+    std::array<std::array<float, bands>, ElementPolynomials::max_count> coefficient;
     bool curved = false;         ///< True if it has terms of second degree.
     double light = 0;            ///< RMS of rho E over places and bands, W/m^2.
     double noise_squared = 0;    ///< Variance of rho times the polynomial, mean over bands, (W/m^2)^2.

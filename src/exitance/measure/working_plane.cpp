@@ -160,9 +160,9 @@ Result<std::vector<GridLight>> planes_of_group(const Scene& scene, const FloorRo
 }  // namespace
 
 double default_border(double length, double width, bool is_above) {
-    constexpr double border = 0.5, share = 0.15, most = 0.25;
+    constexpr double border = 0.5, share = 0.15, max_share = 0.25;
     const double shorter = std::min(length, width);
-    return !is_above ? 0 : border > most * shorter ? share * shorter : border;
+    return !is_above ? 0 : border > max_share * shorter ? share * shorter : border;
 }
 
 Result<std::vector<GridLight>> make_working_planes(const Scene& scene, const FloorRooms& rooms,

@@ -1,5 +1,9 @@
 #include "exitance/methods/carried_light.hpp"
 
+#include <fmt/format.h>
+
+#include <string>
+
 #include "exitance/methods/options/support.hpp"
 
 namespace exitance {
@@ -31,7 +35,14 @@ bool is_lit_by_diffuse_surfaces(const Scene& scene) {
 Result<void> check_carried_light(const Scene& scene, const SolveOptions& options) {
     const char* const advice = advice_for_other_emitters(options);
     if (!advice || is_lit_by_diffuse_surfaces(scene)) return {};
-    return Error{ErrorCode::bad_input, "has lights without extent, lights that are not diffuse, or clear glass",
+    std::string found;
+    const auto add = [&](bool is_there, const char* words) {
+        if (is_there) found += (found.empty() ? "" : " and ") + std::string(words);
+    };
+    add(scene.has_light_apart(), "light that no surface emits (a sky, a sun or lights without extent)");
+    add(scene.has_directed_emission(), "lights that are not diffuse");
+    add(!scene.panes().empty(), "clear glass");
+    return Error{ErrorCode::bad_input, fmt::format("has {}, which the method's own transport cannot carry", found),
                  scene.file(), advice};
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "exitance/evaluate/radiosity_function.hpp"
+#include "exitance/methods/carried_light.hpp"
 #include "exitance/methods/solve_scene.hpp"
 #include "exitance/reference/path_reference.hpp"
 #include "support/built_scene.hpp"
@@ -38,6 +39,15 @@ Scene room_with_bulb() {
 }
 
 }  // namespace
+
+TEST(PunctualLights, AreNamedWhereAMethodCannotCarryThem) {
+    SolveOptions carried;
+    carried.classical.direct = ClassicalDirect::carried;
+    const Result<void> fits = check_carried_light(room_with_bulb(), carried);
+    ASSERT_FALSE(fits);
+    EXPECT_NE(fits.error().message.find("light that no surface emits"), std::string::npos) << fits.error().message;
+    EXPECT_EQ(fits.error().message.find("glass"), std::string::npos) << fits.error().message;
+}
 
 TEST(PunctualLights, AgreeWithPathsInAClosedRoom) {
     const Scene scene = room_with_bulb();

@@ -329,10 +329,10 @@ void map_pages(std::span<char> pages, int file, std::size_t place, int kind) {
 /// Copies the pages of the node's first process to the file and maps the file in their place, in parts, so that little
 /// memory is used twice.
 void move_pages(std::span<char> pages, int file, int kind) {
-    constexpr std::size_t least = std::size_t(1) << 23,
+    constexpr std::size_t min_step = std::size_t(1) << 23,
                           most_parts = 64;  // the number of mappings is limited by the system
     const std::size_t page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE)),
-                      step = std::max(least, (pages.size() / most_parts / page + 1) * page);
+                      step = std::max(min_step, (pages.size() / most_parts / page + 1) * page);
     int rank = 0;
     MPI_Comm_rank(team.node, &rank);
     for (std::size_t first = 0; first < pages.size(); first += step) {
@@ -383,10 +383,10 @@ void count_fetched(const Fetched& fetched, std::size_t bytes_each) {
 }
 
 void send_from_first(void* data, std::size_t size, const char* what) {
-    constexpr std::size_t most = std::size_t(1) << 28;  // MPI counts are of type int
-    for (std::size_t done = 0; done < size; done += most) {
+    constexpr std::size_t max_message = std::size_t(1) << 28;  // MPI counts are of type int
+    for (std::size_t done = 0; done < size; done += max_message) {
         MPI_Request request = MPI_REQUEST_NULL;
-        MPI_Ibcast(static_cast<char*>(data) + done, static_cast<int>(std::min(most, size - done)), MPI_BYTE, 0,
+        MPI_Ibcast(static_cast<char*>(data) + done, static_cast<int>(std::min(max_message, size - done)), MPI_BYTE, 0,
                    MPI_COMM_WORLD, &request);
         wait_for(request);
     }

@@ -88,8 +88,8 @@ class Patches {
   private:
     static constexpr std::size_t block = 512;
 
-    /// Calls `sent(p)` for every patch, which returns what a shot of the patch would send, and sums up the unshot light
-    /// afterwards.
+    /// Calls `sent(p)` for every patch and sums up the unshot light. `sent` returns the radiosity that a shot of patch
+    /// p would send; it may change the patch's unshot light first.
     template <class Sent>
     Unshot over_blocks(const Sent& sent) {
         parallel_for(blocks_.size(), 4, [&](std::size_t b) {

@@ -16,7 +16,7 @@ constexpr int max_halvings = 6;  ///< Halvings of a receiver with more lines, at
 /// cross the part.
 bool OccludedExchange::cut(const Part& part, const CriticalLine& line, Part& front, Part& back) const {
     const double near = nearest_line * size_;
-    std::array<double, Part::most> d;
+    std::array<double, Part::max_corners> d;
     double lowest = HUGE_VAL, highest = -HUGE_VAL;
     for (std::size_t i = 0; i < part.count; ++i) {
         d[i] = line.signed_distance(part.corner[i]);

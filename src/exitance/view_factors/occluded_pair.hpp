@@ -55,9 +55,9 @@ class OccludedExchange {
 
     /// A convex part of the receiver. Copies only the used corners.
     struct Part {
-        static constexpr std::size_t most = 16;
+        static constexpr std::size_t max_corners = 16;
         std::size_t count = 0;
-        std::array<Vec2, most> corner;
+        std::array<Vec2, max_corners> corner;
 
         Part() = default;
         Part(const Part& other) { *this = other; }
@@ -67,7 +67,7 @@ class OccludedExchange {
             return *this;
         }
         void add(Vec2 p) {
-            if (count < most) corner[count++] = p;
+            if (count < max_corners) corner[count++] = p;
         }
         std::span<const Vec2> corners() const { return std::span(corner).first(count); }
     };

@@ -169,7 +169,8 @@ void CriticalLineFinder::add_sights(const PlaneFrame& frame, std::span<const Poi
     for (std::size_t s = 0; s < source.size(); ++s) {
         const std::size_t next = s + 1 == source.size() ? 0 : s + 1;
         if (!(any_edge & SeenEdges::bit(s))) continue;
-        // Faces with the same orientation to both ends of an edge have it to the whole edge.
+        // If every face of the blocker has both ends of the source's edge on one side, its outline is the same from all
+        // points of the edge.
         const bool alike = std::equal(&in_front_[s * faces], &in_front_[s * faces] + faces, &in_front_[next * faces]);
         const auto ends_outline = [&](std::uint32_t c) {
             return std::any_of(seen.edges.begin(), seen.edges.end(), [&](std::uint32_t k) {

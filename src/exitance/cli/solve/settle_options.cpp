@@ -36,24 +36,6 @@ Result<void> read_importance(SolveArguments& arguments) {
     return {};
 }
 
-/// Reads the sky of --sky, and the weather of --epw for it, into the options for loading the scene.
-Result<void> read_sky(SolveArguments& arguments) {
-    if (arguments.sky.empty()) return {};
-    std::optional<Weather> weather;
-    if (!arguments.epw.empty()) {
-        Result<Weather> read = load_weather(arguments.epw);
-        if (!read) return read.error();
-        weather = std::move(*read);
-    }
-    Result<ChosenSky> sky = parse_sky(arguments.sky, weather ? &*weather : nullptr);
-    if (!sky) return sky.error();
-    if (arguments.photometric) sky->photometric = arguments.photometric;
-    if (weather)
-        for (const std::string& warning : weather->warnings) sky->warnings.push_back(arguments.epw + ": " + warning);
-    arguments.scene.load.sky = std::move(*sky);
-    return {};
-}
-
 /// Error (usage) if no method supports all options. With several processes, `auto` is `matrix`.
 Result<void> check_support(const SolveArguments& arguments) {
     SolveRequest request = arguments;
@@ -64,11 +46,28 @@ Result<void> check_support(const SolveArguments& arguments) {
 
 }  // namespace
 
+Result<void> read_sky(const SolveRequest& request, LoadOptions& load) {
+    if (request.sky.empty()) return {};
+    std::optional<Weather> weather;
+    if (!request.epw.empty()) {
+        Result<Weather> read = load_weather(request.epw);
+        if (!read) return read.error();
+        weather = std::move(*read);
+    }
+    Result<ChosenSky> sky = parse_sky(request.sky, weather ? &*weather : nullptr);
+    if (!sky) return sky.error();
+    if (request.photometric) sky->photometric = request.photometric;
+    if (weather)
+        for (const std::string& warning : weather->warnings) sky->warnings.push_back(request.epw + ": " + warning);
+    load.sky = std::move(*sky);
+    return {};
+}
+
 Result<void> settle_options(SolveArguments& arguments) {
     Result<void> settled = check_support(arguments);
     if (settled) settled = check_processes(arguments);
     if (settled) settled = read_importance(arguments);
-    if (settled) settled = read_sky(arguments);
+    if (settled) settled = read_sky(arguments, arguments.scene.load);
     if (settled) settled = check_solution_name("solve", arguments.output);
     if (!settled) return settled;
     // by_first() is collective: it must run before the condition on `dry_run`.

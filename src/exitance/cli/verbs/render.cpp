@@ -129,9 +129,11 @@ Result<void> write_display(const RenderArguments& arguments, const RadiosityFunc
         draw_edges(image, element_edges(shown_elements(arguments, light.solution()), scene, light.stage().tracer,
                                         camera, arguments.size));
     if (!key.empty()) draw_key(image, key);
-    if (arguments.isolux)
-        draw_isolux(image, shown, make_colour_scale(shown, Quantity::illuminance, arguments.scale),
-                    title(Quantity::illuminance, unit.is_lux()));
+    if (arguments.isolux) {
+        const Quantity quantity = unit.is_lux() ? Quantity::illuminance : Quantity::irradiance;
+        draw_isolux(image, shown, quantity, make_colour_scale(shown, quantity, arguments.scale),
+                    title(quantity, unit.is_lux()));
+    }
     if (arguments.false_colour)
         draw_legend(image, title(*arguments.false_colour, unit.is_lux()),
                     make_colour_scale(shown, *arguments.false_colour, arguments.scale));

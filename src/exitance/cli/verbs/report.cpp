@@ -62,7 +62,7 @@ void add_pictures(const ReportArguments& arguments, const RadiosityFunction& lig
     const Picture shown = in_unit(picture, content.unit);
     const ColourScale scale = make_colour_scale(shown, quantity);
     Image image = false_colour_image(shown, quantity, scale);
-    if (lux) draw_isolux(image, shown, scale, title(quantity, lux));
+    if (lux) draw_isolux(image, shown, quantity, scale, title(quantity, lux));
     draw_legend(image, title(quantity, lux), scale);
     content.pictures.push_back(
         {(lux ? "Illuminance in lx" : "Irradiance in W/m²") + note, describe(camera), std::move(image)});

@@ -8,6 +8,8 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/cli/json_output.hpp"
+#include "exitance/cli/light_unit.hpp"
+#include "exitance/cli/solve/settle_options.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/cli/view/view_changes.hpp"
 #include "exitance/cli/view/view_events.hpp"
@@ -18,7 +20,9 @@
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/measure/pictures/automatic_camera.hpp"
+#include "exitance/methods/options/support.hpp"
 #include "exitance/methods/solve_scene.hpp"
+#include "exitance/what_if/light_groups/keep_light_groups.hpp"
 
 namespace exitance {
 namespace {
@@ -72,7 +76,8 @@ class Gallery {
 };
 
 /// Registers the requests that read the newest solution, with the changes of light that they specify.
-void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames, ViewChanges<Viewed>& changes) {
+void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames, ViewChanges<Viewed>& changes,
+                 const ViewUnits& units) {
     const auto with_light = [&gallery, &changes](auto answer) {
         return [&gallery, &changes, answer](const Parameters& parameters) -> ViewAnswer {
             const Viewed* viewed = gallery.newest();
@@ -88,8 +93,9 @@ void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames,
                        return ViewAnswer{200, "application/json", light_groups_json(groups, v.solution.scene)};
                    });
                }));
-    server.get("/data/scene", with_light([](const Viewed& v, const Parameters&) {
-                   return ViewAnswer{200, "application/json", viewer_scene_json(v.solution, v.camera)};
+    server.get("/data/scene", with_light([units](const Viewed& v, const Parameters&) {
+                   const LightUnit unit = units(v.solution.scene);
+                   return ViewAnswer{200, "application/json", viewer_scene_json(v.solution, v.camera, unit)};
                }));
     server.get("/data/part", with_light([](const Viewed& v, const Parameters& parameters) {
                    const std::string name = view_text(parameters, "layer");
@@ -117,26 +123,28 @@ void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames,
                    return ViewAnswer{200, "application/json",
                                      viewer_point_json(v.light(), {{n[0], n[1], n[2]}, normalized(normal)})};
                }));
-    server.get("/data/line", with_light([](const Viewed& v, const Parameters& parameters) {
+    server.get("/data/line", with_light([units](const Viewed& v, const Parameters& parameters) {
                    constexpr std::size_t points = 129;
                    const auto at = view_numbers(parameters, "at", 9);
                    if (!at) return view_misunderstood;
                    const std::vector<double>& n = *at;
                    const Vec3 normal{n[6], n[7], n[8]};
                    if (!(norm(normal) > 0)) return view_misunderstood;
-                   return ViewAnswer{
-                       200, "application/json",
-                       viewer_line_json(v.light(), {n[0], n[1], n[2]}, {n[3], n[4], n[5]}, normalized(normal), points)};
+                   return ViewAnswer{200, "application/json",
+                                     viewer_line_json(v.light(), {n[0], n[1], n[2]}, {n[3], n[4], n[5]},
+                                                      normalized(normal), points, units(v.solution.scene))};
                }));
 }
 
 /// A solve that shows its light as it converges.
 class RunningSolve {
   public:
-    RunningSolve(const ViewArguments& arguments, Scene scene, Gallery& gallery, Terminal& terminal)
+    RunningSolve(const ViewArguments& arguments, Scene scene, Gallery& gallery, ViewChanges<Viewed>& changes,
+                 Terminal& terminal)
         : arguments_(arguments),
           scene_(std::move(scene)),
           gallery_(gallery),
+          changes_(changes),
           progress_(events_, terminal.progress()),
           limits_(terminal.limits()) {}
 
@@ -151,15 +159,23 @@ class RunningSolve {
     }
 
     void run() {
-        SolveOptions options = arguments_.options;
+        SolveRequest request = arguments_.request;
+        SolveOptions& options = request.options;
         options.error = arguments_.error;
         options.memory_limit_bytes = arguments_.limits.memory_limit;
         const auto show = [&](Solution solution) {
-            solution.options = with_scene_options(options_json({.options = options}), arguments_.scene.load);
+            solution.options = with_scene_options(options_json(request), arguments_.scene.load);
             const std::size_t count = gallery_.add(std::move(solution));
             events_.tell("light", fmt::format(R"({{"count": {}}})", count));
         };
         Result<Solution> solution = solve_scene(std::move(scene_), options, progress_, limits_.stop(), nullptr, show);
+        if (solution && request.light_groups) {
+            Result<LightGroups> groups = keep_light_groups(*solution, options, progress_, limits_.stop());
+            if (groups)
+                changes_.set_groups(std::move(*groups));
+            else
+                solution = groups.error();
+        }
         std::string message = solution ? describe_end(solution->statistics) : solution.error().message;
         // A solve that was stopped before its first estimate returns no better light than the shown one.
         if (solution && (solution->statistics.relative_error_estimate || !gallery_.newest()))
@@ -187,7 +203,8 @@ class RunningSolve {
     ViewAnswer save() {
         const Viewed* viewed = gallery_.newest();
         if (!viewed) return {200, "text/plain", "there is no light yet"};
-        const Result<void> written = write_solution(arguments_.save, viewed->solution);
+        const LightGroups groups = changes_.groups();
+        const Result<void> written = write_solution(arguments_.save, viewed->solution, &groups);
         if (!written) return {500, "text/plain", written.error().message};
         return {200, "text/plain", "saved as " + arguments_.save};
     }
@@ -195,6 +212,7 @@ class RunningSolve {
     const ViewArguments& arguments_;
     Scene scene_;
     Gallery& gallery_;
+    ViewChanges<Viewed>& changes_;  ///< Gets the light groups at the end of the solve.
     ViewEvents events_;
     ViewProgress progress_;
     RunLimits& limits_;
@@ -215,15 +233,46 @@ ExitCode serve(ViewServer& server, const ViewArguments& arguments, RunningSolve*
     return ExitCode::done;
 }
 
+/// The error of options that apply to scenes only, given with a solution; none if there are none.
+std::optional<Error> find_options_of_scenes(const ViewArguments& arguments) {
+    const LoadOptions& load = arguments.scene.load;
+    const SolveRequest& r = arguments.request;
+    if (load.metres_per_unit || load.y_is_up || !load.lod.empty() || load.turn_bodies || load.texture_parts)
+        return Error{ErrorCode::usage, "--length-unit, --up, --lod, --turn-bodies and --texture-parts are for scenes",
+                     arguments.scene.files[0], "a solution is in metres, with Z up, and its faces are cut"};
+    if (!r.sky.empty() || !r.epw.empty() || r.photometric || r.light_groups)
+        return Error{ErrorCode::usage, "--sky, --epw, --quantity and --light-groups are for scenes",
+                     arguments.scene.files[0],
+                     "give them to the solve that makes the solution, or view the scene itself"};
+    return {};
+}
+
+/// Checks the options for a scene, and completes those for loading it.
+Result<void> prepare(ViewArguments& arguments) {
+    LoadOptions& load = arguments.scene.load;
+    const std::vector<std::string>& files = arguments.scene.files;
+    const auto solution = std::find_if(files.begin(), files.end(), [](const auto& f) { return f.ends_with(".h5"); });
+    if (solution != files.end())
+        return Error{ErrorCode::usage, "is a solution, and view shows one solution, or one scene of several files",
+                     *solution, "show each solution by a view of its own"};
+    SolveRequest request = arguments.request;
+    request.options.error = arguments.error;
+    if (const Result<Way> way = find_way(request); !way) return way.error();
+    load.photometric = request.photometric, load.light_groups = request.light_groups;
+    return read_sky(request, load);
+}
+
 }  // namespace
 
 /// Runs `exitance view SOLUTION` or `exitance view SCENE`.
-ExitCode run(const ViewArguments& arguments, Terminal& terminal) {
+ExitCode run(const ViewArguments& given, Terminal& terminal) {
+    ViewArguments arguments = given;
     const Result<std::string> page = find_viewer_page();
     if (!page) return terminal.fail(page.error());
-    set_threads(arguments.options.threads);
+    set_threads(arguments.request.options.threads);
     Gallery gallery;
-    ViewFrames frames;
+    const ViewUnits units(arguments.unit);
+    ViewFrames frames(units);
     ViewServer server;
     if (const Result<void> read = server.serve_page(*page); !read) return terminal.fail(read.error());
     LightGroups groups;
@@ -232,24 +281,29 @@ ExitCode run(const ViewArguments& arguments, Terminal& terminal) {
         return ViewAnswer{200, "application/json", solves ? R"({"solving": true})" : R"({"solving": false})"};
     });
     if (!solves) {
-        const LoadOptions& load = arguments.scene.load;
-        if (load.metres_per_unit || load.y_is_up || !load.lod.empty() || load.turn_bodies || load.texture_parts)
-            return terminal.fail(
-                {ErrorCode::usage, "--length-unit, --up, --lod, --turn-bodies and --texture-parts are for scenes",
-                 arguments.scene.files[0], "a solution is in metres, with Z up, and its faces are cut"});
+        if (const std::optional<Error> error = find_options_of_scenes(arguments)) return terminal.fail(*error);
         Result<Solution> solution = load_solution(arguments.scene.files[0], Rehearsed::not_yet, &groups);
         if (!solution) return terminal.fail(solution.error());
+        unit_of(arguments.unit, solution->scene, terminal);
         gallery.add(std::move(*solution));
         ViewChanges<Viewed> changes(std::move(groups));
-        serve_light(server, gallery, frames, changes);
+        serve_light(server, gallery, frames, changes, units);
         return serve(server, arguments, nullptr, terminal);
     }
+    if (const Result<void> fit = prepare(arguments); !fit) return terminal.fail(fit.error());
+    const LoadOptions& load = arguments.scene.load;
+    if (load.sky)
+        for (const std::string& warning : load.sky->warnings) terminal.progress().warn(warning);
     ViewChanges<Viewed> changes(std::move(groups));
-    serve_light(server, gallery, frames, changes);
-    CheckedScene checked = load_scene(arguments.scene.files, arguments.scene.load);
+    serve_light(server, gallery, frames, changes, units);
+    CheckedScene checked = load_scene(arguments.scene.files, load);
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);
-    RunningSolve running(arguments, std::move(*checked.scene), gallery, terminal);
+    if (load.photometric) checked.scene->declare_photometric(*load.photometric);
+    if (load.light_groups)
+        if (const Result<void> few = check_light_groups(*checked.scene); !few) return terminal.fail(few.error());
+    unit_of(arguments.unit, *checked.scene, terminal);
+    RunningSolve running(arguments, std::move(*checked.scene), gallery, changes, terminal);
     running.serve(server);
     return serve(server, arguments, &running, terminal);
 }

@@ -21,6 +21,17 @@ class ViewChanges {
   public:
     explicit ViewChanges(LightGroups groups) : groups_(std::move(groups)) {}
 
+    /// Replaces the groups by those of a finished solve.
+    void set_groups(LightGroups groups) {
+        const std::lock_guard lock(mutex_);
+        groups_ = std::move(groups);
+        kept_.clear();
+    }
+    /// Returns the groups, for a file.
+    LightGroups groups() {
+        const std::lock_guard lock(mutex_);
+        return groups_;
+    }
     /// Returns read(groups). Requests that change the groups wait meanwhile.
     template <class Read>
     auto read_groups(const Read& read) {

@@ -32,7 +32,7 @@ ViewAnswer ViewFrames::take(const RadiosityFunction& light, const ViewServer::Pa
     if (stop->requested()) return late;
     const Picture picture = take_picture(light, options, quiet, *stop);
     if (stop->requested()) return late;
-    return {200, "application/octet-stream", viewer_frame(picture, own_unit(light.solution().scene.is_photometric()))};
+    return {200, "application/octet-stream", viewer_frame(picture, units_(light.solution().scene))};
 }
 
 }  // namespace exitance

@@ -5,6 +5,7 @@
 
 #include "exitance/base/progress.hpp"
 #include "exitance/cli/view/view_server.hpp"
+#include "exitance/cli/view/view_units.hpp"
 #include "exitance/evaluate/radiosity_function.hpp"
 
 namespace exitance {
@@ -13,11 +14,14 @@ namespace exitance {
 /// status 409.
 class ViewFrames {
   public:
+    explicit ViewFrames(ViewUnits units) : units_(units) {}
+
     /// Renders a picture. Parameters: `camera=ex,ey,ez,tx,ty,tz,fov` (metres, degrees), `size=WIDTH,HEIGHT` in pixels,
     /// `samples=N` rays per pixel. The answer is in the format of viewer_frame(). Safe from any thread.
     ViewAnswer take(const RadiosityFunction& light, const ViewServer::Parameters& parameters);
 
   private:
+    ViewUnits units_;
     std::mutex newest_, working_;
     std::shared_ptr<StopRequest> stop_;  ///< Stop request of the newest picture.
 };

@@ -6,7 +6,6 @@
 
 #include "exitance/io/export/viewer_part.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
-#include "exitance/scene/photometric_units.hpp"
 
 namespace exitance {
 namespace {
@@ -23,15 +22,17 @@ json json_numbers(const Spectrum& s) {
     return red_green_blue(s);
 }
 
-/// Weights of red, green and blue for one number in the scene's unit. If the number of bands is not three, the weights
-/// are equal.
-json colour_weights(const Scene& scene) {
-    if constexpr (bands != 3) return {1.0 / 3, 1.0 / 3, 1.0 / 3};
+/// Weights of red, green and blue for one number in `unit`. If the number of bands is not three, the weights are equal.
+json colour_weights(const LightUnit& unit) {
+    if constexpr (bands != 3) {
+        const double third = unit(Spectrum(1.0)) / 3;
+        return {third, third, third};
+    }
     json out = json::array();
     for (std::size_t b = 0; b < bands; ++b) {
         Spectrum one;
         one[b] = 1;
-        out.push_back(own_unit(scene.is_photometric())(one));
+        out.push_back(unit(one));
     }
     return out;
 }
@@ -62,7 +63,7 @@ json links_at(const Solution& solution, RegionId region, const Point& x) {
 
 }  // namespace
 
-std::string viewer_scene_json(const Solution& solution, const Camera& camera) {
+std::string viewer_scene_json(const Solution& solution, const Camera& camera, const LightUnit& unit) {
     json materials = json::array();
     for (const Material& m : solution.scene.materials())
         materials.push_back(
@@ -72,8 +73,8 @@ std::string viewer_scene_json(const Solution& solution, const Camera& camera) {
     const Box& box = solution.scene.box();
     json out{
         {"file", solution.scene.file()},
-        {"photometric", solution.scene.is_photometric()},
-        {"weights", colour_weights(solution.scene)},
+        {"lux", unit.is_lux()},
+        {"weights", colour_weights(unit)},
         {"surfaces", solution.scene.surfaces().size()},
         {"elements", solution.statistics.leaf_elements},
         {"method", solution.statistics.method},
@@ -120,17 +121,16 @@ std::string viewer_point_json(const RadiosityFunction& light, const ProbePoint& 
 }
 
 std::string viewer_line_json(const RadiosityFunction& light, const Point& from, const Point& to, const Normal& n,
-                             std::size_t count) {
+                             std::size_t count, const LightUnit& unit) {
     std::vector<ProbePoint> points;
     for (std::size_t i = 0; i < count; ++i) {
         const double t = count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0;
         points.push_back({from + t * (to - from), n});
     }
-    const LightUnit own = own_unit(light.solution().scene.is_photometric());
     json values = json::array(), delivered = json::array(), raw = json::array();
-    for (const Light& l : light.at(points)) values.push_back(own(l.irradiance));
-    for (const Light& l : light.interpolant_at(points)) delivered.push_back(own(l.irradiance));
-    for (const Spectrum& e : viewer_raw_at(light, points)) raw.push_back(own(e));
+    for (const Light& l : light.at(points)) values.push_back(unit(l.irradiance));
+    for (const Light& l : light.interpolant_at(points)) delivered.push_back(unit(l.irradiance));
+    for (const Spectrum& e : viewer_raw_at(light, points)) raw.push_back(unit(e));
     return json{{"length", norm(to - from)},
                 {"values", std::move(values)},
                 {"delivered", std::move(delivered)},

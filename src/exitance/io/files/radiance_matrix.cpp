@@ -45,9 +45,9 @@ Result<Header> read_header(std::string_view& rest, const std::string& path) {
         for (const auto& [name, number] :
              {std::pair{"NROWS", &out.rows}, {"NCOLS", &out.columns}, {"NCOMP", &out.components}})
             if (key == name) {
-                constexpr std::size_t most = 1u << 30;
+                constexpr std::size_t max_extent = 1u << 30;
                 const auto [stop, error] = std::from_chars(value.data(), value.data() + value.size(), *number);
-                if (error != std::errc() || *number == 0 || *number > most)
+                if (error != std::errc() || *number == 0 || *number > max_extent)
                     return bad(fmt::format("has an invalid {}: '{}'", name, value));
             }
     }

@@ -141,7 +141,7 @@ std::string title(Quantity quantity, bool photometric) {
         case Quantity::luminance:
             return photometric ? "luminance cd/m^2" : "luminance W/m^2/sr";
         case Quantity::illuminance:
-            return photometric ? "illuminance lx" : "illuminance W/m^2";
+            return photometric ? "illuminance lx" : "weighted irradiance W/m^2";
     }
     return "";
 }

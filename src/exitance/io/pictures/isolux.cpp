@@ -17,7 +17,7 @@ struct Segment {
 };
 
 /// Applies marching squares [Lorensen87] to the squares whose corners show the same surface.
-std::vector<Segment> find_segments(const Picture& picture, const ColourScale& scale) {
+std::vector<Segment> find_segments(const Picture& picture, Quantity quantity, const ColourScale& scale) {
     std::vector<Segment> out;
     const auto pixel = [&](int x, int y) -> const Pixel& {
         return picture.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.size.width) +
@@ -32,7 +32,7 @@ std::vector<Segment> find_segments(const Picture& picture, const ColourScale& sc
             for (int k = 0; k < 4 && whole; ++k) {
                 const Pixel& corner = pixel(x + dx[k], y + dy[k]);
                 whole = corner.region == region && !corner.emits();
-                value[k] = value_of(corner, Quantity::illuminance);
+                value[k] = value_of(corner, quantity);
             }
             if (!whole) continue;
             const auto [lo, hi] = std::minmax({value[0], value[1], value[2], value[3]});
@@ -127,10 +127,11 @@ void draw_segments(Image& image, const std::vector<Segment>& segments, double wi
 
 }  // namespace
 
-void draw_isolux(Image& image, const Picture& picture, const ColourScale& scale, const std::string& title) {
+void draw_isolux(Image& image, const Picture& picture, Quantity quantity, const ColourScale& scale,
+                 const std::string& title) {
     constexpr Rgb paper{20, 20, 24}, ink{255, 255, 255};
     const int s = std::max(1, std::min(image.width / 600, image.height / 375)), size = 11 * s;
-    const std::vector<Segment> segments = find_segments(picture, scale);
+    const std::vector<Segment> segments = find_segments(picture, quantity, scale);
     draw_segments(image, segments, 1.2 * s);
     std::vector<int> lines = lines_of(segments, picture.size);
 

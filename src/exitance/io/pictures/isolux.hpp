@@ -4,8 +4,9 @@
 
 namespace exitance {
 
-/// Draws isolines of illuminance at the steps of `scale`, interpolated between pixel centres, separately for each
+/// Draws isolines of a quantity at the steps of `scale`, interpolated between pixel centres, separately for each
 /// surface. Longer lines are labelled with their values; `title` is in the lower left corner.
-void draw_isolux(Image& image, const Picture& picture, const ColourScale& scale, const std::string& title);
+void draw_isolux(Image& image, const Picture& picture, Quantity quantity, const ColourScale& scale,
+                 const std::string& title);
 
 }  // namespace exitance

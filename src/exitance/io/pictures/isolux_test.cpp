@@ -21,7 +21,7 @@ Picture ramp(int width, int height) {
 TEST(Isolux, LinesAreAtTheStepsAndNotBetweenSurfaces) {
     const Picture picture = ramp(200, 40);
     Image image(200, 40);
-    draw_isolux(image, picture, {{0, 25, 50, 75, 100}}, "illuminance lx");
+    draw_isolux(image, picture, Quantity::illuminance, {{0, 25, 50, 75, 100}}, "illuminance lx");
     const auto is_drawn = [&](int x, int y) { return image.at(x, y)[0] > 0; };
     for (const int y : {1, 3, 5}) {
         // Lines of 25, 50 and 75 lx are between this pixel and the next.
@@ -37,10 +37,25 @@ TEST(Isolux, LinesAreAtTheStepsAndNotBetweenSurfaces) {
 TEST(Isolux, LongLinesAreLabelled) {
     const Picture picture = ramp(200, 160);
     Image image(200, 160);
-    draw_isolux(image, picture, {{0, 50, 100}}, "illuminance lx");
+    draw_isolux(image, picture, Quantity::illuminance, {{0, 50, 100}}, "illuminance lx");
     int paper = 0;  // pixels of the label's background, on the line of 50 lx
     for (int y = 0; y < 80; ++y) paper += image.at(94, y)[2] == 24;
     EXPECT_GT(paper, 3);  // the height of the label
+}
+
+TEST(Isolux, LinesOfIrradianceAreAtTheMeanOfTheBands) {
+    if constexpr (bands != 3) GTEST_SKIP() << "the bands of this build weigh alike";
+    Picture picture = ramp(200, 40);
+    for (Pixel& pixel : picture.pixels) {
+        // The mean of the bands is unchanged; their luminous mean is not.
+        pixel.irradiance[1] *= 0.5, pixel.irradiance[0] *= 1.5;
+    }
+    Image image(200, 40);
+    draw_isolux(image, picture, Quantity::irradiance, {{0, 25, 50, 75, 100}}, title(Quantity::irradiance, false));
+    for (const int y : {1, 3, 5}) EXPECT_TRUE(image.at(49, y)[0] > 0 && image.at(99, y)[0] > 0);
+    EXPECT_EQ(title(Quantity::irradiance, false), "irradiance W/m^2");
+    EXPECT_EQ(title(Quantity::illuminance, true), "illuminance lx");
+    EXPECT_EQ(title(Quantity::illuminance, false).find("illuminance"), std::string::npos);
 }
 
 }  // namespace

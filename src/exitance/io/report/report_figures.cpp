@@ -29,6 +29,17 @@ ReportFigures::Face face_figures(const ReportContent& content, const SurfacePoin
     return face;
 }
 
+/// Adds the faces of a material of the same name. Colours become means, weighted by area.
+void add(ReportFigures::MaterialUse& use, const ReportFigures::MaterialUse& other) {
+    const double area = use.area + other.area, share = area > 0 ? other.area / area : 0.5;
+    for (std::size_t c = 0; c < use.reflectance.size(); ++c) {
+        use.reflectance[c] = std::lerp(use.reflectance[c], other.reflectance[c], share);
+        use.radiance[c] = std::lerp(use.radiance[c], other.radiance[c], share);
+    }
+    use.faces += other.faces, use.area = area, use.irradiance += other.irradiance;
+}
+
+/// One row per name: a file may have several materials of one name, such as a window in each of its orientations.
 std::vector<ReportFigures::MaterialUse> material_figures(const Scene& scene,
                                                          const std::vector<ReportFigures::Face>& faces) {
     std::vector<ReportFigures::MaterialUse> materials;
@@ -45,10 +56,21 @@ std::vector<ReportFigures::MaterialUse> material_figures(const Scene& scene,
         if (face.irradiance.count == 0) continue;
         materials[m].irradiance += face.area * face.irradiance.mean, measured[m] += face.area;
     }
-    for (std::size_t m = 0; m < materials.size(); ++m)
-        if (measured[m] > 0) materials[m].irradiance /= measured[m];
-    std::erase_if(materials, [](const ReportFigures::MaterialUse& use) { return use.faces == 0; });
-    return materials;
+    std::vector<ReportFigures::MaterialUse> out;
+    std::vector<double> measured_of;
+    for (std::size_t m = 0; m < materials.size(); ++m) {
+        if (materials[m].faces == 0) continue;
+        const auto named =
+            std::find_if(out.begin(), out.end(), [&](const auto& o) { return o.name == materials[m].name; });
+        const auto k = static_cast<std::size_t>(named - out.begin());
+        if (named == out.end())
+            out.push_back(materials[m]), measured_of.push_back(measured[m]);
+        else
+            add(*named, materials[m]), measured_of[k] += measured[m];
+    }
+    for (std::size_t k = 0; k < out.size(); ++k)
+        if (measured_of[k] > 0) out[k].irradiance /= measured_of[k];
+    return out;
 }
 
 std::string numbers(std::span<const double> values) {

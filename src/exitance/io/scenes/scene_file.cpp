@@ -308,6 +308,10 @@ LoadedScene load_scene(std::span<const std::string> paths, const LoadOptions& op
         std::error_code ignored;
         if (!std::filesystem::exists(path, ignored))
             return refused(ErrorCode::cannot_read, path, "there is no such file", "");
+        if (path.ends_with(".h5"))
+            return refused(ErrorCode::bad_input, path, "is a solution or other HDF5 file, where a scene is required",
+                           "give the scene that was solved, such as room.obj; solutions are for view (one at a time), "
+                           "render, probe, export, bake, report, glare, compare, mix and stats");
         if (!reader_of(path))
             return refused(ErrorCode::bad_input, path, "this kind of scene file is not known",
                            "known endings: .obj, .gltf, .glb, .rad, .stl, .ply, .vs3, .hbjson, .json");

@@ -22,7 +22,8 @@ TEST(GrowingLines, LearnAFunctionAlongALine) {
     }
 }
 
-// The handbook's prototype has errors of 7% and 6.7% by least squares, 4.8% and 0.5% normalised, for a similar kernel.
+// For comparison, an independent program reached, for a similar kernel with 16 and 64 units, errors of 7% and 6.7% by
+// least squares, and of 4.8% and 0.5% by normalised least squares.
 TEST(GrowingLines, LearnASmoothKernelBetterByLeastSquaresThanByTheDeltaRule) {
     const auto rule = errors_of_growing_kernel(smooth, 1, counts, {.weights = CellWeights::delta_rule});
     const auto fitted = errors_of_growing_kernel(smooth, 1, counts, {.weights = CellWeights::least_squares});

@@ -12,18 +12,18 @@ std::vector<Vec2> gauss_points(Patch::Shape shape) {
     return out;
 }
 
-/// Points at which the polynomial that is one degree above the basis and zero at its nodes is close to its RMS value
-/// (derived from the rule).
+/// Points at which the interpolation of a basis is checked. There the lowest polynomial that interpolation misses (one
+/// degree above the basis and zero at its nodes) is close to its RMS value over the element.
 std::vector<Vec2> points_between_nodes(Patch::Shape shape, int order) {
     if (shape == Patch::Shape::triangle) {
-        // Order 2: derived from the rule above, like all points below.
+        // Order 2: derived from that polynomial, like all points below.
         if (order == 2) return {{1.0 / 3, 1.0 / 3}, {0.5, 0.08}, {0.08, 0.5}, {0.42, 0.42}};
-        // Order 3: derived from the rule of first degree.
+        // Order 3: derived from the nodes of the rule that is exact for linear functions.
         return {{1.0 / 3, 1.0 / 3}, {0.12, 0.12}, {0.76, 0.12}, {0.12, 0.76}};
     }
-    // Order 2: derived from the rule, too.
+    // Order 2: derived from that polynomial, too.
     if (order == 2) return {{0.5, 0.5}, {0.5, 0.08}, {0.92, 0.5}, {0.5, 0.92}, {0.08, 0.5}};
-    constexpr double g = 0.26;  // derived from the rule above, for order 3
+    constexpr double g = 0.26;  // distance from the centre; derived from that polynomial, for order 3
     return {{0.5, 0.5}, {0.5 - g, 0.5 - g}, {0.5 + g, 0.5 - g}, {0.5 - g, 0.5 + g}, {0.5 + g, 0.5 + g}};
 }
 

@@ -71,7 +71,6 @@ struct OptionRow {
     std::string when = {};     ///< When to use it, or the meaning of its values; may be empty.
     OptionGroup group = {};
     std::vector<OptionSupport> support = {};  ///< Empty: every way supports it.
-    bool needs_method = false;                ///< --method must be given: `auto` is not decided by this option.
     std::vector<OptionRule> needs = {}, excludes = {};
     std::string one_process = {};  ///< Values that do not work over several processes; "*": all.
     std::string section = {};      ///< Object of the recorded options that holds it; "-": it is not recorded.

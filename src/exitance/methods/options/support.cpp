@@ -236,14 +236,6 @@ Result<Way> find_way(const SolveRequest& request) {
 Result<Way> find_way(const SolveRequest& request, Form form) {
     const Method method = request.options.method;
     const std::span<const Method> methods = methods_of(form);
-    if (method == Method::automatic)
-        for (const OptionRow& row : solve_option_table())
-            if (row.needs_method && row.value.word(request)) {
-                const std::string way = supporting_methods(row, form, *row.value.word(request));
-                return usage(fmt::format("{} needs --method {}", shown(row, *row.value.word(request)), way),
-                             fmt::format("exitance solve SCENE -o S.h5 --method {} {}", way,
-                                         with_value(row, *row.value.word(request))));
-            }
     const bool has_form = std::find(methods.begin(), methods.end(), method) != methods.end();
     if (form != Form::standard && method != Method::automatic && !has_form) {
         std::string names;

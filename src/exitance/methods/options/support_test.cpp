@@ -147,6 +147,11 @@ TEST(OptionSupport, AutomaticIsTheFirstMethodThatSupportsAll) {
     EXPECT_EQ(chosen(cluttered, {.basis = BasisKind::linear, .error_interpolant = 0.001}), Method::matrix);
     EXPECT_FALSE(find_way({.options = {.epsilon = 0.01, .overshooting = true}}));
     EXPECT_FALSE(find_way({.options = {.hemicube_cells = 16}}));
+    const auto way = [](const std::vector<GivenOption>& options) { return *find_way(*make_request(options)); };
+    EXPECT_EQ(way({given("--dm-sources", "3")}).method, Method::discontinuity);
+    EXPECT_EQ(way({given("--max-units", "64")}).method, Method::growing_cells);
+    EXPECT_EQ(way({given("--local-pass", "a")}).form, Form::local_passes);
+    EXPECT_EQ(way({given("--task-engine")}).method, Method::hierarchical);
 }
 
 TEST(OptionSupport, PublishedFormsNameTheMethodsThatSupportAnOption) {

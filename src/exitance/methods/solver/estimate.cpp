@@ -138,11 +138,17 @@ void Solver::warn_of_bodies() {
     const Scene& scene = stage_.scene;
     const Surface& face = scene.surfaces()[worst->first];
     const Point at = centroid(scene.outline(worst->first));
-    warn(fmt::format(
-        "the light of '{}' ({} face{}, {:.3g} m^2, near {:.4g}, {:.4g}, {:.4g}) is wrong by about {:.3g}%, "
-        "more than three times the {:.3g}% requested for the whole{}; a smaller --error corrects it",
-        scene.groups()[face.group], worst->surfaces, worst->surfaces == 1 ? "" : "s", worst->area, at.x, at.y, at.z,
-        100 * *worst->error, 100 * *demand, wrong > 1 ? fmt::format(", and so is that of {} more", wrong - 1) : ""));
+    const bool lacked_time = statistics().stopped_by == "time limit" || stop_.requested();
+    const bool lacked_memory = statistics().stopped_by == "memory limit";
+    const char* const advice = lacked_time     ? "the solve was stopped: more time corrects it"
+                               : lacked_memory ? "the solve was stopped: more memory corrects it"
+                                               : "a smaller --error corrects it";
+    warn(
+        fmt::format("the light of '{}' ({} face{}, {:.3g} m^2, near {:.4g}, {:.4g}, {:.4g}) is wrong by about {:.3g}%, "
+                    "more than three times the {:.3g}% requested for the whole{}; {}",
+                    scene.groups()[face.group], worst->surfaces, worst->surfaces == 1 ? "" : "s", worst->area, at.x,
+                    at.y, at.z, 100 * *worst->error, 100 * *demand,
+                    wrong > 1 ? fmt::format(", and so is that of {} more", wrong - 1) : "", advice));
 }
 
 /// Returns the parts of the error where it is largest. If their sum exceeds the whole error, they cancel in part, as

@@ -74,7 +74,7 @@ struct DaylightSimulation::SceneLight {
 
     DaylightSetting setting;
     DaylightTransport transport;
-    std::unique_ptr<DaylightSample> sample;  ///< Null if the light was taken.
+    std::unique_ptr<DaylightSample> sample;  ///< Null if take() has provided the light.
     DaylightLight light;
 
     DaylightRows rows() const {
@@ -193,7 +193,9 @@ const HourlyStates* DaylightSimulation::states() const {
 }
 
 std::vector<std::string> DaylightSimulation::warnings() const {
-    constexpr double small_share = 0.01;  // derived from the default error of 2%, of which it is half
+    // Share of the light at the sensors that may cross panes twice without a warning; derived from the default error
+    // of 2%, of which it is half.
+    constexpr double small_share = 0.01;
     const double twice = data_->states.twice, error = data_->error_of_states, wanted = data_->task.error;
     std::vector<std::string> out;
     if (twice > small_share)

@@ -8,9 +8,9 @@ namespace {
 
 /// Factor on the number of rays for which noise falls to `wanted`: noise falls at least with the root of the rays.
 unsigned more_rays(double noise, double wanted) {
-    constexpr unsigned most = 64;
+    constexpr unsigned max_factor = 64;
     unsigned factor = 2;
-    while (factor < most && noise > wanted * std::sqrt(1.0 * factor)) factor *= 2;
+    while (factor < max_factor && noise > wanted * std::sqrt(1.0 * factor)) factor *= 2;
     return factor;
 }
 
