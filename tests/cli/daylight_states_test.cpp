@@ -122,13 +122,13 @@ std::string court_model() {
     const std::string wall = "\"modifier\": \"generic_wall_0.50\"", black = "{\"modifier\": \"black\"}";
     std::string out =
         "{\"type\": \"Model\", \"properties\": {\"radiance\": {\"modifiers\": [{\"type\": \"Plastic\", "
-        "\"identifier\": \"black\"}, {\"type\": \"Void\", \"identifier\": \"none\"}]}},\n\"orphaned_shades\": [";
+        "\"identifier\": \"black\"}]}},\n\"orphaned_shades\": [";
     for (const std::string corners : {"[0,0,0],[4,0,0],[4,3,0],[0,3,0]", "[0,0,0],[0,0,2.5],[4,0,2.5],[4,0,0]",
                                       "[4,0,0],[4,0,2.5],[4,3,2.5],[4,3,0]", "[4,3,0],[4,3,2.5],[0,3,2.5],[0,3,0]",
                                       "[0,3,0],[0,3,2.5],[0,0,2.5],[0,0,0]"})
         out += sheet("wall", corners, wall) + ",\n";
     out += sheet("lid", "[2,0,2.4],[4,0,2.4],[4,3,2.4],[2,3,2.4]",
-                 "\"dynamic_group_identifier\": \"cover\", \"states\": [{\"modifier\": \"none\"}, " + black + "]");
+                 "\"dynamic_group_identifier\": \"cover\", \"states\": [{\"modifier\": \"void\"}, " + black + "]");
     const std::string glass = "\"modifier\": \"generic_exterior_window_vis_0.64\"";
     return out + "],\n\"orphaned_apertures\": [" +
            sheet("roof", "[0,0,2.5],[2,0,2.5],[2,3,2.5],[0,3,2.5]",

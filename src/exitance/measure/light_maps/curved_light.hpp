@@ -31,7 +31,7 @@ class CurvedLight {
     bool is_curved(RegionId region) const { return faces_.is_curved(region); }
 
     struct Mean {
-        Spectrum irradiance;     ///< Of the component, W/m^2.
+        Spectrum irradiance;     ///< Irradiance of the component, W/m^2.
         std::size_t places = 0;  ///< Number of places that were evaluated, the first ones.
     };
     /// Returns the mean irradiance at places of a curved region that are not covered. The first two and the first four

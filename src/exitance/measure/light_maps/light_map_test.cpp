@@ -103,7 +103,7 @@ LightMaps bake_component(const Solution& s, Component component) {
 TEST(LightMap, DirectAndIndirectLightAddUpToAllLight) {
     SolveOptions solve;
     solve.error = 0.1;
-    const Solution s = solved(built_scene("blocker"), solve);
+    const Solution s = solved(built_scene("cornell"), solve);
     const LightMaps all = bake_component(s, Component::total), direct = bake_component(s, Component::direct),
                     indirect = bake_component(s, Component::indirect);
     const RadiosityFunction light(s);

@@ -69,7 +69,7 @@ struct HoneybeeModel {
     std::vector<HoneybeeSheet> sheets;
     std::vector<HoneybeeGrid> grids;
     std::vector<SceneCamera> views;  ///< Perspective and parallel ones.
-    std::vector<HoneybeeEye> eyes;   ///< Of all views but parallel ones, in the order of the file.
+    std::vector<HoneybeeEye> eyes;   ///< Eyes of all views but parallel ones, in the order of the file.
     std::vector<HoneybeeDynamic> dynamic;
     std::vector<Finding> findings;  ///< Errors, and warnings about omitted parts.
 };
