@@ -21,7 +21,6 @@ TEST(ProgramLocalPass, OtherMethodsAndUnsupportedOptionsAreUsageErrors) {
     const TemporaryFolder folder;
     const std::string scene = write_small_room(folder), output = folder / "s.h5";
     const std::vector<std::vector<std::string>> wrong = {
-        {"--local-pass", "d"},
         {"--local-pass", "d", "--method", "matrix"},
         {"--local-pass", "f", "--method", "discontinuity"},
         {"--local-pass", "a", "--method", "discontinuity", "--bounces", "0"},

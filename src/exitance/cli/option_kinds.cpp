@@ -134,7 +134,7 @@ void declare_scene(CLI::App& app, SceneArguments& scene) {
                    "warning. Default: the highest level of each object")
         ->check([](const std::string& word) { return read_number("--lod", word) >= 0 ? "" : "must not be negative"; })
         ->type_name("LEVEL")
-        ->group("Scene");
+        ->group("Scene details");
     app.add_flag("--turn-bodies", scene.load.turn_bodies,
                  "Turn the faces of closed bodies that are inside out. Use it where check reports such bodies")
         ->group("Scene");
