@@ -222,28 +222,37 @@ TEST(CurvedLight, MapsHaveTheSameBitsOnAnyNumberOfThreads) {
     EXPECT_EQ(one.maps[0].irradiance, three.maps[0].irradiance);
 }
 
-/// Reflected light on a sphere above a wide floor of uniform radiosity: its analytic irradiance is B (1 - cos) / 2.
-TEST(CurvedLight, ReflectedLightIsThatOfTheSmoothNormal) {
-    const double size = 200;
-    const std::vector<Point> floor{{-size, -size, -1.5}, {size, -size, -1.5}, {size, size, -1.5}, {-size, size, -1.5}};
-    const CurvedScene s =
-        curved_scene(sphere_triangles(3), [](const Point& p) { return normalized(p); }, as_written, {floor});
-    Solution solution = quick_solution(s.scene);
-    const RegionId below = solution.scene.surfaces()[SurfaceId(512)].region;
-    ElementFunction& light = solution.interpolant;
-    for (ElementId e : light.tree.leaves()) {
-        const auto corners = static_cast<std::uint32_t>(light.tree.patch(e).corner_count());
-        for (std::uint32_t k = 0; k < corners; ++k)
-            light.values[light.first_value[e] + k].fill(light.tree.region(e) == below ? 2.f : 0.f);
+/// A sphere above a square floor of uniform radiosity, 2 W/m^2.
+struct SphereAboveFloor {
+    CurvedScene scene;
+    Solution solution;
+
+    /// size  half the side of the floor, m
+    explicit SphereAboveFloor(double size)
+        : scene(curved_scene(sphere_triangles(3), [](const Point& p) { return normalized(p); }, as_written,
+                             {{{-size, -size, -1.5}, {size, -size, -1.5}, {size, size, -1.5}, {-size, size, -1.5}}})),
+          solution(quick_solution(scene.scene)) {
+        const RegionId below = solution.scene.surfaces()[SurfaceId(512)].region;
+        ElementFunction& light = solution.interpolant;
+        for (ElementId e : light.tree.leaves()) {
+            const auto corners = static_cast<std::uint32_t>(light.tree.patch(e).corner_count());
+            for (std::uint32_t k = 0; k < corners; ++k)
+                light.values[light.first_value[e] + k].fill(light.tree.region(e) == below ? 2.f : 0.f);
+        }
     }
-    const CurvedFaces faces(solution.scene, s.triangles);
-    const RadiosityFunction function(solution);
+};
+
+/// Above a wide floor the analytic irradiance of the sphere is B (1 - cos) / 2.
+TEST(CurvedLight, ReflectedLightIsThatOfTheSmoothNormal) {
+    const SphereAboveFloor s(200);
+    const CurvedFaces faces(s.solution.scene, s.scene.triangles);
+    const RadiosityFunction function(s.solution);
     const StopRequest stop;
     const CurvedLight curved(function, faces, 1, stop);
     CurvedLight::Workspace workspace;
     double squares = 0;
     for (const NormalTriangle& t : faces.triangles()) {
-        const Normal& n = solution.scene.surfaces()[t.surface].normal;
+        const Normal& n = s.solution.scene.surfaces()[t.surface].normal;
         const Point middle = (t.corner[0] + t.corner[1] + t.corner[2]) / 3;
         const MeasuredPlace place = function.places().find(middle, n);
         const Normal smooth = normalized(middle);
@@ -254,9 +263,13 @@ TEST(CurvedLight, ReflectedLightIsThatOfTheSmoothNormal) {
     // Irradiance is from 0 to 1. Rays leave 0.3%, and the sum over nodes interpolates it by 0.2%; the horizon of a
     // floor of 200 m is at 0.4 degrees.
     EXPECT_LT(std::sqrt(squares / 512), 0.006);
+}
 
-    const LightMaps all = bake(solution, &faces, 16), direct = bake(solution, &faces, 16, Component::direct),
-                    indirect = bake(solution, &faces, 16, Component::indirect);
+TEST(CurvedLight, DirectAndIndirectMapsAddUpToThatOfAllLight) {
+    const SphereAboveFloor s(4);
+    const CurvedFaces faces(s.solution.scene, s.scene.triangles);
+    const LightMaps all = bake(s.solution, &faces, 16), direct = bake(s.solution, &faces, 16, Component::direct),
+                    indirect = bake(s.solution, &faces, 16, Component::indirect);
     EXPECT_FALSE(all.curved.empty());
     EXPECT_TRUE(direct.curved.empty());
     double reflected = 0;
@@ -272,6 +285,7 @@ TEST(CurvedLight, ReflectedLightIsThatOfTheSmoothNormal) {
                 reflected = std::max(reflected, I);
             }
     }
+    // The floor fills 98.5% of what the lowest point sees, and that point reflects nothing itself.
     EXPECT_NEAR(reflected, 1, 0.05);
 }
 
