@@ -14,6 +14,7 @@ packages=(
     libopenmpi-dev openmpi-bin libpetsc64-real-dev                           # several processes
     pybind11-dev python3-dev python3-numpy python3-scipy                     # the Python module
     python3-pytest mypy python3-pip python3-venv python3-setuptools python3-wheel  # its tests and its package
+    python3-matplotlib                                                       # the notebooks' pictures
     libgtest-dev librapidcheck-dev python3-h5py python3-vtk9                 # the tests; our files in other readers
     qemu-user                                                                # the tests; an older processor
     libbenchmark-dev                                                         # the benchmarks
