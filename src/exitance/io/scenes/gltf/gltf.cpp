@@ -110,9 +110,12 @@ GltfAccessor GltfReader::accessor_of(const tinygltf::Accessor& in) const {
     if (in.sparse.isSparse) {
         const auto& places = in.sparse.indices;
         const auto& values = in.sparse.values;
-        a.sparse = GltfAccessor::Sparse{
-            in.sparse.count,   places.componentType, view_bytes(places.bufferView), view_bytes(values.bufferView),
-            places.byteOffset, values.byteOffset};
+        a.sparse = GltfAccessor::Sparse{in.sparse.count,
+                                        places.componentType,
+                                        view_bytes(places.bufferView),
+                                        view_bytes(values.bufferView),
+                                        static_cast<std::int64_t>(places.byteOffset),
+                                        static_cast<std::int64_t>(values.byteOffset)};
     }
     return a;
 }

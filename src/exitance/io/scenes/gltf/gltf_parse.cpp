@@ -43,6 +43,17 @@ bool read_bytes(std::vector<unsigned char>* out, std::string* error, const std::
 bool write_nothing(std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
     return false;
 }
+/// Sets the function for the size of a file, which versions of tinygltf from 2.9 on require and earlier ones do not
+/// have.
+template <class Callbacks>
+void add_size_function(Callbacks& callbacks) {
+    if constexpr (requires { callbacks.GetFileSizeInBytes; })
+        callbacks.GetFileSizeInBytes = [](std::size_t* size, std::string*, const std::string& path, void*) {
+            std::error_code failure;
+            *size = std::filesystem::file_size(path, failure);
+            return !failure;
+        };
+}
 /// Stores a picture undecoded. Pictures in buffers stay there, since their offsets have not been checked.
 bool keep_picture(tinygltf::Image* image, const int, std::string*, std::string*, int, int, const unsigned char* bytes,
                   int size, void*) {
@@ -81,7 +92,12 @@ std::optional<Error> parse_gltf(const std::string& bytes, const std::string& pat
     bool done = false;
     try {
         tinygltf::TinyGLTF loader;
-        loader.SetFsCallbacks({exists, as_it_is, read_bytes, write_nothing, &folder});
+        tinygltf::FsCallbacks callbacks{};
+        callbacks.FileExists = exists, callbacks.ExpandFilePath = as_it_is;
+        callbacks.ReadWholeFile = read_bytes, callbacks.WriteWholeFile = write_nothing;
+        callbacks.user_data = &folder;
+        add_size_function(callbacks);
+        loader.SetFsCallbacks(callbacks);
         loader.SetImageLoader(keep_picture, nullptr);
         const auto size = static_cast<unsigned>(bytes.size());
         done = binary ? loader.LoadBinaryFromMemory(&out, &problem, &remark,
