@@ -52,7 +52,8 @@ Error not_rows(const std::string& path) {
 
 /// Number of records in a work file, which may be of any scene; 0 if there is no file. Error: it is of another kind.
 Result<std::size_t> count_rows(const std::string& path) {
-    const std::unique_ptr<std::FILE, decltype(&std::fclose)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+    constexpr auto close = [](std::FILE* file) { std::fclose(file); };
+    const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "rb"));
     if (!file) return 0;
     std::array<char, magic.size()> found{};
     const std::size_t bytes = std::fread(found.data(), 1, found.size(), file.get());
