@@ -35,7 +35,7 @@ OptionValue requested_error() {
 OptionValue bounces() {
     const auto text = [](int n) { return n == all_bounces ? std::string("all") : std::to_string(n); };
     OptionValue out = value_of("N|all", at(&SolveOptions::bounces), text,
-                               [](int n) { return n == all_bounces ? quoted("all") : std::to_string(n); });
+                               [](int n) { return n == all_bounces ? json_text("all") : std::to_string(n); });
     out.read = [](const std::string& word, SolveRequest& r) -> std::string {
         const std::optional<double> value = word == "all" ? all_bounces : number_in(word);
         if (!value) return not_a_number(word);

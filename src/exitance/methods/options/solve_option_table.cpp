@@ -16,7 +16,7 @@ using option_values::quoted;
 std::string key_of(const OptionRow& row) {
     std::string key = row.name.substr(2);
     std::replace(key.begin(), key.end(), '-', '_');
-    return quoted(key);
+    return json_text(key);
 }
 
 /// JSON members ("key": value, ...) of the options in a section.

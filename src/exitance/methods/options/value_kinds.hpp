@@ -47,7 +47,7 @@ std::string text_of(double value);
 /// Message of an error.
 std::string not_a_number(const std::string& word);
 /// Text in quotation marks, escaped for JSON.
-std::string quoted(std::string_view text);
+std::string json_text(std::string_view text);
 
 template <class T>
 const T* set_value(const T& value, const T& initial) {
@@ -106,7 +106,7 @@ OptionValue choice(const Table& table, Member member) {
         return std::string();
     };
     OptionValue out =
-        value_of(names_of(table, "|"), member, name, [name](const auto& chosen) { return quoted(name(chosen)); });
+        value_of(names_of(table, "|"), member, name, [name](const auto& chosen) { return json_text(name(chosen)); });
     out.read = [&table, member](const std::string& word, SolveRequest& request) -> std::string {
         if (choose(table, word, member(request))) return "";
         return "'" + word + "' is not one of " + names_of(table, ", ");
@@ -178,7 +178,7 @@ template <class Member>
 OptionValue text(std::string type, Member member) {
     OptionValue out = value_of(
         std::move(type), member, [](const std::string& value) { return value; },
-        [](const std::string& value) { return value.empty() ? "null" : quoted(value); });
+        [](const std::string& value) { return value.empty() ? "null" : json_text(value); });
     out.read = [member](const std::string& word, SolveRequest& request) {
         return member(request) = word, std::string();
     };
