@@ -11,7 +11,7 @@
 namespace exitance {
 namespace {
 
-using option_values::quoted;
+using option_values::json_text;
 
 std::string key_of(const OptionRow& row) {
     std::string key = row.name.substr(2);
