@@ -9,5 +9,6 @@ PYBIND11_MODULE(_exitance, m) {
     python::add_scenes(m);
     python::add_pictures(m);
     python::add_solutions(m);
+    python::add_sensors(m);
     python::add_measures(m);
 }

@@ -1,5 +1,7 @@
 #include <exitance/daylight.hpp>
+#include <exitance/glare.hpp>
 #include <exitance/light_maps.hpp>
+#include <exitance/light_probes.hpp>
 #include <exitance/load.hpp>
 #include <exitance/picture.hpp>
 #include <exitance/solve.hpp>
@@ -122,6 +124,15 @@ void check_solution(const Scene& scene, const std::string& folder) {
     const LightMaps maps = bake(again, {.density = 8}).value();
     expect(maps.size() >= 1 && maps.charts().size() == 7 && maps.density() == 8, "every face has a chart");
     maps.save(folder + "/maps").value();
+
+    const Glare seen = glare(again, {0.2, 1.5, 1.2}, {1, 0, 0.2}).value();
+    expect(seen.probability > 0 && seen.vertical_illuminance > 0 && seen.bounds.has_value(), "glare has bounds");
+    expect(!glare(again, {0.2, 1.5, 1.2}, {0, 0, 0}), "a line of sight has a length");
+    const Vec3 middle{2, 1.5, 1.5};
+    const std::vector<LightProbe> air = light_probes(again, {&middle, 1}).value();
+    expect(air.size() == 1 && mean(air[0].irradiance({0, 0, 1})) > mean(air[0].irradiance({0, 0, -1})),
+           "more light comes from above");
+    expect(!light_probes(again, {&middle, 1}, {.rays = 100}), "rays are a power of two");
 }
 
 void check_stop(const Scene& scene) {

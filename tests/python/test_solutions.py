@@ -180,6 +180,44 @@ def test_light_maps_in_texture_coordinates(tmp_path):
             solution.bake(**wrong)
 
 
+def test_glare_of_an_eye(solution):
+    eye, towards = [0.2, 1.5, 1.2], [1, 0, 0.2]
+    glare = solution.glare(eye, towards, threshold=300)
+    E = solution.irradiance(eye, np.array(towards) / np.linalg.norm(towards)) @ [0.265, 0.670, 0.065] * 179
+    assert glare.vertical_illuminance == pytest.approx(E, rel=0.02)  # both gather reflected light by rays
+    assert 0 < glare.bounds[0] <= glare.probability <= glare.bounds[1] <= 1
+    assert glare.level in ("imperceptible", "perceptible", "disturbing", "intolerable")
+    assert glare.threshold == 300 and glare.sources[0].luminance == pytest.approx(179 * RADIANCE, rel=0.05)
+    assert glare.sources[0].direction[0] > 0 and glare.sources[0].position >= 1
+    assert solution.glare(eye, towards).sources == [] and solution.glare(eye, towards).threshold == 2000
+    assert solution.glare(eye, towards, threshold="5x").threshold == pytest.approx(5 * glare.mean_luminance)
+    doubled = solution.glare(eye, towards, threshold=600, efficacy=2 * 179)
+    assert doubled.vertical_illuminance == pytest.approx(2 * glare.vertical_illuminance)
+    for wrong in (dict(threshold=0), dict(threshold="5"), dict(threshold="x"), dict(efficacy=-1)):
+        with pytest.raises(ex.UsageError):
+            solution.glare(eye, towards, **wrong)
+    with pytest.raises(ex.UsageError):
+        solution.glare(eye, [0, 0, 0])
+
+
+def test_light_probes_are_those_of_the_program(solution, tmp_path):
+    points = np.array([[1.0, 1, 1], [2, 1, 1], [3, 2, 0.5]])
+    probes = solution.probes(points)
+    assert len(probes) == 3 and probes.radiance.shape == (3, 9, ex.bands)
+    assert probes.standard_error.shape == (3, 9, ex.bands) and np.all(probes.back_share < 0.1)
+    E = solution.irradiance(points, [0, 0, 1])
+    assert probes.irradiance([0, 0, 2]) == pytest.approx(E, rel=0.08)  # degrees above 2 add 6%
+    solution.save(tmp_path / "room.h5")
+    (tmp_path / "points.csv").write_text("x,y,z\n" + "".join("%r,%r,%r\n" % tuple(p) for p in points.tolist()))
+    run_program("probes", tmp_path / "room.h5", "--points", tmp_path / "points.csv", "-o", tmp_path / "probes.json")
+    written = json.loads((tmp_path / "probes.json").read_text())["probes"]
+    for k in range(3):
+        assert probes.radiance[k] == pytest.approx(np.array(written[k]["radiance"]), rel=1e-5, abs=1e-5)
+    for wrong in (dict(points=points, rays=100), dict(points=[[np.nan, 0, 0]])):
+        with pytest.raises(ex.UsageError):
+            solution.probes(**wrong)
+
+
 def test_mixing_dims_groups():
     solved = ex.solve(small_room(groups=["walls"] * 6 + ["lamp"], light_groups=True), error=0.1)
     assert solved.light_groups == ["lamp"]

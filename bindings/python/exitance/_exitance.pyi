@@ -172,6 +172,51 @@ class LightMaps:
     def warnings(self) -> list[str]: ...
     def save(self, folder: _Path) -> None: ...
 
+class GlareSource:
+    """A source of glare."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def direction(self) -> _Doubles: ...
+    @property
+    def luminance(self) -> float: ...
+    @property
+    def solid_angle(self) -> float: ...
+    @property
+    def position(self) -> float: ...
+
+class Glare:
+    """Daylight glare at an eye at one moment."""
+
+    @property
+    def probability(self) -> float: ...
+    @property
+    def bounds(self) -> Union[None, list[float]]: ...
+    @property
+    def level(self) -> str: ...
+    @property
+    def vertical_illuminance(self) -> float: ...
+    @property
+    def mean_luminance(self) -> float: ...
+    @property
+    def threshold(self) -> float: ...
+    @property
+    def sources(self) -> list[GlareSource]: ...
+
+class LightProbes:
+    """Light that arrives at points from all directions, as spherical harmonics."""
+
+    def __len__(self) -> int: ...
+    @property
+    def radiance(self) -> _Doubles: ...
+    @property
+    def standard_error(self) -> _Doubles: ...
+    @property
+    def back_share(self) -> _Doubles: ...
+    def irradiance(self, normal: ArrayLike) -> _Doubles:
+        """Irradiance on planes of one normal at all points, (n, bands) W/m^2."""
+
 class Solution:
     """The light of a scene, evaluated anywhere. Direct light is exact, shadows included."""
 
@@ -217,6 +262,18 @@ class Solution:
         faceted: bool = False,
         progress: _Progress = None,
     ) -> LightMaps: ...
+    def glare(
+        self,
+        eye: ArrayLike,
+        direction: ArrayLike,
+        *,
+        threshold: Union[float, str] = 2000.0,
+        efficacy: float = 179.0,
+        progress: _Progress = None,
+    ) -> Glare:
+        """Daylight glare probability at an eye."""
+    def probes(self, points: ArrayLike, *, rays: int = 1024, progress: _Progress = None) -> LightProbes:
+        """Light that arrives at points from all directions, as spherical harmonics."""
 
 class PaneGroup:
     """A group of panes whose state changes from hour to hour."""

@@ -170,6 +170,9 @@ void declare(CLI::App& app, BakeArguments& arguments) {
     add_choice(
         app, "--component", light_component_names, format.component,
         "Part of the light: all of it, light straight from emitters, or light that was reflected. Default total");
+    add_choice(app, "--directional", direction_form_names, format.directions,
+               "Directions of the light, for normal maps. sh: spherical harmonics of degrees 0 and 1 (EXR). dominant: "
+               "one direction and its share (EXR, PNG). A bake takes about five times as long. Default none");
     app.add_flag("--hdr", format.with_hdr, "Also write Radiance pictures (.hdr, RGBE), with 1% of relative precision");
     app.add_flag_callback(
         "--half", [&format] { format.precision = Precision::half; },

@@ -110,7 +110,7 @@ Result<UvTarget> find_uv_target(const BakeArguments& arguments, const Scene& sce
                      "--uv", "use --uv unwrap, or leave --uv out"};
     UvBakeOptions options;
     options.density = arguments.density, options.padding = static_cast<int>(arguments.padding);
-    options.component = arguments.format.component;
+    options.component = arguments.format.component, options.directions = arguments.format.directions;
     if (arguments.size) options.size = {arguments.size->width, arguments.size->height};
     return find_uv_target(scene, scene_file, arguments.uv, options);
 }
@@ -176,6 +176,9 @@ ExitCode bake_into_uvs(const BakeArguments& arguments, const Solution& solution,
 /// Runs `exitance bake SOLUTION -o FOLDER`.
 ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     set_threads(arguments.threads);
+    if (arguments.format.directions != Directions::none && arguments.format.quantity != LightMapQuantity::irradiance)
+        return terminal.fail(Error{ErrorCode::usage, "directions are those of arriving light", "--directional",
+                                   "use --quantity irradiance"});
     LightGroups groups;
     const Result<Solution> solution =
         all_or_none(load_solution(arguments.solution, Rehearsed::not_yet, arguments.light_groups ? &groups : nullptr));
@@ -190,6 +193,7 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     BakeOptions options;
     options.density = arguments.density, options.padding = static_cast<int>(arguments.padding);
     options.curved = &curved, options.component = arguments.format.component;
+    options.directions = arguments.format.directions;
     const CommonStop common(terminal, terminal.limits().keep());
     const StopRequest& stop = common.request();
     const Result<LightMaps> maps = bake_light_maps(light, options, terminal.progress(), stop);

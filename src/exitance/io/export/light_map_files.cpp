@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "exitance/base/version.hpp"
+#include "exitance/io/export/directional_files.hpp"
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/pictures/png.hpp"
@@ -95,8 +96,8 @@ std::string manifest(const Scene& scene, const LightMaps& light, const LightMapF
     for (std::size_t m = 0; m < light.maps.size(); ++m)
         text += fmt::format("{}\n    {{{}, \"width\": {}, \"height\": {}}}", m > 0 ? "," : "",
                             map_files_json(m, format), light.maps[m].size.width, light.maps[m].size.height);
-    text += groups_json(groups, light.maps.size());
-    text += "\n  ]," + curved_json(light.curved) + "\n  \"charts\": [";
+    text += groups_json(groups, light.maps.size(), format);
+    text += "\n  ]," + directional_json(scene, format) + curved_json(light.curved) + "\n  \"charts\": [";
     Field<RegionId, const CurvedDifference*> curved(scene.regions().size());
     for (const CurvedDifference& d : light.curved.regions) curved[d.region] = &d;
     for (SurfaceId s : scene.surfaces().ids()) {
@@ -119,6 +120,8 @@ Result<void> write_pictures(const Scene& scene, const LightMaps& light, std::opt
         const ImageTexts texts{{"Software", "exitance"}, {"Exposure", exposure}};
         const Result<void> written = write_png(stem + ".png", preview(scene, light, m, format.quantity, tones), texts);
         if (!written) return written;
+        const Result<void> directed = write_directional(light.maps[m], m, group, scene, format, folder);
+        if (!directed) return directed;
     }
     return {};
 }
@@ -129,14 +132,21 @@ std::string light_map_stem(std::size_t map, std::optional<std::size_t> group) {
     return group ? fmt::format("lightmap_{}_{}", map, *group) : fmt::format("lightmap_{}", map);
 }
 
-std::string groups_json(std::span<const std::string> groups, std::size_t maps) {
+std::string groups_json(std::span<const std::string> groups, std::size_t maps, const LightMapFormat& format) {
     std::string text;
     for (std::size_t g = 0; g < groups.size(); ++g) {
         text += g > 0 ? "," : "\n  ],\n  \"groups\": [";
         text += fmt::format("\n    {{\"name\": {}, \"files\": [", json_text(groups[g]));
         for (std::size_t m = 0; m < maps; ++m)
             text += fmt::format("{}\"{}.exr\"", m > 0 ? ", " : "", light_map_stem(m, g));
-        text += "]}";
+        text += "]";
+        if (format.directions != Directions::none) {
+            text += ", \"directional\": [";
+            for (std::size_t m = 0; m < maps; ++m)
+                text += fmt::format("{}[{}]", m > 0 ? ", " : "", directional_list(m, g, format));
+            text += "]";
+        }
+        text += "}";
     }
     return text;
 }
@@ -172,8 +182,10 @@ Result<void> write_map_numbers(const std::string& stem, const LinearImage& image
 
 std::string map_files_json(std::size_t map, const LightMapFormat& format) {
     const std::string stem = light_map_stem(map);
-    return fmt::format("\"file\": \"{0}.exr\"{1}, \"preview\": \"{0}.png\"", stem,
-                       format.with_hdr ? fmt::format(", \"hdr\": \"{}.hdr\"", stem) : std::string());
+    const std::string directed = directional_list(map, {}, format);
+    return fmt::format("\"file\": \"{0}.exr\"{1}, \"preview\": \"{0}.png\"{2}", stem,
+                       format.with_hdr ? fmt::format(", \"hdr\": \"{}.hdr\"", stem) : std::string(),
+                       directed.empty() ? directed : fmt::format(", \"directional\": [{}]", directed));
 }
 
 const char* unit_of(const Scene& scene, LightMapQuantity quantity) {

@@ -21,6 +21,9 @@ constexpr std::array<std::pair<LightMapQuantity, std::string_view>, 2> light_map
 constexpr std::array<std::pair<Component, std::string_view>, 3> light_component_names{
     {{Component::total, "total"}, {Component::direct, "direct"}, {Component::indirect, "indirect"}}};
 
+constexpr std::array<std::pair<Directions, std::string_view>, 3> direction_form_names{
+    {{Directions::none, "none"}, {Directions::sh, "sh"}, {Directions::dominant, "dominant"}}};
+
 /// Representation of light in the .glb (write_light_map_glb).
 enum class LightMapMaterial : std::uint8_t {
     emissive,      ///< Light is the emission of black surfaces.
@@ -32,6 +35,7 @@ struct LightMapFormat {
     LightMapQuantity quantity = LightMapQuantity::irradiance;
     Component component = Component::total;
     Precision precision = Precision::single;
+    Directions directions = Directions::none;
     bool with_hdr = false;  ///< Also writes every map as .hdr (write_hdr).
     LightMapMaterial material = LightMapMaterial::emissive;
     std::string scene_file;  ///< glTF file with the scene's own textures; empty: none.
@@ -41,7 +45,7 @@ struct LightMapFormat {
 std::string light_map_stem(std::size_t map, std::optional<std::size_t> group = {});
 /// Formats the end of the list of maps in lightmaps.json and, if there are any, the light groups with the files of
 /// each.
-std::string groups_json(std::span<const std::string> groups, std::size_t maps);
+std::string groups_json(std::span<const std::string> groups, std::size_t maps, const LightMapFormat& format);
 /// Formats the differences of curved regions from the solution, as a line of lightmaps.json; empty if there are none.
 std::string curved_json(const CurvedDifferences& curved);
 /// Unit of a quantity in a scene's maps.
@@ -53,7 +57,8 @@ std::string values_name(const LightMapFormat& format);
 /// Writes the numbers of a map as STEM.exr, and as STEM.hdr if requested.
 Result<void> write_map_numbers(const std::string& stem, const LinearImage& image, const Scene& scene,
                                const LightMapFormat& format);
-/// Formats the file names of a map for lightmaps.json: `file`, `preview`, and `hdr` if it is written.
+/// Formats the file names of a map for lightmaps.json: `file`, `preview`, and `hdr` and `directional` if they are
+/// written.
 std::string map_files_json(std::size_t map, const LightMapFormat& format);
 /// Creates a folder for maps if it does not exist.
 Result<void> make_map_folder(const std::string& folder);
@@ -68,6 +73,7 @@ Result<void> write_group_light_maps(const Scene& lit_by_group, const LightMaps& 
 ///     lightmap_N.exr   values: R, G, B in W/m^2; `coverage`: share of a texel that is on its surface
 ///     lightmap_N.hdr   R, G, B with a common exponent, if the format has it
 ///     lightmap_N.png   the same as a tone-mapped picture
+///     lightmap_N_*     directions, if the format has them (write_directional)
 ///     scene.glb        the scene with texture coordinates for the maps
 ///     lightmaps.json   texels of each face, and the `groups` that were written; written last
 ///

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "exitance/io/export/directional_files.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "support/hdr_pixels.hpp"
 #include "support/sample_solution.hpp"
@@ -51,6 +52,38 @@ TEST(LightMapFiles, TheEmissionOfLampsIsDirectLight) {
     EXPECT_GT(mean(scene.material(lamp).exitance), 0);
     map.has_emission = false;
     EXPECT_EQ(texel_value(scene, map, chart, 0, LightMapQuantity::radiosity), Spectrum());
+}
+
+TEST(LightMapFiles, DirectionsHaveFilesOfTheirOwn) {
+    const TemporaryFolder folder;
+    const Solution solution = sample_solution();
+    Progress progress;
+    const StopRequest stop;
+    for (const Directions form : {Directions::sh, Directions::dominant}) {
+        BakeOptions options;
+        options.density = 4, options.directions = form;
+        const Result<LightMaps> maps = bake_light_maps(RadiosityFunction(solution), options, progress, stop);
+        ASSERT_TRUE(maps);
+        LightMapFormat format;
+        format.directions = form;
+        const std::vector<std::string> groups{"lamp"};
+        ASSERT_TRUE(write_group_light_maps(solution.scene, *maps, 0, format, folder / "maps"));
+        ASSERT_TRUE(write_light_maps(solution, *maps, format, groups, folder / "maps"));
+        const Result<std::string> manifest = read_whole_file(folder / "maps/lightmaps.json");
+        ASSERT_TRUE(manifest);
+        const bool is_sh = form == Directions::sh;
+        EXPECT_NE(manifest->find(is_sh ? "\"form\": \"sh\"" : "\"form\": \"dominant\""), std::string::npos);
+        for (const std::optional<std::size_t> group : {std::optional<std::size_t>(), std::optional<std::size_t>(0)}) {
+            const std::vector<std::string> names = directional_files(0, group, format);
+            EXPECT_EQ(names.size(), is_sh ? 4u : 2u);
+            for (const std::string& name : names) {
+                EXPECT_NE(manifest->find("\"" + name + "\""), std::string::npos) << name;
+                const Result<std::string> file = read_whole_file(folder / ("maps/" + name));
+                ASSERT_TRUE(file) << name;
+                EXPECT_GT(file->size(), 100u);
+            }
+        }
+    }
 }
 
 }  // namespace exitance

@@ -7,6 +7,7 @@
 
 #include "exitance/base/random.hpp"
 #include "exitance/base/version.hpp"
+#include "exitance/io/export/directional_files.hpp"
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
@@ -103,6 +104,8 @@ Result<void> write_uv_pictures(const Scene& scene, const UvLightMaps& light, std
             {"Exposure", fmt::format("{} in {} times {:.6g}, then a filmic curve", quantity, unit, tones.scale)}};
         const Result<void> written = write_png(stem + ".png", uv_preview(light.maps[m], format.quantity, tones), texts);
         if (!written) return written;
+        const Result<void> directed = write_directional(light.maps[m].light, m, group, scene, format, folder);
+        if (!directed) return directed;
     }
     return {};
 }
@@ -125,8 +128,9 @@ Result<void> write_uv_manifest(const Scene& scene, const UvSet& set, const UvLig
             map.shared_texels, map.close_texels,
             charts.empty() ? std::string() : fmt::format(", \"charts\": {}", json_text(charts[m])));
     }
-    text += groups_json(groups, light.maps.size());
-    text += "\n  ]," + curved_json(light.curved) + (unwrapped ? unwrapped_json(*unwrapped) : "") + "\n  \"objects\": [";
+    text += groups_json(groups, light.maps.size(), format);
+    text += "\n  ]," + directional_json(scene, format) + curved_json(light.curved) +
+            (unwrapped ? unwrapped_json(*unwrapped) : "") + "\n  \"objects\": [";
     const char* comma = "\n";
     for (const UvObject& object : light.layout.objects) {
         if (object.triangles == 0) continue;

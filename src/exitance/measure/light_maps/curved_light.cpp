@@ -93,6 +93,13 @@ Point CurvedLight::off_face(const Point& on_face, const CurvedPlace& place, Regi
     return hit.distance < 1 ? on_face + 0.5 * hit.distance * way : off;
 }
 
+ProbePoint CurvedLight::above(const MeasuredPlace& place) const {
+    const std::optional<CurvedPlace> curved = faces_.find(place.surface, place.x);
+    const Normal& n = light_.stage().scene.regions()[place.region].plane.n;
+    if (!curved) return {place.x + light_.places().step() * n, n};
+    return {off_face(place.x, *curved, place.region), curved->n};
+}
+
 /// Gathers reflected light at a node. Nodes are slightly inside their triangle, so that a wall that meets it at its
 /// border is on the right side of them.
 CurvedLight::NodeLight CurvedLight::gather(std::size_t triangle, const std::array<double, 3>& weight,

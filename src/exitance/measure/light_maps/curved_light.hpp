@@ -12,7 +12,7 @@ namespace exitance {
 
 /// Distance of the nodes at which CurvedLight gathers reflected light, at most, in texels. derived from the solve's
 /// elements: reflected light varies slowly, and a node costs as much as some ten texels.
-constexpr double node_texels = 8;
+constexpr int node_texels = 8;
 
 /// Irradiance of a solution on curved surfaces, which the solve replaced by flat faces.
 ///
@@ -29,6 +29,10 @@ class CurvedLight {
     CurvedLight(const RadiosityFunction& light, const CurvedFaces& faces, double spacing, const StopRequest& stop);
 
     bool is_curved(RegionId region) const { return faces_.is_curved(region); }
+
+    /// Returns the point on the curved patch over a place of a curved region, far enough off the face for rays, and the
+    /// interpolated normal there.
+    ProbePoint above(const MeasuredPlace& place) const;
 
     struct Mean {
         Spectrum irradiance;     ///< Irradiance of the component, W/m^2.

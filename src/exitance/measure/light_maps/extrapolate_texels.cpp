@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "exitance/measure/light_maps/directed_irradiance.hpp"
 #include "exitance/measure/light_maps/light_map.hpp"
 
 namespace exitance {
@@ -34,7 +35,10 @@ class Filler {
 
     void fill(const std::vector<Texel>& ring, bool linear) {
         std::vector<Spectrum> values;
-        for (const Texel& t : ring) values.push_back(value(t, linear && source(t) != Source::buried));
+        for (const Texel& t : ring) {
+            values.push_back(value(t, linear && source(t) != Source::buried));
+            continue_directed(known_around(t), values.back(), map_.index(t.x, t.y), map_);
+        }
         for (std::size_t i = 0; i < ring.size(); ++i) {
             const std::size_t at = map_.index(ring[i].x, ring[i].y);
             for (std::size_t b = 0; b < bands; ++b) map_.irradiance[at][b] = static_cast<float>(values[i][b]);
@@ -64,6 +68,14 @@ class Filler {
         return t.x >= room_.x && t.y >= room_.y && t.x < room_.x + room_.width && t.y < room_.y + room_.height;
     }
     Source source(const Texel& t) const { return map_.source[map_.index(t.x, t.y)]; }
+    std::vector<std::size_t> known_around(const Texel& t) const {
+        std::vector<std::size_t> out;
+        for (const Texel& d : around) {
+            const Texel n{t.x + d.x, t.y + d.y};
+            if (is_inside(n) && is_known(source(n))) out.push_back(map_.index(n.x, n.y));
+        }
+        return out;
+    }
     bool touches_known(const Texel& t) const {
         return std::any_of(around.begin(), around.end(), [&](const Texel& d) {
             const Texel n{t.x + d.x, t.y + d.y};

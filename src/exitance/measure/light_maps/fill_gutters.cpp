@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "exitance/measure/light_maps/directed_irradiance.hpp"
 #include "exitance/measure/light_maps/uv_light_map.hpp"
 
 namespace exitance {
@@ -43,6 +44,7 @@ class GutterFiller {
             const bool linear = is_first && source(t) != Source::buried;
             filled.push_back(
                 {chart, value(t, chart, map_.light.irradiance, linear), value(t, chart, map_.radiosity, linear)});
+            continue_directed(known_of(t, chart), filled.back().irradiance, index(t), map_.light);
             map_.close_texels += is_first && source(t) == Source::nothing && is_read_by_other(t, chart);
         }
         for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -80,6 +82,16 @@ class GutterFiller {
     }
     bool is_known(const GutterTexel& t) const {
         return is_inside(t) && (source(t) == Source::computed || source(t) == Source::extrapolated);
+    }
+
+    /// Known texels of a chart around a texel.
+    std::vector<std::size_t> known_of(const GutterTexel& t, std::uint32_t chart) const {
+        std::vector<std::size_t> out;
+        for (const GutterTexel& d : gutter_neighbours) {
+            const GutterTexel n{t.x + d.x, t.y + d.y};
+            if (is_known(n) && map_.chart[index(n)] == chart) out.push_back(index(n));
+        }
+        return out;
     }
 
     /// The chart that a texel continues: its own if the texel is covered and a neighbour has it, else the one with the

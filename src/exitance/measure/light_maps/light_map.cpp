@@ -27,6 +27,7 @@ void store(const BakedTexel& texel, LightMap& map) {
     map.share[texel.index] = static_cast<float>(texel.share);
     map.source[texel.index] = texel.is_open ? LightMap::Source::computed : LightMap::Source::buried;
     for (std::size_t b = 0; b < bands; ++b) map.irradiance[texel.index][b] = static_cast<float>(texel.irradiance[b]);
+    if (map.has_directions()) store_directed(texel.directed, texel.index, map);
 }
 
 /// Compares the light of curved regions with the solution.
@@ -49,8 +50,10 @@ CurvedDifferences compare_curved(const Solution& solution, const CurvedFaces* fa
 /// Evaluates light at the centres of texels at the borders of curved charts.
 void fit_curved(const std::vector<std::vector<CurvedTexel>>& curved, const Chart& chart, LightMaps& out) {
     LightMap& map = out.maps[chart.map];
-    TexelValues* const values = &map.irradiance;
-    fit_curved_borders(chart.room, curved[chart.map], {}, std::span(&values, 1), map);
+    std::vector<TexelValues*> values{&map.irradiance};
+    if (map.has_directions())
+        for (TexelValues& directed : map.directed) values.push_back(&directed);
+    fit_curved_borders(chart.room, curved[chart.map], {}, values, map);
 }
 
 Result<LightMaps> make_empty_maps(const Scene& scene, const BakeOptions& options) {
@@ -73,6 +76,8 @@ Result<LightMaps> make_empty_maps(const Scene& scene, const BakeOptions& options
         LightMap map;
         map.size = size;
         map.irradiance.resize(size.texels());
+        if (options.directions != Directions::none)
+            for (auto& values : map.directed) values.resize(size.texels());
         map.source.resize(size.texels(), LightMap::Source::nothing);
         map.share.resize(size.texels());
         map.has_emission = options.component != Component::indirect;
@@ -116,12 +121,15 @@ Result<LightMaps> bake_light_maps(const RadiosityFunction& light, const BakeOpti
     std::optional<CurvedLight> curved;
     if (options.curved && !options.curved->empty())
         curved.emplace(light, *options.curved, node_texels / out.density, stop);
+    const CurvedLight* const curved_light = curved ? &*curved : nullptr;
+    const TiltedLight tilted(light, curved_light, options.component, options.directions);
     std::vector<std::vector<CurvedTexel>> curved_texels(out.maps.size());
     for (std::size_t m = 0; curved && m < out.maps.size(); ++m) curved_texels[m].resize(out.maps[m].size.texels());
     const std::vector<ChartTile> tiles = cut_into_tiles(out.charts);
     const auto map_of = [&](std::size_t m) -> const LightMap& { return out.maps[m]; };
     const auto make_baker = [&] {
-        return TileBaker(light, outlines, &mesh, curved ? &*curved : nullptr, options.component, stop);
+        return TileBaker(light, outlines, &mesh, curved_light,
+                         options.directions == Directions::none ? nullptr : &tilted, options.component, stop);
     };
     const std::size_t at_once = 256 * processes();
     for (std::size_t first = 0; first < tiles.size() && !stop.requested(); first += at_once) {

@@ -11,12 +11,20 @@
 
 namespace exitance {
 
+/// What light maps tell about the directions of light, for normal maps.
+enum class Directions : std::uint8_t {
+    none,
+    sh,        ///< Spherical harmonics of degrees 0 and 1, for every band.
+    dominant,  ///< One direction for all bands, and the share of the light that has it.
+};
+
 struct BakeOptions {
     double density = 0;                      ///< Texels per metre; 0: `automatic_density`.
     int padding = 4;                         ///< Texels around every chart, at least 1.
     int most = 8192;                         ///< Limit on texels along a side of a map, for display hardware.
     const CurvedFaces* curved = nullptr;     ///< Faces with the normals of the scene's file; null: all are flat.
     Component component = Component::total;  ///< Part of the light.
+    Directions directions = Directions::none;
 };
 
 /// One image of irradiance, rows from top to bottom.
@@ -33,11 +41,15 @@ struct LightMap {
     std::vector<std::array<float, bands>> irradiance;  ///< W/m^2
     std::vector<Source> source;
     std::vector<float> share;  ///< Share of every texel that its region covers; 0 outside.
+    /// Irradiance as a linear function of the normal (DirectedIrradiance), W/m^2: the constant, and the slopes along x,
+    /// y, z. Empty vectors in maps without directions.
+    std::array<std::vector<std::array<float, bands>>, 4> directed = {};
     bool has_emission = true;  ///< True if radiosity contains the surfaces' emission, which is direct light.
 
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(size.width) + static_cast<std::size_t>(x);
     }
+    bool has_directions() const { return !directed[0].empty(); }
     Spectrum at(std::size_t i) const {
         Spectrum out;
         for (std::size_t b = 0; b < bands; ++b) out[b] = static_cast<double>(irradiance[i][b]);
@@ -74,6 +86,8 @@ double automatic_density(const Scene& scene);
 /// linearly in the first ring outside, else by means (extrapolate_texels). Curved regions have the light of the surface
 /// that their faces approximate (CurvedLight), from two to sixteen points.
 /// Same bits on any number of threads. About 5 us per texel in a room with few lamps.
+/// With directions, every texel also has the irradiance of tilted planes (TiltedLight); its own plane has that of the
+/// map.
 /// Maps of direct and indirect light add up to that of all light, but for rounding.
 /// Returns an error of code `usage` if the maps would have more than 2^27 texels, or if the solution is not divisible
 /// and a part of its light is requested; after a stop request the maps are

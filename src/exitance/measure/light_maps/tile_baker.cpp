@@ -18,12 +18,14 @@ std::vector<ChartTile> cut_into_tiles(std::span<const Chart> charts) {
 }
 
 TileBaker::TileBaker(const RadiosityFunction& light, std::span<const std::vector<TexelOutline>> outlines,
-                     const MeshTexels* mesh, const CurvedLight* curved, Component component, const StopRequest& stop)
+                     const MeshTexels* mesh, const CurvedLight* curved, const TiltedLight* tilted, Component component,
+                     const StopRequest& stop)
     : stage_(light.stage()),
       finder_(light.places()),
       outlines_(outlines),
       mesh_(mesh),
       curved_(curved),
+      tilted_(tilted),
       component_(component),
       exact_share_(light.exact_share()),
       stop_(stop),
@@ -37,7 +39,8 @@ std::span<const BakedTexel> TileBaker::bake(const ChartTile& tile, const Chart& 
     cutter_.cut(outlines_[tile.chart], tile.rectangle, covers_, places_);
     integrals_.clear();
     if (mesh_) mesh_->integrate(tile.chart, tile.rectangle, integrals_);
-    points_.clear(), spots_.clear(), texels_.clear();
+    points_.clear(), spots_.clear(), texels_.clear(), places_of_texels_.clear(), last_place_.clear();
+    if (tilted_) tilted_->start(chart, tile.rectangle.x, tile.rectangle.y, tilted_work_);
     std::array<std::uint32_t, static_cast<std::size_t>(tile_side * tile_side)> texel_of;
     const bool is_curved = curved_ && curved_->is_curved(chart.region);
     for (const TexelCover& cover : covers_) {
@@ -45,8 +48,10 @@ std::span<const BakedTexel> TileBaker::bake(const ChartTile& tile, const Chart& 
                   static_cast<std::uint32_t>(map.index(chart.x + cover.x, chart.y + cover.y)),
                   static_cast<std::uint32_t>(points_.size())};
         texel_of[static_cast<std::size_t>(spot.y * tile_side + spot.x)] = static_cast<std::uint32_t>(texels_.size());
-        texels_.push_back({spot.pixel, cover.share, false, {}, {}});
+        texels_.push_back({spot.pixel, cover.share, false, {}, {}, {}});
         find_open_points(chart, cover);
+        if (tilted_) places_of_texels_.insert(places_of_texels_.end(), open_.begin(), open_.end());
+        last_place_.push_back(places_of_texels_.size());
         if (is_curved) {
             bake_curved(chart, cover, texels_.back());
             continue;
@@ -65,7 +70,20 @@ std::span<const BakedTexel> TileBaker::bake(const ChartTile& tile, const Chart& 
         const Spectrum light = component_of(spot);
         for (std::size_t b = 0; b < bands; ++b) texel.irradiance[b] = std::max(0.0, light[b]);
     }
+    if (tilted_) find_directions(chart);
     return texels_;
+}
+
+/// Sets the directed light of all texels that have light.
+void TileBaker::find_directions(const Chart& chart) {
+    std::size_t first = 0;
+    for (std::size_t t = 0; t < texels_.size(); ++t) {
+        const auto open = std::span(places_of_texels_).subspan(first, last_place_[t] - first);
+        first = last_place_[t];
+        if (!texels_[t].is_open || open.empty() || stop_.requested()) continue;
+        for (MeasuredPlace& place : open) place.region = chart.region;
+        texels_[t].directed = tilted_->at(covers_[t].x, covers_[t].y, open, texels_[t].irradiance, tilted_work_);
+    }
 }
 
 /// Returns the component of a spot's light. The sum of direct and indirect light is that of all light, since all of

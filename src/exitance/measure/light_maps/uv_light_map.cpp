@@ -141,6 +141,11 @@ class TexelSums {
         }
         const Spectrum emitted = map_.light.has_emission ? material.exitance : Spectrum();
         const Spectrum radiosity = emitted + material.reflectance * texel.irradiance;
+        if (map_.light.has_directions()) {
+            DirectedIrradiance directed = texel.directed;
+            directed *= texel.share, directed += directed_at(map_.light, i);
+            store_directed(directed, i, map_.light);
+        }
         for (std::size_t b = 0; b < bands; ++b) {
             map_.light.irradiance[i][b] += share * static_cast<float>(texel.irradiance[b]);
             map_.radiosity[i][b] += share * static_cast<float>(radiosity[b]);
@@ -158,11 +163,18 @@ class TexelSums {
             if (open_[i] == 0) continue;
             for (std::size_t b = 0; b < bands; ++b)
                 light.irradiance[i][b] /= open_[i], map_.radiosity[i][b] /= open_[i];
+            if (light.has_directions()) {
+                DirectedIrradiance directed = directed_at(light, i);
+                directed *= 1 / static_cast<double>(open_[i]);
+                store_directed(directed, i, light);
+            }
             if (!curved_.empty()) curved_[i].x /= open_[i], curved_[i].y /= open_[i];
         }
         if (curved_.empty()) return;
         for (std::size_t i = 0; i < open_.size(); ++i) curved_[i].is_curved &= !is_shared_[i];
-        TexelValues* const values[] = {&map_.light.irradiance, &map_.radiosity};
+        std::vector<TexelValues*> values{&map_.light.irradiance, &map_.radiosity};
+        if (map_.light.has_directions())
+            for (TexelValues& directed : map_.light.directed) values.push_back(&directed);
         const Chart::Rectangle whole{0, 0, map_.light.size.width, map_.light.size.height};
         fit_curved_borders(whole, curved_, map_.chart, values, map_.light);
     }
@@ -214,6 +226,8 @@ Result<void> make_empty_maps(const Scene& scene, const UvBakeOptions& options, U
         UvLightMap map;
         map.light.size = size;
         map.light.irradiance.resize(size.texels()), map.radiosity.resize(size.texels());
+        if (options.directions != Directions::none)
+            for (auto& field : map.light.directed) field.resize(size.texels());
         map.light.source.resize(size.texels(), LightMap::Source::nothing);
         map.light.share.resize(size.texels());
         map.light.has_emission = options.component != Component::indirect;
@@ -237,13 +251,16 @@ void bake_charts(const RadiosityFunction& light, const LinearCharts& linear, con
     const CurvedFaces* const faces = options.curved;
     std::optional<CurvedLight> curved;
     if (faces && !faces->empty()) curved.emplace(light, *faces, node_texels / largest_density(out), stop);
+    const CurvedLight* const curved_light = curved ? &*curved : nullptr;
+    const TiltedLight tilted(light, curved_light, options.component, options.directions);
     CurvedSums curved_sums(light.solution().scene, faces);
     std::vector<TexelSums> sums;
     for (UvLightMap& map : out.maps) sums.emplace_back(map, curved.has_value());
     const std::vector<ChartTile> tiles = cut_into_tiles(linear.charts);
     const auto map_of = [&](std::size_t m) -> const LightMap& { return out.maps[m].light; };
     const auto make_baker = [&] {
-        return TileBaker(light, linear.outlines, nullptr, curved ? &*curved : nullptr, options.component, stop);
+        return TileBaker(light, linear.outlines, nullptr, curved_light,
+                         options.directions == Directions::none ? nullptr : &tilted, options.component, stop);
     };
     constexpr std::size_t at_once = 1024;
     for (std::size_t first = 0; first < tiles.size() && !stop.requested(); first += at_once) {

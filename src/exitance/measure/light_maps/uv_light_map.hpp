@@ -17,6 +17,7 @@ struct UvBakeOptions {
     int most = 8192;     ///< Limit on texels along a side of a map, for display hardware.
     const CurvedFaces* curved = nullptr;     ///< Faces with the normals of the scene's file; null: all are flat.
     Component component = Component::total;  ///< Part of the light.
+    Directions directions = Directions::none;
 };
 
 /// Irradiance and radiosity in the texture coordinates of a scene's file.
