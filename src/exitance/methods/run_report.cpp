@@ -18,12 +18,15 @@ void add_findings(std::vector<std::string>& warnings, std::span<const Finding> f
 }
 
 void warn_of_useless_light(SolveStatistics& statistics) {
-    if (statistics.relative_error_estimate.value_or(0) < 1) return;
-    statistics.converged = false;
+    constexpr double rough = 0.32;  // derived from the error at which a scene is recognizable in its pictures
+    const double error = statistics.relative_error_estimate.value_or(0);
+    const bool is_useless = error >= 1;
+    if (error < rough || (!is_useless && statistics.stopped_by == "divergence")) return;
+    if (is_useless) statistics.converged = false;
     statistics.warnings.push_back(
-        fmt::format("the estimated error is {:.0f}% of the light: the result is not usable; refine the settings, or "
-                    "request an --error",
-                    100 * *statistics.relative_error_estimate));
+        fmt::format("the estimated error is {:.0f}% of the light: the result is {}; refine the settings, or request an "
+                    "--error",
+                    100 * error, is_useless ? "not usable" : "a rough guess"));
 }
 
 std::optional<Error> error_of_missing_estimate(const SolveStatistics& statistics, const SolveOptions& options,

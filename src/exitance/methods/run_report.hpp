@@ -17,8 +17,8 @@ namespace exitance {
 /// file, which is not repeated in front of its findings.
 void add_findings(std::vector<std::string>& warnings, std::span<const Finding> findings, const std::string& file);
 
-/// Adds a warning if the error is as large as the light, which can happen if no error was requested. Such a result has
-/// not converged.
+/// Adds a warning if the error is above a third of the light, which can happen if no error was requested. A result
+/// whose error is as large as the light has not converged.
 void warn_of_useless_light(SolveStatistics& statistics);
 
 /// Returns the failure of a run that a stop ended before there was light with an estimate of its error; else none.

@@ -13,7 +13,7 @@ namespace {
 /// Resource that every sample adds, relative to its squared target. Units are inserted by error; this share keeps them
 /// away from places where there is nothing to learn.
 constexpr double density_share = 0.01;
-constexpr std::size_t places_per_line = 64;  ///< Points per dimension at which errors are measured.
+constexpr std::size_t places_per_line = GrownKernel::side;  ///< Points per dimension at which errors are measured.
 
 /// The function to learn: its value at a sample of n coordinates, which are computed from k numbers in [0, 1].
 struct LearnedFunction {
@@ -37,17 +37,21 @@ class Learner {
         }
     }
 
-    /// Error with outputs as requested in the options; growth continues from those of the delta rule.
-    double error() {
+    /// Error with outputs as requested in the options, and the learned values at the points where it is measured.
+    /// Growth continues from the outputs of the delta rule.
+    double error(std::vector<double>* values = nullptr) {
         cells_.refresh();
         const std::vector<GrowingCells::Unit> units = cells_.units();
         std::vector<double> learned;
         for (const GrowingCells::Unit u : units) learned.push_back(std::as_const(cells_).output(u)[0]);
         if (options_.weights != CellWeights::delta_rule) fit(units, learned);
-        const double found = measured_error();
+        const double found = measured_error(values);
         for (std::size_t i = 0; i < units.size(); ++i) cells_.output(units[i])[0] = learned[i];
         return found;
     }
+
+    /// The units after a call of `error`.
+    const GrowingCells& cells() const { return cells_; }
 
   private:
     GrowingCellsOptions network() const {
@@ -93,7 +97,7 @@ class Learner {
         for (std::size_t i = 0; i < units.size(); ++i) cells_.output(units[i])[0] = values[i];
     }
 
-    double measured_error() const {
+    double measured_error(std::vector<double>* values) const {
         double off = 0, all = 0;
         std::vector<std::size_t> at(function_.k, 0);
         for (;;) {
@@ -101,6 +105,7 @@ class Learner {
             for (const std::size_t i : at) s.push_back((static_cast<double>(i) + 0.5) / places_per_line);
             double found = 0;
             cells_.evaluate(function_.place(s), std::span(&found, 1));
+            if (values) values->push_back(found);
             const double right = function_.value(s);
             off += (found - right) * (found - right), all += right * right;
             std::size_t digit = 0;
@@ -127,6 +132,14 @@ std::vector<double> errors_of(const LearnedFunction& function, std::span<const s
     return errors;
 }
 
+LearnedFunction between_lines(const std::function<double(double, double)>& kernel, double h) {
+    return {2, 4,
+            [h](std::span<const double> s) {
+                return std::vector{s[0], 0.0, s[1], h};
+            },
+            [&](std::span<const double> s) { return kernel(s[0], s[1]); }};
+}
+
 }  // namespace
 
 std::vector<double> errors_of_growing_line(const std::function<double(double)>& f, std::span<const std::size_t> units,
@@ -141,12 +154,25 @@ std::vector<double> errors_of_growing_line(const std::function<double(double)>& 
 
 std::vector<double> errors_of_growing_kernel(const std::function<double(double, double)>& kernel, double h,
                                              std::span<const std::size_t> units, const GrowingLinesOptions& options) {
-    return errors_of({2, 4,
-                      [h](std::span<const double> s) {
-                          return std::vector{s[0], 0.0, s[1], h};
-                      },
-                      [&](std::span<const double> s) { return kernel(s[0], s[1]); }},
-                     units, options);
+    return errors_of(between_lines(kernel, h), units, options);
+}
+
+std::vector<GrownKernel> grow_kernel(const std::function<double(double, double)>& kernel, double h,
+                                     std::span<const std::size_t> units, const GrowingLinesOptions& options) {
+    const LearnedFunction function = between_lines(kernel, h);
+    Learner learner(function, options);
+    std::vector<GrownKernel> out;
+    for (const std::size_t count : units) {
+        learner.grow(count);
+        GrownKernel& grown = out.emplace_back();
+        grown.error = learner.error(&grown.values);
+        for (const GrowingCells::Unit u : learner.cells().units()) {
+            const std::span<const double> at = learner.cells().position(u);  // x, 0, y, h
+            grown.centres.push_back({at[0], at[2]});
+            grown.widths.push_back(learner.cells().width(u));
+        }
+    }
+    return out;
 }
 
 }  // namespace exitance::flatland

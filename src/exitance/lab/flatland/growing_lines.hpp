@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -26,5 +27,18 @@ std::vector<double> errors_of_growing_line(const std::function<double(double)>& 
 /// 0), (y, h)).
 std::vector<double> errors_of_growing_kernel(const std::function<double(double, double)>& kernel, double h,
                                              std::span<const std::size_t> units, const GrowingLinesOptions& options);
+
+/// State of growing cells that learn a kernel, for pictures.
+struct GrownKernel {
+    static constexpr std::size_t side = 64;  ///< Places per line.
+    double error = 0;                        ///< Relative L2 error.
+    std::vector<std::array<double, 2>> centres;
+    std::vector<double> widths;
+    std::vector<double> values;  ///< Learned kernel at the middles of side x side cells of the unit square, x first.
+};
+
+/// Like `errors_of_growing_kernel`, with the units and the learned kernel for each number of units.
+std::vector<GrownKernel> grow_kernel(const std::function<double(double, double)>& kernel, double h,
+                                     std::span<const std::size_t> units, const GrowingLinesOptions& options);
 
 }  // namespace exitance::flatland

@@ -46,7 +46,8 @@ std::vector<Gathered> gather(const SurfacePool& pool, const std::vector<GrowingC
     return out;
 }
 
-/// Mean distance to a unit's neighbours of equal normal, metres; 0 if there are none.
+/// Mean distance to a unit's neighbours on the same surface, metres: those of equal normal that are not above or below
+/// it. 0 if there are none.
 double edge_length(const GrowingCells& cells, GrowingCells::Unit u, const std::vector<Gathered>& gathered) {
     double sum = 0, count = 0;
     const Vec3 at = gathered[u].place / gathered[u].count;
@@ -54,9 +55,33 @@ double edge_length(const GrowingCells& cells, GrowingCells::Unit u, const std::v
         if (gathered[c].count == 0) continue;
         if (dot(gathered[c].normal, gathered[u].normal) < min_normal_length * gathered[c].count * gathered[u].count)
             continue;
-        sum += norm(gathered[c].place / gathered[c].count - at), count += 1;
+        constexpr double max_slope = 0.5;  // derived from the sine of 30 degrees, above min_normal_length's 26 degrees
+        const Vec3 edge = gathered[c].place / gathered[c].count - at;
+        if (std::abs(dot(normalized(gathered[u].normal), edge)) > max_slope * norm(edge)) continue;
+        sum += norm(edge), count += 1;
     }
     return count > 0 ? sum / count : 0;
+}
+
+/// Moves a cell onto its surfaces if it won points of several parallel ones, so that their mean lies between them. A
+/// cell that hovers has hardly any mass on a surface, and the system of the outputs would give it a huge one.
+void put_on_surface(const PoolPoint& nearest, CellLight::Cell& cell) {
+    constexpr double max_height = 0.1;  // derived from a weight of exp(-0.01) at the foot; relative to the width
+    if (std::abs(dot(nearest.n, cell.at - nearest.at)) > max_height * cell.width)
+        cell.at = nearest.at, cell.n = nearest.n;
+}
+
+/// Index of the point nearest to the mean of those that each unit has won.
+std::vector<std::uint32_t> nearest_won(const SurfacePool& pool, const std::vector<GrowingCells::Unit>& won,
+                                       const std::vector<Gathered>& gathered) {
+    std::vector<std::uint32_t> out(gathered.size());
+    std::vector<double> least(gathered.size(), HUGE_VAL);
+    for (std::uint32_t i = 0; i < pool.size(); ++i) {
+        const GrowingCells::Unit u = won[i];
+        const double d = squared_norm(pool[i].at - gathered[u].place / gathered[u].count);
+        if (d < least[u]) least[u] = d, out[u] = i;
+    }
+    return out;
 }
 
 /// Grows units on samples of the pool until there are `units` of them.
@@ -112,6 +137,7 @@ ShadingNetwork grow_shading_network(const SurfacePool& pool, const std::function
     GrowingCells cells = grow_units(pool, draw, scale, units, seed, stop);
     const std::vector<GrowingCells::Unit> won = winners(pool, cells, scale);
     const std::vector<Gathered> gathered = gather(pool, won, cells.complex().unit_end());
+    const std::vector<std::uint32_t> nearest = nearest_won(pool, won, gathered);
     ShadingNetwork out;
     constexpr std::uint32_t none = 0xffffffffu;
     std::vector<std::uint32_t> number(gathered.size(), none);
@@ -122,6 +148,7 @@ ShadingNetwork grow_shading_network(const SurfacePool& pool, const std::function
         const double area = g.count * pool.area_each(), by_area = width_by_area * std::sqrt(area);
         const double by_edge = by_edges ? edge_length(cells, u, gathered) : 0;
         out.cells.push_back({g.place / g.count, normalized(g.normal), by_edge > 0 ? by_edge : by_area, {}, {}});
+        if (by_edges) put_on_surface(pool[nearest[u]], out.cells.back());
     }
     if (out.cells.empty()) {  // Every unit is on a fold, as in a very small scene: use a single cell.
         out.cells.push_back({pool[0].at, pool[0].n, std::sqrt(pool.area()), {}, {}});

@@ -22,7 +22,8 @@ struct ShadingNetwork {
 /// Grows a network of `units` units over points of the pool. `draw(u, v)` returns a point for two numbers in [0, 1).
 /// Samples are points of R^6, position and normal, so that units are separated at folds but not at facets of a smooth
 /// surface. Units that straddle a fold or win no point are removed in the end. `by_edges`: a cell's width is its mean
-/// edge length, as published; otherwise it is derived from the cell's area. O(units samples log units).
+/// edge length, as published, and cells between parallel surfaces are moved onto one; otherwise the width is derived
+/// from the cell's area. O(units samples log units).
 ShadingNetwork grow_shading_network(const SurfacePool& pool, const std::function<std::uint32_t(double, double)>& draw,
                                     std::size_t units, bool by_edges, double scene_size, std::uint64_t seed,
                                     const StopRequest& stop);

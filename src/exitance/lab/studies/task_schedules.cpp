@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "exitance/base/parallel.hpp"
+#include "exitance/lab/studies/schedule_figures.hpp"
 #include "exitance/lab/tasks/interaction_forecast.hpp"
 #include "exitance/lab/tasks/schedule_simulator.hpp"
 #include "exitance/lab/tasks/solve_by_tasks.hpp"
@@ -305,6 +306,12 @@ void measure_schedules(const std::string& scene_name, const Scene& scene, const 
         graphs[static_cast<std::size_t>(schedule)] = std::move(of_one.graph);
     }
     add_calibration(scene_name, graphs, out.calibration);
+    add_published_curves(scene_name, graphs, out.curves);
+    constexpr std::size_t drawn_processors = 16;
+    for (const auto& [schedule, name] : schedule_names)
+        draw_busy_processors(scene_name, graphs[static_cast<std::size_t>(schedule)], schedule, drawn_processors,
+                             out.busy);
+    draw_task_graph(scene_name, graphs[static_cast<std::size_t>(Schedule::stealing)], out.tree);
     measure_production(scene_name, scene, study, out, stop);
 }
 

@@ -26,6 +26,9 @@ struct ScheduleTables {
     /// queue reaches 20 of 64 processors, as published, and the speed-ups of all schedules on that machine. Columns:
     /// `slowness`, `lock_us`, `schedule`, `processors`, `speedup`.
     Table calibration;
+    Table curves;  ///< Figures 9 to 12 of [Vinod95], by `add_published_curves`.
+    /// Pictures with the columns of `add_shape`: processors over time, and a tree of tasks.
+    Table busy, tree;
     Table phases;  ///< Production solve with one thread: seconds, and seconds in parallel loops, per phase.
 };
 

@@ -77,10 +77,12 @@ Result<StudyReport> conduct_study(const Study& study, const StudyOptions& option
     progress.phase("draw");
     const Result<std::vector<DrawnPlot>> plots = draw_plots(study, report.tables, options.folder, stop);
     if (!plots) report.warnings.push_back("no plots: " + plots.error().message);
+    const Result<std::vector<DrawnShapes>> drawings = draw_shapes(study, report.tables, options.folder);
+    if (!drawings) return drawings.error();
     const std::vector<DrawnPicture> pictures = draw_pictures(study, options, results, stop);
     report.page = (folder / "index.html").string();
-    const StudyPage page{study,    report.tables, report.verdicts, plots ? *plots : std::vector<DrawnPlot>(),
-                         pictures, options.quick, watch.seconds()};
+    const StudyPage page{study,     report.tables, report.verdicts, plots ? *plots : std::vector<DrawnPlot>(),
+                         *drawings, pictures,      options.quick,   watch.seconds()};
     if (const Result<void> written = write_study_page(page, report.page); !written) return written.error();
     return report;
 }

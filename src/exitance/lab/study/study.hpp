@@ -84,6 +84,23 @@ struct StudyPicture {
     enum class Shows : std::uint8_t { light, mesh, halves } shows = Shows::light;
 };
 
+/// A drawing of the shapes in a table; see study_drawings.hpp for its columns. Each value of the column `drawing` is
+/// one picture.
+struct StudyDrawing {
+    std::string name, title, table;
+    std::string x_label, y_label;  ///< Empty: no axis.
+    bool equal_axes = false;       ///< True if a unit is as long on both axes.
+    RowFilter where;
+};
+
+/// A figure or table of a publication, and the study that repeats it.
+struct StudyItem {
+    std::string shows;
+    std::string study;   ///< Name of a built-in study; empty if there is none.
+    std::string says;    ///< Start of the conclusions of that study that judge the item; empty: none judges it.
+    std::string reason;  ///< Explains an item that is not made or judged, or a claim that does not hold.
+};
+
 /// A number computed from a table, to be compared with the range in which a statement holds.
 enum class Measure : std::uint8_t {
     value,             ///< Mean of y.
@@ -124,8 +141,10 @@ struct Study {
     std::vector<StudyPicture> pictures;
     std::vector<StudyLine> lines;
     std::vector<StudyConclusion> conclusions;
-    std::string text;    ///< Original text.
-    std::string folder;  ///< Folder that file names are relative to.
+    std::vector<StudyDrawing> drawings;
+    std::vector<StudyItem> items;  ///< For the table `items`.
+    std::string text;              ///< Original text.
+    std::string folder;            ///< Folder that file names are relative to.
 };
 
 /// Parses a study from TOML. Error: bad_input with file and line, if the text is not TOML, a key is unknown or missing,

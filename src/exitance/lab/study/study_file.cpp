@@ -113,6 +113,26 @@ void read_picture(TomlKeys& keys, StudyPicture& picture) {
                                       : StudyPicture::Shows::halves;
 }
 
+void read_drawing(TomlKeys& keys, StudyDrawing& drawing) {
+    keys.need("name", drawing.name);
+    keys.need("table", drawing.table);
+    drawing.title = drawing.name;
+    keys.take("title", drawing.title);
+    keys.take("x_label", drawing.x_label);
+    keys.take("y_label", drawing.y_label);
+    keys.take("equal_axes", drawing.equal_axes);
+    keys.take("where", drawing.where);
+}
+
+void read_item(TomlKeys& keys, StudyItem& item) {
+    keys.need("shows", item.shows);
+    keys.take("study", item.study);
+    keys.take("says", item.says);
+    keys.take("reason", item.reason);
+    if (item.study.empty() && item.reason.empty())
+        keys.fail(keys.table(), fmt::format("the item '{}' has neither a study nor a reason", item.shows));
+}
+
 void read_conclusion(TomlKeys& keys, StudyConclusion& conclusion) {
     keys.need("says", conclusion.says);
     keys.need("y", conclusion.y);
@@ -176,6 +196,8 @@ Study read_study(const toml::table& table, const std::string& file) {
     take_list(keys, "picture", study.pictures, read_picture);
     take_list(keys, "line", study.lines, read_line);
     take_list(keys, "conclusion", study.conclusions, read_conclusion);
+    take_list(keys, "drawing", study.drawings, read_drawing);
+    take_list(keys, "item", study.items, read_item);
     if (const toml::node* reference = keys.find("reference")) {
         if (!reference->is_table()) keys.fail(*reference, "'reference' is not a table: [reference]");
         TomlKeys inner(*reference->as_table(), file);

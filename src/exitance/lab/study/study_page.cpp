@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <set>
@@ -13,6 +14,7 @@
 #include "exitance/io/files/child_process.hpp"
 #include "exitance/io/files/text_table.hpp"
 #include "exitance/io/files/whole_file.hpp"
+#include "exitance/lab/study/study_items.hpp"
 #include "exitance/lab/study/study_scene.hpp"
 
 namespace exitance {
@@ -95,6 +97,33 @@ std::string plots(const StudyPage& page) {
         html += fmt::format("<figure{}><img src=\"{}\" alt=\"{}\" width=\"820\" height=\"480\"></figure>\n",
                             first ? fmt::format(" id=\"{}\"", escaped(drawn.plot->name)) : "",
                             data_address(drawn.svg, "image/svg+xml"), escaped(title));
+    }
+    return html;
+}
+
+std::string drawings(const StudyPage& page) {
+    if (page.drawings.empty()) return "";
+    std::string html = "<div class=\"pictures\">\n";
+    for (const DrawnShapes& drawn : page.drawings) {
+        const std::string title = escaped(fmt::format("{}: {}", drawn.drawing->title, drawn.name));
+        html += fmt::format("<figure><img src=\"{}\" alt=\"{}\"><figcaption>{}</figcaption></figure>\n",
+                            data_address(drawn.svg, "image/svg+xml"), title, title);
+    }
+    return html + "</div>\n";
+}
+
+/// Plots of the studies that the items name, a section per study.
+std::string parts(const StudyPage& page, const std::string& folder) {
+    std::string html;
+    std::set<std::string> known;
+    for (const StudyItem& item : page.study.items) {
+        if (item.study.empty() || !known.insert(item.study).second) continue;
+        std::string body =
+            fmt::format("<p><a href=\"{0}/index.html\">All tables and pictures of {0}</a></p>\n", escaped(item.study));
+        for (const std::string& path : plots_of_part(folder, item.study))
+            body += fmt::format("<figure><img src=\"{}\" alt=\"{}\"></figure>\n", data_address(path, "image/svg+xml"),
+                                escaped(fs::path(path).stem().string()));
+        html += section("Study: " + item.study, body);
     }
     return html;
 }
@@ -191,9 +220,15 @@ Result<void> write_study_page(const StudyPage& page, const std::string& path) {
     html += machine(page);
     html += section("What is concluded", conclusions(page));
     html += section("Plots", plots(page));
+    html += section("Drawings", drawings(page));
     html += section("Pictures", pictures(page));
+    const auto is_drawn = [&](const std::string& name) {
+        return std::any_of(study.drawings.begin(), study.drawings.end(),
+                           [&](const StudyDrawing& drawing) { return drawing.table == name; });
+    };
     for (const auto& [name, table] : page.tables)
-        if (!table.rows.empty()) html += section("Table: " + name, table_html(table));
+        if (!table.rows.empty() && !is_drawn(name)) html += section("Table: " + name, table_html(table));
+    html += parts(page, fs::path(path).parent_path().string());
     if (const auto results = page.tables.find("results"); results != page.tables.end())
         html += section("Commands", commands(results->second));
     html += section("The study", "<pre>" + escaped(study.text) + "</pre>\n");

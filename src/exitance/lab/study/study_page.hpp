@@ -1,5 +1,6 @@
 #pragma once
 
+#include "exitance/lab/study/study_drawings.hpp"
 #include "exitance/lab/study/study_plots.hpp"
 #include "exitance/lab/study/study_run.hpp"
 
@@ -22,6 +23,7 @@ struct StudyPage {
     const StudyTables& tables;
     const std::vector<Verdict>& verdicts;
     const std::vector<DrawnPlot>& plots;
+    const std::vector<DrawnShapes>& drawings;
     const std::vector<DrawnPicture>& pictures;
     bool quick = false;
     double seconds = 0;  ///< Time that this run of the study took.

@@ -128,7 +128,7 @@ void add_last(Table& table, const StudySolve& run, std::size_t number, const Pro
     copy("method", "method"), copy("basis", "basis"), copy("elements", "leaf_elements"), copy("links", "links");
     copy("rays", "rays"), copy("link_bytes", "link_memory_bytes"), copy("element_bytes", "element_memory_bytes");
     copy("iterations", "iterations"), copy("initial_links", "initial_links"), copy("triangles", "triangles");
-    copy("estimate", "relative_error_estimate");
+    copy("estimate", "relative_error_estimate"), copy("mesh_estimate", "relative_error_estimate_interpolant");
     if (facts.contains("initial_links")) {
         const std::size_t last = table.rows.size() - 1;
         const double added = table.number(last, "links") - table.number(last, "initial_links");

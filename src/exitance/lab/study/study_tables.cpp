@@ -12,11 +12,13 @@
 #include "exitance/lab/flatland/growing_lines.hpp"
 #include "exitance/lab/flatland/kernel_terms.hpp"
 #include "exitance/lab/local_passes/local_pass_study.hpp"
+#include "exitance/lab/studies/cell_growth.hpp"
 #include "exitance/lab/studies/cie171.hpp"
 #include "exitance/lab/studies/kernel_error.hpp"
 #include "exitance/lab/studies/sample_distribution.hpp"
 #include "exitance/lab/studies/task_schedules.hpp"
 #include "exitance/lab/studies/view_factor_programs.hpp"
+#include "exitance/lab/study/study_items.hpp"
 #include "exitance/lab/study/study_scene.hpp"
 #include "exitance/lab/thesis/thesis_studies.hpp"
 
@@ -240,6 +242,28 @@ Result<StudyTables> sample_tables(const Study& study, const StudyOptions& option
         });
 }
 
+/// Growth of cells in scenes, and in Flatland.
+Result<StudyTables> growth_tables(const Study& study, const StudyOptions& options, Progress& progress,
+                                  const StopRequest& stop) {
+    const std::vector<std::size_t> units =
+        options.quick ? std::vector<std::size_t>{16, 64} : std::vector<std::size_t>{16, 64, 256, 1024};
+    Result<StudyTables> tables =
+        tables_by_scene(study, options, progress, stop, {"results", "growth", "samples"},
+                        [&](const std::string& name, const Scene& scene) -> Result<StudyTables> {
+                            CellGrowthTables made;
+                            measure_cell_growth(name, scene, units, 1, made, stop);
+                            return StudyTables{{"results", std::move(made.results)},
+                                               {"growth", std::move(made.growth)},
+                                               {"samples", std::move(made.samples)}};
+                        });
+    if (!tables || stop.requested()) return tables;
+    FlatlandGrowth flat = measure_flatland_growth(units, 1);
+    (*tables)["flatland"] = std::move(flat.errors);
+    (*tables)["centres"] = std::move(flat.centres);
+    (*tables)["approximation"] = std::move(flat.approximation);
+    return tables;
+}
+
 /// Arguments: `threshold_W`, `min_area_m2`, `repeats` and `error` (of the production solve).
 Result<StudyTables> schedule_tables(const Study& study, const StudyOptions& options, Progress& progress,
                                     const StopRequest& stop) {
@@ -249,7 +273,9 @@ Result<StudyTables> schedule_tables(const Study& study, const StudyOptions& opti
     };
     ScheduleStudy asked{given("threshold_W"), given("min_area_m2"), 1, argument(study, "error", 0.02)};
     if (!options.quick) asked.repeats = static_cast<int>(argument(study, "repeats", 3));
-    return tables_by_scene(study, options, progress, stop, {"results", "graphs", "iterations", "calibration", "phases"},
+    const std::vector<std::string> names{"results", "graphs", "iterations", "calibration",
+                                         "phases",  "curves", "busy",       "tree"};
+    return tables_by_scene(study, options, progress, stop, names,
                            [&](const std::string& name, const Scene& scene) -> Result<StudyTables> {
                                ScheduleTables tables;
                                measure_schedules(name, scene, asked, tables, stop);
@@ -257,7 +283,10 @@ Result<StudyTables> schedule_tables(const Study& study, const StudyOptions& opti
                                                   {"graphs", std::move(tables.graphs)},
                                                   {"iterations", std::move(tables.iterations)},
                                                   {"calibration", std::move(tables.calibration)},
-                                                  {"phases", std::move(tables.phases)}};
+                                                  {"phases", std::move(tables.phases)},
+                                                  {"curves", std::move(tables.curves)},
+                                                  {"busy", std::move(tables.busy)},
+                                                  {"tree", std::move(tables.tree)}};
                            });
 }
 
@@ -312,10 +341,13 @@ Result<StudyTables> local_pass_tables(const Study& study, const StudyOptions& op
 
 std::span<const StudyTableMaker> study_table_makers() {
     static constexpr StudyTableMaker makers[] = {
-        {"candidates", visibility_tables}, {"cie171", cie171_tables},         {"flatland", flatland_tables},
-        {"kernel", kernel_tables},         {"local-pass", local_pass_tables}, {"layers", mesh_tables},
-        {"premesh", mesh_tables},          {"rays", visibility_tables},       {"samples", sample_tables},
-        {"schedules", schedule_tables},    {"triangulation", mesh_tables},    {"view-factors", view_factor_tables},
+        {"growth", growth_tables},         {"items", item_tables},
+        {"candidates", visibility_tables}, {"cie171", cie171_tables},
+        {"flatland", flatland_tables},     {"kernel", kernel_tables},
+        {"local-pass", local_pass_tables}, {"layers", mesh_tables},
+        {"premesh", mesh_tables},          {"rays", visibility_tables},
+        {"samples", sample_tables},        {"schedules", schedule_tables},
+        {"triangulation", mesh_tables},    {"view-factors", view_factor_tables},
         {"volumes", visibility_tables},
     };
     return makers;

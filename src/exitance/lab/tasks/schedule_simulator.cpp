@@ -15,7 +15,7 @@ namespace {
 class Replay {
   public:
     Replay(const TaskGraph& graph, const TaskGraph::Iteration& iteration, Schedule schedule, std::size_t processors,
-           const MachineModel& machine, SimulatedRun& run)
+           const MachineModel& machine, SimulatedRun& run, std::vector<BusyInterval>* busy)
         : graph_(graph),
           first_(iteration.first_task),
           children_(iteration.task_count),
@@ -23,6 +23,8 @@ class Replay {
           processors_(processors),
           machine_(machine),
           run_(run),
+          busy_(busy),
+          begun_at_(run.seconds),
           queues_(schedule == Schedule::dynamic ? 1 : processors),
           free_at_(queues_.size(), 0),
           runner_(iteration.task_count, none),
@@ -125,6 +127,7 @@ class Replay {
         run_.remote += remote;
         running_[p] = t;
         events_.push({now + cost + remote, p});
+        if (busy_) busy_->push_back({p, begun_at_ + now, begun_at_ + now + cost + remote});
     }
 
     const TaskGraph& graph_;
@@ -134,6 +137,8 @@ class Replay {
     std::size_t processors_;
     const MachineModel& machine_;
     SimulatedRun& run_;
+    std::vector<BusyInterval>* busy_;
+    double begun_at_;  ///< Time of the run at which this iteration begins, seconds.
     std::vector<std::deque<std::size_t>> queues_;
     std::set<std::size_t> filled_;     ///< Queues that are not empty.
     std::vector<double> free_at_;      ///< Time at which each queue's lock becomes free.
@@ -147,12 +152,13 @@ class Replay {
 }  // namespace
 
 SimulatedRun simulate_schedule(const TaskGraph& graph, Schedule schedule, std::size_t processors,
-                               const MachineModel& machine) {
+                               const MachineModel& machine, std::vector<BusyInterval>* busy) {
     SimulatedRun run;
     for (const TaskGraph::Iteration& iteration : graph.iterations) {
-        run.seconds += Replay(graph, iteration, schedule, processors, machine, run).run();
-        run.serial += machine.slowness * iteration.serial;
-        run.seconds += machine.slowness * iteration.serial;
+        run.seconds += Replay(graph, iteration, schedule, processors, machine, run, busy).run();
+        const double serial = machine.slowness * iteration.serial;
+        if (busy) busy->push_back({0, run.seconds, run.seconds + serial, true});
+        run.serial += serial, run.seconds += serial;
     }
     const double all = run.seconds * static_cast<double>(processors);
     run.idle = all - run.tasks - run.queue - run.remote - run.serial;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "exitance/base/schedule.hpp"
 #include "exitance/base/task_graph.hpp"
@@ -72,10 +73,18 @@ struct SimulatedRun {
     std::size_t stolen = 0;
 };
 
+/// Time during which a processor of a simulated run works, seconds since the first task began.
+struct BusyInterval {
+    std::size_t processor = 0;
+    double begin = 0, end = 0;
+    bool is_serial = false;  ///< True behind a barrier, where this processor alone works.
+};
+
 /// Replays a graph event by event on `processors` processors under the rules of GrowingQueues. Tasks that a task
 /// creates become available when it ends. Deterministic. O(tasks log(processors)), plus the probes for stealing.
+/// `busy`: receives the intervals of work, if given.
 SimulatedRun simulate_schedule(const TaskGraph& graph, Schedule schedule, std::size_t processors,
-                               const MachineModel& machine);
+                               const MachineModel& machine, std::vector<BusyInterval>* busy = nullptr);
 
 /// Returns the time of a queue's lock, seconds, at which a machine that otherwise costs the same reaches a speed-up on
 /// `processors` processors: what a published curve says about a cost that is not published. Accurate to 1%. Returns

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "exitance/base/random.hpp"
 
 namespace exitance {
@@ -44,6 +46,27 @@ TEST(ScheduleSimulator, OneProcessorNeedsTheSumOfTheTaskTimes) {
         const SimulatedRun run = simulate_schedule(graph, schedule, 1, no_overhead);
         EXPECT_NEAR(run.seconds, all_work(graph), 1e-9) << name;
         EXPECT_NEAR(run.idle, 0, 1e-9);
+    }
+}
+
+TEST(ScheduleSimulator, BusyIntervalsOfAProcessorDoNotOverlapAndSumToItsWork) {
+    const TaskGraph graph = random_graph(1, 20);
+    for (const auto& [schedule, name] : schedule_names) {
+        std::vector<BusyInterval> busy;
+        constexpr std::size_t processors = 8;
+        const SimulatedRun run = simulate_schedule(graph, schedule, processors, two_rings, &busy);
+        std::vector<double> until(processors, 0);
+        double tasks = 0, serial = 0;
+        std::stable_sort(busy.begin(), busy.end(), [](const auto& a, const auto& b) { return a.begin < b.begin; });
+        for (const BusyInterval& interval : busy) {
+            ASSERT_LT(interval.processor, processors);
+            EXPECT_GE(interval.begin, until[interval.processor] - 1e-9) << name;
+            EXPECT_LE(interval.end, run.seconds + 1e-9);
+            until[interval.processor] = interval.end;
+            (interval.is_serial ? serial : tasks) += interval.end - interval.begin;
+        }
+        EXPECT_NEAR(tasks, run.tasks + run.remote, 1e-6 * run.tasks) << name;
+        EXPECT_NEAR(serial, run.serial, 1e-9);
     }
 }
 

@@ -42,6 +42,10 @@ void Solver::solve_indirect_light() {
         }
         if (light_->limited_by_memory) stop_early("memory limit");
         if (statistics().stopped_by == "memory limit") return;
+        // Growing cells deliver the light of their units. With as many units as before, another attempt would only
+        // refine elements on which that light does not depend.
+        const bool has_all_units = options_.method == Method::growing_cells && options_.max_units;
+        if (has_all_units && (!gathers() || light_->holds_direct())) return stop_early("unit limit");
         if (attempt_ == attempt_limit()) return stop_early("iterations");
         if (show_) show_light();
         std::optional<NextAttempt> next = next_in_time(*demand, watch.seconds());
