@@ -8,7 +8,7 @@
 namespace exitance {
 
 /// Smallest error that is distinguished from noise, as a multiple of the requested error.
-constexpr double resolved_errors = 1.5;  // given by the warning at 3: half of it
+constexpr double resolved_errors = 1.5;  // given by the warning, whose limit is a multiple of 3: half of it
 
 double BodyMeasure::standard_error() const {
     if (points_ < 2) return 0;
@@ -95,7 +95,7 @@ class BodySurvey {
     std::vector<BodyMeasure> measured_;
     std::vector<PointError> close_points_;
     std::vector<bool> is_known_;    ///< Bodies measured by `look_closely_at`.
-    std::vector<bool> is_unknown_;  ///< Bodies that would need it, but for which the rays do not suffice.
+    std::vector<bool> is_unknown_;  ///< Bodies whose error matters, but for which the allowed rays do not suffice.
 };
 
 /// Returns the reflected light of every body, without points. It is a mean over many places of the delivered light,

@@ -141,7 +141,7 @@ TEST(Certificate, EndsFurtherMeasurementsAtAStop) {
                         {.error = 0.02, .bodies = &bodies, .stop = &stop});
     stop.interrupt();
     const Certificate first = certifier.look();
-    EXPECT_EQ(first.points, 1280u);  // an estimate is always made
+    EXPECT_EQ(first.points, 1280u);  // the first measurement is completed even after a stop request
     EXPECT_NEAR(first.residual, planted.error(rough), 0.2 * planted.error(rough));
     Certificate second = certifier.look();
     EXPECT_EQ(second.points, 1280u);
@@ -275,7 +275,7 @@ TEST_P(EveryError, IsEstimatedAndBounded) {
         EXPECT_GE(summed.bound, truth * (1 - 1e-6));
         EXPECT_NEAR(summed.estimate, truth, 0.07 * truth);
     }
-    EXPECT_GE(within, 9);  // its resolution is a fifth of the requested error
+    EXPECT_GE(within, 9);  // a measurement resolves a fifth of the requested error, so one of ten may miss
 }
 
 /// A furnace with a plate above its floor. The plate does not change the light, which is uniform in the gap as well.
@@ -382,7 +382,7 @@ TEST(Certificate, MeasuresSmallBodiesAtAdditionalPoints) {
         }
     }
     PlantedError planted([](const Point& p) { return p.x > 18 ? 0.2 : 0.0; }, 1, std::move(*make_scene(d).scene));
-    planted.stage.rooms = {};  // all is one room
+    planted.stage.rooms = {};  // treat the scene as one room
     const SceneBodies bodies = find_bodies(planted.scene);
     ASSERT_EQ(bodies.all.size(), 2u);
     const ElementLocator locator(planted.delivered.tree, planted.scene.regions().size());
