@@ -136,7 +136,7 @@ class ElementGather::Builder {
         }
     }
 
-    /// Makes all groups, those of the roots first; writes the roots' regions to `of_region`.
+    /// Makes all groups, those of root elements first; writes the regions of the roots to `of_region`.
     std::vector<Group> groups(std::vector<std::array<RegionId, lanes>>& of_region) {
         std::vector<Piece> roots;
         for (ElementId root : tree_.roots()) add_element(root, roots);

@@ -82,14 +82,15 @@ double LocalPass::misfit_for_body(ElementId e, const LocalPassDemand& demand) co
 /// at the opening of a dark room would take most rays. This concerns at most a quarter of a room's light and adds at
 /// most a quarter to its squared noise.
 double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
-    constexpr double far_lighter = 4;  // for the quarter
+    constexpr double far_lighter = 4;  // derived from the limit of a quarter of the room's light
     const double usual_rays = 4 * demand.rays.average;
     // Exponents derived from those that minimize the rays for a mean squared error: half of them.
     const double effort_factor = std::clamp(std::pow(sampled.place_rays / usual_rays, 0.25), 0.5, 2.0);
     const double near = light_near(e, demand), usual_light = far_lighter * near * demand.light;
     const double brightness_factor = usual_light > 0 ? std::sqrt(std::max(1.0, sampled.light / usual_light)) : 1;
-    const double of_all = demand.noise * quiet_in(e, demand) * near * effort_factor * brightness_factor *
-                          std::pow(noise_area_ / stage_.counted_area(tree_, e), 0.25);  // given by the same
+    const double of_all =
+        demand.noise * quiet_in(e, demand) * near * effort_factor * brightness_factor *
+        std::pow(noise_area_ / stage_.counted_area(tree_, e), 0.25);  // derived from the same minimization as above
     const double allowed = std::min(of_all, noise_for_body(e, demand));
     return allowed > 0 ? std::sqrt(sampled.noise_squared) / allowed : 0;
 }
@@ -157,7 +158,8 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
     const unsigned before = sampled_[e].place_rays > 0 ? sampled_[e].place_rays
                             : parent.is_none()         ? 0
                                                        : sampled_[parent].place_rays / 2;
-    const bool unlit = stage_.is_left_out(tree_.region(e));  // its area does not count, so the minimum of rays
+    // if true, the element's area has no weight, and it gets the minimum number of rays
+    const bool unlit = stage_.is_left_out(tree_.region(e));
     // Rays of a place follow from the noise allowed to the power of -4/3 (`knobs_for_error`).
     const double allowance = std::pow(quiet_in(e, demand), 4.0 / 3);
     // With very many elements each has so small a share of the light that its noise alone determines its rays.
@@ -216,7 +218,7 @@ void LocalPass::look_between(ElementId e, SampledElement& sampled, const Reflect
         constexpr unsigned places_before_gaps = 16, rays_before_gaps = 64;
         count = std::max(count, places_before_gaps), rays = rays_before_gaps;
     }
-    if (count < least_places) return;  // too few to estimate their noise
+    if (count < least_places) return;  // too few places to estimate their noise
     const RegionId region = tree_.region(e);
     const Normal& n = stage_.scene.regions()[region].plane.n;
     const Spectrum& rho = stage_.scene.material(region).reflectance;
@@ -361,7 +363,7 @@ std::size_t LocalPass::rays_of(std::span<const ElementId> elements) const {
 ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const LocalPassDemand& demand,
                                   LocalPassReport& report, Progress& progress, const StopRequest& stop,
                                   SafePoints safe_points) {
-    constexpr int change = -1;  // round in which a change is gathered; comes before rounds of refinement
+    constexpr int change = -1;  // number of the round that gathers a change; it precedes the rounds of refinement
     std::vector<ElementId> active = tree_.leaves();
     const bool known = !fresh && sampled_.size() == tree_.size();
     int depth = known && demand.change ? change : 0;

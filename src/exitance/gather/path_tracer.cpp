@@ -103,7 +103,7 @@ double density_of(double chance, double area, double squared_distance, double co
 
 /// Weight of a sample by the first of two densities, by the balance heuristic.
 double balance(double first, double second) {
-    return first / (first + std::max(second, 1e-300));  // given by rounding: not 0
+    return first / (first + std::max(second, 1e-300));  // given by rounding: avoids division by zero
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ SampledElement fit_gathered(const ElementTree& tree, ElementId e, const std::vec
         (k < polynomials.straight() ? straight : bent_noise) += noise[k];
         if (k >= polynomials.straight()) bent += mean_square(rho * c[k]);
     }
-    std::vector<Spectrum> rest(places.size());  // of rho E
+    std::vector<Spectrum> rest(places.size());  // gathered minus fitted rho E, per place
     for (std::size_t i = 0; i < places.size(); ++i) {
         rest[i] = gathered[i].irradiance;
         for (std::size_t k = 0; k < polynomials.size(); ++k) rest[i] -= phi[i][k] * c[k];
