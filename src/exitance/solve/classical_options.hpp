@@ -42,7 +42,7 @@ struct ClassicalOptions {
     std::optional<bool> certify;  ///< on: the standard form, which always estimates its error; off: classical form
     /// Threshold of the oracle: F_eps (no unit), or BF_eps (W in the brightest band), likewise of the kernel oracle.
     std::optional<double> threshold;
-    std::optional<ClassicalOracle> oracle;  ///< Replaces that of SolveOptions.
+    std::optional<ClassicalOracle> oracle;  ///< Replaces `oracle` of SolveOptions.
     /// Number of rounds in which the threshold is halved down to the requested one.
     std::optional<std::size_t> multigrid;
     std::optional<TransferKernel> kernel;

@@ -27,7 +27,7 @@ struct StopRule {
 
 struct SolveReport {
     std::size_t iterations = 0;  ///< Applications of F.
-    double residual = 0;         ///< Relative, see StopRule.
+    double residual = 0;         ///< Relative residual, as defined at StopRule.
     bool converged = false;
     bool interrupted = false;
     /// Power of repeated reflection, sum_i A_i (b_i - rhs_i), without scaling of F over its value with scaling, per

@@ -18,7 +18,7 @@ double power_of(const Spectrum& u, double area) {
 /// Unshot power, and the patch that has most to send.
 struct Unshot {
     double power = 0;  ///< W
-    Spectrum flux;     ///< sum A u, W
+    Spectrum flux;     ///< Sum of area times unshot light over all patches, W.
     double most = -1;  ///< W; power of the first of the patches with most to send.
     std::size_t patch = 0;
 
@@ -121,7 +121,7 @@ class Patches {
     std::span<Spectrum> unshot_, irradiance_;
     Groups receivers_;  ///< Receivers of each patch.
     double total_area_;
-    std::vector<Spectrum> returned_;     ///< Reflectance of each receiver times its share of the patch's area.
+    std::vector<Spectrum> returned_;     ///< Per receiver: reflectance times its share of its patch's area.
     std::vector<Spectrum> reflectance_;  ///< Mean reflectance of each patch.
     Spectrum mean_reflectance_;
     /// With overshooting: mean of the unshot light with all its reflections, sum A u / sum A / (1 - mean rho), W/m^2.
