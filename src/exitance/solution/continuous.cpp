@@ -183,7 +183,7 @@ ElementFunction nearest_continuous(const ElementFunction& f, const Scene& scene,
     if (nodes.first_node.empty()) return f;
     share_on_node(out.tree);
     share_on_node(std::span(nodes.node_of)), share_on_node(nodes.first_corner.span());
-    std::vector<Spectrum> value;  // of every node
+    std::vector<Spectrum> value;  // value of every node
     project(f, out.tree, plane, nodes, value);
     constexpr std::size_t together = 4096;
     std::vector<std::uint32_t> first;  // index of the first value of every `together` elements

@@ -24,12 +24,12 @@ class LightForm {
   public:
     virtual ~LightForm() = default;
 
-    /// The name under which `add_light_form` made it known.
+    /// Returns the name under which `add_light_form` registered this representation.
     virtual std::string_view kind() const = 0;
     /// Irradiance at a point of a region, W/m^2.
     virtual Spectrum at(const Scene& scene, RegionId region, const Point& x) const = 0;
 
-    /// Number of triangles that it consists of; 0 where it is not piecewise quadratic.
+    /// Number of triangles; 0 if the representation is not piecewise quadratic.
     virtual std::size_t triangle_count() const { return 0; }
     /// Triangle `i` with its values multiplied by `weight`.
     virtual QuadraticTriangle triangle(const Scene& scene, std::size_t i, const Spectrum& weight) const;
@@ -41,7 +41,7 @@ class LightForm {
 /// Solutions are copied; forms are large and never change once they are made.
 using LightFormPointer = std::shared_ptr<const LightForm>;
 
-/// A representation that checkpoints can hold.
+/// A representation that checkpoints can store.
 struct LightFormKind {
     std::string_view name;
     LightFormPointer (*unpack)(std::string_view bytes);

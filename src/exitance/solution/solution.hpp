@@ -33,10 +33,10 @@ struct EnergyBalance {
     double escaped = 0;   ///< Part of int B dA that meets no front, estimated by few rays; 0 in closed scenes.
     double defect = 0;    ///< |emitted - absorbed - escaped| / emitted
     std::optional<double> defect_before =
-        {};  ///< The defect before light was scaled to conserve it; none if not known.
+        {};  ///< Defect before the light was scaled to conserve energy; none if unknown.
 };
 
-/// Light of a room (LightRooms) and its error.
+/// Mean light in a room (LightRooms) and its error.
 struct RoomError {
     double area = 0;   ///< m^2
     double mean = 0;   ///< Mean reflected radiosity over the room's surfaces and the bands, W/m^2; 0 in the dark.
@@ -46,7 +46,7 @@ struct RoomError {
     double reference = 0;
 };
 
-/// Light of a body (`find_bodies`) and its error.
+/// Mean light of a body (`find_bodies`) and its error.
 struct BodyError {
     std::size_t surfaces = 0;  ///< Number of its faces.
     double area = 0;           ///< m^2
@@ -111,7 +111,7 @@ struct SolveStatistics {
 
 /// Links of a hierarchy and the elements that they connect.
 struct KeptLinks {
-    ElementFunction elements;     ///< With the indirect irradiance of the method's leaves, W/m^2.
+    ElementFunction elements;     ///< Elements with the indirect irradiance of the method's leaves, W/m^2.
     std::vector<KeptLink> links;  ///< Sorted by receiver, then by source; empty unless requested.
 };
 
