@@ -115,9 +115,9 @@ class Links {
 
     const LinkSites* sites_;
     Rows constants_, kernels_;
-    std::vector<float> factor_;           ///< Per constant link.
+    std::vector<float> factor_;           ///< Per constant link: form factor including visibility.
     std::vector<std::uint32_t> visible_;  ///< Per kernel link: `words_` words of bits in the order of LinkLayout.
-    std::vector<std::uint32_t> block_;    ///< Per kernel link.
+    std::vector<std::uint32_t> block_;    ///< Per kernel link: index of its block in `blocks_`.
     std::vector<float> blocks_;
     std::size_t words_ = 0;
 };

@@ -11,7 +11,7 @@
 namespace exitance {
 namespace {
 
-/// Number of rays for one value, and for a weak link.
+/// Number of visibility rays per value of a link, and of a weak link.
 constexpr unsigned rays_per_link = 16, rays_per_weak_link = 4;
 
 /// Returns whether a link is so weak that a few rays suffice for its visibility.

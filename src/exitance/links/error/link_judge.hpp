@@ -15,8 +15,9 @@ namespace exitance {
 struct LinkPair {
     ElementId receiver, source;
     View view = View::mixed;
-    bool triaged = false;                ///< True if this pair, or one that contains it, has been classified.
-    std::uint32_t first = 0, count = 0;  ///< If mixed and classified: its candidates in the round's pool.
+    bool triaged = false;  ///< True if this pair, or one that contains it, has been classified.
+    /// If `view` is mixed and the pair is classified: range of its occluder candidates in the round's pool.
+    std::uint32_t first = 0, count = 0;
 };
 
 /// The decision about a pair.

@@ -20,7 +20,8 @@ struct OpenTransfer {
     double rule_error = 0;  ///< RMS error over the receiver of the rule and of the source's polynomial, W/m^2.
     double brightest = 0;   ///< Largest light at nodes and check points, W/m^2.
     double ratio = 0;       ///< Size of the source relative to its distance.
-    bool near = false;      ///< True if the rows are integrated (NearRow) and not those of the basis's rule.
+    /// True if the rows are integrated (NearRow); false if they come from the basis's quadrature rule.
+    bool near = false;
     /// True if the rows must be stored with the link; otherwise the kernel is recomputed when it is applied.
     bool has_block = false;
     double kernel_scale = 1;  ///< Scale of the recomputed kernel, if the rows are integrated ones.
