@@ -103,7 +103,7 @@ TEST(Beams, APreparedReceiverHasTheSameLight) {
             const Spectrum exact = beams.irradiance(at);
             EXPECT_EQ(beams.irradiance(at, whole, candidates), exact);
             EXPECT_EQ(beams.irradiance(at, some, fewer), exact);
-            lit += exact[0] > 3;  // more than the sun alone
+            lit += exact[0] > 3;  // brighter than the sun alone
         }
     }
     EXPECT_GT(lit, 300u) << "the test is to see both light and shadow";

@@ -22,12 +22,12 @@ struct ReceiverLight {
     struct Source {
         std::uint32_t emitter = 0;
         PieceId piece;
-        /// Range of its blockers in `candidates`; empty: the whole piece is visible.
+        /// Range of the source's blockers in `candidates`; empty: the whole piece is visible.
         std::uint32_t first = 0, count = 0;
         /// The range is only a part of too many candidates: exact light must not be computed.
         bool is_crowded = false;
-        bool in_batch = false;   ///< Is one of `open`.
-        double far_factor = -1;  ///< Unoccluded part of the sky: its form factor F, the same at every point.
+        bool in_batch = false;   ///< True if the source is in the batch `open`.
+        double far_factor = -1;  ///< Form factor F of the sky's unoccluded part, the same at every point.
     };
     Normal n;
     RegionId own;
@@ -57,7 +57,7 @@ class DirectLight {
   public:
     using Workspace = VisibilityWorkspace;
 
-    /// `scene` and `occluders` must outlive it.
+    /// `scene` and `occluders` must outlive this object.
     DirectLight(const Scene& scene, const Occluders& occluders);
 
     /// Returns the irradiance (W/m^2) at x on a surface of normal n:

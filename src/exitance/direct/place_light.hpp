@@ -22,7 +22,7 @@ class MirroredLight;
 /// tried again. The choice depends on the places and the accuracy alone.
 class PlaceLight {
   public:
-    /// Both must outlive it.
+    /// Both arguments must outlive this object.
     PlaceLight(const DirectLight& direct, const RayTracer& tracer);
     ~PlaceLight();
 

@@ -217,7 +217,7 @@ std::vector<Vec3> SkySearch::rim(const Point& from, const Frame& frame, const Is
     return found;
 }
 
-/// The plane and extent of an opening, from some points of its rim; of area 0 if they do not tell.
+/// The plane and extent of an opening, from some points of its rim; with area 0 if these points do not determine it.
 /// farthest  distance of rim points that count, by that of a quarter of them
 PortalCell rectangle_of_rim(const Point& from, const Vec3& outwards, std::vector<Vec3> rim, double farthest) {
     constexpr std::size_t fewest = 12;  // points from which a rectangle can be found
@@ -239,7 +239,7 @@ PortalCell rectangle_of_rim(const Point& from, const Vec3& outwards, std::vector
     if (!(height > 0)) return {};
     const Frame frame(n);
     std::vector<Vec2> points;
-    for (const Vec3& p : rim) {  // seen from the same point
+    for (const Vec3& p : rim) {  // `rim` is relative to the point from which the rim was seen
         const double along = dot(p, n);
         if (along < edge_on * norm(p)) continue;
         const Vec3 q = height / along * p - middle;
@@ -286,7 +286,7 @@ std::vector<double> hidden_after(const std::vector<std::uint64_t>& arrivals) {
 }  // namespace
 
 double SkyOpenings::Hidden::after(std::uint32_t n) const {
-    const auto doublings = static_cast<std::size_t>(std::bit_width(n));  // n >= 2^(doublings - 1)
+    const auto doublings = static_cast<std::size_t>(std::bit_width(n));  // the bit width b fulfils n >= 2^(b - 1)
     if (rms.empty() || doublings < 2) return 1.0 / std::max(n, 1u);
     const std::size_t last = std::min(doublings - 2, rms.size() - 1);
     return rms[last] * static_cast<double>(2u << last) / n;

@@ -11,7 +11,8 @@ namespace exitance {
 namespace {
 
 constexpr double most_penumbra = 0.25;  ///< In extents of a polygon, derived from the three points of a rule across it.
-constexpr double nearness = 2;          ///< Light from within so many extents of a polygon can peak between its points.
+/// In extents of a polygon: light from within this distance may peak between the polygon's quadrature points.
+constexpr double nearness = 2;
 
 /// Distance of the two corners farthest apart.
 double extent_of(std::span<const Point> outline) {
@@ -27,7 +28,7 @@ double distance_to_farthest(const Point& x, std::span<const Point> corners) {
     return std::sqrt(squared);
 }
 
-/// Lower bound on the distance of a convex polygon: that of its bounding box.
+/// Lower bound on the distance of a convex polygon: the distance to its bounding box.
 double distance_to_box(const Point& x, std::span<const Point> corners) {
     Box box;
     for (const Point& p : corners) box.add(p);
@@ -68,7 +69,8 @@ class SmallSources::Centre {
         Spectrum out = parallel_;
         if (!is_far) {
             const Vec3 d = receiver.x - at;
-            const double cosines = dot(emitter_->plane.n, d) * -dot(on.n, d);  // times squared distance
+            // product of the cosines, times the squared distance
+            const double cosines = dot(emitter_->plane.n, d) * -dot(on.n, d);
             if (!(cosines > 0)) return {};
             const double squared = squared_norm(d);
             out = (area_ * cosines / (pi * squared * squared) * emitter_->radiance.towards(x, at)) * emitter_->exitance;
@@ -91,7 +93,7 @@ class SmallSources::Centre {
 
     const DirectLight& direct_;
     const DirectLight::Emitter* emitter_ = nullptr;  ///< Null for a light without extent.
-    Beam beam_;                                      ///< Such a light, without blockers.
+    Beam beam_;                                      ///< The light without extent, without blockers.
     double area_ = 0;                                ///< m^2
     Spectrum parallel_;                              ///< Irradiance by the unoccluded sun, W/m^2.
 };
@@ -201,7 +203,7 @@ Spectrum integral(const Point& a, const Point& b, const Point& c, const Point* n
     if (near && levels > 0 && squared > most_extent * most_extent * squared_norm(middle - *near))
         return integral(a, ab, ca, near, levels - 1, light) + integral(ab, b, bc, near, levels - 1, light) +
                integral(ca, bc, c, near, levels - 1, light) + integral(ab, bc, ca, near, levels - 1, light);
-    // Points inside of the triangle: its edges may be the shadows of a pane's edges.
+    // Sample inside the triangle, not on its edges: these may be the shadows of a pane's edges.
     const double area = 0.5 * norm(cross(b - a, c - a));
     return (area / 3) * (light(0.5 * (a + middle)) + light(0.5 * (b + middle)) + light(0.5 * (c + middle)));
 }

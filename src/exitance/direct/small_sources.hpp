@@ -22,7 +22,7 @@ namespace exitance {
 /// about 1% of L close to a lamp.
 class SmallSources {
   public:
-    /// `direct` must outlive it.
+    /// `direct` must outlive this object.
     explicit SmallSources(const DirectLight& direct) : direct_(&direct) {}
 
     /// A convex polygon of a region, and a quadrature rule on it.
@@ -31,7 +31,7 @@ class SmallSources {
         Normal n;
         RegionId own;
         std::span<const Point> places;    ///< Points of the rule,
-        std::span<const double> weights;  ///< and their weights, whose sum is 1.
+        std::span<const double> weights;  ///< Weights of these points; their sum is 1.
     };
     /// Irradiance, W/m^2, and the part of it that is parallel light or comes from the sun.
     struct Missed {
