@@ -167,7 +167,7 @@ struct RayTracer::Content {
     Field<SurfaceId, Face> faces;
     /// The surface on the other side of a sheet; empty if there are no sheets.
     Field<SurfaceId, SurfaceId> other_side;
-    OpposedFaces opposed;  ///< For sheets whose two sides have different outlines.
+    OpposedFaces opposed;  ///< Tables for sheets whose two sides have different outlines.
     Glass glass;
 
     explicit Content(const Scene& s)

@@ -38,7 +38,7 @@ class JointShadow {
                std::span<const std::uint32_t> blockers);
 
   private:
-    using Mask = std::uint64_t;  ///< One bit per blocker.
+    using Mask = std::uint64_t;  ///< Set of blockers, one bit each.
     /// A triangle or quadrilateral, by the indices of its corners.
     struct Cell {
         std::array<std::uint32_t, 4> corner;

@@ -75,7 +75,7 @@ void Occluders::add_windows() {
 }
 
 void Occluders::add_distant_pieces() {
-    constexpr double sky_distance = 1e6;  // as a multiple of the scene's size
+    constexpr double sky_distance = 1e6;  // distance of the sky, as a multiple of the scene's size
     middle_ = scene_->box().centre();
     const std::size_t first = pieces_.size();
     for (const DistantFacet& facet : distant_facets(scene_->distant())) {

@@ -11,7 +11,7 @@ namespace exitance {
 struct PortalCell {
     Point corner;  ///< Its points are corner + s u + t v, s and t in [0, 1).
     Vec3 u, v;     ///< Edges, perpendicular to each other.
-    Normal n;      ///< Normal of its plane.
+    Normal n;      ///< Unit normal of the parallelogram's plane.
     double area = 0;
     double light = 0;  ///< Approximate ratio of the light that comes through it to the light of the place.
 };

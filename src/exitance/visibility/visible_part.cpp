@@ -195,7 +195,8 @@ double whole_form_factor(const Occluders& occluders, PieceId source, const Norma
     if (!occluders.is_distant(source) || occluders.is_window(source))
         return directed_form_factor(n, scratch.source, radiance);
     double& known = known_far_factor(occluders, source, n);
-    scratch.work += work_of_integral;  // even if it is known, so that the work does not depend on earlier calls
+    // Count the work even if the result is known, so that the count does not depend on earlier calls.
+    scratch.work += work_of_integral;
     if (known < 0) known = directed_form_factor(n, scratch.source, radiance);
     return known;
 }

@@ -92,7 +92,8 @@ struct PartLight {
     PartLight(VisiblePartMethod m = VisiblePartMethod::subtraction) : method(m) {}
     PartLight(const RelativeRadiance& r) : radiance(r) {}
     VisiblePartMethod method = VisiblePartMethod::subtraction;
-    RelativeRadiance radiance;  ///< If directed, form factors are weighted by it, and `subtraction` is used.
+    /// Relative radiance of the source. If directed, it weights form factors and `subtraction` is used.
+    RelativeRadiance radiance;
 };
 
 /// Form factor from a receiver to the visible part of one convex piece of a source, exact except for rounding.
