@@ -16,7 +16,7 @@ namespace exitance {
 /// that, so elements are split along these lines.
 class ContactLines {
   public:
-    /// The scene must outlive it. O(n log n).
+    /// The scene must outlive this object. O(n log n).
     explicit ContactLines(const Scene& scene);
 
     /// A segment above a plane, with its largest height above the plane, metres.

@@ -102,7 +102,7 @@ class ElementTree {
     }  ///< Position of the cut, for splits across one direction.
     ElementId parent(ElementId e) const {
         return is_stored(e) ? content_->parent[e] : fanned(e);
-    }  ///< None for a root.
+    }  ///< Parent of an element; none for a root.
     RegionId region(ElementId e) const { return content_->region[is_stored(e) ? e : fanned(e)]; }
     Patch patch(ElementId e) const { return is_stored(e) ? content_->patch[e] : fan_triangle(e); }
     double area(ElementId e) const {
@@ -110,7 +110,7 @@ class ElementTree {
     }  ///< Area of its domain, m^2.
     const CutLine& line(ElementId e) const {
         return content_->lines[node(e).line].line;
-    }  ///< Line along which it was split (way(e) is Cut::line).
+    }  ///< Line along which the element was split, if way(e) is Cut::line.
     /// The fan into which an element was split (way(e) is Cut::fan).
     FanView fan(ElementId e) const {
         const std::uint32_t i = node(e).line, first = cuts_->fans[i].first_place;
@@ -127,7 +127,7 @@ class ElementTree {
     }
     bool is_cell(ElementId e) const {
         return is_stored(e) && content_->cell[e] != none;
-    }  ///< True if its domain is smaller than its patch.
+    }  ///< True if the element's domain is smaller than its patch.
     /// The domain as a convex polygon in the element's coordinates, counter-clockwise.
     std::vector<Vec2> domain(ElementId e) const;
     /// The domain in space, metres.
@@ -203,10 +203,10 @@ class ElementTree {
     /// stored as long as no other elements are added. In trees with many of them, such as those of continuous
     /// functions, each takes about 20 bytes instead of more than 100.
     struct Cuts {
-        Field<ElementId, Node> nodes;       ///< Per stored element.
-        std::vector<FanCut> fans;           ///< In the order of the splits.
-        std::vector<Vec2> places;           ///< Per fan: its apex, then its border.
-        std::vector<std::uint32_t> fan_of;  ///< Per unstored triangle: its fan.
+        Field<ElementId, Node> nodes;       ///< Data of stored elements.
+        std::vector<FanCut> fans;           ///< Fans in the order of their splits.
+        std::vector<Vec2> places;           ///< Per fan: its apex, followed by the corners of its border.
+        std::vector<std::uint32_t> fan_of;  ///< Per unstored triangle: the index of its fan.
     };
 
     std::size_t stored() const { return content_->patch.size(); }

@@ -45,7 +45,7 @@ enum class ShadowClass : std::uint8_t { lit, penumbra, umbra };
 struct SixNodeMesh {
     using Slope = std::array<float, bands>;  ///< W/m^3
 
-    std::vector<Point> points;                        ///< Per node, metres.
+    std::vector<Point> points;                        ///< Positions of the nodes, metres.
     std::vector<std::array<float, bands>> values;     ///< Per node.
     std::vector<std::array<std::uint32_t, 6>> nodes;  ///< Per triangle; counter-clockwise seen from the front.
     std::vector<RegionId> region;                     ///< Per triangle.
