@@ -214,7 +214,8 @@ class Builder {
         if (report_.counts.penumbra > 0)
             report_.candidate_share = static_cast<double>(candidates) / static_cast<double>(report_.counts.penumbra) /
                                       static_cast<double>(stage_.pieces.size());
-        // replaces the value above: minimum lists before shadow volumes remove pieces that do not reach the faces
+        // replaces the share computed above: these lists were counted before shadow volumes removed pieces that miss
+        // the faces
         if (listed_faces > 0)
             report_.candidate_share = static_cast<double>(listed) / static_cast<double>(listed_faces) /
                                       static_cast<double>(stage_.pieces.size());

@@ -21,7 +21,7 @@ constexpr double unfindable_area_among_many = 1e-3;
 /// kink G/w bisected twice, G h/(64 w), is below T if G is below 160 T. In buildings, blockers have countless edges
 /// and every curve adds faces. The mean square error bisects these triangles in any case, so weaker light gets no
 /// curves there.
-constexpr int least_bend = 5, least_kink_among_many = 160, least_bend_among_many = 300;  // as multiples of T
+constexpr int least_bend = 5, least_kink_among_many = 160, least_bend_among_many = 300;  // all as multiples of T
 /// Least light that gets kink curves in other scenes, as a share of T: ten omitted sources cause an error of T at most.
 constexpr double least_kink = 0.1;  // derived from ten sources: a tenth of T each
 
@@ -39,7 +39,7 @@ constexpr double tried_area = 1e-3;  // derived from the 1,000 sample points tha
 /// evaluated this far inside the region.
 constexpr double shortest_edge = 1e-6;  // derived from the distance up to which surfaces count as coplanar
 /// Share of the scene's size. Line trees merge points that are closer together than this.
-constexpr double one_place = 1e-7;  // derived from the above: a tenth of it
+constexpr double one_place = 1e-7;  // derived from shortest_edge: a tenth of it
 
 }  // namespace mesh_limits
 }  // namespace exitance

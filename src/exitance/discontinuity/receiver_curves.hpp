@@ -56,7 +56,7 @@ struct CurveOptions {
 /// other polygons, and VE, EV, NEV and EEE events.
 class CurveFinder {
   public:
-    /// `stage` and `edges` must outlive this.
+    /// `stage` and `edges` must outlive this object.
     CurveFinder(const Stage& stage, const BlockerEdges& edges, const CurveOptions& options)
         : stage_(&stage), edges_(&edges), options_(options) {}
 

@@ -30,7 +30,7 @@ Scene box_on_floor(double depth) {
 /// How much a point sees of all sources in front of it.
 struct Sight {
     bool faces_any = false;
-    double least_share = 1, largest_share = 0;  ///< Visible share of a source: of its form factor.
+    double least_share = 1, largest_share = 0;  ///< Smallest and largest visible share of a source's form factor.
 
     ShadowClass shadow_class() const {
         constexpr double touching = 1e-6;  // derived from rounding, 1e-12 of the form factor, with a wide margin

@@ -60,7 +60,7 @@ class WeakLight {
     };
     struct OfRegion {
         std::vector<DirectLight::SourceName> strong;
-        std::vector<double> bounds;  ///< Per strong source, W/m^2.
+        std::vector<double> bounds;  ///< Per strong source: upper bound of its irradiance on the region, W/m^2.
         std::vector<Weak> weak;
     };
     struct Emitting {
