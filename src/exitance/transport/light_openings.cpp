@@ -66,7 +66,8 @@ std::vector<double> slow_difference(const Flow& flow, const LeafNumbers& leaves,
 /// Opening between the first leaves of an order and the others, m^2, for every position of the cut. Measured from the
 /// side with the smaller area: the few rays of a leaf on the larger side rarely find the opening.
 struct Cuts {
-    std::vector<double> area, opening;  ///< Area of the first k + 1 leaves, and their opening towards the others.
+    /// Per k: area of the first k + 1 leaves, and the opening between them and the others.
+    std::vector<double> area, opening;
 };
 
 Cuts sweep(const Flow& flow, const LeafNumbers& order, std::uint16_t part) {

@@ -42,7 +42,7 @@ std::shared_ptr<const LightPortals> find_light_portals(const Stage& stage, const
 
 /// Returns the openings at which rays from x on region `own` should be aimed; empty if that does not pay.
 std::span<const PortalCell> portals_worth_aiming(const Stage& stage, RegionId own, const Point& x, const Normal& n);
-/// Returns `cells`, or nothing if aiming at them does not pay.
+/// Returns `cells`, or an empty span if aiming rays at them costs more than it saves.
 std::span<const PortalCell> worth_aiming(const Stage& stage, RegionId own, std::span<const PortalCell> cells,
                                          const Point& x, const Normal& n);
 

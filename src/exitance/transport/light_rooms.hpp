@@ -20,7 +20,7 @@ class LightPortals;
 /// merged with a neighbour.
 class LightRooms {
   public:
-    /// The whole scene is one room.
+    /// Treats the whole scene as one room.
     LightRooms() = default;
 
     std::size_t count() const { return areas_.size(); }           ///< 0 if the whole scene is one room.

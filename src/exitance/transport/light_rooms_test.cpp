@@ -77,7 +77,7 @@ TEST(LightRooms, CoveredFacesAreNoRoom) {
     add_box(d, {0, 0, 0}, {2, 2, 1}, 0);
     const std::size_t walls = d.faces.size();
     add_box(d, {0.5, 0.5, 0}, {1.5, 1.5, 0.4}, 0);
-    for (std::size_t i = walls; i < d.faces.size(); ++i)  // seen from outside
+    for (std::size_t i = walls; i < d.faces.size(); ++i)  // turn the faces of the inner box outwards
         std::reverse(d.faces[i].corners.begin(), d.faces[i].corners.end());
     EXPECT_EQ(rooms_of(*make_scene(std::move(d)).scene).count(), 0u);
 }

@@ -91,7 +91,7 @@ class PatchTransfer {
     /// Sample points in groups of sixteen, `samples_` per element. `sending_` has them in the order of the cells to
     /// which rays from cells 0 to 15 lead.
     std::vector<RayEnds> receiving_, sending_;
-    unsigned samples_;    ///< A multiple of 16.
+    unsigned samples_;    ///< Number of samples, a multiple of 16.
     bool joins_middles_;  ///< If true, one ray from centre to centre replaces the samples.
     std::uint64_t seed_;
     mutable std::atomic<std::size_t> rays_{0}, form_factors_{0};

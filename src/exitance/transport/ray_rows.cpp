@@ -13,7 +13,7 @@ namespace exitance {
 unsigned RayBudget::rays(double area, double mean_area) const {
     const double wanted = average * std::sqrt(area / mean_area);
     const double clamped = std::clamp(wanted, static_cast<double>(least), static_cast<double>(most));
-    return std::bit_floor(static_cast<unsigned>(clamped * std::numbers::sqrt2));  // to the nearer power of two
+    return std::bit_floor(static_cast<unsigned>(clamped * std::numbers::sqrt2));  // rounds to the nearer power of two
 }
 
 namespace {
