@@ -23,7 +23,7 @@ class ClutteredExchange {
     struct Allowance {
         double relative = 1e-4;                 ///< Share of the value.
         double absolute = 0;                    ///< m^2
-        double ignored = 0;                     ///< m^2; smaller values need no accuracy.
+        double ignored = 0;                     ///< Exchange areas below this need no accuracy, m^2.
         std::size_t most_evaluations = 20'000;  ///< Limit on the evaluations of a pair.
     };
 

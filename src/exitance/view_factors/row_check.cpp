@@ -69,7 +69,7 @@ CheckedRow check_row(const RowScene& ready, const std::vector<double>& F, std::s
     CheckedRow checked;
     checked.face = face;
     for (std::size_t j = 0; j < F.size(); ++j) checked.squared_error += (F[j] - G1[j]) * (F[j] - G2[j]);
-    const double one = 1 / (n * n);  // in case one more ray might have hit
+    const double one = 1 / (n * n);  // variance of one additional hit, so that the deviation is never zero
     checked.squared_error_deviation = std::sqrt(squared_error_variance(F, G1, G2, n) + one * one);
     RandomStream random(options.seed, Stream::reference, face, 3);
     const std::vector<std::size_t> centres = draw_centres(ready, face, options, random, stop);

@@ -89,8 +89,8 @@ double RowEstimator::left_of_cast(std::size_t face, std::uint32_t column) const 
     return std::pow(1 + scene_.faces[face].area / scene_.faces[column].area, -cast_rate);
 }
 
-/// Like left_of_cast(), for a pair's own samples: for equal requirements the rows' numbers of samples have the ratio
-/// (U_ij / U_ji)^(2 / (1 + rate)).
+/// Like left_of_cast(), for the samples that a pair has for itself: if both rows have equal requirements, their numbers
+/// of samples have the ratio (U_ij / U_ji)^(2 / (1 + rate)).
 double RowEstimator::left_of_pair(std::size_t face, std::uint32_t column) const {
     const double ratio = scene_.faces[face].area / scene_.faces[column].area;
     return std::pow(1 + std::pow(ratio, 2 / (1 + pair_rate)), -pair_rate);
@@ -317,7 +317,7 @@ std::optional<RawRow> RowEstimator::operator()(std::size_t face, std::uint32_t r
     classify(face, round);
     const double wanted = share * error_;
     RawRow row;
-    double samples = 0;  // of the row, as a multiple of those that the plan for `wanted` has
+    double samples = 0;  // number of samples, relative to the plan for `wanted`
     if (before) {
         row = *before;
         samples = std::pow(wanted / std::max(combined_limit(row), wanted), 2 / cast_rate);

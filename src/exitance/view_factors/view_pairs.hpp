@@ -30,7 +30,7 @@ class ViewPairs {
 
     const std::vector<ViewFace>& faces() const { return faces_; }
     const std::vector<ConvexBlocker>& blockers() const { return blockers_; }
-    /// Metres; points nearer to a plane than this are in it.
+    /// Points nearer to a plane than this lie in it, metres.
     double slack() const { return slack_; }
 
     /// True if each face is at least partly in front of the other. Sets `cut` if part of one is behind the other's
