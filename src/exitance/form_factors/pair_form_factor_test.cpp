@@ -104,8 +104,8 @@ TEST(PairFormFactorProperties, ExchangeIsReciprocalAndAdditiveUnderCuts) {
 }
 
 TEST(PairFormFactor, PolygonsWithTinyEdgesTakeNoLongTime) {
-    // For an edge of a micrometre the inner integral is a difference of numbers of order one. With a tolerance below
-    // its rounding error, bisection would take hours.
+    // For an edge of a micrometre the inner integral is a difference of numbers of order one. If the tolerance were
+    // below its rounding error, bisection would take hours.
     for (const double tiny : {1e-3, 1e-5, 1e-7}) {
         const Outline receiver = {{0, 0, 0}, {1, 0.1, 0}, {1, 0.1 + tiny, 0}, {0.3, 1.1, 0}, {0, 1, 0}};
         const Outline source = {{0.1, 1, 1.2}, {0.8 + tiny, 0.9, 1.2}, {0.8, 0.9, 1.2}, {0.9, 0, 1.2}, {0.2, 0.1, 1.2}};
