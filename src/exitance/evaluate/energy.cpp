@@ -204,7 +204,7 @@ bool shines_on_backs(const Stage& stage) {
         }
     }
     for (const PunctualLight& light : stage.scene.lights()) {
-        if (light.is_directional()) continue;  // only what reaches faces counts as emitted
+        if (light.is_directional()) continue;  // directional light counts as emitted only if it reaches a face
         for (const double side : {1.0, -1.0})
             for (std::uint32_t i = 0; i < rays; ++i)
                 if (meets_back(light.position, cosine_direction(Frame({0, 0, side}), points(i, 0), points(i, 1)), {}))

@@ -16,7 +16,7 @@ struct InterpolatedLight {
 /// A leaf of the mesh that an interpolant was fitted on, or the fan of triangles that joining made of it.
 struct InterpolatedLeaf {
     ElementId element;
-    double expected = 0;  ///< Mean square of the error as the fit knows it, (W/m^2)^2.
+    double expected = 0;  ///< Mean square of the error as the fit estimates it, (W/m^2)^2.
 };
 
 /// RMS over all surfaces of rho (light - interpolant), W/m^2; in a scene where nothing reflects, of light -

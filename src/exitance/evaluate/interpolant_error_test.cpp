@@ -47,7 +47,7 @@ TEST_P(InterpolantErrorOf, DirectLightIsReportedAsItIs) {
     const Scene scene = built_scene(GetParam().family, GetParam().parameters);
     const Solution solution = solved(scene, {.method = Method::matrix, .bounces = 0, .error = GetParam().error});
     const double error = error_of_export(solution);
-    // Both are measured at places that hold most of the error: each square is known to a fifth.
+    // Both errors are measured at points that have most of the error; each mean square is accurate to a fifth.
     ASSERT_TRUE(solution.statistics.relative_error_estimate_interpolant);
     EXPECT_NEAR(*solution.statistics.relative_error_estimate_interpolant, error, 0.2 * error);
 }

@@ -19,7 +19,7 @@ namespace {
 
 constexpr unsigned places = 16;  ///< Number of tested places on a side.
 
-/// All pieces of a region.
+/// A region with all of its pieces.
 struct Side {
     RegionId region;
     double area = 0;
@@ -49,8 +49,8 @@ std::vector<Side> sides_of_sheets(const Stage& stage) {
     return out;
 }
 
-/// True if some light reaches a side. Paths come first: they find light nearly everywhere, whereas exact direct light
-/// may cost thousands of times as much.
+/// Returns whether any light reaches a side. Tries paths first: they find light nearly everywhere, whereas exact direct
+/// light may be thousands of times more expensive.
 bool is_lit(const Stage& stage, const PathTracer& tracer, const Side& side, unsigned paths, std::uint64_t seed) {
     const Normal& n = stage.scene.regions()[side.region].plane.n;
     const ScrambledSobol where(hash(seed, static_cast<std::uint64_t>(Stream::reference), side.region.value));
