@@ -18,7 +18,7 @@ class ElementPolynomials {
     ElementPolynomials(const ElementTree& tree, ElementId e, const std::vector<WeightedPlace>& places, bool curved);
 
     std::size_t size() const { return size_; }
-    std::size_t straight() const { return straight_; }  ///< Number of linear (bilinear) ones.
+    std::size_t straight() const { return straight_; }  ///< Number of linear (bilinear) polynomials.
     /// Returns phi_k at (u, v) of the element; 0 for k >= size().
     Values at(Vec2 uv) const;
 
