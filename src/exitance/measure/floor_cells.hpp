@@ -57,9 +57,10 @@ class FloorCells {
     Vec3 u_, v_;
     double width_ = 0;  ///< Width of a cell, metres.
     std::size_t columns_ = 0, rows_ = 0;
-    std::vector<double> free_;           ///< Height of the first hit above each cell, metres; `top` if nothing is hit.
-    std::vector<double> height_;         ///< Equal to free_; below furniture, that of a cell next to it.
-    std::vector<std::uint8_t> is_open_;  ///< True if nothing is above.
+    std::vector<double> free_;  ///< Height of the first hit above each cell, metres; `top` if nothing is hit.
+    /// Equal to free_, except below furniture, where it is the height of a neighbouring cell.
+    std::vector<double> height_;
+    std::vector<std::uint8_t> is_open_;    ///< True if nothing is above.
     std::vector<std::uint8_t> is_inside_;  ///< True if the back of a face is above.
     std::vector<std::uint32_t> part_;
     std::vector<Part> parts_;

@@ -34,7 +34,7 @@ struct GridLight {
     int columns = 0, rows = 0;         ///< Along u and v.
     double step_u = 0, step_v = 0;     ///< Metres.
     std::vector<Point> points;         ///< Row by row, starting at the origin.
-    std::vector<Spectrum> irradiance;  ///< At every point, W/m^2.
+    std::vector<Spectrum> irradiance;  ///< Irradiance at every point, W/m^2.
     /// For every point, true unless an object covers it; only such points count.
     std::vector<bool> is_open;
     std::vector<bool> counts;  ///< For every point, true if it belongs to the measured area. Empty: all do.

@@ -302,7 +302,7 @@ TEST(CurvedLight, NoiseOfRaysNeedsNoFurtherPlaces) {
     sky.domes.push_back({{}, Spectrum(100)});
     const CurvedScene s = curved_scene(triangles, normal, as_written, {}, sky);
     Solution solution = quick_solution(s.scene);
-    solution.statistics.relative_error_estimate = 0.05;  // rays have a fifth of it
+    solution.statistics.relative_error_estimate = 0.05;  // the rays of the bake may have a fifth of this error
     const CurvedFaces faces(solution.scene, s.triangles);
     const RadiosityFunction function(solution);
     const StopRequest stop;
