@@ -173,7 +173,7 @@ Result<void> write_results_hdf5(const SweepResults& results, const SweepPlan& pl
     file.set_attribute(group, "plan", fs::path(plan.path).filename().string());
     for (const SweepColumn& column : results.columns) {
         const std::size_t width = width_of(column);
-        if (width == 0) continue;  // no variant has a value
+        if (width == 0) continue;  // no variant has a value for this output
         std::string name = column.name;
         std::replace(name.begin(), name.end(), '/', '_');
         const Hdf5Label label{"1", column.name.c_str()};
