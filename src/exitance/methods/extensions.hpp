@@ -15,7 +15,7 @@ struct LayeredLight {
     LightFormPointer form;
     double error = 0;  ///< Relative error of the sum, like DiscontinuityReport::error.
     bool interrupted = false;
-    std::map<std::string, double> figures = {};  ///< Sizes, by the names of their JSON keys.
+    std::map<std::string, double> figures = {};  ///< Numbers for the statistics, by their JSON keys.
 };
 
 /// Ways of discontinuity meshing beyond the engine's own.

@@ -36,7 +36,7 @@ class ShootingSetup {
     std::vector<double> patch_area;      ///< m^2
     std::vector<Spectrum> unshot, sent;  ///< Per patch, W/m^2: still to be shot, and shot so far.
 
-    /// Per present leaf:
+    /// One entry per leaf of the current mesh, in all arrays below.
     LeafNumbering numbering;
     std::vector<std::uint32_t> patch_of;
     std::vector<Spectrum> reflectance, direct, irradiance;

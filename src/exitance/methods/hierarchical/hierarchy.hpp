@@ -51,7 +51,7 @@ struct Hierarchy {
     NodalBasis basis;
     GlobalLight light;
     LinkSites sites;
-    LightBelow reflected_direct_below;       ///< rho E_dir of leaves.
+    LightBelow reflected_direct_below;       ///< rho E_dir of the leaves, for elements below those with coefficients.
     NodalField reflected_direct, radiosity;  ///< rho E_dir, and all reflected light b.
     LinkRefiner refiner;
     LinkedSystem system;

@@ -88,7 +88,7 @@ bool Solver::refines_bodies(double demand, double last_seconds) {
 }
 
 void Solver::tighten_bodies(double limit) {
-    constexpr double aim = 0.7;  // of the limit, as for the whole: derived from attempt_aim
+    constexpr double aim = 0.7;  // share of the limit to aim at, derived from attempt_aim
     for (const BodyError& body : statistics().bodies) {
         if (!body.error || *body.error <= limit) continue;
         BodyShares& shares = body_shares_[bodies().body[body.first]];
@@ -100,7 +100,7 @@ bool Solver::lower_error() {
     // Factor on the error between intermediate solutions, given by work ~ error^-2.5 to error^-1. Solutions that differ
     // less are not worth an attempt.
     constexpr double step = 0.4;
-    // worth an attempt of its own
+    // continue while the next error differs enough to be worth an attempt
     const double before = *options_.error;
     while (*options_.error > requested_error_ && has_reached(*options_.error)) {
         const double next = step * std::min(*options_.error, certificate_.largest());
@@ -231,7 +231,7 @@ void Solver::attempt() {
         if (fresh_) project_direct();
         if (fresh_ && !has_memory()) return;
         if (takes_step_) take_step();
-        if (stop_.requested()) return;  // without light of an earlier attempt, the result is direct light only
+        if (stop_.requested()) return;  // no earlier attempt has light: return direct light only
         reach(Step::solve);
     }
     if (step_ == Step::solve) {
@@ -253,7 +253,7 @@ void Solver::attempt() {
         refined_.clear();
         const bool whole = deliver(parts_to_sum(found.parts), b, fresh_);
         if (!whole) return;
-        next_.rest.clear();  // has been gathered
+        next_.rest.clear();  // this light has been gathered
         steps_.gather_rays = std::max(steps_.gather_rays, gathered_.rays);
         reach(Step::refine);
     }
@@ -268,7 +268,7 @@ void Solver::attempt() {
     CertificateOptions look{.error = options_.error_target(),
                             .seed = certificate_seed(),
                             .points = CertificateOptions::points_for(elements_of_continuous(solution_.indirect.tree))};
-    if (sums_) look.points /= 2;  // sums have no noise
+    if (sums_) look.points /= 2;  // half as many points suffice, since sums have no noise
     if (gathers()) look.leaves = &gathered_.leaves, look.gathered = &b.whole();
     look.coarse = &b.method_mesh();
     certify_solution(look, options_.error_demand(), elements);
@@ -380,7 +380,7 @@ void Solver::adopt_method_light() {
 
 Spectrum Solver::unscaled_indirect(const Spectrum& kept) const {
     if (!gathers()) return unscaled_.direct * light_->report.unscaled;
-    // The result of refinement hardly depends on its input.
+    // The result of a refinement step depends little on the light that it starts from.
     const bool refined = step_ == Step::refine || !next_.parts.empty();
     const Spectrum returned = refined ? Spectrum(1.0) : light_->report.unscaled;
     return unscaled_sent(stage_.scene, *light_, unscaled_.direct, returned, share_) * inverse(kept);

@@ -89,7 +89,8 @@ void Solver::record_darkness() {
 }
 
 bool Solver::may_be_last(double demand) const {
-    if (options_.error && *options_.error > requested_error_) return false;  // an intermediate solution
+    // only an intermediate solution was requested
+    if (options_.error && *options_.error > requested_error_) return false;
     return has_reached(demand) || attempt_ == attempt_limit() || options_.memory_limit_bytes ||
            seconds_left(stop_) < HUGE_VAL;
 }

@@ -75,7 +75,8 @@ void Solver::make_output_mesh() {
         progress_.note(fmt::format("{} elements to export, {:.3f}% from the function by themselves",
                                    solution_.interpolant.tree.leaves().size(), 100 * own));
     }
-    if (!has_estimate(options_)) stage_.rooms = find_light_rooms(stage_, options_.seed, stop_);  // for escaping light
+    // for the statistics of escaping light
+    if (!has_estimate(options_)) stage_.rooms = find_light_rooms(stage_, options_.seed, stop_);
     EnergyBalance& energy = statistics().energy;
     energy = energy_balance(solution_, direct_, stage_);
     if (!is_published()) energy.defect_before = energy_defect_before(energy, solution_, direct_, unscaled_);

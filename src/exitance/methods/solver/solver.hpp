@@ -228,7 +228,7 @@ class Solver {
     std::optional<Snapshots> snapshots_;  ///< Set for published forms.
     int attempt_ = 1;
     int body_attempts_ = 0;         ///< Number of attempts for the sake of bodies.
-    double worst_body_before_ = 0;  ///< `worst_body` before the last of them; 0: there was none.
+    double worst_body_before_ = 0;  ///< Value of `worst_body` before the last of these attempts; 0: there was none.
     /// Factors on the errors that bodies may have due to the light gathered on them and to the direct light they see.
     struct BodyShares {
         double gathered = 1, seen = 1;
