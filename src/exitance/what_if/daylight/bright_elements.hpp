@@ -32,7 +32,7 @@ class BrightElements {
 
   private:
     std::vector<Entry> entries_;      ///< Hour by hour.
-    std::vector<std::size_t> first_;  ///< First entry of every hour, and their number.
+    std::vector<std::size_t> first_;  ///< Per hour: index of its first entry; the last value is the number of entries.
     std::vector<std::uint8_t> is_bright_;
 };
 

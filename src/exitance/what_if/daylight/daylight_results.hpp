@@ -13,7 +13,7 @@ namespace exitance {
 /// A daylight simulation over a year: what to compute.
 struct DaylightTask {
     std::vector<ProbePoint> sensors;
-    std::vector<SensorGrid> grids;  ///< Together all sensors, in their order.
+    std::vector<SensorGrid> grids;  ///< Grids that together contain all sensors, in their order.
     std::vector<DaylightHour> hours;
     DaylightSite site;
     DaylightCriteria criteria;
@@ -41,7 +41,7 @@ constexpr SensorRange sensors_of_part(std::size_t part, std::size_t parts, std::
 /// Several processes divide the rays and the sensors, and all get all results; every function is collective.
 class DaylightSimulation {
   public:
-    /// All arguments must outlive this.
+    /// All arguments must outlive this object.
     DaylightSimulation(const Scene& scene, const DaylightTask& task, Progress& progress, const StopRequest& stop);
     DaylightSimulation(const Scene&, const DaylightTask&, Progress&, StopRequest&&) = delete;
     ~DaylightSimulation();

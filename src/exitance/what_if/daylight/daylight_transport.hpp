@@ -69,7 +69,7 @@ class SkyColumns {
     void add_light(std::span<const RayCounts::End> patches, std::span<const RayCounts::End> finer, std::uint32_t rays,
                    std::span<float> out) const;
 
-    std::size_t unit_patches_ = 0;  ///< Number of patches if every patch has its column.
+    std::size_t unit_patches_ = 0;  ///< Number of patches, if each patch has a column of its own.
     std::vector<Column> columns_;
 };
 

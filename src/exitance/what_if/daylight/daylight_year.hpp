@@ -55,7 +55,7 @@ class YearSky {
     struct Sun {
         Normal towards;
         double illuminance = 0;
-        std::array<std::size_t, 4> patches{};  ///< The patches around it.
+        std::array<std::size_t, 4> patches{};  ///< The four patches around the direction to the sun.
     };
     const Sun& sun(std::size_t hour) const { return suns_[hour]; }
     /// Indices of the hours with light, ascending.
@@ -70,7 +70,7 @@ class YearSky {
 
     std::size_t patches_;
     std::vector<std::size_t> bright_;
-    std::vector<float> sky_, with_sun_;  ///< cd/m^2, a row per hour of `bright_`.
+    std::vector<float> sky_, with_sun_;  ///< Luminances of the patches, cd/m^2, a row per hour of `bright_`.
     std::vector<double> sum_of_sky_, sum_with_sun_;
     std::vector<Sun> suns_;
 };

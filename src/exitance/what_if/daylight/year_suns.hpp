@@ -12,7 +12,7 @@ namespace exitance {
 /// The sun of every hour of a year as parallel light, for exact direct sunlight at sensors.
 class YearSuns {
   public:
-    /// `sky` must outlive this.
+    /// `sky` must outlive this object.
     explicit YearSuns(const YearSky& sky);
 
     /// Writes the direct sunlight of every hour at a sensor, lx. `direct`: irradiance by every patch at the sensor: one
