@@ -16,7 +16,7 @@ struct ElementMesh {
     std::vector<std::uint32_t> first_point = {0};  ///< Per polygon, plus the end of the last one.
     std::vector<std::uint32_t> connectivity;       ///< Point indices of the polygons; empty: points are in order.
     std::vector<Point> points;
-    std::vector<std::array<float, bands>> irradiance, radiosity;  ///< Per point, W/m^2.
+    std::vector<std::array<float, bands>> irradiance, radiosity;  ///< Values at the points, W/m^2.
     /// Per polygon. If a leaf covers several faces of its region, `surface` is the face at its centre.
     std::vector<std::int32_t> surface, region, material, group;
 

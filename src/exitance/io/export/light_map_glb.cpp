@@ -164,7 +164,7 @@ struct Textures {
     std::vector<std::string> files;  ///< PNG or JPEG.
     std::string images, textures, samplers;
     int light_set = 1;                    ///< Number of the texture coordinate set for the maps.
-    Field<MaterialId, std::string> base;  ///< Per material: reference to its own picture, or empty.
+    Field<MaterialId, std::string> base;  ///< Per material: JSON reference to its own picture; empty if it has none.
 
     void add_file(const std::string& file, const std::string& name, const std::string& kind, std::size_t first_view) {
         images += fmt::format("{}{{\"name\":{},\"mimeType\":\"{}\",\"bufferView\":{}}}", images.empty() ? "" : ",",
@@ -304,7 +304,7 @@ class Document {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> material_of_;
 };
 
-/// The maps as pictures, and the scene's own pictures if materials show them.
+/// Collects the maps as pictures, and the scene's own pictures if materials show them.
 Result<Textures> make_textures(const Scene& scene, const LightMaps& shown, LightMapMaterial way, const ToneMap& tone,
                                double peak, const SceneTextures* own) {
     constexpr int clamp = 33071;

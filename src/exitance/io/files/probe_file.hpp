@@ -37,10 +37,10 @@ class ProbeReader {
     static Result<ProbeReader> open_model(const std::string& path);
     Result<bool> next_row(std::array<double, 6>& row);
 
-    std::optional<NumberTable> table_;    ///< For a CSV file.
-    std::optional<LineReader> lines_;     ///< For a file of plain lines.
+    std::optional<NumberTable> table_;    ///< Open table, if the file is a CSV file.
+    std::optional<LineReader> lines_;     ///< Open file, if it has plain lines.
     std::optional<std::string> first_;    ///< First plain line, read when the format was detected.
-    std::optional<ProbePoints> sensors_;  ///< For a Honeybee model.
+    std::optional<ProbePoints> sensors_;  ///< Points, if the file is a Honeybee model.
     std::size_t next_sensor_ = 0;
 };
 

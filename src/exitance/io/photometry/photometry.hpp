@@ -45,8 +45,9 @@ struct Photometry {
     std::string file;
     std::string format;  ///< "IESNA:LM-63-2002", "EULUMDAT", ...
     Type type = Type::c;
-    std::string symmetry;                                       ///< In words, for reports.
-    std::vector<std::pair<std::string, std::string>> keywords;  ///< In the order of the file.
+    std::string symmetry;  ///< In words, for reports.
+    /// Keywords and their values, in the order of the file.
+    std::vector<std::pair<std::string, std::string>> keywords;
     int lamps = 1;
     std::optional<double> lamp_lumens;          ///< Total flux of the lamps, lm; empty: absolute photometry.
     double watts = 0;                           ///< 0: unknown.

@@ -41,7 +41,7 @@ class MatrixFile {
 ///     summary.csv   name, value
 class DaylightFiles {
   public:
-    /// The folder is created if necessary. `task` must outlive this. Error: ErrorCode::cannot_write.
+    /// The folder is created if necessary. `task` must outlive this object. Error: ErrorCode::cannot_write.
     static Result<DaylightFiles> create(const std::string& folder, const DaylightTask& task,
                                         const DaylightFormats& formats);
 

@@ -6,7 +6,7 @@ namespace exitance {
 
 /// A choice of panes. Empty: all panes.
 struct PaneChoice {
-    std::vector<std::string> materials, objects;  ///< A pane has one of these materials or objects ...
+    std::vector<std::string> materials, objects;  ///< Accepted materials and objects: a pane needs one of them.
     std::optional<Box> box;                       ///< ... and lies within this box, metres.
 };
 

@@ -29,10 +29,12 @@ using Polygon = std::vector<Point>;
 struct Piece {
     char kind = 'S';
     int line = 0;
-    std::vector<Polygon> parts;  ///< Convex unless it crosses itself; several after other surfaces were cut out.
+    /// Polygons of the surface: convex unless it crosses itself, and several if other surfaces were cut out of it.
+    std::vector<Polygon> parts;
     bool crosses_itself = false;
     Normal normal;
-    std::size_t base = 0, merged = 0;  ///< Numbers of other surfaces; 0: none.
+    /// Numbers of the base surface and of the surface with which this one is merged; 0: none.
+    std::size_t base = 0, merged = 0;
     double emittance = 0.9;
     std::string name;
 };
@@ -356,9 +358,9 @@ class View3dReader {
     std::vector<View3dMask> masks_;
     std::map<double, std::uint32_t> materials_;
     bool planes_ = false, ended_ = false;
-    bool waiting_ = false;         ///< The last surface is not complete.
+    bool waiting_ = false;         ///< True if the last surface is not complete.
     char shape_ = 0;               ///< Shape of the incomplete surface.
-    std::vector<double> numbers_;  ///< Numbers read for it.
+    std::vector<double> numbers_;  ///< Numbers of the incomplete surface so far.
     int line_ = 0;
 };
 

@@ -168,12 +168,12 @@ TEST(HostileSolutions, WithElementsOutsideTheSceneAreErrors) {
     EXPECT_NE(outcome(with_root(bad)).find("does not lie on its region"), std::string::npos);
     bad = good, bad.a = 1e150 * good.a;
     EXPECT_NE(outcome(with_root(bad)), "");
-    bad = good, bad.b = bad.a;  // no area, so no coordinates
+    bad = good, bad.b = bad.a;  // a patch without area has no coordinates
     EXPECT_NE(outcome(with_root(bad)).find("makes no tree at element 0"), std::string::npos);
 }
 
 TEST(HostileSolutions, AreDarkAtNonFinitePoints) {
-    // In a damaged scene, rays may hit such points.
+    // Rays may hit such points if a scene is damaged.
     const Solution s = sample_solution();
     const ElementLocator locator(s.indirect.tree, s.scene.regions().size());
     const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -111,7 +111,8 @@ void SceneMaker::read_holes() {
         const std::span<const std::uint8_t> file = in_.pictures[static_cast<std::size_t>(m.base_texture.picture)];
         Result<std::optional<MaskedPicture>> masked = decode_masked(file, m.hole_opacity, srgb_curve());
         const Result<std::array<double, 3>> whole = mean_colour(file, srgb_curve());
-        if (!masked || !*masked || !whole) continue;  // no holes, or a failure that was reported with the material
+        // the picture has no holes, or its failure was reported with the material
+        if (!masked || !*masked || !whole) continue;
         const TextureArea::Colour opaque = (*masked)->colour.mean();
         const Spectrum before = spread({(*whole)[0], (*whole)[1], (*whole)[2]});
         const Spectrum after = spread({opaque[0], opaque[1], opaque[2]});

@@ -73,7 +73,7 @@ TEST_F(GltfFiles, ParentsTransformTheirChildren) {
                     {"mesh":0,"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 1,0,0,1]})";
     const Scene s = scene(text);
     const Point p = s.outline(SurfaceId(0))[0];
-    EXPECT_NEAR(norm(p - Point{0, 2, 0}), 0, 1e-12);  // rounding of the quaternion
+    EXPECT_NEAR(norm(p - Point{0, 2, 0}), 0, 1e-12);  // tolerance: rounding of the quaternion
     EXPECT_NEAR(s.surfaces()[SurfaceId(0)].area, 2, 1e-12);
 }
 

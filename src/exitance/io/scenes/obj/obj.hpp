@@ -40,7 +40,7 @@ ReadScene read_obj(const std::string& path, std::optional<std::size_t> texture_p
 /// A face of an OBJ file with its texture coordinates and normals.
 struct ObjPlaces {
     int line = 0;
-    std::vector<Point> corners;  ///< In the file's coordinates.
+    std::vector<Point> corners;  ///< Corners in the file's coordinates.
     std::vector<Vec2> places;    ///< One per corner, (0, 0) at the picture's upper left; empty if there are none.
     std::vector<Vec3> normals;   ///< One per corner, of any length; empty if there are none.
 };

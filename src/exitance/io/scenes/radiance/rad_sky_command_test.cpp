@@ -202,7 +202,8 @@ TEST(RadSkyCommand, GendaylitPrintsSkiesOfNightHours) {
 
 TEST(RadSkyCommand, GendaylitSupportsGlobalLightAndDewPoint) {
     // For k = 0.2, below 0.22, the diffuse share is 1 - 0.09 k [Erbs82].
-    const double outside = 1367 * orbit(0) * 0.5;  // at 30 degrees
+    // extraterrestrial irradiance of a horizontal plane, with the sun at 30 degrees
+    const double outside = 1367 * orbit(0) * 0.5;
     const std::string global = std::to_string(0.2 * outside);
     const std::vector<double> split = numbers_after(output("gendaylit -ang 30 0 -O 1 -E " + global), "skyfunc");
     const double diffuse = 0.2 * outside * (1 - 0.09 * 0.2), direct = (0.2 * outside - diffuse) / 0.5;

@@ -13,7 +13,7 @@ struct Xform {
     std::vector<std::string> files;    ///< May be empty.
     std::vector<std::string> options;  ///< All words that do not name files.
     std::string name;                  ///< Prefix for the names in the files, or empty.
-    std::string material;        ///< Replaces the materials of all surfaces in the files; empty: they keep their own.
+    std::string material;  ///< Material that replaces those of all surfaces in the files; empty: they keep their own.
     std::vector<Affine> copies;  ///< One transform per copy: one, or more for an array.
 };
 

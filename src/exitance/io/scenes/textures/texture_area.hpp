@@ -75,7 +75,7 @@ class TextureArea {
     const Level& level_for(const Vec2& step) const;
 
     Colour mean_{};
-    std::vector<Level> levels_;  ///< From the finest to the coarsest.
+    std::vector<Level> levels_;  ///< Levels of resolution, from the finest to the coarsest.
 };
 
 }  // namespace exitance

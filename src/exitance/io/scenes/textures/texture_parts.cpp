@@ -155,7 +155,7 @@ class FaceCutter {
         const double near = std::min(1.0, std::sqrt(area) / scale_.length);
         const double variance = std::max(0.0, squares - mean(sum * sum) / area);
         const double moved = std::sqrt(std::max(0.0, emitted * area - mean(flux * flux))) * near / scale_.flux;
-        const double shape = holes * (1 - holes / area);  // largest variance of coverage
+        const double shape = holes * (1 - holes / area);  // largest possible variance of coverage, times the area
         return (variance / scale_.reflected + std::max(0.0, shape) / scale_.area) * near + moved * moved;
     }
 
@@ -176,7 +176,7 @@ class FaceCutter {
         return out;
     }
 
-    /// Takes the most beneficial cuts of all patches, as many as there may be parts of patches.
+    /// Selects the most beneficial cuts of all patches, up to the maximum number of parts.
     void choose(std::size_t max_parts) {
         struct Offer {
             double benefit;
@@ -196,7 +196,7 @@ class FaceCutter {
             // The first cut of a face makes two parts.
             const std::size_t more = patch.taken == 0 ? 2 : 1;
             if (parts + more > max_parts || (patch.emits && emitting + more > max_emitting_parts)) continue;
-            if (patch.taken != offer.cut) continue;  // an earlier one was not taken
+            if (patch.taken != offer.cut) continue;  // an earlier cut of this patch was rejected
             parts += more, emitting += patch.emits ? more : 0, ++patch.taken;
         }
     }
