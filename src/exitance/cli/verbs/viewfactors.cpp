@@ -167,7 +167,7 @@ class ViewFactorRun {
           terminal_(terminal) {}
 
     ExitCode operator()() {
-        std::optional<FactorNodes> nodes;  // in the first process, which writes the matrix
+        std::optional<FactorNodes> nodes;  // only set in the first process, which writes the matrix
         const Result<void> ready = by_first([&]() -> Result<void> {
             Result<std::optional<FactorNodes>> found =
                 arguments_.output.empty() ? std::optional<FactorNodes>() : nodes_of(arguments_, scene_);
@@ -329,7 +329,7 @@ class ViewFactorRun {
     const CommonStop& common_stop_;
     const StopRequest& stop_;
     Terminal& terminal_;
-    std::optional<RawRowFile> rows_;  ///< In the first process.
+    std::optional<RawRowFile> rows_;  ///< Set only in the first process.
 };
 
 /// Error if the files to write cannot be written, or have options or endings that do not fit.
