@@ -155,7 +155,8 @@ bool any_face_each_other(const std::vector<Pane>& windows, double slack) {
 
 /// True if the hull winds about the whole front side of a region.
 bool winds_about(const Scene& scene, RegionId r, const Hull& hull, double slack) {
-    constexpr double inset = 1e-3;  // relative position between a triangle's corner and its centre
+    // position of the tested points, relative to the distance between a corner and the centre
+    constexpr double inset = 1e-3;
     const Normal& n = scene.regions()[r].plane.n;
     for (const Triangle& t : triangles_of(scene, r)) {
         if (hull.crosses(t, slack)) return false;

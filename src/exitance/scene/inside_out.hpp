@@ -26,7 +26,7 @@ struct BodyFaces {
     }
 };
 
-/// A closed body whose faces have the wrong orientation.
+/// Numbers of the faces, ascending.
 struct InsideOut {
     std::vector<std::uint32_t> faces;  ///< Ascending.
     /// True: a room whose fronts face outwards, away from its light. False: an object whose fronts face inwards.

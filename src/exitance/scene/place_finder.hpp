@@ -10,7 +10,7 @@ namespace exitance {
 struct MeasuredPlace {
     Point x;                        ///< Metres; at a distance from all walls and panes that touch the measuring point.
     SurfaceId surface;              ///< The face of the point; none in free space.
-    RegionId region;                ///< The region of that face.
+    RegionId region;                ///< The region of `surface`.
     bool is_between_sides = false;  ///< True if the light differs between several sides, any of which could be meant.
 };
 

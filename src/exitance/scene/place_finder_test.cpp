@@ -109,7 +109,7 @@ TEST(PlaceFinder, IfTheFloorContinuesThePointIsMovedToTheFront) {
     const MeasuredPlace front = PlaceFinder(one).find({0, 0, 0}, up);
     EXPECT_GT(front.x.x, 0);
     EXPECT_FALSE(front.is_between_sides);
-    EXPECT_GT(PlaceFinder(one).find({0, 0, 1}, up).x.x, 0);  // also in free space
+    EXPECT_GT(PlaceFinder(one).find({0, 0, 1}, up).x.x, 0);  // the same holds for a point in free space
     // A wall of 1 cm: the points are moved to its sides, not into it.
     Outline outer = reversed(partition);
     for (Point& p : outer) p.x -= 0.01;
@@ -238,8 +238,8 @@ TEST(PlaceFinder, ResultsMoveWithTheScene) {
         EXPECT_NEAR(moved_finder.step() / (motion.scale * finder.step()), 1, 1e-9);
         for (const Point& p : points) {
             const MeasuredPlace here = finder.find(p, up), there = moved_finder.find(motion(p), motion.turned(up));
-            // The rounding error of coordinates 1000 m from the origin is 1e-13 m, that of the wall's plane a few times
-            // as much.
+            // The rounding error of coordinates 1000 m from the origin is 1e-13 m; the rounding error of the wall's
+            // plane is a few times as large.
             EXPECT_LT(norm(there.x - motion(here.x)), 1e-6 * moved_finder.step()) << p.x << ' ' << p.y << ' ' << p.z;
             EXPECT_EQ(here.surface, there.surface);
             EXPECT_EQ(here.is_between_sides, there.is_between_sides);

@@ -24,7 +24,7 @@ Tolerances tolerances(const Box& box, double short_edge) {
     return t;
 }
 
-constexpr std::size_t max_corners = 10'000;  ///< Per face: triangulation is quadratic in it.
+constexpr std::size_t max_corners = 10'000;  ///< Maximum per face, since the time of triangulation is quadratic in it.
 constexpr double max_coordinate = 1e15;      ///< Metres from the origin: powers of areas stay finite.
 constexpr double max_exitance = 1e30;        ///< W/m^2, cd, lx: light is accumulated in float, whose maximum is 3e38.
 
@@ -122,7 +122,7 @@ void SceneBuilder::check_panes() {
 
 /// Computes the scene's box and finds the points at equal positions.
 void SceneBuilder::place_corners() {
-    std::vector<float> lengths;  // of all edges; only their magnitude matters
+    std::vector<float> lengths;  // lengths of all edges; only their order of magnitude matters
     for (std::uint32_t f = 0; f < in_.faces.size(); ++f) {
         const auto& face = in_.faces[f];
         if (is_pane(f) && first_pane_face_ > 0) break;

@@ -271,7 +271,7 @@ std::vector<EdgePairs::LineEntry> EdgePairs::line_entries() const {
     };
     std::vector<std::uint8_t> held(std::bit_ceil(4 * entrants.size() + 1));
     const auto slot = [&](const LineEntry& entry) -> std::uint8_t& { return held[entry.key & (held.size() - 1)]; };
-    std::size_t met = 0;  // number of entries whose key is shared
+    std::size_t met = 0;  // number of entries that share their key with another entry
     each_entry([&](const LineEntry& entry) {
         std::uint8_t& n = slot(entry);
         met += n == 0 ? 0 : n == 1 ? 2 : 1;
