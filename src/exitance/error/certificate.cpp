@@ -34,8 +34,9 @@ double largest(const std::vector<Spectrum>& values) {
     return out;
 }
 
-/// Accuracy of exact light at checked hits. Half of the error of the solution adds a quarter to the square of what a
-/// check finds where the projection is as wrong as the solution, and less where checks are needed: where it is worse.
+/// Returns the accuracy required of exact light at checked hits: half of the requested error. Where the projection is
+/// as wrong as the solution, this adds a quarter to the squared differences found; where the projection is worse, and
+/// checks matter most, it adds less.
 LightAccuracy check_accuracy(double error) {
     constexpr double least = 2e-4, most = 0.1;  // derived from the range of errors that can be requested
     return {.relative = std::clamp(0.5 * error, least, most)};

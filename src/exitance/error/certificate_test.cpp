@@ -197,10 +197,10 @@ TEST(Certificate, FindsAnErrorOfTheProjectionThatTheDeliveredLightShares) {
     const WrongProjection planted;
     const ProjectedDirect told{&planted.projected, Spectrum(1.0)};
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-        EXPECT_LT(planted.estimate(seed, {}), 0.01);  // without the check, the error is not found
+        EXPECT_LT(planted.estimate(seed, {}), 0.01);  // without the check, the estimate misses the error
         EXPECT_NEAR(planted.estimate(seed, told), planted.truth, 0.1 * planted.truth);
     }
-    // With light summed over elements, which include the projected light.
+    // The same holds if light is summed over elements, which contain the projected light.
     ElementFunction reflected = planted.furnace.delivered;
     for (std::array<float, bands>& value : reflected.values)
         for (float& v : value) v = static_cast<float>(planted.furnace.rho * (planted.factor + static_cast<double>(v)));
