@@ -368,7 +368,7 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
     const bool known = !fresh && sampled_.size() == tree_.size();
     int depth = known && demand.change ? change : 0;
     std::size_t begun = 0;        // elements of `active` that a resumed run has gathered
-    std::size_t rays_before = 0;  // of `active`, if only the change is gathered
+    std::size_t rays_before = 0;  // rays of the active elements, if only a change is gathered
     const bool resumed = safe_points.resume([&](auto& a) { a(active, depth, begun, report.rays, rays_before); });
     divide_among_bodies(demand);
     if (!resumed && known) report.rays += follow_rough_places(b, demand);

@@ -93,9 +93,9 @@ std::vector<ElementId> LocalPass::beside(ElementId e, const ElementLocator& loca
     return out;
 }
 
-/// Looks closely at the leaves at rough places and, as long as leaves are rough, at those beside them. A feature that a
-/// few points of the certificate met is thereby followed along its whole length. Their misfit is then known, and their
-/// parts are looked at in the same way. Returns the number of rays.
+/// Examines the leaves at rough places with more rays and, while the examined leaves are rough, also the leaves next to
+/// them. A feature that a few points of the certificate hit is thus followed along its whole length. The misfit of
+/// these leaves is then known, and their children are examined in the same way. Returns the number of rays.
 std::size_t LocalPass::follow_rough_places(const ReflectedLight& b, const LocalPassDemand& demand) {
     if (demand.rough_places.empty() || !demand.elements.empty()) return 0;
     const ElementLocator locator(tree_, stage_.scene.regions().size());

@@ -56,7 +56,7 @@ TEST(RoughPlaces, AreFollowedAlongAllOfAShadow) {
     const StopRequest stop;
     LocalPassReport report;
     const ElementFunction before = pass.gather(plate.b, true, demand, report, progress, stop);
-    // One point at one side is enough to find all four.
+    // One rough point on one side of the shadow is enough to find all four sides.
     const std::vector<RoughPlace> found{{plate.floor, {1, PlateOnFloor::far_side + 0.003, 0}}};
     demand.max_depth = 8, demand.rough_places = found;
     const ElementFunction after = pass.gather(plate.b, false, demand, report, progress, stop);
@@ -64,7 +64,7 @@ TEST(RoughPlaces, AreFollowedAlongAllOfAShadow) {
         EXPECT_GT(plate.error_beside(before, border), 0.15) << border;
         EXPECT_LT(plate.error_beside(after, border), 0.6 * plate.error_beside(before, border)) << border;
     }
-    // Only the border is refined.
+    // Only elements at the border of the shadow are refined.
     EXPECT_LT(after.tree.leaves().size(), 4 * before.tree.leaves().size());
 }
 
