@@ -69,7 +69,7 @@ struct GlobalLight {
     /// `all_light`, otherwise the indirect light; `indirect` is its projection.
     LightFormPointer own_form = {};
 
-    /// For published forms: what they deliver.
+    /// Delivered light of published forms.
     std::optional<PublishedLight> published = {};
 
     bool delivers() const { return delivery == MethodDelivery::polynomials; }

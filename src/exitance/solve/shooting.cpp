@@ -19,7 +19,8 @@ double power_of(const Spectrum& u, double area) {
 struct Unshot {
     double power = 0;  ///< W
     Spectrum flux;     ///< Sum of area times unshot light over all patches, W.
-    double most = -1;  ///< W; power of the first of the patches with most to send.
+    /// Power that patch `patch` would send, W: the largest of all patches (the first one if several are equal).
+    double most = -1;
     std::size_t patch = 0;
 
     /// Adds patch p with unshot light u, which would send `sent` in a shot; both W/m^2.

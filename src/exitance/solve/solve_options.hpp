@@ -179,7 +179,7 @@ struct SolveOptions {
     std::optional<std::size_t> visibility_samples = {};  ///< Rays per pair of elements.
     bool triage = true;  ///< Links test for certain visibility or occlusion before they cast rays.
     LinkOracle oracle = LinkOracle::transport;  ///< Criterion by which links are accepted or refined.
-    std::optional<bool> clusters = {};          ///< Also link clusters of pieces; empty: if there are many pieces.
+    std::optional<bool> clusters = {};  ///< True: also link clusters of pieces. Empty: do so if there are many pieces.
     std::optional<FormFactorKind> form_factors = {};
     std::optional<std::size_t> hemicube_cells = {};  ///< Cells along an edge of a hemicube's top.
     std::optional<CellsKind> gcs = {};               ///< Variant of growing cells; empty: improved.
