@@ -30,7 +30,7 @@ class Bodies {
     bool is_leaf(Body b) const { return !b.is_cluster() && elements().is_leaf(b.element()); }
     std::vector<Body> parts(Body b) const;
 
-    /// Returns the region of the first element of a body, as start of visibility rays.
+    /// Returns the region of the first element of a body.
     RegionId region(Body b) const;
 
   private:

@@ -25,7 +25,7 @@ struct LinkTolerance {
     std::size_t most_links = std::numeric_limits<std::size_t>::max();
     double least_area = 0;    ///< Elements smaller than this are not split, m^2.
     bool fractional = false;  ///< Use one unoccluded share for all nodes of a link instead of one per pair of nodes.
-    bool quadrature = false;  ///< One ray from each node to each node: visible or not.
+    bool quadrature = false;  ///< Test visibility by one ray from each node to each node, instead of several.
     /// True if rays later correct the mean of the received light. Links with a small contribution may then be constants
     /// whatever the basis, and peaks between check points are left to the rays.
     bool corrected = false;
