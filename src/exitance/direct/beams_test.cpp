@@ -39,7 +39,8 @@ TEST(Beams, ABulbOverAPlaneFollowsTheCubeOfTheCosine) {
 }
 
 TEST(Beams, AShadowIsHardAndHasTheShapeOfTheBlocker) {
-    const Scene scene = test::make({square(10, 0), square(1, 1)});  // at half the bulb's height: its shadow is 2 m wide
+    // a square at half the height of the bulb: its shadow is 2 m wide
+    const Scene scene = test::make({square(10, 0), square(1, 1)});
     EXPECT_EQ(floor_light(scene, bulb({0, 0, 2}), {1 - 1e-9, 0.3, 0}), 0);
     EXPECT_GT(floor_light(scene, bulb({0, 0, 2}), {1 + 1e-9, 0.3, 0}), 0);
     EXPECT_GT(floor_light(scene, bulb({0, 0, 1}), {0.2, 0.3, 0}), 0) << "a light in the blocker's plane";

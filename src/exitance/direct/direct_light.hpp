@@ -34,10 +34,10 @@ struct ReceiverLight {
     std::vector<Source> sources;  ///< Sources that are not certainly hidden.
     std::vector<Beam> beams;      ///< Punctual lights that are not certainly hidden.
     std::vector<PieceId> candidates;
-    QuadBatch open;                     ///< Fully visible sources of at most four corners, in the order of `sources`,
-    std::vector<Spectrum> open_light;   ///< and their exitances.
-    std::vector<ReceiverLight> behind;  ///< Diffusing pane: one entry, for its other side,
-    double through = 0;                 ///< and the weight of that side (Material::through).
+    QuadBatch open;                     ///< Fully visible sources of at most four corners, in the order of `sources`.
+    std::vector<Spectrum> open_light;   ///< Exitances of the sources in `open`.
+    std::vector<ReceiverLight> behind;  ///< For diffusing panes: one entry, the light on the other side.
+    double through = 0;                 ///< Weight of the light in `behind` (Material::through).
 
     void clear();
     bool is_dark() const {  ///< True if certainly no light arrives.

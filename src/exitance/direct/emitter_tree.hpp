@@ -34,7 +34,7 @@ class EmitterTree {
         double radius = 0;            ///< Radius of a bounding ball about the centre, m.
         Vec3 normal;                  ///< Mean normal, weighted by power; shorter than 1 if normals differ.
         double normal_spread = 0;     ///< RMS deviation of the normals from `normal`.
-        Normal axis;                  ///< Axis of a cone that contains all normals,
+        Normal axis;                  ///< Axis of a cone that contains all normals.
         double cosine = 1, sine = 0;  ///< Cosine and sine of this cone's half angle.
         double power = 0;             ///< Mean over bands, W.
         double power_squares = 0;     ///< Sum of the squared powers of the sources, W^2.
@@ -50,7 +50,7 @@ class EmitterTree {
     /// Unoccluded light of a cluster at a point.
     struct Term {
         std::uint32_t node = 0;
-        double light = 0;  ///< Irradiance without occlusion, mean over bands, W/m^2,
+        double light = 0;  ///< Irradiance without occlusion, mean over bands, W/m^2.
         double error = 0;  ///< Estimated error of `light`, W/m^2.
     };
     /// Disjoint clusters that together contain all emitters. Memory is reused.

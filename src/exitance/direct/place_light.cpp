@@ -12,9 +12,9 @@ namespace exitance {
 namespace {
 
 // Work in units of VisibilityWorkspace::work, about that of a ray, measured by `bench/exitance-bench`.
-constexpr double work_of_shaft = 10;     ///< Search for the blockers between a polygon and a source.
-constexpr double work_of_blocker = 6;    ///< A blocker that is clipped from a source, if there are many fragments.
-constexpr double work_of_integral = 20;  ///< Integral of a directed radiance over a fragment.
+constexpr double work_of_shaft = 10;   ///< Work of a search for the blockers between a polygon and a source.
+constexpr double work_of_blocker = 6;  ///< Work per blocker that is clipped from a source, if there are many fragments.
+constexpr double work_of_integral = 20;  ///< Work per integral of a directed radiance over a fragment.
 /// Exact light is tried again if rays need more than this many times the work that it was allowed. It is then allowed
 /// what they need, divided by this number. derived from the cost of trying in vain: at most a quarter of the rays.
 constexpr double worth_another = 4;

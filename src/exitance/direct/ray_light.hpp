@@ -45,7 +45,8 @@ class RayLight {
         std::size_t rays = 0;      ///< Number of rays cast.
         double work = 0;           ///< Cost of attempts at exact light, with or without success, in rays.
 
-        Spectrum standard_error() const;  ///< Per band, in proportion to the light of the band, W/m^2.
+        /// Returns the standard error per band, in proportion to the light of the band, W/m^2.
+        Spectrum standard_error() const;
     };
 
     /// Returns the light at x on region `own` (none: in free space). About 0.2 us per ray.

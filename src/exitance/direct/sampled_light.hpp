@@ -40,7 +40,7 @@ class SampledLight {
     struct Source {
         DirectLight::SourceName name;
         RegionId region;
-        double F;        ///< From the element's centre without occlusion, weighted by relative radiance.
+        double F;        ///< Unoccluded form factor from the element's centre, weighted by relative radiance.
         double area;     ///< m^2
         Spectrum light;  ///< Unoccluded light at the centre.
         double share;    ///< Share of the unoccluded light of all sources.
@@ -72,9 +72,9 @@ class SampledLight {
     const DirectLight& direct_;
     const RayTracer& tracer_;
     std::uint64_t seed_;
-    QuadBatch quads_;           ///< All pieces of all emitters, in order,
-    std::vector<double> area_;  ///< Areas of these sources, m^2.
-    std::vector<double> F_;     ///< and the unoccluded form factor of each from the current point.
+    QuadBatch quads_;           ///< All pieces of all emitters, in order.
+    std::vector<double> area_;  ///< Areas of the pieces in `quads_`, m^2.
+    std::vector<double> F_;     ///< Unoccluded form factor of each piece from the current point.
     std::vector<Source> sources_;
     std::vector<Rank> ranks_;
     Estimate estimate_;

@@ -14,9 +14,9 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t first_places = 512, most_places = 8192;
-constexpr std::uint32_t rays_of_place = 64;  ///< To the sky, and to all suns together.
-constexpr int few_rays = 4;                  ///< Rays that escape, at most, from a place that sees little of the sky.
-constexpr std::size_t ways_of_place = 2;     ///< Escaping rays of a place that are followed, at most.
+constexpr std::uint32_t rays_of_place = 64;  ///< Number of rays per place to the sky; as many go to all suns together.
+constexpr int few_rays = 4;               ///< Maximum number of escaping rays of a place that sees little of the sky.
+constexpr std::size_t ways_of_place = 2;  ///< Maximum number of escaping rays of a place that are followed.
 constexpr std::size_t most_openings = 128, most_cells = 512;
 constexpr std::size_t most_attempts = 512;  ///< Escaping rays that are followed in the whole scene, at most.
 constexpr unsigned directions_of_point = 64, azimuths = 48, steps_of_azimuth = 24, halvings = 16;

@@ -86,7 +86,8 @@ class SmallSources::Centre {
   private:
     /// At this distance, shadows differ from those of parallel light by 1e-5 of the polygon's extent.
     void set_far(const Vec3& towards, const Point& middle) {
-        constexpr double far = 1e5;  // scene sizes, derived from rounding, which then moves shadows by 1e-9
+        // distance in scene sizes, derived from rounding, which at this distance moves shadows by 1e-9
+        constexpr double far = 1e5;
         is_far = true;
         at = middle + far * direct_.occluders().scene().size() * towards;
     }
@@ -197,7 +198,8 @@ namespace {
 /// with the distance of the point `near`, if there is one.
 template <class Light>
 Spectrum integral(const Point& a, const Point& b, const Point& c, const Point* near, int levels, const Light& light) {
-    constexpr double most_extent = 0.5;  // of the distance; derived from the rule's error, then below 1%
+    // largest extent relative to the distance; derived from the rule's error, which is then below 1%
+    constexpr double most_extent = 0.5;
     const double squared = std::max({squared_norm(b - a), squared_norm(c - b), squared_norm(a - c)});
     const Point ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a), middle = (1.0 / 3) * (a + b + c);
     if (near && levels > 0 && squared > most_extent * most_extent * squared_norm(middle - *near))

@@ -30,7 +30,7 @@ class SmallSources {
         std::span<const Point> outline;  ///< Metres, counter-clockwise about n.
         Normal n;
         RegionId own;
-        std::span<const Point> places;    ///< Points of the rule,
+        std::span<const Point> places;    ///< Points of the quadrature rule.
         std::span<const double> weights;  ///< Weights of these points; their sum is 1.
     };
     /// Irradiance, W/m^2, and the part of it that is parallel light or comes from the sun.
