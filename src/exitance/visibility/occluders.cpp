@@ -100,7 +100,7 @@ std::vector<std::uint8_t> Occluders::find_outer() const {
     // The farthest corners in 26 directions: if two of them are on different sides of a plane, so is the scene.
     std::vector<Point> far;
     for (int k = 0; k < 26; ++k) {
-        const int code = k < 13 ? k : k + 1;  // all of {-1, 0, 1}^3 except the middle
+        const int code = k < 13 ? k : k + 1;  // visits all directions in {-1, 0, 1}^3 except (0, 0, 0)
         const Vec3 along{code % 3 - 1.0, code / 3 % 3 - 1.0, code / 9 - 1.0};
         far.push_back(*std::max_element(corners_.begin(), corners_.end(),
                                         [&](const Point& p, const Point& q) { return dot(along, p) < dot(along, q); }));

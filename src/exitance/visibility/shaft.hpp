@@ -23,7 +23,7 @@ enum class View : std::uint8_t {
 struct Facet {
     std::span<const Point> corners;  ///< Counter-clockwise seen from the front, metres.
     Normal n;
-    RegionId region;          ///< Its region, which never occludes it; may be none.
+    RegionId region;          ///< Region of the facet, which never occludes it; may be none.
     bool is_distant = false;  ///< Part of the sky: so far away that rounding errors matter.
 };
 
