@@ -18,7 +18,7 @@ namespace {
 struct Polygon {
     ElementId leaf;
     std::vector<std::uint32_t> vertex;  ///< Indices of welded points.
-    std::vector<Vec2> uv;               ///< In the leaf's coordinates.
+    std::vector<Vec2> uv;               ///< Vertices, in the leaf's coordinates.
     std::vector<bool> is_own;           ///< False for corners of other leaves.
     std::uint32_t first_slot = 0;       ///< Index of its first vertex among the vertices of all polygons.
 };

@@ -138,7 +138,7 @@ class ElementTree {
     double reach(ElementId e, Vec2 uv) const;
     /// Maps two numbers in [0, 1) to a point of the domain, with uniform density.
     Vec2 uniform(ElementId e, double s, double t) const;
-    std::vector<ElementId> leaves() const;  ///< In the order of their ids.
+    std::vector<ElementId> leaves() const;  ///< Returns all leaves, in the order of their ids.
 
     /// Finds the leaf below `e` that contains the point (u, v) of `e`, and the coordinates there, clamped to the leaf.
     /// O(depth).
