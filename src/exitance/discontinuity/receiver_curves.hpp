@@ -48,7 +48,7 @@ struct CurveOptions {
     ConicCurves conics = ConicCurves::at_umbras;
     std::vector<SecondarySource> secondary = {};
     const StopRequest* stop = nullptr;      ///< After a request to stop, the results are incomplete.
-    const WeakLight* weak = nullptr;        ///< If given, only its strong sources get curves.
+    const WeakLight* weak = nullptr;        ///< If not null, only its strong sources get curves.
     const BlockerSearch* search = nullptr;  ///< Finds the blockers of sources; null: shafts and a tree of boxes.
 };
 
@@ -74,7 +74,7 @@ class CurveFinder {
     void add_curves_behind(RegionId region, ReceiverCurves& out) const;
     /// Bounds on the light that a source brings to a region, W/m^2 of rho E.
     struct Effect {
-        double gain = HUGE_VAL;  ///< Upper bound anywhere on the region.
+        double gain = HUGE_VAL;  ///< Upper bound of the light at any point of the region.
         Point centre;            ///< Centre of a ball around the source.
         double radius = 0;       ///< Radius of the ball, metres.
         /// The source's exitance times the region's reflectance, W/m^2; 0: only `gain` is available.

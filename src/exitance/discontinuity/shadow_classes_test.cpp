@@ -133,7 +133,8 @@ std::vector<Case> cases() {
 }
 
 TEST(ShadowClasses, AreRightAtNinetyNineOfAHundredRandomPoints) {
-    // The rest are points of triangles that a curve of three or more blockers' edges crosses: it has no line.
+    // The other points are in triangles that are crossed by a shadow curve due to three or more blocker edges. The mesh
+    // has no lines for such curves.
     for (const Case& c : cases())
         for (const auto& [structure, name] : structure_names) {
             const Confusion found = confusion(c.scene, mesh_of(c.scene, {.structure = structure}), 11);
