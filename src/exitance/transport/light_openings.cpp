@@ -99,7 +99,8 @@ Cuts sweep(const Flow& flow, const LeafNumbers& order, std::uint16_t part) {
         area += flow.area[order[k]], u += up[k], d += down[k], lost_below += lost[k];
         const bool is_small = 2 * area <= total;
         double outwards = is_small ? lost_below : all_lost - lost_below;
-        // The sky is on the side that sends more to it: only what the other side sends there crosses the cut.
+        // The sky is assigned to the side that sends more light to it. Only the light that the other side sends to the
+        // sky crosses the cut.
         if (flow.has_sky) outwards = std::min(lost_below, all_lost - lost_below);
         out.area[k] = area;
         out.opening[k] = (is_small ? u : d) + outwards;

@@ -90,7 +90,7 @@ class PassedLight {
     }
 
     std::size_t nodes_ = 1;
-    std::vector<Row> rows_;              ///< One per element of a pane, in ascending order of elements.
+    std::vector<Row> rows_;              ///< One row per element of a pane, in ascending order of elements.
     std::vector<std::uint32_t> row_of_;  ///< Row of each element; empty if there are no panes.
     std::vector<Term> terms_;
     std::vector<double> weights_;

@@ -18,7 +18,7 @@ namespace exitance {
 /// Receiving elements and sending patches: two levels of one tree [Cohen86]. A patch is a leaf or an inner element;
 /// every leaf belongs to exactly one patch.
 struct PatchLevel {
-    std::vector<ElementId> patches;       ///< In order of their ids.
+    std::vector<ElementId> patches;       ///< The patches, in the order of their ids.
     std::vector<std::uint32_t> patch_of;  ///< The patch of each leaf, as an index into `patches`.
     std::vector<double> share;            ///< Area of each leaf over the area of its patch.
 
