@@ -83,7 +83,7 @@ class ClutteredExchange {
     /// Weights in m^2; form factors to the whole source; form factors to a part of it.
     std::vector<double> weights_, values_, factors_;
     std::vector<Seen> seen_;
-    std::vector<std::size_t> ends_;  ///< End of each rule's nodes.
+    std::vector<std::size_t> ends_;  ///< Per rule: end of its nodes in `nodes_`.
     double area_ = 0, total_ = 0, squared_error_ = 0, relative_ = 0;
     double brightest_ = 0;  ///< Largest form factor found, or a bound on the one that may have been missed.
     bool all_lit_ = true, turned_ = false;

@@ -146,7 +146,7 @@ class Combination {
             const RowEntry& entry = rows_[i].entries[k];
             const std::uint32_t j = entry.column;
             const OneSide mine = side_of(entry, areas_[i]), theirs = side_of(*find_entry(rows_[j], i), areas_[j]);
-            // In fixed order, so that both rows get the same bits.
+            // Combine in fixed order, so that both rows get identical bits.
             const Exchange e = i < j ? combined(mine, theirs) : combined(theirs, mine);
             out.areas[k] = e.area, out.variances[k] = static_cast<float>(e.variance);
         }

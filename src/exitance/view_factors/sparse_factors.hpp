@@ -19,7 +19,7 @@ struct SparseFactors {
     std::vector<std::uint32_t> columns;  ///< Column of each entry, ascending within a row.
     std::vector<double> values;
 
-    std::vector<double> row_sums;  ///< One per face.
+    std::vector<double> row_sums;  ///< Sum of each row's factors, one value per face.
     /// Shares of the flux leaving each face that leave the scene, and that reach the back of a face or start below
     /// another face. Found by rays. Empty if they were not computed.
     std::vector<double> sky, back;

@@ -100,7 +100,7 @@ TEST(ViewFactors, RowsOfAClutteredRoomSumToOneAndAreReciprocal) {
         // Errors of several entries add up.
         EXPECT_NEAR(table.row_sums[i], covered ? 0 : 1 - stands, 2 * tolerance) << i;
     }
-    EXPECT_LT(table.reciprocity_defect, 2 * tolerance);  // both rows have errors
+    EXPECT_LT(table.reciprocity_defect, 2 * tolerance);  // tolerance: both rows have errors
 }
 
 /// The room of the complex family with the seat of one chair on one leg. The bounding boxes of the slanting walls

@@ -59,7 +59,7 @@ class ViewPairs {
     std::vector<std::uint32_t> sides_;    ///< One row per face, one column per blocker.
     std::vector<std::uint8_t> standing_;  ///< One row per face, one column per blocker.
     BlockerPlanes planes_;
-    std::vector<std::uint8_t> hidden_;  ///< One row and one column per face.
+    std::vector<std::uint8_t> hidden_;  ///< 1 for hidden pairs: one row and one column per face.
 };
 
 }  // namespace exitance
