@@ -247,7 +247,7 @@ class Interpolation {
     std::size_t max_elements_ = 0;
     ElementFunction out_;
     Field<ElementId, Fit> fitted_;
-    std::vector<std::uint8_t> renewed_;  ///< One per element of the direct projection; empty: none.
+    std::vector<std::uint8_t> renewed_;  ///< 1 for elements of the direct projection to renew; empty: none.
 };
 
 }  // namespace

@@ -66,7 +66,8 @@ bool is_lit(const Stage& stage, const PathTracer& tracer, const Side& side, unsi
             if (max(tracer.path({x, n, side.region}, directions(p, 0), directions(p, 1), random)) > 0) return true;
     }
     PlaceLight::Workspace workspace;
-    constexpr LightAccuracy any_light{.relative = 0.01};  // derived from the question: is there any light?
+    // derived from the purpose: only whether there is any light matters
+    constexpr LightAccuracy any_light{.relative = 0.01};
     return std::any_of(open.begin(), open.end(), [&](const auto& place) {
         return max(stage.place_light.at(place.first, n, side.region, any_light, workspace).irradiance) > 0;
     });
