@@ -14,7 +14,7 @@ class ElementPolynomials {
     static constexpr std::size_t max_count = 9;
     using Values = std::array<double, max_count>;
 
-    /// With polynomials of second degree if `curved`.
+    /// Makes the polynomials of an element. If `curved`, includes second degree.
     ElementPolynomials(const ElementTree& tree, ElementId e, const std::vector<WeightedPlace>& places, bool curved);
 
     std::size_t size() const { return size_; }
