@@ -13,7 +13,7 @@ namespace exitance {
 struct NormalTriangle {
     SurfaceId surface;
     std::array<Point, 3> corner;   ///< Metres.
-    std::array<Normal, 3> normal;  ///< On the front side of the face.
+    std::array<Normal, 3> normal;  ///< Normals at the corners, on the front side of the face.
 };
 
 /// The place on the curved surface that a point of a face stands for.

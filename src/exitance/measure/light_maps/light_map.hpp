@@ -49,7 +49,7 @@ struct LightMap {
 struct LightMaps {
     double density = 0;  ///< Texels per metre.
     int padding = 0;
-    std::vector<Chart> charts;  ///< One per region, in the order of their ids.
+    std::vector<Chart> charts;  ///< One chart per region, in the order of their ids.
     std::vector<LightMap> maps;
     std::size_t texels = 0;    ///< Number of texels that are on surfaces, wholly or in part.
     CurvedDifferences curved;  ///< Empty for maps of a part of the light.

@@ -32,7 +32,7 @@ struct UvObject {
 struct UvLayout {
     static constexpr std::uint32_t no_chart = std::numeric_limits<std::uint32_t>::max();
 
-    std::vector<UvObject> objects;  ///< In the order of UvSet::objects.
+    std::vector<UvObject> objects;  ///< Results for each object, in the order of UvSet::objects.
     std::size_t maps = 1;
     std::size_t charts = 0;
     std::vector<std::array<Vec2, 3>> places;  ///< Corners of each triangle in its map, (0, 0) to (1, 1).

@@ -321,7 +321,7 @@ TEST(UvLightMap, SizesFollowTheDensity) {
         const Result<UvLightMaps> maps = bake_uv_light_maps(light, set, {.density = density}, progress, stop);
         return maps ? maps->maps[0].light.size.width : 0;
     };
-    EXPECT_EQ(side(16), 64);  // 2 m are half of the map
+    EXPECT_EQ(side(16), 64);  // the chart's 2 m are half of the map's side
     EXPECT_EQ(side(17), 128);
     EXPECT_EQ(side(1e5), 0);
     UvSet stacked = set;

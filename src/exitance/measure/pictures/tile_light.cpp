@@ -125,8 +125,8 @@ bool TileLight::looks_small(const Spot& spot, const ReceiverLight& known, const 
         radius_squared = std::max(radius_squared, squared_norm(points_[spot.first + i] - middle));
     for (const Beam& beam : known.beams) {
         const PunctualLight& lamp = light_.solution().scene.lights()[beam.light];
-        const double distance = small * norm(lamp.position - middle);  ///< its cone may have a sharp edge
-        if (lamp.kind == PunctualLight::Kind::spot) return false;      // the cone of a spotlight may have a sharp edge
+        const double distance = small * norm(lamp.position - middle);
+        if (lamp.kind == PunctualLight::Kind::spot) return false;  // the cone of a spotlight may have a sharp edge
         if (!lamp.is_directional() && radius_squared > distance * distance) return false;
     }
     for (const ReceiverLight::Source& source : known.sources) {

@@ -154,7 +154,7 @@ class Prober {
         for (Spectrum& variance : out.standard_error)
             for (double& value : variance.value) value = std::sqrt(value);
     }
-    /// Until the fit is complete, standard errors hold variances.
+    /// Until the fit is complete, the fields for standard errors store variances.
     static Spectrum& variance_of(LightProbe& probe, std::size_t i) { return probe.standard_error[i]; }
 
     void add_direct(const Point& x, LightProbe& out) {
