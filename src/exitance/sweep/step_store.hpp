@@ -17,7 +17,7 @@ namespace exitance {
 struct StepFailure {
     int status = 0;  ///< Exit status of the command; 1000 + the signal number if a signal ended it.
     std::string message;
-    std::string command;  ///< For a shell in the folder of the plan.
+    std::string command;  ///< Command line for a shell in the folder of the plan.
 };
 
 /// How the commands of steps are run.
