@@ -33,7 +33,7 @@ struct MethodInput {
     void end_round(const Light& light) const {
         if (snapshots) snapshots->after_round(light);
     }
-    /// Likewise after a shot. `shots`: number of shots so far.
+    /// Like end_round(), after a shot. `shots`: number of shots so far.
     template <class Light>
     void end_shot(std::size_t shots, const Light& light) const {
         if (snapshots) snapshots->after_shot(shots, light);

@@ -56,7 +56,7 @@ class SecondaryLight {
     const ElementLocator& locator_;
     std::vector<SecondarySource> sources_;
     ElementFunction fit_;                        ///< H_e.
-    std::optional<ElementLocator> fit_locator_;  ///< Locator in `fit_`; none if there is no secondary light.
+    std::optional<ElementLocator> fit_locator_;  ///< Locator in `fit_`; none if a stop prevented the fit.
 };
 
 }  // namespace exitance

@@ -100,7 +100,6 @@ bool Solver::lower_error() {
     // Factor on the error between intermediate solutions, given by work ~ error^-2.5 to error^-1. Solutions that differ
     // less are not worth an attempt.
     constexpr double step = 0.4;
-    // continue while the next error differs enough to be worth an attempt
     const double before = *options_.error;
     while (*options_.error > requested_error_ && has_reached(*options_.error)) {
         const double next = step * std::min(*options_.error, certificate_.largest());
@@ -206,7 +205,7 @@ void Solver::project_direct() {
         progress_.note(fmt::format("direct light scaled by {:.5f} to the emitted power", mean(scale)));
         direct_ = std::move(fresh);
         unscaled_.direct = inverse(scale);
-        share_on_node(direct_.fit.span());  // not modified from here on
+        share_on_node(direct_.fit.span());  // this array does not change any more, so processes of a node can share it
     }
 }
 

@@ -233,7 +233,7 @@ class Solver {
     struct BodyShares {
         double gathered = 1, seen = 1;
     };
-    std::vector<BodyShares> body_shares_;  ///< One per body; empty unless bodies must be accurate.
+    std::vector<BodyShares> body_shares_;  ///< Shares of each body; empty unless bodies must be accurate.
     Step step_ = Step::project;
     bool fresh_ = true;                  ///< True if the method solves in this attempt.
     Spectrum share_;                     ///< c of the method's light, see find_direct_share.
