@@ -102,9 +102,10 @@ struct DaylightResults {
     DaylightYear year;
     std::vector<SensorResults> sensors;
     DaylightSummary summary;
-    std::vector<std::vector<std::uint8_t>> states;  ///< Per group of panes and hour; empty without states.
-    std::vector<VariantSummary> variants;           ///< One per variant of the states.
-    std::vector<std::string> warnings;              ///< See DaylightSimulation::warnings().
+    /// State of each group of panes in every hour; empty without states.
+    std::vector<std::vector<std::uint8_t>> states;
+    std::vector<VariantSummary> variants;  ///< One summary per variant of the states.
+    std::vector<std::string> warnings;     ///< See DaylightSimulation::warnings().
 };
 
 /// Runs simulate_year() and keeps all results. About 75 kB per sensor.

@@ -52,7 +52,7 @@ struct StateScene {
 /// Other glass: factors on the light that has crossed panes of each group, in all states of it.
 struct GlassVariant {
     std::string name;
-    std::vector<double> factors;  ///< From 0 to 1, one per group.
+    std::vector<double> factors;  ///< Factor of each group, from 0 to 1.
 };
 
 /// Groups of panes whose states change from hour to hour.
@@ -75,7 +75,7 @@ struct StatePart {
 
 /// Weights of the parts if other glass is installed, in the occupied hours.
 struct VariantWeights {
-    std::vector<std::vector<float>> parts;  ///< Per part and occupied hour, as in StatePart.
+    std::vector<std::vector<float>> parts;  ///< Weight of each part in every occupied hour, as in StatePart.
     std::vector<float> uncertainty;         ///< Light that may be wrong in every occupied hour, relative to all light.
     std::vector<double> factors;            ///< Factor of the transmission of every group.
 };

@@ -31,7 +31,7 @@ struct DaylightSummary {
     double most_sunlight = 0;          ///< Largest number of hours of sunlight on the cloudless day.
     DaylightProvision provision;
     DaylightBias bias;
-    std::vector<DaylightError> errors;  ///< One per grid.
+    std::vector<DaylightError> errors;  ///< Errors of each grid.
     std::vector<double> grid_factors;   ///< Mean daylight factor of every grid, per cent.
     std::optional<GlareSummary> glare;  ///< Glare; none if there are no views.
     Lm83Deviations lm83;

@@ -104,7 +104,7 @@ constexpr double required_autonomy = 0.5;
 
 /// Annual metrics of standards at a sensor; shares are of the occupied hours.
 struct DaylightMetrics {
-    double daylight_factor = 0;  ///< Per cent, under the traditional overcast sky.
+    double daylight_factor = 0;  ///< Daylight factor under the traditional overcast sky, per cent.
     double autonomy = 0;         ///< DA: share of the hours with the target illuminance.
     double continuous = 0;       ///< Continuous DA: mean of the shares of the target that each hour reaches.
     /// Hours at full power that electric light takes which the sensor dims: power p + (1 - p) max(0, 1 - E / target) in
