@@ -32,7 +32,7 @@ struct LightMapFormat {
     LightMapQuantity quantity = LightMapQuantity::irradiance;
     Component component = Component::total;
     Precision precision = Precision::single;
-    bool with_hdr = false;  ///< Also writes every map as .hdr (write_hdr).
+    bool with_hdr = false;  ///< True if every map is also written as .hdr (write_hdr).
     LightMapMaterial material = LightMapMaterial::emissive;
     std::string scene_file;  ///< glTF file with the scene's own textures; empty: none.
 };

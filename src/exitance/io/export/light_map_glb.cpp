@@ -312,7 +312,8 @@ Result<Textures> make_textures(const Scene& scene, const LightMaps& shown, Light
     const bool two_sets = own && own->has_second_set();
     out.light_set = two_sets ? 2 : 1;
     out.base.resize(scene.materials().size());
-    const std::size_t first_view = two_sets ? 6 : 5;  // after the vertex arrays and the indices
+    // number of the first buffer view after those of vertex arrays and indices
+    const std::size_t first_view = two_sets ? 6 : 5;
     for (std::size_t m = 0; m < shown.maps.size(); ++m) {
         const Result<std::string> png = encode_png(texture(scene, shown, m, way, tone, peak), {});
         if (!png) return png.error();
@@ -323,7 +324,7 @@ Result<Textures> make_textures(const Scene& scene, const LightMaps& shown, Light
     for (std::size_t p = 0; p < own->pictures.size(); ++p)
         out.add_file({own->pictures[p].file.begin(), own->pictures[p].file.end()}, fmt::format("picture_{}", p),
                      own->pictures[p].kind, first_view);
-    std::map<std::array<int, 3>, std::size_t> numbers;  // of textures, by picture and wrap modes
+    std::map<std::array<int, 3>, std::size_t> numbers;  // numbers of the textures, by picture and wrap modes
     for (MaterialId id : scene.materials().ids()) {
         const SceneTextures::Coat& coat = own->coats[id];
         if (coat.picture < 0 || own->places[coat.set].empty()) continue;

@@ -45,7 +45,7 @@ struct Photometry {
     std::string file;
     std::string format;  ///< "IESNA:LM-63-2002", "EULUMDAT", ...
     Type type = Type::c;
-    std::string symmetry;  ///< In words, for reports.
+    std::string symmetry;  ///< Symmetry in words, for reports.
     /// Keywords and their values, in the order of the file.
     std::vector<std::pair<std::string, std::string>> keywords;
     int lamps = 1;
@@ -73,7 +73,7 @@ struct Photometry {
 /// Angular range in a plane through the axis in which the intensity is at least a share of the maximum: degrees from
 /// the axis to each side, at most 90. The plane is spanned by the axis and the unit vector `towards`.
 struct BeamSpread {
-    double left = 0, right = 0;  ///< Towards -towards and towards +towards.
+    double left = 0, right = 0;  ///< Angles towards -towards and towards +towards.
     double whole() const { return left + right; }
 };
 /// Computes the spread for a `share` of the largest intensity in that plane below the horizontal: 0.5 for the beam

@@ -124,7 +124,7 @@ std::int64_t Hdf5Writer::make_set(const std::string& name, std::int64_t file_typ
     } else if (rank > 0) {
         chunk[0] = rows_of_chunk(items / shape[0] * item_bytes, shape[0]);
         H5Pset_chunk(creation, rank, chunk.data());
-        // These must agree with `filters_of`.
+        // The filters set below must agree with `filters_of`.
         if (H5Tequal(file_type, hdf5_stored_type(Hdf5Type::float32)) > 0) {
             H5Pset_fletcher32(creation);
         } else {

@@ -97,7 +97,7 @@ struct GltfModel {
     struct View {
         std::string name;
         double yfov = 1, aspect = 0;  ///< Vertical field of view, radians; width over height, 0 if unknown.
-        double xmag = 0;              ///< Half the width of an orthographic view, m; 0: perspective.
+        double xmag = 0;              ///< Half of the width of an orthographic view, m; 0: perspective.
     };
     struct Lamp {
         std::string name;

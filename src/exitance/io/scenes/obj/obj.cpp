@@ -76,7 +76,7 @@ class ObjReader {
     bool with_normals_ = false;
     std::vector<Vec3> normals_;  ///< Normals (vn lines), if `with_normals_`.
     std::vector<std::vector<std::uint32_t>>
-        normals_of_face_;  ///< Like `places_of_face_`; empty unless `with_normals_`.
+        normals_of_face_;  ///< Per face, the normals of its corners; empty unless `with_normals_`.
 };
 
 void ObjReader::parse() {

@@ -109,7 +109,7 @@ class FaceCutter {
     /// Returns the patches whose potential is at least `min_benefit`, ascending; at most `max_patches`, those of
     /// largest potential.
     std::vector<std::size_t> promising_patches(std::size_t max_patches) const {
-        std::vector<std::pair<double, std::size_t>> found;  // by use, then in the order of the file
+        std::vector<std::pair<double, std::size_t>> found;  // potential with negative sign, and index of the patch
         for (std::size_t p = 0; p < all_.patches.size(); ++p)
             if (const double use = potential_of(all_.patches[p]); use >= min_benefit) found.emplace_back(-use, p);
         std::sort(found.begin(), found.end());

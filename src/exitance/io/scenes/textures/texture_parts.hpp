@@ -18,7 +18,7 @@ struct FacePart {
 
 /// Textured faces that were cut.
 struct CutFaces {
-    std::vector<std::vector<FacePart>> parts;  ///< Per face. A cut face without parts is a hole.
+    std::vector<std::vector<FacePart>> parts;  ///< Parts of each face. A face that is cut but has no parts is a hole.
     std::vector<std::uint8_t> is_cut;          ///< Per face.
     /// Area of holes that were closed and of opaque parts that were left out, m^2.
     double misplaced = 0;

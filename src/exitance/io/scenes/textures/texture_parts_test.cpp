@@ -293,7 +293,7 @@ TEST(TexturedFaces, HolesAreCutOutAndTheAreaIsBalanced) {
     });
     Wall wall(ring);
     wall.d.materials[0].reflectance = Spectrum(0.5);
-    wall.add({0, 1, 2, 3}), wall.add({3, 2, 1, 0});  // with its back
+    wall.add({0, 1, 2, 3}), wall.add({3, 2, 1, 0});  // a face and its back
     TexturedFaces textured(wall.d, most_reflected, {});
     for (std::size_t f = 0; f < 2; ++f) {
         FaceColours colours;

@@ -181,7 +181,7 @@ void TexturedFaces::replace_cut_faces() {
         if (!stays(varying_[v])) cut.is_cut[v] = 1;  // replaces the face by no parts, so that it is omitted
     }
     std::vector<SceneDescription::Face> faces;
-    std::vector<std::size_t> place(out_->faces.size());  // of each face in the new list
+    std::vector<std::size_t> place(out_->faces.size());  // index of each face in the new list
     std::vector<std::size_t> first_part(varying_.size());
     std::size_t next = 0;
     for (std::size_t f = 0; f < out_->faces.size(); ++f) {
