@@ -138,7 +138,7 @@ struct BakeArguments : CommonArguments {
     std::optional<PictureSize> size;  ///< Texels of each map with `uv`; empty: by density.
     std::string charts;               ///< PNG file for a picture of the charts with `uv`; empty: none.
     bool faceted = false;             ///< Ignore the normals of the scene's file.
-    bool light_groups = false;        ///< Also bake separate maps for every light group.
+    bool light_groups = false;        ///< True if separate maps are baked for every light group as well.
     int threads = 0;
 };
 
