@@ -133,7 +133,7 @@ EXITANCE_INLINE Real load(const double* p) {
 }
 /// Returns a bit for each lane whose sign bit is set; comparisons set it where they hold.
 EXITANCE_INLINE int bits(const Mask& m) {
-#ifdef __SSE2__  // by halves, which every target has
+#ifdef __SSE2__  // in two halves, which every target supports
     using Half = double __attribute__((vector_size(16)));
     Half half[2];
     __builtin_memcpy(half, &m, sizeof m);

@@ -60,7 +60,7 @@ class IdRange {
     std::uint32_t first_ = 0, last_ = 0;
 };
 
-/// One value per thing of a pool: a vector that only that pool's ids may index.
+/// One value per object of a pool: a vector that can be indexed only by ids of that pool.
 template <class AnyId, class T>
 class Field {
   public:
