@@ -34,7 +34,7 @@ struct BorderedFace {
     /// Its border, one loop per part; an edge common to two parts has no effect.
     std::vector<std::vector<Point>> loops;
     std::vector<Triangle> triangles;
-    Normal n;  ///< Towards the front.
+    Normal n;  ///< Unit normal, towards the front.
     /// Indices of the face's edges, and the face's direction along each (1 or -1).
     std::vector<std::pair<std::uint32_t, int>> edges = {};
 };

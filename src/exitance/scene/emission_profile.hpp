@@ -16,13 +16,13 @@ struct EmissionProfile {
     /// The angle that an axis of the table measures, in degrees, for the direction d in which light leaves the lamp.
     enum class Angle : std::uint8_t {
         theta,         ///< Angle from straight down, 0 to 180 degrees.
-        phi,           ///< About the vertical, from +x towards +y, 0 to 360;
-        phi2,          ///< folded to 0 to 180: symmetric in y;
-        phi4,          ///< folded to 0 to 90: symmetric in x and y.
-        b_vertical,    ///< Type B photometry: towards +x, -180 to 180;
-        b_vertical2,   ///< its absolute value;
-        b_horizontal,  ///< Type B photometry: horizontal angle towards -y, degrees;
-        b_horizontal2  ///< its absolute value.
+        phi,           ///< Angle about the vertical, from +x towards +y, 0 to 360 degrees.
+        phi2,          ///< Like `phi`, folded to 0 to 180 degrees: symmetric in y.
+        phi4,          ///< Like `phi`, folded to 0 to 90 degrees: symmetric in x and y.
+        b_vertical,    ///< Type B photometry: vertical angle towards +x, -180 to 180 degrees.
+        b_vertical2,   ///< Absolute value of `b_vertical`.
+        b_horizontal,  ///< Type B photometry: horizontal angle towards -y, degrees.
+        b_horizontal2  ///< Absolute value of `b_horizontal`.
     };
     static constexpr int angle_kinds = 8;
 

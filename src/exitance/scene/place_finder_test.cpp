@@ -124,7 +124,7 @@ TEST(PlaceFinder, BelowASheetThePositionDecidesThenTheRequestedSide) {
     const Scene scene = scene_of({slab, partition, reversed(partition)});
     const PlaceFinder finder(scene);
     const double step = finder.step();
-    for (const double z : {0.0, 1.0}) {  // on the floor, in free space
+    for (const double z : {0.0, 1.0}) {  // a point on the floor, and one in free space
         for (const double side : {-1.0, 1.0}) {
             const Point towards{side, 0.3, 0};
             const MeasuredPlace chosen = finder.find({0, 0, z}, up, &towards);

@@ -395,7 +395,7 @@ TEST(Checks, OfFacesInOnePlaneTheLaterOneIsOnTop) {
 TEST(Checks, EqualFindingsAreReportedOnce) {
     Sketch sketch;
     for (int i = 0; i < 3; ++i) sketch.add({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
-    for (auto& face : sketch.rectangle(0, 0, 1, 1).light().d.faces) face.line = 0;  // as from glTF
+    for (auto& face : sketch.rectangle(0, 0, 1, 1).light().d.faces) face.line = 0;  // no line numbers, as in glTF files
     const auto s = sketch.make();
     ASSERT_TRUE(s.scene);
     ASSERT_EQ(count(s, Finding::Kind::repair), 1);

@@ -11,7 +11,7 @@ namespace exitance {
 /// A distant polygon that represents a part of the distant light.
 struct DistantFacet {
     std::vector<Vec3> corners;      ///< Directions, not normalized; counter-clockwise seen from inside.
-    Normal n;                       ///< Towards the scene.
+    Normal n;                       ///< Unit normal, towards the scene.
     Spectrum exitance;              ///< W/m^2
     const SkyModel* sky = nullptr;  ///< Directional radiance; null: constant.
     double smooth_width = 0;        ///< Smooth width of the radiance on this facet, radians.

@@ -25,8 +25,8 @@ struct Place {
 
 /// Position of the sun in the sky, degrees.
 struct SunPosition {
-    double altitude = 0;  ///< Above the horizon, including refraction;
-    double azimuth = 0;   ///< from north towards east, 0 to 360.
+    double altitude = 0;  ///< Angle above the horizon, including refraction.
+    double azimuth = 0;   ///< Angle from north towards east, 0 to 360.
 };
 
 /// Returns the apparent position of the sun's centre: heliocentric longitude, latitude and distance of the Earth by the
