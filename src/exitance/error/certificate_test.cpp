@@ -200,7 +200,7 @@ TEST(Certificate, FindsAnErrorOfTheProjectionThatTheDeliveredLightShares) {
         EXPECT_LT(planted.estimate(seed, {}), 0.01);  // without the check, the estimate misses the error
         EXPECT_NEAR(planted.estimate(seed, told), planted.truth, 0.1 * planted.truth);
     }
-    // The same holds if light is summed over elements, which contain the projected light.
+    // If light is summed over elements, the light includes the projected light.
     ElementFunction reflected = planted.furnace.delivered;
     for (std::array<float, bands>& value : reflected.values)
         for (float& v : value) v = static_cast<float>(planted.furnace.rho * (planted.factor + static_cast<double>(v)));

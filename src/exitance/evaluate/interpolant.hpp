@@ -14,7 +14,7 @@ struct InterpolantOptions {
     /// remains is reported.
     double max_growth = 4;
     std::size_t always_allowed = 20'000;
-    /// As in LocalPassDemand: light of each room, to which its allowed error is proportional.
+    /// Light of each room, to which its allowed error is proportional, like in LocalPassDemand.
     std::span<const double> light_in = {};
     std::uint64_t seed = 1;  ///< Selects the places at which the error is measured.
 };
