@@ -89,7 +89,7 @@ void SceneBuilder::check_lights() {
                          [](double v) { return v >= 0 && v <= max_exitance; }))
             error(0, fmt::format("light '{}' has an intensity that is negative, too large or not finite", light.name));
         if (!is_near(light.position) || !(std::abs(norm(light.direction) - 1) < 1e-6))
-            error(0, fmt::format("light '{}' has no place or no direction", light.name));
+            error(0, fmt::format("light '{}' has no position or no direction", light.name));
         if (light.kind == PunctualLight::Kind::spot &&
             !(light.inner_cone >= 0 && light.inner_cone < light.outer_cone && light.outer_cone <= pi / 2))
             error(0,
@@ -98,7 +98,7 @@ void SceneBuilder::check_lights() {
                   "the inner one is at least 0 and less than the outer one, that one at most pi / 2");
     }
     if (!in_.distant.is_sane())
-        error(0, "a sky or a sun has no direction, or light that is negative, too much or not finite");
+        error(0, "a sky or a sun has no direction, or its light is negative, too large or not finite");
 }
 
 void SceneBuilder::add_pane_faces() {
@@ -154,7 +154,7 @@ void SceneBuilder::check_faces() {
     else if (in_.faces.empty())
         error(in_.panes[0].line, "all faces are panes of clear glass", "a scene needs at least one opaque face");
     else if (mesh_.size() == 0 && !has_errors())
-        error(in_.faces[0].line, "no polygon is left once faces without area are taken out");
+        error(in_.faces[0].line, "no polygon is left after faces without area were removed");
 }
 
 /// Appends the face to the mesh if it is valid; otherwise reports why not.
@@ -168,7 +168,8 @@ void SceneBuilder::check_face(std::uint32_t f) {
     std::vector<std::uint32_t> outline = face.corners;
     for (std::uint32_t& c : outline) {
         if (c >= in_.points.size())
-            return error(face, fmt::format("face names corner {} of {} points", c + 1, in_.points.size()));
+            return error(
+                face, fmt::format("face refers to corner {}, but the scene has {} points", c + 1, in_.points.size()));
         if (!is_finite(in_.points[c])) return error(face, "a corner of the face is not a finite point");
         if (!is_near(in_.points[c]))
             return error(face,

@@ -47,7 +47,7 @@ Result<std::vector<std::string>> values_in_csv(const SweepOutput& output, const 
     if (output.take == SweepOutput::Take::value) {
         if (output.row > table->rows.size())
             return Error{ErrorCode::bad_input,
-                         fmt::format("there are {} rows, and row {} is wanted", table->rows.size(), output.row), path,
+                         fmt::format("there are {} rows, so there is no row {}", table->rows.size(), output.row), path,
                          ""};
         return std::vector<std::string>{table->text(output.row - 1, output.column)};
     }
@@ -61,7 +61,7 @@ Result<std::vector<std::string>> values_in_csv(const SweepOutput& output, const 
     if (numbers.empty()) return Error{ErrorCode::bad_input, "there are no rows", path, ""};
     const double value = combined(numbers, output.take);
     if (!std::isfinite(value))
-        return Error{ErrorCode::bad_input, fmt::format("column '{}' has cells that are no numbers", output.column),
+        return Error{ErrorCode::bad_input, fmt::format("column '{}' has cells that are not numbers", output.column),
                      path, ""};
     return std::vector<std::string>{fmt::format("{}", value)};
 }

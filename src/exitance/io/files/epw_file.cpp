@@ -315,7 +315,7 @@ Result<Weather> EpwReader::read() {
     }
     if (lines_.failed()) return lines_.read_error();
     if (!has_location_) return lines_.error("a weather file begins with LOCATION", "EnergyPlus' format, .epw");
-    if (rows_.empty()) return lines_.error("there are no hours in it");
+    if (rows_.empty()) return lines_.error("the file contains no hours");
     if (const Result<void> counted = count_hours_from_one(); !counted) return counted.error();
     if (const Result<void> made = make_hours(); !made) return made.error();
     const auto missing =

@@ -159,7 +159,7 @@ class PlyReader {
             line.next();
             const std::string_view key = line.word();
             if (header.lines == 1) {
-                if (key != "ply") return error(1, "is no PLY file: its first line is not 'ply'");
+                if (key != "ply") return error(1, "is not a PLY file: its first line is not 'ply'");
             } else if (key == "format") {
                 const std::string name(line.word());
                 if (!read_format(name, line.word(), header)) return std::nullopt;

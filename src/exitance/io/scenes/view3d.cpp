@@ -125,7 +125,7 @@ class View3dReader {
     void read_vertex(TextLines& items) {
         const auto number = parse_integer(items.word());
         if (!number || *number != static_cast<long long>(vertices_.size()) + 1)
-            error(line_, fmt::format("vertex {} is not numbered so", vertices_.size() + 1),
+            error(line_, fmt::format("the number of vertex {} is out of order", vertices_.size() + 1),
                   "vertices are numbered 1, 2, 3, ...");
         Point p;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -150,7 +150,7 @@ class View3dReader {
     void read_surface(char kind, TextLines& items) {
         const auto number = parse_integer(items.word());
         if (!number || *number != static_cast<long long>(pieces_.size()) + 1)
-            error(line_, fmt::format("surface {} is not numbered so", pieces_.size() + 1),
+            error(line_, fmt::format("the number of surface {} is out of order", pieces_.size() + 1),
                   "surfaces of all kinds are numbered 1, 2, 3, ...");
         Piece piece;
         piece.kind = kind, piece.line = line_;

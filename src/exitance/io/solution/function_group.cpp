@@ -252,7 +252,7 @@ ElementFunction read_function(Hdf5Reader& file, const std::string& group, std::s
     }
     if (count * bands != values.size() || count >= none)
         return file.fail(group + "/values",
-                         "has " + std::to_string(values.size() / bands) + " rows in place of " + std::to_string(count)),
+                         "has " + std::to_string(values.size() / bands) + " rows instead of " + std::to_string(count)),
                ElementFunction();
     function.values.resize(count);
     for (std::size_t i = 0; i < count; ++i)

@@ -72,7 +72,7 @@ void Solver::make_output_mesh() {
         const double own = scale > 0 ? report.error / scale : 0;
         if (statistics().relative_error_estimate && !report.interrupted)
             statistics().relative_error_estimate_interpolant = std::hypot(own, *statistics().relative_error_estimate);
-        progress_.note(fmt::format("{} elements to export, {:.3f}% from the function by themselves",
+        progress_.note(fmt::format("{} elements to export; their own error is {:.3f}%",
                                    solution_.interpolant.tree.leaves().size(), 100 * own));
     }
     // for the statistics of escaping light

@@ -262,7 +262,8 @@ bool SceneMaker::add_primitive(const GltfModel::Primitive& p, const GltfModel::M
             c[k] = p.has_indices ? p.indices.index(at[k]) : static_cast<std::uint32_t>(at[k]);
             restart |= c[k] == 0xffffffffu;
             if (c[k] >= p.positions.size() && !restart)
-                return error(fmt::format("mesh '{}' names vertex {} of {}", mesh.name, c[k], p.positions.size()));
+                return error(fmt::format("mesh '{}' refers to vertex {}, but has {} vertices", mesh.name, c[k],
+                                         p.positions.size()));
         }
         if (restart || (p.mode != GltfModel::Mode::triangles && (c[0] == c[1] || c[1] == c[2] || c[2] == c[0])))
             continue;  // strips contain triangles without area to change direction

@@ -97,7 +97,7 @@ class ModelReader {
             return std::move(out_);
         }
         if (text(model, "type") != "Model") {
-            error(fmt::format("is no Honeybee model but '{}'", shown(text(model, "type"))),
+            error(fmt::format("is not a Honeybee model but '{}'", shown(text(model, "type"))),
                   "save the whole model as HBJSON");
             return std::move(out_);
         }

@@ -248,7 +248,7 @@ TEST(Honeybee, FaultsAreNamed) {
         return scene.findings.empty() ? std::string() : scene.findings[0].message;
     };
     EXPECT_EQ(message("{\n\"type\": }"), "is not valid JSON here");
-    EXPECT_EQ(message("{\"type\": \"Room\"}"), "is no Honeybee model but 'Room'");
+    EXPECT_EQ(message("{\"type\": \"Room\"}"), "is not a Honeybee model but 'Room'");
     EXPECT_EQ(message(model("'rooms': []", "", "Cubits")), "the unit of length 'Cubits' is unknown");
     EXPECT_EQ(message(model("'orphaned_shades': [" + sheet("s", "[0, 0], [1, 0, 0], [1, 1, 0]", "'x': 0") + "]")),
               "'s' has a corner that is not three finite numbers");
