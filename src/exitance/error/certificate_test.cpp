@@ -215,7 +215,7 @@ TEST(Certificate, FindsNoErrorInAnExactFurnace) {
     EXPECT_LT(furnace.summed_certificate(1).bound, 1e-5);
 }
 
-/// An error only in the elements beside two opposite edges of the floor.
+/// An error that is only in the elements next to two opposite edges of the floor.
 double beside_edges(const Point& p) {
     const double from_wall = std::min(p.x, 2 - p.x);
     return (from_wall < 0.25 && p.z < 0.5) || (p.z < 0.25 && from_wall < 0.5) ? 0.1 : 0;

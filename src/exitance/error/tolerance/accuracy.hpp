@@ -6,7 +6,7 @@
 
 namespace exitance {
 
-/// The internal settings of a solve, derived from the requested error. Settings given by the user are kept as they are.
+/// The internal settings of a solve, derived from the requested error. Settings given by the user are not changed.
 struct Knobs {
     MeshSize solve_mesh;          ///< Mesh of the elements on which the method solves.
     RayBudget solve_rays;         ///< Rays per matrix row, if rows are sampled by rays.
