@@ -303,7 +303,7 @@ ElementFunction LocalPass::finished(const LocalPassDemand& demand, LocalPassRepo
         report.leaves[leaf] = {std::sqrt(s.misfit_squared + s.noise_squared), s.rays};
     }
     out = nearest_continuous(out, stage_.scene, stage_.contacts);
-    // Polynomials that are made continuous overshoot beside steep falls. Irradiance is not negative.
+    // Polynomials that are made continuous overshoot next to steep falls. Irradiance is not negative.
     for (std::array<float, bands>& value : out.values)
         for (float& v : value) v = std::max(0.0f, v);
     tell_parts(report);

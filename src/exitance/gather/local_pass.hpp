@@ -21,8 +21,8 @@ struct LocalPassDemand {
     bool curved = false;   ///< Fit polynomials of second degree where they exceed their noise.
     /// Allowed error of interpolation relative to the light on an element, if elements are summed; 0: not limited.
     double relative_tolerance = 0;
-    /// b in parts that are summed instead of casting rays, if that suits the scene (empty: rays), and the allowed error
-    /// of one element as a share of the irradiance.
+    /// Parts of b that are summed instead of casting rays, if the scene is suitable (empty: cast rays), and the allowed
+    /// error of one element as a share of the irradiance.
     std::span<const ElementGather> elements = {};
     double element_share = 0;
     int max_depth = 8;  ///< Limit on the rounds of refinement.

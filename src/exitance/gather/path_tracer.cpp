@@ -120,7 +120,7 @@ double PathTracer::weight_of_shadow_ray(const Vertex& y, const Vertex& target) c
     return balance(density_of(chance, lights_.source(*source).area, r2, at_light / r), dot(y.n, w) / (pi * r));
 }
 
-/// Direct light at y by one shadow ray, weighted against the ray that the path takes anyway.
+/// Direct light at y by one shadow ray, weighted against the next ray of the path, which may hit the same light.
 Spectrum PathTracer::shadow_ray(const Vertex& y, RandomStream& random) const {
     if (lights_.empty()) return {};
     const double pick = random.uniform(), u = random.uniform(), v = random.uniform();

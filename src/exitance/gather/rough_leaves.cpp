@@ -19,7 +19,7 @@ class Strips {
         Strip& strip = strips_[static_cast<std::size_t>(std::clamp(coordinate * count, 0.0, count - 0.5))];
         strip.sum += residual, strip.squares += residual * residual, strip.places += 1;
     }
-    /// Mean square of the strips' means, less what chance adds to it: the part that varies across the strips.
+    /// Mean square of the strips' means minus the part that is due to chance: the variation across the strips.
     double between() const {
         double out = 0, places = 0;
         for (const Strip& s : strips_) {
@@ -45,8 +45,8 @@ bool LocalPass::is_suspect(ElementId e) const {
     return false;
 }
 
-/// Measures the misfit of an element's polynomial at many places, and sets it if it is larger than what the nodes of
-/// the fit showed.
+/// Measures the misfit of an element's polynomial at many places, and sets it if it is larger than the misfit at the
+/// nodes of the fit.
 void LocalPass::look_closely(ElementId e, SampledElement& sampled, const ReflectedLight& b,
                              const LocalPassDemand& demand, Workspace& w) const {
     // Derived from a feature that covers a twentieth of the element: some place meets it in 24 of 25 times, and its

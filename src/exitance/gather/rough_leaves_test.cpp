@@ -9,8 +9,8 @@ namespace exitance {
 namespace {
 
 /// A box whose ceiling sends light, b = 1 W/m^2, and a plate 16 mm above its floor. The floor is dark below the plate.
-/// From 50 mm beside it, the plate hides only directions within 18 degrees of the floor, which bring under a twentieth
-/// of the ceiling's light.
+/// At 50 mm from the plate's edge, the plate hides only directions within 18 degrees of the floor, which bring under a
+/// twentieth of the ceiling's light.
 struct PlateOnFloor {
     static constexpr double low = 0.45, high = 1.55, near_side = 0.35, far_side = 1.15;  ///< Borders of the plate, m.
 
@@ -20,7 +20,7 @@ struct PlateOnFloor {
         for (const double z : {0.016, 0.017})
             faces.push_back(
                 {{at(low, near_side, z), at(high, near_side, z), at(high, far_side, z), at(low, far_side, z)}});
-        std::swap(faces[6].corners[1], faces[6].corners[3]);  // the lower one looks down
+        std::swap(faces[6].corners[1], faces[6].corners[3]);  // turn the lower face downwards
         return test::make(faces);
     }
     Scene scene = scene_of();
