@@ -17,9 +17,9 @@ struct QuadraticTriangle {
     std::array<Spectrum, 6> values;  ///< At corners 0, 1, 2 and the middles of edges 01, 12, 20, W/m^2.
 };
 
-/// Irradiance in a representation that a method brings with it, beside the elements of a Solution: the cells of a
-/// network, or one mesh per source. The engine evaluates it, bakes it and keeps it in checkpoints; only the method
-/// knows what it consists of.
+/// Irradiance in a representation of the method's own, in addition to the elements of a Solution: the cells of a
+/// network, or one mesh per source. The engine evaluates it, bakes it and keeps it in checkpoints; only the method can
+/// interpret its content.
 class LightForm {
   public:
     virtual ~LightForm() = default;
