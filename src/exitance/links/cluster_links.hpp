@@ -65,7 +65,7 @@ class ClusterLinks {
     std::size_t size() const { return links_.size(); }
     std::size_t memory_bytes() const;
 
-    /// Adds to E what these links contribute, for b at the sources: to each receiving element, and for receiving
+    /// Adds the contribution of these links to E, for b at the sources: to each receiving element, and for receiving
     /// clusters to their pieces.
     void add_to(NodalField& E, const NodalField& b) const;
 

@@ -15,7 +15,7 @@
 namespace exitance {
 
 /// A transport link between two elements, receiver first, with a visibility bit per pair of nodes. The kernel is
-/// recomputed whenever light is transported; only what is expensive to compute is stored.
+/// recomputed whenever light is transported; only data that are expensive to compute are stored.
 struct Link {
     ElementId receiver, source;
     /// Bit k n + l: node l of the source is visible from node k of the receiver. The last bit marks a constant link:

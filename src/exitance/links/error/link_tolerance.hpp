@@ -31,8 +31,9 @@ struct LinkTolerance {
     bool corrected = false;
     /// Weight of squared errors, per receiving element; null: uniform.
     const Field<ElementId, double>* importance = nullptr;
-    bool gives_up = false;  ///< True if pairs are dropped after a stop request; otherwise they are linked as they are.
-    bool triage = true;     ///< Classify pairs (open, none, mixed) before casting rays.
+    /// True if pairs are dropped after a stop request; otherwise they are linked without further splits.
+    bool gives_up = false;
+    bool triage = true;  ///< Classify pairs (open, none, mixed) before casting rays.
     LinkOracle oracle = LinkOracle::transport;
     double strongest = 0;  ///< Limit for the other oracles: form factor, or power (W), of a link.
     std::uint64_t seed = 1;
