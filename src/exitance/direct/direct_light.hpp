@@ -43,7 +43,7 @@ struct ReceiverLight {
     bool is_dark() const {  ///< True if certainly no light arrives.
         return sources.empty() && beams.empty() && (behind.empty() || behind[0].is_dark());
     }
-    bool has_crowded() const {  ///< True if a source has more candidates than were worth counting.
+    bool has_crowded() const {  ///< True if a source has more blocker candidates than the limit for counting them.
         return std::any_of(sources.begin(), sources.end(), [](const Source& s) { return s.is_crowded; }) ||
                (!behind.empty() && behind[0].has_crowded());
     }
@@ -135,7 +135,7 @@ class DirectLight {
     }
     static bool is_own(const Emitter& emitter, RegionId own) { return !own.is_none() && emitter.region == own; }
     const Occluders& occluders() const { return *occluders_; }
-    /// The scene whose materials and lights emit; its geometry is that of the occluders.
+    /// The scene whose materials and lights emit; the occluders have the same geometry.
     const Scene& scene() const { return *scene_; }
 
     /// Returns the form factor from a receiver to the visible part of an emitter, weighted by its relative radiance.

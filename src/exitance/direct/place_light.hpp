@@ -18,7 +18,7 @@ class MirroredLight;
 /// counts its work while it is computed, and gives up when it exceeds the cost of these rays. If the first
 /// rays then show that many more are needed, as in penumbrae, exact light is tried again, up to a quarter of it: a
 /// place never costs more than twice as much as by the cheaper estimator. For places of one polygon the blockers of the
-/// whole polygon are counted, up to the cost of the rays; the rays of its middle place tell whether exact light is
+/// whole polygon are counted, up to the cost of the rays; the rays of its middle place determine whether exact light is
 /// tried again. The choice depends on the places and the accuracy alone.
 class PlaceLight {
   public:

@@ -408,7 +408,7 @@ void RayLight::continue_through_windows(const Receiver& at, Workspace& room) con
     for (std::size_t k = 0; k < room.onwards_.size(); ++k) room.blocked_[room.onwards_[k]] = hidden[k];
 }
 
-/// Traces the batch and adds what arrives to the blocks.
+/// Traces the batch and adds the arriving light to the blocks.
 void RayLight::trace(const Receiver& at, Workspace& room) const {
     if (room.blocked_size_ < room.rays_.size()) {
         room.blocked_size_ = std::bit_ceil(room.rays_.size());

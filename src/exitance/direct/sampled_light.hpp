@@ -30,8 +30,8 @@ class SampledLight {
         double misfit_squared = 0;  ///< Mean of (w (E - weak))^2 caused by the weak sources, w the weight.
         std::vector<DirectLight::SourceName> strong;  ///< Sources whose visibility must be computed exactly.
     };
-    /// Treats as many sources as weak as together cause a misfit of at most `allowed`, weighted by `weight`. They share
-    /// n = `rays` rays, at most `most_rays`. About 30 ns per source, plus the rays.
+    /// Treats the largest number of sources as weak that together cause a misfit of at most `allowed`, weighted by
+    /// `weight`. They share n = `rays` rays, at most `most_rays`. About 30 ns per source, plus the rays.
     const Estimate& operator()(const ElementTree& tree, ElementId e, const Spectrum& weight, double allowed,
                                unsigned rays);
     static constexpr unsigned most_rays = 1024;

@@ -25,7 +25,8 @@ constexpr unsigned directions_of_point = 64, azimuths = 48, steps_of_azimuth = 2
 /// above a ground, where it is a quarter; half of that marks a point just indoors.
 constexpr double seen_at_opening = 1.0 / 8;
 
-/// Rim points farther than so many times the distance of the near ones belong to things outdoors: the horizon.
+/// Ratio of distances: rim points farther than this multiple of the distance of the near ones belong to objects
+/// outdoors, such as the horizon.
 constexpr double farthest_rim = 4;
 
 /// If at most this share of places sees no sky, openings are not searched.
@@ -254,7 +255,7 @@ PortalCell SkySearch::opening(const Escape& way) {
     const std::vector<Vec3> first_rim = rim(first, Frame(way.direction), [](const Vec3&) { return false; });
     const PortalCell seen = rectangle_of_rim(first, way.direction, first_rim, farthest_rim);
     if (!(seen.area > 0)) return {};
-    // From close to its middle nothing hides the rim, and what is beyond its plane is outdoors.
+    // Seen from close to the opening's middle, nothing hides its rim, and everything beyond its plane is outdoors.
     const double step = before * std::sqrt(seen.area);
     const Point from = seen.corner + 0.5 * (seen.u + seen.v) - step * seen.n;
     const auto is_outdoors = [&](const Vec3& hit) { return dot(hit, seen.n) > 2 * step; };

@@ -150,7 +150,7 @@ void SmallSources::prepare(const Polygon& on, Workspace& room) const {
                      [](const DirectLight::SourceName&) { return most_blockers; });
     std::erase_if(light.sources,
                   [&](const ReceiverLight::Source& source) { return !may_be_missed(source, on, light); });
-    // Each source is evaluated by itself.
+    // Each source is evaluated separately.
     for (ReceiverLight::Source& source : light.sources) source.in_batch = false;
     light.open.clear(), light.open_light.clear();
     const Beams& beams = direct_->beams();
@@ -164,7 +164,7 @@ void SmallSources::prepare(const Polygon& on, Workspace& room) const {
     });
 }
 
-/// Subtracts what a blocker hides of the polygon, as seen from the centre. Returns false if nothing is left.
+/// Subtracts the part of the polygon that a blocker hides from the centre.
 bool SmallSources::cut(const Centre& centre, const Polygon& on, PieceId blocker, Workspace& room) const {
     const Occluders& occluders = direct_->occluders();
     const ConvexPiece& piece = occluders.pieces()[blocker];

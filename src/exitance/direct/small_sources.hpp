@@ -11,8 +11,8 @@ namespace exitance {
 /// Light of sources that are small compared with a polygon, integrated over the polygon as seen from the sources.
 ///
 /// The points of a quadrature rule can miss such light: a patch of sun behind a small window, the bright spot near a
-/// lamp, or the shadow of a thin bar. Seen from the centre of the source, what hides parts of the polygon can be
-/// clipped away, so that no part is missed:
+/// lamp, or the shadow of a thin bar. Seen from the centre of the source, the hidden parts of the polygon can be
+/// clipped away exactly, so that no part is missed:
 ///
 ///     mean E = 1/A sum over the lit fragments of  integral L(x) dA,
 ///
