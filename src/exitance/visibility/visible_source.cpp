@@ -185,8 +185,7 @@ void VisibleSource::find_cuts(const Polygon& fragment, const Pyramid& pyramid) {
         if (measure(fragment, lines_[k], heights).any_out) cuts_.push_back(k);
 }
 
-/// Adds the contour of what remains of a fragment after subtracting the pyramids reaching_[first, last). Pyramids that
-/// miss the fragment miss all its parts, too, so they are dropped here.
+/// Subtracts the pyramids reaching_[first, last) from a fragment and adds the contour of the rest.
 void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::size_t last, bool is_whole) {
     if (fragment.count > Polygon::max_fragment) return subtract_halves(fragment, first, last);
     const std::size_t mark = pool_used_, first_cut = cuts_.size(), first_left = reaching_.size();

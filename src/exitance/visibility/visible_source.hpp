@@ -13,8 +13,8 @@
 namespace exitance {
 
 /// Visible share of a source. If one blocker hides all of it (`nothing`), this holds until one of the blocker's
-/// critical lines is crossed. If several do so together (`nothing_past_several`), parts may appear at a three-edge
-/// event.
+/// critical lines is crossed. If several blockers do so together (`nothing_past_several`), parts may appear at a
+/// three-edge event.
 enum class Seen : std::uint8_t { nothing, nothing_past_several, part, all };
 
 /// Form factor from points to the visible part of one convex source behind given blockers, exact except for rounding.
