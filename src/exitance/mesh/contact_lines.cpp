@@ -56,10 +56,7 @@ struct Reach {
     double whole() const { return left + right; }
 };
 
-/// Removes lines that are not worth a split. Light below an edge changes within the edge's height; this is not a
-/// discontinuity for a slat a few heights wide, however long. A part cut off along a border must be more than a trace
-/// of the element, and the strips of a gap together a noticeable share of it.
-/// before_cuts  length of the element before contacts split it, relative to now
+/// Removes lines that change the light too little to justify a split.
 void leave_worthy(std::vector<Segment>& lines, std::span<const Point> outline, double before_cuts, const Normal& n,
                   double tolerance) {
     constexpr double min_side_share = 0.01, min_depth_share = 0.1;  // shares of the element's width across the line

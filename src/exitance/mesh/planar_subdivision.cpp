@@ -200,7 +200,7 @@ class DelaunayRefinement {
             }
         given_ = count_;
         const double mean_edge = std::sqrt(2 * area_of(coarse) / static_cast<double>(coarse.corners.size()));
-        // Smaller distances give more triangles than better shapes are worth.
+        // At smaller distances, the number of triangles grows more than their shapes improve.
         constexpr double min_distance_share = 0.25;
         nearest_ = min_distance_share * mean_edge;
     }
