@@ -240,7 +240,7 @@ class Builder {
         touched_[r.value] |= stage_.occluders.is_covered(inside, receiver.frame.n, r);
     }
 
-    /// Outline of a triangle whose blockers are looked for. It is a little smaller than the triangle, whose sides
+    /// Outline of a triangle for which blockers are searched. It is a little smaller than the triangle, whose sides
     /// follow shadows: blockers that only touch its lines of sight cast no shadow.
     std::vector<Point> inner_outline(std::uint32_t t) const {
         const auto& c = mesh_.triangles()[t].corner;
