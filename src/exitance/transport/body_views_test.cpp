@@ -32,7 +32,7 @@ TEST(BodyViews, ShareOfRaysIsTheFormFactor) {
     EXPECT_EQ(found, 1u);
 }
 
-/// Largest relative error of the light that a body gets by one reflection, if the projected direct light stands for the
+/// Largest relative error of the light that a body gets by one reflection, if the projected direct light replaces the
 /// exact one.
 double worst_of_bodies(const Scene& scene, double body_tolerance) {
     const Stage stage(scene);

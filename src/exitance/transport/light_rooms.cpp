@@ -18,7 +18,7 @@ namespace {
 
 constexpr double least_share = 0.05;  ///< Area of a room as a share of all area but ground and sky, at least.
 constexpr double least_detail =
-    0.001;  ///< Elements of a small room beside ground and sky, as a share of all elements, at least.
+    0.001;  ///< Minimum number of elements of a small room next to ground and sky, as a share of all elements.
 /// Share of an element's rays that reach the sky, above which it is outdoors. Under an open sky that is half of the
 /// rays of a facade, and most of those of a ground.
 constexpr double outdoors = 0.25;
@@ -203,7 +203,7 @@ class RoomFinder {
         return own >= static_cast<std::ptrdiff_t>(fewest_walls);
     }
 
-    /// True if the sky is above a part. Such a part is judged by itself, whatever its shape and size.
+    /// True if the sky is above a part. Such a part is judged separately, independent of its shape and size.
     bool is_outdoors(const Part& part) const {
         double to_sky = 0;
         for (const std::uint32_t i : part.leaves) to_sky += flow_.area[i] * missed_share(flow_, i);
