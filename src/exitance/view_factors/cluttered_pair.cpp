@@ -149,8 +149,8 @@ double ClutteredExchange::share_under_edges(const Cell& cell) const {
     return share;
 }
 
-/// Light that the points of a cell below an edge may have missed: a share of the light that they found or, if they
-/// found little, of a third of the receiver's average.
+/// Light that the points of a cell below an edge may have missed: a share of the light that they found or, if that is
+/// little, a share of a third of the receiver's average.
 double ClutteredExchange::unseen(const Cell& cell) const {
     return unseen_strip * std::max(cell.integral, 0.3 * total_ * area_of(cell.corners()) / area_);
 }

@@ -37,8 +37,9 @@ struct GrayExchange {
 ///     A_i (J_i - H_i) = Q_i,                                                                         Q_i given,
 ///
 /// by conjugate gradients on the symmetric system that results from multiplying by A_i / (1 - e_i), A_i F_ij being
-/// symmetric. `surroundings`: T_s, K; empty: the surfaces form an enclosure, and what is missing in a row because of
-/// the factors' error (at most 1% and three times the row's error) is not lost but given back in proportion to the row.
+/// symmetric. `surroundings`: T_s, K; empty: the surfaces form an enclosure, and the missing part of a row's sum due to
+/// the factors' error (at most 1% and three times the row's error) is not lost but distributed in proportion to the
+/// row.
 /// A surface's net heat is exact for these factors: the heats of all surfaces and of the surroundings add up to 0.
 /// Errors: ErrorCode::bad_input for values out of range, or if nothing determines the level of temperatures;
 /// ErrorCode::limit if a stop is requested. O(entries) per iteration; iterations grow with the mean number of

@@ -16,8 +16,8 @@ constexpr double unseen_brightness = 0.05;  ///< Share of the whole source that 
 /// for that.
 constexpr double surely_ignored = 0.3;
 /// Share of a cell's allowed error that its rules may have due to the nearness of the source alone. With the full
-/// allowance, cells along a common edge with the source would fail at every size, as they are as near to it as they are
-/// small.
+/// allowance, cells along a common edge with the source would fail at every size, as their distance from it is
+/// proportional to their size.
 constexpr double near_part = 0.1;
 constexpr double near_share = 0.5;  ///< Error of the better of two rules at an edge, as a share of their difference.
 

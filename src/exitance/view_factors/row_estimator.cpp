@@ -124,7 +124,7 @@ void RowEstimator::find_candidates(std::size_t face) {
     const ViewFace& own = scene_.faces[face];
     const Point x = scene_.middles[face];
     const double reach = scene_.radii[face] + 1e-4 * scene_.scene.size();
-    // A pair is worth its cost if it saves that many cast rays. A tenth of it is a safe limit.
+    // A pair is treated individually if that saves at least this number of cast rays. A tenth of it is a safe limit.
     const double negligible = 0.1 * pair_cost * cast_rate / cast_rays_for(1, error_ * error_);
     candidates_.clear();
     under_others_ = false;

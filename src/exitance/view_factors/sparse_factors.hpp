@@ -55,7 +55,7 @@ struct SparseFactors {
 SparseFactors sparse_from(const ViewFactors& table, double smallest = 0);
 
 /// Scales exchange areas A_i F_ij by x_i x_j so that all rows add up to 1, up to 1e-7: for the surfaces of an
-/// enclosure. Keeps reciprocity. Rows without entries are left as they are.
+/// enclosure. Keeps reciprocity. Rows without entries are not changed.
 void close_rows(SparseFactors& table);
 
 inline constexpr std::uint32_t no_row = 0xffffffff;
