@@ -66,7 +66,7 @@ TEST(InterpolantError, IsReportedWhereSharpSunlightNeedsTooManyElements) {
 }
 
 TEST(InterpolantError, FindsLightThatAFitAtItsPlacesDoesNotSee) {
-    // Half of a square of 1 m^2 is off by 1 W/m^2, and the fit knows of no error.
+    // Half of a square of 1 m^2 is off by 1 W/m^2, and the fit reports no error.
     const Scene scene = box_scene(1, 1, 1, 0.5, 1);
     const Stage stage(scene);
     ElementFunction exact, interpolant;

@@ -133,7 +133,7 @@ class LitPlaces {
         return out;
     }
 
-    /// Finds the lit places of all regions that have a vertex, and keeps enough of them to test what sees them.
+    /// Finds the lit places of all regions that have a vertex, and keeps enough of them to test which sides see them.
     void find_places(std::span<const std::vector<Vertex>> paths) {
         std::vector<RegionId> regions;
         for (const std::vector<Vertex>& path : paths)
