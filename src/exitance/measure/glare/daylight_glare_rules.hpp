@@ -10,8 +10,8 @@
 namespace exitance {
 
 /// Position index of daylight glare for a source in direction d (any length, in front of the observer), at most 16. It
-/// is Guth's index above the line of sight. Below it, the index of a source is that of a source beside the line of
-/// sight at the angle beta:
+/// is Guth's index above the line of sight. Below it, the index of a source equals that of a source to the side of the
+/// line of sight at the angle beta:
 ///
 ///     tan beta = tan sigma sqrt(1 + 0.3225 cos^2 tau)
 ///

@@ -16,7 +16,7 @@ struct NormalTriangle {
     std::array<Normal, 3> normal;  ///< Normals at the corners, on the front side of the face.
 };
 
-/// The place on the curved surface that a point of a face stands for.
+/// The place on the curved surface that corresponds to a point of a face.
 struct CurvedPlace {
     Point x;                         ///< On the curved patch or, where that is behind the face, on the face; metres.
     Normal n;                        ///< Normal, interpolated between the corners.

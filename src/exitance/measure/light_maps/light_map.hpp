@@ -55,7 +55,7 @@ struct LightMaps {
     CurvedDifferences curved;  ///< Empty for maps of a part of the light.
 };
 
-/// True if direct and indirect light of a solution can be told apart.
+/// True if direct and indirect light of a solution are stored separately.
 bool is_divisible(const Solution& solution);
 /// Returns an error of code `usage` if the solution is not divisible and a part of its light is requested.
 Result<void> check_component(const Solution& solution, Component component);

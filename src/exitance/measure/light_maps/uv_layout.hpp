@@ -10,7 +10,7 @@
 
 namespace exitance {
 
-/// An object's charts in its light map, and what is wrong with them. Faces are counted as triangles.
+/// An object's charts in its light map, and their faults. Faces are counted as triangles.
 struct UvObject {
     std::string name;
     std::uint32_t map = 0;  ///< Index of its map.

@@ -110,7 +110,8 @@ class Scout {
     }
 
   private:
-    /// The place on the vertical through a point that is at eye level above what is below, or lower if less is free.
+    /// The place on the vertical through a point that is at eye level above the surface below, or lower if there is
+    /// less space.
     Point at_eye_level(const Point& p) const {
         constexpr double eyes = 1.6;  // metres
         const Vec3 down{0, 0, -1};

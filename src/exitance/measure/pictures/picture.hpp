@@ -36,7 +36,7 @@ struct PictureOptions {
     unsigned gather = 0;
     std::uint64_t seed = 1;
     /// Relative difference below which light without shadow edges may be interpolated between pixels, for pictures that
-    /// are only looked at; 0: the light of every pixel is evaluated.
+    /// are viewed, not measured; 0: the light of every pixel is evaluated.
     double interpolation = 0;
 };
 

@@ -191,7 +191,7 @@ bool TileLight::first_guess(Spot& spot, const ReceiverLight* known, Spectrum& li
 }
 
 bool TileLight::differs_from_neighbours(std::span<const Spot> spots, std::size_t i) const {
-    // Pixels that are only looked at show fainter edges without steps being seen.
+    // In pictures for viewing, fainter edges show no visible steps.
     constexpr double unseen_edge = 0.05;  // derived from steps of 1% between pixels within a shadow edge of some pixels
     const double difference = interpolation_ > 0 ? unseen_edge : alike;
     int neighbours = 0;

@@ -49,7 +49,7 @@ class TileLight {
         shown_ = &shown, direct_share_ = Spectrum();
     }
     /// Adds all direct light to that of the elements, even if these hold a share of it, so that the parts of the light
-    /// can be told apart.
+    /// can be shown separately.
     void add_all_direct() { direct_share_ = Spectrum(1); }
     /// Interpolates light without shadow edges between pixels if the light at the centre of a cell of pixels differs
     /// from it by at most this share; 0: never.
