@@ -74,7 +74,7 @@ std::string with_plain_placeholders(const std::string& text);
 std::string path_in_folder(const std::string& path);
 
 /// Replaces placeholders "{name}" by the values of a variant. "{dir}" and "{scene}" stay. A word that is a single
-/// placeholder becomes as many words as its value has. Error: bad_input for an unknown name, at the line `line`.
+/// placeholder becomes one word per word of its value. Error: bad_input for an unknown name, at the line `line`.
 Result<std::vector<std::string>> fill_in(const SweepPlan& plan, const std::vector<std::string>& words,
                                          const SweepSetting& variant, int line);
 
