@@ -23,7 +23,7 @@ struct DiscontinuityExtension {
     /// Sets the cutter and the blocker search that the options select.
     void (*choose)(const DiscontinuityChoice& choice, DiscontinuityOptions& options);
     LayeredLight (*make_layers)(const Stage& stage, const DiscontinuityOptions& options, const StopRequest& stop);
-    /// Sizes of the same light as a single mesh, likewise.
+    /// Numbers for the statistics of the same light as a single mesh, by their JSON keys.
     std::map<std::string, double> (*figures)(const SixNodeMesh& mesh);
 };
 

@@ -66,8 +66,8 @@ void Solver::solve_indirect_light() {
 }
 
 bool Solver::refines_bodies(double demand, double last_seconds) {
-    // An attempt for bodies is made once, or twice if the first one halved what was too much. Others would cost more
-    // than the whole solve, for the sake of bodies whose errors are uncertain themselves.
+    // One attempt is made for bodies, or two if the first one halved the excess error. Others would cost more than the
+    // whole solve, for the sake of bodies whose errors are uncertain themselves.
     constexpr int most_for_bodies = 2;
     const double limit = max_body_errors * demand, worst = certificate_.worst_body.value_or(0);
     const bool helps = worst_body_before_ == 0 || worst - limit < 0.5 * (worst_body_before_ - limit);
@@ -76,8 +76,8 @@ bool Solver::refines_bodies(double demand, double last_seconds) {
         as_first(last_seconds) > seconds_left(stop_))
         return false;
     ++body_attempts_, worst_body_before_ = worst;
-    // A refinement step keeps what is accurate enough. Beside near surfaces, it replaces the method's elements by the
-    // delivered ones, which are finer there. Errors of the direct light that bodies see need a new solve.
+    // A refinement step keeps sufficiently accurate results. Next to near surfaces, it replaces the method's elements
+    // by the delivered ones, which are finer there. Errors of the direct light that bodies see need a new solve.
     takes_step_ = body_attempts_ == 1 && plan_.may_refine_delivered && light_->on_projection;
     tighten_bodies(limit);
     if (!takes_step_) light_.reset(), next_ = {}, steps_.not_local = 0;

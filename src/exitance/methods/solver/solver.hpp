@@ -190,7 +190,7 @@ class Solver {
     void make_output_mesh();
     /// Returns the light to which the error of exported elements is relative, W/m^2.
     double interpolant_scale() const;
-    /// Returns direct plus reflected light as plain elements, with an error that suits the target error of the
+    /// Returns direct plus reflected light as plain elements, with an error in proportion to the target error of the
     /// attempts.
     ElementFunction plain_elements(InterpolantReport& report) const;
 
