@@ -53,8 +53,8 @@ class DaylightRows {
           visible_(transport.stage().occluders, patches),
           rays_a_sensor_(rays_a_sensor) {}
 
-    /// Computes the rows of consecutive sensors, of which `first` is the number of the first. `known`: returns what is
-    /// known of a sensor, or null. O(sensors x (rays + patches)).
+    /// Computes the rows of consecutive sensors, of which `first` is the number of the first. `known`: returns stored
+    /// data of a sensor, or null. O(sensors x (rays + patches)).
     template <class Known>
     DaylightMatrix rows(std::span<const Receiver> sensors, std::size_t first, const Known& known) const {
         std::vector<const KnownSensor*> found;

@@ -10,7 +10,7 @@
 
 namespace exitance {
 
-/// A daylight simulation over a year: what to compute.
+/// Input of a daylight simulation over a year.
 struct DaylightTask {
     std::vector<ProbePoint> sensors;
     std::vector<SensorGrid> grids;  ///< Grids that together contain all sensors, in their order.
@@ -81,7 +81,7 @@ class DaylightSimulation {
 
 /// Evaluates all sensors with daylight coefficients that were computed before, such as by another program: a row per
 /// sensor, lx for 1 cd/m^2 of each patch. The sun is spread over the patches around it, also for its straight light, so
-/// that no direct sunlight is told apart; noise and bias are not known.
+/// that direct sunlight is not separated; noise and bias are not known.
 Result<void> evaluate_coefficients(const Scene& scene, const DaylightTask& task, std::span<const float> coefficients,
                                    const DaylightSink& sink, const StopRequest& stop);
 

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t max_sweeps = 200;
 constexpr double max_change = 2e-4;  ///< Relative RMS change of the last sweep.
 
-/// Returns the scene under a sky and a ground of radiance 1, which stand for all patches.
+/// Returns the scene under a sky and a ground of radiance 1, which replace all patches.
 Scene under_patches(Scene scene) {
     DistantLight light;
     SkyModel below = uniform_sky();

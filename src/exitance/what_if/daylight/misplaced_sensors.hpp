@@ -9,7 +9,7 @@
 
 namespace exitance {
 
-/// Numbers of sensors whose light is probably not what was meant to be measured.
+/// Numbers of sensors that are probably misplaced, so that their light is not the intended one.
 struct MisplacedSensors {
     /// Sensors from which mostly backs of faces are visible: below a floor, or inside a body.
     std::vector<std::size_t> behind;

@@ -16,7 +16,7 @@ class YearSuns {
     explicit YearSuns(const YearSky& sky);
 
     /// Writes the direct sunlight of every hour at a sensor, lx. `direct`: irradiance by every patch at the sensor: one
-    /// that sees none of the sun's patches does not see the sun. Hours without sun stay as they are.
+    /// that sees none of the sun's patches does not see the sun. Hours without sun are not changed.
     void find(const Occluders& occluders, const Receiver& at, std::span<const float> direct,
               std::span<float> sun) const;
 
