@@ -49,7 +49,7 @@ void Hdf5Reader::fail(const std::string& name, const std::string& what) {
 }
 
 bool Hdf5Reader::has(const std::string& name) const {
-    // Each part of the path must exist before the next one may be looked up.
+    // Each part of the path must exist before the next one can be opened.
     for (std::size_t end = name.find('/');; end = name.find('/', end + 1)) {
         if (H5Lexists(file_, name.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
         if (end == std::string::npos) return true;

@@ -70,7 +70,7 @@ const Material& material_of(const SceneDescription& d, const std::string& group)
     return d.materials.front();
 }
 
-// A wall in the plane y = 0 whose front looks to -y, away from a room at y > 0, and a window in it.
+// A wall in the plane y = 0 whose front is towards -y, away from a room at y > 0, and a window in it.
 const std::string wall = "[0, 0, 0], [4, 0, 0], [4, 0, 3], [0, 0, 3]",
                   window = "[1, 0, 1], [2, 0, 1], [2, 0, 2], [1, 0, 2]";
 

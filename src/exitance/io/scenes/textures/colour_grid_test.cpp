@@ -50,7 +50,7 @@ TEST(ColourGrid, HasMeansDeviationsAndRangesOfBoxes) {
     EXPECT_EQ(g.colour({0, 4, 0, 8}).reflectance.deviation[0], 0) << "even colours deviate by nothing";
 }
 
-/// Squared deviation times area that remains in a patch of a square metre after so many cuts.
+/// Squared deviation times area that remains in a patch of a square metre after the given number of cuts.
 double left_after(const TextureCuts& cuts, std::size_t count, double mean_square) {
     std::vector<bool> is_cut(cuts.parts.size());
     for (std::size_t c = 0; c < count; ++c) is_cut[cuts.cuts[c].part] = true;

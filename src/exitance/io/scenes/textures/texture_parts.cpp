@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// Squared relative error of the scene's light below which a cut is not worth a part.
+/// Squared relative error of the scene's light below which a face is not cut.
 constexpr double min_benefit =
     1e-6;  // derived from a gradient on a wall: the reflectance within a part then varies by 2% of the mean
 /// Limit on the parts of emitting faces: direct light is computed for each emitter.

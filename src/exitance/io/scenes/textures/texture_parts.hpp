@@ -24,7 +24,7 @@ struct CutFaces {
     double misplaced = 0;
 };
 
-/// Largest number of parts by default, for a scene of so many faces.
+/// Largest number of parts by default, for a scene with the given number of faces.
 std::size_t default_texture_parts(std::size_t faces);
 
 /// Cuts textured faces where their colour varies: along the axes of their texture coordinates, at borders of pixels,

@@ -59,7 +59,8 @@ class TexturedFaces {
         void add(const ColourRange& range, double of, bool varies, const std::string& name);
     };
     void keep(VaryingFace face);
-    /// Decides whether a face with holes stays whole: as many stay as the pictures cover, of each material.
+    /// Decides whether a face with holes stays whole: of each material, the area of faces that stay equals the area
+    /// that the pictures cover.
     bool stays(const VaryingFace& face);
     /// Adds a face or a part with its final colour.
     void add(std::size_t face, const PartColour& colour, double area);
