@@ -12,7 +12,8 @@
 
 namespace exitance {
 
-/// The index of one thing in its pool. Each kind of thing has its own type, so that they cannot be mixed up.
+/// The index of one thing in its pool. Ids of different kinds of objects have different types, so that they cannot be
+/// mixed up.
 template <class Tag>
 struct Id {
     static constexpr std::uint32_t none_value = 0xffffffffu;

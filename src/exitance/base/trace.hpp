@@ -94,8 +94,8 @@ namespace detail {
 inline thread_local TaskTrace::Task* traced_task = nullptr;
 }  // namespace detail
 
-/// Adds `count` to the amount of `what` that the current task accessed; a task records at most six kinds. `what` must
-/// be a string of static lifetime. Does nothing outside of tasks and without a trace.
+/// Adds `count` to the number of accesses of the current task to the data named `what`; a task records at most six
+/// kinds. `what` must be a string of static lifetime. Does nothing outside of tasks and without a trace.
 inline void note_touched(const char* what, std::uint64_t count) {
     if (!detail::traced_task) return;
     for (TaskTrace::Touched& touched : detail::traced_task->touched) {
