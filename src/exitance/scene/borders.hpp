@@ -126,7 +126,7 @@ class Borders {
 
   private:
     /// Faces joined by edges that exactly two faces share have the same number in `of_face`. `are_apart` is true for an
-    /// edge at which every such body has two faces, and there are several: each body is closed there by itself.
+    /// edge at which every such body has two faces, and there are several: each of these bodies is closed there.
     struct Bodies {
         std::vector<std::uint32_t> of_face;
         std::vector<bool> are_apart;

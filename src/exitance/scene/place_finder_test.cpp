@@ -182,7 +182,7 @@ TEST(PlaceFinder, FloorsThatMeetBelowAWallAreDistinguished) {
         EXPECT_GT(place.x.x * side, 0);
         EXPECT_TRUE(place.is_between_sides);
     }
-    // The strip below a wall of 1 cm is a separate floor face, which no measuring point is meant for.
+    // The strip below a wall of 1 cm is a separate floor face, at which no point should be measured.
     Outline outer = reversed(partition), strip{{-0.01, -2, 0}, {0, -2, 0}, {0, 2, 0}, {-0.01, 2, 0}}, rest = left;
     for (Point& p : outer) p.x -= 0.01;
     rest[1].x = rest[2].x = -0.01;

@@ -95,7 +95,7 @@ struct Finding {
     Kind kind = Kind::error;
     std::string file;
     int line = 0;
-    std::string message;  ///< One sentence with the offending values; for a repair, also what was done.
+    std::string message;  ///< One sentence with the offending values; for a repair, also a description of the change.
     std::string hint;     ///< Suggested action, or empty.
 };
 
