@@ -92,7 +92,7 @@ struct Certifier::Content {
     Field<ElementId, std::uint8_t> narrow;  ///< Marks the narrow leaves of the delivered function.
     PathTracer paths;
     DirectCheck check;
-    CheckPlan plan;  ///< Chosen before the first measurement.
+    CheckPlan plan;  ///< How hits are checked; chosen before the first measurement.
 
     Content(const Stage& stage_, const GlobalLight& light_, const ElementFunction& indirect_, const ReflectedLight& b_,
             const CertificateOptions& options_)
