@@ -57,7 +57,7 @@ Spectrum PathTracer::met_light(const RayHit& hit, const Vertex& from, const Vec3
     if (!met) return {};
     const Spectrum& exitance = stage_.scene.material(met->region).exitance;
     if (!(max(exitance) > 0)) return {};
-    // Shadow rays meet no mirror images.
+    // Shadow rays cannot hit mirror images, so their hits have full weight.
     const double weight = hit.mirror >= 0 ? 1 : 1 - weight_of_shadow_ray(from, *met);
     return (stage_.scene.relative_radiance(met->region)(-w) * weight) * exitance;
 }
