@@ -65,7 +65,7 @@ inline constexpr std::array<std::pair<TriangulationScheme, std::string_view>, 4>
 /// ones, or those of at least the given power.
 struct SecondarySources {
     std::optional<std::size_t> count = {};
-    std::optional<double> power = {};  ///< W, mean over bands.
+    std::optional<double> power = {};  ///< Minimum power, W, mean over bands.
 };
 
 /// Options of a discontinuity mesh. Empty ones are chosen by the method.

@@ -168,7 +168,7 @@ struct SolveOptions {
     std::optional<double> epsilon = {};    ///< Tolerance for the total error of all links, relative RMS.
     std::optional<double> mesh_size = {};  ///< Longest edge of an element, metres.
     std::optional<double> residual = {};   ///< Residual of the discrete system, relative to its right-hand side.
-    std::optional<std::size_t> max_iterations = {};  ///< Sweeps, Krylov steps or shots.
+    std::optional<std::size_t> max_iterations = {};  ///< Maximum number of sweeps, Krylov steps or shots.
     std::optional<double> min_area = {};             ///< Smallest area of the parts of a split element, m^2.
     std::optional<Relaxation> relaxation = {};
     bool overshooting = false;  ///< Shooting also sends an estimate of the light that will be reflected back.
