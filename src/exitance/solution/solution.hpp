@@ -133,7 +133,7 @@ struct Solution {
     /// Number of bounces: all (-1), or direct light only (0); then `indirect` is zero, without elements below the
     /// roots.
     int bounces = -1;
-    KeptLinks links = {};  ///< Stored if requested.
+    KeptLinks links = {};  ///< Links of the solve; stored only if requested.
     /// E_dir + E_ind on a discontinuity mesh, if the method made one. Then it is exported, and `interpolant`
     /// approximates it by linear triangles for other uses.
     SixNodeMesh discontinuity = {};
