@@ -113,7 +113,7 @@ class LinkSites {
     std::size_t n_;
     /// Per element of the tree: its index among the held elements; `none` if not held.
     Field<ElementId, std::uint32_t> place_;
-    std::vector<ElementId> held_;  ///< Sorted by place, like all arrays below.
+    std::vector<ElementId> held_;  ///< Held elements, in the order of their indices, like all arrays below.
     std::vector<double> radius_;
     std::vector<std::uint32_t> matrix_;  ///< Per child: index of its matrices in `push_` and `pull_`.
     std::vector<float> push_, pull_;     ///< Matrices; those of regular splits are stored only once.

@@ -85,7 +85,7 @@ class Links {
     /// Links of one kind, row by row.
     struct Rows {
         std::vector<ElementId> receiver;    ///< Per row.
-        std::vector<std::size_t> first;     ///< Row i is [first[i], first[i + 1]).
+        std::vector<std::size_t> first;     ///< Row i contains the links [first[i], first[i + 1]).
         std::vector<ElementId> sources;     ///< All sources, each once, in the order of their ids.
         std::vector<std::uint32_t> source;  ///< Per link: index of its source in `sources`.
 
