@@ -39,7 +39,7 @@ class PlaceLight {
 
     /// Places of a convex polygon of a region.
     struct Polygon {
-        std::span<const Point> outline;  ///< Metres, counter-clockwise about n.
+        std::span<const Point> outline;  ///< Outline, metres, counter-clockwise about n.
         Normal n;
         RegionId own;
         std::span<const Point> places;

@@ -488,7 +488,7 @@ double RayLight::light_through_openings(const Workspace& room) const {
 
 double RayLight::forecast(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
                           Workspace& room) const {
-    constexpr double work_of_place = 20;  // choosing the parts, measured in rays
+    constexpr double work_of_place = 20;  // work of choosing the parts, in rays (measured)
     double open = find_parts(direct_->receiver(x, n, own), accuracy, room);
     if (std::any_of(room.parts_.begin(), room.parts_.end(),
                     [](const Part& part) { return part.kind == Part::Kind::openings; }))

@@ -25,7 +25,7 @@ class SkyOpenings {
   public:
     /// A sun's disc, as seen from every place.
     struct Sun {
-        const SeenPolygon* seen;  ///< Must outlive the constructor.
+        const SeenPolygon* seen;  ///< Polygon of the disc; must outlive the constructor.
         Point from;               ///< Viewpoint of `seen`.
     };
 

@@ -216,7 +216,7 @@ Spectrum integral(const Point& a, const Point& b, const Point& c, const Point* n
 bool SmallSources::find_lit(const Centre& centre, const Polygon& on, std::span<const PieceId> blockers,
                             Workspace& room) const {
     room.part_.assign(on.outline.begin(), on.outline.end());
-    if (!centre.is_far && centre.emitter()) {  // the part in front of the source
+    if (!centre.is_far && centre.emitter()) {  // keep the part of the polygon in front of the source
         clip(room.part_, centre.emitter()->plane, room.rest_);
         room.part_.swap(room.rest_);
     }

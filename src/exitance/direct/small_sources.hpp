@@ -27,7 +27,7 @@ class SmallSources {
 
     /// A convex polygon of a region, and a quadrature rule on it.
     struct Polygon {
-        std::span<const Point> outline;  ///< Metres, counter-clockwise about n.
+        std::span<const Point> outline;  ///< Outline, metres, counter-clockwise about n.
         Normal n;
         RegionId own;
         std::span<const Point> places;    ///< Points of the quadrature rule.
