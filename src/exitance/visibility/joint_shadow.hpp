@@ -48,7 +48,7 @@ class JointShadow {
     struct CellPair {
         Cell receiver, source;
         int depth;
-        Mask near;  ///< Blockers that may be in between.
+        Mask near;  ///< Blockers that may be between receiver and source.
     };
 
     std::uint32_t add_point(const Point& p);

@@ -11,7 +11,7 @@ namespace exitance {
 
 /// First hit of a ray.
 struct RayHit {
-    SurfaceId surface;  ///< None if nothing is hit.
+    SurfaceId surface;  ///< The surface that is hit; none if nothing is hit.
     RegionId region;    ///< The surface's region.
     /// Distance in units of the length of the ray's direction.
     double distance = std::numeric_limits<double>::infinity();

@@ -105,7 +105,7 @@ class VisibleFromFour::Work {
             if (outline == 0) continue;
             const Vec a = spread(blocker.points[e.a]) - x_, b = spread(blocker.points[e.b]) - x_;
             Vec plane = cross(b, a);
-            if ((left & outline) != outline) {  // seen from behind by some points
+            if ((left & outline) != outline) {  // some of the points see the blocker's face from behind
                 const Real side = {left & 1 ? 1. : -1., left & 2 ? 1. : -1., left & 4 ? 1. : -1., left & 8 ? 1. : -1.};
                 plane = {side * plane.x, side * plane.y, side * plane.z};
             }

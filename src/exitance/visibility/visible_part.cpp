@@ -268,7 +268,8 @@ double part_among_all(const Occluders& occluders, const Receiver& at, PieceId so
     };
     if (visit(Occluders::Size::large)) return 0;
     const std::size_t large = scratch.shadows.size();
-    if (large > 1 && !cut_lit(0, scratch)) return 0;  // hidden by several: small pieces are irrelevant
+    // several large pieces together hide the source, so small pieces are irrelevant
+    if (large > 1 && !cut_lit(0, scratch)) return 0;
     if (visit(Occluders::Size::small)) return 0;
     return finish(occluders, source, at.n, large > 1 ? large : 0, scratch, light, fragments);
 }

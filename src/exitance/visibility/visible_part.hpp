@@ -40,7 +40,7 @@ class VisibilityWorkspace {
     /// The pyramid over an occluder: unit normals (pointing inwards) of the planes through the receiver and its edges.
     struct Shadow {
         std::uint32_t first_plane = 0, plane_count = 0;
-        double solid_angle = 0;     ///< Approximate; used for sorting the occluders.
+        double solid_angle = 0;     ///< Approximate solid angle, used for sorting the occluders.
         std::uint32_t outline = 0;  ///< Index of its polygon in `outlines`.
         bool reversed = false;      ///< True if that polygon is clockwise as seen from the receiver.
     };
