@@ -19,7 +19,7 @@ struct Polygon {
     ElementId leaf;
     std::vector<std::uint32_t> vertex;  ///< Indices of welded points.
     std::vector<Vec2> uv;               ///< Vertices, in the leaf's coordinates.
-    std::vector<bool> is_own;           ///< False for corners of other leaves.
+    std::vector<bool> is_own;           ///< Per vertex: false if it is a corner of another leaf.
     std::uint32_t first_slot = 0;       ///< Index of its first vertex among the vertices of all polygons.
 };
 
@@ -42,7 +42,7 @@ class PlaneNodes {
 
     struct Leaf {
         ElementId leaf;
-        Fan fan;  ///< Empty border: the leaf stays whole.
+        Fan fan;  ///< Fan of triangles; with an empty border the leaf stays whole.
         /// Node numbers within the plane: of the apex, then of the border; or of the leaf's corners.
         std::vector<std::uint32_t> node;
     };

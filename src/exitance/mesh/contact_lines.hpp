@@ -67,7 +67,7 @@ class ContactLines {
     const Scene* scene_;
     Bvh faces_, borders_, gaps_;
     std::vector<Edge> edges_;         ///< Border edges of regions, and edges of panes (region: none).
-    std::vector<GapLine> gap_lines_;  ///< Indexed by `gaps_`.
+    std::vector<GapLine> gap_lines_;  ///< Gap lines; `gaps_` contains indices into them.
     double tolerance_;                ///< Metres: points nearer to a plane than this touch it.
 };
 

@@ -92,9 +92,10 @@ class ElementTree {
     ElementId split_fan(ElementId leaf, const Fan& fan);
 
     std::size_t size() const { return stored() + cuts_->fan_of.size(); }
-    IdRange<ElementId> ids() const { return {0, size()}; }  ///< Parents before children.
+    IdRange<ElementId> ids() const { return {0, size()}; }  ///< All elements, parents before children.
     const std::vector<ElementId>& roots() const { return content_->roots; }
-    IdRange<ElementId> children(ElementId e) const { return node(e).children; }  ///< Empty for a leaf.
+    /// Children of an element; empty for a leaf.
+    IdRange<ElementId> children(ElementId e) const { return node(e).children; }
     bool is_leaf(ElementId e) const { return node(e).children.empty(); }
     Cut way(ElementId e) const { return node(e).way; }  ///< How an element was split; none for a leaf.
     double ratio(ElementId e) const {

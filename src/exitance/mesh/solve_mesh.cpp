@@ -37,7 +37,7 @@ class Cutter {
   public:
     Cutter(ElementTree& tree, MeshSize size) : tree_(tree), size_(size) {}
 
-    /// `concave`: of the borders of the piece
+    /// `concave`: concave borders of the piece.
     void refine(ElementId e, const ConcaveBorders& concave) {
         std::array<bool, 4> touches{};
         for (std::size_t i = 0; i < concave.size(); ++i) {
