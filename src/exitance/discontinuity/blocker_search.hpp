@@ -17,7 +17,7 @@ class BlockerSearch {
     /// Work of a search. Every thread counts its own.
     struct Counts {
         std::size_t plane_tests = 0;  ///< Tests of a polygon against a plane.
-        std::size_t listed = 0;       ///< Candidates of the faces in penumbra,
+        std::size_t listed = 0;       ///< Number of candidates of the faces in penumbra.
         std::size_t faces = 0;        ///< Number of faces in penumbra.
     };
 

@@ -399,7 +399,7 @@ class Builder {
     bool is_lit_ = false;  ///< True once every triangle has light.
     MeshProgress found_;   ///< Results of an earlier run, and the curves of this one.
     TriedTriangles tried_;
-    std::unique_ptr<BlockerSearch> search_;  ///< Null: shafts and a tree of boxes.
+    std::unique_ptr<BlockerSearch> search_;  ///< The search for blockers; null: shafts and a tree of boxes are used.
     std::optional<WeakLight> weak_;          ///< Set if weak sources are estimated by rays.
     std::optional<ExactPlaces> places_;
     std::vector<DiscontinuityCurve> curves_;

@@ -28,7 +28,7 @@ struct ReceiverCurves {
 /// A surface whose reflected light casts shadows as well, divided into parts of uniform radiosity.
 struct SecondarySource {
     struct Part {
-        std::vector<Point> outline;  ///< Convex, counter-clockwise seen from the front, metres.
+        std::vector<Point> outline;  ///< Outline of the part: convex, counter-clockwise seen from the front, metres.
         Spectrum radiosity;          ///< W/m^2
         double area = 0;             ///< m^2
     };
@@ -41,7 +41,7 @@ enum class ConicCurves { none, at_umbras, all };
 
 struct CurveOptions {
     double least_effect = 0;              ///< W/m^2 of rho E. Weaker sources get no curves.
-    double least_area = 0;                ///< m^2. Smaller regions get contact curves only.
+    double least_area = 0;                ///< Smaller regions get contact curves only, m^2.
     std::size_t most_curves = 1'000;      ///< Limit on the curves of a region.
     double least_bend = 0;                ///< W/m^2 of rho E. Weaker sources get no D2 curves, except
     double least_narrow_bend = HUGE_VAL;  ///< along long and narrow penumbras, where this lower limit applies.

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t max_exact_emitters = 8,
                       max_exact_regions = 1000;  // up to these numbers, exact light is cheap
-constexpr std::size_t quad = 4;                  // corners; triangles repeat the last one
+constexpr std::size_t quad = 4;                  // number of corners; triangles repeat the last one
 
 }  // namespace
 
