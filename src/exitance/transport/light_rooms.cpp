@@ -26,7 +26,7 @@ constexpr double far_larger = 20;  ///< Minimum extent of ground and sky relativ
 constexpr double flattest = 0.1;   ///< Smallest over largest extent of a room; anything flatter is a gap.
 constexpr double thinnest =
     0.03;  ///< Mean distance between opposite walls over the square root of their area; anything thinner is a gap.
-constexpr std::size_t fewest_walls = 4;  ///< Walls of a room, at least.
+constexpr std::size_t fewest_walls = 4;  ///< Minimum number of walls of a room.
 constexpr std::size_t most_rooms = 64;
 constexpr unsigned least_rays =
     16;  ///< Rays per leaf, at least; a leaf of mean area has 24. Enough if rooms make up the whole scene.

@@ -50,7 +50,7 @@ class LinearRows final : public TransportOperator {
     };
     struct Node {
         double area = 0;
-        std::size_t first_ray = 0, last_ray = 0;  ///< Empty if another process owns the node.
+        std::size_t first_ray = 0, last_ray = 0;  ///< Range of the node's rays; empty if another process owns the node.
     };
     struct Leaf {
         std::uint32_t first_node = 0, node_count = 0;
