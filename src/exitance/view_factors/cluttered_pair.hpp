@@ -48,7 +48,7 @@ class ClutteredExchange {
         std::array<Vec2, 4> corner;
         std::uint32_t count;
         double integral = 0, error = 0;   ///< Integral over the cell, and its estimated error, m^2.
-        std::vector<SourcePart> sources;  ///< Excludes parts that are certainly hidden.
+        std::vector<SourcePart> sources;  ///< Parts of the source, without those that are certainly hidden.
         std::span<const Vec2> corners() const { return std::span(corner).first(count); }
         bool operator<(const Cell& other) const { return error < other.error; }
     };

@@ -23,7 +23,7 @@ struct ThermalSurface {
 
 /// Radiative heat transfer between surfaces.
 struct GrayExchange {
-    std::vector<double> temperature;  ///< K, per surface.
+    std::vector<double> temperature;  ///< Temperature of each surface, K.
     std::vector<double> radiosity;    ///< W/m^2
     std::vector<double> heat;         ///< Net radiative heat that leaves each surface, W.
     double surroundings = 0;          ///< Net heat that the surroundings receive, W; 0 without surroundings.

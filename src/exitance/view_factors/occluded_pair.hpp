@@ -22,7 +22,7 @@ struct OccludedPair {
 /// Accuracy required of the quadrature of a partly hidden pair.
 struct Demand {
     double relative = 1e-4;  ///< Relative error of the pair's exchange area.
-    double absolute = 0;     ///< m^2; an error that is always accepted.
+    double absolute = 0;     ///< Error that is always accepted, m^2.
     double ignored = 0;      ///< Smaller exchange areas need no accuracy, m^2.
     double large = 0;        ///< m^2; larger exchange areas are integrated more carefully.
     double dominating = 0;   ///< Larger exchange areas determine the error of their row, m^2.
@@ -88,7 +88,7 @@ class OccludedExchange {
     struct Task {
         Cell cell;
         double distance, allowed;  ///< Distance to the source, metres; allowed error, m^2.
-        double sum;                ///< m^2, by the best rule so far.
+        double sum;                ///< Integral by the best rule so far, m^2.
         Glance glance;             ///< Visibility found by that rule.
         int depth;
         /// m^2: for a cell too near to the source for quadrature, the exact integral without occlusion, from which a

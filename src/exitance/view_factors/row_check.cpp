@@ -94,7 +94,7 @@ std::vector<std::size_t> draw_rows(std::span<const std::uint8_t> finished, const
         if (finished[i]) faces.push_back(i);
     RandomStream random(options.seed, Stream::reference, finished.size(), 0);
     const std::size_t count = std::min(options.rows, faces.size());
-    for (std::size_t k = 0; k < count; ++k) {  // the first steps of a shuffle
+    for (std::size_t k = 0; k < count; ++k) {  // a random selection: the first steps of a shuffle
         const auto rest = static_cast<double>(faces.size() - k);
         std::swap(faces[k], faces[std::min(faces.size() - 1, k + std::size_t(random.uniform() * rest))]);
     }

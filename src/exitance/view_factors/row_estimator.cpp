@@ -53,7 +53,8 @@ double cast_rays_for(double share, double variance) {
 /// Number of further samples, in units of those taken, after which the pooled estimates have `ratio` times the
 /// deviation: (1 + r^(2 - rate)) / (1 + r)^2 = ratio^2.
 double further_samples(double ratio) {
-    constexpr double safety = 0.95, least = 0.1, most = 64;  // the pilot's predictions err by some 20%
+    // a margin, since the pilot's predictions have errors of some 20%
+    constexpr double safety = 0.95, least = 0.1, most = 64;
     const double wanted = safety * ratio * ratio;
     double low = least, high = most;
     for (int step = 0; step < 30; ++step) {
