@@ -37,7 +37,7 @@ double directed_loss(const Stage& stage, const Piece& piece) {
 /// Diffuse power that leaves an element or, if `tree` is null, a patch.
 struct Leaving {
     RegionId region;
-    double power = 0;  ///< W or lm.
+    double power = 0;  ///< Power, W or lm.
     const ElementTree* tree = nullptr;
     ElementId element;
     Patch patch;
