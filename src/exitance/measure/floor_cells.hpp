@@ -31,7 +31,8 @@ class FloorCells {
     const Floor& floor() const { return floor_; }
     const std::vector<Part>& parts() const { return parts_; }
     std::size_t size() const { return part_.size(); }
-    std::uint32_t part(std::size_t cell) const { return part_[cell]; }  ///< `none` outside the floor.
+    /// Part to which a cell belongs; `none` outside the floor.
+    std::uint32_t part(std::size_t cell) const { return part_[cell]; }
     Point centre(std::size_t cell) const;
 
     /// Number of the part that contains a point of the floor's plane, or `none`.

@@ -66,7 +66,7 @@ class CurvedLight {
     const CurvedFaces& faces_;
     LightAccuracy accuracy_;            ///< Accuracy of direct light by rays.
     std::vector<Lattice> lattices_;     ///< One lattice per triangle of `faces_`.
-    std::vector<NodeLight> reflected_;  ///< Row by row, lattice by lattice.
+    std::vector<NodeLight> reflected_;  ///< Light at the nodes, lattice by lattice, row by row.
 };
 
 /// Temporary storage; one per thread.
