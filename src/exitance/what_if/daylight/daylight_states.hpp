@@ -26,7 +26,7 @@ struct StateRule {
     };
     Kind kind = Kind::schedule;
     std::vector<std::uint8_t> schedule;  ///< State of every hour.
-    std::vector<std::size_t> sensors;    ///< Sensors of `illuminance`.
+    std::vector<std::size_t> sensors;    ///< Sensors of the rule `illuminance`.
     /// Limits of `illuminance`, lx, ascending: in state k, k of them are exceeded. One fewer than states.
     std::vector<double> limits;
 };
@@ -61,7 +61,7 @@ struct DaylightStates {
     std::vector<std::int32_t> group_of_pane;  ///< Per pane: the number of its group, as in PaneGroups.
     std::vector<StateScene> scenes;
     bool has_all_panes = false;               ///< True if every pane of the scene belongs to a group.
-    std::vector<GlassVariant> variants = {};  ///< Further results are computed for each.
+    std::vector<GlassVariant> variants = {};  ///< Variants of glass for which further results are computed.
 };
 
 /// Light through the panes of a group in the geometry of a scene, and the multiple of it that is added to the light of

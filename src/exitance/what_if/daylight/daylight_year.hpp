@@ -26,7 +26,7 @@ constexpr bool has_light(const DaylightHour& hour) {
 struct DaylightSite {
     Place place;
     double zone = 0;                ///< Time zone, hours ahead of universal time.
-    double north = 0;               ///< Degrees clockwise from y.
+    double north = 0;               ///< Direction of north, degrees clockwise from y.
     double ground = 0.2;            ///< Reflectance of the ground.
     double efficacy_diffuse = 120;  ///< lm/W
     double efficacy_direct = 100;   ///< lm/W
