@@ -51,7 +51,7 @@ Result<ProbePoints> load_probe_points(const std::string& path);
 struct ProbeReference {
     ProbePoints probes;
     std::vector<Spectrum> irradiance;       ///< W/m^2
-    std::vector<Spectrum> standard_errors;  ///< W/m^2; empty when the file has none.
+    std::vector<Spectrum> standard_errors;  ///< Standard errors, W/m^2; empty if the file has none.
 };
 
 /// Reads reference points from a CSV file with the columns x,y,z,nx,ny,nz, E_* and, optionally, se_*.

@@ -56,7 +56,7 @@ struct Photometry {
     std::optional<Vec3> housing;  ///< Length, width and height of the luminaire, metres; empty: unknown.
 
     Vec3 axis_x{1, 0, 0}, axis_y{0, 1, 0}, axis_z{0, 0, 1};  ///< Axes of the table in the luminaire's frame.
-    std::vector<double> theta;                               ///< Degrees, ascending within [0, 180].
+    std::vector<double> theta;                               ///< Vertical angles, degrees, ascending within [0, 180].
     std::vector<double> phi;        ///< Degrees: {0} (rotational symmetry), or ascending from 0 to 360.
     std::vector<double> candela;    ///< Intensities, cd; theta varies fastest.
     std::vector<Finding> findings;  ///< Repairs and warnings.

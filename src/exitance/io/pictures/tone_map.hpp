@@ -24,7 +24,7 @@ enum class ToneCurve : std::uint8_t {
 
 /// Converts light to display colours. All curves ascend and map 0.18 to about 0.18; results are clamped to [0, 1].
 struct ToneMap {
-    double scale = 1;  ///< s: display units per W/m^2.
+    double scale = 1;  ///< Factor s: display units per W/m^2.
     double white = 4;  ///< w: value of s L that is shown as white by the photographic curve.
     ToneCurve curve = ToneCurve::photographic;
 

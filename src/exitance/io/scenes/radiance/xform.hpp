@@ -10,7 +10,7 @@ namespace exitance {
 
 /// Parsed arguments of a Radiance command `xform ... file`.
 struct Xform {
-    std::vector<std::string> files;    ///< May be empty.
+    std::vector<std::string> files;    ///< Files to transform; may be empty.
     std::vector<std::string> options;  ///< Words of the command that do not name files.
     std::string name;                  ///< Prefix for the names in the files, or empty.
     std::string material;  ///< Material that replaces those of all surfaces in the files; empty: they keep their own.

@@ -12,7 +12,7 @@ struct CutScale {
     double area = 1;         ///< Total area of the faces, m^2.
     double reflected = 1;    ///< (Sum of area times mean reflectance)^2 over the total area, m^2.
     double flux = 1;         ///< Emitted flux of the scene, mean over bands, W.
-    double min_benefit = 0;  ///< Cuts with less are not made.
+    double min_benefit = 0;  ///< Minimum benefit of a cut.
 };
 
 /// A part of a textured patch: a box in its texture coordinates. A tree of parts by cuts along the axes.
