@@ -140,7 +140,7 @@ bool any_face_each_other(const std::vector<Pane>& windows, double slack) {
     constexpr std::size_t too_many = 5000;
     Box box;
     for (const Pane& window : windows) box.add(box_of(window.corners));
-    std::vector<const Pane*> inner;  // most facades are on the box itself
+    std::vector<const Pane*> inner;  // panes inside the box, since most facades are on the box itself
     for (const Pane& window : windows) {
         const Point farthest{window.n.x > 0 ? box.lo.x : box.hi.x, window.n.y > 0 ? box.lo.y : box.hi.y,
                              window.n.z > 0 ? box.lo.z : box.hi.z};

@@ -7,11 +7,11 @@ namespace exitance {
 /// A time in the Gregorian calendar, in local standard time.
 struct LocalTime {
     int year = 2021, month = 1, day = 1;
-    double hour = 12;  ///< 0 to 24, including the fraction.
-    double zone = 0;   ///< Hours ahead of universal time.
+    double hour = 12;  ///< Hour of the day, 0 to 24, including the fraction.
+    double zone = 0;   ///< Time zone, hours ahead of universal time.
 };
 bool is_date(int year, int month, int day);
-int day_of_year(int year, int month, int day);  ///< 1 for 1 January.
+int day_of_year(int year, int month, int day);  ///< Returns the day of the year: 1 for 1 January.
 /// Returns the days since noon of 1 January 4713 BC, universal time.
 double julian_day(const LocalTime& time);
 
