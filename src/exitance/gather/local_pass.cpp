@@ -210,7 +210,7 @@ SampledElement LocalPass::changed(ElementId e, const LocalPassDemand& demand, Wo
 /// exceeds their noise, it counts as misfit.
 void LocalPass::look_between(ElementId e, SampledElement& sampled, const ReflectedLight& b,
                              const LocalPassDemand& demand, Workspace& w) const {
-    constexpr unsigned share = 8;  // 1 / share of the rays that the element took
+    constexpr unsigned share = 8;  // the check takes about 1 / share of the rays that the element took before
     constexpr unsigned least_places = 4, most_places = 32;
     unsigned rays = 16, count = std::min(most_places, sampled.rays / (share * rays));
     if (is_narrow_leaf(stage_, tree_, e)) {
