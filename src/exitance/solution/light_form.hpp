@@ -47,10 +47,10 @@ struct LightFormKind {
     LightFormPointer (*unpack)(std::string_view bytes);
 };
 
-/// Makes a kind known. Not while other threads solve or load.
+/// Registers a kind of light form. Must not be called while other threads solve or load.
 void add_light_form(const LightFormKind& kind);
 
-/// The form of the kind `name` in `bytes`; null for an empty name. Aborts for a kind that was not made known.
+/// The form of the kind `name` in `bytes`; null for an empty name. Aborts if no kind has this name.
 LightFormPointer unpack_light_form(std::string_view name, std::string_view bytes);
 
 }  // namespace exitance
