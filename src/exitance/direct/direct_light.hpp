@@ -148,7 +148,7 @@ class DirectLight {
     void add_distant_emitters(const Scene& scene);
     void add_windows(const Scene& scene);
     Emitter emitter_of(PieceId piece, const Spectrum& exitance) const;
-    /// True if panes may be in front of it. The pane of a window is part of its emitter.
+    /// True if light of this emitter may have to pass panes. A window's own pane is part of its emitter.
     bool is_glazed(const Emitter& emitter) const {
         return !occluders_->scene().panes().empty() && emitter.sky != Emitter::Sky::window;
     }
