@@ -29,7 +29,7 @@ std::size_t NodalBasis::monomial_count(Shape shape) const {
 }
 
 void NodalBasis::monomials(Shape shape, Vec2 uv, std::span<double> out) const {
-    // About the centre of the shape, for better conditioning.
+    // Powers of the distance from the shape's centre: the equations lose fewer digits than with powers of uv.
     const double middle = shape == Shape::triangle ? 1.0 / 3 : 0.5;
     const double s = uv.x - middle, t = uv.y - middle;
     std::size_t k = 0;
