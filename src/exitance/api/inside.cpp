@@ -43,7 +43,8 @@ void Run::limit_time(const std::optional<double>& seconds) {
 }
 
 Result<std::vector<ProbePoint>> to_engine(std::span<const Probe> probes) {
-    constexpr double rounding = 1e-11;  // a normal that has length 1 up to rounding keeps its digits, as in probe files
+    // normals whose length is 1 up to rounding are used unchanged, as in probe files
+    constexpr double rounding = 1e-11;
     std::vector<ProbePoint> out;
     out.reserve(probes.size());
     for (std::size_t i = 0; i < probes.size(); ++i) {

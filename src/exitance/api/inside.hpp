@@ -35,18 +35,19 @@ namespace exitance::api {
 struct SceneData {
     std::shared_ptr<const exitance::Scene> scene;
     std::vector<Finding> findings;
-    std::vector<exitance::Finding> engine_findings;         ///< Like `findings`, for the statistics of a solve.
+    /// The findings in the engine's type, for the statistics of a solve.
+    std::vector<exitance::Finding> engine_findings;
     std::vector<exitance::Spectrum> reflectance_deviation;  ///< See LoadedScene.
     bool light_groups = false;
-    std::vector<std::string> files = {};  ///< Files that it comes from, for files of states of panes,
-    exitance::LoadOptions load = {};      ///< the options with which they were read,
-    std::vector<NamedPane> panes = {};    ///< and the panes with their names.
+    std::vector<std::string> files = {};  ///< Files of the scene. They are read again with states of panes.
+    exitance::LoadOptions load = {};      ///< Options with which the files were read.
+    std::vector<NamedPane> panes = {};    ///< Panes of the scene with their names.
 };
 
 struct SolutionData {
     exitance::Solution solution;
     LightGroups groups;
-    mutable std::optional<RadiosityFunction> function;  ///< Made at the first use, by the thread that has its turn.
+    mutable std::optional<RadiosityFunction> function;  ///< Made at the first use, under the caller's lock.
 
     const RadiosityFunction& light() const {
         if (!function) function.emplace(solution);

@@ -40,7 +40,7 @@ Result<Scene> load_files(std::span<const std::string> files, const LoadOptions& 
                    std::vector<std::string>(files.begin(), files.end()),
                    in,
                    std::move(loaded.panes)};
-    data.load.stop = nullptr;  // it ends with this call
+    data.load.stop = nullptr;  // the request does not outlive this call
     for (const std::string& warning : warnings) data.findings.push_back({Finding::Kind::warning, "", warning, ""});
     for (const exitance::Finding& finding : loaded.findings) data.findings.push_back(to_api(finding));
     return Scene(std::make_shared<const SceneData>(std::move(data)));

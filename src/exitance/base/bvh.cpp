@@ -28,7 +28,7 @@ class BvhBuilder {
   private:
     /// A node whose children are stored in the list, or the root of a subtree with all of its nodes.
     struct Top {
-        std::uint32_t first, last, depth;        ///< Its items are [first, last).
+        std::uint32_t first, last, depth;        ///< Range [first, last) of the items, and depth of the node.
         std::uint32_t middle = 0, children = 0;  ///< First item of the second child, and the position of both children.
         Box box = {};
         std::vector<Bvh::Node> nodes = {};  ///< All nodes of a subtree, with positions relative to its root.

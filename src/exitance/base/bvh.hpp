@@ -85,8 +85,8 @@ class Bvh {
     }
 
     /// Calls visit(item) for items whose box intersects the segment from `origin` to origin + length * direction,
-    /// nearer boxes first. `visit` returns the length up to which items are still wanted (0 ends the traversal). Boxes
-    /// are enlarged by the rounding error, so that no touching box is missed.
+    /// nearer boxes first. `visit` returns the length up to which items must still be visited (0 ends the traversal).
+    /// Boxes are enlarged by the rounding error, so that no touching box is missed.
     template <class Visit>
     void visit_segment(const Point& origin, const Vec3& direction, double length, const Visit& visit) const;
 

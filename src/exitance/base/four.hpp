@@ -61,8 +61,8 @@ EXITANCE_INLINE Real sqrt(const Real& v) {
     for (std::size_t i = 0; i < lanes<Real>; ++i) out[i] = std::sqrt(v[i]);
     return out;
 }
-/// Returns a b + c with one rounding. For kernels whose results must not depend on the vector width: which products the
-/// compiler contracts by itself varies with the width.
+/// Returns a b + c with one rounding. For kernels whose results must not depend on the vector width: the products that
+/// the compiler contracts vary with the width.
 template <class Real>
 EXITANCE_INLINE Real fused(const Real& a, const Real& b, const Real& c) {
     Real out;
@@ -133,7 +133,7 @@ EXITANCE_INLINE Real load(const double* p) {
 }
 /// Returns a bit for each lane whose sign bit is set; comparisons set it where they hold.
 EXITANCE_INLINE int bits(const Mask& m) {
-#ifdef __SSE2__  // by halves, which every target has
+#ifdef __SSE2__  // in two halves, which every target supports
     using Half = double __attribute__((vector_size(16)));
     Half half[2];
     __builtin_memcpy(half, &m, sizeof m);

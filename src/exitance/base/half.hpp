@@ -19,7 +19,7 @@ constexpr Half to_half(float value) {
     std::uint32_t half = 0;
     if (magnitude > infinity) {
         half = 0x7e00u;
-    } else if (magnitude >= 143u << 23) {  // 2^16 or more
+    } else if (magnitude >= 143u << 23) {  // numbers of at least 2^16
         half = 0x7c00u;
     } else if (magnitude >= least_normal) {
         const std::uint32_t odd = magnitude >> 13 & 1u;

@@ -12,7 +12,8 @@
 
 namespace exitance {
 
-/// The index of one thing in its pool. Each kind of thing has its own type, so that they cannot be mixed up.
+/// The index of one thing in its pool. Ids of different kinds of objects have different types, so that they cannot be
+/// mixed up.
 template <class Tag>
 struct Id {
     static constexpr std::uint32_t none_value = 0xffffffffu;
@@ -60,7 +61,7 @@ class IdRange {
     std::uint32_t first_ = 0, last_ = 0;
 };
 
-/// One value per thing of a pool: a vector that only that pool's ids may index.
+/// One value per object of a pool: a vector that can be indexed only by ids of that pool.
 template <class AnyId, class T>
 class Field {
   public:

@@ -46,7 +46,7 @@ std::size_t machine_memory_bytes() {
 
 void keep_large_arrays_apart() {
 #ifdef __GLIBC__
-    // glibc raises this threshold as arrays are freed, unless it is set. It would then allocate large arrays on its
+    // Unless this threshold is set, glibc raises it as arrays are freed. Large arrays would then be allocated on the
     // heap, where gaps keep much of the memory.
     mallopt(M_MMAP_THRESHOLD, 1 << 20);
 #endif

@@ -32,7 +32,7 @@ class PhaseTimes : public Progress {
     }
 
   private:
-    /// None for phases whose work is timed in detail by what does it.
+    /// Returns the part of the run; none for phases whose work is timed in detail elsewhere.
     static std::optional<RunPart> part_of(std::string_view phase) {
         if (phase == "discontinuities") return {};
         if (phase == "mesh") return RunPart::mesh;

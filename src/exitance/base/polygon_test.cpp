@@ -27,7 +27,7 @@ TEST(Clip, ACornerInThePlaneByRoundingStaysOneCorner) {
             const Normal n = normalized(area_vector(square));
             clip(triangle, {n, dot(n, square[0])}, part);
             EXPECT_EQ(part.size(), 3u) << far << ' ' << k;
-            clip(triangle, {-n, -dot(n, square[0])}, part);  // only that corner is on this side
+            clip(triangle, {-n, -dot(n, square[0])}, part);  // only the shared corner is on this side
             EXPECT_TRUE(part.empty()) << far << ' ' << k;
         }
 }

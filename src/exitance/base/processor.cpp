@@ -12,7 +12,8 @@
 namespace exitance {
 namespace {
 
-constexpr std::array<std::string_view, 3> processor_names = {"any", "avx2", "avx512"};  // in the order of Processor
+// names in the order of Processor
+constexpr std::array<std::string_view, 3> processor_names = {"any", "avx2", "avx512"};
 
 /// Value of EXITANCE_PROCESSOR; empty if it is not set.
 std::string_view asked_processor() {

@@ -10,7 +10,7 @@
 // so that they are compiled for the same target: targets pass vectors in different registers.
 #define EXITANCE_INLINE [[gnu::always_inline]] inline
 #define EXITANCE_INLINE_LAMBDA __attribute__((always_inline))
-#if defined(__x86_64__) && !defined(__clang__)  // clang does not inline such code into functions of another target
+#if defined(__x86_64__) && !defined(__clang__)  // clang does not inline such functions into functions of another target
 #define EXITANCE_HAS_WIDE_KERNELS
 #define EXITANCE_AVX2 [[gnu::target("avx2,fma")]]
 #define EXITANCE_AVX512 [[gnu::target("avx512f,avx512dq,avx512vl,avx512bw,prefer-vector-width=512")]]

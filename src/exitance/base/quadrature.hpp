@@ -20,7 +20,7 @@ LineRule gauss_legendre(int n);
 
 inline constexpr int largest_gauss_rule = 32;
 
-/// A point of a rule over a reference shape, and its weight.
+/// A point of a quadrature rule over a reference shape, and its weight.
 struct PlanarNode {
     Vec2 at;
     double weight = 0;

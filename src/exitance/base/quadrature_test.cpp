@@ -52,11 +52,11 @@ TEST(ScatteredSquareRule, IntegratesEveryMonomialUpToDegreeEight) {
         }
 }
 
-// The 4 x 4 Gauss points integrate its square to zero.
+// The square of Legendre's polynomial vanishes at the 4 x 4 Gauss points, so that they integrate it to zero.
 TEST(ScatteredSquareRule, IntegratesTheSquareOfLegendresPolynomialOfDegreeFour) {
     const auto square_of_legendre = [](double u) {
         const double x = 2 * u - 1, p = (35 * x * x * x * x - 30 * x * x + 3) / 8;
-        return 9 * p * p;  // its mean is 1
+        return 9 * p * p;  // the mean of this function is 1
     };
     double scattered = 0, gauss = 0;
     for (const PlanarNode& k : scattered_square_rule()) scattered += k.weight * square_of_legendre(k.at.x);

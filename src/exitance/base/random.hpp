@@ -34,7 +34,8 @@ class RandomStream {
         : key_(hash(seed, static_cast<std::uint64_t>(purpose), a, b)) {}
 
     std::uint64_t bits() { return hash(key_ ^ (0xd1342543de82ef95u * ++counter_)); }
-    double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }  ///< In [0, 1).
+    /// Returns a uniform random number in [0, 1).
+    double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
     std::uint64_t key() const { return key_; }
 
   private:

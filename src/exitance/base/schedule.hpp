@@ -15,9 +15,9 @@ namespace exitance {
 /// How the tasks of a parallel loop are assigned to workers: the three schemes studied for parallel radiosity, see
 /// [Singh95].
 enum class Schedule {
-    fixed,     ///< "static": assigned once; every worker runs only its own tasks.
+    fixed,     ///< "static": tasks are assigned once, and every worker runs only its own ones.
     dynamic,   ///< One queue shared by all workers.
-    stealing,  ///< Assigned once; a worker without tasks takes some from the tail of other queues.
+    stealing,  ///< Tasks are assigned once; a worker without tasks takes some from the tail of other queues.
 };
 
 inline constexpr std::array<std::pair<Schedule, std::string_view>, 3> schedule_names{{
@@ -32,8 +32,8 @@ class TaskQueues {
   public:
     static constexpr std::size_t none = ~std::size_t(0);
 
-    /// homes  the thing, such as an input polygon, that each task belongs to. Things are assigned to workers round
-    ///        robin, and tasks follow their thing. Empty: the tasks themselves are assigned round robin.
+    /// homes the object, such as an input polygon, that each task belongs to. Objects are assigned to workers round
+    /// robin, and tasks follow their object. Empty: the tasks themselves are assigned round robin.
     TaskQueues(Schedule schedule, std::size_t tasks, std::size_t workers, std::span<const std::uint32_t> homes = {});
 
     /// Returns the next task of a worker; `none` if there is none left for it.

@@ -23,9 +23,9 @@ struct TaskGraph {
         std::uint32_t maker = none;
         std::uint32_t iteration = 0, worker = 0;
         std::uint32_t polygon = 0, level = 0;  ///< Input polygon of the patch, and its depth in the subdivision.
-        std::uint32_t interactions = 0;        ///< Number of interactions over which it gathered.
+        std::uint32_t interactions = 0;        ///< Number of interactions over which the task gathered.
         double begin = 0, end = 0;             ///< Wall-clock time since the start of the trace.
-        std::array<float, 5> seconds{};        ///< Processor time of its thread, by `Cost`.
+        std::array<float, 5> seconds{};        ///< Processor time of the task's thread, by `Cost`.
 
         double cost() const {
             double sum = 0;

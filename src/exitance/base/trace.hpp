@@ -24,16 +24,16 @@ class TaskTrace {
         std::uint64_t count = 0;
     };
     struct Task {
-        std::uint64_t index = 0;  ///< Index in its loop.
+        std::uint64_t index = 0;  ///< Index of the task in its loop.
         std::size_t worker = 0;
         double begin = 0, end = 0;
         std::uint64_t polygon = none;                        ///< Receiving polygon that the task belongs to, if known.
-        std::uint64_t first_source = none, last_source = 0;  ///< Range of the polygons that it reads from, if known.
+        std::uint64_t first_source = none, last_source = 0;  ///< Range of the polygons that the task reads, if known.
         std::array<Touched, 6> touched{};
     };
     struct Loop {
         std::string name;
-        std::uint64_t id = 0;              ///< The ids of its tasks follow this one.
+        std::uint64_t id = 0;              ///< Id of the loop; its tasks have the ids that follow.
         std::size_t phase = 0;             ///< Index into phases().
         std::size_t count = 0, grain = 0;  ///< Number of indices in the loop, and per task.
         double begin = 0, end = 0;
@@ -94,8 +94,8 @@ namespace detail {
 inline thread_local TaskTrace::Task* traced_task = nullptr;
 }  // namespace detail
 
-/// Adds `count` to the amount of `what` that the current task accessed; a task records at most six kinds. `what` must
-/// be a string of static lifetime. Does nothing outside of tasks and without a trace.
+/// Adds `count` to the number of accesses of the current task to the data named `what`; a task records at most six
+/// kinds. `what` must be a string of static lifetime. Does nothing outside of tasks and without a trace.
 inline void note_touched(const char* what, std::uint64_t count) {
     if (!detail::traced_task) return;
     for (TaskTrace::Touched& touched : detail::traced_task->touched) {

@@ -22,7 +22,7 @@ class ElementFit {
   private:
     ElementPolynomials polynomials_;
     std::array<Vec2, 4> corner_uv_{};
-    std::array<Spectrum, 4> coefficient_{};  ///< One per polynomial.
+    std::array<Spectrum, 4> coefficient_{};  ///< Coefficient of each polynomial.
 };
 
 }  // namespace exitance

@@ -14,11 +14,11 @@ class ElementPolynomials {
     static constexpr std::size_t max_count = 9;
     using Values = std::array<double, max_count>;
 
-    /// With polynomials of second degree if `curved`.
+    /// Makes the polynomials of an element. If `curved`, includes second degree.
     ElementPolynomials(const ElementTree& tree, ElementId e, const std::vector<WeightedPlace>& places, bool curved);
 
     std::size_t size() const { return size_; }
-    std::size_t straight() const { return straight_; }  ///< Number of linear (bilinear) ones.
+    std::size_t straight() const { return straight_; }  ///< Number of linear (bilinear) polynomials.
     /// Returns phi_k at (u, v) of the element; 0 for k >= size().
     Values at(Vec2 uv) const;
 

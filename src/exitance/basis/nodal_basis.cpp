@@ -29,7 +29,7 @@ std::size_t NodalBasis::monomial_count(Shape shape) const {
 }
 
 void NodalBasis::monomials(Shape shape, Vec2 uv, std::span<double> out) const {
-    // About the centre of the shape, for better conditioning.
+    // Powers of the distance from the shape's centre: the equations lose fewer digits than with powers of uv.
     const double middle = shape == Shape::triangle ? 1.0 / 3 : 0.5;
     const double s = uv.x - middle, t = uv.y - middle;
     std::size_t k = 0;
@@ -126,7 +126,7 @@ NodalBasis::OfShape NodalBasis::make(Shape shape) const {
 void NodalBasis::from_monomials(Shape shape, std::span<const double> values, std::span<double> out) const {
     const std::size_t n = count(), m = monomial_count(shape);
     const double* fit = of(shape).fit.data();
-    std::array<double, 9> sum{};  // in registers, unlike `out`, which may alias
+    std::array<double, 9> sum{};  // the compiler can keep this array in registers, unlike `out`, which may alias
     for (std::size_t i = 0; i < m; ++i, fit += n)
         for (std::size_t k = 0; k < n; ++k) sum[k] += values[i] * fit[k];
     std::copy_n(sum.begin(), n, out.begin());

@@ -152,7 +152,9 @@ void expect_push_agrees(HierarchyBasis kind, const TwoScale<M>& filters) {
             const std::array<double, M> modes = to_modes(nodal);
             for (std::size_t j = 0; j < M; ++j) {
                 double expected =
-                    0;  // c_child = sqrt 2 H^T c_parent: orthonormal on the half, but values in plain units
+                    // c_child = sqrt 2 H^T c_parent; the factor sqrt 2 arises because the basis is orthonormal on the
+                    // half interval
+                    0;
                 for (std::size_t i = 0; i < M; ++i)
                     expected += std::sqrt(2.0) * coarse[i] *
                                 (child == 0 ? filters.smooth[i].left[j] : filters.smooth[i].right[j]);

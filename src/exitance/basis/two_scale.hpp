@@ -31,7 +31,7 @@ inline constexpr TwoScale<1> haar = {{{{{{2 / scale}}, {{2 / scale}}}}}, {{{{{-2
 
 inline constexpr TwoScale<2> multiwavelet2 = {
     {{{{{2 / scale, 0}}, {{2 / scale, 0}}}, {{{-root3 / scale, 1 / scale}}, {{root3 / scale, 1 / scale}}}}},
-    {{{{{0, -2 / scale}}, {{0, 2 / scale}}},                             // 2 vanishing moments
+    {{{{{0, -2 / scale}}, {{0, 2 / scale}}},                             // the details have 2 vanishing moments
       {{{1 / scale, root3 / scale}}, {{-1 / scale, root3 / scale}}}}}};  // 3
 
 inline constexpr TwoScale<3> multiwavelet3 = {
@@ -39,7 +39,7 @@ inline constexpr TwoScale<3> multiwavelet3 = {
       {{{-root3 / scale, 1 / scale, 0}}, {{root3 / scale, 1 / scale, 0}}},
       {{{0, -root15 / 2 / scale, 0.5 / scale}}, {{0, root15 / 2 / scale, 0.5 / scale}}}}},
     {{{{{-2 / 3.0 / scale, -2 / root3 / scale, 2 * root5 / 3 / scale}},
-       {{2 / 3.0 / scale, -2 / root3 / scale, -2 * root5 / 3 / scale}}},                    // 3 vanishing moments
+       {{2 / 3.0 / scale, -2 / root3 / scale, -2 * root5 / 3 / scale}}},  // the details have 3 vanishing moments
       {{{0, -0.5 / scale, -root15 / 2 / scale}}, {{0, 0.5 / scale, -root15 / 2 / scale}}},  // 4
       {{{-root5 / 3 / scale, -root15 / 3 / scale, -4 / 3.0 / scale}},
        {{root5 / 3 / scale, -root15 / 3 / scale, 4 / 3.0 / scale}}}}}};  // 5

@@ -138,7 +138,7 @@ struct BakeArguments : CommonArguments {
     std::optional<PictureSize> size;  ///< Texels of each map with `uv`; empty: by density.
     std::string charts;               ///< PNG file for a picture of the charts with `uv`; empty: none.
     bool faceted = false;             ///< Ignore the normals of the scene's file.
-    bool light_groups = false;        ///< Also bake separate maps for every light group.
+    bool light_groups = false;        ///< True if separate maps are baked for every light group as well.
     int threads = 0;
 };
 
@@ -182,10 +182,10 @@ struct DaylightArguments : CommonArguments {
     std::string occupied;                ///< "8-18", or a file with a number per hour; empty: 8 to 18 h.
     DaylightCriteria criteria;           ///< Occupied hours are read from `occupied`.
     std::string coefficients;            ///< Radiance matrix to evaluate; empty: none.
-    std::string states;                  ///< File with states of panes; empty: they do not change.
+    std::string states;                  ///< File with states of panes; empty: all panes keep their state.
     std::optional<MatrixFormat> matrix;  ///< Format of matrix.mtx; none: matrix.csv.
     HoursFormat hours = HoursFormat::hdf5;
-    std::optional<DaylightPart> part;  ///< Only these sensors; none: all.
+    std::optional<DaylightPart> part;  ///< Part of the sensors to compute; none: all sensors.
     bool merge = false;                ///< Write the results of all parts.
     int threads = 0;
 };
@@ -224,7 +224,7 @@ struct ViewFactorArguments : CommonArguments {
     std::optional<std::size_t> check_rays;  ///< Rays per checked row or entry.
     std::uint64_t seed = 1;
     bool resume = false;                 ///< Continue from the rows that a stopped run kept.
-    std::optional<FactorFormat> format;  ///< Format of the output; empty: by its ending.
+    std::optional<FactorFormat> format;  ///< Format of the output; empty: given by the file's ending.
     bool with_sky = false;               ///< Add columns for the sky and for backs of faces.
     std::string nodes;       ///< `group`, `material` or a table with the node of every face; empty: faces are rows.
     std::string zone;        ///< Name of the zone in EnergyPlus; empty: "zone".
@@ -253,7 +253,7 @@ struct VariantRange {
 struct SweepArguments : CommonArguments {
     std::string plan;
     bool list = false, collect = false;
-    std::optional<VariantRange> run;   ///< None: --run is not given.
+    std::optional<VariantRange> run;   ///< Variants to run; none: --run is not given.
     std::size_t local = 0;             ///< Variants that are run at a time; 0: --local is not given.
     std::vector<std::string> outputs;  ///< Files of --collect; empty: both in the folder of the sweep.
     int threads = 0;

@@ -6,7 +6,7 @@
 
 namespace exitance {
 
-/// Counts measuring points on borders of several sides, whose light is that of one of the sides (see PlaceFinder).
+/// Counts measuring points on borders of several sides, which get the light of one of the sides (see PlaceFinder).
 class BorderPoints {
   public:
     void add(bool is_between_sides) { ++all_, count_ += is_between_sides; }

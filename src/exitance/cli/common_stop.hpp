@@ -17,9 +17,9 @@ class CommonStop {
     /// asked  the request of the terminal's limits: of RunLimits::keep(), or of stop() if there is no result to keep
     CommonStop(Terminal& terminal, StopRequest& asked);
 
-    /// The request that the work checks.
+    /// Returns the request that long work must check.
     const StopRequest& request() const { return processes() > 1 ? agreed_ : asked_; }
-    /// Sets a deadline of its own for the work, at most the time limit.
+    /// Sets a deadline for this work, which is no later than the time limit.
     void set_deadline(StopRequest::Clock::time_point deadline) { asked_.set_deadline(deadline); }
 
     /// The signal that any process has received, as the exit status for it; none if there was no signal. Collective.

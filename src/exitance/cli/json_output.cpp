@@ -66,7 +66,8 @@ std::vector<std::pair<std::string, std::string>> option_facts(const SolveRequest
     const Json json = Json::parse(recorded_options(request));
     for (const auto& [name, value] : json.items())
         if (name != "recipe" && name != "output_light")
-            facts.emplace_back(name, dump(value, -1));  // other options record their effect
+            // recipe and output_light are recorded by the options that they set
+            facts.emplace_back(name, dump(value, -1));
     facts.emplace_back("memory_limit", dump(value_or_null(request.options.memory_limit_bytes), -1));
     return facts;
 }

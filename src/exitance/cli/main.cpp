@@ -71,7 +71,7 @@ int main(int argc, char** argv) {
         const int status = run_program(words);
         leave_processes();
         return status;
-    } catch (const std::system_error& failure) {  // of output that is printed directly
+    } catch (const std::system_error& failure) {  // error of output that was written directly to standard output
         return static_cast<int>(Terminal({}).fail({ErrorCode::cannot_write, failure.what(), "standard output", ""}));
     } catch (const std::bad_alloc&) {
         return static_cast<int>(Terminal({}).fail({ErrorCode::limit, "the system has no more memory", "",

@@ -12,8 +12,8 @@
 namespace exitance {
 namespace {
 
-/// True if an output and another named file are one. A name that does not exist yet can only be that of an output:
-/// values of other options may be words that look like it.
+/// True if an output and another named file are the same file. A name that does not exist yet is only compared with
+/// outputs: values of other options may be words that look like file names.
 bool is_one_file(const NamedFile& output, const NamedFile& other) {
     std::error_code failed;
     if (std::filesystem::is_regular_file(output.path, failed)) return is_same_file(output.path, other.path);

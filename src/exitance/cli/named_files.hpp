@@ -14,9 +14,8 @@ struct NamedFile {
     bool is_output = false;
 };
 
-/// Error (usage) if an output is also named by another option or input, so that writing it would destroy what the run
-/// reads, or what it has just written. Links count as the files that they lead to. Folders and devices may be named
-/// several times.
+/// Error (usage) if an output is also named by another option or input, so that writing it would destroy an input or
+/// another output of the run. Links are followed. Folders and devices may be named several times.
 Result<void> check_named_files(std::span<const NamedFile> files);
 
 /// Error (usage) if `verb` cannot write its solution to `path`: standard output, or a name with an ending that is not

@@ -35,8 +35,8 @@ Result<std::vector<Observer>> eyes_of_model(const std::string& path) {
     return out;
 }
 
-/// Returns the position in a row of the direction: that of dx, dy, dz or that of nx, ny, nz, as in tables of sensors;
-/// none if the table has neither. Error: some of three columns.
+/// Returns the column at which a row's direction begins: dx, dy, dz or, as in tables of sensors, nx, ny, nz. None if
+/// the table has neither. Error: it has only some of the three columns.
 Result<std::optional<std::size_t>> find_direction(const NumberTable& table) {
     for (const std::size_t first : {0, 3}) {
         const int count = int(table.has(first)) + int(table.has(first + 1)) + int(table.has(first + 2));

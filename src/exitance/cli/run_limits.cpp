@@ -27,7 +27,7 @@ constexpr std::chrono::milliseconds memory_interval_of_several{100};
 }  // namespace
 
 Clock::time_point seconds_from_now(double seconds) {
-    const std::chrono::duration<double> limit(std::min(seconds, 1e9));  // representable by the clock
+    const std::chrono::duration<double> limit(std::min(seconds, 1e9));  // a time that the clock can represent
     return Clock::now() + std::chrono::duration_cast<Clock::duration>(limit);
 }
 

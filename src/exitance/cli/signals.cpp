@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-// A handler has no argument that could carry these.
+// Global, since a signal handler has no argument that could pass these.
 std::atomic<StopRequest*> target{nullptr};
 std::atomic<int> last_signal{0};
 

@@ -78,8 +78,8 @@ void declare(CLI::App& app, GlareArguments& arguments) {
         ->required();
     app.add_option_function<std::string>(
            "--threshold", [&arguments](const std::string& word) { arguments.threshold = read_threshold(word); },
-           "Luminance above which what is seen is a source of glare: cd/m^2, or 5x for 5 times the mean luminance in "
-           "view. Default 2000")
+           "Luminance above which a part of the view is a source of glare: cd/m^2, or 5x for 5 times the mean "
+           "luminance in view. Default 2000")
         ->type_name("LUMINANCE");
     add_positive(app, "--efficacy", arguments.efficacy, "LM/W",
                  "Luminous efficacy of light in watts. Default 179 lm/W");
@@ -115,8 +115,9 @@ void declare_standards(CLI::App& app, ReportArguments& arguments) {
                    arguments.requirements.push_back(std::move(*read));
                }
            },
-           "Required numbers, judged on the page with the error of the light: 'desk: Em 500, U0 0.6' for planes of a "
-           "name (without a name: all), Ez for cylindrical planes, 'UGR 19' for observers. May be given several times")
+           "Required values, which the page compares with the computed ones and their error: 'desk: Em 500, U0 0.6' "
+           "for planes of a name (without a name: all), Ez for cylindrical planes, 'UGR 19' for observers. May be "
+           "given several times")
         ->type_name("NUMBERS")
         ->expected(1)
         ->take_all();
@@ -139,7 +140,7 @@ void declare_standards(CLI::App& app, ReportArguments& arguments) {
     add_text("--client", arguments.heading.client, "Client, for the first page");
     add_text("--author", arguments.heading.author, "Author, for the first page");
     add_text("--date", arguments.heading.date, "Date, for the first page");
-    app.add_option("--pdf", arguments.pdf, "The page as PDF (.pdf), printed by Chromium if that is installed")
+    app.add_option("--pdf", arguments.pdf, "Also write the page as PDF (.pdf); Chromium must be installed")
         ->type_name("FILE");
 }
 

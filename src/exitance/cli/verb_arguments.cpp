@@ -280,7 +280,7 @@ void declare(CLI::App& app, HeatArguments& arguments) {
                if (!(*arguments.surroundings >= 0))
                    throw CLI::ValidationError("--surroundings", fmt::format("must be at least 0, not {}", word));
            },
-           "Temperature that is seen through openings, K. Default: none, the surfaces are an enclosure")
+           "Temperature of the surroundings behind openings, K. Default: none; the surfaces must be an enclosure")
         ->type_name("K");
     declare_json(app, arguments);
     declare_work(app, arguments, arguments.threads);
@@ -303,7 +303,8 @@ void declare(CLI::App& app, ViewFactorArguments& arguments) {
     app.add_flag("--sky", arguments.with_sky,
                  "Add columns for the sky and for backs of faces to csv, mtx and pairs; .h5 always has them");
     app.add_option("--nodes", arguments.nodes,
-                   "Make one row per node: a group, a material, or as a table (.csv) with the columns face,node says. "
+                   "Make one row per node: per group, per material, or per node in a table (.csv) with the columns "
+                   "face,node. "
                    "Default: one row per face")
         ->type_name("group|material|FILE");
     app.add_option("--zone", arguments.zone, "Name of the zone or enclosure in EnergyPlus. Default zone")

@@ -10,7 +10,8 @@ namespace exitance {
 /// A punctual light that may illuminate one convex part of a surface, and its possible blockers.
 struct Beam {
     std::uint32_t light = 0;
-    std::uint32_t first = 0, count = 0;  ///< Range of its blockers in the candidates; empty: unoccluded.
+    /// Range of the beam's blockers in the list of candidates; empty if it is unoccluded.
+    std::uint32_t first = 0, count = 0;
 };
 
 /// Direct light of point lights, spotlights and parallel light, exact at every point:
@@ -23,7 +24,7 @@ struct Beam {
 /// never block.
 class Beams {
   public:
-    /// `lights` and `occluders` must outlive it.
+    /// `lights` and `occluders` must outlive this object.
     Beams(const std::vector<PunctualLight>& lights, const Occluders& occluders)
         : lights_(&lights), occluders_(&occluders) {}
 
@@ -48,7 +49,7 @@ class Beams {
                         Spectrum* parallel = nullptr) const;
 
   private:
-    /// Unoccluded light at a receiver, and the point that it comes from.
+    /// Unoccluded light at a receiver, and the point from which the light comes.
     struct Arrival {
         Spectrum E;
         Point from;

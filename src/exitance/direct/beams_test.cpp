@@ -39,7 +39,8 @@ TEST(Beams, ABulbOverAPlaneFollowsTheCubeOfTheCosine) {
 }
 
 TEST(Beams, AShadowIsHardAndHasTheShapeOfTheBlocker) {
-    const Scene scene = test::make({square(10, 0), square(1, 1)});  // at half the bulb's height: its shadow is 2 m wide
+    // a square at half the height of the bulb: its shadow is 2 m wide
+    const Scene scene = test::make({square(10, 0), square(1, 1)});
     EXPECT_EQ(floor_light(scene, bulb({0, 0, 2}), {1 - 1e-9, 0.3, 0}), 0);
     EXPECT_GT(floor_light(scene, bulb({0, 0, 2}), {1 + 1e-9, 0.3, 0}), 0);
     EXPECT_GT(floor_light(scene, bulb({0, 0, 1}), {0.2, 0.3, 0}), 0) << "a light in the blocker's plane";
@@ -103,7 +104,7 @@ TEST(Beams, APreparedReceiverHasTheSameLight) {
             const Spectrum exact = beams.irradiance(at);
             EXPECT_EQ(beams.irradiance(at, whole, candidates), exact);
             EXPECT_EQ(beams.irradiance(at, some, fewer), exact);
-            lit += exact[0] > 3;  // more than the sun alone
+            lit += exact[0] > 3;  // brighter than the sun alone
         }
     }
     EXPECT_GT(lit, 300u) << "the test is to see both light and shadow";

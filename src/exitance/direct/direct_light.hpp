@@ -22,28 +22,28 @@ struct ReceiverLight {
     struct Source {
         std::uint32_t emitter = 0;
         PieceId piece;
-        /// Range of its blockers in `candidates`; empty: the whole piece is visible.
+        /// Range of the source's blockers in `candidates`; empty: the whole piece is visible.
         std::uint32_t first = 0, count = 0;
         /// The range is only a part of too many candidates: exact light must not be computed.
         bool is_crowded = false;
-        bool in_batch = false;   ///< Is one of `open`.
-        double far_factor = -1;  ///< Unoccluded part of the sky: its form factor F, the same at every point.
+        bool in_batch = false;   ///< True if the source is in the batch `open`.
+        double far_factor = -1;  ///< Form factor F of the sky's unoccluded part, the same at every point.
     };
     Normal n;
     RegionId own;
     std::vector<Source> sources;  ///< Sources that are not certainly hidden.
     std::vector<Beam> beams;      ///< Punctual lights that are not certainly hidden.
     std::vector<PieceId> candidates;
-    QuadBatch open;                     ///< Fully visible sources of at most four corners, in the order of `sources`,
-    std::vector<Spectrum> open_light;   ///< and their exitances.
-    std::vector<ReceiverLight> behind;  ///< Diffusing pane: one entry, for its other side,
-    double through = 0;                 ///< and the weight of that side (Material::through).
+    QuadBatch open;                     ///< Fully visible sources of at most four corners, in the order of `sources`.
+    std::vector<Spectrum> open_light;   ///< Exitances of the sources in `open`.
+    std::vector<ReceiverLight> behind;  ///< For diffusing panes: one entry, the light on the other side.
+    double through = 0;                 ///< Weight of the light in `behind` (Material::through).
 
     void clear();
     bool is_dark() const {  ///< True if certainly no light arrives.
         return sources.empty() && beams.empty() && (behind.empty() || behind[0].is_dark());
     }
-    bool has_crowded() const {  ///< True if a source has more candidates than were worth counting.
+    bool has_crowded() const {  ///< True if a source has more blocker candidates than the limit for counting them.
         return std::any_of(sources.begin(), sources.end(), [](const Source& s) { return s.is_crowded; }) ||
                (!behind.empty() && behind[0].has_crowded());
     }
@@ -57,7 +57,7 @@ class DirectLight {
   public:
     using Workspace = VisibilityWorkspace;
 
-    /// `scene` and `occluders` must outlive it.
+    /// `scene` and `occluders` must outlive this object.
     DirectLight(const Scene& scene, const Occluders& occluders);
 
     /// Returns the irradiance (W/m^2) at x on a surface of normal n:
@@ -135,7 +135,7 @@ class DirectLight {
     }
     static bool is_own(const Emitter& emitter, RegionId own) { return !own.is_none() && emitter.region == own; }
     const Occluders& occluders() const { return *occluders_; }
-    /// The scene whose materials and lights emit; its geometry is that of the occluders.
+    /// The scene whose materials and lights emit; the occluders have the same geometry.
     const Scene& scene() const { return *scene_; }
 
     /// Returns the form factor from a receiver to the visible part of an emitter, weighted by its relative radiance.
@@ -148,7 +148,7 @@ class DirectLight {
     void add_distant_emitters(const Scene& scene);
     void add_windows(const Scene& scene);
     Emitter emitter_of(PieceId piece, const Spectrum& exitance) const;
-    /// True if panes may be in front of it. The pane of a window is part of its emitter.
+    /// True if light of this emitter may have to pass panes. A window's own pane is part of its emitter.
     bool is_glazed(const Emitter& emitter) const {
         return !occluders_->scene().panes().empty() && emitter.sky != Emitter::Sky::window;
     }

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// Beams to both sides of the vertical.
+/// Light in two beams, one to each side of the vertical.
 EmissionProfile batwing() {
     EmissionProfile p;
     p.body = EmissionProfile::Body::flat;

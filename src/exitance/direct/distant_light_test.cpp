@@ -73,7 +73,7 @@ TEST(DistantLight, GroundBesideAWallHasTheLightOfThePixelsThatItSees) {
     const Normal sun = normalized(Vec3{-1, 0.3, 0.9});
     DirectionalPicture picture{512, 256, {}};
     Spectrum open, beside;
-    constexpr std::size_t parts = 4;  // per side of a pixel, for the reference
+    constexpr std::size_t parts = 4;  // samples per side of a pixel, for the reference
     for (std::size_t i = 0; i < picture.width * picture.height; ++i) {
         const auto row = static_cast<double>(i / picture.width), column = static_cast<double>(i % picture.width);
         const auto towards = [&](double down, double along) {
@@ -123,7 +123,8 @@ TEST(DistantLight, AWallGetsHalfOfAUniformSkyAndTheGroundHidesItsGlow) {
     const Stage stage(scene);
     EXPECT_NEAR(light_at(stage, {0, 0, 1}, {0, 0, -1}, RegionId()),
                 30 * (1 - 4 / pi * (5 / std::sqrt(26.0) * std::atan(5 / std::sqrt(26.0)))), 1e-9);
-    EXPECT_NEAR(light_at(stage, {100, 0, 50}, {1, 0, 0}, RegionId()), 50 + 15, 1e-9);  // the ground is behind it
+    // the ground is behind the receiver
+    EXPECT_NEAR(light_at(stage, {100, 0, 50}, {1, 0, 0}, RegionId()), 50 + 15, 1e-9);
 }
 
 TEST(DistantLight, ThroughAnOpeningItAgreesWithTheReference) {

@@ -58,7 +58,8 @@ EmitterTree::Node EmitterTree::make_node(std::uint32_t first, std::uint32_t last
         double of_piece = 0;
         for (const Point& corner : corners) {
             out.radius = std::max(out.radius, norm(corner - out.centre));
-            of_piece += squared_norm(corner - middle) / static_cast<double>(3 * corners.size());  // a square: r^2 / 3
+            // exact for a square: r^2 / 3
+            of_piece += squared_norm(corner - middle) / static_cast<double>(3 * corners.size());
         }
         out.spread_squared += s.power / out.power * (squared_norm(middle - out.centre) + of_piece);
         out.cosine = std::min(out.cosine, std::max(dot(plane_of(s).n, out.axis), -1.0));
@@ -121,7 +122,7 @@ EmitterTree::Term EmitterTree::look_at(std::uint32_t number, const Receiver& at)
     const double d2 = squared_norm(d), distance = std::sqrt(d2), up = dot(at.n, d);
     if (up <= -node.radius) return {number, 0, 0};
     const double nearest = std::max(distance - node.radius, 0.1 * node.radius);
-    const double highest = std::min(1.0, (up + node.radius) / nearest);  // cosine at x
+    const double highest = std::min(1.0, (up + node.radius) / nearest);  // upper bound of the receiver's cosine
     const auto anything = [&](double cosine) {
         return Term{number, 0, node.power / (pi * nearest * nearest) * highest * cosine};
     };

@@ -29,17 +29,17 @@ class EmitterTree {
     const std::vector<double>& power_before() const { return power_before_; }
 
     struct Node {
-        Point centre;                       ///< Centre of power.
-        double spread_squared = 0;          ///< Mean squared distance from it, weighted by power, m^2.
-        double radius = 0;                  ///< Radius of a bounding ball about it, m.
-        Vec3 normal;                        ///< Mean normal, weighted by power; shorter than 1 if normals differ.
-        double normal_spread = 0;           ///< RMS deviation of the normals from it.
-        Normal axis;                        ///< Axis of a cone that contains all normals,
-        double cosine = 1, sine = 0;        ///< and cosine and sine of its half angle.
-        double power = 0;                   ///< Mean over bands, W.
-        double power_squares = 0;           ///< Sum of the squared powers of the sources, W^2.
-        Spectrum colour;                    ///< Power per band, relative to the mean over bands.
-        std::uint32_t first = 0, last = 0;  ///< Range of its sources.
+        Point centre;                 ///< Centre of power.
+        double spread_squared = 0;    ///< Mean squared distance of the sources from the centre, weighted by power, m^2.
+        double radius = 0;            ///< Radius of a bounding ball about the centre, m.
+        Vec3 normal;                  ///< Mean normal, weighted by power; shorter than 1 if normals differ.
+        double normal_spread = 0;     ///< RMS deviation of the normals from `normal`.
+        Normal axis;                  ///< Axis of a cone that contains all normals.
+        double cosine = 1, sine = 0;  ///< Cosine and sine of this cone's half angle.
+        double power = 0;             ///< Mean over bands, W.
+        double power_squares = 0;     ///< Sum of the squared powers of the sources, W^2.
+        Spectrum colour;              ///< Power per band, relative to the mean over bands.
+        std::uint32_t first = 0, last = 0;  ///< Range of the node's sources.
         std::uint32_t left = 0, right = 0;  ///< Children; 0 for a single source.
 
         bool is_leaf() const { return left == 0; }
@@ -50,8 +50,8 @@ class EmitterTree {
     /// Unoccluded light of a cluster at a point.
     struct Term {
         std::uint32_t node = 0;
-        double light = 0;  ///< Irradiance without occlusion, mean over bands, W/m^2,
-        double error = 0;  ///< and an estimate of its error.
+        double light = 0;  ///< Irradiance without occlusion, mean over bands, W/m^2.
+        double error = 0;  ///< Estimated error of `light`, W/m^2.
     };
     /// Disjoint clusters that together contain all emitters. Memory is reused.
     struct Cut {

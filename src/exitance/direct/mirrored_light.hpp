@@ -25,12 +25,12 @@ bool panes_may_mirror_light(const Scene& scene);
 /// rays pass at random. Unbiased, except for light that panes mirror twice, which is left out.
 class MirroredLight {
   public:
-    /// Both must outlive it.
+    /// Both arguments must outlive this object.
     MirroredLight(const Scene& scene, const RayTracer& tracer);
 
     struct Estimate {
         Spectrum irradiance = {};  ///< E_m, W/m^2
-        Spectrum parallel = {};    ///< The part of it from sky, sun and parallel lights.
+        Spectrum parallel = {};    ///< The part of `irradiance` from sky, sun and parallel lights.
         double variance = 0;       ///< Variance of the mean over bands, (W/m^2)^2.
         std::size_t rays = 0;      ///< Number of points that were tried.
     };

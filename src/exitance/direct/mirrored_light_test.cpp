@@ -174,7 +174,7 @@ TEST(MirroredLight, IsPartOfDirectLightAndOfTheReference) {
 /// A grey court lit by a mirrored sky, sun and lamp: paths from points find the same light, whose last step is a
 /// path's.
 TEST(MirroredLight, IsInTheLightThatPathsCarry) {
-    SceneDescription d = court(front(10, 20, 4), {}, 0.8);  // an index of 4 mirrors as much as silicon
+    SceneDescription d = court(front(10, 20, 4), {}, 0.8);  // a refractive index of 4 reflects about as much as silicon
     d.distant = sky_of(100);
     d.distant.discs.push_back({normalized(Vec3{0.3, -1, 0.8}), 0.2665 * pi / 180, Spectrum(300)});
     PunctualLight lamp;

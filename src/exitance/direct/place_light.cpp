@@ -12,11 +12,12 @@ namespace exitance {
 namespace {
 
 // Work in units of VisibilityWorkspace::work, about that of a ray, measured by `bench/exitance-bench`.
-constexpr double work_of_shaft = 10;     ///< Search for the blockers between a polygon and a source.
-constexpr double work_of_blocker = 6;    ///< A blocker that is clipped from a source, if there are many fragments.
-constexpr double work_of_integral = 20;  ///< Integral of a directed radiance over a fragment.
-/// Exact light is tried again if rays need more than this many times the work that it was allowed. It is then allowed
-/// what they need, divided by this number. derived from the cost of trying in vain: at most a quarter of the rays.
+constexpr double work_of_shaft = 10;   ///< Work of a search for the blockers between a polygon and a source.
+constexpr double work_of_blocker = 6;  ///< Work per blocker that is clipped from a source, if there are many fragments.
+constexpr double work_of_integral = 20;  ///< Work per integral of a directed radiance over a fragment.
+/// Exact light is tried again if rays need more than this many times the work that it was allowed. The work allowed for
+/// exact light is then the work of the rays, divided by this number. derived from the cost of trying in vain: at most a
+/// quarter of the rays.
 constexpr double worth_another = 4;
 
 /// Limit on the rays of a place of a polygon below a sky from a picture. derived from RayLight::error_of(), 0.3% of the
@@ -30,7 +31,7 @@ PlaceLight::PlaceLight(const DirectLight& direct, const RayTracer& tracer) : dir
         const bool is_directed = emitter.radiance.is_directed();
         const double pieces = static_cast<double>(emitter.pieces.size());
         preparing_ += (work_of_shaft + (is_directed ? work_of_integral : 0)) * pieces;
-        // Even if every piece blocks every source; integrals over fragments have no such bound.
+        // This bound holds even if every piece blocks every source. Integrals over fragments have no such bound.
         most_work_ += is_directed ? HUGE_VAL : pieces * static_cast<double>(direct.occluders().pieces().size());
     }
     if (panes_may_mirror_light(direct.scene()))
@@ -80,7 +81,7 @@ PlaceLight::Estimate PlaceLight::at(const Point& x, const Normal& n, RegionId ow
             most_work_ <= of_one || !(accuracy.absolute > 0) ? of_one : rays_.forecast(x, n, own, accuracy, room);
         exact = exact_within(x, n, own, work, room), tried = work_of(room, work);
         if (!exact) {
-            // In penumbrae rays need more than was forecast, which the first ones show.
+            // In penumbrae more rays are needed than were forecast. The first rays show how many.
             const double needed = rays_needed_at(x, n, own, work, accuracy, room, tried);
             if (needed > worth_another * work) {
                 exact = exact_within(x, n, own, needed / worth_another, room);
@@ -111,8 +112,8 @@ std::optional<Spectrum> PlaceLight::exact_within(const Point& x, const Normal& n
                               : direct_->irradiance_within(x, n, own, work, room.exact);
 }
 
-/// Returns how many rays a place needs, by about as many of them as `work`, and adds these to `tried`. Stratified rays
-/// have a variance of n^(-3/2).
+/// Returns how many rays a place needs, estimated from about `work` of these rays, and adds those to `tried`.
+/// Stratified rays have a variance of n^(-3/2).
 double PlaceLight::rays_needed_at(const Point& x, const Normal& n, RegionId own, double work,
                                   const LightAccuracy& accuracy, Workspace& room, double& tried) const {
     LightAccuracy first = accuracy;
@@ -191,7 +192,8 @@ void PlaceLight::at_places(const Polygon& on, const LightAccuracy& accuracy, Wor
     if (std::any_of(direct_->emitters().begin(), direct_->emitters().end(),
                     [](const DirectLight::Emitter& emitter) { return emitter.radiance.is_picture(); }))
         limited.most_rays = std::min(limited.most_rays, max_rays_to_picture);
-    // In penumbrae, and where little of the light arrives, rays need more than was forecast, which the first ones show.
+    // In penumbrae, and where little of the light arrives, more rays are needed than were forecast. The first rays show
+    // how many.
     double tried = 0;
     const double needed = rays_needed_at(on.places[on.places.size() / 2], on.n, on.own, work, limited, room, tried);
     if (needed > worth_another * work &&

@@ -18,11 +18,11 @@ class MirroredLight;
 /// counts its work while it is computed, and gives up when it exceeds the cost of these rays. If the first
 /// rays then show that many more are needed, as in penumbrae, exact light is tried again, up to a quarter of it: a
 /// place never costs more than twice as much as by the cheaper estimator. For places of one polygon the blockers of the
-/// whole polygon are counted, up to the cost of the rays; the rays of its middle place tell whether exact light is
+/// whole polygon are counted, up to the cost of the rays; the rays of its middle place determine whether exact light is
 /// tried again. The choice depends on the places and the accuracy alone.
 class PlaceLight {
   public:
-    /// Both must outlive it.
+    /// Both arguments must outlive this object.
     PlaceLight(const DirectLight& direct, const RayTracer& tracer);
     ~PlaceLight();
 
@@ -39,7 +39,7 @@ class PlaceLight {
 
     /// Places of a convex polygon of a region.
     struct Polygon {
-        std::span<const Point> outline;  ///< Metres, counter-clockwise about n.
+        std::span<const Point> outline;  ///< Outline, metres, counter-clockwise about n.
         Normal n;
         RegionId own;
         std::span<const Point> places;

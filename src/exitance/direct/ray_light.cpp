@@ -14,7 +14,8 @@
 namespace exitance {
 namespace {
 
-constexpr double strong_share = 1.0 / 8;  ///< Share of the unoccluded light above which a source has its own rays.
+/// Share of the unoccluded light above which a source is sampled by rays of its own.
+constexpr double strong_share = 1.0 / 8;
 
 /// Standard deviation of one ray to a half-hidden source, relative to its unoccluded light. Also the uncertainty of
 /// features smaller than the light of one ray, as a share of that light.
@@ -39,7 +40,7 @@ std::size_t facet_count(const DistantLight::Dome& dome) {
 /// The domes of the scene whose facets are among the emitters.
 DistantLight kept_domes(const DirectLight& direct) {
     DistantLight out;
-    std::vector<std::uint32_t> dome_of;  // per facet, in the order of distant_facets()
+    std::vector<std::uint32_t> dome_of;  // dome of each facet, in the order of distant_facets()
     const std::vector<DistantLight::Dome>& domes = direct.occluders().scene().distant().domes;
     for (std::uint32_t i = 0; i < domes.size(); ++i) dome_of.resize(dome_of.size() + facet_count(domes[i]), i);
     std::vector<std::uint8_t> is_kept(domes.size(), 0);
@@ -176,8 +177,8 @@ const SkyOpenings& RayLight::openings() const {
     return *openings_;
 }
 
-/// Returns the variance of a part. If no ray of the sky or of a sun has arrived, it is that of the light which as many
-/// rays miss at the places of SkyOpenings.
+/// Returns the variance of a part. If no ray to the sky or to a sun has arrived, the variance is estimated from the
+/// light that equally many rays miss at the places of SkyOpenings.
 double RayLight::variance(const Part& part) const {
     const bool is_sky = part.kind == Part::Kind::sky, is_sun = part.kind == Part::Kind::piece && part.is_sun;
     const bool finds_nothing = std::all_of(part.blocks.begin(), part.blocks.end(),
@@ -266,7 +267,7 @@ double RayLight::find_parts(const Receiver& at, const LightAccuracy& accuracy, W
         const EmitterTree::Node& node = tree_.nodes()[term.node];
         const bool is_strong = node.is_leaf() && term.light > strong_share * total;
         if (is_strong) add_piece(at, tree_.sources()[node.first].name, room);
-        // Clusters of unknown light have a chance in proportion to its bound.
+        // A cluster is chosen in proportion to its light plus the bound of that light's error.
         const double own = is_strong ? 0 : term.light + term.error;
         chance += own;
         room.chance_before_.push_back(chance);
@@ -324,7 +325,7 @@ class RayLight::RayMaker {
         if (cosine <= 0) return;
         const Spectrum weight = cosine / (pi * to.density) * occluders_.scene().distant().radiosity(to.w, false);
         if (room_.portals_.is_aimed_at(to.w))
-            part_.blocks[i / part_.block].all += weight;  // its light belongs to the part `openings`
+            part_.blocks[i / part_.block].all += weight;  // the ray's light belongs to the part `openings`
         else
             add(i, at_.x + reach_ * to.w, RegionId(), weight, true, PieceId());
     }
@@ -395,7 +396,7 @@ void RayLight::continue_through_windows(const Receiver& at, Workspace& room) con
     room.onwards_.clear(), room.onwards_from_.clear(), room.onwards_to_.clear();
     for (std::size_t i = 0; i < room.rays_.size(); ++i) {
         if (room.blocked_[i] || room.rays_[i].window.is_none()) continue;
-        constexpr double step = 3e-5, beyond_all = 2;  // shares of the scene's size
+        constexpr double step = 3e-5, beyond_all = 2;  // both as shares of the scene's size
         const Point& end = room.to_[i].at;
         const Vec3 w = normalized(end - at.x);
         room.onwards_.push_back(i);
@@ -407,7 +408,7 @@ void RayLight::continue_through_windows(const Receiver& at, Workspace& room) con
     for (std::size_t k = 0; k < room.onwards_.size(); ++k) room.blocked_[room.onwards_[k]] = hidden[k];
 }
 
-/// Traces the batch and adds what arrives to the blocks.
+/// Traces the batch and adds the arriving light to the blocks.
 void RayLight::trace(const Receiver& at, Workspace& room) const {
     if (room.blocked_size_ < room.rays_.size()) {
         room.blocked_size_ = std::bit_ceil(room.rays_.size());
@@ -487,7 +488,7 @@ double RayLight::light_through_openings(const Workspace& room) const {
 
 double RayLight::forecast(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
                           Workspace& room) const {
-    constexpr double work_of_place = 20;  // choosing the parts, measured in rays
+    constexpr double work_of_place = 20;  // work of choosing the parts, in rays (measured)
     double open = find_parts(direct_->receiver(x, n, own), accuracy, room);
     if (std::any_of(room.parts_.begin(), room.parts_.end(),
                     [](const Part& part) { return part.kind == Part::Kind::openings; }))

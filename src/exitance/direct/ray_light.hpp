@@ -34,18 +34,19 @@ namespace exitance {
 /// punctual lights is exact.
 class RayLight {
   public:
-    /// Both must outlive it.
+    /// Both arguments must outlive this object.
     RayLight(const DirectLight& direct, const RayTracer& tracer);
 
     class Workspace;
     struct Estimate {
         Spectrum irradiance = {};  ///< W/m^2
-        Spectrum parallel = {};    ///< The part of it from sky and sun.
+        Spectrum parallel = {};    ///< The part of `irradiance` from sky and sun.
         double variance = 0;       ///< Variance of the mean over bands, (W/m^2)^2; 0: exact.
         std::size_t rays = 0;      ///< Number of rays cast.
         double work = 0;           ///< Cost of attempts at exact light, with or without success, in rays.
 
-        Spectrum standard_error() const;  ///< Per band, in proportion to the light of the band, W/m^2.
+        /// Returns the standard error per band, in proportion to the light of the band, W/m^2.
+        Spectrum standard_error() const;
     };
 
     /// Returns the light at x on region `own` (none: in free space). About 0.2 us per ray.
@@ -93,20 +94,20 @@ class RayLight {
         SeenPolygon seen;
     };
     std::vector<Disc> discs_;
-    mutable std::once_flag searched_;  ///< For openings(), which is made when it is needed first.
+    mutable std::once_flag searched_;  ///< Guards `openings_`, which is made at the first call of openings().
     mutable std::unique_ptr<const SkyOpenings> openings_;
     double size_ = 0;           ///< m
     bool is_coloured_ = false;  ///< True if a pane's transmission differs between bands.
 };
 
-/// A source of light that has its own rays.
+/// A source of light, or group of sources, that is sampled by rays of its own.
 struct RayLight::Part {
     enum class Kind : std::uint8_t { sky, openings, piece, others } kind = Kind::sky;
-    DirectLight::SourceName source = {};  ///< For a piece.
+    DirectLight::SourceName source = {};  ///< The source, if `kind` is piece.
     Spectrum open;                        ///< Light without occlusion, W/m^2; for `openings`, `others` an estimate.
-    const SeenPolygon* seen = nullptr;    ///< For a piece.
+    const SeenPolygon* seen = nullptr;    ///< The source's polygon, if `kind` is piece.
     double unaimed = 0;                   ///< Light through openings at which no rays are aimed, W/m^2, of the sky.
-    bool is_sun = false;                  ///< A disc of the sun.
+    bool is_sun = false;                  ///< True for a disc of the sun.
     Point from = {};                      ///< Viewpoint of a piece: the place, or the scene's middle for the sun.
     std::uint32_t rays = 0;               ///< Rays cast so far: a power of two.
     std::uint32_t block = 1;              ///< Rays per block.
@@ -142,8 +143,9 @@ class RayLight::Workspace {
     SkyTree::Aim aim_;
     std::vector<PortalCell> cells_;  ///< Openings at which rays are aimed.
     PortalAim portals_;
-    Normal disc_normal_;                ///< Normal of the receiver for which
-    std::vector<Spectrum> disc_light_;  ///< the unoccluded light of each disc is known; empty: none.
+    Normal disc_normal_;  ///< Normal of the receiver for which
+    /// Unoccluded light of each disc at a receiver with this normal; empty: not computed yet.
+    std::vector<Spectrum> disc_light_;
     EmitterTree::Cut cut_;
     std::vector<double> chance_before_;  ///< Prefix sums of the chances of the terms of `others`.
     std::vector<Ray> rays_;

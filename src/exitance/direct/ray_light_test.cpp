@@ -216,7 +216,8 @@ TEST(PlaceLight, PlacesOfAPolygonHaveTheLightOfSinglePlaces) {
             const Spectrum exact = stage.direct.irradiance(places[i], region.plane.n, floor, room.exact);
             squares += std::pow(mean(found[i].irradiance - exact), 2), variance += found[i].variance;
         }
-        EXPECT_LE(squares, 3 * variance + 1e-18) << triangles;  // ten squares: 99% are below 2.4 times their mean
+        // with probability 99%, a sum of ten squares is below 2.4 times its mean
+        EXPECT_LE(squares, 3 * variance + 1e-18) << triangles;
         EXPECT_LT(variance, 1.2 * 0.02 * 0.02 * static_cast<double>(places.size())) << triangles;
     }
 }

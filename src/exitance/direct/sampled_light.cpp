@@ -19,7 +19,7 @@ constexpr unsigned rays_for_sight = 16;  // per element
 /// has the least possible randomness: where rays of equal weight are counted, almost none.
 class RayDistributor {
   public:
-    /// begin  uniform in [0, 1)
+    /// begin  random number, uniform in [0, 1)
     explicit RayDistributor(double begin) : sum_(begin) {}
     unsigned next(double expected) {
         const double before = std::floor(sum_);
@@ -120,7 +120,7 @@ void SampledLight::trace_rays() {
     std::vector<SurfacePoint> behind, far;
     for (std::size_t i = 0; i < rays_.size(); ++i) {
         if (blocked[i] || !looks_out_on_faces(occluders, sources_[rays_[i].source].name.piece)) continue;
-        constexpr double step = 1e-5, beyond_all = 2;  // times the scene's size
+        constexpr double step = 1e-5, beyond_all = 2;  // both as multiples of the scene's size
         const Vec3 d = normalized(to_[i].at - from_[i].at);
         on.push_back(i);
         behind.push_back({to_[i].at + (step * size) * d, RegionId()});

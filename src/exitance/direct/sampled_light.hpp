@@ -22,16 +22,16 @@ namespace exitance {
 /// weighted by 1 / (n w_s): the estimate is unbiased. One object per thread.
 class SampledLight {
   public:
-    /// `direct` and `tracer` must outlive it.
+    /// `direct` and `tracer` must outlive this object.
     SampledLight(const DirectLight& direct, const RayTracer& tracer, std::uint64_t seed);
 
     struct Estimate {
         Spectrum weak;              ///< Light of all weak sources together, W/m^2.
         double misfit_squared = 0;  ///< Mean of (w (E - weak))^2 caused by the weak sources, w the weight.
-        std::vector<DirectLight::SourceName> strong;  ///< Sources that need exact visibility.
+        std::vector<DirectLight::SourceName> strong;  ///< Sources whose visibility must be computed exactly.
     };
-    /// Treats as many sources as weak as together cause a misfit of at most `allowed`, weighted by `weight`. They share
-    /// n = `rays` rays, at most `most_rays`. About 30 ns per source, plus the rays.
+    /// Treats the largest number of sources as weak that together cause a misfit of at most `allowed`, weighted by
+    /// `weight`. They share n = `rays` rays, at most `most_rays`. About 30 ns per source, plus the rays.
     const Estimate& operator()(const ElementTree& tree, ElementId e, const Spectrum& weight, double allowed,
                                unsigned rays);
     static constexpr unsigned most_rays = 1024;
@@ -40,15 +40,16 @@ class SampledLight {
     struct Source {
         DirectLight::SourceName name;
         RegionId region;
-        double F;        ///< From the element's centre without occlusion, weighted by relative radiance.
+        double F;        ///< Unoccluded form factor from the element's centre, weighted by relative radiance.
         double area;     ///< m^2
         Spectrum light;  ///< Unoccluded light at the centre.
-        double share;    ///< Share in the unoccluded light of all sources.
-        double near;     ///< (radii / distance)^2: relative variation of its light over the element and the source.
+        double share;    ///< Share of the unoccluded light of all sources.
+        /// (radii / distance)^2: relative variation of the source's light over the element and the source.
+        double near;
         /// Visible light: all of it if some visibility ray arrived, scaled so that the mean over elements is unbiased.
         Spectrum in_sight;
         unsigned rays;   ///< Rays cast for the current purpose, 0 or more,
-        double arrived;  ///< and the sum of K V over them, 1/m^2.
+        double arrived;  ///< Sum of K V over these rays, 1/m^2.
     };
     struct Ray {
         double kernel;  ///< cos cos / (pi r^2), 1/m^2
@@ -71,9 +72,9 @@ class SampledLight {
     const DirectLight& direct_;
     const RayTracer& tracer_;
     std::uint64_t seed_;
-    QuadBatch quads_;           ///< All pieces of all emitters, in order,
-    std::vector<double> area_;  ///< their areas, m^2,
-    std::vector<double> F_;     ///< and the unoccluded form factor of each from the current point.
+    QuadBatch quads_;           ///< All pieces of all emitters, in order.
+    std::vector<double> area_;  ///< Areas of the pieces in `quads_`, m^2.
+    std::vector<double> F_;     ///< Unoccluded form factor of each piece from the current point.
     std::vector<Source> sources_;
     std::vector<Rank> ranks_;
     Estimate estimate_;

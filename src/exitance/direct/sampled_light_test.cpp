@@ -82,7 +82,7 @@ TEST(SampledLight, ComputesNearSourcesExactly) {
     double weak = 0;
     for (ElementId e : tree.leaves())
         weak += tree.area(e) / stage.area * mean(sampled(tree, e, Spectrum(0.5), 4e-4, 16).weak);
-    EXPECT_LT(weak, 0.02);  // of 1; 0.07 if only the light of the sources were considered
+    EXPECT_LT(weak, 0.02);  // W/m^2, of about 1; 0.07 if only the light of the sources were considered
 }
 
 }  // namespace

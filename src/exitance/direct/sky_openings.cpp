@@ -14,9 +14,9 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t first_places = 512, most_places = 8192;
-constexpr std::uint32_t rays_of_place = 64;  ///< To the sky, and to all suns together.
-constexpr int few_rays = 4;                  ///< Rays that escape, at most, from a place that sees little of the sky.
-constexpr std::size_t ways_of_place = 2;     ///< Escaping rays of a place that are followed, at most.
+constexpr std::uint32_t rays_of_place = 64;  ///< Number of rays per place to the sky; as many go to all suns together.
+constexpr int few_rays = 4;               ///< Maximum number of escaping rays of a place that sees little of the sky.
+constexpr std::size_t ways_of_place = 2;  ///< Maximum number of escaping rays of a place that are followed.
 constexpr std::size_t most_openings = 128, most_cells = 512;
 constexpr std::size_t most_attempts = 512;  ///< Escaping rays that are followed in the whole scene, at most.
 constexpr unsigned directions_of_point = 64, azimuths = 48, steps_of_azimuth = 24, halvings = 16;
@@ -25,7 +25,8 @@ constexpr unsigned directions_of_point = 64, azimuths = 48, steps_of_azimuth = 2
 /// above a ground, where it is a quarter; half of that marks a point just indoors.
 constexpr double seen_at_opening = 1.0 / 8;
 
-/// Rim points farther than so many times the distance of the near ones belong to things outdoors: the horizon.
+/// Ratio of distances: rim points farther than this multiple of the distance of the near ones belong to objects
+/// outdoors, such as the horizon.
 constexpr double farthest_rim = 4;
 
 /// If at most this share of places sees no sky, openings are not searched.
@@ -217,7 +218,7 @@ std::vector<Vec3> SkySearch::rim(const Point& from, const Frame& frame, const Is
     return found;
 }
 
-/// The plane and extent of an opening, from some points of its rim; of area 0 if they do not tell.
+/// The plane and extent of an opening, from some points of its rim; with area 0 if these points do not determine it.
 /// farthest  distance of rim points that count, by that of a quarter of them
 PortalCell rectangle_of_rim(const Point& from, const Vec3& outwards, std::vector<Vec3> rim, double farthest) {
     constexpr std::size_t fewest = 12;  // points from which a rectangle can be found
@@ -239,7 +240,7 @@ PortalCell rectangle_of_rim(const Point& from, const Vec3& outwards, std::vector
     if (!(height > 0)) return {};
     const Frame frame(n);
     std::vector<Vec2> points;
-    for (const Vec3& p : rim) {  // seen from the same point
+    for (const Vec3& p : rim) {  // `rim` is relative to the point from which the rim was seen
         const double along = dot(p, n);
         if (along < edge_on * norm(p)) continue;
         const Vec3 q = height / along * p - middle;
@@ -254,7 +255,7 @@ PortalCell SkySearch::opening(const Escape& way) {
     const std::vector<Vec3> first_rim = rim(first, Frame(way.direction), [](const Vec3&) { return false; });
     const PortalCell seen = rectangle_of_rim(first, way.direction, first_rim, farthest_rim);
     if (!(seen.area > 0)) return {};
-    // From close to its middle nothing hides the rim, and what is beyond its plane is outdoors.
+    // Seen from close to the opening's middle, nothing hides its rim, and everything beyond its plane is outdoors.
     const double step = before * std::sqrt(seen.area);
     const Point from = seen.corner + 0.5 * (seen.u + seen.v) - step * seen.n;
     const auto is_outdoors = [&](const Vec3& hit) { return dot(hit, seen.n) > 2 * step; };
@@ -286,7 +287,7 @@ std::vector<double> hidden_after(const std::vector<std::uint64_t>& arrivals) {
 }  // namespace
 
 double SkyOpenings::Hidden::after(std::uint32_t n) const {
-    const auto doublings = static_cast<std::size_t>(std::bit_width(n));  // n >= 2^(doublings - 1)
+    const auto doublings = static_cast<std::size_t>(std::bit_width(n));  // the bit width b fulfils n >= 2^(b - 1)
     if (rms.empty() || doublings < 2) return 1.0 / std::max(n, 1u);
     const std::size_t last = std::min(doublings - 2, rms.size() - 1);
     return rms[last] * static_cast<double>(2u << last) / n;

@@ -17,14 +17,15 @@ namespace exitance {
 /// Rays to the sky are cast from places all over the scene. A ray that escapes from a place that sees little of the sky
 /// passes through an opening. The search walks along the ray to a point in front of the opening, from where the
 /// directions in which the sky is seen are bounded by the opening's rim. A rectangle around the rim covers the opening.
-/// It need not do so completely: rays that are not aimed at it find the rest.
+/// The rectangle need not cover the opening completely: unaimed rays find the rest.
 ///
-/// The same places tell how much light a few rays miss: where the first n rays found nothing, the next n rays tell.
+/// The same places give the light that a few rays miss: if the first n rays found nothing, it is the light that the
+/// next n rays find.
 class SkyOpenings {
   public:
     /// A sun's disc, as seen from every place.
     struct Sun {
-        const SeenPolygon* seen;  ///< Must outlive the constructor.
+        const SeenPolygon* seen;  ///< Polygon of the disc; must outlive the constructor.
         Point from;               ///< Viewpoint of `seen`.
     };
 
@@ -37,8 +38,8 @@ class SkyOpenings {
     /// sum of the form factors of the others.
     double choose(const Point& x, const Normal& n, std::vector<PortalCell>& out) const;
 
-    /// Root mean square of the share of the sky's light that arrives beside all openings where the first n rays found
-    /// nothing.
+    /// Root mean square of the share of the sky's light that arrives outside of all openings at places where the first
+    /// n rays found nothing.
     double hidden_sky(std::uint32_t n) const { return sky_.after(n); }
     /// Like hidden_sky(), for a sun's disc.
     double hidden_sun(std::uint32_t n) const { return sun_.after(n); }

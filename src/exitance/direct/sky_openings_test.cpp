@@ -130,7 +130,7 @@ TEST(SkyOpenings, AWindowIsCoveredWhereverTheRoomStands) {
         const SkyOpenings openings = openings_of(Stage(scene), rooms.light);
         const double window = 0.09 * placing.scale * placing.scale;
         EXPECT_EQ(covered_share(rooms, 0, openings.cells()), 1) << placing.scale << ", " << placing.turn;
-        EXPECT_NEAR(area_of(openings.cells()) / window, 1.06 * 1.06, 0.05);  // with its margin of 3% per side
+        EXPECT_NEAR(area_of(openings.cells()) / window, 1.06 * 1.06, 0.05);  // the cells have a margin of 3% per side
         for (const PortalCell& cell : openings.cells())
             EXPECT_GT(dot(cell.n, rooms.placing({2, -1, 0}) - rooms.placing({2, 0, 0})), 0) << "points indoors";
     }
@@ -177,7 +177,7 @@ TEST(RayLight, LightThroughAWindowIsUnbiasedAndItsVarianceIsKnown) {
     for (const int trial : {0, 1, 2}) {
         const bool has_ground = trial == 1;
         Rooms rooms{.ground = has_ground ? 100.0 : 0.0, .light = light};
-        if (trial == 2) {  // a slit, without the sun, whose penumbrae would need more than the most rays
+        if (trial == 2) {  // A slit, without the sun: its penumbrae would need more rays than the maximum.
             rooms.left = 0.1, rooms.right = 3.9, rooms.sill = 2.9, rooms.top = 2.95;
             rooms.light = overcast();
         }

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t cells_of_formula = 256;   ///< Per half of the directions.
+constexpr std::size_t cells_of_formula = 256;   ///< Maximum number of cells per hemisphere.
 constexpr std::size_t cells_of_picture = 2048;  ///< Per half if a sky is a picture: cells of about 3 degrees.
 
 bool has_picture(const DistantLight& light) {
@@ -86,7 +86,7 @@ SkyTree::SkyTree(const DistantLight& light) {
         ++cells;
     };
     if (is_above && is_below)
-        split(0, true);  // at the horizon, where domes end
+        split(0, true);  // divide at the horizon, where domes end
     else
         add(0);
     const std::size_t most =

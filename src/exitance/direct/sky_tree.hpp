@@ -24,7 +24,7 @@ class SkyTree {
     /// Weights of the nodes for one normal.
     struct Aim {
         Normal n;
-        std::vector<double> weight;  ///< Per node; empty: no normal yet.
+        std::vector<double> weight;  ///< Weight of each node; empty until a normal is set.
         /// Irradiance of an unoccluded receiver by the cells' quadrature, W/m^2. Relative error 3e-4.
         Spectrum open;
     };
@@ -42,16 +42,16 @@ class SkyTree {
     /// A range of z and of azimuth (turns); a leaf has no children.
     struct Node {
         double z0, z1, turn0, turn1;
-        std::uint32_t first_child = 0;  ///< The second one follows; 0: leaf.
+        std::uint32_t first_child = 0;  ///< Index of the first of two consecutive children; 0 for a leaf.
         std::uint32_t leaf = 0;         ///< Index of the leaf.
         bool splits_z = false;
     };
     struct Leaf {
         Vec3 middle;        ///< Unit vector to the middle of the cell.
-        double radius = 0;  ///< Largest angle between it and a direction of the cell, radians.
+        double radius = 0;  ///< Largest angle between `middle` and a direction of the cell, radians.
         double flux = 0;    ///< Mean over bands of the integral of pi times the radiance, W/m^2 sr.
     };
-    /// A node of the cells' quadrature.
+    /// A sample point of the quadrature over cells.
     struct Sample {
         Vec3 w;
         Spectrum light;  ///< Radiance times solid angle, W/m^2.

@@ -11,7 +11,8 @@ namespace exitance {
 namespace {
 
 constexpr double most_penumbra = 0.25;  ///< In extents of a polygon, derived from the three points of a rule across it.
-constexpr double nearness = 2;          ///< Light from within so many extents of a polygon can peak between its points.
+/// In extents of a polygon: light from within this distance may peak between the polygon's quadrature points.
+constexpr double nearness = 2;
 
 /// Distance of the two corners farthest apart.
 double extent_of(std::span<const Point> outline) {
@@ -27,7 +28,7 @@ double distance_to_farthest(const Point& x, std::span<const Point> corners) {
     return std::sqrt(squared);
 }
 
-/// Lower bound on the distance of a convex polygon: that of its bounding box.
+/// Lower bound on the distance of a convex polygon: the distance to its bounding box.
 double distance_to_box(const Point& x, std::span<const Point> corners) {
     Box box;
     for (const Point& p : corners) box.add(p);
@@ -68,7 +69,8 @@ class SmallSources::Centre {
         Spectrum out = parallel_;
         if (!is_far) {
             const Vec3 d = receiver.x - at;
-            const double cosines = dot(emitter_->plane.n, d) * -dot(on.n, d);  // times squared distance
+            // product of the cosines, times the squared distance
+            const double cosines = dot(emitter_->plane.n, d) * -dot(on.n, d);
             if (!(cosines > 0)) return {};
             const double squared = squared_norm(d);
             out = (area_ * cosines / (pi * squared * squared) * emitter_->radiance.towards(x, at)) * emitter_->exitance;
@@ -84,14 +86,15 @@ class SmallSources::Centre {
   private:
     /// At this distance, shadows differ from those of parallel light by 1e-5 of the polygon's extent.
     void set_far(const Vec3& towards, const Point& middle) {
-        constexpr double far = 1e5;  // scene sizes, derived from rounding, which then moves shadows by 1e-9
+        // distance in scene sizes, derived from rounding, which at this distance moves shadows by 1e-9
+        constexpr double far = 1e5;
         is_far = true;
         at = middle + far * direct_.occluders().scene().size() * towards;
     }
 
     const DirectLight& direct_;
     const DirectLight::Emitter* emitter_ = nullptr;  ///< Null for a light without extent.
-    Beam beam_;                                      ///< Such a light, without blockers.
+    Beam beam_;                                      ///< The light without extent, without blockers.
     double area_ = 0;                                ///< m^2
     Spectrum parallel_;                              ///< Irradiance by the unoccluded sun, W/m^2.
 };
@@ -147,7 +150,7 @@ void SmallSources::prepare(const Polygon& on, Workspace& room) const {
                      [](const DirectLight::SourceName&) { return most_blockers; });
     std::erase_if(light.sources,
                   [&](const ReceiverLight::Source& source) { return !may_be_missed(source, on, light); });
-    // Each source is evaluated by itself.
+    // Each source is evaluated separately.
     for (ReceiverLight::Source& source : light.sources) source.in_batch = false;
     light.open.clear(), light.open_light.clear();
     const Beams& beams = direct_->beams();
@@ -161,7 +164,7 @@ void SmallSources::prepare(const Polygon& on, Workspace& room) const {
     });
 }
 
-/// Subtracts what a blocker hides of the polygon, as seen from the centre. Returns false if nothing is left.
+/// Subtracts the part of the polygon that a blocker hides from the centre.
 bool SmallSources::cut(const Centre& centre, const Polygon& on, PieceId blocker, Workspace& room) const {
     const Occluders& occluders = direct_->occluders();
     const ConvexPiece& piece = occluders.pieces()[blocker];
@@ -195,13 +198,14 @@ namespace {
 /// with the distance of the point `near`, if there is one.
 template <class Light>
 Spectrum integral(const Point& a, const Point& b, const Point& c, const Point* near, int levels, const Light& light) {
-    constexpr double most_extent = 0.5;  // of the distance; derived from the rule's error, then below 1%
+    // largest extent relative to the distance; derived from the rule's error, which is then below 1%
+    constexpr double most_extent = 0.5;
     const double squared = std::max({squared_norm(b - a), squared_norm(c - b), squared_norm(a - c)});
     const Point ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a), middle = (1.0 / 3) * (a + b + c);
     if (near && levels > 0 && squared > most_extent * most_extent * squared_norm(middle - *near))
         return integral(a, ab, ca, near, levels - 1, light) + integral(ab, b, bc, near, levels - 1, light) +
                integral(ca, bc, c, near, levels - 1, light) + integral(ab, bc, ca, near, levels - 1, light);
-    // Points inside of the triangle: its edges may be the shadows of a pane's edges.
+    // Sample inside the triangle, not on its edges: these may be the shadows of a pane's edges.
     const double area = 0.5 * norm(cross(b - a, c - a));
     return (area / 3) * (light(0.5 * (a + middle)) + light(0.5 * (b + middle)) + light(0.5 * (c + middle)));
 }
@@ -212,7 +216,7 @@ Spectrum integral(const Point& a, const Point& b, const Point& c, const Point* n
 bool SmallSources::find_lit(const Centre& centre, const Polygon& on, std::span<const PieceId> blockers,
                             Workspace& room) const {
     room.part_.assign(on.outline.begin(), on.outline.end());
-    if (!centre.is_far && centre.emitter()) {  // the part in front of the source
+    if (!centre.is_far && centre.emitter()) {  // keep the part of the polygon in front of the source
         clip(room.part_, centre.emitter()->plane, room.rest_);
         room.part_.swap(room.rest_);
     }

@@ -11,8 +11,8 @@ namespace exitance {
 /// Light of sources that are small compared with a polygon, integrated over the polygon as seen from the sources.
 ///
 /// The points of a quadrature rule can miss such light: a patch of sun behind a small window, the bright spot near a
-/// lamp, or the shadow of a thin bar. Seen from the centre of the source, what hides parts of the polygon can be
-/// clipped away, so that no part is missed:
+/// lamp, or the shadow of a thin bar. Seen from the centre of the source, the hidden parts of the polygon can be
+/// clipped away exactly, so that no part is missed:
 ///
 ///     mean E = 1/A sum over the lit fragments of  integral L(x) dA,
 ///
@@ -22,16 +22,16 @@ namespace exitance {
 /// about 1% of L close to a lamp.
 class SmallSources {
   public:
-    /// `direct` must outlive it.
+    /// `direct` must outlive this object.
     explicit SmallSources(const DirectLight& direct) : direct_(&direct) {}
 
     /// A convex polygon of a region, and a quadrature rule on it.
     struct Polygon {
-        std::span<const Point> outline;  ///< Metres, counter-clockwise about n.
+        std::span<const Point> outline;  ///< Outline, metres, counter-clockwise about n.
         Normal n;
         RegionId own;
-        std::span<const Point> places;    ///< Points of the rule,
-        std::span<const double> weights;  ///< and their weights, whose sum is 1.
+        std::span<const Point> places;    ///< Points of the quadrature rule.
+        std::span<const double> weights;  ///< Weights of these points; their sum is 1.
     };
     /// Irradiance, W/m^2, and the part of it that is parallel light or comes from the sun.
     struct Missed {

@@ -105,7 +105,8 @@ Point SeenPolygon::at(double s, double t) const {
 Point SeenPolygon::uniform_in_area(double s, double t) const {
     const double wanted = s * area_before_.back();
     const auto after = std::upper_bound(area_before_.begin() + 1, area_before_.end() - 1, wanted);
-    const auto k = static_cast<std::size_t>(after - area_before_.begin());  // triangle 0, k, k + 1
+    // the chosen triangle has corners 0, k and k + 1
+    const auto k = static_cast<std::size_t>(after - area_before_.begin());
     const double of_triangle = area_before_[k] - area_before_[k - 1];
     const double share = of_triangle > 0 ? std::min((wanted - area_before_[k - 1]) / of_triangle, 1.0) : 0;
     const Vec2 uv = uniform_in_shape(Patch::Shape::triangle, share, t);

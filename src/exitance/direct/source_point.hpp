@@ -41,7 +41,7 @@ class SeenPolygon {
     Normal n_;
     double area_;
     Point x_;
-    std::vector<Triangle> triangles_;     ///< Empty: sampling uniform in area.
+    std::vector<Triangle> triangles_;     ///< Triangles of the solid angle; empty: samples are uniform in area.
     std::vector<double> area_before_{0};  ///< Sums of the areas of the fan's triangles, m^2, if uniform in area.
     double solid_angle_ = 0;              ///< Sum over the triangles, sr.
 };

@@ -17,13 +17,13 @@ class BlockerSearch {
     /// Work of a search. Every thread counts its own.
     struct Counts {
         std::size_t plane_tests = 0;  ///< Tests of a polygon against a plane.
-        std::size_t listed = 0;       ///< Candidates of the faces in penumbra,
-        std::size_t faces = 0;        ///< and the number of these faces.
+        std::size_t listed = 0;       ///< Number of candidates of the faces in penumbra.
+        std::size_t faces = 0;        ///< Number of faces in penumbra.
     };
 
     virtual ~BlockerSearch() = default;
 
-    /// Sources that illuminate any part of an outline on a region, with their candidates.
+    /// Finds the sources that illuminate any part of an outline on a region, with their candidate blockers.
     virtual ReceiverLight look(std::span<const Point> outline, RegionId region, DirectLight::Workspace& workspace,
                                Counts& counts) const = 0;
     /// Like `look` above, for each face of a region. `whole` is the light of the whole region; `lights` has one entry
@@ -36,7 +36,7 @@ class BlockerSearch {
     virtual std::size_t fragments() const = 0;
 };
 
-/// Makes a search over the emitters and occluders of a scene, which must outlive it.
+/// Makes a search over the emitters and occluders of a scene, which must outlive this object.
 using MakeBlockerSearch = std::function<std::unique_ptr<BlockerSearch>(const DirectLight&)>;
 
 }  // namespace exitance

@@ -217,7 +217,7 @@ void CloughTocherFit::fit_corners(std::span<const Corner> around, const Normal& 
         const Vec3 d = mesh_.nodes()[t.corner[to % 3]].at - mesh_.nodes()[t.corner[from]].at;
         return Vec2{dot(d, plane.u), dot(d, plane.v)};
     };
-    // The squared length of a way is its weight, so that tiny triangles beside a jump or singularity do not affect
+    // The squared length of a way is its weight, so that tiny triangles next to a jump or singularity do not affect
     // large ones.
     for (const auto& [triangle, k] : around) {
         SectorSlopes& sector = sectors[of_sector(sector_[triangle][k])];

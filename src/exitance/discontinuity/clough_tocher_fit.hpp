@@ -56,7 +56,7 @@ class CloughTocherFit {
     std::span<const Spectrum> values_;
     std::vector<Slopes> slopes_;                        ///< Per triangle.
     std::vector<std::array<std::uint32_t, 3>> sector_;  ///< Per triangle and corner: the number of the sector.
-    std::vector<Gradient> gradient_;                    ///< Per sector, W/m^3.
+    std::vector<Gradient> gradient_;                    ///< Gradient of the light per sector, W/m^3.
     /// Per triangle and edge: slope inwards at the edge's middle, W/m^3.
     std::vector<std::array<Spectrum, 3>> inwards_;
 };

@@ -173,7 +173,7 @@ TEST(CloughTocherFit, TangentPlanesAgreeAcrossAllEdgesExceptKinks) {
 TEST(CloughTocherFit, KinksAreNotSmoothed) {
     const Sheet sheet(CurveOrder::d1, 9, kinked);
     const Sheet::Jumps kink = sheet.jumps([](CurveOrder o) { return o == CurveOrder::d1; });
-    EXPECT_NEAR(kink.slope, 2 * std::hypot(1.0, 0.15), 0.1);  // where the cosine is 1
+    EXPECT_NEAR(kink.slope, 2 * std::hypot(1.0, 0.15), 0.1);  // the kink is strongest where the cosine is 1
     EXPECT_LT(kink.value, 10 * rounding_of_floats);
     const Sheet blurred(CurveOrder::d2, 9, kinked);
     EXPECT_LT(10 * sheet.largest_error(kinked), blurred.largest_error(kinked));

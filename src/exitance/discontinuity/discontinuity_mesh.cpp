@@ -214,7 +214,8 @@ class Builder {
         if (report_.counts.penumbra > 0)
             report_.candidate_share = static_cast<double>(candidates) / static_cast<double>(report_.counts.penumbra) /
                                       static_cast<double>(stage_.pieces.size());
-        // replaces the value above: minimum lists before shadow volumes remove pieces that do not reach the faces
+        // replaces the share computed above: these lists were counted before shadow volumes removed pieces that miss
+        // the faces
         if (listed_faces > 0)
             report_.candidate_share = static_cast<double>(listed) / static_cast<double>(listed_faces) /
                                       static_cast<double>(stage_.pieces.size());
@@ -239,7 +240,7 @@ class Builder {
         touched_[r.value] |= stage_.occluders.is_covered(inside, receiver.frame.n, r);
     }
 
-    /// Outline of a triangle whose blockers are looked for. It is a little smaller than the triangle, whose sides
+    /// Outline of a triangle for which blockers are searched. It is a little smaller than the triangle, whose sides
     /// follow shadows: blockers that only touch its lines of sight cast no shadow.
     std::vector<Point> inner_outline(std::uint32_t t) const {
         const auto& c = mesh_.triangles()[t].corner;
@@ -398,7 +399,7 @@ class Builder {
     bool is_lit_ = false;  ///< True once every triangle has light.
     MeshProgress found_;   ///< Results of an earlier run, and the curves of this one.
     TriedTriangles tried_;
-    std::unique_ptr<BlockerSearch> search_;  ///< Null: shafts and a tree of boxes.
+    std::unique_ptr<BlockerSearch> search_;  ///< The search for blockers; null: shafts and a tree of boxes are used.
     std::optional<WeakLight> weak_;          ///< Set if weak sources are estimated by rays.
     std::optional<ExactPlaces> places_;
     std::vector<DiscontinuityCurve> curves_;

@@ -46,7 +46,8 @@ struct DiscontinuityReport {
     /// Memory of the line trees before triangulation, bytes; 0 with Delaunay triangulation.
     std::size_t tree_bytes = 0;
     double candidate_share = 0;  ///< Mean over penumbra faces: candidate blockers as a share of all polygons.
-    std::size_t plane_tests = 0, fragments = 0;  ///< Plane tests done by `search`, and polygons in its structure.
+    /// Number of plane tests by `search`, and of polygons in its data structure.
+    std::size_t plane_tests = 0, fragments = 0;
 };
 
 /// Computes irradiance on six-node triangles that are cut along the curves where direct light changes its form:

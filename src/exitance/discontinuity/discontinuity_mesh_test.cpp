@@ -244,8 +244,8 @@ TEST(DiscontinuityMesh, WeakSourcesHaveD2CurvesOnlyAlongNarrowPenumbras) {
             return curve.source == RegionId(3) && curve.region == RegionId(0) && curve.order == CurveOrder::d2;
         });
     };
-    EXPECT_GE(curves_of_second(0.02), 8);  // from each of the lamp's corners, along at least two edges
-    EXPECT_EQ(curves_of_second(0.4), 0);   // wide penumbras are resolved by elements of their size
+    EXPECT_GE(curves_of_second(0.02), 8);  // each of the lamp's corners makes curves with at least two edges
+    EXPECT_EQ(curves_of_second(0.4), 0);   // elements of this size resolve the wide penumbras, so no curves are needed
 }
 
 TEST(DiscontinuityMesh, CutsAlongShadowsOfReflectedLightIfRequested) {

@@ -11,8 +11,9 @@ namespace exitance {
 
 /// Convex faces of one region, in world coordinates.
 struct FaceOutlines {
-    std::vector<std::vector<Point>> faces;  ///< Counter-clockwise about the region's normal, metres.
-    Vec3 u, v;                              ///< Unit vectors that span the region's plane.
+    /// Outlines of the faces, counter-clockwise about the region's normal, metres.
+    std::vector<std::vector<Point>> faces;
+    Vec3 u, v;  ///< Unit vectors that span the region's plane.
 };
 
 /// Finds the visible sources and candidate blockers of every face from those of the whole region. The faces are divided

@@ -15,13 +15,13 @@ constexpr double unfindable_area = 1e-5;
 constexpr double unfindable_area_among_many = 1e-3;
 
 /// Least light that gets curves, as a multiple of the largest permitted error T. Where light G falls to 0 across a
-/// width w, elements of size h have cubic errors of about G (h/w)^3 / 10, so that an error of T is reached at
-/// h/w = (10 T/G)^(1/3). A bend 2 G/w^2 inside such an element causes an error of G (h/w)^2 / 8. That is below T if G
-/// is below 5 T: D2 curves are then useless. A bend bisected once, G (h/w)^2 / 32, is below T if G is below 300 T. A
-/// kink G/w bisected twice, G h/(64 w), is below T if G is below 160 T. In buildings, blockers have countless edges
-/// and every curve adds faces. The mean square error bisects these triangles in any case, so weaker light gets no
-/// curves there.
-constexpr int least_bend = 5, least_kink_among_many = 160, least_bend_among_many = 300;  // as multiples of T
+/// width w, elements of size h have cubic errors of about G (h/w)^3 / 10, so that an error of T is reached at h/w = (10
+/// T/G)^(1/3). A bend 2 G/w^2 inside such an element causes an error of G (h/w)^2 / 8. That is below T if G is below 5
+/// T: D2 curves are then useless. A bend bisected once, G (h/w)^2 / 32, is below T if G is below 300 T. A kink G/w
+/// bisected twice, G h/(64 w), is below T if G is below 160 T. In buildings, blockers have countless edges and every
+/// curve adds faces. These triangles are bisected because of their mean square error, even without curves, so weaker
+/// light gets no curves there.
+constexpr int least_bend = 5, least_kink_among_many = 160, least_bend_among_many = 300;  // all as multiples of T
 /// Least light that gets kink curves in other scenes, as a share of T: ten omitted sources cause an error of T at most.
 constexpr double least_kink = 0.1;  // derived from ten sources: a tenth of T each
 
@@ -39,7 +39,7 @@ constexpr double tried_area = 1e-3;  // derived from the 1,000 sample points tha
 /// evaluated this far inside the region.
 constexpr double shortest_edge = 1e-6;  // derived from the distance up to which surfaces count as coplanar
 /// Share of the scene's size. Line trees merge points that are closer together than this.
-constexpr double one_place = 1e-7;  // derived from the above: a tenth of it
+constexpr double one_place = 1e-7;  // derived from shortest_edge: a tenth of it
 
 }  // namespace mesh_limits
 }  // namespace exitance

@@ -26,7 +26,7 @@ void archive(Archive& a, FoundCurves& found) {
 /// determine the order of bisections, so a resumed run requests them in the order of their numbers again.
 struct MeshProgress {
     std::vector<FoundCurves> receivers;  ///< Per region.
-    std::vector<Spectrum> values;        ///< Per node, in the order of evaluation, W/m^2.
+    std::vector<Spectrum> values;        ///< Values at the nodes, in the order of evaluation, W/m^2.
 };
 
 template <class Archive>

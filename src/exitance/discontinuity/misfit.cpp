@@ -23,7 +23,7 @@ Misfit misfit(const BisectionMesh& mesh, std::uint32_t triangle, std::span<const
         const Spectrum &a = values[t.corner[i]], &b = values[t.corner[(i + 1) % 3]], &m = values[t.middle[i]];
         // Weights derived from the quadratic interpolant a quarter of the way from a.
         const Spectrum near_a = 0.375 * a + 0.75 * m - 0.125 * b;
-        // Likewise derived from the interpolant a quarter of the way from b.
+        // Weights derived from the quadratic interpolant a quarter of the way from b.
         const Spectrum near_b = 0.375 * b + 0.75 * m - 0.125 * a;
         look(values[t.quarter[i][0]] - near_a, of_edge), look(values[t.quarter[i][1]] - near_b, of_edge);
     }

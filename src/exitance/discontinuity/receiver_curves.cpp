@@ -288,8 +288,7 @@ void CurveFinder::add_non_emitter_events(RegionId region, const EventSource& sou
     for (const ShadowEvent& e : events)
         out.curves.push_back({e.a, e.b, CurveOrder::d2, CurveCause::blocker_edge, source.region, gain});
     if (options_.conics == ConicCurves::none) return;
-    // Between a conic and its polyline, the polynomial is that of the wrong side. The sagitta limits the width of this
-    // strip to a thousandth of the region.
+    // A larger deviation would place points between a conic and its polyline on the wrong side.
     constexpr double max_sagitta =
         1e-3;  // share of the region's width, derived from the D2 error, which grows with its third power
     const double sagitta = max_sagitta * std::min(box.hi.x - box.lo.x, box.hi.y - box.lo.y);

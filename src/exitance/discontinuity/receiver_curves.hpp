@@ -28,7 +28,7 @@ struct ReceiverCurves {
 /// A surface whose reflected light casts shadows as well, divided into parts of uniform radiosity.
 struct SecondarySource {
     struct Part {
-        std::vector<Point> outline;  ///< Convex, counter-clockwise seen from the front, metres.
+        std::vector<Point> outline;  ///< Outline of the part: convex, counter-clockwise seen from the front, metres.
         Spectrum radiosity;          ///< W/m^2
         double area = 0;             ///< m^2
     };
@@ -41,14 +41,14 @@ enum class ConicCurves { none, at_umbras, all };
 
 struct CurveOptions {
     double least_effect = 0;              ///< W/m^2 of rho E. Weaker sources get no curves.
-    double least_area = 0;                ///< m^2. Smaller regions get contact curves only.
+    double least_area = 0;                ///< Smaller regions get contact curves only, m^2.
     std::size_t most_curves = 1'000;      ///< Limit on the curves of a region.
     double least_bend = 0;                ///< W/m^2 of rho E. Weaker sources get no D2 curves, except
     double least_narrow_bend = HUGE_VAL;  ///< along long and narrow penumbras, where this lower limit applies.
     ConicCurves conics = ConicCurves::at_umbras;
     std::vector<SecondarySource> secondary = {};
     const StopRequest* stop = nullptr;      ///< After a request to stop, the results are incomplete.
-    const WeakLight* weak = nullptr;        ///< If given, only its strong sources get curves.
+    const WeakLight* weak = nullptr;        ///< If not null, only its strong sources get curves.
     const BlockerSearch* search = nullptr;  ///< Finds the blockers of sources; null: shafts and a tree of boxes.
 };
 
@@ -56,7 +56,7 @@ struct CurveOptions {
 /// other polygons, and VE, EV, NEV and EEE events.
 class CurveFinder {
   public:
-    /// `stage` and `edges` must outlive this.
+    /// `stage` and `edges` must outlive this object.
     CurveFinder(const Stage& stage, const BlockerEdges& edges, const CurveOptions& options)
         : stage_(&stage), edges_(&edges), options_(options) {}
 
@@ -74,7 +74,7 @@ class CurveFinder {
     void add_curves_behind(RegionId region, ReceiverCurves& out) const;
     /// Bounds on the light that a source brings to a region, W/m^2 of rho E.
     struct Effect {
-        double gain = HUGE_VAL;  ///< Upper bound anywhere on the region.
+        double gain = HUGE_VAL;  ///< Upper bound of the light at any point of the region.
         Point centre;            ///< Centre of a ball around the source.
         double radius = 0;       ///< Radius of the ball, metres.
         /// The source's exitance times the region's reflectance, W/m^2; 0: only `gain` is available.

@@ -20,7 +20,7 @@ inline constexpr double touching_share = 1e-6;
 ShadowClass shadow_class_at(const DirectLight& direct, const ReceiverLight& light, const Point& x,
                             std::span<const DirectLight::SourceName> among, DirectLight::Workspace& workspace);
 
-/// Likewise, if `light` was prepared from all emitters and punctual lights.
+/// Like the function above, if `light` was prepared from all emitters and punctual lights.
 ShadowClass shadow_class_at(const DirectLight& direct, const ReceiverLight& light, const Point& x,
                             DirectLight::Workspace& workspace);
 

@@ -30,7 +30,7 @@ Scene box_on_floor(double depth) {
 /// How much a point sees of all sources in front of it.
 struct Sight {
     bool faces_any = false;
-    double least_share = 1, largest_share = 0;  ///< Visible share of a source: of its form factor.
+    double least_share = 1, largest_share = 0;  ///< Smallest and largest visible share of a source's form factor.
 
     ShadowClass shadow_class() const {
         constexpr double touching = 1e-6;  // derived from rounding, 1e-12 of the form factor, with a wide margin
@@ -133,7 +133,8 @@ std::vector<Case> cases() {
 }
 
 TEST(ShadowClasses, AreRightAtNinetyNineOfAHundredRandomPoints) {
-    // The rest are points of triangles that a curve of three or more blockers' edges crosses: it has no line.
+    // The other points are in triangles that are crossed by a shadow curve due to three or more blocker edges. The mesh
+    // has no lines for such curves.
     for (const Case& c : cases())
         for (const auto& [structure, name] : structure_names) {
             const Confusion found = confusion(c.scene, mesh_of(c.scene, {.structure = structure}), 11);

@@ -56,11 +56,11 @@ class WeakLight {
     struct Weak {
         std::uint32_t source = 0;  ///< Index in `sources_`.
         std::uint32_t rays = 1;
-        float weight = 1;  ///< Above 1 if the source was selected at random.
+        float weight = 1;  ///< Weight of the source's light; above 1 if it was selected at random.
     };
     struct OfRegion {
         std::vector<DirectLight::SourceName> strong;
-        std::vector<double> bounds;  ///< Per strong source, W/m^2.
+        std::vector<double> bounds;  ///< Per strong source: upper bound of its irradiance on the region, W/m^2.
         std::vector<Weak> weak;
     };
     struct Emitting {

@@ -8,7 +8,7 @@
 namespace exitance {
 
 /// Smallest error that is distinguished from noise, as a multiple of the requested error.
-constexpr double resolved_errors = 1.5;  // given by the warning at 3: half of it
+constexpr double resolved_errors = 1.5;  // given by the warning, whose limit is a multiple of 3: half of it
 
 double BodyMeasure::standard_error() const {
     if (points_ < 2) return 0;
@@ -95,7 +95,7 @@ class BodySurvey {
     std::vector<BodyMeasure> measured_;
     std::vector<PointError> close_points_;
     std::vector<bool> is_known_;    ///< Bodies measured by `look_closely_at`.
-    std::vector<bool> is_unknown_;  ///< Bodies that would need it, but for which the rays do not suffice.
+    std::vector<bool> is_unknown_;  ///< Bodies whose error matters, but for which the allowed rays do not suffice.
 };
 
 /// Returns the reflected light of every body, without points. It is a mean over many places of the delivered light,
@@ -207,10 +207,9 @@ void BodySurvey::look_at_all() {
 /// Measures a body at further points. Returns false if the rays do not suffice.
 bool BodySurvey::look_closely_at(std::uint32_t body) {
     constexpr std::size_t batch = 16, max_batches = 16;
-    // Sufficient standard error of the mean square, as a share of it, given by the accuracy of the estimate: an eighth
-    // of the error.
+    // Standard error of the mean square at which to stop, as a share of the mean square; given by the required accuracy
+    // of its root, an eighth.
     constexpr double sufficient_error = 0.25;
-    // its share: an eighth of the error
     const std::uint64_t name = hash(c_.seed, static_cast<std::uint64_t>(Stream::certificate), 2, body);
     // The noise of each gather may be as large as the requested error or, if larger, the apparent one.
     const BodyMeasure before = measured_[body];

@@ -60,7 +60,7 @@ struct BodyCheck {
     const SceneBodies& bodies;
     std::span<const Spectrum> late;  ///< The smooth part of the error, by leaf of the coarse mesh.
     std::uint64_t seed;
-    const StopRequest* stop = nullptr;  ///< Null: no stop.
+    const StopRequest* stop = nullptr;  ///< Ends the measurement if a stop is requested; null: never.
     bool is_stopped() const { return stop && stop->requested(); }
 };
 

@@ -34,8 +34,9 @@ double largest(const std::vector<Spectrum>& values) {
     return out;
 }
 
-/// Accuracy of exact light at checked hits. Half of the error of the solution adds a quarter to the square of what a
-/// check finds where the projection is as wrong as the solution, and less where checks are needed: where it is worse.
+/// Returns the accuracy required of exact light at checked hits: half of the requested error. Where the projection is
+/// as wrong as the solution, this adds a quarter to the squared differences found; where the projection is worse, and
+/// checks matter most, it adds less.
 LightAccuracy check_accuracy(double error) {
     constexpr double least = 2e-4, most = 0.1;  // derived from the range of errors that can be requested
     return {.relative = std::clamp(0.5 * error, least, most)};
@@ -81,7 +82,7 @@ struct Certifier::Content {
     std::vector<double> area;
     std::vector<std::uint32_t> room_of;  ///< Room of every leaf of the coarse mesh; empty if the scene is one room.
     RayRows H;                           ///< Form factors between the leaves of `light`.
-    std::optional<RayRows> other_H;      ///< Estimated with other rays; only for several rooms.
+    std::optional<RayRows> other_H;      ///< Like `H`, from other random rays; only if there are several rooms.
     /// Irradiance from light that arrives uniformly on all surfaces; in each room in proportion to the room's light.
     std::vector<Spectrum> even;
     std::size_t looks = 0;
@@ -91,7 +92,7 @@ struct Certifier::Content {
     Field<ElementId, std::uint8_t> narrow;  ///< Marks the narrow leaves of the delivered function.
     PathTracer paths;
     DirectCheck check;
-    CheckPlan plan;  ///< Chosen before the first measurement.
+    CheckPlan plan;  ///< How hits are checked; chosen before the first measurement.
 
     Content(const Stage& stage_, const GlobalLight& light_, const ElementFunction& indirect_, const ReflectedLight& b_,
             const CertificateOptions& options_)
@@ -146,7 +147,7 @@ struct Certifier::Content {
     void judge_rooms(Certificate& out);
     std::vector<double> mean_by_room() const;
     std::vector<RoomError> rooms;
-    std::vector<BodyError> bodies;        ///< In descending order of area.
+    std::vector<BodyError> bodies;        ///< Sorted by descending area.
     std::vector<PointError> body_points;  ///< Points of the bodies that were measured at further points.
 };
 
@@ -258,7 +259,8 @@ void Certifier::Content::balance(std::span<const Spectrum> residuals, std::span<
 std::vector<Spectrum> Certifier::Content::response_to(double first, const RayRows& rows) const {
     const std::vector<Spectrum> rhs = mean_residuals(first);
     std::vector<Spectrum> response = respond({rows, rho, rhs, area}, calibrated::refined_residual);
-    if (options.keeps_flux && !options.summed) balance(rhs, response);  // sums have no noise
+    // sums are free of noise, so they need no correction
+    if (options.keeps_flux && !options.summed) balance(rhs, response);
     for (std::size_t i = 0; i < rhs.size(); ++i) response[i] -= rhs[i];
     return response;
 }
@@ -341,7 +343,7 @@ double Certifier::Content::true_mean(double mean_error) const {
 /// True if the local pass's error at one point, with this share of all weight, is a notable part of the whole allowed
 /// error and of its own mean square `all`, (W/m^2)^2. `light`: to which the error is relative, W/m^2.
 bool Certifier::Content::is_rough(const ResidualSample& s, double share, double light, double all) const {
-    // Derived from the initial number of points: forty times what a point of an even error has.
+    // Derived from the initial number of points: forty times the share that each point has if the error is uniform.
     constexpr double notable = 1.0 / 32;
     const double allowed = options.error * light;
     return s.tells_local && share * mean(s.local1 * s.local2) > notable * std::max(allowed * allowed, all);
@@ -389,7 +391,7 @@ Certificate Certifier::Content::judge() {
         out.method = std::sqrt(std::max(0.0, method_squared / told)) / out.mean_reflected;
         out.rough = std::sqrt(std::max(0.0, rough_squared / told)) / out.mean_reflected;
     }
-    // The estimate is at least as large as its own uncertainty.
+    // The reported error is at least its own standard error.
     out.estimate = std::sqrt(std::max(error.mean, error.standard_error)) / out.mean_reflected;
     if (out.estimate > 0)
         out.uncertainty = 0.5 * error.standard_error / (out.estimate * out.mean_reflected * out.mean_reflected);
@@ -416,7 +418,8 @@ void Certifier::Content::look_at_bodies(Certificate& out) {
         if (body.error) out.worst_body = std::max(out.worst_body.value_or(0), *body.error);
 }
 
-/// Adds the error that the coarse response lacks if paths find it to be significant.
+/// Adds the error that arrives by further reflections and that the coarse response misses, if traced paths find it
+/// significant.
 void Certifier::Content::check_late(Certificate& out) {
     if (options.bounces >= 0 || options.summed || !options.places.empty()) return;
     const LatePaths by_paths(stage, indirect, b, check, options.direct_in_elements);

@@ -76,7 +76,7 @@ struct Certificate {
     /// light minus an exact gather of the light that was gathered (noise of rays and interpolation). `method`: error of
     /// the gathered light itself (the method's elements). r = local + method.
     double local = 0, method = 0;
-    /// Part of `local` at single points that have a notable share of the allowed error, and these points.
+    /// Part of `local` at single points at which the error is a notable share of the allowed error, and these points.
     double rough = 0;
     std::vector<RoughPlace> rough_places = {};
     double constant = 1;        ///< Ratio of the error bound to ||r||.

@@ -7,7 +7,7 @@ namespace exitance {
 namespace {
 
 /// Maps a number in [0, 1) such that the density is higher by 1 / share near both ends. Elements have their largest
-/// errors at edges and beside corners and contacts, where light varies faster than any polynomial.
+/// errors at edges and next to corners and contacts, where light varies faster than any polynomial.
 struct TowardsEnds {
     double at, share;
 

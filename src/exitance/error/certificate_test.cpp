@@ -141,7 +141,7 @@ TEST(Certificate, EndsFurtherMeasurementsAtAStop) {
                         {.error = 0.02, .bodies = &bodies, .stop = &stop});
     stop.interrupt();
     const Certificate first = certifier.look();
-    EXPECT_EQ(first.points, 1280u);  // an estimate is always made
+    EXPECT_EQ(first.points, 1280u);  // the first measurement is completed even after a stop request
     EXPECT_NEAR(first.residual, planted.error(rough), 0.2 * planted.error(rough));
     Certificate second = certifier.look();
     EXPECT_EQ(second.points, 1280u);
@@ -197,10 +197,10 @@ TEST(Certificate, FindsAnErrorOfTheProjectionThatTheDeliveredLightShares) {
     const WrongProjection planted;
     const ProjectedDirect told{&planted.projected, Spectrum(1.0)};
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-        EXPECT_LT(planted.estimate(seed, {}), 0.01);  // without the check, the error is not found
+        EXPECT_LT(planted.estimate(seed, {}), 0.01);  // without the check, the estimate misses the error
         EXPECT_NEAR(planted.estimate(seed, told), planted.truth, 0.1 * planted.truth);
     }
-    // With light summed over elements, which include the projected light.
+    // If light is summed over elements, the light includes the projected light.
     ElementFunction reflected = planted.furnace.delivered;
     for (std::array<float, bands>& value : reflected.values)
         for (float& v : value) v = static_cast<float>(planted.furnace.rho * (planted.factor + static_cast<double>(v)));
@@ -215,7 +215,7 @@ TEST(Certificate, FindsNoErrorInAnExactFurnace) {
     EXPECT_LT(furnace.summed_certificate(1).bound, 1e-5);
 }
 
-/// An error only in the elements beside two opposite edges of the floor.
+/// An error that is only in the elements next to two opposite edges of the floor.
 double beside_edges(const Point& p) {
     const double from_wall = std::min(p.x, 2 - p.x);
     return (from_wall < 0.25 && p.z < 0.5) || (p.z < 0.25 && from_wall < 0.5) ? 0.1 : 0;
@@ -275,7 +275,7 @@ TEST_P(EveryError, IsEstimatedAndBounded) {
         EXPECT_GE(summed.bound, truth * (1 - 1e-6));
         EXPECT_NEAR(summed.estimate, truth, 0.07 * truth);
     }
-    EXPECT_GE(within, 9);  // its resolution is a fifth of the requested error
+    EXPECT_GE(within, 9);  // a measurement resolves a fifth of the requested error, so one of ten may miss
 }
 
 /// A furnace with a plate above its floor. The plate does not change the light, which is uniform in the gap as well.
@@ -382,7 +382,7 @@ TEST(Certificate, MeasuresSmallBodiesAtAdditionalPoints) {
         }
     }
     PlantedError planted([](const Point& p) { return p.x > 18 ? 0.2 : 0.0; }, 1, std::move(*make_scene(d).scene));
-    planted.stage.rooms = {};  // all is one room
+    planted.stage.rooms = {};  // treat the scene as one room
     const SceneBodies bodies = find_bodies(planted.scene);
     ASSERT_EQ(bodies.all.size(), 2u);
     const ElementLocator locator(planted.delivered.tree, planted.scene.regions().size());

@@ -13,7 +13,7 @@ double clustering_error(const Stage& stage, const DirectProjection& direct, cons
         ElementId e;
         double weight;
     };
-    std::vector<Sample> at;  // at equal steps of the cumulative area
+    std::vector<Sample> at;  // samples at equal steps of the cumulative area
     double area = 0, next = 0.5 * stage.area / samples;
     for (ElementId e : direct.tree.leaves()) {
         area += direct.tree.area(e);

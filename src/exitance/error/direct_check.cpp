@@ -55,12 +55,13 @@ Spectrum DirectCheck::missing(const CheckPlan& plan, const GatherWorkspace& gath
 }
 
 double DirectCheck::probability(const CheckPlan& plan, const HitPoint& hit) const {
-    return plan.per_misfit > 0 ? plan.probability(misfit(hit)) : plan.share;  // a misfit takes a search
+    // computing a misfit requires a search, so skip it where it is unused
+    return plan.per_misfit > 0 ? plan.probability(misfit(hit)) : plan.share;
 }
 
 namespace {
 
-constexpr unsigned pilot_rays = 8;  // per place; enough to estimate the variance between rays of one place
+constexpr unsigned pilot_rays = 8;  // rays per place; enough to estimate the variance between rays of one place
 
 /// One hit of a pilot's ray, with its terms in rho E, mean over bands.
 struct PilotHit {

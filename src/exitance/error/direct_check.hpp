@@ -90,8 +90,8 @@ struct PilotPlace {
 /// Other noise, to which that of the checks is compared.
 struct OtherNoise {
     double tolerated = 0;  ///< Acceptable variance per ray, (W/m^2)^2.
-    /// Smallest share of hits to check. Errors of which the projection has no measure, and that no ray of the pilot
-    /// met, are found by such checks alone.
+    /// Smallest share of hits to check. Some errors are missed by the projection's own estimate and by all pilot rays;
+    /// only such checks find them.
     double min_share = 1.0 / 256;
     bool gather_is_noisy = true;  ///< True if the gather itself is noisy; its variance is then included.
 };

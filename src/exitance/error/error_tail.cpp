@@ -26,7 +26,7 @@ double error_below(std::span<const WeightedError> known, WeightedError rest, dou
     // The share of the area above an error t grows as t decreases: in steps at known errors, continuously between them.
     double counted = 0, lower = 0;
     double upper = falling.empty() ? 0 : falling.front().error;
-    upper = std::max(upper, 12 * rest.error);  // where erfc is negligible
+    upper = std::max(upper, 12 * rest.error);  // at 12 standard deviations erfc is negligible
     for (const WeightedError& e : falling) {
         if (counted + above(e.error) > share) {
             lower = e.error;

@@ -13,17 +13,19 @@ namespace {
 TEST(ErrorTail, IsAQuantileIfAllErrorsAreKnown) {
     std::vector<WeightedError> known;
     for (int k = 1; k <= 100; ++k) known.push_back({0.01 * k, 0.01});
-    EXPECT_NEAR(error_below(known, {0, 0}, 0.05), 0.95, 0.01 + 1e-12);  // exact to one step
+    // the quantile is exact to one step of the errors, 0.01
+    EXPECT_NEAR(error_below(known, {0, 0}, 0.05), 0.95, 0.01 + 1e-12);
     EXPECT_NEAR(error_below(known, {0, 0}, 0.5), 0.5, 0.01 + 1e-12);
 }
 
 TEST(ErrorTail, IsNormalIfNoErrorIsKnown) {
-    EXPECT_NEAR(error_below({}, {2, 1}, 0.01), 2 * 2.5758293, 1e-6);  // tables of the normal distribution
+    // expected value: table of the normal distribution
+    EXPECT_NEAR(error_below({}, {2, 1}, 0.01), 2 * 2.5758293, 1e-6);
 }
 
 TEST(ErrorTail, IncludesTheOthersAboveTheLimit) {
-    // Half a percent of the area is known to have an error of 1. The limit is where as much of the others exceeds it as
-    // makes one percent in all.
+    // Half a percent of the area has the known error 1. The quantile is then the error that another half percent of the
+    // area exceeds.
     const std::vector<WeightedError> known = {{1, 0.005}};
     EXPECT_NEAR(error_below(known, {0.1, 0.995}, 0.01), 0.1 * 2.8055, 1e-3);  // erfc(2.8055 / sqrt 2) = 0.005025
     EXPECT_DOUBLE_EQ(error_below(std::vector<WeightedError>{{1, 0.02}}, {0.1, 0.98}, 0.01), 1);
@@ -59,7 +61,8 @@ struct NoisyErrors {
     double told() {
         return error_below(measured, std::vector<unsigned>(count, 64), mean_square, 0.01,
                            [&](std::span<const std::size_t> which, unsigned factor, std::span<TwoErrors> error) {
-                               const double left = noise * std::pow(factor, -0.75);  // like the error of Sobol points
+                               // decreases with the number of rays like the error of Sobol points
+                               const double left = noise * std::pow(factor, -0.75);
                                for (std::size_t i = 0; i < which.size(); ++i)
                                    for (Spectrum& e : error[i]) e = Spectrum(truth[which[i]] + left * gauss(random));
                            });

@@ -11,7 +11,7 @@ namespace exitance {
 struct HiddenErrors {
     std::size_t bodies = 0;
     SurfaceId first = {};  ///< First face of the body with the largest possible error.
-    double at_most = 0;    ///< Its error relative to its light, one standard error above what a few points show.
+    double at_most = 0;    ///< Relative error of the body, one standard error above the value that a few points show.
 };
 
 }  // namespace exitance

@@ -63,7 +63,7 @@ LateMisfit LatePaths::misfit(std::span<const ResidualSample> samples, std::span<
     constexpr std::uint32_t min_paths = 4, max_paths = 64, paths_again = 4 * max_paths;
     const double places = std::min(max_places, static_cast<double>(samples.size()));
     const double rays_per_path =
-        1 + 2 * check_.paths().rays_per_step();  // for two vertices, since most paths are short
+        1 + 2 * check_.paths().rays_per_step();  // a path with two vertices, since most paths are short
     const auto paths = static_cast<std::uint32_t>(
         std::clamp(static_cast<double>(max_rays) / (2 * rays_per_path * places), 1.0 * min_paths, 1.0 * max_paths));
     const LateMisfit first = measure(samples, late, seed, paths);

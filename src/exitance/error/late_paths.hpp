@@ -37,7 +37,7 @@ class LatePaths {
     Spectrum sample(const PathTracer::Vertex& x, double a, double b, RandomStream& random, std::size_t& rays) const;
 
     /// Compares `late` (one entry per leaf of the coarse mesh) with two independent sets of paths at some of the
-    /// samples. Casts about `max_rays` rays. In one of forty cases their noise looks like a misfit. A significant
+    /// samples. Casts about `max_rays` rays. In one of forty cases noise alone is reported as a misfit. A significant
     /// result is therefore dropped and measured again, at other places and with other and more paths.
     LateMisfit misfit(std::span<const ResidualSample> samples, std::span<const Spectrum> late, std::uint64_t seed,
                       std::size_t max_rays) const;

@@ -40,7 +40,8 @@ struct WrongFurnace {
 
 // The error of irradiance is e = 1 - (1 + delta) = -delta everywhere; the part rho e of it arrives by way of other
 // surfaces.
-constexpr double late_part = -WrongFurnace::rho * WrongFurnace::rho * WrongFurnace::delta;  // of the radiosity
+// error of the radiosity, W/m^2
+constexpr double late_part = -WrongFurnace::rho * WrongFurnace::rho * WrongFurnace::delta;
 
 TEST(LatePaths, FindErrorsThatArriveFromOtherSurfaces) {
     const WrongFurnace furnace;

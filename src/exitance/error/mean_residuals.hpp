@@ -19,7 +19,8 @@ struct LeafResidual {
 /// samples is mostly noise. Means are therefore estimated from coarse to fine: first of every group, shrunk towards
 /// zero as if it had a few more samples without residual; then of the roots, of their children, and so on. Each is
 /// shrunk towards the mean of its parent, the more the less the samples of one element agree in their deviation from
-/// it. The agreement is that of all elements of a level together. Samples agree beside concave edges and in gaps, where
+/// it. The agreement is that of all elements of a level together. Samples agree next to concave edges and in gaps,
+/// where
 /// faces reflect to each other a residual that the mean over a whole face does not show.
 ///
 /// groups   number of groups; each leaf and each sample belongs to one

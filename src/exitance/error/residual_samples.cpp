@@ -27,7 +27,8 @@ constexpr std::size_t samples_per_local_sum = 4;
 /// error and must be distinguished from noise. The number of rays grows with the power 4/3, as the noise of a mean
 /// square requires.
 double factor_for_many_reflections(double constant) {
-    return std::clamp(std::pow(constant / 4, 4.0 / 3), 1.0, calibrated::most_rays_often);  // given by that power
+    // given by the power 4/3 above
+    return std::clamp(std::pow(constant / 4, 4.0 / 3), 1.0, calibrated::most_rays_often);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ struct ResidualSample {
     double weight = 0;
     Spectrum r1, r2;          ///< Two estimates of the residual, W/m^2.
     double squared = 0;       ///< Estimated square of the error, mean over bands, (W/m^2)^2.
-    Spectrum local1, local2;  ///< The local pass's part of r1 and r2, if `tells_local`.
+    Spectrum local1, local2;  ///< The parts of r1 and r2 that the local pass causes, if `tells_local`.
     bool tells_local = false;
     Spectrum delivered;      ///< Delivered irradiance without direct light, W/m^2.
     double reflected = 0;    ///< Reflected radiosity with the projected direct light, mean over bands, W/m^2.

@@ -29,7 +29,7 @@ std::vector<FaceError> surface_errors(std::span<const PointError> points, std::s
             out.push_back({of_rooms[s], 0});
             continue;
         }
-        // The error is at least as large as its own uncertainty.
+        // The reported error is at least its own standard error.
         const double n = static_cast<double>(looked[s]);
         const double mean = sum[s] / weight[s], standard_error = std::sqrt(spread[s] * n / (n - 1)) / weight[s];
         out.push_back({std::sqrt(std::max(mean, standard_error)), looked[s]});

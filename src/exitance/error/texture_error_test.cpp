@@ -48,7 +48,7 @@ TEST(TextureError, TheOnlyBodyHasTheErrorOfTheScene) {
     s.statistics.bodies = {{.surfaces = 6, .area = 10, .mean = 1, .error = 0.01, .points = 100, .first = SurfaceId(0)}};
     s.statistics.relative_error_estimate_worst_body = 0.01;
     add_texture_error(s, deviation, std::nullopt);
-    // Its mean reflected radiosity is 0.5 E = 1 W/m^2.
+    // The mean reflected radiosity of the body is 0.5 E = 1 W/m^2.
     EXPECT_NEAR(*s.statistics.bodies[0].error, std::hypot(0.01, expected), 1e-6);
     EXPECT_NEAR(*s.statistics.relative_error_estimate_worst_body, std::hypot(0.01, expected), 1e-6);
 }

@@ -43,7 +43,7 @@ Scene open_room(const Motion& motion = {}) {
     face({{2, 0, 0}, {2, 1, 0}, {2, 1, 2}, {2, 0, 2}}, 0);
     face({{2, 0, 0}, {2, 0, 2}, {2, 1, 2}, {2, 1, 0}}, 0);
     face({{-3, -3, 4}, {-3, 6, 4}, {5, 6, 4}, {5, -3, 4}}, 1);  // emits downwards
-    face({{-1, 0, 1}, {-1, 3, 1}, {-1, 3, 3}, {-1, 0, 3}}, 1);  // emits towards the room
+    face({{-1, 0, 1}, {-1, 3, 1}, {-1, 3, 3}, {-1, 0, 3}}, 1);  // this face emits towards the room
     d.lights = {{"bulb",
                  PunctualLight::Kind::point,
                  motion({-1, 1, 2}),
@@ -73,19 +73,19 @@ struct Pair {
 };
 std::vector<Pair> border_points() {
     const Normal up{0, 0, 1}, right{1, 0, 0}, back{0, 1, 0};
-    return {{{{0, 1.5, 0}, up}, {{step_inside, 1.5, 0}, up}},  // below a wall
+    return {{{{0, 1.5, 0}, up}, {{step_inside, 1.5, 0}, up}},  // point below a wall
             {{{4, 1.5, 0}, up}, {{4 - step_inside, 1.5, 0}, up}},
             {{{1, 0, 0}, up}, {{1, step_inside, 0}, up}},
-            {{{0, 0, 0}, up}, {{step_inside, step_inside, 0}, up}},  // in corners of three faces
+            {{{0, 0, 0}, up}, {{step_inside, step_inside, 0}, up}},  // point in a corner of three faces
             {{{4, 3, 0}, up}, {{4 - step_inside, 3 - step_inside, 0}, up}},
-            {{{2 + 1e-7, 0.5, 0}, up}, {{2 + step_inside, 0.5, 0}, up}},  // below the sheet
+            {{{2 + 1e-7, 0.5, 0}, up}, {{2 + step_inside, 0.5, 0}, up}},  // point below the sheet
             {{{2 - 1e-7, 0.5, 0}, up}, {{2 - step_inside, 0.5, 0}, up}},
-            {{{0, 1, 0}, right}, {{0, 1, step_inside}, right}},  // at the foot of a wall
-            {{{0, 0, 1}, right}, {{0, step_inside, 1}, right}},  // in the corner of two walls
+            {{{0, 1, 0}, right}, {{0, 1, step_inside}, right}},  // point at the foot of a wall
+            {{{0, 0, 1}, right}, {{0, step_inside, 1}, right}},  // point in the corner of two walls
             {{{0, 0, 1}, back}, {{step_inside, 0, 1}, back}},
-            {{{0, 1.5, 0.8}, up}, {{step_inside, 1.5, 0.8}, up}},  // in free space, in the plane of a wall
+            {{{0, 1.5, 0.8}, up}, {{step_inside, 1.5, 0.8}, up}},  // point in free space, in the plane of a wall
             {{{0, 0, 0.8}, up}, {{step_inside, step_inside, 0.8}, up}},
-            {{{2, 0.5, 2}, up}, {{2, 0.5, 2 + step_inside}, up}}};  // on the upper edge of the sheet
+            {{{2, 0.5, 2}, up}, {{2, 0.5, 2 + step_inside}, up}}};  // point on the upper edge of the sheet
 }
 
 TEST(BorderLight, IsTheLimitFromTheSideOfThePoint) {

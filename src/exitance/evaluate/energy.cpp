@@ -37,7 +37,7 @@ double directed_loss(const Stage& stage, const Piece& piece) {
 /// Diffuse power that leaves an element or, if `tree` is null, a patch.
 struct Leaving {
     RegionId region;
-    double power = 0;  ///< W or lm.
+    double power = 0;  ///< Power, W or lm.
     const ElementTree* tree = nullptr;
     ElementId element;
     Patch patch;
@@ -204,7 +204,7 @@ bool shines_on_backs(const Stage& stage) {
         }
     }
     for (const PunctualLight& light : stage.scene.lights()) {
-        if (light.is_directional()) continue;  // only what reaches faces counts as emitted
+        if (light.is_directional()) continue;  // directional light counts as emitted only if it reaches a face
         for (const double side : {1.0, -1.0})
             for (std::uint32_t i = 0; i < rays; ++i)
                 if (meets_back(light.position, cosine_direction(Frame({0, 0, side}), points(i, 0), points(i, 1)), {}))

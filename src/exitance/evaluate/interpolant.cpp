@@ -147,7 +147,7 @@ class Interpolation {
                 for (std::size_t i = begin; i < end; ++i) {
                     const ElementId e(i);
                     if (!apart.tree.is_leaf(e)) continue;
-                    // Fits with noise differ by it from their mean, which has less noise.
+                    // Two fits with noise differ by that noise from their mean, so subtract it.
                     const double step = squared_step(apart, out, e) - static_cast<double>(fitted_[e].noise_squared);
                     fitted_[e].misfit_squared += std::max(0.0, step);
                 }
@@ -214,7 +214,7 @@ class Interpolation {
         std::vector<ElementId> rough;
         for (ElementId e : leaves)
             if (error_of(e) > share) rough.push_back(e);
-        constexpr std::size_t most_parts = 4;  // of one leaf
+        constexpr std::size_t most_parts = 4;  // number of parts into which one leaf is split at most
         const std::size_t room = (max_elements_ - std::min(max_elements_, out_.tree.size())) / most_parts + 1;
         if (rough.size() > room) {
             std::stable_sort(rough.begin(), rough.end(),
@@ -247,7 +247,7 @@ class Interpolation {
     std::size_t max_elements_ = 0;
     ElementFunction out_;
     Field<ElementId, Fit> fitted_;
-    std::vector<std::uint8_t> renewed_;  ///< One per element of the direct projection; empty: none.
+    std::vector<std::uint8_t> renewed_;  ///< 1 for elements of the direct projection to renew; empty: none.
 };
 
 }  // namespace

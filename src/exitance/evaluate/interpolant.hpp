@@ -9,12 +9,14 @@ namespace exitance {
 struct InterpolantOptions {
     double tolerance = 0;  ///< Required RMS error of rho E over all surfaces, W/m^2.
     int max_depth = 12;    ///< Limit on the rounds of refinement.
-    /// Elements of the result over those of the direct and indirect light together, and the number that is allowed in
-    /// any case. Sharp borders of sunlight would be cut without end; the error that remains is reported.
+    /// The result may have `max_growth` times as many elements as the direct and the indirect light together, or
+    /// `always_allowed`, whichever is more. Sharp borders of sunlight would be split without end; the error that
+    /// remains is reported.
     double max_growth = 4;
     std::size_t always_allowed = 20'000;
-    std::span<const double> light_in = {};  ///< See LocalPassDemand: allowed errors are proportional to it.
-    std::uint64_t seed = 1;                 ///< Selects the places at which the error is measured.
+    /// Light of each room, to which its allowed error is proportional, like in LocalPassDemand.
+    std::span<const double> light_in = {};
+    std::uint64_t seed = 1;  ///< Selects the places at which the error is measured.
 };
 
 struct InterpolantReport {

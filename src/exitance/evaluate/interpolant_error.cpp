@@ -49,14 +49,14 @@ bool reflects(const Scene& scene) {
                        [&](const Region& region) { return max(scene.materials()[region.material].reflectance) > 0; });
 }
 
-/// The fit takes nine places a leaf or more and all of its ancestors: this is little beside it. At the maximum, the
-/// standard error of the mean square is some percent.
+/// The fit evaluates at least nine places per leaf and per ancestor, so the cost of these places is small in
+/// comparison. At the maximum, the standard error of the mean square is some percent.
 std::size_t count_of_places(std::size_t leaves) {
     constexpr std::size_t min_places = 1024, max_places = 4096, leaves_a_place = 8;
     return std::clamp(leaves / leaves_a_place, min_places, max_places);
 }
 
-/// Returns the mean of the values, but at least its standard error: what the noise of rays may hide.
+/// Returns the mean of the values, but at least its standard error: an error that the noise of rays may hide.
 double mean_or_uncertainty(const std::vector<double>& values) {
     const auto count = static_cast<double>(values.size());
     const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;

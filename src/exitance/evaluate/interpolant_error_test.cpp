@@ -47,7 +47,7 @@ TEST_P(InterpolantErrorOf, DirectLightIsReportedAsItIs) {
     const Scene scene = built_scene(GetParam().family, GetParam().parameters);
     const Solution solution = solved(scene, {.method = Method::matrix, .bounces = 0, .error = GetParam().error});
     const double error = error_of_export(solution);
-    // Both are measured at places that hold most of the error: each square is known to a fifth.
+    // Both errors are measured at points that have most of the error; each mean square is accurate to a fifth.
     ASSERT_TRUE(solution.statistics.relative_error_estimate_interpolant);
     EXPECT_NEAR(*solution.statistics.relative_error_estimate_interpolant, error, 0.2 * error);
 }
@@ -66,7 +66,7 @@ TEST(InterpolantError, IsReportedWhereSharpSunlightNeedsTooManyElements) {
 }
 
 TEST(InterpolantError, FindsLightThatAFitAtItsPlacesDoesNotSee) {
-    // Half of a square of 1 m^2 is off by 1 W/m^2, and the fit knows of no error.
+    // Half of a square of 1 m^2 is off by 1 W/m^2, and the fit reports no error.
     const Scene scene = box_scene(1, 1, 1, 0.5, 1);
     const Stage stage(scene);
     ElementFunction exact, interpolant;

@@ -10,7 +10,7 @@ namespace exitance {
 /// Light of the full function at points spread over one input face, without covered points.
 struct SurfacePoints {
     SurfaceId surface;
-    std::vector<Light> light;  ///< Empty if the whole face is covered.
+    std::vector<Light> light;  ///< Light at the points; empty if the whole face is covered.
 };
 
 /// Measures the light of faces at about `total` points in all, in proportion to their areas, but at least 16 and at

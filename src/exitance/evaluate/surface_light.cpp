@@ -41,7 +41,7 @@ Field<SurfaceId, SurfaceLight> mean_light(const Solution& solution) {
     const Scene& scene = solution.scene;
     const ElementTree& tree = solution.interpolant.tree;
     Field<SurfaceId, SurfaceLight> light(scene.surfaces().size());
-    Field<RegionId, Bvh> faces(scene.regions().size());  // for regions of several faces
+    Field<RegionId, Bvh> faces(scene.regions().size());  // trees of the faces of regions that consist of several faces
     for (RegionId r : scene.regions().ids()) {
         const std::vector<SurfaceId>& members = scene.regions()[r].surfaces;
         if (members.size() < 2) continue;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr unsigned places = 16;  ///< Number of tested places on a side.
 
-/// All pieces of a region.
+/// A region with all of its pieces.
 struct Side {
     RegionId region;
     double area = 0;
@@ -49,8 +49,8 @@ std::vector<Side> sides_of_sheets(const Stage& stage) {
     return out;
 }
 
-/// True if some light reaches a side. Paths come first: they find light nearly everywhere, whereas exact direct light
-/// may cost thousands of times as much.
+/// Returns whether any light reaches a side. Tries paths first: they find light nearly everywhere, whereas exact direct
+/// light may be thousands of times more expensive.
 bool is_lit(const Stage& stage, const PathTracer& tracer, const Side& side, unsigned paths, std::uint64_t seed) {
     const Normal& n = stage.scene.regions()[side.region].plane.n;
     const ScrambledSobol where(hash(seed, static_cast<std::uint64_t>(Stream::reference), side.region.value));
@@ -66,7 +66,8 @@ bool is_lit(const Stage& stage, const PathTracer& tracer, const Side& side, unsi
             if (max(tracer.path({x, n, side.region}, directions(p, 0), directions(p, 1), random)) > 0) return true;
     }
     PlaceLight::Workspace workspace;
-    constexpr LightAccuracy any_light{.relative = 0.01};  // derived from the question: is there any light?
+    // derived from the purpose: only whether there is any light matters
+    constexpr LightAccuracy any_light{.relative = 0.01};
     return std::any_of(open.begin(), open.end(), [&](const auto& place) {
         return max(stage.place_light.at(place.first, n, side.region, any_light, workspace).irradiance) > 0;
     });
@@ -132,7 +133,7 @@ class LitPlaces {
         return out;
     }
 
-    /// Finds the lit places of all regions that have a vertex, and keeps enough of them to test what sees them.
+    /// Finds the lit places of all regions that have a vertex, and keeps enough of them to test which sides see them.
     void find_places(std::span<const std::vector<Vertex>> paths) {
         std::vector<RegionId> regions;
         for (const std::vector<Vertex>& path : paths)

@@ -74,7 +74,8 @@ TEST(UnlitSides, AreNotTheSidesThatSeeAPatchOfSun) {
     ASSERT_EQ(unlit.size(), checked.scene->regions().size());
     for (SurfaceId s : checked.scene->surfaces().ids()) {
         const bool is_plate = s.value >= sheets.size() - 2, inwards = s.value % 2 == 0;
-        const bool is_in_sun = dot(checked.scene->surfaces()[s].normal, sun) > 0;  // if it faces outwards
+        // true if the sun illuminates the face, provided that it faces outwards
+        const bool is_in_sun = dot(checked.scene->surfaces()[s].normal, sun) > 0;
         EXPECT_EQ(unlit[checked.scene->surfaces()[s].region] != 0, !is_plate && !inwards && !is_in_sun) << s.value;
     }
 }

@@ -108,7 +108,7 @@ TEST(EmissionProfile, TurningFaceAndLampTogetherChangesNothing) {
     // part of this is behind it.
     EXPECT_NEAR(exitance_of(p, n), upright, 0.1 * upright);
     DirectedEmission turned;
-    turned.x = {0, 0, 1}, turned.y = {0, 1, 0}, turned.z = {-1, 0, 0};  // down becomes +x
+    turned.x = {0, 0, 1}, turned.y = {0, 1, 0}, turned.z = {-1, 0, 0};  // the lamp's downward direction becomes +x
     EXPECT_EQ(turned.in_lamp({1, 0, 0}), (Vec3{0, 0, -1}));
 }
 

@@ -6,7 +6,7 @@ namespace exitance {
 
 Vec3 met_direction(const Scene& scene, RegionId own, const Normal& n, double a, double b) {
     if (scene.behind(own).is_none()) return cosine_direction(Frame(n), a, b);
-    // Both sides get their share of the stratified range of a.
+    // Divides the stratified range of `a` between both sides of the pane.
     const double through = scene.material(own).through;
     if (a >= through) return cosine_direction(Frame(n), (a - through) / (1 - through), b);
     const Vec3 w = cosine_direction(Frame(n), a / through, b);

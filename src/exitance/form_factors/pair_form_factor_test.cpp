@@ -27,7 +27,7 @@ TEST(PairFormFactor, OpposedUnitSquaresAtDistanceOne) {
 }
 
 TEST(PairFormFactor, PerpendicularUnitSquaresSharingAnEdge) {
-    const Outline wall = {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}};  // its front faces +x
+    const Outline wall = {{0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}};  // the wall's front faces +x
     EXPECT_NEAR(pair_form_factor(square(0, true), wall), 0.2000437760754032, 1e-13);
 }
 
@@ -37,7 +37,7 @@ TEST(PairFormFactor, PerpendicularSquaresWhoseEdgesOverlapInPartAddUpToTheWhole)
     const Outline high = {{0, 1, 0}, {0, 1.37, 0}, {0, 1.37, 1}, {0, 1, 1}};
     const double whole = exchange_area(square(0, true), wall);
     const double parts = exchange_area(square(0, true), low) + exchange_area(square(0, true), high);
-    EXPECT_NEAR(whole / parts, 1, 1e-12);  // both have a tolerance of 1e-12
+    EXPECT_NEAR(whole / parts, 1, 1e-12);  // both results have a tolerance of 1e-12
 }
 
 TEST(PairFormFactor, IsZeroBehindOrInThePlaneOfTheOther) {
@@ -104,8 +104,8 @@ TEST(PairFormFactorProperties, ExchangeIsReciprocalAndAdditiveUnderCuts) {
 }
 
 TEST(PairFormFactor, PolygonsWithTinyEdgesTakeNoLongTime) {
-    // For an edge of a micrometre the inner integral is a difference of numbers of order one. With a tolerance below
-    // its rounding error, bisection would take hours.
+    // For an edge of a micrometre the inner integral is a difference of numbers of order one. If the tolerance were
+    // below its rounding error, bisection would take hours.
     for (const double tiny : {1e-3, 1e-5, 1e-7}) {
         const Outline receiver = {{0, 0, 0}, {1, 0.1, 0}, {1, 0.1 + tiny, 0}, {0.3, 1.1, 0}, {0, 1, 0}};
         const Outline source = {{0.1, 1, 1.2}, {0.8 + tiny, 0.9, 1.2}, {0.8, 0.9, 1.2}, {0.9, 0, 1.2}, {0.2, 0.1, 1.2}};

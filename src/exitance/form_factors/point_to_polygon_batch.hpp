@@ -59,7 +59,8 @@ class ReceiverBatch {
   private:
     friend void points_to_quad(const ReceiverBatch&, const std::array<Point, 4>&, std::span<double>, Processor);
     std::size_t count_ = 0;
-    std::array<std::vector<double>, 6> column_;  ///< x, y, z of the points, then of their normals.
+    /// Coordinates in columns: x, y, z of the points, then x, y, z of the normals.
+    std::array<std::vector<double>, 6> column_;
 };
 
 /// Computes form factors from many points to one quad: out[k] is that of receiver k, with the same rules and accuracy.

@@ -95,7 +95,8 @@ TEST(PointsToQuad, AgreesWithSingleReceiversOnAnyProcessor) {
                 points_to_quad(receivers, quad, plain, processor);
                 EXPECT_EQ(F, plain);
             }
-            for (std::size_t k = 0; k < size; ++k) {  // neighbours make no difference
+            // the result of a quad does not depend on its neighbours in the batch
+            for (std::size_t k = 0; k < size; ++k) {
                 ReceiverBatch one;
                 one.add(x[k], n[k]);
                 points_to_quad(one, quad, std::span(plain).first(1));

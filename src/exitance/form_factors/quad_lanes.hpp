@@ -154,7 +154,7 @@ EXITANCE_INLINE void find_heights(const Direction& n, const Quads<Real>& quads, 
 enum class Rule : std::uint8_t {
     narrow_edges,  ///< Large quads without edges longer than 45 degrees.
     points,        ///< Small quads.
-    edges,         ///< All others, and quads below the horizon.
+    edges,         ///< All other quads, and quads below the horizon.
 };
 
 /// Form factors of a vector of quads by one rule. Returns a bit for each lane that the rule handles; F is undefined in

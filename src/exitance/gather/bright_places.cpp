@@ -17,7 +17,7 @@ struct BrightLeaf {
     std::array<Vec2, 4> corners;
     int corner_count;
     Vec2 centre;
-    double area, light;  ///< m^2; b over the mean of the room.
+    double area, light;  ///< Area, m^2, and b relative to the mean of the room.
 };
 
 /// A rectangle around some bright leaves.
@@ -25,7 +25,7 @@ struct Cover {
     std::vector<BrightLeaf> leaves;
     Vec2 lo{HUGE_VAL, HUGE_VAL}, hi{-HUGE_VAL, -HUGE_VAL};
     double filled = 0;  ///< Area of the leaves, m^2.
-    double flux = 0;    ///< Sum of their area times light.
+    double flux = 0;    ///< Sum of area times light of the leaves.
 
     void add(const BrightLeaf& leaf) {
         for (int i = 0; i < leaf.corner_count; ++i) {
@@ -52,7 +52,7 @@ struct Cover {
     }
 };
 
-/// A cover and the plane in which it lies.
+/// A cover in the 2D coordinates of a plane, with this plane.
 struct PlacedCover {
     Cover cover;
     Point origin;
@@ -105,7 +105,7 @@ std::vector<PortalCell> divide(std::vector<PlacedCover> covers) {
         const auto worst = std::max_element(covers.begin(), covers.end(), [](const auto& a, const auto& b) {
             return a.cover.waste() < b.cover.waste();
         });
-        // A rectangle of two squares, which its leaves fill, is good enough.
+        // Stop splitting at a rectangle as good as one of two squares that its leaves fill.
         if (worst->cover.waste() <= 3 * worst->cover.flux) break;
         auto [one, other] = worst->cover.halves();
         if (one.leaves.empty() || other.leaves.empty()) break;
@@ -126,7 +126,7 @@ struct LeafLight {
 /// Reads b near the corners and at the centre of every leaf, so that leaves at the border of a bright place are known.
 std::vector<LeafLight> light_of_leaves(const ElementTree& tree, std::span<const ElementId> leaves,
                                        const ReflectedLight& b) {
-    constexpr double inside = 0.1;  // derived from the border between elements: on its side of it
+    constexpr double inside = 0.1;  // derived from the position of samples: slightly inside the element's border
     constexpr std::array<Vec2, 5> places{
         {{0.5, 0.5}, {inside, inside}, {1 - inside, inside}, {inside, 1 - inside}, {1 - inside, 1 - inside}}};
     std::vector<LeafLight> out(leaves.size());

@@ -52,7 +52,7 @@ TEST(BrightPlaces, AreCoveredAndLeaveTheExpectedLight) {
         EXPECT_NEAR(cell.corner.z, 0, 1e-9);
     }
     EXPECT_GT(covered, 0.09);  // the patch
-    EXPECT_LT(covered, 0.25);  // the patch and an element around it
+    EXPECT_LT(covered, 0.25);  // the rectangles cover only the bright patch and an element around it
     // The rectangle is small for its distance d, so that its form factor is A cos^2 / (pi d^2) to a percent.
     const double d2 = 0.95 * 0.95 + 0.95 * 0.95 + 9, exact = 1 + 999 * 0.09 * 9 / (pi * d2 * d2);
     constexpr unsigned count = 2000;

@@ -136,7 +136,7 @@ class ElementGather::Builder {
         }
     }
 
-    /// Makes all groups, those of the roots first; writes the roots' regions to `of_region`.
+    /// Makes all groups, those of root elements first; writes the regions of the roots to `of_region`.
     std::vector<Group> groups(std::vector<std::array<RegionId, lanes>>& of_region) {
         std::vector<Piece> roots;
         for (ElementId root : tree_.roots()) add_element(root, roots);
@@ -181,7 +181,7 @@ ElementGather::Node ElementGather::Builder::part(ElementId leaf, const std::arra
 ElementGather::Node ElementGather::Builder::leaf_node(ElementId e) {
     const std::vector<Vec2> domain = tree_.domain(e);
     Node out = part(e, four_corners(domain));
-    if (tree_.is_cell(e)) {  // any convex polygon: treated as uniform
+    if (tree_.is_cell(e)) {  // cells, which may be any convex polygon, are treated as uniform
         out.mean = b_.at({e, tree_.centre(e)});
         out.lean = {};
         for (const Vec2& uv : domain) out.rest = larger(out.rest, magnitude(b_.at({e, uv}) - out.mean));

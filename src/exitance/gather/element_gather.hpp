@@ -62,7 +62,7 @@ class ElementGather {
     static void open_pieces(const Group& group, int uneven, int cuts, Workspace& w);
 
     std::vector<Group> groups_;                           ///< The groups of the roots come first.
-    std::vector<std::array<RegionId, lanes>> of_region_;  ///< Regions of the elements of the roots' groups.
+    std::vector<std::array<RegionId, lanes>> of_region_;  ///< Per group of root elements: the regions of its elements.
 };
 
 /// Workspace of one gather at a time; one per thread.

@@ -33,7 +33,7 @@ EXITANCE_INLINE Real form_factors(const Point& x, const Normal& n, const Quads<R
         taken |= more;
     };
     Real by_rule{};
-    // Only at a smaller distance can edges subtend more than 45 degrees.
+    // Edges subtend more than 45 degrees only at distances below twice the radius.
     const Real nearest = 2 * quads.radius;
     const bool is_near = where_less(dot(quads.middle, quads.middle), nearest * nearest) != 0;
     if (is_near)
@@ -113,7 +113,7 @@ void ElementGather::open_pieces(const Group& group, int uneven, int cuts, Worksp
 
 EXITANCE_INLINE Spectrum ElementGather::sum(const Point& x, const Normal& n, RegionId own, double share,
                                             Workspace& w) const {
-    constexpr int most_cuts = 12;  // of a leaf
+    constexpr int most_cuts = 12;  // maximum depth of splits of one leaf
     const four::Vec origin = {Real{} + x.x, Real{} + x.y, Real{} + x.z};
     const auto seen_from_x = [&](const Group& group) EXITANCE_INLINE_LAMBDA {
         return Quads<Real>{{lanes_at(group.corners[0]) - origin, lanes_at(group.corners[1]) - origin,

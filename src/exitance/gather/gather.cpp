@@ -86,7 +86,8 @@ void aim_others(std::span<const GatherPlace> places, std::span<const PortalCell>
 }
 
 /// Casts `rays` rays from each of the places of a plane, starting at point `first` of their sequences, and finds the
-/// fronts that they hit. Half of them are aimed at openings if that pays and if each quarter has an aimed ray.
+/// fronts that they hit. Half of them are aimed at openings if that reduces the noise and if each quarter has an aimed
+/// ray.
 void cast_together(const Stage& stage, std::span<const GatherPlace> places, const Normal& n, RegionId own,
                    unsigned rays, unsigned first, const BrightPlaces* bright, GatherWorkspace& w) {
     constexpr unsigned fewest_aimed = 4;

@@ -29,7 +29,7 @@ class ReflectedLight {
     virtual void read(std::span<const HitPoint> hits, std::span<Spectrum> values) const = 0;
 
     /// Places at which rays that gather this light are aimed; null: at the openings of the stage only. They change the
-    /// noise, not the expected result. `places` must outlive this.
+    /// noise, not the expected result. `places` must outlive this object.
     const BrightPlaces* bright_places() const { return bright_places_; }
     void aim_at(const BrightPlaces& places) { bright_places_ = &places; }
 
@@ -66,9 +66,10 @@ struct GatherWorkspace {
     std::vector<Point> origins;
     std::vector<Vec3> directions;
     std::vector<RayHit> hits;
-    std::vector<std::uint32_t> quarter;  ///< For each ray 4 times its place, plus the quarter of its point.
-    std::vector<HitPoint> fronts;        ///< Hits at which b is evaluated.
-    std::vector<std::uint32_t> share;    ///< `quarter` of each hit.
+    /// Per ray: 4 times the index of its place, plus the quarter (0 to 3) of its point.
+    std::vector<std::uint32_t> quarter;
+    std::vector<HitPoint> fronts;       ///< Hits at which b is evaluated.
+    std::vector<std::uint32_t> share;   ///< Entry of `quarter` for each hit.
     std::vector<double> counts;         ///< Weight of each hit if rays are aimed at openings (`PortalAim`); else empty.
     std::vector<Spectrum> values;       ///< b at each hit.
     std::vector<QuarterSums> sums;      ///< Resulting sums for each place.

@@ -65,7 +65,7 @@ std::optional<std::uint32_t> LightChoice::source_at(RegionId region, const Point
     if (first == by_region_.end() || first->first != region) return std::nullopt;
     const auto is_last = [&](auto i) { return i + 1 == by_region_.end() || (i + 1)->first != region; };
     auto i = first;
-    // A hit beside all pieces by rounding counts for the last one.
+    // If rounding places a hit next to all pieces, it counts for the last one.
     for (; !is_last(i); ++i) {
         const DirectLight::SourceName& name = source(i->second).name;
         if (contains(direct_->occluders().corners(name.piece), direct_->emitters()[name.emitter].plane.n, at)) break;

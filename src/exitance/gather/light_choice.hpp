@@ -9,7 +9,7 @@ namespace exitance {
 /// the sky are left out.
 class LightChoice {
   public:
-    /// `direct` must outlive it.
+    /// `direct` must outlive this object.
     explicit LightChoice(const DirectLight& direct);
 
     bool empty() const { return tree_.sources().empty(); }

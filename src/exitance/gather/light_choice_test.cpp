@@ -28,7 +28,8 @@ TEST_F(LightChoiceBelowASheet, ChoosesEachSourceAsOftenAsItsChanceSays) {
     const Normal n{0, 0, 1};
     ASSERT_GT(count, 100u);
     std::vector<double> found(count);
-    constexpr int draws = 100'000;  // equal steps: each count is exact to a few steps of the tree
+    // choices at equal steps, so that each count is exact to a few steps per level of the tree
+    constexpr int draws = 100'000;
     for (int i = 0; i < draws; ++i) {
         const LightChoice::Chosen chosen = lights.choose(x, n, (i + 0.5) / draws);
         ASSERT_DOUBLE_EQ(chosen.chance, lights.chance_of(chosen.number, x, n));

@@ -82,14 +82,15 @@ double LocalPass::misfit_for_body(ElementId e, const LocalPassDemand& demand) co
 /// at the opening of a dark room would take most rays. This concerns at most a quarter of a room's light and adds at
 /// most a quarter to its squared noise.
 double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
-    constexpr double far_lighter = 4;  // for the quarter
+    constexpr double far_lighter = 4;  // derived from the limit of a quarter of the room's light
     const double usual_rays = 4 * demand.rays.average;
     // Exponents derived from those that minimize the rays for a mean squared error: half of them.
     const double effort_factor = std::clamp(std::pow(sampled.place_rays / usual_rays, 0.25), 0.5, 2.0);
     const double near = light_near(e, demand), usual_light = far_lighter * near * demand.light;
     const double brightness_factor = usual_light > 0 ? std::sqrt(std::max(1.0, sampled.light / usual_light)) : 1;
-    const double of_all = demand.noise * quiet_in(e, demand) * near * effort_factor * brightness_factor *
-                          std::pow(noise_area_ / stage_.counted_area(tree_, e), 0.25);  // given by the same
+    const double of_all =
+        demand.noise * quiet_in(e, demand) * near * effort_factor * brightness_factor *
+        std::pow(noise_area_ / stage_.counted_area(tree_, e), 0.25);  // derived from the same minimization as above
     const double allowed = std::min(of_all, noise_for_body(e, demand));
     return allowed > 0 ? std::sqrt(sampled.noise_squared) / allowed : 0;
 }
@@ -157,7 +158,8 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
     const unsigned before = sampled_[e].place_rays > 0 ? sampled_[e].place_rays
                             : parent.is_none()         ? 0
                                                        : sampled_[parent].place_rays / 2;
-    const bool unlit = stage_.is_left_out(tree_.region(e));  // its area does not count, so the minimum of rays
+    // if true, the element's area has no weight, and it gets the minimum number of rays
+    const bool unlit = stage_.is_left_out(tree_.region(e));
     // Rays of a place follow from the noise allowed to the power of -4/3 (`knobs_for_error`).
     const double allowance = std::pow(quiet_in(e, demand), 4.0 / 3);
     // With very many elements each has so small a share of the light that its noise alone determines its rays.
@@ -208,7 +210,7 @@ SampledElement LocalPass::changed(ElementId e, const LocalPassDemand& demand, Wo
 /// exceeds their noise, it counts as misfit.
 void LocalPass::look_between(ElementId e, SampledElement& sampled, const ReflectedLight& b,
                              const LocalPassDemand& demand, Workspace& w) const {
-    constexpr unsigned share = 8;  // 1 / share of the rays that the element took
+    constexpr unsigned share = 8;  // the check takes about 1 / share of the rays that the element took before
     constexpr unsigned least_places = 4, most_places = 32;
     unsigned rays = 16, count = std::min(most_places, sampled.rays / (share * rays));
     if (is_narrow_leaf(stage_, tree_, e)) {
@@ -216,7 +218,7 @@ void LocalPass::look_between(ElementId e, SampledElement& sampled, const Reflect
         constexpr unsigned places_before_gaps = 16, rays_before_gaps = 64;
         count = std::max(count, places_before_gaps), rays = rays_before_gaps;
     }
-    if (count < least_places) return;  // too few to estimate their noise
+    if (count < least_places) return;  // too few places to estimate their noise
     const RegionId region = tree_.region(e);
     const Normal& n = stage_.scene.regions()[region].plane.n;
     const Spectrum& rho = stage_.scene.material(region).reflectance;
@@ -301,7 +303,7 @@ ElementFunction LocalPass::finished(const LocalPassDemand& demand, LocalPassRepo
         report.leaves[leaf] = {std::sqrt(s.misfit_squared + s.noise_squared), s.rays};
     }
     out = nearest_continuous(out, stage_.scene, stage_.contacts);
-    // Polynomials that are made continuous overshoot beside steep falls. Irradiance is not negative.
+    // Polynomials that are made continuous overshoot next to steep falls. Irradiance is not negative.
     for (std::array<float, bands>& value : out.values)
         for (float& v : value) v = std::max(0.0f, v);
     tell_parts(report);
@@ -361,12 +363,12 @@ std::size_t LocalPass::rays_of(std::span<const ElementId> elements) const {
 ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const LocalPassDemand& demand,
                                   LocalPassReport& report, Progress& progress, const StopRequest& stop,
                                   SafePoints safe_points) {
-    constexpr int change = -1;  // round in which a change is gathered; comes before rounds of refinement
+    constexpr int change = -1;  // number of the round that gathers a change; it precedes the rounds of refinement
     std::vector<ElementId> active = tree_.leaves();
     const bool known = !fresh && sampled_.size() == tree_.size();
     int depth = known && demand.change ? change : 0;
     std::size_t begun = 0;        // elements of `active` that a resumed run has gathered
-    std::size_t rays_before = 0;  // of `active`, if only the change is gathered
+    std::size_t rays_before = 0;  // rays of the active elements, if only a change is gathered
     const bool resumed = safe_points.resume([&](auto& a) { a(active, depth, begun, report.rays, rays_before); });
     divide_among_bodies(demand);
     if (!resumed && known) report.rays += follow_rough_places(b, demand);

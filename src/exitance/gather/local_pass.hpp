@@ -21,8 +21,8 @@ struct LocalPassDemand {
     bool curved = false;   ///< Fit polynomials of second degree where they exceed their noise.
     /// Allowed error of interpolation relative to the light on an element, if elements are summed; 0: not limited.
     double relative_tolerance = 0;
-    /// b in parts that are summed instead of casting rays, if that suits the scene (empty: rays), and the allowed error
-    /// of one element as a share of the irradiance.
+    /// Parts of b that are summed instead of casting rays, if the scene is suitable (empty: cast rays), and the allowed
+    /// error of one element as a share of the irradiance.
     std::span<const ElementGather> elements = {};
     double element_share = 0;
     int max_depth = 8;  ///< Limit on the rounds of refinement.
@@ -94,16 +94,16 @@ class LocalPass {
     struct Workspace {
         GatherWorkspace rays;
         ElementGather::Workspace elements;
-        std::vector<GrowingGather> growing;  ///< One per place.
+        std::vector<GrowingGather> growing;  ///< Gathers under way, one per place.
         std::vector<Gathered> gathered;
         std::vector<GatherPlace> short_places;  ///< Places that need more rays.
-        std::vector<GrowingGather*> short_of;   ///< Gathers of these places.
+        std::vector<GrowingGather*> short_of;   ///< Entries of `growing` for `short_places`.
     };
 
     /// Sums over all sampled elements of area times the variance estimated from quarters and from halves of their rays,
     /// (W/m^2)^2 m^2. Initially as for rays between random and uniform light (`Gathered`), with negligible weight.
     struct Spread {
-        double quarters = 1e-100, halves = 0.85e-100;  // derived from the range of gain(): its middle
+        double quarters = 1e-100, halves = 0.85e-100;  // derived from the range of gain(): the middle of the range
 
         /// Ratio of the actual variance to its estimate from quarters. A mean over elements, since one element has too
         /// few places.
@@ -156,7 +156,8 @@ class LocalPass {
     /// Squared misfit allowed on any element over the squared light of its room, m^2; 0 unless is_crowd_.
     double least_share_ = 0;
     Spread spread_;
-    Field<ElementId, std::uint8_t> suspect_;  ///< Elements that were looked at closely; their parts are, too.
+    /// Elements that were examined for large errors at single points; their children are marked as well.
+    Field<ElementId, std::uint8_t> suspect_;
 };
 
 }  // namespace exitance

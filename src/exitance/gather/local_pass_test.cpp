@@ -79,7 +79,8 @@ TEST_F(OneBrightFace, HasTheVarianceEstimatedFromQuartersAndHalves) {
         told += 0.25 * std::log(halves / quarters * halves / variance);
         by_chance += 0.25 * std::log(quarters / variance);
     }
-    // Powers of 4 fill the square more evenly than their doubles; a power law describes both together to about a third.
+    // Numbers of rays that are powers of 4 fill the square more evenly than twice these numbers. One power law
+    // describes both to about a third.
     EXPECT_NEAR(std::exp(told), 1, 0.35);
     EXPECT_GT(std::exp(by_chance), 1.5);
 }
@@ -143,7 +144,7 @@ TEST_F(OneBrightFace, MayBeNoisierWhereItIsMuchBrighter) {
     LocalPassDemand demand = fine;
     demand.noise = 1e-4;
     gather(demand, usual);
-    LocalPass other(stage, {.edge = 0.8, .grading_levels = 0}, 1);  // has not gathered before
+    LocalPass other(stage, {.edge = 0.8, .grading_levels = 0}, 1);  // this pass has not gathered before
     Progress progress;
     demand.light = 0.002;  // of a room that is dark except for this face's light, which is up to 0.1 elsewhere
     const double truth = error(other.gather(b, true, demand, dim, progress, StopRequest()));

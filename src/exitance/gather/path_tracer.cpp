@@ -57,7 +57,7 @@ Spectrum PathTracer::met_light(const RayHit& hit, const Vertex& from, const Vec3
     if (!met) return {};
     const Spectrum& exitance = stage_.scene.material(met->region).exitance;
     if (!(max(exitance) > 0)) return {};
-    // Shadow rays meet no mirror images.
+    // Shadow rays cannot hit mirror images, so their hits have full weight.
     const double weight = hit.mirror >= 0 ? 1 : 1 - weight_of_shadow_ray(from, *met);
     return (stage_.scene.relative_radiance(met->region)(-w) * weight) * exitance;
 }
@@ -103,7 +103,7 @@ double density_of(double chance, double area, double squared_distance, double co
 
 /// Weight of a sample by the first of two densities, by the balance heuristic.
 double balance(double first, double second) {
-    return first / (first + std::max(second, 1e-300));  // given by rounding: not 0
+    return first / (first + std::max(second, 1e-300));  // given by rounding: avoids division by zero
 }
 
 }  // namespace
@@ -120,7 +120,7 @@ double PathTracer::weight_of_shadow_ray(const Vertex& y, const Vertex& target) c
     return balance(density_of(chance, lights_.source(*source).area, r2, at_light / r), dot(y.n, w) / (pi * r));
 }
 
-/// Direct light at y by one shadow ray, weighted against the ray that the path takes anyway.
+/// Direct light at y by one shadow ray, weighted against the next ray of the path, which may hit the same light.
 Spectrum PathTracer::shadow_ray(const Vertex& y, RandomStream& random) const {
     if (lights_.empty()) return {};
     const double pick = random.uniform(), u = random.uniform(), v = random.uniform();

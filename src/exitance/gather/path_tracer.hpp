@@ -29,7 +29,7 @@ class PathTracer {
     /// Result of one step of a path at a vertex.
     struct Step {
         Spectrum direct;             ///< One unbiased sample of the direct irradiance at the vertex, W/m^2.
-        std::optional<Vertex> next;  ///< Hit of a ray with density cos / pi; none if it hits no front.
+        std::optional<Vertex> next;  ///< Hit of the next ray, chosen with density cos / pi; none if no front is hit.
     };
 
     explicit PathTracer(const Stage& stage);

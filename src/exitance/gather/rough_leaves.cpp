@@ -19,7 +19,7 @@ class Strips {
         Strip& strip = strips_[static_cast<std::size_t>(std::clamp(coordinate * count, 0.0, count - 0.5))];
         strip.sum += residual, strip.squares += residual * residual, strip.places += 1;
     }
-    /// Mean square of the strips' means, less what chance adds to it: the part that varies across the strips.
+    /// Mean square of the strips' means minus the part that is due to chance: the variation across the strips.
     double between() const {
         double out = 0, places = 0;
         for (const Strip& s : strips_) {
@@ -45,8 +45,8 @@ bool LocalPass::is_suspect(ElementId e) const {
     return false;
 }
 
-/// Measures the misfit of an element's polynomial at many places, and sets it if it is larger than what the nodes of
-/// the fit showed.
+/// Measures the misfit of an element's polynomial at many places, and sets it if it is larger than the misfit at the
+/// nodes of the fit.
 void LocalPass::look_closely(ElementId e, SampledElement& sampled, const ReflectedLight& b,
                              const LocalPassDemand& demand, Workspace& w) const {
     // Derived from a feature that covers a twentieth of the element: some place meets it in 24 of 25 times, and its
@@ -93,9 +93,9 @@ std::vector<ElementId> LocalPass::beside(ElementId e, const ElementLocator& loca
     return out;
 }
 
-/// Looks closely at the leaves at rough places and, as long as leaves are rough, at those beside them. A feature that a
-/// few points of the certificate met is thereby followed along its whole length. Their misfit is then known, and their
-/// parts are looked at in the same way. Returns the number of rays.
+/// Examines the leaves at rough places with more rays and, while the examined leaves are rough, also the leaves next to
+/// them. A feature that a few points of the certificate hit is thus followed along its whole length. The misfit of
+/// these leaves is then known, and their children are examined in the same way. Returns the number of rays.
 std::size_t LocalPass::follow_rough_places(const ReflectedLight& b, const LocalPassDemand& demand) {
     if (demand.rough_places.empty() || !demand.elements.empty()) return 0;
     const ElementLocator locator(tree_, stage_.scene.regions().size());

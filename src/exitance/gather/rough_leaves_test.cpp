@@ -9,8 +9,8 @@ namespace exitance {
 namespace {
 
 /// A box whose ceiling sends light, b = 1 W/m^2, and a plate 16 mm above its floor. The floor is dark below the plate.
-/// From 50 mm beside it, the plate hides only directions within 18 degrees of the floor, which bring under a twentieth
-/// of the ceiling's light.
+/// At 50 mm from the plate's edge, the plate hides only directions within 18 degrees of the floor, which bring under a
+/// twentieth of the ceiling's light.
 struct PlateOnFloor {
     static constexpr double low = 0.45, high = 1.55, near_side = 0.35, far_side = 1.15;  ///< Borders of the plate, m.
 
@@ -20,7 +20,7 @@ struct PlateOnFloor {
         for (const double z : {0.016, 0.017})
             faces.push_back(
                 {{at(low, near_side, z), at(high, near_side, z), at(high, far_side, z), at(low, far_side, z)}});
-        std::swap(faces[6].corners[1], faces[6].corners[3]);  // the lower one looks down
+        std::swap(faces[6].corners[1], faces[6].corners[3]);  // turn the lower face downwards
         return test::make(faces);
     }
     Scene scene = scene_of();
@@ -56,7 +56,7 @@ TEST(RoughPlaces, AreFollowedAlongAllOfAShadow) {
     const StopRequest stop;
     LocalPassReport report;
     const ElementFunction before = pass.gather(plate.b, true, demand, report, progress, stop);
-    // One point at one side is enough to find all four.
+    // One rough point on one side of the shadow is enough to find all four sides.
     const std::vector<RoughPlace> found{{plate.floor, {1, PlateOnFloor::far_side + 0.003, 0}}};
     demand.max_depth = 8, demand.rough_places = found;
     const ElementFunction after = pass.gather(plate.b, false, demand, report, progress, stop);
@@ -64,7 +64,7 @@ TEST(RoughPlaces, AreFollowedAlongAllOfAShadow) {
         EXPECT_GT(plate.error_beside(before, border), 0.15) << border;
         EXPECT_LT(plate.error_beside(after, border), 0.6 * plate.error_beside(before, border)) << border;
     }
-    // Only the border is refined.
+    // Only elements at the border of the shadow are refined.
     EXPECT_LT(after.tree.leaves().size(), 4 * before.tree.leaves().size());
 }
 
@@ -81,7 +81,7 @@ TEST(RoughPlaces, CostNothingWhereLightIsSmooth) {
     demand.rough_places = found;
     const ElementFunction after = pass.gather(plate.b, false, demand, again, progress, stop);
     EXPECT_EQ(before.values, after.values);
-    EXPECT_LE(again.rays, 4096u);  // those of one look
+    EXPECT_LE(again.rays, 4096u);  // the rays of one examination
 }
 
 }  // namespace

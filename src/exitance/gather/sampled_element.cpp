@@ -18,8 +18,8 @@ double mean_square(const Spectrum& s) {
 SampledElement fit_gathered(const ElementTree& tree, ElementId e, const std::vector<WeightedPlace>& places,
                             std::span<const Gathered> gathered, const Spectrum& rho, bool curved, double gain) {
     const ElementPolynomials polynomials(tree, e, places, curved);
-    std::array<Spectrum, ElementPolynomials::max_count> c{};    ///< of each coefficient, for rho E
-    std::array<double, ElementPolynomials::max_count> noise{};  // of each coefficient, as of rho E
+    std::array<Spectrum, ElementPolynomials::max_count> c{};    ///< coefficients of the fit to rho E
+    std::array<double, ElementPolynomials::max_count> noise{};  // variance of each coefficient, for rho E
     std::vector<ElementPolynomials::Values> phi;
     SampledElement out;
     out.curved = curved;
@@ -43,7 +43,7 @@ SampledElement fit_gathered(const ElementTree& tree, ElementId e, const std::vec
         (k < polynomials.straight() ? straight : bent_noise) += noise[k];
         if (k >= polynomials.straight()) bent += mean_square(rho * c[k]);
     }
-    std::vector<Spectrum> rest(places.size());  // of rho E
+    std::vector<Spectrum> rest(places.size());  // gathered minus fitted rho E, per place
     for (std::size_t i = 0; i < places.size(); ++i) {
         rest[i] = gathered[i].irradiance;
         for (std::size_t k = 0; k < polynomials.size(); ++k) rest[i] -= phi[i][k] * c[k];

@@ -19,7 +19,7 @@ struct Noisy {
         places = element_rule(tree, ElementId(0), rule_order(curved));
         RandomStream random(seed, Stream::mesh);
         for (const WeightedPlace& p : places) {
-            const double uniform = 2 * random.uniform() - 1;  // of variance 1/3
+            const double uniform = 2 * random.uniform() - 1;  // uniform random number of variance 1/3
             gathered.push_back(
                 {Spectrum(f(p.uv) + deviation * std::sqrt(3.0) * uniform), Spectrum(deviation * deviation), {}});
         }
@@ -57,7 +57,7 @@ TEST(SampledElement, IsNotNoisierDueToAbsentCurvature) {
         for (const WeightedPlace& p : even.places) error += p.weight * std::pow(0.5 * (f.at(p.uv)[0] - 1), 2) / seeds;
         straight += even.fit(false).noise_squared / seeds;
     }
-    EXPECT_LT(error, 1.5 * straight);  // 9/4 of it without shrinking
+    EXPECT_LT(error, 1.5 * straight);  // without shrinking, the error would be 9/4 of `straight`
     EXPECT_NEAR(error, told, 0.15 * told);
 }
 

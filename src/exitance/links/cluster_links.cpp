@@ -114,7 +114,7 @@ void ClusterLinks::add_to(NodalField& E, const NodalField& b) const {
     const LinkSites& sites = bodies_.sites();
     const Field<FacingId, VectorPower> powers = find_vector_powers(bodies_, b);
     const Sender sender(bodies_, powers, b);
-    Field<FacingId, VectorPower> received(clusters.facing_count());  // sums of E w, by facing
+    Field<FacingId, VectorPower> received(clusters.facing_count());  // sums of E w for each facing
     parallel_for(first_.size() - 1, 16,
                  [&](std::size_t row) {
                      const Body receiver = links_[first_[row]].receiver;

@@ -10,7 +10,7 @@ namespace exitance {
 /// A transport link between two bodies, at least one of which is a cluster; receiver first.
 struct ClusterLink {
     Body receiver, source;
-    float visible = 1;  ///< Unoccluded share of the light between them.
+    float visible = 1;  ///< Unoccluded share of the light from source to receiver.
 };
 
 /// Elements and clusters seen from far away: a centre, a bounding ball, and vector areas.
@@ -30,7 +30,7 @@ class Bodies {
     bool is_leaf(Body b) const { return !b.is_cluster() && elements().is_leaf(b.element()); }
     std::vector<Body> parts(Body b) const;
 
-    /// The region of the first element in the body, for traces.
+    /// Returns the region of the first element of a body.
     RegionId region(Body b) const;
 
   private:
@@ -65,7 +65,7 @@ class ClusterLinks {
     std::size_t size() const { return links_.size(); }
     std::size_t memory_bytes() const;
 
-    /// Adds to E what these links contribute, for b at the sources: to each receiving element, and for receiving
+    /// Adds the contribution of these links to E, for b at the sources: to each receiving element, and for receiving
     /// clusters to their pieces.
     void add_to(NodalField& E, const NodalField& b) const;
 

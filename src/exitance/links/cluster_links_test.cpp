@@ -83,7 +83,8 @@ TEST(ClusterLinks, GiveOneEverywhereInAClosedRoomOfUniformLight) {
                 sum += of.tree.area(e) * of.sites.weight(e, k) * std::pow(E.node(e, k)[0] - 1, 2);
         const double error = std::sqrt(sum / of.stage.area);
         EXPECT_LT(error, of.estimate(0.8)) << static_cast<int>(kind);
-        EXPECT_LT(error, 0.1) << static_cast<int>(kind);  // of 150 links per receiver, with errors of 0.01 each
+        // limit: the sum of 150 links per receiver with errors of 0.01 each
+        EXPECT_LT(error, 0.1) << static_cast<int>(kind);
     }
 }
 

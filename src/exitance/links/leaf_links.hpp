@@ -9,7 +9,7 @@ namespace exitance {
 struct LeafLinks {
     Links links;
     double error = 0;       ///< Root of the sum of areas times squared errors of rules and visibility, W/m^2 m.
-    double open_share = 1;  ///< Share of their light that is certainly unoccluded.
+    double open_share = 1;  ///< Share of the links' light that is certainly unoccluded.
     std::size_t rays = 0, form_factors = 0;
 };
 

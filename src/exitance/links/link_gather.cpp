@@ -227,7 +227,7 @@ class ReceivedLight {
     float rest_[3]{};
     Lanes sum_[bands]{}, rest_lanes_[bands]{};
     float rest_sum_[bands]{};
-    NodalValues total_{};  ///< Finished sums, which put_by() adds here.
+    NodalValues total_{};  ///< Sums that are complete; put_by() adds to them.
 };
 
 /// Light of constant elements, padded to whole registers.
@@ -288,7 +288,7 @@ void Links::gather_kernels(const NodalField& b, NodalField& E) const {
     const std::vector<ElementId>&receiver = kernels_.receiver, &sources = kernels_.sources;
     const std::vector<std::size_t>& first = kernels_.first;
     const std::vector<std::uint32_t>& source = kernels_.source;
-    // New memory is first touched where it is filled, by all threads.
+    // Memory is left uninitialized here, so that the threads that fill it also touch it first.
     const auto records = std::make_unique_for_overwrite<SourceRecord<Layout::n>[]>(sources.size());
     parallel_for(sources.size(), 256, [&](std::size_t i) { fill(records[i], *sites_, b, sources[i], scale); });
     kernels_.for_each(sites_->tree(), [&](std::size_t row) {

@@ -14,7 +14,7 @@ struct LinkRefiner::Block {
     std::vector<FoundLink> links;
     std::vector<float> blocks, shadows;
     std::vector<LinkPair> cut;        ///< Pairs whose sources are to be split.
-    std::vector<PieceId> candidates;  ///< Candidates of these pairs.
+    std::vector<PieceId> candidates;  ///< Occluder candidates of the pairs in `cut`.
     std::size_t rays = 0, form_factors = 0;
 
     std::size_t bytes() const {
@@ -269,7 +269,7 @@ Field<ElementId, std::uint8_t> LinkRefiner::judge_receivers(Receivers& receivers
         if (!departs && gained[e] != cutting_ones) continue;
         if (tree_.is_leaf(e) && tree_.area(e) <= 2 * tolerance.least_area) continue;
         too_much[e] = 1;
-        receivers.light[e] = {};  // to be summed over the remaining links
+        receivers.light[e] = {};  // reset: it is summed again over the remaining links
         if (tree_.is_leaf(e)) leaves.push_back(e);
     }
     return too_much;
@@ -387,7 +387,8 @@ void LinkRefiner::sum_up() {
 Links LinkRefiner::make_links() const {
     const std::size_t size = sites_.nodes() * sites_.nodes();
     std::vector<Link> links(links_.size());
-    std::vector<std::uint32_t> place(links_.size());  // index of their blocks among those of remaining links
+    // per link: index of its block among the blocks of the remaining links
+    std::vector<std::uint32_t> place(links_.size());
     std::uint32_t near = 0;
     for (std::size_t i = 0; i < links_.size(); ++i) place[i] = near, near += links_[i].near ? 1 : 0;
     std::vector<float> blocks(near * size);

@@ -41,7 +41,7 @@ class LinkRefiner {
     /// Declares that links are always judged by the same light, so the light of earlier judgements need not be stored.
     void keep_light() { light_stays_ = true; }
 
-    /// Sets the roughness of elements whose children are not held; that of others is computed.
+    /// Sets the roughness of elements whose children are not held. For other elements the roughness is computed.
     void set_roughness(Field<ElementId, double> roughness) { roughness_ = std::move(roughness); }
 
     /// Splits leaves; their parts inherit the functions of `b` and of each field in `also`.
@@ -107,7 +107,8 @@ class LinkRefiner {
     LinkSites& sites_;
     Light light_below_;
     double weight(ElementId receiver) const { return importance_.empty() ? 1 : importance_[receiver]; }
-    Field<ElementId, double> roughness_;  ///< Per held element.
+    /// Per held element: RMS deviation of its descendants' light from its own function.
+    Field<ElementId, double> roughness_;
     Field<ElementId, double> importance_;
     std::vector<FoundLink> links_;
     std::vector<float> blocks_, shadows_;

@@ -38,7 +38,7 @@ TEST(LinkRefiner, KeepsAndScalesLinksThatAreGoodEnough) {
         const std::size_t rays = r.refiner.rays(), links = r.refiner.size();
         const double light = r.refiner.light(), error = r.refiner.error();
         r.scale_light(2);
-        r.refine(1);  // all links are good enough here
+        r.refine(1);  // at this accuracy all links are accepted
         // Only links whose source was split after they were made are judged again.
         EXPECT_LT(static_cast<double>(r.refiner.rays() - rays), 0.01 * static_cast<double>(rays));
         EXPECT_EQ(r.refiner.size(), links);

@@ -36,7 +36,7 @@ Patch LinkSites::inertia_parallelogram(ElementId e) const {
     }
     xx /= area, xy /= area, yy /= area;
     const double l = std::sqrt(std::max(xx, 1e-30)), m = xy / l;  // derived from rounding: no division by zero
-    const double k = std::sqrt(std::max(yy - m * m, 1e-30));      // derived from rounding
+    const double k = std::sqrt(std::max(yy - m * m, 1e-30));      // derived from rounding: no division by zero
     const Patch& frame = tree_->patch(e);
     // A parallelogram with the same second moments.
     const double root3 = std::sqrt(3.0);  // derived from the spread of an even distribution

@@ -15,8 +15,9 @@ namespace exitance {
 /// A hierarchy, or its upper part: for every element, either all of its children are in it or none. The elements of one
 /// level are independent of each other.
 struct ElementPart {
-    std::vector<std::vector<ElementId>> inner;  ///< Elements whose children are in the part, by depth, roots first.
-    std::vector<ElementId> ends;                ///< Elements whose children are not in it, in the order of their ids.
+    /// Elements with children in this part of the tree, by depth, roots first.
+    std::vector<std::vector<ElementId>> inner;
+    std::vector<ElementId> ends;  ///< Elements of this part without children in it, in the order of their ids.
 };
 
 /// Places the nodes of a basis on the elements of a tree, and transfers functions between its levels.
@@ -31,7 +32,7 @@ class LinkSites {
     enum class Held : std::uint8_t { all, roots };
     LinkSites(const Stage& stage, const ElementTree& tree, const NodalBasis& basis, Held held = Held::all);
 
-    /// Also stores values for the children of these elements from now on.
+    /// Stores values for the children of these elements as well, from now on.
     void open(std::span<const ElementId> parents);
     std::size_t size() const { return held_.size(); }  ///< Number of held elements.
     bool holds(ElementId e) const { return e.value < place_.size() && place_[e] != none; }
@@ -110,12 +111,14 @@ class LinkSites {
     const ElementTree* tree_;
     const NodalBasis* basis_;
     std::size_t n_;
-    Field<ElementId, std::uint32_t> place_;  ///< Per element of the tree.
-    std::vector<ElementId> held_;            ///< Sorted by place, like all arrays below.
+    /// Per element of the tree: its index among the held elements; `none` if not held.
+    Field<ElementId, std::uint32_t> place_;
+    std::vector<ElementId> held_;  ///< Held elements, in the order of their indices, like all arrays below.
     std::vector<double> radius_;
-    std::vector<std::uint32_t> matrix_;  ///< Per child: index of its matrices
-    std::vector<float> push_, pull_;     ///< in these; matrices of regular splits are stored only once.
-    std::map<std::pair<Patch::Shape, Cut>, std::uint32_t> regular_;  ///< Index of the matrices of the first child.
+    std::vector<std::uint32_t> matrix_;  ///< Per child: index of its matrices in `push_` and `pull_`.
+    std::vector<float> push_, pull_;     ///< Matrices; those of regular splits are stored only once.
+    /// Per regular split: index of the matrices of the first child.
+    std::map<std::pair<Patch::Shape, Cut>, std::uint32_t> regular_;
     std::vector<std::vector<ElementId>> inner_;
     std::vector<std::uint32_t> depth_;
     std::vector<std::uint32_t> cell_frame_;  ///< Per cell: index in `cell_frames_`; none for other elements.

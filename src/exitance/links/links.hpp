@@ -15,7 +15,7 @@
 namespace exitance {
 
 /// A transport link between two elements, receiver first, with a visibility bit per pair of nodes. The kernel is
-/// recomputed whenever light is transported; only what is expensive to compute is stored.
+/// recomputed whenever light is transported; only data that are expensive to compute are stored.
 struct Link {
     ElementId receiver, source;
     /// Bit k n + l: node l of the source is visible from node k of the receiver. The last bit marks a constant link:
@@ -85,7 +85,7 @@ class Links {
     /// Links of one kind, row by row.
     struct Rows {
         std::vector<ElementId> receiver;    ///< Per row.
-        std::vector<std::size_t> first;     ///< Row i is [first[i], first[i + 1]).
+        std::vector<std::size_t> first;     ///< Row i contains the links [first[i], first[i + 1]).
         std::vector<ElementId> sources;     ///< All sources, each once, in the order of their ids.
         std::vector<std::uint32_t> source;  ///< Per link: index of its source in `sources`.
 
@@ -115,9 +115,9 @@ class Links {
 
     const LinkSites* sites_;
     Rows constants_, kernels_;
-    std::vector<float> factor_;           ///< Per constant link.
+    std::vector<float> factor_;           ///< Per constant link: form factor including visibility.
     std::vector<std::uint32_t> visible_;  ///< Per kernel link: `words_` words of bits in the order of LinkLayout.
-    std::vector<std::uint32_t> block_;    ///< Per kernel link.
+    std::vector<std::uint32_t> block_;    ///< Per kernel link: index of its block in `blocks_`.
     std::vector<float> blocks_;
     std::size_t words_ = 0;
 };

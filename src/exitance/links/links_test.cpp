@@ -58,7 +58,8 @@ TEST(Links, GiveOneEverywhereInAClosedBoxOfUniformLight) {
         const double error = linked.error([](ElementId, const Point&) { return 1.0; });
         // The errors of parts cancel in the whole, so the estimate is only required to be an upper bound of the right
         // order.
-        EXPECT_LT(error, 1.5 * linked.estimate(0.8) + 1e-7) << static_cast<int>(kind);  // blocks are floats
+        // blocks are stored in single precision
+        EXPECT_LT(error, 1.5 * linked.estimate(0.8) + 1e-7) << static_cast<int>(kind);
         EXPECT_LT(error, kind == HierarchyBasis::haar ? 0.03 : 0.01) << static_cast<int>(kind);
         EXPECT_EQ(linked.refiner.open_light(), linked.refiner.light()) << static_cast<int>(kind);
     }
@@ -126,7 +127,7 @@ TEST(Links, UniformLightHasTheExactMeanOverAReceiver) {
         const Linked linked(box, kind, 0.01, [](const Point& x) { return std::exp(-x.z); });
         const LinkSites& sites = linked.sites;
         for (const KeptLink& link : linked.refiner.make_links().list()) {
-            if (sites.nodes() == 1) continue;  // the mean of their receivers is over other points
+            if (sites.nodes() == 1) continue;  // constant links store means over points other than the nodes
             double exact = 0;
             for (std::size_t k = 0; k < sites.nodes(); ++k)
                 exact += sites.weight(link.receiver, k) * point_to_polygon(sites.node(link.receiver, k),

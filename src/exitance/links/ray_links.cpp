@@ -13,7 +13,7 @@ namespace {
 /// An order of the leaves in which those below every element are contiguous.
 struct LeafOrder {
     Field<ElementId, std::uint32_t> first, count;  ///< The leaves below an element are [first, first + count).
-    std::vector<std::uint32_t> place;              ///< Per leaf number: its position.
+    std::vector<std::uint32_t> place;              ///< Per leaf number: position of the leaf in the order.
     std::vector<std::uint32_t> roots;              ///< Per root: position of its first leaf.
 
     LeafOrder(const ElementTree& tree, const LeafNumbering& numbering)

@@ -52,14 +52,16 @@ TEST(RayLinks, SumToOneAtEveryLeafOfAClosedScene) {
         Field<ElementId, double> sum(box.tree.size(), 0.0);
         for (const KeptLink& link : box.links(allowed).list())
             sum[link.receiver] += static_cast<double>(link.form_factor);
-        for (ElementId e : box.numbering.leaves) EXPECT_NEAR(sum[e], 1, 1e-6);  // multiples of 1/256, in floats
+        // entries are multiples of 1/256 in single precision
+        for (ElementId e : box.numbering.leaves) EXPECT_NEAR(sum[e], 1, 1e-6);
     }
 }
 
 TEST(RayLinks, AgreeWithRaysIfNoErrorIsAllowed) {
     const Rows scene(built_scene("cornell"), uneven);
     const std::vector<double> by_links = scene.over(scene.links(0)), by_rays = scene.by_rays();
-    for (std::size_t i = 0; i < by_rays.size(); ++i) EXPECT_NEAR(by_links[i], by_rays[i], 1e-6);  // sums of floats
+    // sums in single precision
+    for (std::size_t i = 0; i < by_rays.size(); ++i) EXPECT_NEAR(by_links[i], by_rays[i], 1e-6);
 }
 
 TEST(RayLinks, LeadToLargerSourcesWithinTheAllowedError) {

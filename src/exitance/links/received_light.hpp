@@ -16,7 +16,7 @@ struct FoundLink {
     float squared_error = 0, light = 0, undersampling = 0;
     std::uint32_t shadow = none;  ///< Index in the refiner's pool of the shadowed light at the nodes and its variance.
     bool near = false;            ///< True if the link has a block.
-    bool open = false;            ///< True if its view is certainly open.
+    bool open = false;            ///< True if source and receiver certainly see each other unoccluded.
     bool cuts_receiver = false;   ///< True if its receiver must be split whatever the other links contribute.
 };
 

@@ -10,9 +10,10 @@
 namespace exitance {
 namespace {
 
-constexpr double cell_width = 0.1;    ///< Metres, derived from a tenth of the narrowest corridors.
-constexpr double max_cells = 40000;   ///< Derived from half a second of rays.
-constexpr double fewest_across = 20;  ///< Cells along the shorter side, derived from models at a tenth of their size.
+constexpr double cell_width = 0.1;   ///< Metres, derived from a tenth of the narrowest corridors.
+constexpr double max_cells = 40000;  ///< Derived from half a second of rays.
+/// Minimum number of cells along the shorter side, derived from models at a tenth of their size.
+constexpr double fewest_across = 20;
 /// Position of the first centre, in cells: derived from the golden section, so that walls at round numbers do not pass
 /// through centres.
 constexpr double first_centre = 0.118;
@@ -23,7 +24,8 @@ constexpr double door_height = 2.15;    ///< Metres, derived from doors of 2.0 t
 constexpr double door_share = 0.78;     ///< Share of the height, derived from doors of 2.1 m below ceilings of 2.7 m.
 constexpr double least_lintel = 0.1;    ///< Share of the height, derived from doors of 2.1 m below ceilings of 2.35 m.
 constexpr double below_ceiling = 0.98;  ///< Share of the height, derived from sheets just below a ceiling.
-constexpr std::size_t heights = 4;      ///< Rays per pair of cells, derived from beams that cover one of them.
+/// Number of rays per pair of neighbouring cells, derived from beams that block only one of them.
+constexpr std::size_t heights = 4;
 
 }  // namespace
 
@@ -105,7 +107,8 @@ bool FloorCells::are_linked(std::size_t a, std::size_t b) const {
 
 /// Joins neighbouring cells without a wall between them, and numbers the parts by their first cells.
 void FloorCells::join_cells() {
-    std::vector<std::array<std::uint8_t, 2>> links(size());  // to the next column and row
+    // per cell: whether it is joined to the next column, and to the next row
+    std::vector<std::array<std::uint8_t, 2>> links(size());
     parallel_for(size(), 64, [&](std::size_t i) {
         links[i][0] = i % columns_ + 1 < columns_ && are_linked(i, i + 1);
         links[i][1] = i + columns_ < size() && are_linked(i, i + columns_);

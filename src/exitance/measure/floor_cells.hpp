@@ -31,7 +31,8 @@ class FloorCells {
     const Floor& floor() const { return floor_; }
     const std::vector<Part>& parts() const { return parts_; }
     std::size_t size() const { return part_.size(); }
-    std::uint32_t part(std::size_t cell) const { return part_[cell]; }  ///< `none` outside the floor.
+    /// Part to which a cell belongs; `none` outside the floor.
+    std::uint32_t part(std::size_t cell) const { return part_[cell]; }
     Point centre(std::size_t cell) const;
 
     /// Number of the part that contains a point of the floor's plane, or `none`.
@@ -57,9 +58,10 @@ class FloorCells {
     Vec3 u_, v_;
     double width_ = 0;  ///< Width of a cell, metres.
     std::size_t columns_ = 0, rows_ = 0;
-    std::vector<double> free_;           ///< Height of the first hit above each cell, metres; `top` if nothing is hit.
-    std::vector<double> height_;         ///< Equal to free_; below furniture, that of a cell next to it.
-    std::vector<std::uint8_t> is_open_;  ///< True if nothing is above.
+    std::vector<double> free_;  ///< Height of the first hit above each cell, metres; `top` if nothing is hit.
+    /// Equal to free_, except below furniture, where it is the height of a neighbouring cell.
+    std::vector<double> height_;
+    std::vector<std::uint8_t> is_open_;    ///< True if nothing is above.
     std::vector<std::uint8_t> is_inside_;  ///< True if the back of a face is above.
     std::vector<std::uint32_t> part_;
     std::vector<Part> parts_;

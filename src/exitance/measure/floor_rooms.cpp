@@ -84,7 +84,7 @@ void FloorRooms::find_rooms(const Scene& scene) {
 /// Removes the insides of bodies, spaces that are too low and, if some rooms have a ceiling, those without.
 void FloorRooms::leave_out_roofs() {
     const auto is_inside = [&](const FloorRoom& r) { return storeys_[r.storey].parts()[r.part].is_inside_body; };
-    // In models whose faces are all turned, everything is inside.
+    // If all rooms are inside bodies, all faces of the model are turned: keep them.
     if (!std::all_of(rooms_.begin(), rooms_.end(), is_inside)) std::erase_if(rooms_, is_inside);
     const auto has_ceiling = [&](const FloorRoom& r) { return storeys_[r.storey].parts()[r.part].has_ceiling; };
     double tallest = 0;
@@ -124,7 +124,7 @@ void FloorRooms::leave_out_furniture() {
 /// Names a room by the group of its floor's faces, if nearly all of them are in one group and no other room's are.
 void FloorRooms::name_rooms(const Scene& scene) {
     constexpr double nearly_all = 0.9;    // derived from thresholds and mats, which may have groups of their own
-    constexpr std::size_t samples = 200;  // cells per room, at least half as many are looked at
+    constexpr std::size_t samples = 200;  // number of cells examined per room; at least half as many are examined
     std::map<std::string, std::size_t> uses;
     for (FloorRoom& room : rooms_) {
         const FloorCells& storey = storeys_[room.storey];

@@ -6,7 +6,7 @@ namespace exitance {
 
 /// A room as planes and observers need it: a part of a floor that walls enclose.
 struct FloorRoom {
-    std::string name;          ///< From the name of its floor's faces; empty: none.
+    std::string name;          ///< Name, from the name of its floor's faces; empty: none.
     double area = 0;           ///< Area of its floor, m^2.
     double height = 0;         ///< Free height, metres.
     MeasuringPlane rectangle;  ///< Bounding rectangle of its floor.

@@ -66,7 +66,7 @@ void add_flat(Builder& b, double z) {
     b.floor({0, 0, z}, {6.1, 4, z}, "kitchen_floor");
     b.floor({6.1, 0, z}, {10, 4, z}, "Hall floor");
     b.box({6, 0, z}, {6.2, 1, z + 2.7}, "wall"), b.box({6, 1.9, z}, {6.2, 4, z + 2.7}, "wall");
-    // The lintel is closed from below.
+    // The lintel above the door has a face at its bottom.
     b.box({6, 1, z + 2.1}, {6.2, 1.9, z + 2.7}, "wall");
     b.face({{6, 1, z + 2.1}, {6, 1.9, z + 2.1}, {6.2, 1.9, z + 2.1}, {6.2, 1, z + 2.1}}, "wall");
     b.box({1, 1, z}, {3, 2.5, z + 0.5}, "bed");
@@ -89,7 +89,7 @@ TEST_P(FloorRoomsOf, AFlatAreSeparatedByTheWallAboveTheDoor) {
     EXPECT_EQ(rooms.label(1), "room 2 (Hall)");
     // Cells are 0.1 m wide; the door's threshold belongs to either room.
     EXPECT_NEAR(rooms[0].area, 24 * scale * scale, 0.7 * scale * scale);
-    EXPECT_NEAR(rooms[1].area, 14 * scale * scale, 0.7 * scale * scale);  // without the cupboard
+    EXPECT_NEAR(rooms[1].area, 14 * scale * scale, 0.7 * scale * scale);  // area without the cupboard
     EXPECT_NEAR(rooms[0].height, 2.7 * scale, 1e-5 * scale);
     // The border keeps points away from the walls, exactly; the bed and the table are within the room.
     const double border = 0.5 * scale, little = 1e-3 * scale;

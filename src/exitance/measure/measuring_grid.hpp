@@ -31,17 +31,17 @@ const char* name_of(PlaneZone zone);
 struct GridLight {
     MeasuringPlane plane;
     Normal n;
-    int columns = 0, rows = 0;         ///< Along u and v.
+    int columns = 0, rows = 0;         ///< Numbers of points along u and v.
     double step_u = 0, step_v = 0;     ///< Metres.
-    std::vector<Point> points;         ///< Row by row, starting at the origin.
-    std::vector<Spectrum> irradiance;  ///< At every point, W/m^2.
+    std::vector<Point> points;         ///< Points, row by row, starting at the origin.
+    std::vector<Spectrum> irradiance;  ///< Irradiance at every point, W/m^2.
     /// For every point, true unless an object covers it; only such points count.
     std::vector<bool> is_open;
     std::vector<bool> counts;  ///< For every point, true if it belongs to the measured area. Empty: all do.
     /// True for cylindrical illuminance E_z, the mean over vertical planes of all directions.
     bool is_cylindrical = false;
     PlaneZone zone = PlaneZone::task;
-    std::string name;                 ///< Empty: no name.
+    std::string name;                 ///< Name of the plane; empty: none.
     std::optional<std::size_t> room;  ///< Index of the room that contains the plane; none: not in a room.
 };
 

@@ -13,7 +13,7 @@ class FloorRooms;
 /// Planes on which lighting standards require measurements: above the floors of a scene, or above named faces.
 struct PlaneRequest {
     std::string group;             ///< Name of the faces; empty: the floors.
-    std::optional<double> height;  ///< Height above them, metres; none: on the faces themselves.
+    std::optional<double> height;  ///< Height of the plane above the faces, metres; none: on the faces themselves.
     /// Width of the strip along the outline that does not count, metres; none: default_border.
     std::optional<double> border;
     double spacing = 0;  ///< See MeasuringPlane::spacing.

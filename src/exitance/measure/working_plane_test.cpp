@@ -84,7 +84,7 @@ TEST(WorkingPlane, NamedFacesAreMeasuredOnThemselves) {
     request.group = "table";
     const auto planes = planes_of(scene, request);
     ASSERT_TRUE(planes);
-    EXPECT_EQ(planes->front().points.size(), 25u);  // p = 0.2 m
+    EXPECT_EQ(planes->front().points.size(), 25u);  // spacing p = 0.2 m
     EXPECT_NEAR(planes->front().points[0].z, 0.8, 1e-12);
     request.group = "chair";
     const auto missing = planes_of(scene, request);
@@ -102,7 +102,7 @@ TEST(WorkingPlane, SurroundingsAreABandAroundTheTaskArea) {
     ASSERT_EQ(planes->size(), 2u);
     EXPECT_EQ(planes->back().name, "table, surroundings");
     const double cell = planes->back().step_u * planes->back().step_v;
-    EXPECT_NEAR(static_cast<double>(counted(planes->back())) * cell, 2 + pi / 4, 0.02);  // by cells of 0.02 m
+    EXPECT_NEAR(static_cast<double>(counted(planes->back())) * cell, 2 + pi / 4, 0.02);  // measured in cells of 0.02 m
     EXPECT_EQ(planes->back().zone, PlaneZone::surroundings);
 }
 

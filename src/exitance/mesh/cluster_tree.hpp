@@ -49,11 +49,11 @@ class ClusterTree {
 
     ClusterId root() const { return ClusterId(0); }
     std::size_t size() const { return nodes_.size(); }
-    IdRange<ClusterId> ids() const { return nodes_.ids(); }  ///< Parents before children.
+    IdRange<ClusterId> ids() const { return nodes_.ids(); }  ///< All clusters, parents before children.
     std::span<const Body> children(ClusterId c) const {
         return std::span(children_).subspan(nodes_[c].first, nodes_[c].count);
     }
-    const Point& centre(ClusterId c) const { return nodes_[c].centre; }  ///< Centroid of its area.
+    const Point& centre(ClusterId c) const { return nodes_[c].centre; }  ///< Centroid of the cluster's area.
     double radius(ClusterId c) const {
         return nodes_[c].radius;
     }  ///< Radius of a ball around the centre that contains it, metres.

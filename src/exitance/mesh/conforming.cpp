@@ -18,8 +18,8 @@ namespace {
 struct Polygon {
     ElementId leaf;
     std::vector<std::uint32_t> vertex;  ///< Indices of welded points.
-    std::vector<Vec2> uv;               ///< In the leaf's coordinates.
-    std::vector<bool> is_own;           ///< False for corners of other leaves.
+    std::vector<Vec2> uv;               ///< Vertices, in the leaf's coordinates.
+    std::vector<bool> is_own;           ///< Per vertex: false if it is a corner of another leaf.
     std::uint32_t first_slot = 0;       ///< Index of its first vertex among the vertices of all polygons.
 };
 
@@ -42,7 +42,7 @@ class PlaneNodes {
 
     struct Leaf {
         ElementId leaf;
-        Fan fan;  ///< Empty border: the leaf stays whole.
+        Fan fan;  ///< Fan of triangles; with an empty border the leaf stays whole.
         /// Node numbers within the plane: of the apex, then of the border; or of the leaf's corners.
         std::vector<std::uint32_t> node;
     };
@@ -197,7 +197,7 @@ void PlaneNodes::insert_hanging_vertices() {
     std::vector<Hanging> found;
     find_hanging(open, std::move(ends), found);
     find_hanging(inner_sides(open, found), on_jumps_, found);
-    // Last first, so that insertions do not move the remaining ones.
+    // In descending order, so that an insertion does not shift the vertices inserted later.
     std::sort(found.begin(), found.end(), [](const Hanging& a, const Hanging& b) {
         return std::tuple(a.polygon, a.slot, a.at, a.vertex) > std::tuple(b.polygon, b.slot, b.at, b.vertex);
     });
@@ -220,7 +220,8 @@ void PlaneNodes::insert_hanging_vertices() {
 void PlaneNodes::join_corners(std::span<const ContactLines::Line> jumps) {
     for (Polygon& p : polygons_) p.first_slot = slot_count_, slot_count_ += static_cast<std::uint32_t>(p.vertex.size());
     if (polygons_.empty()) return;
-    constexpr double jump_tolerance_factor = 1e3;  // cuts follow their line less accurately than rounding
+    // a factor above 1, since computed cut points are less accurate than rounding
+    constexpr double jump_tolerance_factor = 1e3;
     const Patch& patch = tree_.patch(polygons_[0].leaf);
     const OnJump jumps_at(jumps, patch.normal(), patch.origin, jump_tolerance_factor * tolerance_);
     const std::vector<Side> sides = sorted_sides();
@@ -323,7 +324,7 @@ void reserve(const std::vector<FoundLeaves>& found, double share, ElementTree& t
 /// Splits the leaves of one plane into their fans and assigns nodes, numbered after those of the previous planes.
 void add_plane(const FoundLeaves& f, ElementTree& tree, SharedNodes& out) {
     const std::uint32_t first = out.first_node.back();
-    std::uint32_t more = 0;  // nodes of slivers that could not be split after all
+    std::uint32_t more = 0;  // number of nodes of slivers that could not be split
     const auto add_leaf = [&](ElementId e, std::initializer_list<std::uint32_t> nodes) {
         out.first_corner.resize(tree.size());
         out.first_corner[e] = static_cast<std::uint32_t>(out.node_of.size());

@@ -11,7 +11,7 @@ namespace exitance {
 /// The nodes of a conforming mesh: points at which leaf corners meet and share one value. Corners at one point share a
 /// node if a path around the point connects them without crossing a line of discontinuity.
 struct SharedNodes {
-    /// Per leaf: index of its first corner in `node_of`. Unused for inner elements.
+    /// Per leaf: index of its first corner in `node_of`. Entries of inner elements are unused.
     Field<ElementId, std::uint32_t> first_corner;
     std::vector<std::uint32_t> node_of;     ///< Node of each corner. The nodes of a plane are contiguous,
     std::vector<std::uint32_t> first_node;  ///< starting here: one entry per plane, and one past the last.

@@ -54,12 +54,12 @@ class ContactCutter {
   private:
     struct Open {
         ElementId element;
-        double area;                               ///< Area before contacts split it, m^2.
+        double area;                               ///< Area of the element before it was split along contacts, m^2.
         std::size_t lines = ~std::size_t(0);       ///< Number of lines when it last decreased by a quarter or more.
         int in_vain = 0;                           ///< Number of bisections since that decrease.
         std::size_t of_parent = ~std::size_t(0);   ///< Number of lines of the parent, which was split by a line.
-        int unchanged = 0;                         ///< How often a part had no fewer lines than its parent.
-        std::shared_ptr<const Lines> around = {};  ///< Lines that may cross it, if known.
+        int unchanged = 0;                         ///< Number of ancestors that had no fewer lines than their parent.
+        std::shared_ptr<const Lines> around = {};  ///< Lines that may cross the element; null: unknown.
     };
 
     void cut(Open now) {
@@ -152,7 +152,7 @@ class FoundCuts {
         Cut way;
         CutLine line;  ///< For splits across one direction, the ratio replaces the offset.
     };
-    std::vector<std::uint32_t> count_;  ///< Per element: its number of splits.
+    std::vector<std::uint32_t> count_;  ///< Number of splits per element.
     std::vector<MadeCut> cuts_;
 };
 

@@ -56,13 +56,10 @@ struct Reach {
     double whole() const { return left + right; }
 };
 
-/// Removes lines that are not worth a split. Light below an edge changes within the edge's height; this is not a
-/// discontinuity for a slat a few heights wide, however long. A part cut off along a border must be more than a trace
-/// of the element, and the strips of a gap together a noticeable share of it.
-/// before_cuts  length of the element before contacts split it, relative to now
+/// Removes lines that change the light too little to justify a split.
 void leave_worthy(std::vector<Segment>& lines, std::span<const Point> outline, double before_cuts, const Normal& n,
                   double tolerance) {
-    constexpr double min_side_share = 0.01, min_depth_share = 0.1;  // shares of its width across the line
+    constexpr double min_side_share = 0.01, min_depth_share = 0.1;  // shares of the element's width across the line
     std::erase_if(lines, [&](const Segment& line) {
         if (line.height <= 10 * tolerance) return false;
         const Reach reach(outline, line, n);
@@ -129,7 +126,7 @@ std::optional<std::pair<Vec2, Vec2>> part_inside(const ElementTree& tree, Elemen
 
 /// True if a contact in a single point, which separates nothing, remains of a line.
 bool is_point(const std::pair<Vec2, Vec2>& line) {
-    constexpr double min_length = 1e-3;  // share of the element
+    constexpr double min_length = 1e-3;  // share of the element's size
     return !(length(line.second - line.first) > min_length);
 }
 

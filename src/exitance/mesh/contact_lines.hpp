@@ -16,7 +16,7 @@ namespace exitance {
 /// that, so elements are split along these lines.
 class ContactLines {
   public:
-    /// The scene must outlive it. O(n log n).
+    /// The scene must outlive this object. O(n log n).
     explicit ContactLines(const Scene& scene);
 
     /// A segment above a plane, with its largest height above the plane, metres.
@@ -28,8 +28,8 @@ class ContactLines {
     };
     /// Lines that may cross an element's domain, caused by faces of other regions: edges in its plane; edges at a small
     /// height above it, each with one more line on either side; intersections with faces; and in gaps, where light
-    /// falls off from the mouth, up to three lines parallel to the mouth. What counts as a small height or a gap
-    /// depends on the element's width across the line and on `area`.
+    /// falls off from the mouth, up to three lines parallel to the mouth. The limits for small heights and for gaps
+    /// depend on the element's width across the line and on `area`.
     /// area  of the element before contacts split it, m^2, so that its parts share its lines
     std::vector<Line> around(const ElementTree& tree, ElementId e, double area) const;
     /// Removes from `lines` those that do not meet the element's domain. Returns the parts of the others inside the
@@ -67,7 +67,7 @@ class ContactLines {
     const Scene* scene_;
     Bvh faces_, borders_, gaps_;
     std::vector<Edge> edges_;         ///< Border edges of regions, and edges of panes (region: none).
-    std::vector<GapLine> gap_lines_;  ///< Indexed by `gaps_`.
+    std::vector<GapLine> gap_lines_;  ///< Gap lines; `gaps_` contains indices into them.
     double tolerance_;                ///< Metres: points nearer to a plane than this touch it.
 };
 

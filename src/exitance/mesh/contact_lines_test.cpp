@@ -334,7 +334,7 @@ TEST(ContactLines, CuttingEndsAtAPointWhereManyFacesMeet) {
     d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
     d.groups = {"all"};
     d.faces = {{{0, 1, 2, 3}, 0, 0, 1}};
-    for (std::uint32_t k = 0; k < 40; ++k) {  // like the leaves of an open book
+    for (std::uint32_t k = 0; k < 40; ++k) {  // sheets that share an edge, like the leaves of an open book
         d.points.push_back({1.3 + std::cos(0.1 + 0.15 * k), 1.7 + std::sin(0.1 + 0.15 * k), 0});
         d.faces.push_back({{4, static_cast<std::uint32_t>(d.points.size()) - 1, 5}, 0, 0, 2});
     }

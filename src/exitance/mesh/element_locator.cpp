@@ -13,7 +13,7 @@ constexpr std::size_t max_searched_roots = 8;
 /// Index of the cell of a coordinate along an axis with `count` cells; coordinates outside are clamped.
 std::uint32_t cell_of(double x, double origin, double scale, std::uint32_t count) {
     const double i = (x - origin) * scale;
-    return i > 0 ? static_cast<std::uint32_t>(std::min(i, static_cast<double>(count - 1))) : 0;  // NaN goes to 0
+    return i > 0 ? static_cast<std::uint32_t>(std::min(i, static_cast<double>(count - 1))) : 0;  // also 0 for NaN
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ struct ElementLocator::Nearest {
             root = &r, uv = at, distance = 0;
             return;
         }
-        for (const Root& r : roots) {  // no root contains p, because of rounding: take the nearest
+        for (const Root& r : roots) {  // rounding: no root contains p, so take the nearest one
             const Vec2 at = r.coordinates(p), held = into_shape(at, r.shape);
             const double d = squared_length(r, at - held);
             if (d < distance) root = &r, uv = held, distance = d;

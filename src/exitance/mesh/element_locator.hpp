@@ -51,7 +51,7 @@ class ElementLocator {
     };
     /// Roots of a region per cell of a grid, over the two axes on which the region's plane projects best.
     struct Grid {
-        std::uint8_t s = 0, t = 1;  ///< The two axes.
+        std::uint8_t s = 0, t = 1;  ///< Indices of the coordinates (0: x, 1: y, 2: z) along the grid's axes.
         std::uint32_t columns = 1, rows = 1;
         double s0 = 0, t0 = 0, s_scale = 0, t_scale = 0;  ///< cell = floor((p - origin) scale)
         std::vector<std::uint32_t> first;                 ///< Per cell, and one past the last: first index in `roots`.

@@ -92,9 +92,10 @@ class ElementTree {
     ElementId split_fan(ElementId leaf, const Fan& fan);
 
     std::size_t size() const { return stored() + cuts_->fan_of.size(); }
-    IdRange<ElementId> ids() const { return {0, size()}; }  ///< Parents before children.
+    IdRange<ElementId> ids() const { return {0, size()}; }  ///< All elements, parents before children.
     const std::vector<ElementId>& roots() const { return content_->roots; }
-    IdRange<ElementId> children(ElementId e) const { return node(e).children; }  ///< Empty for a leaf.
+    /// Children of an element; empty for a leaf.
+    IdRange<ElementId> children(ElementId e) const { return node(e).children; }
     bool is_leaf(ElementId e) const { return node(e).children.empty(); }
     Cut way(ElementId e) const { return node(e).way; }  ///< How an element was split; none for a leaf.
     double ratio(ElementId e) const {
@@ -102,7 +103,7 @@ class ElementTree {
     }  ///< Position of the cut, for splits across one direction.
     ElementId parent(ElementId e) const {
         return is_stored(e) ? content_->parent[e] : fanned(e);
-    }  ///< None for a root.
+    }  ///< Parent of an element; none for a root.
     RegionId region(ElementId e) const { return content_->region[is_stored(e) ? e : fanned(e)]; }
     Patch patch(ElementId e) const { return is_stored(e) ? content_->patch[e] : fan_triangle(e); }
     double area(ElementId e) const {
@@ -110,7 +111,7 @@ class ElementTree {
     }  ///< Area of its domain, m^2.
     const CutLine& line(ElementId e) const {
         return content_->lines[node(e).line].line;
-    }  ///< Line along which it was split (way(e) is Cut::line).
+    }  ///< Line along which the element was split, if way(e) is Cut::line.
     /// The fan into which an element was split (way(e) is Cut::fan).
     FanView fan(ElementId e) const {
         const std::uint32_t i = node(e).line, first = cuts_->fans[i].first_place;
@@ -127,7 +128,7 @@ class ElementTree {
     }
     bool is_cell(ElementId e) const {
         return is_stored(e) && content_->cell[e] != none;
-    }  ///< True if its domain is smaller than its patch.
+    }  ///< True if the element's domain is smaller than its patch.
     /// The domain as a convex polygon in the element's coordinates, counter-clockwise.
     std::vector<Vec2> domain(ElementId e) const;
     /// The domain in space, metres.
@@ -138,7 +139,7 @@ class ElementTree {
     double reach(ElementId e, Vec2 uv) const;
     /// Maps two numbers in [0, 1) to a point of the domain, with uniform density.
     Vec2 uniform(ElementId e, double s, double t) const;
-    std::vector<ElementId> leaves() const;  ///< In the order of their ids.
+    std::vector<ElementId> leaves() const;  ///< Returns all leaves, in the order of their ids.
 
     /// Finds the leaf below `e` that contains the point (u, v) of `e`, and the coordinates there, clamped to the leaf.
     /// O(depth).
@@ -203,10 +204,10 @@ class ElementTree {
     /// stored as long as no other elements are added. In trees with many of them, such as those of continuous
     /// functions, each takes about 20 bytes instead of more than 100.
     struct Cuts {
-        Field<ElementId, Node> nodes;       ///< Per stored element.
-        std::vector<FanCut> fans;           ///< In the order of the splits.
-        std::vector<Vec2> places;           ///< Per fan: its apex, then its border.
-        std::vector<std::uint32_t> fan_of;  ///< Per unstored triangle: its fan.
+        Field<ElementId, Node> nodes;       ///< Data of stored elements.
+        std::vector<FanCut> fans;           ///< Fans in the order of their splits.
+        std::vector<Vec2> places;           ///< Per fan: its apex, followed by the corners of its border.
+        std::vector<std::uint32_t> fan_of;  ///< Per unstored triangle: the index of its fan.
     };
 
     std::size_t stored() const { return content_->patch.size(); }

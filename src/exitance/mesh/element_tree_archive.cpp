@@ -15,7 +15,7 @@ struct CutMade {
     Cut way = Cut::none;
     double ratio = 0.5;
     CutLine line;
-    std::uint32_t fan_size = 0;  ///< For fans: number of points of the border.
+    std::uint32_t fan_size = 0;  ///< Number of points of the border, if the element is split into a fan.
 };
 
 }  // namespace
@@ -23,7 +23,7 @@ struct CutMade {
 void archive(ArchiveWriter& a, const ElementTree& tree) {
     std::vector<Root> roots;
     std::vector<CutMade> cuts;
-    std::vector<Vec2> fans;  // per fan: apex, then border
+    std::vector<Vec2> fans;  // points of each fan: its apex, then its border
     for (ElementId e : tree.ids()) {
         const ElementId parent = tree.parent(e);
         if (parent.is_none()) {

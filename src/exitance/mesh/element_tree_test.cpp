@@ -108,7 +108,7 @@ TEST(ElementTree, TrianglesOfFansCanBeCut) {
     EXPECT_EQ(first.value, last.value + 1);
     EXPECT_EQ(tree.patch(first).origin, before.origin);
     EXPECT_EQ(tree.children(last).size(), 4u);
-    // They can also be split into fans.
+    // Cells can also be split into fans.
     ElementTree fans = well_cut_tree(Patch::Shape::parallelogram);
     const std::vector<Vec2> corners = fans.domain(last);
     const ElementId child = fans.split_fan(last, {fans.centre(last), {corners[0], corners[1], corners[2], corners[0]}});

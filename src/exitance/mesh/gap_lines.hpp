@@ -9,7 +9,7 @@ namespace exitance {
 
 /// A line between two strips of a surface on one side of a gap, parallel to the gap's mouth.
 struct GapLine {
-    Point a, b;       ///< In the plane of the region.
+    Point a, b;       ///< End points, in the plane of the region.
     double height;    ///< Distance between the sides of the gap, metres.
     double depth;     ///< How far all strips together extend into the gap, metres.
     RegionId region;  ///< Region of the surface.

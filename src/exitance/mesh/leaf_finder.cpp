@@ -98,7 +98,7 @@ std::uint32_t LeafFinder::deepest_around(std::span<const Node> nodes, std::uint3
 struct LeafFinder::Builder {
     const ElementTree& tree;
     const Field<ElementId, std::uint32_t>& number;
-    std::span<Leaf> leaves;  ///< All leaves of the tree; a block sets its own.
+    std::span<Leaf> leaves;  ///< All leaves of the tree; each parallel block fills its own part.
     std::vector<Node> nodes = {};
     std::vector<Leaf> fans = {};
     std::vector<Grid> grids = {};

@@ -45,7 +45,7 @@ std::optional<Patch> as_parallelogram(std::span<const Point> p) {
 std::vector<Patch> as_trapezoid(std::span<const Point> p, double tolerance) {
     for (std::size_t i = 0; i < 4; ++i) {
         const Point &s = p[i], &t = p[(i + 1) % 4], &u = p[(i + 2) % 4],
-                    &v = p[(i + 3) % 4];  // is s -> t the longer one?
+                    &v = p[(i + 3) % 4];  // s -> t must be the longer of the two parallel sides
         const Vec3 lower = t - s, upper = u - v;
         const double length = norm(lower);
         if (norm(upper) > length || norm(cross(lower, upper)) > tolerance * length || dot(lower, upper) <= 0) continue;
@@ -115,7 +115,7 @@ std::vector<Patch> triangles(std::span<const Loop> loops, std::span<const std::v
     for (const Loop& loop : loops) corners.insert(corners.end(), loop.begin(), loop.end());
     const auto all = delaunay_triangles(flat);
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::size_t, std::size_t>>
-        across;  // edge -> triangle, side
+        across;  // for each edge: the triangle and the side that have it
     std::vector<char> joined(all.size(), 0);
     std::vector<Patch> out;
     for (std::size_t t = 0; t < all.size(); ++t)

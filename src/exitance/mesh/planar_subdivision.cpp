@@ -200,7 +200,7 @@ class DelaunayRefinement {
             }
         given_ = count_;
         const double mean_edge = std::sqrt(2 * area_of(coarse) / static_cast<double>(coarse.corners.size()));
-        // Smaller distances give more triangles than better shapes are worth.
+        // At smaller distances, the number of triangles grows more than their shapes improve.
         constexpr double min_distance_share = 0.25;
         nearest_ = min_distance_share * mean_edge;
     }
@@ -259,7 +259,8 @@ class DelaunayRefinement {
 
     /// Returns whether the triangle has a small angle that is not between two labelled edges.
     bool is_sharp(Handle face) const {
-        constexpr double sine = 0.3535;  // of 20.7 degrees: the shortest edge over twice the circumradius
+        // sine of 20.7 degrees, the smallest angle: shortest edge over twice the circumradius
+        constexpr double sine = 0.3535;
         double length[3];
         for (int i = 0; i < 3; ++i) {
             const Vec2 d = place(face->vertex(Faces::ccw(i))) - place(face->vertex(Faces::cw(i)));

@@ -8,7 +8,7 @@
 namespace exitance {
 
 Field<RegionId, std::uint32_t> plane_of_regions(const Scene& scene) {
-    constexpr double same_direction = 1e-7, same_plane = 1e-7;  // the latter as a share of the scene's size
+    constexpr double same_direction = 1e-7, same_plane = 1e-7;  // the second one as a share of the scene's size
     std::vector<Point> normals;
     for (const Region& region : scene.regions()) normals.push_back(Point{} + region.plane.n);
     const std::vector<std::uint32_t> direction = weld(normals, same_direction);

@@ -11,7 +11,7 @@ namespace exitance {
 /// regions.
 Field<RegionId, std::uint32_t> plane_of_regions(const Scene& scene);
 
-/// Leaves per plane, in the order of their ids.
+/// Leaves of every plane, in the order of their ids.
 std::vector<std::vector<ElementId>> leaves_of_planes(const ElementTree& tree,
                                                      const Field<RegionId, std::uint32_t>& plane);
 

@@ -130,7 +130,8 @@ class ShortestCuts {
 /// Tiles a grid of any size. A grid too large for the table is first divided along the shortest line in its middle
 /// half.
 void tile(const CellGrid& g, std::vector<AxisRectangle>& out) {
-    constexpr std::size_t max_table_cells = 12;  // columns and rows; the table takes O(max_table_cells^5) time
+    // maximum numbers of columns and rows; the table takes O(max_table_cells^5) time
+    constexpr std::size_t max_table_cells = 12;
     const std::size_t m = g.columns(), n = g.rows();
     if (m <= max_table_cells && n <= max_table_cells) return ShortestCuts(g).rectangles(0, m, 0, n, out);
     const bool across = m >= n;

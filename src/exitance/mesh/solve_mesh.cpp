@@ -37,7 +37,7 @@ class Cutter {
   public:
     Cutter(ElementTree& tree, MeshSize size) : tree_(tree), size_(size) {}
 
-    /// `concave`: of the borders of the piece
+    /// `concave`: concave borders of the piece.
     void refine(ElementId e, const ConcaveBorders& concave) {
         std::array<bool, 4> touches{};
         for (std::size_t i = 0; i < concave.size(); ++i) {
@@ -142,7 +142,7 @@ double rise_at(const Scene& scene, SurfaceId s, const Point& p, const Plane& pla
     const Surface& surface = scene.surfaces()[s];
     const std::span<const Point> outline = scene.outline(s);
     if (std::abs(dot(surface.normal, p - outline[0])) > tolerance) return 0;
-    constexpr double rounding = 1e-6;  // of the normals of right angles
+    constexpr double rounding = 1e-6;  // tolerance for the rounding of normals at right angles
     const double rise = std::min(1.0, (1 + rounding) * (1 - dot(surface.normal, plane.n)));
     const bool in_front = std::any_of(outline.begin(), outline.end(),
                                       [&](const Point& q) { return plane.signed_distance(q) > 4 * tolerance; });

@@ -48,7 +48,7 @@ struct LeafNumbering {
     LeafNumbering() = default;
     explicit LeafNumbering(const ElementTree& tree);
 
-    std::vector<ElementId> leaves;           ///< In the order of their ids.
+    std::vector<ElementId> leaves;           ///< The leaves, in the order of their ids.
     Field<ElementId, std::uint32_t> number;  ///< Per leaf: its index in `leaves`.
 };
 

@@ -61,7 +61,8 @@ double narrowest_at_fold(double degrees, bool triangles) {
 }
 
 TEST(SolveMesh, StripsAlongAFoldFollowTheLightThatItsSidesExchange) {
-    // Beside a fold, light varies by 1 - cos(angle), and a strip of the width w leaves an error in proportion to w^1.2.
+    // Next to a fold, light varies by 1 - cos(angle), and a strip of the width w leaves an error in proportion to
+    // w^1.2.
     const double at_right_angle = 0.5 / 16;
     for (const bool triangles : {false, true}) {
         EXPECT_NEAR(narrowest_at_fold(90, triangles), at_right_angle, 1e-9);

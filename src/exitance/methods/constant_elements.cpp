@@ -28,7 +28,7 @@ void agree_with_direct_share(const MethodInput& input, ConservingTransport& F, s
     std::vector<Spectrum> M(n), correction(n), first(n);
     for (std::size_t i = 0; i < n; ++i)
         M[i] = input.stage.scene.material(light.tree.region(light.numbering.leaves[i])).exitance;
-    ConservingTransport of_emitted = F;  // emitted light gets a scaling of its own
+    ConservingTransport of_emitted = F;  // the emitted light is scaled separately to conserve its flux
     if (!light.kept.empty()) of_emitted.conserve(M);
     of_emitted.gather(M, correction);
     for (std::size_t i = 0; i < n; ++i) {

@@ -10,7 +10,7 @@ namespace exitance {
 /// that is empty. Writes b to `light.reflected`, the light that arrives before the last reflection to `light.indirect`,
 /// and the report and memory of F to `light`.
 ///
-/// If `light.kept` is given, F is scaled so that it loses no light except what escapes (`ConservingTransport`).
+/// If `light.kept` is given, F is scaled so that it loses no light except light that escapes (`ConservingTransport`).
 ///
 /// If surfaces emit all over the scene, direct light found by the rays of F replaces a share of the exact direct light
 /// (`light.direct_share`). The noise of F then affects only the variation of reflected plus emitted light.

@@ -138,7 +138,7 @@ TEST(DiffusingPanes, LightInADarkRoomAgreesWithPathTracing) {
     ways.push_back({"auto", {.error = 0.02}});
     for (auto [name, options] : ways) {
         SCOPED_TRACE(name);
-        if (name == "galerkin2") options.error = 0.1;  // every leaf is linked to every other
+        if (name == "galerkin2") options.error = 0.1;  // a coarse limit, since every leaf is linked to every other
         const Solution solution = solved(scene, options);
         EXPECT_TRUE(name != "auto" || solution.statistics.method == "matrix");
         const std::vector<Light> at = RadiosityFunction(solution).at(places);

@@ -15,7 +15,7 @@ struct LayeredLight {
     LightFormPointer form;
     double error = 0;  ///< Relative error of the sum, like DiscontinuityReport::error.
     bool interrupted = false;
-    std::map<std::string, double> figures = {};  ///< Sizes, by the names of their JSON keys.
+    std::map<std::string, double> figures = {};  ///< Numbers for the statistics, by their JSON keys.
 };
 
 /// Ways of discontinuity meshing beyond the engine's own.
@@ -23,7 +23,7 @@ struct DiscontinuityExtension {
     /// Sets the cutter and the blocker search that the options select.
     void (*choose)(const DiscontinuityChoice& choice, DiscontinuityOptions& options);
     LayeredLight (*make_layers)(const Stage& stage, const DiscontinuityOptions& options, const StopRequest& stop);
-    /// Sizes of the same light as a single mesh, likewise.
+    /// Numbers for the statistics of the same light as a single mesh, by their JSON keys.
     std::map<std::string, double> (*figures)(const SixNodeMesh& mesh);
 };
 

@@ -42,7 +42,8 @@ void solve_linear(const MethodInput& input, GlobalLight& light) {
 unsigned hemicube_cells(const MethodInput& input) {
     const double asked = input.options.hemicube_cells ? static_cast<double>(*input.options.hemicube_cells)
                                                       : 8 * std::sqrt(input.knobs.solve_rays.average);
-    return 2 * static_cast<unsigned>(std::clamp(std::ceil(asked / 2), 1.0, 512.0));  // derived from the memory of a row
+    // upper limit derived from the memory of a row
+    return 2 * static_cast<unsigned>(std::clamp(std::ceil(asked / 2), 1.0, 512.0));
 }
 
 HierarchyBasis galerkin_basis(BasisKind basis) {

@@ -33,7 +33,7 @@ struct MethodInput {
     void end_round(const Light& light) const {
         if (snapshots) snapshots->after_round(light);
     }
-    /// Likewise after a shot. `shots`: number of shots so far.
+    /// Like end_round(), after a shot. `shots`: number of shots so far.
     template <class Light>
     void end_shot(std::size_t shots, const Light& light) const {
         if (snapshots) snapshots->after_shot(shots, light);
@@ -58,13 +58,14 @@ using ForecastMethod = MethodForecast (*)(const Stage& stage, const SolveOptions
 struct MethodEntry {
     Method id;
     SolveMethod solve;
-    const char* basis;  ///< Default basis of its elements.
+    const char* basis;  ///< Default basis of the method's elements.
     /// Cost by a formula of the method's own; null: the engine's, by elements and links.
     ForecastMethod forecast = nullptr;
     /// In a form other than `standard`, the method makes its own mesh and its own light of emitters, and its light is
     /// delivered as it is, or gathered once if that is requested.
     Form form = Form::standard;
-    bool has_estimate = true;  ///< True if the error of its light is estimated, and further attempts may follow.
+    /// True if the error of the method's light is estimated, so that further attempts may follow.
+    bool has_estimate = true;
 };
 
 }  // namespace exitance

@@ -27,7 +27,8 @@ double steepest_step(const ElementTree& tree, const ElementLocator& locator, Ele
     for (int i = 0; i < patch.corner_count(); ++i) {
         const Point middle = 0.5 * (patch.corner(i) + patch.corner((i + 1) % patch.corner_count()));
         const Point across =
-            centre + 1.25 * (middle - centre);  // derived from neighbours of half the size: a point inside any of them
+            // derived from neighbours of half the size: the point is inside any of them
+            centre + 1.25 * (middle - centre);
         steepest = std::max(steepest, std::abs(own - light(locator.find(tree.region(leaf), across).element)));
     }
     return steepest;

@@ -67,7 +67,7 @@ SolveReport ShootingSetup::run() {
                                   .progress = &input_.progress,
                                   .shot = shot};
     const SolveReport report = shoot(problem, options, unshot, irradiance);
-    // A patch has sent its reflected (and emitted) light minus its unshot light.
+    // The light that a patch has sent is its reflected (and emitted) light minus its unshot light.
     for (std::size_t p = 0; p < patches.size(); ++p) sent[p] = Spectrum();
     for (std::size_t i = 0; i < irradiance.size(); ++i)
         sent[patch_of[i]] += (area[i] / patch_area[patch_of[i]]) * (reflectance[i] * (direct[i] + irradiance[i]));
@@ -110,7 +110,7 @@ void ShootingSetup::split(const std::vector<ElementId>& leaves) {
             }
             const ElementId parent = tree.parent(e);
             patch_of[i] = patch_by_element[parent];
-            if (input_.stop.requested()) {  // stopped within a sweep: the other leaves keep their parents' light
+            if (input_.stop.requested()) {  // after a stop within a sweep, the other leaves keep their parents' light
                 irradiance[i] = old_irradiance[parent], direct[i] = old_direct[parent];
                 continue;
             }

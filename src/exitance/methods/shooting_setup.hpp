@@ -34,9 +34,9 @@ class ShootingSetup {
     ElementTree tree;
     std::vector<ElementId> patches;      ///< The leaves of the tree as given.
     std::vector<double> patch_area;      ///< m^2
-    std::vector<Spectrum> unshot, sent;  ///< Per patch, W/m^2: still to be shot, and shot so far.
+    std::vector<Spectrum> unshot, sent;  ///< Light still to be shot, and light shot so far, per patch, W/m^2.
 
-    /// Per present leaf:
+    /// One entry per leaf of the current mesh, in all arrays below.
     LeafNumbering numbering;
     std::vector<std::uint32_t> patch_of;
     std::vector<Spectrum> reflectance, direct, irradiance;

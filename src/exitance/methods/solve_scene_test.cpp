@@ -279,7 +279,8 @@ TEST(SolveScene, WarnsIfAllLightFallsOnBacks) {
     d.groups = {"all"};
     d.materials = {{"grey", Spectrum(0.5), {}}, {"light", {}, Spectrum(1)}};
     d.points = {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}, {0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 0, 1}};
-    d.faces = {{.corners = {0, 1, 2, 3}, .material = 0}, {.corners = {4, 5, 6, 7}, .material = 1}};  // both face down
+    // both faces point down, so no light reaches a front
+    d.faces = {{.corners = {0, 1, 2, 3}, .material = 0}, {.corners = {4, 5, 6, 7}, .material = 1}};
     const CheckedScene scene = make_scene(d);
     ASSERT_TRUE(scene.scene);
     EXPECT_EQ(solved(*scene.scene, {.error = 0.05}).statistics.warnings,
@@ -301,7 +302,7 @@ TEST(SolveScene, AnInterruptedSolveStillHasAResult) {
     ASSERT_TRUE(solution);
     EXPECT_FALSE(solution->statistics.converged);
     EXPECT_EQ(solution->statistics.stopped_by, "interrupt");
-    EXPECT_FALSE(solution->statistics.relative_error_estimate);  // unknown, not 0
+    EXPECT_FALSE(solution->statistics.relative_error_estimate);  // the error is unknown, not 0
     EXPECT_FALSE(solution->statistics.converged);
     for (const auto& value : solution->interpolant.values)
         for (float v : value) EXPECT_TRUE(std::isfinite(v));

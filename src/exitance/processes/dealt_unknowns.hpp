@@ -40,7 +40,7 @@ class DealtUnknowns {
     bool is_own(std::size_t unknown) const { return owner(unknown) == process_; }
     /// Index of an unknown among the unknowns of its owner.
     std::size_t place(std::size_t unknown) const { return unknown / block_ / processes_ * block_ + unknown % block_; }
-    /// The unknown at index `place` of this process's own ones.
+    /// Returns the unknown with index `place` among this process's own unknowns.
     std::size_t unknown(std::size_t place) const {
         return (place / block_ * processes_ + process_) * block_ + place % block_;
     }

@@ -48,8 +48,8 @@ class StopTogether {
     StopTogether& operator=(const StopTogether&) = delete;
 };
 
-/// True if this process or all processes are requested to stop. For long bodies of shared loops, which run longer than
-/// a stop may take; elsewhere processes could disagree. `agreed` as in StopTogether.
+/// Returns whether this process or all processes are requested to stop. Use it only inside long bodies of shared loops,
+/// which would delay a stop too much: elsewhere, processes could disagree. `agreed` as in StopTogether.
 bool stops_within_loop(const StopRequest& agreed);
 
 /// Seconds until the deadline, by the clock of the first process; `agreed` as in StopTogether. Collective.
@@ -170,7 +170,7 @@ template <class Value>
 void exchange_values(std::size_t count, std::size_t grain, const Value& value, const char* what) {
     if (processes() == 1) return;
     detail::meet(count, what);
-    constexpr std::size_t most_bytes = std::size_t(32) << 20;  // in one round, of all processes together
+    constexpr std::size_t most_bytes = std::size_t(32) << 20;  // maximum per round, summed over all processes
     const std::size_t blocks = (count + grain - 1) / grain;
     for (std::size_t block = 0, end = 0; block < blocks; block = end) {
         std::vector<std::size_t> first(processes() + 1);

@@ -32,7 +32,7 @@ class FetchedValues {
     std::vector<Spectrum> with_fetched(std::span<const Spectrum> own) const;
     /// Number of own and fetched values.
     std::size_t size() const { return dealt_.own_count() + fetched_.size(); }
-    /// The unknown whose value is at index `place` of with_fetched().
+    /// Returns the unknown whose value is at index `place` of the result of with_fetched().
     std::uint32_t unknown_at(std::size_t place) const {
         const std::size_t own = dealt_.own_count();
         return place < own ? static_cast<std::uint32_t>(dealt_.unknown(place)) : fetched_[place - own];
@@ -44,7 +44,7 @@ class FetchedValues {
   private:
     DealtUnknowns dealt_{0};
     std::vector<std::uint32_t> fetched_;  ///< Fetched unknowns, ascending.
-    std::size_t messages_ = 0;            ///< Messages that deliver them.
+    std::size_t messages_ = 0;            ///< Number of messages that deliver the fetched values.
     /// Messages and fetched unknowns if there were twice as many processes, for both halves together.
     std::size_t messages_of_twice_ = 0, fetched_of_twice_ = 0;
     std::shared_ptr<const ValueScatter> scatter_;

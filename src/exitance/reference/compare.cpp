@@ -12,7 +12,7 @@ namespace {
 /// Sums over points and bands, with weight w: the reflectance or 1.
 struct Sums {
     double squares = 0;      ///< (w (E - E_ref))^2
-    double differences = 0;  ///< w (E - E_ref)
+    double differences = 0;  ///< Sum of w (E - E_ref), W/m^2.
     double noise = 0;        ///< (w se)^2
     double level = 0;        ///< w E_ref
 

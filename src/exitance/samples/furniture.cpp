@@ -5,7 +5,7 @@ namespace {
 
 using Faces = PolygonKit::Faces;
 constexpr Faces apron_x{true, false, 0b0101};  // runs along x: bottom, front and back
-constexpr Faces apron_y{true, false, 0b1010};  // runs along y: bottom and both sides
+constexpr Faces apron_y{true, false, 0b1010};  // board along y: its bottom and both sides
 constexpr Faces board_x{true, true, 0b0101};
 constexpr Faces board_y{true, true, 0b1010};
 constexpr double signs[2] = {-1, 1};

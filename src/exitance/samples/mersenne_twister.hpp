@@ -11,8 +11,8 @@ class MersenneTwister {
   public:
     explicit MersenneTwister(std::uint64_t seed);
     std::uint32_t bits();
-    double uniform(double low, double high);   ///< 53 bits, in [low, high).
-    std::uint32_t below(std::uint32_t count);  ///< 0 to count - 1, by rejection.
+    double uniform(double low, double high);   ///< Random number of 53 bits, uniform in [low, high).
+    std::uint32_t below(std::uint32_t count);  ///< Random integer from 0 to count - 1, by rejection.
 
   private:
     void seed_with(std::uint32_t seed);

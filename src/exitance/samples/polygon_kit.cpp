@@ -36,7 +36,7 @@ void PolygonKit::material(const std::string& name, const Colour& reflectance, co
 }
 
 std::uint32_t PolygonKit::point(Point p) {
-    p += Point{0, 0, 0};  // -0 becomes 0
+    p += Point{0, 0, 0};  // turns -0 into 0
     const std::uint64_t key =
         hash(std::bit_cast<std::uint64_t>(p.x), std::bit_cast<std::uint64_t>(p.y), std::bit_cast<std::uint64_t>(p.z));
     const auto [first, last] = points_.equal_range(key);

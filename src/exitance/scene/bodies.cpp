@@ -66,7 +66,7 @@ SceneBodies bodies_of(const Scene& scene, DisjointSets& sets) {
     SceneBodies out;
     out.body.resize(scene.surfaces().size(), 0);
     for (SurfaceId s : scene.surfaces().ids()) {
-        const std::uint32_t root = sets.root(s.value);  // the smallest member, which comes first
+        const std::uint32_t root = sets.root(s.value);  // the smallest member is the root and comes first
         if (root == s.value) {
             out.body[s] = static_cast<std::uint32_t>(out.all.size());
             out.all.push_back({.first = s});
@@ -96,12 +96,12 @@ class Sides {
             if (tensor_[i][i] > tensor_[largest][largest]) largest = i;
         Vec3 v{};
         v[largest] = 1;
-        constexpr int iterations = 60;  // each reduces the other directions to half or less, given by `min_share`
+        constexpr int iterations = 60;  // each iteration at least halves the other directions, given by `min_share`
         for (int i = 0; i < iterations; ++i) v = normalized(times(v));
         axis_ = v;
     }
-    /// True if the body is a sheet, a plate or a row of parallel ones: two thirds of its area, twice as much as all the
-    /// rest, face one of two opposite directions, and the two sides face away from each other.
+    /// True if the body is a sheet, a plate or a row of parallel ones: at least two thirds of its area face one of two
+    /// opposite directions, and these two sides face away from each other.
     bool is_flat(double size) const {
         constexpr double min_share = 2.0 / 3, rounding = 1e-9;
         const double outwards = flux_ - dot(sum_, centre_ / area_);  // three times the volume of a closed body
@@ -141,7 +141,7 @@ DisjointSets separate_sides(const Scene& scene, const SceneBodies& joined) {
     DisjointSets out(scene.surfaces().size());
     std::vector<std::array<SurfaceId, 2>> first(joined.all.size(), {SurfaceId(), SurfaceId()});
     for (SurfaceId s : scene.surfaces().ids()) {
-        constexpr double rounding = 1e-9;  // of areas that are equal
+        constexpr double rounding = 1e-9;  // relative difference of areas that count as equal
         const std::uint32_t b = joined.body[s];
         int side = 1;
         if (sides[b].is_flat(scene.size())) {

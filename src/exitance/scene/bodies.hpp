@@ -9,15 +9,15 @@ namespace exitance {
 
 /// The norm of errors by part: the error of a body may be this multiple of the error requested for the whole, and is
 /// relative to the body's light, but at least to this share of its room's.
-constexpr double max_body_errors = 3, least_body_light = 0.1;  // given by that norm
+constexpr double max_body_errors = 3, least_body_light = 0.1;  // given by the norm of errors by part
 
 /// A part of a scene for which an error is reported: faces that are joined by edges or belong to one named object. The
 /// two sides of a sheet or of a plate are two bodies, since their light has nothing in common.
 struct SceneBody {
-    std::size_t surfaces = 0;  ///< Number of its faces.
+    std::size_t surfaces = 0;  ///< Number of the body's faces.
     double area = 0;           ///< Area in m^2.
-    Point centre = {};         ///< Mean of its faces' centroids, weighted by area, metres.
-    SurfaceId first = {};      ///< Its first face.
+    Point centre = {};         ///< Mean of the centroids of the body's faces, weighted by area, metres.
+    SurfaceId first = {};      ///< The first face of the body.
 };
 
 struct SceneBodies {

@@ -104,7 +104,7 @@ TEST(Bodies, AreTheSidesOfPlatesAndSheets) {
     for (const double scale : {1e-3, 1.0, 1e3}) {
         const SceneBodies plate = bodies_of_box(scale * Vec3{4, 4, 0.1});
         ASSERT_EQ(plate.all.size(), 2u);
-        EXPECT_NEAR(plate.all[0].area, scale * scale * 17.6, scale * scale * 1e-6);  // with the rim
+        EXPECT_NEAR(plate.all[0].area, scale * scale * 17.6, scale * scale * 1e-6);  // area with the rim of the plate
         EXPECT_NEAR(plate.all[1].area, scale * scale * 16, scale * scale * 1e-6);
         EXPECT_EQ(plate.all[1].surfaces, 1u);
         const SceneBodies sheet = bodies_of_box(scale * Vec3{4, 4, 0}, false, false);

@@ -34,8 +34,8 @@ struct BorderedFace {
     /// Its border, one loop per part; an edge common to two parts has no effect.
     std::vector<std::vector<Point>> loops;
     std::vector<Triangle> triangles;
-    Normal n;  ///< Towards the front.
-    /// Indices of its edges, and its direction along each (1 or -1).
+    Normal n;  ///< Unit normal, towards the front.
+    /// Indices of the face's edges, and the face's direction along each (1 or -1).
     std::vector<std::pair<std::uint32_t, int>> edges = {};
 };
 
@@ -126,7 +126,7 @@ class Borders {
 
   private:
     /// Faces joined by edges that exactly two faces share have the same number in `of_face`. `are_apart` is true for an
-    /// edge at which every such body has two faces, and there are several: each body is closed there by itself.
+    /// edge at which every such body has two faces, and there are several: each of these bodies is closed there.
     struct Bodies {
         std::vector<std::uint32_t> of_face;
         std::vector<bool> are_apart;
@@ -193,7 +193,8 @@ class Borders {
         const Vec3 axis = cross(from, up);
         constexpr double all_round = 2 * pi;
         FaceSide next{side.face, !side.is_front};
-        double nearest = all_round + 2 * one_direction;  // the other side of the same face
+        // if no other face is found, the next side is the other side of this face
+        double nearest = all_round + 2 * one_direction;
         for (const auto& [f, s] : users_[e]) {
             if (f == side.face && s == sense) continue;
             if (bodies && bodies->are_apart[e] && bodies->of_face[f] != bodies->of_face[side.face]) continue;
@@ -218,11 +219,11 @@ class Borders {
     std::vector<BorderedFace> faces_;
     double tolerance_;
     std::vector<Point> at_;
-    /// For each corner, the corner that represents its position; and the representatives.
+    /// Per corner: the corner that represents its position. `places_` lists these representatives.
     std::vector<std::uint32_t> place_of_, places_;
     Bvh tree_;
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edges_;
-    std::vector<Vec3> along_;  ///< Unit vector along an edge, from its end with the lower index.
+    std::vector<Vec3> along_;  ///< Per edge: unit vector along it, from the end with the lower index.
     std::vector<std::vector<std::pair<std::uint32_t, int>>> users_;
 };
 

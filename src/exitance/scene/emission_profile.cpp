@@ -47,7 +47,7 @@ bool goes_round(Angle kind) {
 /// Position of an angle between two entries of an axis; `inside` is false outside of the table's range.
 struct Place {
     std::size_t first = 0;
-    double t = 0;  ///< Interpolation weight of the entry after it.
+    double t = 0;  ///< Interpolation weight of the entry after `first`.
     bool inside = true;
 };
 

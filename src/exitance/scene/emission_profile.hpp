@@ -15,14 +15,14 @@ namespace exitance {
 struct EmissionProfile {
     /// The angle that an axis of the table measures, in degrees, for the direction d in which light leaves the lamp.
     enum class Angle : std::uint8_t {
-        theta,         ///< From straight down, 0 to 180.
-        phi,           ///< About the vertical, from +x towards +y, 0 to 360;
-        phi2,          ///< folded to 0 to 180: symmetric in y;
-        phi4,          ///< folded to 0 to 90: symmetric in x and y.
-        b_vertical,    ///< Type B photometry: towards +x, -180 to 180;
-        b_vertical2,   ///< its absolute value;
-        b_horizontal,  ///< Type B photometry: horizontal angle towards -y, degrees;
-        b_horizontal2  ///< its absolute value.
+        theta,         ///< Angle from straight down, 0 to 180 degrees.
+        phi,           ///< Angle about the vertical, from +x towards +y, 0 to 360 degrees.
+        phi2,          ///< Like `phi`, folded to 0 to 180 degrees: symmetric in y.
+        phi4,          ///< Like `phi`, folded to 0 to 90 degrees: symmetric in x and y.
+        b_vertical,    ///< Type B photometry: vertical angle towards +x, -180 to 180 degrees.
+        b_vertical2,   ///< Absolute value of `b_vertical`.
+        b_horizontal,  ///< Type B photometry: horizontal angle towards -y, degrees.
+        b_horizontal2  ///< Absolute value of `b_horizontal`.
     };
     static constexpr int angle_kinds = 8;
 
@@ -41,7 +41,7 @@ struct EmissionProfile {
         double offset = 0;             ///< Added to the angle, degrees.
         std::vector<double> at = {0};  ///< Angles of the table's entries: ascending, degrees.
     };
-    std::array<Axis, 2> axes;    ///< An axis with one entry: the value does not depend on its angle.
+    std::array<Axis, 2> axes;    ///< The table's axes. If an axis has one entry, the values do not depend on its angle.
     std::vector<double> values;  ///< W/(m^2 sr) or W/sr, not negative; the second angle varies fastest.
     Body body = Body::none;
     Vec3 size{1, 1, 1};
@@ -63,8 +63,8 @@ using ProfileId = Id<struct ProfileTag>;
 
 /// How a face emits by a profile: the lamp's frame in world coordinates, and the normalization.
 struct DirectedEmission {
-    ProfileId profile;                        ///< None: the face is diffuse.
-    Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  ///< The lamp's axes: orthonormal.
+    ProfileId profile;                        ///< The emission profile; none: the face emits diffusely.
+    Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  ///< Orthonormal axes of the lamp.
     double scale = 1;                         ///< pi over the profile's flux from the face's front.
 
     Vec3 in_lamp(const Vec3& w) const { return {dot(x, w), dot(y, w), dot(z, w)}; }
@@ -87,13 +87,13 @@ bool shows_picture(const SkyWindow& window);
 class RelativeRadiance {
   public:
     RelativeRadiance() = default;  ///< Diffuse.
-    /// `profile` and `emission` must outlive it.
+    /// `profile` and `emission` must outlive this object.
     RelativeRadiance(const EmissionProfile& profile, const DirectedEmission& emission, const Normal& n)
         : profile_(&profile), emission_(&emission), n_(n) {}
-    /// For a distant face of the sky, which must outlive it. `smooth_width` is that of this face.
+    /// For a distant face of the sky. `sky` must outlive this object; `smooth_width` is a property of the face.
     RelativeRadiance(const SkyModel& sky, double smooth_width, const Normal& n)
         : sky_(&sky), sky_width_(smooth_width), n_(n) {}
-    /// For a window, which must outlive it.
+    /// For a window, which must outlive this object.
     RelativeRadiance(const SkyWindow& window, const Normal& n) : window_(&window), n_(n) {}
 
     bool is_directed() const { return profile_ != nullptr || sky_ != nullptr || window_ != nullptr; }

@@ -140,7 +140,7 @@ bool any_face_each_other(const std::vector<Pane>& windows, double slack) {
     constexpr std::size_t too_many = 5000;
     Box box;
     for (const Pane& window : windows) box.add(box_of(window.corners));
-    std::vector<const Pane*> inner;  // most facades are on the box itself
+    std::vector<const Pane*> inner;  // panes inside the box, since most facades are on the box itself
     for (const Pane& window : windows) {
         const Point farthest{window.n.x > 0 ? box.lo.x : box.hi.x, window.n.y > 0 ? box.lo.y : box.hi.y,
                              window.n.z > 0 ? box.lo.z : box.hi.z};
@@ -155,7 +155,8 @@ bool any_face_each_other(const std::vector<Pane>& windows, double slack) {
 
 /// True if the hull winds about the whole front side of a region.
 bool winds_about(const Scene& scene, RegionId r, const Hull& hull, double slack) {
-    constexpr double inset = 1e-3;  // relative position between a triangle's corner and its centre
+    // position of the tested points, relative to the distance between a corner and the centre
+    constexpr double inset = 1e-3;
     const Normal& n = scene.regions()[r].plane.n;
     for (const Triangle& t : triangles_of(scene, r)) {
         if (hull.crosses(t, slack)) return false;

@@ -140,7 +140,7 @@ TEST(Enclosure, RoomsMayShareAWallOfOneFaceWithTwoSides) {
     Room rooms;
     const std::vector<SceneDescription::Face> faces = rooms.d.faces;
     for (std::size_t i = 0; i < faces.size(); ++i) {
-        if (i == 3) continue;  // the wall at x = 0, which is replaced by the other room's wall
+        if (i == 3) continue;  // omit the wall at x = 0: the other room's wall replaces it
         std::vector<Point> corners;
         for (const std::uint32_t c : faces[i].corners) corners.push_back(rooms.d.points[c] + Vec3{4, 0, 0});
         rooms.face(corners);
@@ -232,7 +232,7 @@ TEST(Enclosure, TheSkyThroughItsWindowAgreesWithThePartsOfTheSky) {
             for (std::size_t b = 0; b < bands; ++b) {
                 worst = std::max(worst, std::abs(through[b] - sky[b]));
                 sum += sky[b], ++count;
-                // Both have an error of at most 1e-3.
+                // Both values have an error of at most 1e-3.
                 EXPECT_NEAR(through[b], sky[b], 2e-3 * sky[b] + 1e-4) << own.value << " " << i << " " << b;
             }
         }

@@ -16,7 +16,7 @@ constexpr double position_tolerance = 1e-6;  ///< Relative to the scene's size: 
 /// A connected part of space, with the face sides that bound it.
 struct Space {
     std::vector<FaceSide> walls;        ///< Sides of faces that have this space on one side only.
-    std::vector<std::uint32_t> sheets;  ///< Faces that have this space on both sides.
+    std::vector<std::uint32_t> sheets;  ///< Faces with this space on both sides.
     double volume = 0;                  ///< m^3; negative if the space is outside of the walls.
     Box box;
     bool is_sure = true;
@@ -203,7 +203,7 @@ std::optional<std::size_t> BodyFinder::space_around(std::size_t space) {
     return std::nullopt;
 }
 
-/// A point just before the middle of an emitting face, as it is turned by now.
+/// Returns a point just in front of the middle of an emitting face, in its current orientation.
 Point BodyFinder::place_of_light(std::uint32_t f) const {
     const Vec3 up = turned_[f] ? -Vec3(in_.normals[f]) : Vec3(in_.normals[f]);
     return centroid(in_.outlines[f]) + 10 * position_tolerance * in_.size * up;
@@ -264,8 +264,9 @@ bool BodyFinder::is_inward_body(std::size_t k) {
     });
     if (!is_one || !around.is_sure) return false;
     constexpr double majority = 0.5;
-    if (around.is_cavity()) return share_of_fronts(outside) > majority;  // its walls touch the walls of a room
-    if (!(around.volume <= -majority * space.volume)) return false;      // two sides of a thin wall, or an open model
+    // a cavity next to a room: its walls touch those of the room
+    if (around.is_cavity()) return share_of_fronts(outside) > majority;
+    if (!(around.volume <= -majority * space.volume)) return false;  // two sides of a thin wall, or an open model
     if (const auto room = space_around(k)) return share_of_fronts(*room) > majority;
     return share_of_fronts(outside) == 0 && has_light_outside() && !holds_light(k) && !holds_faces(k);
 }

@@ -28,7 +28,7 @@ struct BodyFaces {
 
 /// A closed body whose faces have the wrong orientation.
 struct InsideOut {
-    std::vector<std::uint32_t> faces;  ///< Ascending.
+    std::vector<std::uint32_t> faces;  ///< Numbers of its faces, ascending.
     /// True: a room whose fronts face outwards, away from its light. False: an object whose fronts face inwards.
     bool is_room = false;
 };

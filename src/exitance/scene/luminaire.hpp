@@ -19,7 +19,7 @@ struct IntensityCurves {
 
 /// Facts of a photometric file, for schedules of luminaires. The light itself is in materials and emission profiles.
 struct LuminaireType {
-    std::string name;  ///< Manufacturer and product by the file; without them the name of the file.
+    std::string name;  ///< Manufacturer and product as given in the file; otherwise the name of the file.
     std::string file;  ///< Name of the file, without folders.
     double flux = 0;   ///< Flux of the luminaire, lm.
     double watts = 0;  ///< Connected power, W; 0: unknown.
@@ -28,11 +28,11 @@ struct LuminaireType {
 
 /// One luminaire of a scene.
 struct InstalledLuminaire {
-    std::uint32_t type = 0;   ///< Row of its type.
-    std::uint32_t group = 0;  ///< Row of the group of its faces.
-    Point position;           ///< Centre of its opening, metres.
+    std::uint32_t type = 0;   ///< Index of the luminaire's type.
+    std::uint32_t group = 0;  ///< Index of the group of its faces.
+    Point position;           ///< Centre of the luminaire's opening, metres.
     double flux = 0;          ///< Flux of the new luminaire at full output, lm.
-    double maintenance = 1;   ///< Maintenance factor that its light already contains.
+    double maintenance = 1;   ///< Maintenance factor by which its light has been reduced already.
 };
 
 }  // namespace exitance

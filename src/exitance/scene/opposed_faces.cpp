@@ -11,7 +11,7 @@ namespace {
 struct Entry {
     std::uint64_t key;
     std::uint32_t face;
-    bool is_turned;  ///< The cell is that of the plane seen from its back.
+    bool is_turned;  ///< True if the cell contains the plane as seen from its back.
     auto operator<=>(const Entry&) const = default;
 };
 

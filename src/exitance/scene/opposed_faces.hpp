@@ -7,14 +7,14 @@ namespace exitance {
 
 /// Finds the visible face where faces of one plane have both orientations, like the two sides of a sheet with different
 /// outlines. A ray that hits such a plane must hit the face whose front it meets, whichever of them the search in
-/// single precision returns. The scene must outlive it. O(faces) to build.
+/// single precision returns. The scene must outlive this object. O(faces) to build.
 class OpposedFaces {
   public:
     /// other_side  as returned by other_sides_of_surfaces(): planes in which all faces have another side are omitted
     /// tolerance   metres; planes at a smaller distance are equal
     OpposedFaces(const Scene& scene, const Field<SurfaceId, SurfaceId>& other_side, double tolerance);
 
-    /// True if the face is one of those.
+    /// True if the face is one of the opposed faces.
     bool has(SurfaceId s) const { return is_opposed_.size() > 0 && is_opposed_[s] != 0; }
 
     /// Returns the face whose plane and outline contain `at` (metres), within the tolerance, and whose front a ray
@@ -26,7 +26,7 @@ class OpposedFaces {
     const Scene* scene_;
     double tolerance_;
     Field<SurfaceId, char> is_opposed_;  ///< 1 or 0; empty if no face is.
-    std::vector<SurfaceId> faces_;       ///< The faces in the tree.
+    std::vector<SurfaceId> faces_;       ///< Faces in the order of the tree's items.
     Bvh tree_;
 };
 

@@ -32,7 +32,7 @@ struct Loop {
 std::vector<Loop> loops_of(std::span<const std::uint32_t> outline) {
     std::vector<Loop> loops;
     std::vector<std::size_t> open;  // positions in the outline that are not yet part of a loop
-    std::unordered_map<std::uint32_t, std::size_t> place_of;  // position of a point among these
+    std::unordered_map<std::uint32_t, std::size_t> place_of;  // position of each point in `open`
     const auto close = [&](std::size_t from, std::size_t end) {
         Loop loop{open[from], end, {}};
         for (std::size_t k = from; k < open.size(); ++k) loop.corners.push_back(outline[open[k]]);
@@ -69,7 +69,7 @@ std::size_t turn_holes(std::span<const Point> points, const Normal& n, std::vect
                 std::max_element(outline.begin(), outline.end(),
                                  [&](auto a, auto b) { return dot(points[a], frame.u) < dot(points[b], frame.u); }),
                 outline.end());
-    constexpr std::size_t max_loops = 1000;  // each is compared with all others
+    constexpr std::size_t max_loops = 1000;  // limited, since each loop is compared with all others
     std::size_t turned = 0;
     for (bool again = true; again;) {
         again = false;

@@ -12,7 +12,7 @@ struct Overlap {
 
 /// The overlaps of a scene.
 struct Overlaps {
-    std::vector<Overlap> pairs;  ///< One per pair of regions, sorted by ids.
+    std::vector<Overlap> pairs;  ///< One entry per pair of regions, sorted by ids.
     bool gave_up = false;        ///< True if too many faces overlap and not all were compared.
 };
 

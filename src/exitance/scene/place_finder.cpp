@@ -12,7 +12,7 @@ namespace exitance {
 struct PlaceFinder::Wall {
     std::span<const Point> outline;
     Normal n;
-    SurfaceId surface;  ///< None: a pane, both sides of which count as fronts.
+    SurfaceId surface;  ///< The face; none for a pane, both sides of which count as fronts.
 };
 
 /// A half-line from the point in its measuring plane, along which a wall extends.
@@ -28,12 +28,12 @@ struct PlaceFinder::Blade {
 struct PlaceFinder::Sector {
     Point place;              ///< The point, moved into the sector.
     Vec3 inwards;             ///< Unit vector along the bisector.
-    int backs = 0;            ///< Number of its two sides that are backs of walls.
+    int backs = 0;            ///< Number of the sector's two sides that are backs of walls.
     bool holds_point = true;  ///< True if the point is in the sector, by more than rounding.
     bool is_reflex = false;   ///< True if the sector's angle is more than pi.
     /// Among the faces whose fronts bound it, the one with the lowest id; none if there are only panes.
     SurfaceId front;
-    bool is_before_pane = false;  ///< True if it is on the side to which a pane's normal points.
+    bool is_before_pane = false;  ///< True if the sector is on the side to which a pane's normal points.
 };
 
 namespace {
@@ -135,7 +135,8 @@ PlaceFinder::Sector PlaceFinder::make_sector(const Point& p, const Normal& n, st
     bool is_off_all = true, is_off_any = false;
     for (const bool at_start : {true, false}) {
         const std::span<const Blade> side = at_start ? start : end;
-        const Vec3 off = at_start ? cross(n, side[0].way) : cross(side[0].way, n);  // from the side into the sector
+        // direction from the side into the sector
+        const Vec3 off = at_start ? cross(n, side[0].way) : cross(side[0].way, n);
         const auto depth = [&](const Blade& b) {
             return b.before * dot(b.across, off);
         };  // distance of p from the blade, positive inside the sector

@@ -8,10 +8,11 @@ namespace exitance {
 
 /// The point at which the light of a measuring point is evaluated.
 struct MeasuredPlace {
-    Point x;                        ///< Metres; at a distance from all walls and panes that touch the measuring point.
-    SurfaceId surface;              ///< The face of the point; none in free space.
-    RegionId region;                ///< The region of that face.
-    bool is_between_sides = false;  ///< True if the light differs between several sides, any of which could be meant.
+    Point x;            ///< Metres; at a distance from all walls and panes that touch the measuring point.
+    SurfaceId surface;  ///< The face of the point; none in free space.
+    RegionId region;    ///< The region of `surface`.
+    /// True if the light differs between several sides, and the request does not say which one to use.
+    bool is_between_sides = false;
 };
 
 /// Resolves the position of measuring points. Light is discontinuous at a point on the line of a wall; its value there

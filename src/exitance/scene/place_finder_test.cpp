@@ -109,7 +109,7 @@ TEST(PlaceFinder, IfTheFloorContinuesThePointIsMovedToTheFront) {
     const MeasuredPlace front = PlaceFinder(one).find({0, 0, 0}, up);
     EXPECT_GT(front.x.x, 0);
     EXPECT_FALSE(front.is_between_sides);
-    EXPECT_GT(PlaceFinder(one).find({0, 0, 1}, up).x.x, 0);  // also in free space
+    EXPECT_GT(PlaceFinder(one).find({0, 0, 1}, up).x.x, 0);  // the same holds for a point in free space
     // A wall of 1 cm: the points are moved to its sides, not into it.
     Outline outer = reversed(partition);
     for (Point& p : outer) p.x -= 0.01;
@@ -124,7 +124,7 @@ TEST(PlaceFinder, BelowASheetThePositionDecidesThenTheRequestedSide) {
     const Scene scene = scene_of({slab, partition, reversed(partition)});
     const PlaceFinder finder(scene);
     const double step = finder.step();
-    for (const double z : {0.0, 1.0}) {  // on the floor, in free space
+    for (const double z : {0.0, 1.0}) {  // a point on the floor, and one in free space
         for (const double side : {-1.0, 1.0}) {
             const Point towards{side, 0.3, 0};
             const MeasuredPlace chosen = finder.find({0, 0, z}, up, &towards);
@@ -182,7 +182,7 @@ TEST(PlaceFinder, FloorsThatMeetBelowAWallAreDistinguished) {
         EXPECT_GT(place.x.x * side, 0);
         EXPECT_TRUE(place.is_between_sides);
     }
-    // The strip below a wall of 1 cm is a separate floor face, which no measuring point is meant for.
+    // The strip below a wall of 1 cm is a separate floor face, at which no point should be measured.
     Outline outer = reversed(partition), strip{{-0.01, -2, 0}, {0, -2, 0}, {0, 2, 0}, {-0.01, 2, 0}}, rest = left;
     for (Point& p : outer) p.x -= 0.01;
     rest[1].x = rest[2].x = -0.01;
@@ -238,8 +238,8 @@ TEST(PlaceFinder, ResultsMoveWithTheScene) {
         EXPECT_NEAR(moved_finder.step() / (motion.scale * finder.step()), 1, 1e-9);
         for (const Point& p : points) {
             const MeasuredPlace here = finder.find(p, up), there = moved_finder.find(motion(p), motion.turned(up));
-            // The rounding error of coordinates 1000 m from the origin is 1e-13 m, that of the wall's plane a few times
-            // as much.
+            // The rounding error of coordinates 1000 m from the origin is 1e-13 m; the rounding error of the wall's
+            // plane is a few times as large.
             EXPECT_LT(norm(there.x - motion(here.x)), 1e-6 * moved_finder.step()) << p.x << ' ' << p.y << ' ' << p.z;
             EXPECT_EQ(here.surface, there.surface);
             EXPECT_EQ(here.is_between_sides, there.is_between_sides);

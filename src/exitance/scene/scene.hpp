@@ -34,7 +34,7 @@ struct Material {
     Spectrum reflectance;  ///< Share of the incident flux that is reflected (and transmitted), in [0, 1).
     Spectrum exitance;     ///< Emitted flux per area, W/m^2 (or lm/m^2).
     DirectedEmission emission = {};
-    double through = 0;  ///< Share of that which leaves by the other side, in [0, 1].
+    double through = 0;  ///< Share of the reflected flux that leaves by the other side (diffusing panes), in [0, 1].
 
     bool emits() const { return max(exitance) > 0; }
     bool is_diffusing_pane() const { return through > 0; }
@@ -83,7 +83,7 @@ struct Region {
     /// Number of regions of the same plane and orientation that are under parts of it. Of two overlapping faces, the
     /// one later in the file is on top. At most `most_stacked`.
     std::uint8_t level = 0;
-    /// Diffusing pane: its other side.
+    /// Other side of a diffusing pane; none for other regions.
     RegionId behind = {};
 };
 
@@ -95,7 +95,7 @@ struct Finding {
     Kind kind = Kind::error;
     std::string file;
     int line = 0;
-    std::string message;  ///< One sentence with the offending values; for a repair, also what was done.
+    std::string message;  ///< One sentence with the offending values; for a repair, also a description of the change.
     std::string hint;     ///< Suggested action, or empty.
 };
 
@@ -154,7 +154,7 @@ class Scene {
     }
 
     const Box& box() const { return box_; }
-    double size() const { return box_.diagonal(); }  ///< Diagonal of its bounding box, metres.
+    double size() const { return box_.diagonal(); }  ///< Diagonal of the scene's bounding box, metres.
 
     /// Returns the directional distribution of a region's emission, relative to a diffuse emitter.
     RelativeRadiance relative_radiance(RegionId r) const {

@@ -24,7 +24,7 @@ Tolerances tolerances(const Box& box, double short_edge) {
     return t;
 }
 
-constexpr std::size_t max_corners = 10'000;  ///< Per face: triangulation is quadratic in it.
+constexpr std::size_t max_corners = 10'000;  ///< Maximum per face, since the time of triangulation is quadratic in it.
 constexpr double max_coordinate = 1e15;      ///< Metres from the origin: powers of areas stay finite.
 constexpr double max_exitance = 1e30;        ///< W/m^2, cd, lx: light is accumulated in float, whose maximum is 3e38.
 
@@ -89,7 +89,7 @@ void SceneBuilder::check_lights() {
                          [](double v) { return v >= 0 && v <= max_exitance; }))
             error(0, fmt::format("light '{}' has an intensity that is negative, too large or not finite", light.name));
         if (!is_near(light.position) || !(std::abs(norm(light.direction) - 1) < 1e-6))
-            error(0, fmt::format("light '{}' has no place or no direction", light.name));
+            error(0, fmt::format("light '{}' has no position or no direction", light.name));
         if (light.kind == PunctualLight::Kind::spot &&
             !(light.inner_cone >= 0 && light.inner_cone < light.outer_cone && light.outer_cone <= pi / 2))
             error(0,
@@ -98,7 +98,7 @@ void SceneBuilder::check_lights() {
                   "the inner one is at least 0 and less than the outer one, that one at most pi / 2");
     }
     if (!in_.distant.is_sane())
-        error(0, "a sky or a sun has no direction, or light that is negative, too much or not finite");
+        error(0, "a sky or a sun has no direction, or its light is negative, too large or not finite");
 }
 
 void SceneBuilder::add_pane_faces() {
@@ -122,7 +122,7 @@ void SceneBuilder::check_panes() {
 
 /// Computes the scene's box and finds the points at equal positions.
 void SceneBuilder::place_corners() {
-    std::vector<float> lengths;  // of all edges; only their magnitude matters
+    std::vector<float> lengths;  // lengths of all edges; only their order of magnitude matters
     for (std::uint32_t f = 0; f < in_.faces.size(); ++f) {
         const auto& face = in_.faces[f];
         if (is_pane(f) && first_pane_face_ > 0) break;
@@ -154,7 +154,7 @@ void SceneBuilder::check_faces() {
     else if (in_.faces.empty())
         error(in_.panes[0].line, "all faces are panes of clear glass", "a scene needs at least one opaque face");
     else if (mesh_.size() == 0 && !has_errors())
-        error(in_.faces[0].line, "no polygon is left once faces without area are taken out");
+        error(in_.faces[0].line, "no polygon is left after faces without area were removed");
 }
 
 /// Appends the face to the mesh if it is valid; otherwise reports why not.
@@ -168,7 +168,8 @@ void SceneBuilder::check_face(std::uint32_t f) {
     std::vector<std::uint32_t> outline = face.corners;
     for (std::uint32_t& c : outline) {
         if (c >= in_.points.size())
-            return error(face, fmt::format("face names corner {} of {} points", c + 1, in_.points.size()));
+            return error(
+                face, fmt::format("face refers to corner {}, but the scene has {} points", c + 1, in_.points.size()));
         if (!is_finite(in_.points[c])) return error(face, "a corner of the face is not a finite point");
         if (!is_near(in_.points[c]))
             return error(face,

@@ -30,7 +30,7 @@ class SceneBuilder {
     struct OutlineShape {
         std::vector<Point> corners;
         Vec3 area;
-        double extent = 0;  ///< Diagonal of its bounding box, metres.
+        double extent = 0;  ///< Diagonal of the face's bounding box, metres.
 
         OutlineShape(std::span<const Point> points, std::span<const std::uint32_t> outline);
     };

@@ -30,7 +30,7 @@ struct Sketch {
     Sketch& rectangle(double x0, double y0, double x1, double y1, std::uint32_t material = 0) {
         return add({{x0, y0, 0}, {x1, y0, 0}, {x1, y1, 0}, {x0, y1, 0}}, material);
     }
-    /// Far above, so that it touches nothing.
+    /// Adds a light far above the other faces, so that it touches none of them.
     Sketch& light() { return add({{0, 0, 9}, {0, 1, 9}, {1, 1, 9}, {1, 0, 9}}, 1); }
     CheckedScene make() const { return make_scene(d); }
 };
@@ -82,7 +82,7 @@ TEST(Regions, FloorsCutWithTVerticesAreOnePolygonEachInALongRow) {
 }
 
 TEST(Regions, FloorsCutWithTVerticesAreJoinedUnderAFarPoint) {
-    // The distance of the far point leaves doubles few digits for the near ones.
+    // Next to coordinates as large as those of the far point, the near points have few significant digits.
     constexpr int floors = 2000;
     for (const double far : {1e3, 1e6, 1e9, 1e11}) {
         Sketch sketch;
@@ -198,7 +198,7 @@ TEST(Regions, AFaceThatOverlapsItsNeighbourIsNotJoinedButTheOthersAre) {
                        .rectangle(0, 0, 1, 1)
                        .rectangle(1, 0, 2, 1)
                        .rectangle(2, 0, 3, 1)
-                       .add({{1, 1, 0}, {2, 1, 0}, {3, 0.2, 0}, {2, 2, 0}, {1, 2, 0}})  // overlaps the third
+                       .add({{1, 1, 0}, {2, 1, 0}, {3, 0.2, 0}, {2, 2, 0}, {1, 2, 0}})  // overlaps the third face
                        .light()
                        .make();
     ASSERT_TRUE(s.scene);
@@ -305,7 +305,7 @@ TEST(Checks, PanesAreCheckedLikeFaces) {
         Pane& p = sketch.d.panes.emplace_back();
         p.corners = std::move(corners), p.transmissivity = Spectrum(0.9), p.line = 7;
     };
-    pane({{0, 0, 1}, {1, 0, 1}});                                   // only an edge
+    pane({{0, 0, 1}, {1, 0, 1}});                                   // degenerate: only an edge
     pane({{0, 0, 1}, {1, 0, 1}, {1, 0, 1}, {1, 1, 1}, {1, 1, 1}});  // repeated corners
     pane({{0, 0, 2}, {1, 1, 2}, {1, 0, 2}, {0, 1, 2}});             // a bow tie
     const auto s = sketch.make();
@@ -395,7 +395,7 @@ TEST(Checks, OfFacesInOnePlaneTheLaterOneIsOnTop) {
 TEST(Checks, EqualFindingsAreReportedOnce) {
     Sketch sketch;
     for (int i = 0; i < 3; ++i) sketch.add({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}});
-    for (auto& face : sketch.rectangle(0, 0, 1, 1).light().d.faces) face.line = 0;  // as from glTF
+    for (auto& face : sketch.rectangle(0, 0, 1, 1).light().d.faces) face.line = 0;  // no line numbers, as in glTF files
     const auto s = sketch.make();
     ASSERT_TRUE(s.scene);
     ASSERT_EQ(count(s, Finding::Kind::repair), 1);
@@ -434,7 +434,7 @@ TEST(Checks, AFaceThatCoversAnotherCausesAWarningNamingBothLines) {
 
 TEST(Checks, EveryFaceThatCoversALargerOneIsReported) {
     Sketch sketch;
-    for (int i = 0; i < 9; ++i) sketch.rectangle(i, 0, i + 0.5, 1);  // all overlap the last face
+    for (int i = 0; i < 9; ++i) sketch.rectangle(i, 0, i + 0.5, 1);  // all nine overlap the last face
     const auto s = sketch.light().rectangle(-1, -1, 10, 2, 2).make();
     ASSERT_TRUE(s.scene);
     ASSERT_EQ(count(s, Finding::Kind::warning), 1);

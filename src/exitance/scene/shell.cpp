@@ -61,7 +61,7 @@ class Inspector {
     double tolerance_;
     std::vector<Point> points_;
     std::vector<Edge> edges_;
-    std::vector<Meeting> meetings_;  ///< Indexed by first edge.
+    std::vector<Meeting> meetings_;  ///< Per pair of points; indexed by the first edge between them.
     Shell out_;
 };
 

@@ -99,10 +99,11 @@ TEST(Shell, ABodyWithTJointsIsClassifiedToo) {
 
 TEST(Shell, FurnitureThatLiesOnFloorAndWallsIsJudged) {
     const std::vector<test::Face> room = box({0, 0, 0}, {4, 3, 2.5}, true);
-    const std::array<std::pair<Point, Point>, 5> places{{{{1, 1, 0}, {2, 2, 1}},        // on the floor
-                                                         {{1, 0, 0}, {2, 0.5, 2}},      // and against a wall
-                                                         {{0, 0, 0}, {0.6, 0.5, 2}},    // in a corner
-                                                         {{0, 0, 0}, {0.6, 0.5, 2.5}},  // up to the ceiling
+    const std::array<std::pair<Point, Point>, 5> places{{{{1, 1, 0}, {2, 2, 1}},  // box on the floor
+                                                                                  // box on the floor and against a wall
+                                                         {{1, 0, 0}, {2, 0.5, 2}},
+                                                         {{0, 0, 0}, {0.6, 0.5, 2}},    // box in a corner
+                                                         {{0, 0, 0}, {0.6, 0.5, 2.5}},  // box from floor to ceiling
                                                          {{1, 0, 1.5}, {2, 0.3, 2.5}}}};
     for (const auto& [lo, hi] : places) {
         EXPECT_EQ(sizes(inspect_shell(test::make(box(lo, hi, true, room)))), std::vector<std::size_t>{6})
@@ -134,7 +135,7 @@ TEST(Shell, EachOfThousandsOfSmallBodiesIsJudged) {
                               p[static_cast<std::size_t>(f[2])]}});
     }
     const std::vector<std::size_t> found = sizes(inspect_shell(test::make(faces)));
-    // Leaves within others, which are then cavities, are few.
+    // Only few boxes are inside of others, which makes them cavities.
     EXPECT_NEAR(static_cast<double>(found.size()), leaves / 3.0, 0.02 * leaves);
     EXPECT_EQ(*std::max_element(found.begin(), found.end()), 4u);
 }

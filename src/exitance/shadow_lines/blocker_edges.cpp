@@ -61,7 +61,7 @@ void BlockerEdges::add_sheets(const ConvexPiece& piece, std::span<const Point> c
     const Vec3 along = edge.b - edge.a;
     const double length = norm(along);
     if (std::abs(piece.plane.signed_distance(middle)) > tolerance_) return;
-    if (std::abs(dot(piece.plane.n, along)) > 2 * tolerance_) return;  // it passes through the piece
+    if (std::abs(dot(piece.plane.n, along)) > 2 * tolerance_) return;  // the edge passes through the piece
     bool on_border = false;
     Vec3 inwards;
     for (std::size_t i = 0; i < corners.size(); ++i) {

@@ -29,7 +29,8 @@ bool ShadowEventFinder::clip_to_source(Wedge& wedge, const Vec3& normal) const {
             // p = apex + m (base - apex + t along): before the apex m < 0, beyond the edge m > 1
             const double m = dot(cross(at - wedge.apex, wedge.along), normal) / area;
             const double t = dot(cross(b, at - wedge.apex), normal) / area / m;
-            if (wedge.beyond ? !(m > 1) : !(m < 0)) return false;  // near the source's own plane
+            // the two lines intersect in front of the blocker: rounding near the source's plane
+            if (wedge.beyond ? !(m > 1) : !(m < 0)) return false;
             from = std::min(from, t), to = std::max(to, t);
         }
     wedge.first = std::max(wedge.first, from), wedge.last = std::min(wedge.last, to);

@@ -144,7 +144,7 @@ class ShadowEventFinder {
     std::size_t asked_ = 0;                          ///< Number of calls of is_stopped().
     std::vector<std::pair<std::uint32_t, Point>> corners_;
     std::vector<double> corner_gains_;  ///< Per corner: the largest gain of the edges that end there.
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_at_;  ///< Corner, edge; sorted.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges_at_;  ///< Pairs of a corner and an edge at it, sorted.
 };
 
 }  // namespace exitance

@@ -139,7 +139,7 @@ bool ThreeEdgeEventFinder::bounds_umbra(const Sight& sight, const Point& q0, con
 void ThreeEdgeEventFinder::follow(const Point& q0, const Point& q1, const BlockerEdges::Edge& e,
                                   const BlockerEdges::Edge& f, Interval part,
                                   std::vector<ThreeEdgeEvent>& events) const {
-    constexpr std::size_t samples = 16;  // along a part, to find where it is hidden
+    constexpr std::size_t samples = 16;  // number of points along the part at which occlusion is tested
     std::vector<Sight> sights;
     for (std::size_t i = 0; i <= samples; ++i) {
         // At the ends the lines of sight pass through corners, which rounding may put on either side.
@@ -203,7 +203,7 @@ void ThreeEdgeEventFinder::find(const PlaneFrame& receiver, RegionId own, Vec2 l
                     const BlockerEdges::Edge &e = edges_->edges()[outlines[j]], &f = edges_->edges()[outlines[k]];
                     const bool meet = e.ends[0] == f.ends[0] || e.ends[0] == f.ends[1] || e.ends[1] == f.ends[0] ||
                                       e.ends[1] == f.ends[1];
-                    if (meet) continue;  // these events are those of their common corner
+                    if (meet) continue;  // adjacent edges: the events of their common corner cover these
                     // Lines in one plane with the source's edge or with each other do not span a quadric.
                     constexpr double coplanar = 1e-9;
                     const Vec3 de = line_along(e), df = line_along(f), dq = q1 - q0;

@@ -49,7 +49,7 @@ class ThreeEdgeEventFinder {
     };
     struct Sight {
         Point q, p, r;  ///< The points on the source's edge and on each blocker edge.
-        Vec2 place;     ///< The point on the receiver.
+        Vec2 place;     ///< Point on the receiver, in plane coordinates.
         bool is_free = false;
     };
     Sight sight(double s, const Point& q0, const Point& q1, const BlockerEdges::Edge& e,

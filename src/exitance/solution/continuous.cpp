@@ -52,7 +52,8 @@ class Projection {
     /// depends neither on sizes nor on the number of elements [Wathen87], so that a dozen steps give single precision.
     std::vector<Spectrum> solve() const {
         constexpr int most_steps = 60;
-        constexpr double precision = 1e-14;  // of the squared residual; derived from the rounding of single precision
+        // ratio of squared residuals at which to stop; derived from the rounding of single precision
+        constexpr double precision = 1e-14;
         const std::size_t count = right_.size();
         std::vector<Spectrum> x(count), r(count), p(count), Mp(count);
         for (std::size_t i = 0; i < count; ++i)
@@ -183,7 +184,7 @@ ElementFunction nearest_continuous(const ElementFunction& f, const Scene& scene,
     if (nodes.first_node.empty()) return f;
     share_on_node(out.tree);
     share_on_node(std::span(nodes.node_of)), share_on_node(nodes.first_corner.span());
-    std::vector<Spectrum> value;  // of every node
+    std::vector<Spectrum> value;  // value of every node
     project(f, out.tree, plane, nodes, value);
     constexpr std::size_t together = 4096;
     std::vector<std::uint32_t> first;  // index of the first value of every `together` elements

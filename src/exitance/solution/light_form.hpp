@@ -17,19 +17,19 @@ struct QuadraticTriangle {
     std::array<Spectrum, 6> values;  ///< At corners 0, 1, 2 and the middles of edges 01, 12, 20, W/m^2.
 };
 
-/// Irradiance in a representation that a method brings with it, beside the elements of a Solution: the cells of a
-/// network, or one mesh per source. The engine evaluates it, bakes it and keeps it in checkpoints; only the method
-/// knows what it consists of.
+/// Irradiance in a representation of the method's own, in addition to the elements of a Solution: the cells of a
+/// network, or one mesh per source. The engine evaluates it, bakes it and keeps it in checkpoints; only the method can
+/// interpret its content.
 class LightForm {
   public:
     virtual ~LightForm() = default;
 
-    /// The name under which `add_light_form` made it known.
+    /// Returns the name under which `add_light_form` registered this representation.
     virtual std::string_view kind() const = 0;
     /// Irradiance at a point of a region, W/m^2.
     virtual Spectrum at(const Scene& scene, RegionId region, const Point& x) const = 0;
 
-    /// Number of triangles that it consists of; 0 where it is not piecewise quadratic.
+    /// Number of triangles; 0 if the representation is not piecewise quadratic.
     virtual std::size_t triangle_count() const { return 0; }
     /// Triangle `i` with its values multiplied by `weight`.
     virtual QuadraticTriangle triangle(const Scene& scene, std::size_t i, const Spectrum& weight) const;
@@ -41,16 +41,16 @@ class LightForm {
 /// Solutions are copied; forms are large and never change once they are made.
 using LightFormPointer = std::shared_ptr<const LightForm>;
 
-/// A representation that checkpoints can hold.
+/// A representation that checkpoints can store.
 struct LightFormKind {
     std::string_view name;
     LightFormPointer (*unpack)(std::string_view bytes);
 };
 
-/// Makes a kind known. Not while other threads solve or load.
+/// Registers a kind of light form. Must not be called while other threads solve or load.
 void add_light_form(const LightFormKind& kind);
 
-/// The form of the kind `name` in `bytes`; null for an empty name. Aborts for a kind that was not made known.
+/// The form of the kind `name` in `bytes`; null for an empty name. Aborts if no kind has this name.
 LightFormPointer unpack_light_form(std::string_view name, std::string_view bytes);
 
 }  // namespace exitance

@@ -33,10 +33,10 @@ struct EnergyBalance {
     double escaped = 0;   ///< Part of int B dA that meets no front, estimated by few rays; 0 in closed scenes.
     double defect = 0;    ///< |emitted - absorbed - escaped| / emitted
     std::optional<double> defect_before =
-        {};  ///< The defect before light was scaled to conserve it; none if not known.
+        {};  ///< Defect before the light was scaled to conserve energy; none if unknown.
 };
 
-/// Light of a room (LightRooms) and its error.
+/// Mean light in a room (LightRooms) and its error.
 struct RoomError {
     double area = 0;   ///< m^2
     double mean = 0;   ///< Mean reflected radiosity over the room's surfaces and the bands, W/m^2; 0 in the dark.
@@ -46,7 +46,7 @@ struct RoomError {
     double reference = 0;
 };
 
-/// Light of a body (`find_bodies`) and its error.
+/// Mean light of a body (`find_bodies`) and its error.
 struct BodyError {
     std::size_t surfaces = 0;  ///< Number of its faces.
     double area = 0;           ///< m^2
@@ -91,9 +91,10 @@ struct SolveStatistics {
     std::optional<double> relative_error_estimate_interpolant;
     std::vector<RoomError> rooms;  ///< In descending order of area; a single one if the scene is one room.
     std::optional<double> relative_error_estimate_worst_room;  ///< Error of the light that `probe` evaluates.
-    std::vector<BodyError> bodies;  ///< In descending order of area; empty if no error was measured.
+    /// Errors of the bodies, in descending order of area; empty if no error was measured.
+    std::vector<BodyError> bodies;
     std::optional<double> relative_error_estimate_worst_body;  ///< Error of the light that `probe` evaluates.
-    std::vector<FaceError> surface_errors;                     ///< One per face; empty if no error was measured.
+    std::vector<FaceError> surface_errors;                     ///< Error of each face; empty if no error was measured.
     /// Relative RMS standard error of the light on the elements of a Monte Carlo method; 0 for other methods.
     double standard_error = 0;
     EnergyBalance energy;
@@ -111,7 +112,7 @@ struct SolveStatistics {
 
 /// Links of a hierarchy and the elements that they connect.
 struct KeptLinks {
-    ElementFunction elements;     ///< With the indirect irradiance of the method's leaves, W/m^2.
+    ElementFunction elements;     ///< Elements with the indirect irradiance of the method's leaves, W/m^2.
     std::vector<KeptLink> links;  ///< Sorted by receiver, then by source; empty unless requested.
 };
 
@@ -132,7 +133,7 @@ struct Solution {
     /// Number of bounces: all (-1), or direct light only (0); then `indirect` is zero, without elements below the
     /// roots.
     int bounces = -1;
-    KeptLinks links = {};  ///< Stored if requested.
+    KeptLinks links = {};  ///< Links of the solve; stored only if requested.
     /// E_dir + E_ind on a discontinuity mesh, if the method made one. Then it is exported, and `interpolant`
     /// approximates it by linear triangles for other uses.
     SixNodeMesh discontinuity = {};

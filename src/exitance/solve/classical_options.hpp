@@ -15,8 +15,7 @@ enum class TransferKernel : std::uint8_t { point, disc, exact };
 enum class RefineWhen : std::uint8_t { during, after };
 enum class ClassicalRelaxation : std::uint8_t { sor, direct };
 enum class ShootingReceivers : std::uint8_t { vertex, middle };
-/// Oracles of published forms beside those of LinkOracle. `kernel`: the difference between the kernel and its
-/// interpolant of the basis. Source: [Gortler93].
+/// Oracles of published forms, in addition to those of LinkOracle.
 enum class ClassicalOracle : std::uint8_t { kernel };
 
 inline constexpr std::array<std::pair<ClassicalDirect, std::string_view>, 2> classical_direct_names{
@@ -42,7 +41,7 @@ struct ClassicalOptions {
     std::optional<bool> certify;  ///< on: the standard form, which always estimates its error; off: classical form
     /// Threshold of the oracle: F_eps (no unit), or BF_eps (W in the brightest band), likewise of the kernel oracle.
     std::optional<double> threshold;
-    std::optional<ClassicalOracle> oracle;  ///< Replaces that of SolveOptions.
+    std::optional<ClassicalOracle> oracle;  ///< Replaces `oracle` of SolveOptions.
     /// Number of rounds in which the threshold is halved down to the requested one.
     std::optional<std::size_t> multigrid;
     std::optional<TransferKernel> kernel;

@@ -49,7 +49,7 @@ double absorbed(const LeakyTransport& leaky, bool closed) {
 TEST(ConservingTransport, ConservesLightInAClosedScene) {
     const LeakyTransport leaky(1e-3);
     EXPECT_NEAR(absorbed(leaky, false), 1 - 1e-2, 1.2e-3) << "of ten reflections a thousandth each";
-    EXPECT_NEAR(absorbed(leaky, true), 1, 1e-9);  // the solver's residual
+    EXPECT_NEAR(absorbed(leaky, true), 1, 1e-9);  // limited by the solver's residual
 }
 
 TEST(ConservingTransport, ReportsReflectedPowerWithoutScaling) {

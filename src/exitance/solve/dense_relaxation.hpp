@@ -20,7 +20,7 @@ SolveReport relax_in_turn(const RadiositySystem& system, double factor, std::spa
                           const std::function<void()>& swept);
 
 /// Southwell relaxation: relaxes the entry with the largest residual flux A_i |r_i|, then updates the residual by that
-/// entry's column. As many steps as there are elements count as one sweep. Stores the matrix: O(n^2) numbers.
+/// entry's column. n steps count as one sweep, where n is the number of elements. Stores the matrix: O(n^2) numbers.
 /// Source: [Gortler94].
 SolveReport relax_largest_residual(const RadiositySystem& system, std::span<Spectrum> b, const StopRule& stop,
                                    const std::function<void()>& swept);

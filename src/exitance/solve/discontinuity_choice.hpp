@@ -14,7 +14,7 @@ namespace exitance {
 enum class TriangulationScheme {
     longest,    ///< Joins the middle of the longest diagonal to all corners.
     shortest,   ///< Repeatedly cuts along the shortest diagonal.
-    heuristic,  ///< Cuts along the diagonal that divides the angles at its ends best.
+    heuristic,  ///< Cuts along the diagonal that splits the angles at its ends most evenly.
     delaunay,   ///< Constrained Delaunay triangulation of the curves: maximizes the smallest angle.
 };
 /// Selects where discontinuity lines due to three edges are computed: where they may bound an umbra, everywhere, or
@@ -65,7 +65,7 @@ inline constexpr std::array<std::pair<TriangulationScheme, std::string_view>, 4>
 /// ones, or those of at least the given power.
 struct SecondarySources {
     std::optional<std::size_t> count = {};
-    std::optional<double> power = {};  ///< W, mean over bands.
+    std::optional<double> power = {};  ///< Minimum power, W, mean over bands.
 };
 
 /// Options of a discontinuity mesh. Empty ones are chosen by the method.
@@ -76,7 +76,7 @@ struct DiscontinuityChoice {
     std::optional<Premesh> premesh = {};
     std::optional<MeshQuality> quality = {};
     std::optional<MeshElement> element = {};
-    std::optional<bool> layers = {};  ///< One mesh per source.
+    std::optional<bool> layers = {};  ///< Use a separate mesh for each source.
     std::optional<OccluderStructure> structure = {};
 
     bool any() const {

@@ -49,7 +49,7 @@ struct GlobalLight {
     /// Standard error of `indirect`, W/m^2, for Monte Carlo methods; empty otherwise.
     std::vector<Spectrum> standard_error = {};
 
-    /// c of `find_direct_share` if the method used it, so that its elements suit b + c M; else 0.
+    /// c of `find_direct_share` if the method used it, so that its elements are fine enough for b + c M; else 0.
     Spectrum direct_share = {};
 
     /// Share of the light leaving each leaf that arrives at some front, by leaf number; empty unless the method
@@ -69,7 +69,7 @@ struct GlobalLight {
     /// `all_light`, otherwise the indirect light; `indirect` is its projection.
     LightFormPointer own_form = {};
 
-    /// For published forms: what they deliver.
+    /// Delivered light of published forms.
     std::optional<PublishedLight> published = {};
 
     bool delivers() const { return delivery == MethodDelivery::polynomials; }

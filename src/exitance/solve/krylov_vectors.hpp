@@ -15,7 +15,7 @@ using Values = std::vector<Spectrum>;
 /// PETSc's give the same bits on any number of processes. All functions are collective.
 struct KrylovVectors {
     DealtUnknowns dealt;
-    std::span<const double> area;  ///< m^2, of own unknowns.
+    std::span<const double> area;  ///< Areas of this process's own unknowns, m^2.
 
     /// Inner products of x with each y_j: sum_i A_i sum_band x_i y_ji.
     std::vector<double> products(std::span<const Spectrum> x, std::span<const std::span<const Spectrum>> y) const {

@@ -97,7 +97,8 @@ double* numbers_of(std::span<Spectrum> values) {
     return reinterpret_cast<double*>(values.data());
 }
 double* numbers_of(std::span<const Spectrum> values) {
-    return const_cast<double*>(reinterpret_cast<const double*>(values.data()));  // for vectors that are only read
+    // PETSc only reads these vectors, but requires a pointer to non-const
+    return const_cast<double*>(reinterpret_cast<const double*>(values.data()));
 }
 
 /// Creates a vector distributed over processes, with this process's values in an array of ours.

@@ -11,9 +11,9 @@ namespace exitance {
 /// The discrete problem b = rhs + rho F b on the elements of a mesh, W/m^2. All spans have F.size() entries.
 struct RadiositySystem {
     const TransportOperator& F;
-    std::span<const Spectrum> reflectance;  ///< rho, in [0, 1)
+    std::span<const Spectrum> reflectance;  ///< Reflectances rho, in [0, 1).
     std::span<const Spectrum> rhs;          ///< Light that enters the system, W/m^2.
-    std::span<const double> area;           ///< m^2; weights of the norms.
+    std::span<const double> area;           ///< Areas, the weights of the norms, m^2.
 };
 
 enum class Relaxation { jacobi, gauss_seidel, cg, gmres, southwell, chebyshev };
@@ -22,12 +22,12 @@ enum class Relaxation { jacobi, gauss_seidel, cg, gmres, southwell, chebyshev };
 struct StopRule {
     double residual = 1e-6;  ///< L2 norm of rhs + rho F b - b over that of rhs.
     std::size_t max_iterations = 1000;
-    const StopRequest* request = nullptr;  ///< Checked after every iteration; may be null.
+    const StopRequest* request = nullptr;  ///< Stop request, checked after every iteration; may be null.
 };
 
 struct SolveReport {
-    std::size_t iterations = 0;  ///< Applications of F.
-    double residual = 0;         ///< Relative, see StopRule.
+    std::size_t iterations = 0;  ///< Number of applications of F.
+    double residual = 0;         ///< Relative residual, as defined at StopRule.
     bool converged = false;
     bool interrupted = false;
     /// Power of repeated reflection, sum_i A_i (b_i - rhs_i), without scaling of F over its value with scaling, per

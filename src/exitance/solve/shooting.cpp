@@ -18,8 +18,9 @@ double power_of(const Spectrum& u, double area) {
 /// Unshot power, and the patch that has most to send.
 struct Unshot {
     double power = 0;  ///< W
-    Spectrum flux;     ///< sum A u, W
-    double most = -1;  ///< W; power of the first of the patches with most to send.
+    Spectrum flux;     ///< Sum of area times unshot light over all patches, W.
+    /// Power that patch `patch` would send, W: the largest of all patches (the first one if several are equal).
+    double most = -1;
     std::size_t patch = 0;
 
     /// Adds patch p with unshot light u, which would send `sent` in a shot; both W/m^2.
@@ -121,7 +122,7 @@ class Patches {
     std::span<Spectrum> unshot_, irradiance_;
     Groups receivers_;  ///< Receivers of each patch.
     double total_area_;
-    std::vector<Spectrum> returned_;     ///< Reflectance of each receiver times its share of the patch's area.
+    std::vector<Spectrum> returned_;     ///< Per receiver: reflectance times its share of its patch's area.
     std::vector<Spectrum> reflectance_;  ///< Mean reflectance of each patch.
     Spectrum mean_reflectance_;
     /// With overshooting: mean of the unshot light with all its reflections, sum A u / sum A / (1 - mean rho), W/m^2.

@@ -168,7 +168,7 @@ struct SolveOptions {
     std::optional<double> epsilon = {};    ///< Tolerance for the total error of all links, relative RMS.
     std::optional<double> mesh_size = {};  ///< Longest edge of an element, metres.
     std::optional<double> residual = {};   ///< Residual of the discrete system, relative to its right-hand side.
-    std::optional<std::size_t> max_iterations = {};  ///< Sweeps, Krylov steps or shots.
+    std::optional<std::size_t> max_iterations = {};  ///< Maximum number of sweeps, Krylov steps or shots.
     std::optional<double> min_area = {};             ///< Smallest area of the parts of a split element, m^2.
     std::optional<Relaxation> relaxation = {};
     bool overshooting = false;  ///< Shooting also sends an estimate of the light that will be reflected back.
@@ -179,7 +179,7 @@ struct SolveOptions {
     std::optional<std::size_t> visibility_samples = {};  ///< Rays per pair of elements.
     bool triage = true;  ///< Links test for certain visibility or occlusion before they cast rays.
     LinkOracle oracle = LinkOracle::transport;  ///< Criterion by which links are accepted or refined.
-    std::optional<bool> clusters = {};          ///< Also link clusters of pieces; empty: if there are many pieces.
+    std::optional<bool> clusters = {};  ///< True: also link clusters of pieces. Empty: do so if there are many pieces.
     std::optional<FormFactorKind> form_factors = {};
     std::optional<std::size_t> hemicube_cells = {};  ///< Cells along an edge of a hemicube's top.
     std::optional<CellsKind> gcs = {};               ///< Variant of growing cells; empty: improved.

@@ -25,7 +25,7 @@ bool may_be_name(std::string_view text) {
     const std::size_t dot = text.find_last_of('.');
     if (dot == std::string_view::npos || dot + 1 >= text.size()) return false;
     const auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0; };
-    // "1e-3.5" is no name, "3rd.mtl" is.
+    // "1e-3.5" is a number, not a name; "3rd.mtl" is a name
     return is_letter(first) || std::any_of(text.begin() + static_cast<std::ptrdiff_t>(dot), text.end(), is_letter);
 }
 

@@ -8,9 +8,9 @@
 
 namespace exitance {
 
-/// Files beside `path` that its text names, directly or through other files: material files, textures, photometric
-/// files. Relative paths are searched beside the naming file. `path` itself is the first entry. Binary files name
-/// nothing. Error: cannot_read.
+/// Files next to `path` to which its text refers, directly or through other files: material files, textures,
+/// photometric files. Relative paths are searched in the folder of the referring file. `path` itself is the first
+/// entry. Binary files name nothing. Error: cannot_read.
 Result<std::vector<std::string>> files_named_by(const std::string& path);
 
 /// A file that a command reads.

@@ -49,7 +49,7 @@ std::optional<std::string> attached_output(const std::string& word) {
     return word.substr(letter + 1);
 }
 
-/// The steps of a variant as they are resolved, and which of them makes which file.
+/// The steps of a variant so far, and the step that writes each file.
 class StepChain {
   public:
     StepChain(const SweepPlan& plan, const SweepSetting& variant, InputHashes& hashes)
@@ -208,7 +208,7 @@ Result<void> StepChain::add(const SweepStep& step) {
     }
     if (const Result<void> added = add_inputs(step, out); !added) return added.error();
     for (const HashedFile& input : out.inputs) hash.add_text(input.hash);
-    // The program writes materials beside a generated scene.
+    // The program writes a material file next to a generated scene.
     if (out.words.front() == "generate")
         for (std::size_t i = 0, n = out.outputs.size(); i < n; ++i)
             out.outputs.push_back(fs::path(out.outputs[i]).replace_extension(".mtl").string());

@@ -16,17 +16,18 @@ struct ResolvedStep {
     /// Hash of everything that the result depends on: the program's version, the command, the content of its input
     /// files, and the keys of the steps whose results it reads. Steps of equal keys have equal results.
     std::string key;
-    std::vector<std::string> words;    ///< Command with "{dir}/X" for its own files; empty for files from templates.
-    std::vector<std::string> outputs;  ///< Its own files: paths below {dir}.
+    /// Command with its own files written as "{dir}/X"; empty for files from templates.
+    std::vector<std::string> words;
+    std::vector<std::string> outputs;  ///< Paths of the files that the step writes, relative to {dir}.
     std::vector<int> accepted;
-    std::vector<HashedFile> inputs;  ///< Files that it reads, apart from those of earlier steps.
+    std::vector<HashedFile> inputs;  ///< Files that the step reads, except those that earlier steps write.
     std::vector<std::pair<std::string, std::string>> texts;  ///< Path below {dir} and content of files from templates.
 };
 
 /// The steps of a variant in their order, and where the values to collect are.
 struct ResolvedVariant {
     std::vector<ResolvedStep> steps;
-    std::vector<std::size_t> output_steps;  ///< Per output of the plan, the step that makes its file.
+    std::vector<std::size_t> output_steps;  ///< Per output of the plan: index of the step that writes its file.
 };
 
 /// Fills in the placeholders of all steps of variant `index` (from 0), connects the steps, and hashes their inputs. A

@@ -56,7 +56,7 @@ VariantState state_of(const StepStore& store, ResolvedVariant variant) {
 struct SweepJob {
     std::size_t index = 0;
     ResolvedVariant variant;  ///< Has no steps until the job is begun.
-    std::size_t next = 0;     ///< Its first step that is not known to be finished.
+    std::size_t next = 0;     ///< Index of the first step that is not known to be finished.
 };
 
 /// Variants that wait to be run, shared by the threads that run them.
@@ -167,7 +167,7 @@ std::optional<SweepJob> SweepQueue::take() {
 }
 
 void SweepQueue::work() {
-    std::size_t busy = 0;  // jobs in a row that wait for others
+    std::size_t busy = 0;  // number of consecutive jobs that wait for steps of other processes
     while (std::optional<SweepJob> job = take()) {
         const Result<Advance> result = advance(*job);
         bool all_are_busy = false;

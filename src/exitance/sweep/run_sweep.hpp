@@ -31,7 +31,7 @@ Result<std::vector<VariantState>> sweep_states(const SweepPlan& plan);
 struct SweepReport {
     std::size_t variants = 0, done = 0;
     std::size_t steps_run = 0, steps_reused = 0;
-    std::vector<std::string> failures;  ///< One text per failed variant: its number, step, reason and folder.
+    std::vector<std::string> failures;  ///< One text per failed variant, with its number, step, reason and folder.
     std::vector<std::string> warnings;  ///< Damaged results that were replaced.
 };
 

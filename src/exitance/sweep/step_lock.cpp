@@ -190,7 +190,7 @@ Result<std::optional<StepLock>> StepLock::take(const std::string& path, const st
         if (status != EEXIST) return cannot_write(path, status);
         const std::string content = text_in(path);
         struct stat present;
-        if (::stat(path.c_str(), &present) != 0) continue;  // released in between
+        if (::stat(path.c_str(), &present) != 0) continue;  // the lock was released in between, so try again
         if (!is_stale(path, content)) return std::optional<StepLock>();
         break_lock(path, content, unfinished);
     }

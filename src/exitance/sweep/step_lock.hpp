@@ -44,7 +44,7 @@ class LockRenewal {
     std::thread thread_;
 };
 
-/// Exclusive lock by a file, beside processes on this and on other machines with the same file system. A lock whose
+/// Exclusive lock by a file, among processes on this and on other machines with the same file system. A lock whose
 /// process has ended is broken: at once if the process was on this machine, else after it was not renewed for two
 /// minutes. If locks fail, work is done twice but not wrongly: results are complete when they appear.
 class StepLock {

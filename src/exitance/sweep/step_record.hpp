@@ -13,8 +13,8 @@ inline constexpr const char* step_record_file = "status.txt";
 
 /// State of the folder of a finished step.
 struct StepCondition {
-    int status = 0;      ///< Exit status of its command.
-    std::string damage;  ///< Difference from the record, such as "room.h5 is missing"; empty: there is none.
+    int status = 0;      ///< Exit status of the step's command.
+    std::string damage;  ///< Difference from the record, such as "room.h5 is missing"; empty: none.
 };
 
 /// Writes the record of a step into its complete folder. Error: cannot_write.

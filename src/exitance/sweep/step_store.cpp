@@ -30,7 +30,7 @@ Result<void> make_parent(const std::string& work, const std::string& path) {
     return {};
 }
 
-/// The line of an error stream that tells why the program failed: its first error, else its last line.
+/// Returns the line of an error stream that states why the program failed: its first error, otherwise its last line.
 std::string reason_in(const std::string& text, int status) {
     std::string last;
     for (std::size_t at = 0; at < text.size();) {

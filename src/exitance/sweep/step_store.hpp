@@ -17,7 +17,7 @@ namespace exitance {
 struct StepFailure {
     int status = 0;  ///< Exit status of the command; 1000 + the signal number if a signal ended it.
     std::string message;
-    std::string command;  ///< For a shell in the folder of the plan.
+    std::string command;  ///< Command line for a shell in the folder of the plan.
 };
 
 /// How the commands of steps are run.
@@ -28,8 +28,8 @@ struct StepRunner {
     int threads = 0;                 ///< Threads of every command that does not choose them itself; 0: all cores.
 };
 
-/// Finished steps, one folder per key: FOLDER/steps/KEY with the files of the step, and what it printed in `stdout.txt`
-/// and `stderr.txt`. A folder appears whole or not at all, and is compared with its record before it is used. Steps of
+/// Finished steps, one folder per key: FOLDER/steps/KEY with the files of the step, and its output in `stdout.txt` and
+/// `stderr.txt`. A folder appears whole or not at all, and is compared with its record before it is used. Steps of
 /// several variants, plans and processes share it.
 class StepStore {
   public:
@@ -44,7 +44,7 @@ class StepStore {
     /// True if a running process works on the step.
     bool is_running(const ResolvedStep& step) const;
     std::optional<StepFailure> failure(const ResolvedStep& step) const;
-    /// Folder of a failed step: what it printed and wrote, and `failure.json`.
+    /// Folder of a failed step: its output, its files, and `failure.json`.
     std::string failure_path(const ResolvedStep& step) const { return path(step) + ".failed"; }
 
     enum class Outcome { finished, was_finished, busy, failed, stopped };

@@ -21,7 +21,7 @@ struct VariantRecord {
 /// Parses the record of a variant; empty if the text is none.
 std::optional<VariantRecord> parse_variant(const std::string& text);
 
-/// `sweep PLAN --list --json`.
+/// Returns the output of `sweep PLAN --list --json`.
 std::string sweep_json(const SweepPlan& plan, const std::vector<VariantState>& states);
 
 /// `sweep PLAN --run K --json` and `--local N --json`.

@@ -36,7 +36,7 @@ struct SweepOutput {
     enum class Take { value, mean, sum, min, max, all };
 
     std::string name;
-    std::string step;    ///< Step on whose standard output `json` is; empty: `file` is used.
+    std::string step;    ///< Step whose standard output is the file for `json`; empty: `file` is used.
     std::string file;    ///< File below {dir}; empty: the standard output of `step`.
     std::string json;    ///< Key in a JSON file, such as "energy.emitted" or "rooms.0.mean"; empty: `column` is used.
     std::string column;  ///< Column of a CSV file.
@@ -56,7 +56,7 @@ struct SweepPlan {
     SweepTemplate scene_template;         ///< Has no files if the scene is not made from a template.
     std::vector<SweepStep> steps;         ///< A generated scene is the first step, called "scene".
     std::vector<SweepOutput> outputs;
-    std::string scene;  ///< Text that replaces {scene}: a path below {dir}; empty: there is no such placeholder.
+    std::string scene;  ///< Text that replaces {scene}: a path below {dir}. Empty if the plan has no such placeholder.
 };
 
 /// Parses a plan (docs/sweeps.md). `path` is the name of the file in messages, and its folder that of relative paths.
@@ -74,7 +74,7 @@ std::string with_plain_placeholders(const std::string& text);
 std::string path_in_folder(const std::string& path);
 
 /// Replaces placeholders "{name}" by the values of a variant. "{dir}" and "{scene}" stay. A word that is a single
-/// placeholder becomes as many words as its value has. Error: bad_input for an unknown name, at the line `line`.
+/// placeholder becomes one word per word of its value. Error: bad_input for an unknown name, at the line `line`.
 Result<std::vector<std::string>> fill_in(const SweepPlan& plan, const std::vector<std::string>& words,
                                          const SweepSetting& variant, int line);
 

@@ -47,7 +47,7 @@ Result<std::vector<std::string>> values_in_csv(const SweepOutput& output, const 
     if (output.take == SweepOutput::Take::value) {
         if (output.row > table->rows.size())
             return Error{ErrorCode::bad_input,
-                         fmt::format("there are {} rows, and row {} is wanted", table->rows.size(), output.row), path,
+                         fmt::format("there are {} rows, so there is no row {}", table->rows.size(), output.row), path,
                          ""};
         return std::vector<std::string>{table->text(output.row - 1, output.column)};
     }
@@ -61,7 +61,7 @@ Result<std::vector<std::string>> values_in_csv(const SweepOutput& output, const 
     if (numbers.empty()) return Error{ErrorCode::bad_input, "there are no rows", path, ""};
     const double value = combined(numbers, output.take);
     if (!std::isfinite(value))
-        return Error{ErrorCode::bad_input, fmt::format("column '{}' has cells that are no numbers", output.column),
+        return Error{ErrorCode::bad_input, fmt::format("column '{}' has cells that are not numbers", output.column),
                      path, ""};
     return std::vector<std::string>{fmt::format("{}", value)};
 }
@@ -173,7 +173,7 @@ Result<void> write_results_hdf5(const SweepResults& results, const SweepPlan& pl
     file.set_attribute(group, "plan", fs::path(plan.path).filename().string());
     for (const SweepColumn& column : results.columns) {
         const std::size_t width = width_of(column);
-        if (width == 0) continue;  // no variant has a value
+        if (width == 0) continue;  // no variant has a value for this output
         std::string name = column.name;
         std::replace(name.begin(), name.end(), '/', '_');
         const Hdf5Label label{"1", column.name.c_str()};

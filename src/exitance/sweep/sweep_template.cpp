@@ -15,7 +15,7 @@ namespace {
 /// A placeholder "{{name}}" of a template.
 struct TemplateMark {
     std::size_t begin = 0, end = 0;
-    std::string_view name;  ///< Empty: it is not closed in its line, or there is no name.
+    std::string_view name;  ///< Name in the placeholder; empty if it has no name or is not closed on its line.
 };
 
 /// The first placeholder at or after `at`.

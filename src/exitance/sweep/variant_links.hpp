@@ -6,7 +6,7 @@
 
 namespace exitance {
 
-/// Makes the folder of a finished variant: links to the files of its steps, `STEP.stdout.txt` for what they print, and
+/// Makes the folder of a finished variant: links to the files of its steps, `STEP.stdout.txt` for their output, and
 /// `variant.json`. The folder appears whole; an older one is replaced if the variant has changed or a link is broken.
 /// Files that the user put into it stay. Error: cannot_write.
 Result<void> link_variant(const SweepPlan& plan, std::size_t index, const ResolvedVariant& variant);

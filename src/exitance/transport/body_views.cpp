@@ -181,7 +181,8 @@ std::vector<BodyNeeds::ElementLimits> BodyNeeds::limits_of_body(const ElementTre
                                                                 std::uint32_t last) const {
     const std::span<const BodyViews::Hit> hits = views_.hits();
     const std::uint32_t body = hits[first].body;
-    std::vector<std::uint32_t> of_body(last - first);  // those of an element together
+    // indices of the body's hits; those on the same element are consecutive
+    std::vector<std::uint32_t> of_body(last - first);
     std::iota(of_body.begin(), of_body.end(), first);
     std::sort(of_body.begin(), of_body.end(), [&](std::uint32_t a, std::uint32_t b) {
         return std::pair(at_[a].element.value, a) < std::pair(at_[b].element.value, b);

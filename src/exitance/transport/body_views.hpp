@@ -11,9 +11,9 @@
 
 namespace exitance {
 
-/// The surroundings that each body of a scene sees: the hits of cosine-weighted rays from points on it. The share of
-/// a body's rays that hit an element is the form factor from the body to the element. It tells where an error in the
-/// light of a large surface matters to a small body near it, which an average over all surfaces hides.
+/// The surroundings that each body of a scene sees: the hits of cosine-weighted rays from points on it. The share of a
+/// body's rays that hit an element is the form factor from the body to the element. It shows where an error in the
+/// light of a large surface matters to a small body near it. An average over all surfaces hides this.
 class BodyViews {
   public:
     /// A ray's hit on the front of a surface.
@@ -32,7 +32,7 @@ class BodyViews {
     std::span<const Hit> hits() const { return hits_; }
     const SceneBodies& bodies() const { return *bodies_; }
 
-    /// Derived from tolerances of 2%: ten rays hit a cell that has such a share of what a body sees.
+    /// Derived from tolerances of 2%: ten rays hit a cell that has such a share of a body's view.
     static constexpr std::uint32_t rays_per_body = 512;
 
   private:

@@ -14,8 +14,8 @@ namespace {
 const std::map<std::string, std::string> sunny{{"ground", "800"}, {"altitude", "40"}, {"azimuth", "160"}};
 
 TEST(BodyViews, ShareOfRaysIsTheFormFactor) {
-    // The ground fills all that the underside of a roof sees of fronts, but for what lies beyond its border: less than
-    // 1e-4. The rim of 0.1 m sees it with half of its rays, and is two tenths of a metre per metre of underside.
+    // The underside of a roof sees only the ground, except for at most 1e-4 of its rays, which pass the ground's
+    // border. The rim of the roof is 0.1 m high and sees the ground with half of its rays.
     const Scene scene = built_scene("canopy", {{"size", "4"}});
     const Stage stage(scene);
     const SceneBodies bodies = find_bodies(scene);
@@ -32,7 +32,7 @@ TEST(BodyViews, ShareOfRaysIsTheFormFactor) {
     EXPECT_EQ(found, 1u);
 }
 
-/// Largest relative error of the light that a body gets by one reflection, if the projected direct light stands for the
+/// Largest relative error of the light that a body gets by one reflection, if the projected direct light replaces the
 /// exact one.
 double worst_of_bodies(const Scene& scene, double body_tolerance) {
     const Stage stage(scene);

@@ -37,10 +37,11 @@ double kept_noise_share(const ElementTree& tree, ElementId e) {
 }
 
 /// Corrects a fit for noise. `noise`: mean square, over the nodes, of the noise of the values times w. A fit with one
-/// degree of freedom per corner keeps a share of the noise; the remaining noise looks like misfit and is subtracted.
+/// degree of freedom per corner keeps a share of the noise; the remaining noise is measured as misfit and is
+/// subtracted.
 DirectFit count_noise(const ElementTree& tree, ElementId e, double noise, DirectFit fit) {
     const double kept = kept_noise_share(tree, e);
-    constexpr double max_noise_factor = 2;  // bound on the square of noise with few degrees of freedom, by its mean
+    constexpr double max_noise_factor = 2;  // bound on squared noise with few degrees of freedom, relative to its mean
     fit.misfit_squared = std::max(0.0, fit.misfit_squared - max_noise_factor * (1 - kept) * noise) + kept * noise;
     fit.noise_squared = kept * noise;
     return fit;

@@ -10,7 +10,8 @@ struct NoiseAllowed {
     double squared = 0;  ///< Largest mean square of w (E - polynomial) due to noise, (W/m^2)^2; 0: exact light.
     double mean_light =
         0;  ///< Mean of w E over all surfaces, W/m^2, if noise is allotted in proportion to light; else 0.
-    double minor_area = 0;  ///< Elements smaller than this, m^2, matter only together: what nodes miss averages out.
+    /// Elements smaller than this, m^2, matter only together: the light that their nodes miss averages out.
+    double minor_area = 0;
 };
 
 /// Rays of an element to weak sources. Elements larger than the mean get more.

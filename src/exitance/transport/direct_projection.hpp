@@ -63,8 +63,8 @@ struct DirectFitRoom {
     std::vector<PlaceLight::Estimate> found;
 };
 
-/// Adds to a fit what the nodes of its rule miss of small sources (`SmallSources`), so that its mean is right, and
-/// counts it as misfit, so that the element is split until the nodes see it.
+/// Adds the light of small sources that the nodes of a fit's rule miss (`SmallSources`), so that the fit's mean is
+/// right, and counts it as misfit, so that the element is split until the nodes see it.
 void add_missed_light(const DirectLight& direct, const ElementTree& tree, ElementId e, SmallSources::Workspace& room,
                       DirectFit& fit);
 

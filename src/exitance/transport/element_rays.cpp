@@ -37,7 +37,7 @@ void ElementRays::cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> 
     for (std::size_t k = 0; k < queries_.size(); ++k) leaves[of_ray_[k]] = queries_[k].leaf;
 }
 
-/// Aims the second half of the rays at openings if that pays at `centre`, and sets the rays' weights.
+/// Aims the second half of the rays at openings if that reduces the noise at `centre`, and sets the rays' weights.
 void ElementRays::aim(RegionId region, const Normal& n, const Point& centre, std::span<float> counts) {
     std::fill(counts.begin(), counts.end(), 1.0f);
     const std::span<const PortalCell> cells = portals_worth_aiming(stage_, region, centre, n);

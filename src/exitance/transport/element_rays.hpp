@@ -25,7 +25,7 @@ class ElementRays {
 
     /// Casts leaves.size() rays and writes for each the number of the leaf whose front it hits, or `missed`. Uses the
     /// points of sequence `key` from number `first` on. If `counts` is given (one number per ray), half of the rays are
-    /// aimed at openings where that pays (`PortalAim`), and counts[k] becomes the weight of ray k.
+    /// aimed at openings where that reduces the noise (`PortalAim`), and counts[k] becomes the weight of ray k.
     void cast(ElementId e, std::uint64_t key, std::span<std::uint32_t> leaves, std::uint32_t first = 0,
               Leave leave = Leave::front, std::span<float> counts = {});
 

@@ -66,7 +66,8 @@ std::vector<double> slow_difference(const Flow& flow, const LeafNumbers& leaves,
 /// Opening between the first leaves of an order and the others, m^2, for every position of the cut. Measured from the
 /// side with the smaller area: the few rays of a leaf on the larger side rarely find the opening.
 struct Cuts {
-    std::vector<double> area, opening;  ///< Area of the first k + 1 leaves, and their opening towards the others.
+    /// Per k: area of the first k + 1 leaves, and the opening between them and the others.
+    std::vector<double> area, opening;
 };
 
 Cuts sweep(const Flow& flow, const LeafNumbers& order, std::uint16_t part) {
@@ -98,7 +99,8 @@ Cuts sweep(const Flow& flow, const LeafNumbers& order, std::uint16_t part) {
         area += flow.area[order[k]], u += up[k], d += down[k], lost_below += lost[k];
         const bool is_small = 2 * area <= total;
         double outwards = is_small ? lost_below : all_lost - lost_below;
-        // The sky is on the side that sends more to it: only what the other side sends there crosses the cut.
+        // The sky is assigned to the side that sends more light to it. Only the light that the other side sends to the
+        // sky crosses the cut.
         if (flow.has_sky) outwards = std::min(lost_below, all_lost - lost_below);
         out.area[k] = area;
         out.opening[k] = (is_small ? u : d) + outwards;

@@ -17,7 +17,7 @@ constexpr unsigned most_portal_rays = 1 << 18;  ///< Rays that search for openin
 constexpr unsigned ray_batch = 1 << 10;         ///< Rays of a room that are cast in succession.
 constexpr std::size_t enough_ways =
     64;  ///< Rays through a room's openings after which the search stops: more would find the same openings.
-constexpr std::size_t most_openings = 8;  ///< Openings between two rooms, at most.
+constexpr std::size_t most_openings = 8;  ///< Maximum number of openings between two rooms.
 constexpr std::size_t most_cells = 16;    ///< Parallelograms at which rays of one room are aimed, at most.
 
 /// A ray from one room into another.

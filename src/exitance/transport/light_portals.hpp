@@ -32,17 +32,16 @@ std::vector<double> coarse_light(const Stage& stage, const LightRooms& rooms, co
 /// Finds openings between rooms and covers them with parallelograms. For a ray from one room into another, the point
 /// where equally much is seen of both rooms is taken as a point of the opening; lines through its neighbourhood that
 /// end in both rooms give the size. An opening need not be covered completely, since unaimed rays hit the rest.
-/// `light`: from coarse_light().
-/// Returns null if no opening is worth aiming at. Deterministic on any number of threads. Casts at most 2^18 rays, and
-/// some thousands per opening.
+/// `light`: from coarse_light(). Returns null if aiming at openings does not reduce the noise. Deterministic on any
+/// number of threads. Casts at most 2^18 rays, and some thousands per opening.
 std::shared_ptr<const LightPortals> find_light_portals(const Stage& stage, const LightRooms& rooms,
                                                        const ElementTree& tree, const LeafNumbering& numbering,
                                                        std::span<const double> light, std::uint64_t seed,
                                                        const StopRequest& stop);
 
-/// Returns the openings at which rays from x on region `own` should be aimed; empty if that does not pay.
+/// Returns the openings at which rays from x on region `own` should be aimed; empty if that does not reduce the noise.
 std::span<const PortalCell> portals_worth_aiming(const Stage& stage, RegionId own, const Point& x, const Normal& n);
-/// Returns `cells`, or nothing if aiming at them does not pay.
+/// Returns `cells`, or an empty span if aiming rays at them costs more than it saves.
 std::span<const PortalCell> worth_aiming(const Stage& stage, RegionId own, std::span<const PortalCell> cells,
                                          const Point& x, const Normal& n);
 

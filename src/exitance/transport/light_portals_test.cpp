@@ -33,7 +33,8 @@ TEST(PortalAim, BothHalvesOfTheRaysCoverTheHemisphere) {
         if (!aim.is_aimed_at(w)) rest += 1.0 / rays;
     }
     EXPECT_GT(aimed, 0.003);
-    EXPECT_NEAR(aimed + rest, 1, 2e-4);  // the rest is estimated from 65536 points, some hundreds of which are left out
+    // the rest is estimated from 65,536 points, of which only some hundreds contribute
+    EXPECT_NEAR(aimed + rest, 1, 2e-4);
     EXPECT_GT(towards / aimed, 0.3);
 }
 
@@ -60,7 +61,7 @@ TEST(LightPortals, AHoleIsFoundAndAimedAtFromTheDarkSide) {
         ASSERT_NE(stage.rooms.portals(), nullptr) << hole;
         EXPECT_TRUE(stage.rooms.portals()
                         ->of_room(1)
-                        .empty());  // room 1 is the box, which is brighter: its light needs no portal
+                        .empty());  // room 1 is the box. It is the brighter room, so its light needs no portal
         const auto cells = stage.rooms.portals()->of_room(0);
         ASSERT_FALSE(cells.empty()) << hole;
         double area = 0;

@@ -18,15 +18,15 @@ namespace {
 
 constexpr double least_share = 0.05;  ///< Area of a room as a share of all area but ground and sky, at least.
 constexpr double least_detail =
-    0.001;  ///< Elements of a small room beside ground and sky, as a share of all elements, at least.
+    0.001;  ///< Minimum number of elements of a small room next to ground and sky, as a share of all elements.
 /// Share of an element's rays that reach the sky, above which it is outdoors. Under an open sky that is half of the
 /// rays of a facade, and most of those of a ground.
 constexpr double outdoors = 0.25;
-constexpr double far_larger = 20;  ///< Extent of ground and sky over that of all other geometry, at least.
+constexpr double far_larger = 20;  ///< Minimum extent of ground and sky relative to all other geometry.
 constexpr double flattest = 0.1;   ///< Smallest over largest extent of a room; anything flatter is a gap.
 constexpr double thinnest =
     0.03;  ///< Mean distance between opposite walls over the square root of their area; anything thinner is a gap.
-constexpr std::size_t fewest_walls = 4;  ///< Walls of a room, at least.
+constexpr std::size_t fewest_walls = 4;  ///< Minimum number of walls of a room.
 constexpr std::size_t most_rooms = 64;
 constexpr unsigned least_rays =
     16;  ///< Rays per leaf, at least; a leaf of mean area has 24. Enough if rooms make up the whole scene.
@@ -37,7 +37,7 @@ constexpr std::size_t rays_outdoors = 1 << 18;  ///< Rays of all leaves together
 /// Starting values that differ between rooms: by position along a line, by distance from the centre, and a small random
 /// part.
 std::vector<double> starting_light(const ElementTree& tree, const LeafNumbering& numbering, std::uint64_t seed) {
-    constexpr Vec3 along{0.73, 0.54, 0.42};  // not parallel to the walls of usual buildings
+    constexpr Vec3 along{0.73, 0.54, 0.42};  // a direction that is not parallel to the walls of most buildings
     constexpr double chance = 0.1;
     Box box;
     for (ElementId root : tree.roots()) box.add(tree.patch(root).centre());
@@ -173,7 +173,8 @@ class RoomFinder {
         }
         std::stable_sort(out.begin(), out.end(), [](const Part& a, const Part& b) { return a.area < b.area; });
         if (out.empty()) {
-            if (flow_.has_sky) total_ = outer.area, whole_ = outer.box;  // ground, with or without objects on it
+            // the scene is a ground, with or without objects on it
+            if (flow_.has_sky) total_ = outer.area, whole_ = outer.box;
             return {std::move(outer)};
         }
         out.back().add(outer);
@@ -202,7 +203,7 @@ class RoomFinder {
         return own >= static_cast<std::ptrdiff_t>(fewest_walls);
     }
 
-    /// True if the sky is above a part. Such a part is judged by itself, whatever its shape and size.
+    /// True if the sky is above a part. Such a part is judged separately, independent of its shape and size.
     bool is_outdoors(const Part& part) const {
         double to_sky = 0;
         for (const std::uint32_t i : part.leaves) to_sky += flow_.area[i] * missed_share(flow_, i);
@@ -402,7 +403,7 @@ void LightRooms::weigh(const ElementTree& tree, const LeafNumbering& numbering, 
 }
 
 LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRequest& stop) {
-    constexpr std::size_t elements = 600;  // in addition to one per piece
+    constexpr std::size_t elements = 600;  // number of elements in addition to one per piece
     const std::vector<Piece> pieces = stage.lit_pieces();
     const ElementTree tree = stage.make_elements({edge_for_elements(pieces, pieces.size() + elements), 0}, &stop);
     auto locator = std::make_shared<const ElementLocator>(tree, stage.scene.regions().size());

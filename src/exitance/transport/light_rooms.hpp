@@ -20,7 +20,7 @@ class LightPortals;
 /// merged with a neighbour.
 class LightRooms {
   public:
-    /// The whole scene is one room.
+    /// Treats the whole scene as one room.
     LightRooms() = default;
 
     std::size_t count() const { return areas_.size(); }           ///< 0 if the whole scene is one room.
@@ -61,8 +61,8 @@ class LightRooms {
 
 /// Finds the rooms of a scene. Light exchanged between coarse elements becomes even within a room long before it does
 /// between rooms, so that cuts are searched along the differences that decay slowest [Lovasz93]. A cut is accepted at
-/// an opening narrower than a tenth of the smaller side's walls and half of what neighbouring cuts have. Casts some
-/// dozens of rays per element. Deterministic on any number of threads. O(elements x rays x log rooms).
+/// an opening narrower than a tenth of the smaller side's walls and than half of the openings of neighbouring cuts.
+/// Casts some dozens of rays per element. Deterministic on any number of threads. O(elements x rays x log rooms).
 LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRequest& stop);
 
 }  // namespace exitance

@@ -15,7 +15,7 @@ LightRooms rooms_of(const Scene& scene) {
     return find_light_rooms(Stage(scene), 1, StopRequest());
 }
 
-/// Adds a closed box whose faces look inwards.
+/// Adds a closed box whose faces have their fronts inside.
 void add_box(SceneDescription& d, Point lo, Point hi, std::uint32_t material) {
     const auto at = [&](int x, int y, int z) {
         d.points.push_back({x ? hi.x : lo.x, y ? hi.y : lo.y, z ? hi.z : lo.z});
@@ -77,7 +77,7 @@ TEST(LightRooms, CoveredFacesAreNoRoom) {
     add_box(d, {0, 0, 0}, {2, 2, 1}, 0);
     const std::size_t walls = d.faces.size();
     add_box(d, {0.5, 0.5, 0}, {1.5, 1.5, 0.4}, 0);
-    for (std::size_t i = walls; i < d.faces.size(); ++i)  // seen from outside
+    for (std::size_t i = walls; i < d.faces.size(); ++i)  // turn the faces of the inner box outwards
         std::reverse(d.faces[i].corners.begin(), d.faces[i].corners.end());
     EXPECT_EQ(rooms_of(*make_scene(std::move(d)).scene).count(), 0u);
 }
@@ -130,7 +130,7 @@ TEST(LightRooms, SealedRoomsAreSeparateAndHaveEqualWeight) {
 }
 
 TEST(LightRooms, SmallRoomsBelongToTheirNeighbourUnlessThatIsGroundOrSky) {
-    // 0.7% of the area: too small for a room, except beside a box of the size of a landscape.
+    // 0.7% of the area: too small for a room, except next to a box as large as a landscape.
     EXPECT_EQ(rooms_of(boxes({{{0, 0, 0}, {12, 12, 12}}, {{5, 5, 5}, {6, 6, 6}}})).count(), 0u);
     EXPECT_EQ(rooms_of(boxes({{{0, 0, 0}, {900, 900, 900}}, {{5, 5, 5}, {6, 6, 6}}})).count(), 2u);
 }

@@ -24,7 +24,7 @@ std::vector<WeightedPlace> leaf_nodes(const ElementTree& tree, ElementId e) {
     return nodes;
 }
 
-/// Aims the second half of a node's rays at openings if that pays, and sets the rays' weights.
+/// Aims the second half of a node's rays at openings if that reduces the noise, and sets the rays' weights.
 void aim(const Stage& stage, const Point& x, const Normal& n, RegionId region, const ScrambledSobol& points,
          std::span<Vec3> directions, std::span<float> counts) {
     const std::span<const PortalCell> cells = portals_worth_aiming(stage, region, x, n);

@@ -50,7 +50,7 @@ class LinearRows final : public TransportOperator {
     };
     struct Node {
         double area = 0;
-        std::size_t first_ray = 0, last_ray = 0;  ///< Empty if another process owns the node.
+        std::size_t first_ray = 0, last_ray = 0;  ///< Range of the node's rays; empty if another process owns the node.
     };
     struct Leaf {
         std::uint32_t first_node = 0, node_count = 0;
@@ -77,7 +77,7 @@ class LinearRows final : public TransportOperator {
     std::size_t rays_ = 0;
     FetchedValues fetched_;
     std::vector<std::uint32_t> met_;         ///< Leaves hit by rays of own nodes, ascending.
-    std::vector<std::uint32_t> first_read_;  ///< Per leaf of met_: index of its first node in read_.
+    std::vector<std::uint32_t> first_read_;  ///< Per leaf of met_: index in read_ of its first node.
     std::vector<std::uint32_t> read_;        ///< Index of each node's value among the own and fetched values.
 
     std::vector<Leaf> leaves_;

@@ -38,7 +38,7 @@ TEST(LinearRows, ReproduceALinearFunctionAtCornersAndInTheMean) {
     const LeafNumbering numbering(direct.tree);
     const ElementLocator locator(direct.tree, scene.regions().size());
     const LinearRows H(stage, direct, numbering, locator, {.average = 16, .least = 16, .most = 16}, 1);
-    ASSERT_EQ(H.size(), 24u);  // six squares of four nodes
+    ASSERT_EQ(H.size(), 24u);  // six squares with four nodes each
     const double g = 0.5 / std::sqrt(3.0);
     // f = 1 + u + 2 v at the nodes (0.5 -+ g, 0.5 -+ g), in the order of the rule, u first.
     std::vector<Spectrum> nodal(24);

@@ -54,7 +54,8 @@ Field<ElementId, std::uint8_t> find_narrow_leaves(const Stage& stage, const Elem
 
 double share_of_light_in_gaps(const Stage& stage, const DirectProjection& direct) {
     constexpr std::size_t min_samples = 4096;
-    constexpr double half = 0.5;  // with 1, elements as large as a wall would make a whole room a gap
+    // gap height as a share of the element's size; with 1, elements as large as a wall would make a whole room a gap
+    constexpr double half = 0.5;
     const double touching = coplanar * stage.scene.size();
     const std::vector<ElementId> leaves = direct.tree.leaves();
     const std::size_t step = leaves.size() / min_samples + 1;

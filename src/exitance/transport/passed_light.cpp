@@ -84,7 +84,7 @@ class PassedLight::Maker {
             if (gram_[k * n + k] > 0)
                 gram_[k * n + k] *= n > 1 ? 1 + 1e-12 : 1;  // regularizes functions that slivers hardly determine
             else
-                gram_[k * n + k] = 1;  // values that an element does not use
+                gram_[k * n + k] = 1;  // diagonal entry for values that an element does not use
         std::vector<double> weights(out_.weights_.begin() + static_cast<std::ptrdiff_t>(first_weight),
                                     out_.weights_.end());
         for (std::size_t t = 0; t < weights.size(); t += n * n) {

@@ -71,7 +71,7 @@ class PassedLight {
         double through;
         std::uint32_t first, last;  ///< Range of the row's terms.
     };
-    /// An element behind, and its nodes x nodes weights, stored row by row.
+    /// An element on the other side, and its nodes x nodes weights, stored row by row.
     struct Term {
         std::uint32_t element;
         std::size_t weights;
@@ -90,7 +90,7 @@ class PassedLight {
     }
 
     std::size_t nodes_ = 1;
-    std::vector<Row> rows_;              ///< One per element of a pane, in ascending order of elements.
+    std::vector<Row> rows_;              ///< One row per element of a pane, in ascending order of elements.
     std::vector<std::uint32_t> row_of_;  ///< Row of each element; empty if there are no panes.
     std::vector<Term> terms_;
     std::vector<double> weights_;
@@ -99,7 +99,7 @@ class PassedLight {
 /// Adds the passage through diffusing panes to a transport operator that carries light to one side only.
 class PassingTransport final : public TransportOperator {
   public:
-    /// Both must outlive it.
+    /// Both arguments must outlive this object.
     PassingTransport(const TransportOperator& one_sided, const PassedLight& passed) : F_(one_sided), passed_(passed) {}
 
     std::size_t size() const override { return F_.size(); }

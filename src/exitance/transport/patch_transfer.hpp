@@ -18,7 +18,7 @@ namespace exitance {
 /// Receiving elements and sending patches: two levels of one tree [Cohen86]. A patch is a leaf or an inner element;
 /// every leaf belongs to exactly one patch.
 struct PatchLevel {
-    std::vector<ElementId> patches;       ///< In order of their ids.
+    std::vector<ElementId> patches;       ///< The patches, in the order of their ids.
     std::vector<std::uint32_t> patch_of;  ///< The patch of each leaf, as an index into `patches`.
     std::vector<double> share;            ///< Area of each leaf over the area of its patch.
 
@@ -91,7 +91,7 @@ class PatchTransfer {
     /// Sample points in groups of sixteen, `samples_` per element. `sending_` has them in the order of the cells to
     /// which rays from cells 0 to 15 lead.
     std::vector<RayEnds> receiving_, sending_;
-    unsigned samples_;    ///< A multiple of 16.
+    unsigned samples_;    ///< Number of samples, a multiple of 16.
     bool joins_middles_;  ///< If true, one ray from centre to centre replaces the samples.
     std::uint64_t seed_;
     mutable std::atomic<std::size_t> rays_{0}, form_factors_{0};

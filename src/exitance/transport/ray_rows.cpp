@@ -13,7 +13,7 @@ namespace exitance {
 unsigned RayBudget::rays(double area, double mean_area) const {
     const double wanted = average * std::sqrt(area / mean_area);
     const double clamped = std::clamp(wanted, static_cast<double>(least), static_cast<double>(most));
-    return std::bit_floor(static_cast<unsigned>(clamped * std::numbers::sqrt2));  // to the nearer power of two
+    return std::bit_floor(static_cast<unsigned>(clamped * std::numbers::sqrt2));  // rounds to the nearer power of two
 }
 
 namespace {
@@ -25,7 +25,7 @@ struct Deal {
 };
 
 /// Assigns points to leaves. The points of a leaf begin at a multiple of their number, so that they are also stratified
-/// by themselves.
+/// within the leaf.
 std::vector<Deal> deal(const ElementTree& tree, const LeafNumbering& numbering, const std::vector<std::size_t>& first,
                        std::uint64_t seed, Dealing dealing) {
     const auto key = [&](std::size_t i) { return hash(seed, static_cast<std::uint64_t>(Stream::rows), i); };

@@ -62,7 +62,7 @@ struct Stage {
     ElementTree make_elements(MeshSize size, const StopRequest* stop = nullptr) const;
 
     double area = 0;                      ///< Area of all surfaces that are not excluded, m^2.
-    Field<RegionId, std::uint8_t> unlit;  ///< Excluded regions; empty: none.
+    Field<RegionId, std::uint8_t> unlit;  ///< 1 for regions that are excluded; empty: none is.
     LightRooms rooms;                     ///< Rooms by which errors are judged.
 
     /// Area of an element as weighted in error measures, m^2.

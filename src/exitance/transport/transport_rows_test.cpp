@@ -40,7 +40,8 @@ TEST(RayRows, SumToOneInAClosedScene) {
     const Cube cube;
     const RayRows F = cube.rows(64);
     const std::vector<Spectrum> ones(F.size(), Spectrum(1.0));
-    for (std::size_t i = 0; i < F.size(); ++i) EXPECT_NEAR(F.gather_at(i, ones)[0], 1, 1e-14);  // a sum of ones
+    // rounding of a sum of ones
+    for (std::size_t i = 0; i < F.size(); ++i) EXPECT_NEAR(F.gather_at(i, ones)[0], 1, 1e-14);
 }
 
 TEST(RayRows, AgreeWithTheClosedForm) {

@@ -31,11 +31,12 @@ class ClosedVariance {
         return all > 0 ? std::max(0.0, sum_ - squares_ / all) : 0;
     }
 
-    /// Value that the squared error of the row, and the squared error of a sum over any group of its entries, exceed as
-    /// rarely as a normal variable exceeds its mean by `deviations` standard deviations, in either case. The squared
-    /// error has the mean V and the variance 2 tr(C C), as V / n times a chi-square variable of n = V^2 / tr(C C)
-    /// degrees of freedom has, whose quantile is that of Wilson and Hilferty. A group of variance v has a squared error
-    /// below deviations^2 v (1 - v / S). At least V.
+    /// Limit for the squared error of the row, and for that of a sum over any group of its entries. Each exceeds the
+    /// limit as rarely as a normal variable exceeds its mean by `deviations` standard deviations. The squared error has
+    /// the mean V and the variance 2 tr(C C), like V / n times a chi-square variable with n = V^2 / tr(C C) degrees of
+    /// freedom; its quantile is approximated by Wilson and Hilferty's formula. The squared error of a group of variance
+    /// v is below deviations^2 v (1 - v / S). The limit is at least V.
+    ///
     /// missed  as for closed(); none: the closure defect is not distributed
     double limit(std::optional<double> missed, double deviations) const {
         const double V = missed ? closed(*missed) : sum_;

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t max_parts = 48;  ///< Parts of the receiver after cutting it below edges, at most.
+constexpr std::size_t max_parts = 48;  ///< Maximum number of parts of the receiver after it is cut below edges.
 /// The receiver is cut below edges up to this height, as a share of its size.
 constexpr double max_cut_height = 0.1;
 /// Error of a cell of which all points are dark: this share of the light that it would hold if light faded at a
@@ -149,8 +149,8 @@ double ClutteredExchange::share_under_edges(const Cell& cell) const {
     return share;
 }
 
-/// Light that the points of a cell below an edge may have missed: a share of the light that they found or, if they
-/// found little, of a third of the receiver's average.
+/// Light that the points of a cell below an edge may have missed: a share of the light that they found or, if that is
+/// little, a share of a third of the receiver's average.
 double ClutteredExchange::unseen(const Cell& cell) const {
     return unseen_strip * std::max(cell.integral, 0.3 * total_ * area_of(cell.corners()) / area_);
 }
@@ -242,7 +242,7 @@ void ClutteredExchange::add_source(Cell& cell, const SourcePart& source) {
     cell.sources.push_back(std::move(part));
 }
 
-/// Contour integral of a cell whose sources are all unoccluded.
+/// Returns the contour integral of a cell whose sources are all unoccluded.
 double ClutteredExchange::exact(const Cell& cell) const {
     std::array<Point, 4> corners;
     for (std::size_t i = 0; i < cell.count; ++i) corners[i] = frame_.at(cell.corner[i]);
@@ -252,7 +252,7 @@ double ClutteredExchange::exact(const Cell& cell) const {
     return sum;
 }
 
-/// Sets the integral and the error of a cell from its rules.
+/// Computes the integral of a cell and its error from its two rules.
 void ClutteredExchange::judge(Cell& cell) {
     double most = 0, sum = 0;
     std::size_t k = 0;

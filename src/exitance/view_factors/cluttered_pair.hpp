@@ -23,7 +23,7 @@ class ClutteredExchange {
     struct Allowance {
         double relative = 1e-4;                 ///< Share of the value.
         double absolute = 0;                    ///< m^2
-        double ignored = 0;                     ///< m^2; smaller values need no accuracy.
+        double ignored = 0;                     ///< Exchange areas below this need no accuracy, m^2.
         std::size_t most_evaluations = 20'000;  ///< Limit on the evaluations of a pair.
     };
 
@@ -48,7 +48,7 @@ class ClutteredExchange {
         std::array<Vec2, 4> corner;
         std::uint32_t count;
         double integral = 0, error = 0;   ///< Integral over the cell, and its estimated error, m^2.
-        std::vector<SourcePart> sources;  ///< Excludes parts that are certainly hidden.
+        std::vector<SourcePart> sources;  ///< Parts of the source, without those that are certainly hidden.
         std::span<const Vec2> corners() const { return std::span(corner).first(count); }
         bool operator<(const Cell& other) const { return error < other.error; }
     };
@@ -83,7 +83,7 @@ class ClutteredExchange {
     /// Weights in m^2; form factors to the whole source; form factors to a part of it.
     std::vector<double> weights_, values_, factors_;
     std::vector<Seen> seen_;
-    std::vector<std::size_t> ends_;  ///< End of each rule's nodes.
+    std::vector<std::size_t> ends_;  ///< Per rule: end of its nodes in `nodes_`.
     double area_ = 0, total_ = 0, squared_error_ = 0, relative_ = 0;
     double brightest_ = 0;  ///< Largest form factor found, or a bound on the one that may have been missed.
     bool all_lit_ = true, turned_ = false;

@@ -43,7 +43,7 @@ OneSide side_of(const RowEntry& entry, double face_area) {
 }
 
 Exchange combined(const OneSide& a, const OneSide& b) {
-    double share = 0.5;  // weight of the first estimate
+    double share = 0.5;  // weight of estimate `a`
     if (a.density != b.density)
         share = std::isinf(a.density) ? 1 : std::isinf(b.density) ? 0 : a.density / (a.density + b.density);
     return {share * a.area + (1 - share) * b.area, share * share * a.variance + (1 - share) * (1 - share) * b.variance};
@@ -146,7 +146,7 @@ class Combination {
             const RowEntry& entry = rows_[i].entries[k];
             const std::uint32_t j = entry.column;
             const OneSide mine = side_of(entry, areas_[i]), theirs = side_of(*find_entry(rows_[j], i), areas_[j]);
-            // In fixed order, so that both rows get the same bits.
+            // Combine in fixed order, so that both rows get identical bits.
             const Exchange e = i < j ? combined(mine, theirs) : combined(theirs, mine);
             out.areas[k] = e.area, out.variances[k] = static_cast<float>(e.variance);
         }
@@ -173,7 +173,7 @@ class Combination {
     std::vector<RawRow>& rows_;
     const std::vector<double>& areas_;
     std::vector<ExchangeRow> exchanges_;
-    std::vector<double> defect_, stiffness_, multiplier_;  ///< m^2, m^4, 1 / m^2.
+    std::vector<double> defect_, stiffness_, multiplier_;  ///< In m^2, m^4 and 1 / m^2, one value per row.
     std::vector<double> unseen_;  ///< Variance of the share of a sky that no ray reached; 0: there is none.
 };
 
@@ -229,7 +229,7 @@ class RowAppender {
         limits_.push_back(std::sqrt(variance_.limit(missed_variance, options_.deviations)) + bound + dropped_);
         sum_ = dropped_ = 0, variance_ = {};
     }
-    /// Per row: the limit that its error exceeds rarely.
+    /// Returns the limit of each row: its error exceeds it only rarely.
     std::vector<double> take_limits() { return std::move(limits_); }
 
   private:
@@ -243,7 +243,7 @@ class RowAppender {
 }  // namespace
 
 std::vector<double> combine_rows(std::vector<RawRow>& rows, const CombineOptions& options, SparseFactors& out) {
-    if (out.starts.size() == 1) find_defects(rows, options.error, out);  // after the first pass
+    if (out.starts.size() == 1) find_defects(rows, options.error, out);  // only after the first pass
     Combination combination(rows, out.areas);
     combination.combine();
     out.unclosed = combination.close();

@@ -8,7 +8,7 @@
 namespace exitance {
 
 struct CombineOptions {
-    double smallest = 0;    ///< Smaller entries are dropped.
+    double smallest = 0;    ///< Entries below this are dropped.
     double deviations = 0;  ///< See ClosedVariance::limit().
     double error = 1e-3;    ///< R; closure defects are computed for rows with at most this error of the missed share.
 };

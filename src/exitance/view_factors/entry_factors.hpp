@@ -9,7 +9,7 @@ namespace exitance {
 
 struct EntryFactorOptions {
     double tolerance = 1e-4;                    ///< Relative error of every entry above 1e-6.
-    double smallest = 0;                        ///< Smaller entries are dropped.
+    double smallest = 0;                        ///< Entries below this are dropped.
     std::size_t memory_limit_bytes = SIZE_MAX;  ///< Computation of rows stops if the process uses more.
 };
 

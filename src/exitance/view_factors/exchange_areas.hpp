@@ -30,7 +30,7 @@ class TableExchange final : public ExchangeAreas {
     std::vector<std::vector<std::pair<std::uint32_t, double>>> rows_;
 };
 
-/// Exchange areas of an operator, which must outlive it.
+/// Exchange areas of an operator, which must outlive this object.
 class OperatorExchange final : public ExchangeAreas {
   public:
     explicit OperatorExchange(const FactorOperator& transport) : transport_(transport) {}

@@ -27,11 +27,12 @@ class FaceTree {
     /// Restores a tree from a permutation of the numbers of all faces.
     explicit FaceTree(std::vector<std::uint32_t> order);
 
-    std::size_t size() const { return order_.size(); }               ///< Number of faces.
-    std::size_t nodes() const { return ranges_.size(); }             ///< size() - 1, or 0 without faces.
-    std::span<const std::uint32_t> order() const { return order_; }  ///< Faces; those of a node are consecutive.
+    std::size_t size() const { return order_.size(); }    ///< Number of faces.
+    std::size_t nodes() const { return ranges_.size(); }  ///< size() - 1, or 0 without faces.
+    /// Faces in the order of the tree: the faces of a node are consecutive.
+    std::span<const std::uint32_t> order() const { return order_; }
     const Range& range(std::size_t node) const { return ranges_[node]; }
-    static std::size_t first_child(std::size_t node) { return node + 1; }  ///< Valid if it has at least two faces.
+    static std::size_t first_child(std::size_t node) { return node + 1; }  ///< Valid for nodes with at least two faces.
     std::size_t second_child(std::size_t node) const { return node + ranges_[node].size() / 2; }  ///< Likewise.
 
     /// Sets `of_nodes[k]` to the sum of the values of the faces of node k.

@@ -58,8 +58,8 @@ inline RowFactorOptions operator_table_options(double error, double smallest, st
 /// node changes a product by at most T_iC (max x - min x) over its faces, hence not at all if x is constant there. Of
 /// all thresholds for T_iC, each row uses the largest with sqrt(sum_C T_iC^2) <= `error`; this sum is added to the
 /// row's variance. An entry F_ij is merged only if F_ji is below the threshold of row j, too. Without this condition,
-/// the row of a floor would merge the undersides of chairs, to which the floor is most of what they exchange light
-/// with, and F^T would be wrong there. Nodes are as small as possible, and a node replaces at least two entries.
+/// the row of a floor would merge the undersides of chairs, although these exchange most of their light with the floor,
+/// and F^T would be wrong there. Nodes are as small as possible, and a node replaces at least two entries.
 /// O(entries log faces).
 /// faces  in the order of the table's rows
 /// table  combined rows, so that A_i F_ij = A_j F_ji

@@ -106,7 +106,7 @@ TEST(FactorOperator, ProductsMissARowByLessThanTheRequestedError) {
 }
 
 /// Entries are merged only if they are small in both rows, so that the reciprocal product A^-1 F^T A x is accurate,
-/// too, up to what the members of a node differ in.
+/// too, up to the differences between the members of a node.
 TEST(FactorOperator, TransposedProductsAreReciprocal) {
     const double R = 0.03;
     const Scene scene = complex_of("12");

@@ -16,14 +16,14 @@ constexpr double stefan_boltzmann = 5.670374419e-8;
 
 /// Thermal state of a surface: gray, diffuse and opaque. Either its temperature or its net heat is given.
 struct ThermalSurface {
-    double emissivity = 0.9;                 ///< In (0, 1].
+    double emissivity = 0.9;                 ///< Emissivity, in (0, 1].
     std::optional<double> temperature = {};  ///< K
     double heat = 0;  ///< Net radiative heat that leaves the surface, W; used if there is no temperature. 0: adiabatic.
 };
 
 /// Radiative heat transfer between surfaces.
 struct GrayExchange {
-    std::vector<double> temperature;  ///< K, per surface.
+    std::vector<double> temperature;  ///< Temperature of each surface, K.
     std::vector<double> radiosity;    ///< W/m^2
     std::vector<double> heat;         ///< Net radiative heat that leaves each surface, W.
     double surroundings = 0;          ///< Net heat that the surroundings receive, W; 0 without surroundings.
@@ -37,8 +37,9 @@ struct GrayExchange {
 ///     A_i (J_i - H_i) = Q_i,                                                                         Q_i given,
 ///
 /// by conjugate gradients on the symmetric system that results from multiplying by A_i / (1 - e_i), A_i F_ij being
-/// symmetric. `surroundings`: T_s, K; empty: the surfaces form an enclosure, and what is missing in a row because of
-/// the factors' error (at most 1% and three times the row's error) is not lost but given back in proportion to the row.
+/// symmetric. `surroundings`: T_s, K; empty: the surfaces form an enclosure, and the missing part of a row's sum due to
+/// the factors' error (at most 1% and three times the row's error) is not lost but distributed in proportion to the
+/// row.
 /// A surface's net heat is exact for these factors: the heats of all surfaces and of the surroundings add up to 0.
 /// Errors: ErrorCode::bad_input for values out of range, or if nothing determines the level of temperatures;
 /// ErrorCode::limit if a stop is requested. O(entries) per iteration; iterations grow with the mean number of

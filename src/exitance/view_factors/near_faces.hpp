@@ -34,7 +34,7 @@ class NearFaces {
   private:
     /// Faces of about the same size.
     struct Size {
-        double area = 0, radius = 0;  ///< The largest of any of them, m^2 and m.
+        double area = 0, radius = 0;  ///< Largest area (m^2) and largest radius (m) of these faces.
         std::vector<std::uint32_t> faces;
         Bvh middles;  ///< Items are indices in `faces`.
     };

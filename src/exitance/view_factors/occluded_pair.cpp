@@ -9,13 +9,15 @@ namespace exitance {
 namespace {
 
 constexpr int max_depth = 20;              ///< Halvings of a cell, at most: down to 1e-3 of its size in each direction.
-constexpr double dominating_share = 0.25;  ///< Share of the tolerance for entries that dominate their row.
+constexpr double dominating_share = 0.25;  ///< Share of the tolerance that applies to entries that dominate their row.
 constexpr double dark_corner = 0.05;  ///< Share of the light that a dark cell may receive, if parts of it may be lit.
 constexpr double unseen_brightness = 0.05;  ///< Share of the whole source that may be visible although no point saw it.
-constexpr double surely_ignored = 0.3;      ///< Share of demand.ignored: estimates above it may be inaccurate.
+/// Share of demand.ignored. Estimates below it are treated as negligible; between it and 1 they may be too inaccurate
+/// for that.
+constexpr double surely_ignored = 0.3;
 /// Share of a cell's allowed error that its rules may have due to the nearness of the source alone. With the full
-/// allowance, cells along a common edge with the source would fail at every size, as they are as near to it as they are
-/// small.
+/// allowance, cells along a common edge with the source would fail at every size, as their distance from it is
+/// proportional to their size.
 constexpr double near_part = 0.1;
 constexpr double near_share = 0.5;  ///< Error of the better of two rules at an edge, as a share of their difference.
 

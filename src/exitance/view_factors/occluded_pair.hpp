@@ -13,7 +13,8 @@ namespace exitance {
 
 /// Two convex polygons and their possible blockers.
 struct OccludedPair {
-    std::span<const Point> receiver, source;  ///< Each wholly in front of the other's plane, 3 to 12 corners, metres.
+    /// Convex polygons with 3 to 12 corners, each wholly in front of the other's plane, metres.
+    std::span<const Point> receiver, source;
     Plane receiver_plane, source_plane;
     std::span<const ConvexBlocker* const> blockers;
 };
@@ -21,10 +22,10 @@ struct OccludedPair {
 /// Accuracy required of the quadrature of a partly hidden pair.
 struct Demand {
     double relative = 1e-4;  ///< Relative error of the pair's exchange area.
-    double absolute = 0;     ///< m^2; an error that is always accepted.
-    double ignored = 0;      ///< m^2; smaller exchange areas need no accuracy.
+    double absolute = 0;     ///< Error that is always accepted, m^2.
+    double ignored = 0;      ///< Smaller exchange areas need no accuracy, m^2.
     double large = 0;        ///< m^2; larger exchange areas are integrated more carefully.
-    double dominating = 0;   ///< m^2; larger exchange areas determine the error of their row.
+    double dominating = 0;   ///< Larger exchange areas determine the error of their row, m^2.
     /// Limit on the cells of the receiver: with more, critical lines are not worthwhile.
     std::size_t most_cells = SIZE_MAX;
 };
@@ -78,7 +79,7 @@ class OccludedExchange {
         double area = 0, two_points = 0;  ///< m^2; the latter is the integral by 2 x 2 Gauss points.
         double middle = 0;                ///< Form factor from the centre to the visible part.
         Glance glance;
-        bool complete = false;  ///< True if no critical line that crosses it was omitted.
+        bool complete = false;  ///< True if no critical line that crosses this cell was omitted.
 
         void add(Vec2 p) { corner[count++] = p; }
         std::span<const Vec2> corners() const { return std::span(corner).first(count); }
@@ -87,7 +88,7 @@ class OccludedExchange {
     struct Task {
         Cell cell;
         double distance, allowed;  ///< Distance to the source, metres; allowed error, m^2.
-        double sum;                ///< m^2, by the best rule so far.
+        double sum;                ///< Integral by the best rule so far, m^2.
         Glance glance;             ///< Visibility found by that rule.
         int depth;
         /// m^2: for a cell too near to the source for quadrature, the exact integral without occlusion, from which a

@@ -5,7 +5,7 @@ namespace {
 
 /// Weight of the first of two estimates.
 double share_of(double density, double other) {
-    if (density == other) return 0.5;  // also if both are integrated
+    if (density == other) return 0.5;  // also the case if both are integrated, i.e. infinite
     return std::isinf(density) ? 1 : std::isinf(other) ? 0 : density / (density + other);
 }
 

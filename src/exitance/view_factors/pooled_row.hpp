@@ -4,8 +4,8 @@
 
 namespace exitance {
 
-/// Mean of two independent estimates of the row of one face, weighted by their numbers of samples: of every entry, and
-/// of the shares of the sky and of backs. Face and round are those of `a`. O(entries).
+/// Returns the mean of two independent estimates of one face's row, weighted by their numbers of samples: of every
+/// entry, and of the shares of the sky and of backs. The result has the face and the round of `a`. O(entries).
 RawRow pooled(const RawRow& a, const RawRow& b);
 
 }  // namespace exitance

@@ -99,7 +99,7 @@ std::vector<DrawnEntry> draw_entries(const SparseFactors& table, const RayCheckO
             if (table.values[k] > ViewFactors::smallest_entry) above.push_back({i, table.columns[k], table.values[k]});
     const std::size_t count = std::min(options.entries, above.size());
     RandomStream random(options.seed, Stream::reference, table.size());
-    for (std::size_t k = 0; k < count; ++k) {  // the first steps of a shuffle
+    for (std::size_t k = 0; k < count; ++k) {  // a random selection: the first steps of a shuffle
         const auto rest = static_cast<double>(above.size() - k);
         std::swap(above[k], above[std::min(above.size() - 1, k + static_cast<std::size_t>(random.uniform() * rest))]);
     }

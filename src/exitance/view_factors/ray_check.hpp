@@ -10,8 +10,8 @@ namespace exitance {
 
 /// Options of a check of view factors by rays.
 struct RayCheckOptions {
-    std::size_t entries = 100;    ///< Chosen at random from those above 1e-6, without repetition.
-    std::size_t rays = 1u << 14;  ///< Per entry; rounded up to whole batches of 64 x 16.
+    std::size_t entries = 100;    ///< Number of entries, chosen at random without repetition from those above 1e-6.
+    std::size_t rays = 1u << 14;  ///< Number of rays per entry; rounded up to whole batches of 64 x 16.
     std::uint64_t seed = 1;
     double tolerance = 0;  ///< Allowed relative error of the table's entries.
 };

@@ -34,7 +34,8 @@ SparseFactors table_of(const Scene& scene) {
     return sparse_from(*compute_view_factors(scene, 1e-5, progress, StopRequest()));
 }
 
-constexpr double parallel_squares = 0.199824895698387;  // of unit size, one apart [Howell]
+// view factor of parallel unit squares at a distance of 1 [Howell]
+constexpr double parallel_squares = 0.199824895698387;
 
 TEST(RayCheck, RaysAgreeWithThePublishedFactorWithinTheirErrors) {
     const Scene scene = squares_with_a_board(false);

@@ -28,7 +28,7 @@ double RowCaster::variance(const Count& count) const {
 /// Traces the rays in origins_ and directions_ and counts the faces that they hit.
 void RowCaster::trace(std::size_t face, bool under_others) {
     const RegionId own = scene_.region(face);
-    if (under_others) {  // rays that start below another face hit it at once
+    if (under_others) {  // rays that start below another face hit it at once, so remove them
         std::size_t kept = 0;
         for (std::size_t k = 0; k < origins_.size(); ++k)
             if (!scene_.occluders.is_covered(origins_[k], scene_.faces[face].plane.n, own))
@@ -59,7 +59,8 @@ void RowCaster::sort_by_direction(std::size_t count) {
     const auto cell_of = [&](std::size_t k) {
         const auto place = [&](double x) { return static_cast<std::size_t>(x * static_cast<double>(cells)); };
         const std::size_t row = place(coordinates_[2][k]), column = place(coordinates_[3][k]);
-        return row * cells + (row % 2 == 0 ? column : cells - 1 - column);  // neighbours follow each other
+        // in a zigzag, so that consecutive cells are neighbours
+        return row * cells + (row % 2 == 0 ? column : cells - 1 - column);
     };
     std::array<std::uint16_t, block / rays_a_packet + 1> starts{};
     for (std::size_t k = 0; k < count; ++k) ++starts[cell_of(k) + 1];

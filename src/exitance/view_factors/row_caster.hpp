@@ -22,15 +22,15 @@ class RowCaster {
 
     struct Count {
         std::uint32_t column;
-        double hits, squares;  ///< Sums over batches of the hits of a batch and of their squares.
+        double hits, squares;  ///< Sums over batches: of the hits in a batch, and of the squares of these.
     };
 
     /// `rays_a_batch`: a power of two, at least 16; `under_others`: true if another face may cover part of the face.
     void cast(std::size_t face, std::size_t batches, std::size_t rays_a_batch, bool under_others, std::uint64_t seed);
 
     std::span<const Count> counts() const { return counts_; }  ///< Sorted by column.
-    const Count& sky() const { return sky_; }                  ///< Rays that hit nothing; its column has no meaning.
-    const Count& back() const { return back_; }                ///< Rays that hit a back or started below another face.
+    const Count& sky() const { return sky_; }    ///< Count of rays that hit nothing; its column is unused.
+    const Count& back() const { return back_; }  ///< Rays that hit a back or started below another face.
     std::size_t rays() const { return batches_ * rays_a_batch_; }
     double share(const Count& count) const { return count.hits / static_cast<double>(rays()); }
     /// Variance of share().
@@ -55,7 +55,8 @@ class RowCaster {
     Count sky_{}, back_{}, missed_{};
     std::vector<Count> counts_;
     std::vector<double> coordinates_[4];
-    std::vector<std::uint16_t> order_;  ///< Points of a block in the order in which their rays are traced.
+    /// Indices of the points of a block, in the order in which their rays are traced.
+    std::vector<std::uint16_t> order_;
     std::vector<Point> origins_;
     std::vector<Vec3> directions_;
     std::vector<RayHit> found_;

@@ -69,7 +69,7 @@ CheckedRow check_row(const RowScene& ready, const std::vector<double>& F, std::s
     CheckedRow checked;
     checked.face = face;
     for (std::size_t j = 0; j < F.size(); ++j) checked.squared_error += (F[j] - G1[j]) * (F[j] - G2[j]);
-    const double one = 1 / (n * n);  // in case one more ray might have hit
+    const double one = 1 / (n * n);  // variance of one additional hit, so that the deviation is never zero
     checked.squared_error_deviation = std::sqrt(squared_error_variance(F, G1, G2, n) + one * one);
     RandomStream random(options.seed, Stream::reference, face, 3);
     const std::vector<std::size_t> centres = draw_centres(ready, face, options, random, stop);
@@ -94,7 +94,7 @@ std::vector<std::size_t> draw_rows(std::span<const std::uint8_t> finished, const
         if (finished[i]) faces.push_back(i);
     RandomStream random(options.seed, Stream::reference, finished.size(), 0);
     const std::size_t count = std::min(options.rows, faces.size());
-    for (std::size_t k = 0; k < count; ++k) {  // the first steps of a shuffle
+    for (std::size_t k = 0; k < count; ++k) {  // a random selection: the first steps of a shuffle
         const auto rest = static_cast<double>(faces.size() - k);
         std::swap(faces[k], faces[std::min(faces.size() - 1, k + std::size_t(random.uniform() * rest))]);
     }

@@ -26,7 +26,7 @@ struct RowCheckOptions {
 struct CheckedRow {
     std::size_t face = 0;
     double squared_error = 0;  ///< sum_j (F - G1)_j (F - G2)_j, an unbiased estimate of the squared error of the row.
-    double squared_error_deviation = 0;  ///< Its standard error.
+    double squared_error_deviation = 0;  ///< Standard error of `squared_error`.
     /// Maximum over x of (|sum_j (F - G)_j x_j| - R) in standard errors, for x = 1 and for the indicators of the
     /// groups.
     double largest_sum_excess = 0;

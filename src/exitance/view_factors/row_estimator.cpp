@@ -53,7 +53,8 @@ double cast_rays_for(double share, double variance) {
 /// Number of further samples, in units of those taken, after which the pooled estimates have `ratio` times the
 /// deviation: (1 + r^(2 - rate)) / (1 + r)^2 = ratio^2.
 double further_samples(double ratio) {
-    constexpr double safety = 0.95, least = 0.1, most = 64;  // the pilot's predictions err by some 20%
+    // a margin, since the pilot's predictions have errors of some 20%
+    constexpr double safety = 0.95, least = 0.1, most = 64;
     const double wanted = safety * ratio * ratio;
     double low = least, high = most;
     for (int step = 0; step < 30; ++step) {
@@ -89,8 +90,8 @@ double RowEstimator::left_of_cast(std::size_t face, std::uint32_t column) const 
     return std::pow(1 + scene_.faces[face].area / scene_.faces[column].area, -cast_rate);
 }
 
-/// Like left_of_cast(), for a pair's own samples: for equal requirements the rows' numbers of samples have the ratio
-/// (U_ij / U_ji)^(2 / (1 + rate)).
+/// Like left_of_cast(), for the samples that a pair has for itself: if both rows have equal requirements, their numbers
+/// of samples have the ratio (U_ij / U_ji)^(2 / (1 + rate)).
 double RowEstimator::left_of_pair(std::size_t face, std::uint32_t column) const {
     const double ratio = scene_.faces[face].area / scene_.faces[column].area;
     return std::pow(1 + std::pow(ratio, 2 / (1 + pair_rate)), -pair_rate);
@@ -124,7 +125,7 @@ void RowEstimator::find_candidates(std::size_t face) {
     const ViewFace& own = scene_.faces[face];
     const Point x = scene_.middles[face];
     const double reach = scene_.radii[face] + 1e-4 * scene_.scene.size();
-    // A pair is worth its cost if it saves that many cast rays. A tenth of it is a safe limit.
+    // A pair is treated individually if that saves at least this number of cast rays. A tenth of it is a safe limit.
     const double negligible = 0.1 * pair_cost * cast_rate / cast_rays_for(1, error_ * error_);
     candidates_.clear();
     under_others_ = false;
@@ -317,7 +318,7 @@ std::optional<RawRow> RowEstimator::operator()(std::size_t face, std::uint32_t r
     classify(face, round);
     const double wanted = share * error_;
     RawRow row;
-    double samples = 0;  // of the row, as a multiple of those that the plan for `wanted` has
+    double samples = 0;  // number of samples, relative to the plan for `wanted`
     if (before) {
         row = *before;
         samples = std::pow(wanted / std::max(combined_limit(row), wanted), 2 / cast_rate);

@@ -53,7 +53,8 @@ class RowEstimator {
         double deviation() const;
     };
     struct Plan {
-        std::size_t batches = 0, rays_a_batch = 0;  ///< Numbers for the cast rays.
+        /// Number of batches of rays cast for the whole row, and of rays per batch.
+        std::size_t batches = 0, rays_a_batch = 0;
     };
 
     void find_candidates(std::size_t face);

@@ -28,8 +28,9 @@ constexpr double first_share = 1;
 /// error that would suffice if all variance were their own.
 constexpr double repeated_share = 0.75;
 constexpr std::uint32_t max_repeats = 4;
-/// A row that misses 1 by far is not a matter of chance alone, and more rays would not help: no repeat takes more than
-/// about 16 times as many, derived from errors that fall with the root of their number.
+/// Lower limit of the factor on a row's tolerance, derived from errors that fall with the root of the number of rays: a
+/// repeat takes at most about 16 times as many. If a row misses 1 by more than that, chance is not the only cause, and
+/// more rays would not help.
 constexpr double least_factor = 0.25;
 
 class RowRun {

@@ -191,7 +191,7 @@ TEST(RowFactors, CountTheSkyAndBacksOfFaces) {
     EXPECT_NEAR(entry(open, 0, 1), F, R);
     EXPECT_NEAR(open.sky[0], 1 - F, 3 * R);
     EXPECT_EQ(open.back[0], 0);
-    const Outline away(high.rbegin(), high.rend());  // its back is below
+    const Outline away(high.rbegin(), high.rend());  // the back of this face is below
     const SparseFactors turned = factors_of(scene_of({low, away}), {.error = R});
     EXPECT_EQ(entry(turned, 0, 1), 0);
     EXPECT_NEAR(turned.back[0], F, 3 * R);
@@ -224,8 +224,8 @@ TEST(RowFactors, KeepInvariantsOnRandomScenes) {
         RandomStream random(seed, Stream::reference, 1);
         const auto between = [&](double a, double b) { return a + (b - a) * random.uniform(); };
         std::vector<Outline> faces;
-        for (int k = 0; k < 4; ++k) {  // in different quadrants, so that boxes do not intersect
-            // In statements of their own: compilers evaluate arguments in different orders.
+        for (int k = 0; k < 4; ++k) {  // boxes in different quadrants, so that they do not intersect
+            // In separate statements, since compilers evaluate arguments in different orders.
             const double turn = between(0, 3);
             const Vec3 size{between(0.3, 1.1), between(0.3, 1.1), between(0.3, 1.5)};
             const Point centre{2.0 * (k % 2) + between(0.9, 1.1), 2.0 * (k / 2) + between(0.9, 1.1), between(0, 2)};
@@ -233,7 +233,7 @@ TEST(RowFactors, KeepInvariantsOnRandomScenes) {
         }
         const SparseFactors without = factors_of(scene_of(faces), {.error = R});
         std::vector<Outline> more = faces;
-        const double at = between(0, 4);  // a screen through the scene
+        const double at = between(0, 4);  // position of a screen through the scene
         more.push_back({{at, -1, -1}, {at, 5, -1}, {at + 0.3, 5, 3}, {at + 0.3, -1, 3}});
         const SparseFactors with = factors_of(scene_of(more), {.error = R});
         for (std::size_t i = 0; i < without.size(); ++i) {
@@ -241,7 +241,8 @@ TEST(RowFactors, KeepInvariantsOnRandomScenes) {
             for (std::size_t j = 0; j < without.size(); ++j) {
                 const double F = entry(without, i, j);
                 EXPECT_TRUE(F >= 0 && F <= 1) << seed << ' ' << i << ' ' << j;
-                EXPECT_LE(entry(with, i, j), F + 6 * R) << seed << ' ' << i << ' ' << j;  // three errors of each
+                // tolerance: three standard errors of each entry
+                EXPECT_LE(entry(with, i, j), F + 6 * R) << seed << ' ' << i << ' ' << j;
                 EXPECT_NEAR(without.areas[i] * F, without.areas[j] * entry(without, j, i), 1e-12);
             }
         }

@@ -23,7 +23,7 @@ struct RowScene {
     std::vector<Point> middles;  ///< Mean of the corners of each face.
     std::vector<double> radii;   ///< Largest distance of a face's corner from its middle, metres.
     NearFaces near;              ///< Finds the faces that may matter to a face.
-    double slack;                ///< Metres; points nearer to a plane than this are in it.
+    double slack;                ///< Points nearer to a plane than this lie in it, metres.
 
     RegionId region(std::size_t face) const {
         return scene.surfaces()[SurfaceId(static_cast<std::uint32_t>(face))].region;

@@ -12,14 +12,14 @@ namespace exitance {
 /// View factors between all faces of a scene as compressed rows, in the order of its file. F_ij is the share of the
 /// diffuse flux leaving face i that reaches the front of face j directly.
 struct SparseFactors {
-    std::vector<double> areas;       ///< m^2, one per face.
+    std::vector<double> areas;       ///< Area of every face, m^2.
     std::vector<double> emittances;  ///< 1 - reflectance, mean over the bands, one per face.
     /// Start of each row in `columns` and `values`, and the end of the last one.
     std::vector<std::size_t> starts = {0};
-    std::vector<std::uint32_t> columns;  ///< Ascending within a row.
+    std::vector<std::uint32_t> columns;  ///< Column of each entry, ascending within a row.
     std::vector<double> values;
 
-    std::vector<double> row_sums;  ///< One per face.
+    std::vector<double> row_sums;  ///< Sum of each row's factors, one value per face.
     /// Shares of the flux leaving each face that leave the scene, and that reach the back of a face or start below
     /// another face. Found by rays. Empty if they were not computed.
     std::vector<double> sky, back;
@@ -28,7 +28,7 @@ struct SparseFactors {
     std::vector<double> row_errors;
     std::vector<std::string> names;      ///< Name of each row; empty: rows have numbers only.
     std::vector<double> dropped;         ///< Sum of the entries of each row that were dropped as too small.
-    std::vector<std::uint8_t> finished;  ///< 1 for each computed row.
+    std::vector<std::uint8_t> finished;  ///< 1 for each computed row, otherwise 0.
     bool combined = false;  ///< True if F_ij and F_ji combine both rows, so that A_i F_ij = A_j F_ji up to rounding.
 
     double reciprocity_defect = 0;  ///< max |A_i F_ij - A_j F_ji| / (A_i max_j F_ij) of independently computed rows.
@@ -55,7 +55,7 @@ struct SparseFactors {
 SparseFactors sparse_from(const ViewFactors& table, double smallest = 0);
 
 /// Scales exchange areas A_i F_ij by x_i x_j so that all rows add up to 1, up to 1e-7: for the surfaces of an
-/// enclosure. Keeps reciprocity. Rows without entries are left as they are.
+/// enclosure. Keeps reciprocity. Rows without entries are not changed.
 void close_rows(SparseFactors& table);
 
 inline constexpr std::uint32_t no_row = 0xffffffff;

@@ -18,7 +18,8 @@ namespace {
 /// `aimed_at`. Both rows may have the same error. In a town, one of 120 pairs within 0.7 of each other was off by more
 /// than the tolerance, up to 1.5 times as much (2.0 at 1e-4); of those within 0.3 one of 7,500, up to 1.2 times.
 constexpr double agreeing = 0.3, aimed_at = 0.8;
-constexpr std::size_t rows_of_process = 64, pairs_of_process = 512;  ///< Between progress reports.
+/// Numbers of rows and of pairs between two progress reports.
+constexpr std::size_t rows_of_process = 64, pairs_of_process = 512;
 
 Error stopped(const std::string& what) {
     return {ErrorCode::limit, "stopped " + what, "", "allow more time or a larger --tolerance"};

@@ -13,9 +13,9 @@ namespace exitance {
 /// View factors between all faces of a scene, in the order of its file. Row i is for gathering: F_ij is the share of
 /// the diffuse flux leaving face i that reaches the front of face j directly.
 struct ViewFactors {
-    std::vector<double> areas;       ///< m^2, one per face.
+    std::vector<double> areas;       ///< Area of every face, m^2.
     std::vector<double> emittances;  ///< 1 - reflectance, mean over the bands, one per face.
-    std::vector<double> factors;     ///< n x n, row by row, each in [0, 1].
+    std::vector<double> factors;     ///< The n x n factors, row by row, each in [0, 1].
     std::vector<double> row_sums;    ///< Never normalized: 1 up to the error in a closed scene.
     /// max |A_i F_ij - A_j F_ji| / (A_i max_j F_ij). Measures the error of rows, since they are computed independently.
     double reciprocity_defect = 0;

@@ -96,11 +96,11 @@ TEST(ViewFactors, RowsOfAClutteredRoomSumToOneAndAreReciprocal) {
     const ViewFactors table = factors_of(scene_of_faces(faces), tolerance);
     for (std::size_t i = 0; i < table.size(); ++i) {
         const bool covered = std::abs(table.row_sums[i]) < 1e-12;  // the bottom of the block on the floor
-        const double stands = i == 4 ? 0.1 * 0.12 / 4 : 0;         // share of the floor that it covers
+        const double stands = i == 4 ? 0.1 * 0.12 / 4 : 0;         // share of the floor that the block covers
         // Errors of several entries add up.
         EXPECT_NEAR(table.row_sums[i], covered ? 0 : 1 - stands, 2 * tolerance) << i;
     }
-    EXPECT_LT(table.reciprocity_defect, 2 * tolerance);  // both rows have errors
+    EXPECT_LT(table.reciprocity_defect, 2 * tolerance);  // tolerance: both rows have errors
 }
 
 /// The room of the complex family with the seat of one chair on one leg. The bounding boxes of the slanting walls
@@ -140,8 +140,9 @@ Scene room_with_a_stool() {
 TEST(ViewFactors, SumToOneForALegUnderAnOverhangingSeatBetweenSlantingWalls) {
     const ViewFactors table = factors_of(room_with_a_stool(), 1e-4);
     ASSERT_EQ(table.size(), 15U);
-    // With distances to bounding boxes one sum was 1.005: walls seemed near everywhere, no rule was accepted, and the
-    // limit on evaluations was reached. 1e-4 is the tolerance; 2e-4 that of two entries.
+    // If rules were chosen by distances to bounding boxes, one sum would be 1.005: walls would seem near everywhere, no
+    // rule would be accepted, and the limit on evaluations would be reached. The tolerance is 1e-4 for one entry and
+    // 2e-4 for two.
     for (std::size_t leg = 4; leg < 8; ++leg) {
         EXPECT_NEAR(table.row_sums[leg], 1, 1e-4) << leg;
         const double largest = *std::max_element(table.row(leg).begin(), table.row(leg).end());

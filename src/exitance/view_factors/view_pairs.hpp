@@ -30,7 +30,7 @@ class ViewPairs {
 
     const std::vector<ViewFace>& faces() const { return faces_; }
     const std::vector<ConvexBlocker>& blockers() const { return blockers_; }
-    /// Metres; points nearer to a plane than this are in it.
+    /// Points nearer to a plane than this lie in it, metres.
     double slack() const { return slack_; }
 
     /// True if each face is at least partly in front of the other. Sets `cut` if part of one is behind the other's
@@ -59,7 +59,7 @@ class ViewPairs {
     std::vector<std::uint32_t> sides_;    ///< One row per face, one column per blocker.
     std::vector<std::uint8_t> standing_;  ///< One row per face, one column per blocker.
     BlockerPlanes planes_;
-    std::vector<std::uint8_t> hidden_;  ///< One row and one column per face.
+    std::vector<std::uint8_t> hidden_;  ///< 1 for hidden pairs: one row and one column per face.
 };
 
 }  // namespace exitance

@@ -98,7 +98,8 @@ void CriticalLineFinder::add(const Shadow& a, const Shadow& b, std::vector<Criti
     if (!crosses_receiver(line)) return;
     const auto place = [&](const Shadow& s, const Shadow& other) {
         if (s.weight > 0) return line.along({s.x / s.weight, s.y / s.weight});
-        // The projection passes through infinity on the way from the other end: on which side?
+        // The projection passes through infinity between the two ends. Its direction from the other end determines the
+        // side.
         const double t = other.weight / (other.weight - s.weight);
         const double dx = other.x + t * (s.x - other.x), dy = other.y + t * (s.y - other.y);
         return line.along({dx, dy}) > 0 ? HUGE_VAL : -HUGE_VAL;

@@ -13,7 +13,7 @@ namespace exitance {
 struct CriticalLine {
     Vec2 n;  ///< The line is n . p = offset, |n| = 1; its direction is (-n.y, n.x).
     double offset = 0;
-    double first = 0, last = 0;  ///< The relevant stretch, as along().
+    double first = 0, last = 0;  ///< Ends of the relevant part of the line, as values of along().
 
     double signed_distance(Vec2 p) const { return dot(n, p) - offset; }
     double along(Vec2 p) const { return -n.y * p.x + n.x * p.y; }

@@ -41,7 +41,7 @@ TEST(CriticalLines, AStripYieldsThePenumbraLinesOfItsTwoEdges) {
     std::vector<double> places;
     for (const CriticalLine& line : lines) {
         const Point foot = frame.at(line.offset * line.n);
-        EXPECT_NEAR(foot.y, 0, 1e-12);  // all lines are parallel to y
+        EXPECT_NEAR(foot.y, 0, 1e-12);  // all lines are parallel to the y axis
         places.push_back(foot.x);
     }
     std::sort(places.begin(), places.end());

@@ -18,7 +18,7 @@ constexpr double max_rounding_gap = 1e-9;  ///< Gap between pieces that is too l
 /// An edge of the source or of an occluder, counter-clockwise around its polygon as seen from x.
 struct Edge {
     Vec3 a, b;
-    Vec3 inward;  ///< Unit normal of its plane through x.
+    Vec3 inward;  ///< Unit normal of the plane through x and the edge, pointing into the polygon.
     int owner;    ///< Index of the occluder, -1 for the source.
     double noise_a, noise_b;
 };
@@ -43,7 +43,7 @@ void hidden_interval(const Edge& edge, int occluder, std::span<const Vec3> plane
     for (const Vec3& plane : planes) {
         const double ha = dot(plane, edge.a), hb = dot(plane, edge.b);
         if (std::abs(ha) <= edge.noise_a &&
-            std::abs(hb) <= edge.noise_b) {  // in the plane: which of the two sides is visible?
+            std::abs(hb) <= edge.noise_b) {  // the edge lies in the plane: decide on which side it is visible
             const bool same_side = dot(plane, edge.inward) > 0;
             const bool hidden = edge.owner < 0 ? same_side : same_side ? occluder < edge.owner : true;
             if (!hidden) to = from;
@@ -130,7 +130,8 @@ void add_polygon(std::span<const Vec3> corners, int owner, bool reversed, Bounda
         if (reversed) std::swap(edge.a, edge.b);
         const Vec3 inward = cross(edge.b - edge.a, edge.a);
         const double length = norm(inward);
-        if (length <= 1e-13 * norm(edge.a) * norm(edge.b)) continue;  // from x, the edge appears as a point
+        // the edge points at x and appears as a single point
+        if (length <= 1e-13 * norm(edge.a) * norm(edge.b)) continue;
         edge.inward = inward / length;
         edge.noise_a = noise(edge.a), edge.noise_b = noise(edge.b);
         boundary.add_edge(edge);

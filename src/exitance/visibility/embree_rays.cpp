@@ -167,7 +167,7 @@ struct RayTracer::Content {
     Field<SurfaceId, Face> faces;
     /// The surface on the other side of a sheet; empty if there are no sheets.
     Field<SurfaceId, SurfaceId> other_side;
-    OpposedFaces opposed;  ///< For sheets whose two sides have different outlines.
+    OpposedFaces opposed;  ///< Tables for sheets whose two sides have different outlines.
     Glass glass;
 
     explicit Content(const Scene& s)
@@ -364,7 +364,7 @@ std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const V
     alignas(64) RTCRayHit16 packet;
     alignas(64) std::array<int, width> valid;
     valid.fill(-1);
-    // Write once what all packets share: Embree changes only the far end and the hit.
+    // Write data that all packets share only once: Embree changes only the far end and the hit.
     const Float3 start = shared ? content_->local(origins[0] + lifted) : Float3();
     for (std::size_t i = 0; i < width; ++i) set_ray(packet.ray, i, start, {}, 0, HUGE_VALF);
     for (std::size_t first = 0; first < directions.size(); first += width) {

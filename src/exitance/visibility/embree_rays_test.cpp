@@ -38,7 +38,7 @@ TEST(RayTracer, AgreesWithDoublePrecision) {
 TEST(RayTracer, NeverMeetsTheRegionThatARayStartsOnNorLeavesAClosedBox) {
     for (const Point& lo : {Point{0, 0, 0}, Point{1e6, -1e6, 3e5}, Point{-0.3, 0.7, 0.1}})
         for (double size : {1e-4, 1.0, 3e3}) {
-            if (size < 1 && lo.x > 1) continue;  // its coordinates would have no significant digits left
+            if (size < 1 && lo.x > 1) continue;  // coordinates of so small a scene have no significant digits here
             const Scene scene = test::make(test::closed_box(lo, {size, 2 * size, 0.7 * size}));
             const RayTracer tracer(scene);
             RandomStream random(2, Stream::rows);

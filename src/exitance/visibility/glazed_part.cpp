@@ -86,7 +86,7 @@ void cut_along(const Pane& pane, std::span<const Vec3> pyramid, std::vector<Part
             }
             if (inside.empty()) break;
         }
-        if (inside.empty()) {  // outside the pyramid after all
+        if (inside.empty()) {  // this pyramid does not reach the part
             fresh.resize(first);
             continue;
         }

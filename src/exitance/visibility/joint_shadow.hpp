@@ -38,7 +38,7 @@ class JointShadow {
                std::span<const std::uint32_t> blockers);
 
   private:
-    using Mask = std::uint64_t;  ///< One bit per blocker.
+    using Mask = std::uint64_t;  ///< Set of blockers, one bit each.
     /// A triangle or quadrilateral, by the indices of its corners.
     struct Cell {
         std::array<std::uint32_t, 4> corner;
@@ -48,7 +48,7 @@ class JointShadow {
     struct CellPair {
         Cell receiver, source;
         int depth;
-        Mask near;  ///< Blockers that may be in between.
+        Mask near;  ///< Blockers that may be between receiver and source.
     };
 
     std::uint32_t add_point(const Point& p);

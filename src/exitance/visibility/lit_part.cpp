@@ -99,7 +99,7 @@ bool LitPart::cut_fragment(const Fragment& fragment) {
             heights_.push_back(height(line, p));
             any_in |= heights_.back() > 0, any_out |= heights_.back() < 0;
         }
-        if (!any_in) {  // outside the pyramid after all
+        if (!any_in) {  // the fragment is outside the pyramid
             fresh_.resize(fresh);
             corners_.resize(corners);
             return false;

@@ -75,7 +75,7 @@ void Occluders::add_windows() {
 }
 
 void Occluders::add_distant_pieces() {
-    constexpr double sky_distance = 1e6;  // as a multiple of the scene's size
+    constexpr double sky_distance = 1e6;  // distance of the sky, as a multiple of the scene's size
     middle_ = scene_->box().centre();
     const std::size_t first = pieces_.size();
     for (const DistantFacet& facet : distant_facets(scene_->distant())) {
@@ -100,7 +100,7 @@ std::vector<std::uint8_t> Occluders::find_outer() const {
     // The farthest corners in 26 directions: if two of them are on different sides of a plane, so is the scene.
     std::vector<Point> far;
     for (int k = 0; k < 26; ++k) {
-        const int code = k < 13 ? k : k + 1;  // all of {-1, 0, 1}^3 except the middle
+        const int code = k < 13 ? k : k + 1;  // visits all directions in {-1, 0, 1}^3 except (0, 0, 0)
         const Vec3 along{code % 3 - 1.0, code / 3 % 3 - 1.0, code / 9 - 1.0};
         far.push_back(*std::max_element(corners_.begin(), corners_.end(),
                                         [&](const Point& p, const Point& q) { return dot(along, p) < dot(along, q); }));

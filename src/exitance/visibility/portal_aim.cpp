@@ -49,7 +49,7 @@ double PortalAim::density(const Vec3& direction) const {
     for (std::size_t c = 0; c < count_; ++c) {
         const Target& target = targets_[c];
         const PortalCell& cell = *target.cell;
-        const double rise = dot(direction, cell.n);  // of the ray above the parallelogram's plane, per unit length
+        const double rise = dot(direction, cell.n);  // rise of the ray above the parallelogram's plane, per unit length
         const double distance = target.height / rise;
         if (!(distance > 0) || !std::isfinite(distance)) continue;
         const Vec3 at = distance * direction - target.offset;

@@ -45,8 +45,8 @@ class PortalAim {
     struct Target {
         const PortalCell* cell = nullptr;
         double chance = 0;  ///< Probability of being chosen.
-        double height = 0;  ///< Height of x over its plane, metres, with sign.
-        Vec3 offset;        ///< Vector from x to its corner.
+        double height = 0;  ///< Height of x over the parallelogram's plane, metres; negative behind it.
+        Vec3 offset;        ///< Vector from x to the parallelogram's corner.
     };
     double density(const Vec3& direction) const;
 

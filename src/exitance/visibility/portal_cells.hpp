@@ -11,7 +11,7 @@ namespace exitance {
 struct PortalCell {
     Point corner;  ///< Its points are corner + s u + t v, s and t in [0, 1).
     Vec3 u, v;     ///< Edges, perpendicular to each other.
-    Normal n;      ///< Normal of its plane.
+    Normal n;      ///< Unit normal of the parallelogram's plane.
     double area = 0;
     double light = 0;  ///< Approximate ratio of the light that comes through it to the light of the place.
 };
@@ -28,7 +28,7 @@ PortalCell rectangle_around(const Point& at, const Frame& frame, std::span<const
 /// pieces that are nearer than their length. Adds them to `cells`, up to `most` in total.
 void add_portal_cells(const PortalCell& opening, std::size_t most, std::vector<PortalCell>& cells);
 
-/// True if a line passes through a parallelogram, or beside it by less than a share `beside` of its size.
+/// True if a line passes through a parallelogram, or past it at a distance below the share `beside` of its size.
 bool passes_near(const Point& from, const Vec3& direction, const PortalCell& cell, double beside = 0.5);
 
 }  // namespace exitance

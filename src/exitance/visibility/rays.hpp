@@ -11,10 +11,11 @@ namespace exitance {
 
 /// First hit of a ray.
 struct RayHit {
-    SurfaceId surface;                                          ///< None if nothing is hit.
-    RegionId region;                                            ///< The surface's region.
-    double distance = std::numeric_limits<double>::infinity();  ///< In units of the length of the ray's direction.
-    bool front = false;                                         ///< True if the front of the surface is hit.
+    SurfaceId surface;  ///< The surface that is hit; none if nothing is hit.
+    RegionId region;    ///< The surface's region.
+    /// Distance in units of the length of the ray's direction.
+    double distance = std::numeric_limits<double>::infinity();
+    bool front = false;        ///< True if the front of the surface is hit.
     std::int32_t mirror = -1;  ///< Index of the pane that reflected the ray before the hit; negative if none.
 };
 

@@ -81,7 +81,7 @@ void Shaft::add_supporting_planes(std::span<const Point> edges, std::span<const 
                     low = std::min(low, h), high = std::max(high, h);
                 }
             if (low < -slack && high > slack) continue;
-            if (low >= -slack && high <= slack) continue;  // both polygons in one plane
+            if (low >= -slack && high <= slack) continue;  // both polygons lie in one plane
             // A corner in the plane of the edge's polygon, e.g. where the two polygons share an edge, would only give
             // that plane again.
             if (std::all_of(edges.begin(), edges.end(),

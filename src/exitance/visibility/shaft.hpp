@@ -16,14 +16,14 @@ namespace exitance {
 enum class View : std::uint8_t {
     none,   ///< Certainly nothing is visible: one faces away, or one occluder blocks every segment between them.
     open,   ///< Certainly unoccluded above their horizons: no occluder reaches in between.
-    mixed,  ///< Undecided; the candidates must be tested.
+    mixed,  ///< Visibility is undecided; the candidates must be tested.
 };
 
 /// A convex polygon that emits or receives light at its front.
 struct Facet {
-    std::span<const Point> corners;  ///< Counter-clockwise seen from the front, metres.
+    std::span<const Point> corners;  ///< Corners, counter-clockwise seen from the front, metres.
     Normal n;
-    RegionId region;          ///< Its region, which never occludes it; may be none.
+    RegionId region;          ///< Region of the facet, which never occludes it; may be none.
     bool is_distant = false;  ///< Part of the sky: so far away that rounding errors matter.
 };
 

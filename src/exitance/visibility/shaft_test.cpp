@@ -107,10 +107,10 @@ TEST(Shaft, IsBlockedByAWallButNotByItsDoor) {
         return shaft.classify(candidates);
     };
     EXPECT_EQ(look(-2.5, 1), View::none);
-    EXPECT_EQ(look(-2, 1), View::none);  // exactly to the door's edge
+    EXPECT_EQ(look(-2, 1), View::none);  // the view ends exactly at the edge of the door
     EXPECT_EQ(look(-2, 1.01), View::mixed);
     EXPECT_EQ(look(-1, 2), View::open);
-    EXPECT_EQ(look(-2, 4), View::mixed);  // all around the door
+    EXPECT_EQ(look(-2, 4), View::mixed);  // the view contains the whole door
     EXPECT_EQ(look(1, 2), View::none);
 }
 

@@ -10,7 +10,8 @@ namespace {
 
 using namespace four;
 
-constexpr double zero_sine_of_four = 1e-12;  ///< Sine of an angle that counts as zero, as for single points.
+/// Sine of an angle that counts as zero, equal to the limit for single points.
+constexpr double zero_sine_of_four = 1e-12;
 constexpr std::size_t most_corners = 20, most_planes = 160, most_fragments = 160;
 
 /// A convex polygon relative to each of the four points.
@@ -83,8 +84,8 @@ class VisibleFromFour::Work {
     };
 
     /// Adds the planes of a blocker's silhouette. If an edge is on the silhouette from only some of the points, the
-    /// others get a plane that has all of the source inside. Returns false if only some of the points are inside the
-    /// blocker, or if there is no room.
+    /// other points get a plane that cuts nothing off the source. Returns false if only some of the points are inside
+    /// the blocker, or if the array of planes is full.
     bool add_pyramid(const ConvexBlocker& blocker, bool& inside) {
         std::array<int, ConvexBlocker::most_faces + 1> in_front;
         int any_front = 0;
@@ -104,7 +105,7 @@ class VisibleFromFour::Work {
             if (outline == 0) continue;
             const Vec a = spread(blocker.points[e.a]) - x_, b = spread(blocker.points[e.b]) - x_;
             Vec plane = cross(b, a);
-            if ((left & outline) != outline) {  // seen from behind by some points
+            if ((left & outline) != outline) {  // some of the points see the blocker's face from behind
                 const Real side = {left & 1 ? 1. : -1., left & 2 ? 1. : -1., left & 4 ? 1. : -1., left & 8 ? 1. : -1.};
                 plane = {side * plane.x, side * plane.y, side * plane.z};
             }

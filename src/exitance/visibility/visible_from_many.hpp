@@ -76,7 +76,7 @@ class VisibleFromMany {
     double one_line_ = 0;  ///< Share of `reach_`: edges closer than this from everywhere count as one line.
     SightTables tables_;
     std::vector<std::uint32_t> edges_;    ///< Per line: its edge, as an index into the blocker's edges.
-    std::vector<std::uint32_t> crossed_;  ///< Per line, as SeenEdges::edges_over_corners.
+    std::vector<std::uint32_t> crossed_;  ///< Per line: its value of SeenEdges::edges_over_corners.
     std::vector<std::uint32_t> corners_crossed_;
     /// x, y, z of the source's corners, of its edges, and of the moments of these edges, padded to groups of four.
     std::array<std::vector<double>, 9> source_columns_;
@@ -87,7 +87,7 @@ class VisibleFromMany {
     /// Per face that is front-facing from some points only: its index in the tables.
     std::vector<std::uint32_t> turning_;
     EdgeTerms terms_;
-    bool is_crowded_ = false;  ///< More blockers, lines or corners than the tables hold.
+    bool is_crowded_ = false;  ///< True if the tables are too small for all blockers, lines or corners.
     bool single_is_set_ = false;
     VisibleFromFour from_four_;  ///< Used if many shadows overlap on the source.
     VisibleSource single_;       ///< Used if edges coincide, or if the visibility of the points differs.

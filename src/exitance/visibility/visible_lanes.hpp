@@ -25,9 +25,9 @@ struct SightTables {
         double c = 0, u = 0, v = 0;
     };
     enum class Outline : std::uint8_t {
-        always,           ///< From all points, with a known inner side.
-        before_a_face,    ///< From points in front of face `left`.
-        behind_a_face,    ///< From points behind face `left`.
+        always,           ///< The edge is on the outline from all points, with a known inner side.
+        before_a_face,    ///< The edge is on the outline from points in front of face `left`.
+        behind_a_face,    ///< The edge is on the outline from points behind face `left`.
         between_two,      ///< From points in front of exactly one of two faces; reversed if it is the second.
         of_a_turning_one  ///< Edge of a sheet seen from both sides; reversed from points behind it.
     };
@@ -46,9 +46,10 @@ struct SightTables {
     struct Blocker {
         std::uint32_t first = 0, last = 0;  ///< Range in `lines`.
         std::uint32_t first_face = 0,
-                      last_face = 0;  ///< Range in `faces`: those that are front-facing from some points only.
-        bool may_hold = false;        ///< True if a point may be inside the blocker.
-        bool is_seen = false;         ///< True if one of its faces is visible from everywhere.
+                      /// End of the range in `faces` of the faces that are front-facing from some points only.
+            last_face = 0;
+        bool may_hold = false;  ///< True if a point may be inside the blocker.
+        bool is_seen = false;   ///< True if one of its faces is visible from everywhere.
     };
 
     std::vector<Vec3> corners;  ///< Corners of the source.
@@ -66,8 +67,8 @@ struct SightTables {
 /// Results for up to eight points. Masks have one bit per point.
 struct Views {
     std::array<double, SightTables::lanes> F{};  ///< Form factors to the visible part.
-    int lit = 0;                                 ///< The whole source is visible.
-    int dark = 0;                                ///< One blocker hides the whole source.
+    int lit = 0;                                 ///< Points from which the whole source is visible.
+    int dark = 0;                                ///< Points from which one blocker hides the whole source.
     int doubtful = 0;                            ///< Edges coincide: F must be computed by another method.
 };
 

@@ -195,7 +195,8 @@ double whole_form_factor(const Occluders& occluders, PieceId source, const Norma
     if (!occluders.is_distant(source) || occluders.is_window(source))
         return directed_form_factor(n, scratch.source, radiance);
     double& known = known_far_factor(occluders, source, n);
-    scratch.work += work_of_integral;  // even if it is known, so that the work does not depend on earlier calls
+    // Count the work even if the result is known, so that the count does not depend on earlier calls.
+    scratch.work += work_of_integral;
     if (known < 0) known = directed_form_factor(n, scratch.source, radiance);
     return known;
 }
@@ -267,7 +268,8 @@ double part_among_all(const Occluders& occluders, const Receiver& at, PieceId so
     };
     if (visit(Occluders::Size::large)) return 0;
     const std::size_t large = scratch.shadows.size();
-    if (large > 1 && !cut_lit(0, scratch)) return 0;  // hidden by several: small pieces are irrelevant
+    // several large pieces together hide the source, so small pieces are irrelevant
+    if (large > 1 && !cut_lit(0, scratch)) return 0;
     if (visit(Occluders::Size::small)) return 0;
     return finish(occluders, source, at.n, large > 1 ? large : 0, scratch, light, fragments);
 }

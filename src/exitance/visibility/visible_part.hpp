@@ -40,7 +40,7 @@ class VisibilityWorkspace {
     /// The pyramid over an occluder: unit normals (pointing inwards) of the planes through the receiver and its edges.
     struct Shadow {
         std::uint32_t first_plane = 0, plane_count = 0;
-        double solid_angle = 0;     ///< Approximate; used for sorting the occluders.
+        double solid_angle = 0;     ///< Approximate solid angle, used for sorting the occluders.
         std::uint32_t outline = 0;  ///< Index of its polygon in `outlines`.
         bool reversed = false;      ///< True if that polygon is clockwise as seen from the receiver.
     };
@@ -92,7 +92,8 @@ struct PartLight {
     PartLight(VisiblePartMethod m = VisiblePartMethod::subtraction) : method(m) {}
     PartLight(const RelativeRadiance& r) : radiance(r) {}
     VisiblePartMethod method = VisiblePartMethod::subtraction;
-    RelativeRadiance radiance;  ///< If directed, form factors are weighted by it, and `subtraction` is used.
+    /// Relative radiance of the source. If directed, it weights form factors and `subtraction` is used.
+    RelativeRadiance radiance;
 };
 
 /// Form factor from a receiver to the visible part of one convex piece of a source, exact except for rounding.

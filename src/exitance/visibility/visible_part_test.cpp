@@ -120,7 +120,7 @@ TEST(VisiblePart, IgnoresOccludersInThePlaneOfTheSourceOrTheReceiver) {
     const std::vector<Point> foot_up = {{0.5, -5, 0}, {0.5, 5, 0}, {0.5, 5, 1e-3}, {0.5, -5, 1e-3}};
     EXPECT_EQ(visible({{light, 1}, {rectangle(-5, -5, 5, 5, 2)}}, {0, 0, 0}, {0, 0, 1}), open);  // light in the ceiling
     EXPECT_EQ(visible({{light, 1}, {floor}}, {0, 0, 0}, {0, 0, 1}), open);
-    EXPECT_EQ(visible({{light, 1}, {foot_up}}, {0, 0, 0}, {0, 0, 1}), open);  // too low to reach above the horizon
+    EXPECT_EQ(visible({{light, 1}, {foot_up}}, {0, 0, 0}, {0, 0, 1}), open);  // a rise of 1 mm does not hide the light
     // walls that end at the light's edges, and one that contains the point
     EXPECT_EQ(visible({{light, 1}, {{{1, -5, 0}, {1, 5, 0}, {1, 5, 2}, {1, -5, 2}}}}, {0, 0, 0}, {0, 0, 1}), open);
     EXPECT_EQ(visible({{light, 1}, {{{0, -5, 0}, {0, 5, 0}, {0, 5, 2}, {0, -5, 2}}}}, {0, 0, 0}, {0, 0, 1}), open);

@@ -185,8 +185,7 @@ void VisibleSource::find_cuts(const Polygon& fragment, const Pyramid& pyramid) {
         if (measure(fragment, lines_[k], heights).any_out) cuts_.push_back(k);
 }
 
-/// Adds the contour of what remains of a fragment after subtracting the pyramids reaching_[first, last). Pyramids that
-/// miss the fragment miss all its parts, too, so they are dropped here.
+/// Subtracts the pyramids reaching_[first, last) from a fragment and adds the contour of the rest.
 void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::size_t last, bool is_whole) {
     if (fragment.count > Polygon::max_fragment) return subtract_halves(fragment, first, last);
     const std::size_t mark = pool_used_, first_cut = cuts_.size(), first_left = reaching_.size();
@@ -226,7 +225,7 @@ void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::si
     }
     const std::size_t end = pool_used_;
     cuts_.resize(first_cut);
-    if (!hidden) {  // outside the pyramid after all
+    if (!hidden) {  // the fragment is outside the pyramid
         pool_used_ = mark;
         subtract(fragment, first_left + 1, first_left + left, is_whole);
     } else if (left == 1) {  // the last pyramid: subtract the hidden part's contour instead of cutting
@@ -245,7 +244,8 @@ void VisibleSource::subtract(const Polygon& fragment, std::size_t first, std::si
     reaching_.resize(first_left);
 }
 
-/// Does the same for two halves of a fragment with many corners, whose common side cancels in the contour.
+/// Splits a fragment with too many corners into two halves and subtracts each; their common side cancels in the
+/// contour.
 void VisibleSource::subtract_halves(const Polygon& fragment, std::size_t first, std::size_t last) {
     const std::size_t middle = fragment.count / 2;
     Polygon half;

@@ -13,8 +13,8 @@
 namespace exitance {
 
 /// Visible share of a source. If one blocker hides all of it (`nothing`), this holds until one of the blocker's
-/// critical lines is crossed. If several do so together (`nothing_past_several`), parts may appear at a three-edge
-/// event.
+/// critical lines is crossed. If several blockers do so together (`nothing_past_several`), parts may appear at a
+/// three-edge event.
 enum class Seen : std::uint8_t { nothing, nothing_past_several, part, all };
 
 /// Form factor from points to the visible part of one convex source behind given blockers, exact except for rounding.
@@ -78,7 +78,7 @@ class VisibleSource {
         std::uint32_t first, last;  ///< Range in `lines_`.
         std::uint32_t likely;       ///< The line that separated the last fragment; tested first.
         double low_u, high_u, low_v, high_v;
-        double overlap;                           ///< Overlap of its box with the source's, m^2.
+        double overlap;                           ///< Overlap of the shadow's bounding box with the source's, m^2.
         bool is_beside(const Polygon& p) const {  ///< Tests the bounding boxes.
             return (low_u >= p.high_u) | (high_u <= p.low_u) | (low_v >= p.high_v) | (high_v <= p.low_v);
         }
@@ -112,7 +112,7 @@ class VisibleSource {
     std::vector<Vec3> points_;
     std::vector<Plane> faces_;
     double size_ = 0;
-    Vec3 x_;    ///< The current point.
+    Vec3 x_;    ///< The point from which the source is seen.
     Normal n_;  ///< Its normal.
     Polygon whole_;
     std::vector<Line> lines_;
@@ -120,7 +120,7 @@ class VisibleSource {
     std::vector<std::uint32_t> reaching_;  ///< A stack of pyramids that may hide some of the current fragments.
     std::vector<std::uint8_t> in_front_;
     std::vector<ConvexBlocker> split_;  ///< Parts of sheets with more edges than max_lines.
-    std::vector<Polygon> pool_;         ///< A stack of fragments.
+    std::vector<Polygon> pool_;         ///< Storage for fragments, used as a stack.
     std::size_t pool_used_ = 0;
     std::vector<Polygon> shadows_;     ///< Shadows on the source, one per pyramid.
     std::vector<std::uint32_t> cuts_;  ///< Lines that cross the fragments on the stack.

@@ -14,7 +14,7 @@ struct OptionFacts {
     std::string help, group;
     Audience audience = Audience::users;
     bool is_required = false;
-    std::string supported_by;  ///< Methods; empty: all.
+    std::string supported_by;  ///< Methods that support the option; empty: all.
 
     bool is_input() const { return long_name.empty() && short_name.empty(); }
 };

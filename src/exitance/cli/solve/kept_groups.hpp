@@ -6,7 +6,7 @@
 
 namespace exitance {
 
-/// The error for a solution without light groups, of a verb that needs them.
+/// Returns the error of a verb that needs light groups, for a solution without them.
 Error no_light_groups(const std::string& solution_file);
 
 }  // namespace exitance

@@ -199,7 +199,7 @@ ExitCode run(const BakeArguments& arguments, Terminal& terminal) {
     const Result<LightMaps> maps = bake_light_maps(light, options, terminal.progress(), stop);
     if (!maps) return terminal.fail(maps.error());
     if (stop.requested()) return common.fail("the light maps are not finished");
-    options.density = maps->density;  // so that all groups have the same charts
+    options.density = maps->density;  // gives all groups the same charts
     const auto bake_group = [&](const Solution& lit, std::size_t group) -> Result<bool> {
         const Result<LightMaps> own = bake_light_maps(RadiosityFunction(lit), options, terminal.progress(), stop);
         if (!own) return own.error();

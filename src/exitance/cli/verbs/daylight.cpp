@@ -110,12 +110,12 @@ Result<DaylightSummary> write_all(const DaylightRequest& request, const Daylight
     return summary;
 }
 
-/// The light that all parts share.
+/// File with the light on the elements, which all parts of a simulation share.
 std::string light_file(const std::string& output) {
     return (std::filesystem::path(output) / "light.h5").string();
 }
 
-/// Takes the kept light, or finds it and keeps it.
+/// Reads the stored light, or computes and stores it.
 Result<void> share_light(DaylightSimulation& simulation, const std::string& fingerprint, const std::string& output) {
     bool is_kept = false;
     const Result<void> read = by_first([&]() -> Result<void> {
@@ -125,7 +125,7 @@ Result<void> share_light(DaylightSimulation& simulation, const std::string& fing
         return {};
     });
     if (!read) return read;
-    if (as_first(is_kept)) {  // other processes look only now, since another part may write the file meanwhile
+    if (as_first(is_kept)) {  // the first process decides, since another part may write the file meanwhile
         Result<std::optional<DaylightLight>> kept = all_or_none(read_daylight_light(light_file(output), fingerprint));
         if (!kept) return kept.error();
         const bool is_taken = *kept && simulation.take(std::move(**kept));
@@ -162,7 +162,7 @@ Result<void> run_part(const Scene& scene, const DaylightRequest& request, const 
     return by_first([&] { return writer->finish(); });
 }
 
-/// Writes the results of all parts, as those of a run of the whole.
+/// Writes the results of all parts as one undivided run would write them.
 Result<DaylightSummary> merge_parts(const Scene& scene, const DaylightRequest& request, std::span<const ViewOut> views,
                                     const std::string& output) {
     const std::string fingerprint = fingerprint_of(scene, request.task);

@@ -37,7 +37,7 @@ std::string sensor_file(const DaylightArguments& arguments) {
     return "";
 }
 
-/// The grids of a Honeybee model; one without a name for other files.
+/// Returns the grids of a Honeybee model; for other files, one grid without a name.
 std::vector<SensorGrid> grids_of(const std::string& sensors, std::size_t count) {
     if (!is_honeybee_file(sensors)) return {{"", count}};
     std::vector<SensorGrid> grids;
@@ -106,7 +106,7 @@ Result<SceneWithNames> read_daylight_scene(const DaylightArguments& arguments, T
         return SceneWithNames{std::move(solution->scene), {}};
     }
     SceneArguments scene = arguments.scene;
-    scene.load.needs_light = false;  // the skies of the year are its light
+    scene.load.needs_light = false;  // the scene may be dark, since the skies of the year light it
     LoadedScene loaded = load_for_all(scene);
     std::erase_if(loaded.findings, [&](const Finding& f) {
         return f.kind == Finding::Kind::warning &&

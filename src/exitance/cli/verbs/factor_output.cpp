@@ -20,7 +20,7 @@ Result<void> add_exchange_factors(const ViewFactorArguments& arguments, const Sp
     Result<std::vector<ThermalSurface>> surfaces =
         arguments.emissivity == "kd" ? emissivities_of(table) : read_thermal_table(arguments.emissivity, table);
     if (!surfaces) return surfaces.error();
-    // Exchange factors are between surfaces of given temperature; its value does not matter.
+    // Exchange factors need surfaces of given temperature; the value of the temperature has no effect.
     for (ThermalSurface& surface : *surfaces) surface.temperature = 1, surface.heat = 0;
     const std::optional<double> surroundings = is_enclosure(table) ? std::nullopt : std::optional(0.0);
     const auto exchange = exchange_factors(table, *surfaces, surroundings, stop);
@@ -81,7 +81,7 @@ Result<std::optional<FactorNodes>> nodes_of(const ViewFactorArguments& arguments
 Result<void> check_emissivities(const ViewFactorArguments& arguments, const Scene& scene,
                                 const std::optional<FactorNodes>& nodes) {
     if (arguments.emissivity.empty() || arguments.emissivity == "kd") return {};
-    SparseFactors rows;  // only their number and names matter
+    SparseFactors rows;  // only the number of rows and their names are used
     rows.areas.assign(nodes ? nodes->names.size() : scene.surfaces().size(), 1);
     if (nodes) rows.names = nodes->names;
     const auto surfaces = read_thermal_table(arguments.emissivity, rows);

@@ -28,7 +28,7 @@ std::vector<ProbePoint> zip(const ProbePoints& probes) {
     return out;
 }
 
-/// Number of written rows, and whether they are those of all points.
+/// Number of written rows, and whether there is a row for every point.
 struct WrittenRows {
     std::size_t count = 0;
     bool are_all = false;
@@ -37,7 +37,7 @@ struct WrittenRows {
 /// The files of a run, which only the first process opens.
 class ProbeFiles {
   public:
-    /// Opens both files. Collective.
+    /// Opens the file of points and the output. Collective.
     Result<void> open(const ProbeArguments& arguments, const ProbeWriter::Columns& columns) {
         return by_first([&]() -> Result<void> {
             Result<ProbeReader> reader = ProbeReader::open(arguments.points);

@@ -25,7 +25,7 @@ ExitCode run(const LightProbeArguments& arguments, Terminal& terminal) {
     const LightProbeTable table{*points, probes, arguments.grid, arguments.rays, solution->scene.is_photometric()};
     const Result<void> written = write_light_probes(arguments.output, table);
     if (!written) return terminal.fail(written.error());
-    constexpr double inside = 0.5;  // more than half of the directions meet backs
+    constexpr double inside = 0.5;  // share of back faces among the directions above which a probe is inside a body
     const auto buried =
         std::count_if(probes.begin(), probes.end(), [](const LightProbe& probe) { return probe.back_share > inside; });
     terminal.note(

@@ -260,7 +260,7 @@ ExitCode render_film(const RenderArguments& arguments, const std::vector<CameraS
     if (cameras.empty())
         return terminal.fail(Error{ErrorCode::bad_input, "times of a video must increase and span at most 400 s",
                                    arguments.path, "the first number of a row is its time in seconds"});
-    std::optional<ScratchFolder> folder;  // in the first process, which writes the pictures
+    std::optional<ScratchFolder> folder;  // only set in the first process, which writes the pictures
     RenderArguments frames = arguments;
     const Result<void> made = by_first([&]() -> Result<void> {
         Result<ScratchFolder> found = ScratchFolder::make("exitance-film");

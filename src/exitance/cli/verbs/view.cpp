@@ -37,7 +37,7 @@ class Viewed {
         : solution(std::move(found)),
           light_(begun()),
           camera(automatic_camera(solution, RayTracer(solution.scene), Projection::perspective, {})) {}
-    /// With the camera of another solution.
+    /// Shows a solution with the given camera, that of the previous solution.
     Viewed(Solution found, const Camera& as_before) : solution(std::move(found)), light_(begun()), camera(as_before) {}
     Viewed(const Viewed&) = delete;
     Viewed& operator=(const Viewed&) = delete;

@@ -167,7 +167,7 @@ class ViewFactorRun {
           terminal_(terminal) {}
 
     ExitCode operator()() {
-        std::optional<FactorNodes> nodes;  // in the first process, which writes the matrix
+        std::optional<FactorNodes> nodes;  // only set in the first process, which writes the matrix
         const Result<void> ready = by_first([&]() -> Result<void> {
             Result<std::optional<FactorNodes>> found =
                 arguments_.output.empty() ? std::optional<FactorNodes>() : nodes_of(arguments_, scene_);
@@ -301,7 +301,7 @@ class ViewFactorRun {
             warn(facts.unsettled > 0, fmt::format("the entries of {} pairs of faces still disagree by more than {:g}",
                                                   facts.unsettled, *arguments_.tolerance));
             warn(facts.most_row_sum > 1 + *arguments_.tolerance,
-                 fmt::format("some row adds up to {:.6g}: more than 1 by more than {:g}", facts.most_row_sum,
+                 fmt::format("a row adds up to {:.6g}, which exceeds 1 by more than {:g}", facts.most_row_sum,
                              *arguments_.tolerance));
             warn(facts.check.wrong > 0, fmt::format("{} of {} entries that rays checked are off by more than {:g}",
                                                     facts.check.wrong, facts.check.entries, *arguments_.tolerance));
@@ -311,8 +311,9 @@ class ViewFactorRun {
         warn(row_error > error(), fmt::format("the error of some row is {:.3g}, above {:g}", row_error, error()));
         if (facts.transport)
             warn(facts.transport->closure_defect > error(),
-                 fmt::format("some row of the operator misses 1 by {:.3g} with the sky and backs of faces, above {:g}",
-                             facts.transport->closure_defect, error()));
+                 fmt::format(
+                     "a row of the operator, with the sky and backs of faces, differs from 1 by {:.3g}, more than {:g}",
+                     facts.transport->closure_defect, error()));
         warn(wrong_rows(facts) > 0, fmt::format("{} of {} rows that rays checked are off by more than {:g}",
                                                 wrong_rows(facts), facts.row_check.rows.size(), error()));
         if (facts.unclosed > 0)
@@ -329,7 +330,7 @@ class ViewFactorRun {
     const CommonStop& common_stop_;
     const StopRequest& stop_;
     Terminal& terminal_;
-    std::optional<RawRowFile> rows_;  ///< In the first process.
+    std::optional<RawRowFile> rows_;  ///< Set only in the first process.
 };
 
 /// Error if the files to write cannot be written, or have options or endings that do not fit.

@@ -15,7 +15,7 @@ class ViewEvents {
   public:
     /// Adds an event.
     void tell(const std::string& name, const std::string& json);
-    /// Replaces the progress.
+    /// Sends a new state of progress, which replaces the previous one.
     void tell_progress(const std::string& json);
     /// Adds the last event, "end".
     void end(const std::string& json);

@@ -19,7 +19,7 @@ void apply_user_knobs(Knobs& knobs, const SolveOptions& options) {
 }  // namespace
 
 /// Share of a body's error that noise, interpolation, and the elements that it sees may each have.
-constexpr double body_error_share = 0.5;  // derived from the sum of their squares, the elements counting twice
+constexpr double body_error_share = 0.5;  // derived from adding squares: noise, interpolation, and the elements twice
 
 Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const SolveOptions& options) {
     namespace c = calibrated;

@@ -6,7 +6,7 @@
 
 namespace exitance {
 
-/// The internal settings of a solve, derived from the requested error. Settings given by the user are kept as they are.
+/// The internal settings of a solve, derived from the requested error. Settings given by the user are not changed.
 struct Knobs {
     MeshSize solve_mesh;          ///< Mesh of the elements on which the method solves.
     RayBudget solve_rays;         ///< Rays per matrix row, if rows are sampled by rays.
@@ -23,7 +23,7 @@ struct Knobs {
     RayBudget gather_rays;                 ///< Rays per gather point.
     double gather_tolerance = 0;           ///< Error of interpolation, relative to the mean reflected radiosity.
     double gather_noise = 0;               ///< Error by the noise of rays, relative to the mean reflected radiosity.
-    bool gather_curved = false;            ///< Fit polynomials of second degree.
+    bool gather_curved = false;            ///< Fit polynomials of second degree in the gather.
     double gather_relative_tolerance = 0;  ///< Error of interpolation of summed light, relative to the local light.
     double gather_element_share = 0;       ///< Allowed error of one element in the sum, relative to the local light.
     bool refined = false;                  ///< Refine the summed light and sum once more (`refined_light`).

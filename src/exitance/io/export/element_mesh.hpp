@@ -13,10 +13,10 @@ namespace exitance {
 /// The leaves of a solution's interpolant as polygons for other programs. Each polygon has its own points, since light
 /// may be discontinuous between leaves. Points are counter-clockwise seen from the front.
 struct ElementMesh {
-    std::vector<std::uint32_t> first_point = {0};  ///< Per polygon, plus the end of the last one.
+    std::vector<std::uint32_t> first_point = {0};  ///< First point of each polygon, and the end of the last one.
     std::vector<std::uint32_t> connectivity;       ///< Point indices of the polygons; empty: points are in order.
     std::vector<Point> points;
-    std::vector<std::array<float, bands>> irradiance, radiosity;  ///< Per point, W/m^2.
+    std::vector<std::array<float, bands>> irradiance, radiosity;  ///< Values at the points, W/m^2.
     /// Per polygon. If a leaf covers several faces of its region, `surface` is the face at its centre.
     std::vector<std::int32_t> surface, region, material, group;
 

@@ -43,7 +43,7 @@ TEST(ElementMesh, CubicCellsRepresentCloughTocherElementsExactly) {
     // Four corners and two points of the diagonal are shared.
     EXPECT_EQ(cells.points.size(), 4u + 5 * 2 + 2 * 10);
     const SixNodeLocator locator(mesh, s.scene);
-    constexpr double rounding = 1e-6;  // of 32-bit floats
+    constexpr double rounding = 1e-6;  // rounding of 32-bit floats
     for (std::size_t c = 0; c < cells.size(); ++c)
         for (int k = 0; k < 20; ++k) {
             const double a = random.uniform(), b = random.uniform() * (1 - a);

@@ -56,7 +56,8 @@ Triangles make_triangles(const Solution& solution, const ToneMap& tone) {
             Float3 radiosity, irradiance;
             for (std::size_t b = 0; b < bands; ++b) light[b] = static_cast<double>(mesh.irradiance[p][b]);
             for (std::size_t b = 0; b < 3; ++b) {
-                const std::size_t band = bands == 3 ? b : b * (bands - 1) / 2;  // the same bands as in the tone map
+                // the bands that the tone map also uses for red, green and blue
+                const std::size_t band = bands == 3 ? b : b * (bands - 1) / 2;
                 radiosity[b] = mesh.radiosity[p][band], irradiance[b] = mesh.irradiance[p][band];
             }
             const DisplayColour colour = tone(light);

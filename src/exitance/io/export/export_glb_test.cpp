@@ -99,7 +99,7 @@ TEST(ExportGlb, EveryAccessorSatisfiesTheSpecification) {
             for (std::size_t i = 0; i < index.size(); i += 3) {
                 const Point a = row(position, index[i]), b = row(position, index[i + 1]),
                             c = row(position, index[i + 2]);
-                // It has an area, and its normal is on the front.
+                // The triangle has an area, and its normal points to the front.
                 EXPECT_GT(dot(cross(b - a, c - a), row(normal, index[i])), 0);
                 EXPECT_NEAR(norm(row(normal, index[i])), 1, 1e-6);
             }

@@ -19,7 +19,7 @@ Vec3 turned_up(const Vec3& v) {
 
 /// A node's matrix by columns. It turns -z to `ahead`; `ahead`, `up` and `at` are in coordinates with Z up.
 std::string matrix(const Vec3& ahead, const Vec3& up, const Point& at) {
-    const Vec3 none;  // adding it turns -0 into 0
+    const Vec3 none;  // zero vector: adding it turns -0 into 0
     const Vec3 z = none - normalized(turned_up(ahead));
     const Vec3 x = none + (norm(cross(turned_up(up), z)) > 1e-6 ? normalized(cross(turned_up(up), z)) : Frame(z).u);
     const Vec3 y = none + cross(z, x), o = none + turned_up(at);

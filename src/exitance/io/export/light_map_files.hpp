@@ -36,7 +36,7 @@ struct LightMapFormat {
     Component component = Component::total;
     Precision precision = Precision::single;
     Directions directions = Directions::none;
-    bool with_hdr = false;  ///< Also writes every map as .hdr (write_hdr).
+    bool with_hdr = false;  ///< True if every map is also written as .hdr (write_hdr).
     LightMapMaterial material = LightMapMaterial::emissive;
     std::string scene_file;  ///< glTF file with the scene's own textures; empty: none.
 };

@@ -35,7 +35,7 @@ TEST(LightMapFiles, HdrPicturesHoldTheMapsWithinTheirPrecision) {
         const auto rgb = red_green_blue(texel_value(solution.scene, maps->maps[0], chart, i, format.quantity));
         const double brightest = std::max({rgb[0], rgb[1], rgb[2]});
         bright += brightest > 0;
-        for (std::size_t c = 0; c < 3; ++c)  // half a step of the mantissa, which is at least 128
+        for (std::size_t c = 0; c < 3; ++c)  // tolerance: half a step of the mantissa, which is at least 128
             EXPECT_NEAR(pixels[i][c], std::max(0.0, rgb[c]), brightest / 256 * 1.0001);
     });
     EXPECT_GT(bright, 100u);

@@ -164,7 +164,7 @@ struct Textures {
     std::vector<std::string> files;  ///< PNG or JPEG.
     std::string images, textures, samplers;
     int light_set = 1;                    ///< Number of the texture coordinate set for the maps.
-    Field<MaterialId, std::string> base;  ///< Per material: reference to its own picture, or empty.
+    Field<MaterialId, std::string> base;  ///< Per material: JSON reference to its own picture; empty if it has none.
 
     void add_file(const std::string& file, const std::string& name, const std::string& kind, std::size_t first_view) {
         images += fmt::format("{}{{\"name\":{},\"mimeType\":\"{}\",\"bufferView\":{}}}", images.empty() ? "" : ",",
@@ -304,7 +304,7 @@ class Document {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> material_of_;
 };
 
-/// The maps as pictures, and the scene's own pictures if materials show them.
+/// Collects the maps as pictures, and the scene's own pictures if materials show them.
 Result<Textures> make_textures(const Scene& scene, const LightMaps& shown, LightMapMaterial way, const ToneMap& tone,
                                double peak, const SceneTextures* own) {
     constexpr int clamp = 33071;
@@ -312,7 +312,8 @@ Result<Textures> make_textures(const Scene& scene, const LightMaps& shown, Light
     const bool two_sets = own && own->has_second_set();
     out.light_set = two_sets ? 2 : 1;
     out.base.resize(scene.materials().size());
-    const std::size_t first_view = two_sets ? 6 : 5;  // after the vertex arrays and the indices
+    // number of the first buffer view after those of vertex arrays and indices
+    const std::size_t first_view = two_sets ? 6 : 5;
     for (std::size_t m = 0; m < shown.maps.size(); ++m) {
         const Result<std::string> png = encode_png(texture(scene, shown, m, way, tone, peak), {});
         if (!png) return png.error();
@@ -323,7 +324,7 @@ Result<Textures> make_textures(const Scene& scene, const LightMaps& shown, Light
     for (std::size_t p = 0; p < own->pictures.size(); ++p)
         out.add_file({own->pictures[p].file.begin(), own->pictures[p].file.end()}, fmt::format("picture_{}", p),
                      own->pictures[p].kind, first_view);
-    std::map<std::array<int, 3>, std::size_t> numbers;  // of textures, by picture and wrap modes
+    std::map<std::array<int, 3>, std::size_t> numbers;  // numbers of the textures, by picture and wrap modes
     for (MaterialId id : scene.materials().ids()) {
         const SceneTextures::Coat& coat = own->coats[id];
         if (coat.picture < 0 || own->places[coat.set].empty()) continue;

@@ -92,7 +92,7 @@ TEST(LightMapModel, ReflectedLightFollowsTheTextureAndKeepsItsMean) {
     EXPECT_NEAR(at({0.25, -0.5, 0}), 0.95 * 4, 1e-6);  // a reflectance of 1 is reduced to 0.95
     EXPECT_NEAR(at({1.75, -0.5, 0}), 0, 1e-6);
     EXPECT_NEAR(at({1.05, -0.3, 0}), 0.45 * 4, 0.05);   // interpolated between the centres of both pixels
-    EXPECT_NEAR(at({-0.05, -0.5, 0}), 0.95 * 4, 1e-6);  // beyond the border
+    EXPECT_NEAR(at({-0.05, -0.5, 0}), 0.95 * 4, 1e-6);  // the value beyond the border is that at the border
     const LightMaps plain = reflected_maps(s.scene, light, nullptr);
     EXPECT_NEAR(read(plain, {0.25, -0.5, 0}), 4 * s.scene.material(floor).reflectance[0], 1e-6);
 }
@@ -114,7 +114,7 @@ TEST(LightMapModel, KeepsPicturesAndBothSetsOfCoordinates) {
         ASSERT_TRUE(again);
         EXPECT_EQ(again->pictures.size(), 2u);
     }
-    ASSERT_TRUE(write_light_map_glb(s, light, {}, {}, folder / "out.glb"));  // without the scene file
+    ASSERT_TRUE(write_light_map_glb(s, light, {}, {}, folder / "out.glb"));  // write the file without the scene's file
     const Result<std::string> out = read_whole_file(folder / "out.glb");
     EXPECT_EQ(out->find("\"TEXCOORD_2\""), std::string::npos);
     EXPECT_FALSE(load_scene_textures(s.scene, ""));

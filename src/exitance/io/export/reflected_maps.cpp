@@ -108,7 +108,7 @@ LightMaps reflected_maps(const Scene& scene, const LightMaps& light, const Scene
         for_each_texel(light, m, [&](const Chart& chart, std::size_t i) {
             const Spectrum reflected = maps[m].at(i, scene.material(chart.region).reflectance) * map.at(i);
             for (std::size_t b = 0; b < bands; ++b) map.irradiance[i][b] = static_cast<float>(reflected[b]);
-            // Texels beyond a border are extrapolated again, so that they continue the texture.
+            // Mark texels beyond a border for extrapolation, so that they continue the texture.
             if (textures && map.source[i] == LightMap::Source::extrapolated)
                 map.source[i] = map.share[i] > 0 ? LightMap::Source::buried : LightMap::Source::nothing;
         });

@@ -16,7 +16,7 @@ namespace exitance {
 Result<void> write_uv_pictures(const Scene& scene, const UvLightMaps& light, std::optional<std::size_t> group,
                                const LightMapFormat& format, const std::string& folder);
 
-/// Writes lightmaps.json: the maps, the objects of each, and what is wrong with their charts.
+/// Writes lightmaps.json: the maps, their objects, and the faults of the objects' charts.
 /// charts     file names of pictures of the charts, one per map, or empty
 /// unwrapped  coordinates that were made for the maps; null: those of the file
 Result<void> write_uv_manifest(const Scene& scene, const UvSet& set, const UvLightMaps& light,

@@ -13,7 +13,7 @@ namespace exitance {
 struct UvTarget {
     UvSet set;
     std::optional<Unwrapped> unwrapped;  ///< Coordinates that were made; none: those of the scene's file.
-    UvBakeOptions options;               ///< With the size of the map, if coordinates were made.
+    UvBakeOptions options;               ///< Bake options, with the size of the map if coordinates were made.
 };
 
 /// Reads texture coordinates from the scene's file, or makes them.

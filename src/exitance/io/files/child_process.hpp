@@ -30,7 +30,7 @@ class ChildProcess {
     /// Sends SIGTERM to the process.
     void ask_to_end();
 
-    // Valid once the process has ended:
+    // True if the exit status is 0. Valid once the process has ended.
     bool succeeded() const { return status() == 0; }
     int status() const;  ///< Exit status; 1000 + the signal number if a signal ended it.
     double processor_seconds() const { return processor_seconds_; }  ///< User and system time of all threads.

@@ -80,8 +80,8 @@ bool starts_with_number(const std::vector<std::string_view>& fields) {
     return parse_number(fields[0]).has_value();
 }
 
-/// Corrects the date of a row and returns false if there is no such date. 29 February becomes that of a leap year,
-/// since typical years combine months of different years.
+/// Corrects the date of a row and returns false if there is no such date. 29 February is given the year 2020, a leap
+/// year, since typical years combine months of different years.
 bool mend_date(DataLine& row) {
     constexpr int unknown_year = 2021, leap_year = 2020;
     if (row.year < 1) row.year = unknown_year;
@@ -223,7 +223,8 @@ Result<void> EpwReader::count_hours_from_one() {
 /// computes sin h, where h is the sun's altitude.
 template <class Sine>
 void fill_in(SkyValues& light, const Sine& sine) {
-    constexpr double min_sine = 0.05;  // for a lower sun, a small difference would give large direct light
+    // if the sun is lower, a small error of the difference would become large direct light
+    constexpr double min_sine = 0.05;
     if (!light.global || light.direct.has_value() == light.diffuse.has_value()) return;
     const double h = sine();
     if (light.direct)
@@ -303,7 +304,7 @@ Result<void> EpwReader::make_hours() {
 }
 
 Result<Weather> EpwReader::read() {
-    constexpr char control_z = '\x1a';  // end of file in DOS
+    constexpr char control_z = '\x1a';  // marks the end of a text file in DOS
     bool ended = false;
     while (!ended) {
         const std::optional<std::string_view> line = lines_.next();
@@ -314,7 +315,7 @@ Result<Weather> EpwReader::read() {
     }
     if (lines_.failed()) return lines_.read_error();
     if (!has_location_) return lines_.error("a weather file begins with LOCATION", "EnergyPlus' format, .epw");
-    if (rows_.empty()) return lines_.error("there are no hours in it");
+    if (rows_.empty()) return lines_.error("the file contains no hours");
     if (const Result<void> counted = count_hours_from_one(); !counted) return counted.error();
     if (const Result<void> made = make_hours(); !made) return made.error();
     const auto missing =

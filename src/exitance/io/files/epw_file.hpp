@@ -29,7 +29,7 @@ struct Weather {
     /// Returns the hour that contains a moment of the year, or null.
     const WeatherHour* at(int month, int day, double hour) const;
     /// Returns empty text if the file holds every hour of one year exactly once (with or without 29 February),
-    /// otherwise a sentence that says what differs.
+    /// otherwise a sentence that describes the difference.
     std::string not_a_year() const;
 };
 

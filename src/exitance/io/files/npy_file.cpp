@@ -68,7 +68,7 @@ Result<void> NpyReader::parse(const std::string& header, std::uint64_t bytes) {
     if (columns_ > 0 && rows_ > (std::uint64_t{1} << 60) / columns_)
         return Error{ErrorCode::bad_input, "claims too many numbers", path_, ""};
     if (bytes != wanted)
-        return Error{ErrorCode::bad_input, fmt::format("has {} bytes in place of {}", bytes, wanted), path_, ""};
+        return Error{ErrorCode::bad_input, fmt::format("has {} bytes instead of {}", bytes, wanted), path_, ""};
     return {};
 }
 

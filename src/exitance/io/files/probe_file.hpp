@@ -37,10 +37,10 @@ class ProbeReader {
     static Result<ProbeReader> open_model(const std::string& path);
     Result<bool> next_row(std::array<double, 6>& row);
 
-    std::optional<NumberTable> table_;    ///< For a CSV file.
-    std::optional<LineReader> lines_;     ///< For a file of plain lines.
+    std::optional<NumberTable> table_;    ///< Open table, if the file is a CSV file.
+    std::optional<LineReader> lines_;     ///< Open file, if it has plain lines.
     std::optional<std::string> first_;    ///< First plain line, read when the format was detected.
-    std::optional<ProbePoints> sensors_;  ///< For a Honeybee model.
+    std::optional<ProbePoints> sensors_;  ///< Points, if the file is a Honeybee model.
     std::size_t next_sensor_ = 0;
 };
 
@@ -51,7 +51,7 @@ Result<ProbePoints> load_probe_points(const std::string& path);
 struct ProbeReference {
     ProbePoints probes;
     std::vector<Spectrum> irradiance;       ///< W/m^2
-    std::vector<Spectrum> standard_errors;  ///< W/m^2; empty when the file has none.
+    std::vector<Spectrum> standard_errors;  ///< Standard errors, W/m^2; empty if the file has none.
 };
 
 /// Reads reference points from a CSV file with the columns x,y,z,nx,ny,nz, E_* and, optionally, se_*.

@@ -130,7 +130,7 @@ Result<RadianceMatrix> read_radiance_matrix(const std::string& path) {
     if (out.rows == 0) out.rows = out.values.size() / row;
     if (out.rows == 0 || out.values.size() != out.rows * row)
         return Error{ErrorCode::bad_input,
-                     fmt::format("holds {} numbers in place of {} x {} x {}", out.values.size(), out.rows, out.columns,
+                     fmt::format("holds {} numbers instead of {} x {} x {}", out.values.size(), out.rows, out.columns,
                                  out.components),
                      path, ""};
     return out;

@@ -37,7 +37,7 @@ struct RadianceMatrix {
 
 /// Reads a matrix of rmtxop, rfluxmtx, rcontrib or gendaymtx: ascii, float or double, in either byte order. If the
 /// header has no NROWS, they follow from the size. Errors: cannot_read; bad_input for other formats and for files that
-/// do not hold the numbers that they announce.
+/// have fewer numbers than their header states.
 Result<RadianceMatrix> read_radiance_matrix(const std::string& path);
 
 }  // namespace exitance

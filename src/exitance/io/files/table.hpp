@@ -18,7 +18,7 @@ struct Table {
     std::size_t count(std::string_view column) const;
     /// Returns a field; empty if there is no such column.
     const std::string& text(std::size_t row, std::string_view column) const;
-    /// Returns a field as a number; NaN if it is none.
+    /// Returns a field as a number; NaN if the field is not a number.
     double number(std::size_t row, std::string_view column) const;
     /// Sets a field of the last row; a new column stays empty in earlier rows.
     void set(std::string_view column, std::string value);

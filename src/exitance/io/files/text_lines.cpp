@@ -90,7 +90,7 @@ NumberKind number_of_word(std::string_view word, double& value) {
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (word.empty() || end != word.data() + word.size() || error == std::errc::invalid_argument)
         return NumberKind::not_a_number;
-    // Out of range includes numbers that are too small: strtod() makes them zero.
+    // The result is also out of range if the number is too small: strtod() then returns zero.
     if (error == std::errc::result_out_of_range) value = std::strtod(std::string(word).c_str(), nullptr);
     return std::isfinite(value) ? NumberKind::finite : NumberKind::not_finite;
 }

@@ -12,7 +12,7 @@ namespace exitance {
 class TextLines {
   public:
     explicit TextLines(std::string_view text) : rest_(text) {
-        if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);  // byte order mark
+        if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);  // skip the byte order mark
     }
 
     /// Moves to the next line that is not empty; false at the end.

@@ -26,8 +26,8 @@ class LineReader {
     std::optional<std::string_view> next_content();
 
     bool failed() const { return error_ != 0; }
-    Error read_error() const;                                       ///< Only valid if failed().
-    Error error(std::string message, std::string hint = {}) const;  ///< bad_input at the current line.
+    Error read_error() const;  ///< Error of reading the file; only valid if failed().
+    Error error(std::string message, std::string hint = {}) const;  ///< Error (bad_input) at the current line.
     int line() const { return line_; }                              ///< Number of the line returned last, from 1.
 
   private:

@@ -14,7 +14,7 @@ namespace {
 std::string event(std::string_view name, const char* kind, std::size_t line, double begin, double end, std::uint64_t id,
                   std::string_view arguments) {
     constexpr double micro = 1e6;
-    // Both ends are rounded down, so that rounding creates no overlaps.
+    // Round both ends down, so that rounding does not make consecutive events overlap.
     const double from = std::floor(begin * micro * 1000) / 1000, to = std::floor(end * micro * 1000) / 1000;
     return fmt::format(
         ",\n{{\"name\":\"{}\",\"cat\":\"{}\",\"ph\":\"X\",\"pid\":1,\"tid\":{},\"ts\":{:.3f},\"dur\":{:.3f},"

@@ -43,7 +43,7 @@ std::string found_beside(const std::string& path, std::string_view name) {
     std::error_code ignored;
     const std::string as_said = beside(path, name);
     if (fs::is_regular_file(as_said, ignored)) return as_said;
-    // Names from other systems may have backslashes, unknown folders, or different capitals.
+    // The name may come from another system: with backslashes, unknown folders, or different capitals.
     std::string slashed(name);
     std::replace(slashed.begin(), slashed.end(), '\\', '/');
     const auto small = [](std::string text) {

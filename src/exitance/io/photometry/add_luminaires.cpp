@@ -30,7 +30,7 @@ class Luminaires {
         Photometry photometry;
         LuminaireBody body;
         ProfileId profile;
-        std::uint32_t type = 0;  ///< Row of its type in the scene.
+        std::uint32_t type = 0;  ///< Index of the file's type in the scene.
     };
     const Lamp* lamp_of(const PlacedLuminaire& luminaire);
     std::uint32_t material_of(const Lamp& lamp, const PlacedLuminaire& luminaire, double table_exitance, double factor);

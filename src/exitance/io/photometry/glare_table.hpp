@@ -12,8 +12,9 @@ namespace exitance {
 struct GlareTableRow {
     double x = 2, y = 2;
     double ceiling = 0.7, walls = 0.5, floor = 0.2;
-    double crosswise = 0;  ///< UGR if one looks along the luminaires' C0 plane, at right angles to tubular lamps.
-    double endwise = 0;    ///< UGR along the C90 plane. Not finite if there is no glare.
+    /// UGR for a line of sight along the luminaires' C0 plane, at right angles to tubular lamps.
+    double crosswise = 0;
+    double endwise = 0;  ///< UGR along the C90 plane. Not finite if there is no glare.
 };
 
 /// Computes the standard UGR table after [CIE190]: nineteen rooms, five sets of reflectances. Luminaires hang in the

@@ -277,7 +277,8 @@ Result<void> IesReader::make_types_ab(const std::vector<double>& vertical, const
     out_.type = is_b ? Photometry::Type::b : Photometry::Type::a;
     const std::vector<double>& polar = is_b ? h : v;
     const std::vector<double>& around = is_b ? v : h;
-    const std::vector<std::vector<double>> rows = is_b ? by_v : transposed(by_v);  // one row per angle around the axis
+    // make one row per angle around the axis
+    const std::vector<std::vector<double>> rows = is_b ? by_v : transposed(by_v);
     std::vector<double> theta;
     for (const double a : polar) theta.push_back(std::clamp(90 + a, 0.0, 180.0));
     const Planes circle = around_axis(around, rows);

@@ -14,7 +14,7 @@ namespace exitance {
 class IesText {
   public:
     IesText(std::string_view text, const std::string& name) : rest_(text), name_(name) {
-        if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);  // byte order mark
+        if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);  // skip the byte order mark
     }
 
     std::optional<std::string_view> line() {

@@ -18,8 +18,9 @@ namespace exitance {
 /// a line, or a wall without thickness, gets a thickness of `strip_width` (`load_photometry` reports both).
 struct LuminaireBody {
     struct Face {
-        std::vector<Point> corners;  ///< In the luminaire's frame, metres, counter-clockwise seen from the front.
-        double exitance = 0;         ///< lm/m^2; 0: the face emits nothing but blocks light.
+        /// Corners in the luminaire's frame, metres, counter-clockwise seen from the front.
+        std::vector<Point> corners;
+        double exitance = 0;  ///< lm/m^2; 0: the face emits nothing but blocks light.
     };
     std::vector<Face> faces;
     EmissionProfile profile;                                 ///< Radiance, cd/m^2, by direction in the frame below.

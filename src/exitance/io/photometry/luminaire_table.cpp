@@ -69,7 +69,7 @@ Result<void> TableReader::read_header(std::string_view header) {
                                 fmt::format("known: {}", fmt::join(columns, ", ")));
         const auto slot = static_cast<std::size_t>(known - columns.begin());
         if (std::find(slots_.begin(), slots_.end(), slot) != slots_.end())
-            return lines_.error(fmt::format("the column '{}' is there twice", name));
+            return lines_.error(fmt::format("the column '{}' occurs twice", name));
         slots_.push_back(slot);
     }
     for (std::size_t i = 0; i < required; ++i)

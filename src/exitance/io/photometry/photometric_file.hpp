@@ -9,9 +9,9 @@
 namespace exitance {
 
 // Limits on the numbers of photometric files, far above those of luminaires.
-inline constexpr double max_photometric_angles = 20000;  ///< Angles of a table in one direction.
+inline constexpr double max_photometric_angles = 20000;  ///< Maximum number of angles of a table in one direction.
 inline constexpr double max_photometric_candelas = 4e6;  ///< Values of a table.
-inline constexpr double max_photometric_value = 1e12;    ///< Any value, cd or lm.
+inline constexpr double max_photometric_value = 1e12;    ///< Limit for any value, cd or lm.
 
 /// Reads the text of an IES LM-63 file (1986 to 2019; types A, B and C with all their symmetries). `name` is the file's
 /// name in messages. O(numbers).

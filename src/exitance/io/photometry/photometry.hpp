@@ -45,8 +45,9 @@ struct Photometry {
     std::string file;
     std::string format;  ///< "IESNA:LM-63-2002", "EULUMDAT", ...
     Type type = Type::c;
-    std::string symmetry;                                       ///< In words, for reports.
-    std::vector<std::pair<std::string, std::string>> keywords;  ///< In the order of the file.
+    std::string symmetry;  ///< Symmetry in words, for reports.
+    /// Keywords and their values, in the order of the file.
+    std::vector<std::pair<std::string, std::string>> keywords;
     int lamps = 1;
     std::optional<double> lamp_lumens;          ///< Total flux of the lamps, lm; empty: absolute photometry.
     double watts = 0;                           ///< 0: unknown.
@@ -55,7 +56,7 @@ struct Photometry {
     std::optional<Vec3> housing;  ///< Length, width and height of the luminaire, metres; empty: unknown.
 
     Vec3 axis_x{1, 0, 0}, axis_y{0, 1, 0}, axis_z{0, 0, 1};  ///< Axes of the table in the luminaire's frame.
-    std::vector<double> theta;                               ///< Degrees, ascending within [0, 180].
+    std::vector<double> theta;                               ///< Vertical angles, degrees, ascending within [0, 180].
     std::vector<double> phi;        ///< Degrees: {0} (rotational symmetry), or ascending from 0 to 360.
     std::vector<double> candela;    ///< Intensities, cd; theta varies fastest.
     std::vector<Finding> findings;  ///< Repairs and warnings.
@@ -72,7 +73,7 @@ struct Photometry {
 /// Angular range in a plane through the axis in which the intensity is at least a share of the maximum: degrees from
 /// the axis to each side, at most 90. The plane is spanned by the axis and the unit vector `towards`.
 struct BeamSpread {
-    double left = 0, right = 0;  ///< Towards -towards and towards +towards.
+    double left = 0, right = 0;  ///< Angles towards -towards and towards +towards.
     double whole() const { return left + right; }
 };
 /// Computes the spread for a `share` of the largest intensity in that plane below the horizontal: 0.5 for the beam

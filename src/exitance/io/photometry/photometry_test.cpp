@@ -178,8 +178,8 @@ TEST(LuminaireBody, TypeBKeepsItsFluxForEveryShape) {
 TEST(LuminaireBody, KeepsEveryExtentOfTheFile) {
     const auto even = [](double, double) { return 100.0; };
     struct Case {
-        const char* opening;  // width, length, height, metres
-        Vec3 size;            // along C0, C90 and up
+        const char* opening;  // width, length and height in the file's order, metres
+        Vec3 size;            // size along C0, C90 and upwards, metres
     };
     for (const Case& c : {Case{"0.024 0.599 0.001", {0.599, 0.024, 0.001}}, Case{"0.6 0.002 0.05", {0.002, 0.6, 0.05}},
                           Case{"0.0004 0.3 0", {0.3, 0.0004, 0}}, Case{"0.004 0.004 0", {0.004, 0.004, 0}},

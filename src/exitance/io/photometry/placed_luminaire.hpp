@@ -11,13 +11,14 @@ namespace exitance {
 
 /// A luminaire in a scene: its photometric file, position, orientation and output.
 struct PlacedLuminaire {
-    std::string path;                         ///< Path of its photometric file.
-    std::string group;                        ///< Name of its group; empty: none.
-    Point position;                           ///< Centre of its opening, metres.
-    Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};  ///< Its axes (see Photometry), of length 1; it emits downwards along -z.
+    std::string path;   ///< Path of the photometric file.
+    std::string group;  ///< Name of the luminaire's group; empty: none.
+    Point position;     ///< Centre of the luminaire's opening, metres.
+    /// Axes of the luminaire (see Photometry), of length 1; it emits downwards along -z.
+    Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
     double dimming = 1, maintenance = 1;
     std::optional<double> lumens;  ///< Replaces the file's lamp flux (luminaire flux in absolute photometry), lm.
-    std::string file;              ///< File that places it, for messages.
+    std::string file;              ///< File that places the luminaire, for messages.
     int line = 0;                  ///< Line in that file.
 };
 

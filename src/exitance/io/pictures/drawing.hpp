@@ -12,7 +12,7 @@ namespace exitance {
 /// measured.
 struct Drawing {
     struct Line {
-        std::vector<Vec2> points;  ///< At least two; every pair is a separate segment if `pieces`.
+        std::vector<Vec2> points;  ///< At least two points. If `pieces`, every pair of them is a separate segment.
         Rgb colour{0, 0, 0};
         double width = 0.2;  ///< mm
         bool dashed = false, closed = false, pieces = false;

@@ -61,7 +61,8 @@ Result<void> write_exr(const std::string& path, const LinearImage& image, const 
             if (half) halves.push_back(to_half(channel.values));
             const void* values =
                 half ? static_cast<const void*>(halves.back().data()) : static_cast<const void*>(channel.values.data());
-            char* first = static_cast<char*>(const_cast<void*>(values));  // OpenEXR only reads from it
+            // OpenEXR only reads the values, but requires a pointer to non-const
+            char* first = static_cast<char*>(const_cast<void*>(values));
             frame.insert(channel.name, Imf::Slice(type, first, bytes, bytes * static_cast<std::size_t>(image.width)));
         }
         MemoryFile memory;

@@ -24,7 +24,7 @@ double value_of(const Pixel& pixel, Quantity quantity);
 
 /// User options for a colour scale.
 struct ScaleChoice {
-    std::optional<std::pair<double, double>> range = {};  ///< None: the range of the picture.
+    std::optional<std::pair<double, double>> range = {};  ///< Range of the scale; none: the range of the picture.
     bool by_ratio = false;  ///< Steps of equal ratio, whatever the range of light; false: as the range suggests.
     std::optional<std::size_t> bands = {};  ///< Number of colours; none: round steps.
     bool smooth = false;                    ///< Interpolates between colours.
@@ -34,7 +34,7 @@ struct ScaleChoice {
 /// A scale with one colour between each pair of ascending values. By default these are round numbers at equal distances
 /// (1, 2 or 5 times a power of ten), or 1-2-5 steps if the values span more than a factor of thirty.
 struct ColourScale {
-    std::vector<double> steps;  ///< At least two.
+    std::vector<double> steps;  ///< Ascending values, at least two.
     Palette palette = Palette::viridis;
     bool smooth = false;
     std::vector<std::string> names() const;

@@ -55,7 +55,7 @@ Result<void> write_hdr(const std::string& path, const LinearImage& image, const 
         "EXPOSURE=1\nPRIMARIES=0.64 0.33 0.30 0.60 0.15 0.06 0.3127 0.3290\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n",
         image.height, image.width);
     const auto width = static_cast<std::size_t>(image.width);
-    const bool runs = image.width >= 8 && image.width < 32768;  // rows of other widths are stored without runs
+    const bool runs = image.width >= 8 && image.width < 32768;  // the format allows runs only for these widths
     std::vector<Rgbe> row(width);
     std::vector<std::uint8_t> bytes(width);
     for (std::size_t y = 0; y < static_cast<std::size_t>(image.height); ++y) {

@@ -40,14 +40,14 @@ TEST(Isolux, LongLinesAreLabelled) {
     draw_isolux(image, picture, Quantity::illuminance, {{0, 50, 100}}, "illuminance lx");
     int paper = 0;  // pixels of the label's background, on the line of 50 lx
     for (int y = 0; y < 80; ++y) paper += image.at(94, y)[2] == 24;
-    EXPECT_GT(paper, 3);  // the height of the label
+    EXPECT_GT(paper, 3);  // a label is higher than this
 }
 
 TEST(Isolux, LinesOfIrradianceAreAtTheMeanOfTheBands) {
     if constexpr (bands != 3) GTEST_SKIP() << "the bands of this build weigh alike";
     Picture picture = ramp(200, 40);
     for (Pixel& pixel : picture.pixels) {
-        // The mean of the bands is unchanged; their luminous mean is not.
+        // Changes the luminous mean of the bands, but not their plain mean.
         pixel.irradiance[1] *= 0.5, pixel.irradiance[0] *= 1.5;
     }
     Image image(200, 40);

@@ -42,7 +42,7 @@ TEST(WriteHdr, HoldsRadianceWithinAPercentOfThePixelsBrightestBand) {
         for (std::size_t i = 0; i < pixels.size(); ++i) {
             const auto value = [&](std::size_t c) { return static_cast<double>(image.channels[c].values[i]); };
             const double brightest = std::max({value(0), value(1), value(2)});
-            for (std::size_t c = 0; c < 3; ++c)  // half a step of the mantissa, which is at least 128
+            for (std::size_t c = 0; c < 3; ++c)  // tolerance: half a step of the mantissa, which is at least 128
                 EXPECT_NEAR(pixels[i][c], value(c), brightest / 256 * 1.0001);
         }
     }

@@ -83,7 +83,7 @@ Result<std::string> encode_png(const Image& image, const ImageTexts& texts) {
     for (const auto& [key, text] : texts) {
         png_text entry{};
         entry.compression = PNG_TEXT_COMPRESSION_NONE;
-        entry.key = const_cast<char*>(key.c_str());  // libpng copies it
+        entry.key = const_cast<char*>(key.c_str());  // libpng copies the text, so it does not change it
         entry.text = const_cast<char*>(text.c_str());
         entry.text_length = text.size();
         entries.push_back(entry);

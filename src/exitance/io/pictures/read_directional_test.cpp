@@ -51,7 +51,8 @@ TEST_F(DirectionalFiles, BothFormatsHoldThePicturesThatAreWritten) {
             if (bands != 3) continue;
             for (std::size_t i = 0; i < read->radiance.size(); ++i) {
                 const float value = written.channels[i % 3].values[i / 3];
-                EXPECT_NEAR(read->radiance[i], value, 0.5 / 64 * 17) << name;  // half a step of a mantissa of 8 bits
+                // tolerance: half a step of a mantissa of 8 bits
+                EXPECT_NEAR(read->radiance[i], value, 0.5 / 64 * 17) << name;
             }
         }
     }

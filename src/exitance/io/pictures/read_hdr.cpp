@@ -27,7 +27,7 @@ struct HdrHeader {
     std::size_t pixels_at = 0;
 };
 
-/// Parses "-Y height +X width"; the signs tell the directions of rows and columns.
+/// Parses "-Y height +X width"; the signs give the directions of rows and columns.
 bool read_resolution(std::string_view line, HdrHeader& out) {
     if (line.size() < 8 || line[1] != 'Y' || (line[0] != '-' && line[0] != '+')) return false;
     const std::size_t x = line.find('X');
@@ -182,7 +182,7 @@ Result<DirectionalPicture> read_directional_hdr(const std::string& path) {
         if (header->right_to_left) std::reverse(row.begin(), row.end());
         for (const Rgbe& p : row) {
             std::array<float, 3> colour{};
-            // The middle of the interval that a mantissa stands for [Ward91].
+            // The middle of the interval that a mantissa represents [Ward91].
             for (std::size_t c = 0; c < 3 && p[3] > 0; ++c)
                 colour[c] = static_cast<float>(std::ldexp(p[c] + 0.5, p[3] - 136) / header->exposure[c]);
             append_pixel(colour[0], colour[1], colour[2], out);

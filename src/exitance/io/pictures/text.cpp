@@ -25,7 +25,7 @@ class Font {
     Font(const Font&) = delete;
     Font& operator=(const Font&) = delete;
     ~Font() {
-        if (library_) FT_Done_FreeType(library_);  // closes the face, too
+        if (library_) FT_Done_FreeType(library_);  // also releases the face
     }
 
     /// Calls visit(bitmap, left, above) for each letter: its coverage, the column of the bitmap's left side, and the

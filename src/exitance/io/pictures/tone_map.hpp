@@ -19,12 +19,12 @@ enum class ToneCurve : std::uint8_t {
     photographic,  ///< s L (1 + s L / w^2) / (1 + s L) for the mean of the bands, which keeps the hue. [Reinhard02],
                    ///< equation 4.
     filmic,        ///< x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14) for every band, x = 0.7232 s L. [Narkowicz15]
-    linear,        ///< s L; values above white are clipped.
+    linear,        ///< Displays s L; values above white are clipped.
 };
 
 /// Converts light to display colours. All curves ascend and map 0.18 to about 0.18; results are clamped to [0, 1].
 struct ToneMap {
-    double scale = 1;  ///< s: display units per W/m^2.
+    double scale = 1;  ///< Factor s: display units per W/m^2.
     double white = 4;  ///< w: value of s L that is shown as white by the photographic curve.
     ToneCurve curve = ToneCurve::photographic;
 

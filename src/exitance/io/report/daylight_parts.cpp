@@ -98,7 +98,8 @@ Result<DaylightPartWriter> DaylightPartWriter::create(const std::string& folder,
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
     if (failure) return Error{ErrorCode::cannot_write, "cannot be made: " + failure.message(), folder, ""};
-    std::filesystem::remove(in(folder, "part.txt"), failure);  // the part is incomplete until it is written again
+    // without this file the part counts as incomplete, until it is written at the end
+    std::filesystem::remove(in(folder, "part.txt"), failure);
     const std::size_t hours = task.hours.size();
     Result<NpyWriter> illuminance = NpyWriter::create(in(folder, "illuminance.npy"), NpyType::float32, sensors, hours),
                       sun = NpyWriter::create(in(folder, "sun.npy"), NpyType::float32, sensors, hours),

@@ -19,7 +19,7 @@ namespace exitance {
 struct DaylightFormats {
     HoursFormat hours = HoursFormat::hdf5;
     std::optional<MatrixFormat> matrix;  ///< Radiance's matrix, matrix.mtx; none: matrix.csv.
-    bool honeybee = false;               ///< Also write Honeybee's results folder, honeybee.
+    bool honeybee = false;               ///< True if Honeybee's results folder, `honeybee`, is written as well.
 };
 
 /// A file with the daylight coefficients of sensors as they arrive. It appears whole or not at all.
@@ -41,7 +41,7 @@ class MatrixFile {
 ///     summary.csv   name, value
 class DaylightFiles {
   public:
-    /// The folder is created if necessary. `task` must outlive this. Error: ErrorCode::cannot_write.
+    /// The folder is created if necessary. `task` must outlive this object. Error: ErrorCode::cannot_write.
     static Result<DaylightFiles> create(const std::string& folder, const DaylightTask& task,
                                         const DaylightFormats& formats);
 

@@ -67,7 +67,8 @@ std::string values(const ReportFigures::Grid& grid, Vec2 cell) {
     return svg;
 }
 
-/// Draws what is around a plane: walls and objects where the plane cuts them, and the outlines of furniture below it.
+/// Draws the surroundings of a plane: walls and objects where the plane cuts them, and the outlines of furniture below
+/// it.
 std::string surroundings(const GridLight& light, const Scene& scene, double to_plan, Vec2 plan) {
     const Point low = light.points.empty() ? light.plane.origin
                                            : light.points[0] - 0.5 * light.step_u * normalized(light.plane.u) -

@@ -16,7 +16,7 @@ namespace exitance {
 ///     grids_info.json   names and sizes of the grids
 class HoneybeeResults {
   public:
-    /// `task` must outlive this. The folder is created if necessary. Error: ErrorCode::cannot_write.
+    /// `task` must outlive this object. The folder is created if necessary. Error: ErrorCode::cannot_write.
     static Result<HoneybeeResults> create(const std::string& folder, const DaylightTask& task);
 
     /// Adds the sensors that follow those added before.

@@ -118,7 +118,8 @@ class HoursTable {
     }
 
   private:
-    /// Writes the row of an hour. `column`: its first number; those of other sensors follow at `stride`.
+    /// Writes the row of an hour. `column`: begins with the first sensor's value; the values of further sensors follow
+    /// at intervals of `stride`.
     void write_row(const DaylightHour& hour, std::span<const float> column, std::size_t stride) {
         fmt::memory_buffer row;
         fmt::format_to(std::back_inserter(row), "\n{},{},{}", hour.time.month, hour.time.day, hour.hour);
@@ -133,7 +134,7 @@ class HoursTable {
     }
 
     AtomicFile table_;
-    AtomicFile rows_;  ///< Never completed, so that it disappears with its owner.
+    AtomicFile rows_;  ///< Never committed, so that the file is removed with this object.
     const DaylightTask& task_;
     std::size_t place_ = 0;  ///< End of `rows_`, bytes.
 };

@@ -14,7 +14,7 @@ constexpr double layout_width = 640;  ///< Length of the longer side, in SVG uni
 
 /// Maps points of a room to its layout plan: x to the right, y upwards, as seen from above.
 struct LayoutFrame {
-    Point low;  ///< Lower left corner, metres.
+    Point low;  ///< Lower left corner of the plan, metres.
     double width = 0, height = 0, to_plan = 1;
 
     Vec2 at(const Point& p) const { return {to_plan * (p.x - low.x), to_plan * (height - (p.y - low.y))}; }

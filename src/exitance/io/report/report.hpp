@@ -32,7 +32,7 @@ struct ObserverGlare {
 struct Requirement {
     struct Limit {
         std::string quantity;  ///< "Em", "U0", "Ez" or "UGR"; of a task also "Ra", "walls" or "ceiling".
-        double value = 0;      ///< lx or W/m^2 for illuminances.
+        double value = 0;      ///< Required value: lx or W/m^2 for illuminances, otherwise a number.
     };
     /// Name of planes, or label of a room, to which ": " and a task may be added; empty: all planes and observers.
     std::string plane;
@@ -44,7 +44,7 @@ struct ReportHeading {
     std::string title, project, client, author, date;
 };
 
-/// Content of a report. The solution must outlive it.
+/// Content of a report. The solution must outlive this object.
 struct ReportContent {
     ReportHeading heading;
     std::vector<Requirement> requirements;

@@ -19,15 +19,15 @@ struct ReportFigures {
         std::array<double, 3> reflectance, radiance;
         std::size_t faces = 0;
         double area = 0;        ///< m^2
-        double irradiance = 0;  ///< Area-weighted mean over its faces.
+        double irradiance = 0;  ///< Area-weighted mean irradiance of the material's faces.
     };
     struct Grid {
         const GridLight* light;
-        std::vector<double> values;  ///< One per point.
+        std::vector<double> values;  ///< Value at each point.
         Levels levels;               ///< Statistics of the points that no object covers.
         std::size_t hidden = 0;      ///< Number of covered points.
     };
-    std::vector<Face> faces;  ///< From the largest to the smallest.
+    std::vector<Face> faces;  ///< Faces, sorted by descending area.
     std::vector<MaterialUse> materials;
     std::vector<Grid> grids;
     LuminaireSchedule luminaires;

@@ -30,8 +30,7 @@ Result<void> find_page_printer(const std::string& path) {
 
 Result<void> print_page(const std::string& page, const std::string& path, const StopRequest& stop) {
     namespace fs = std::filesystem;
-    constexpr double most_seconds =
-        120;  // a page takes a few seconds; without a limit a hanging browser would hold the run
+    constexpr double most_seconds = 120;  // printing a page takes a few seconds; the limit ends a browser that hangs
     const fs::path target = fs::absolute(path),
                    part = target.parent_path() / fmt::format(".{}.part.pdf", target.stem().string());
     std::vector<std::string> words{page_printer(), "--headless", "--disable-gpu", "--no-pdf-header-footer",

@@ -22,7 +22,7 @@ struct Judgement {
     std::string where, quantity;  ///< Plane, observers or room, and symbol, see Requirement::Limit.
     std::string task = {};        ///< Name of the task that requires the number; empty: none.
     double required = 0;
-    double reached = std::numeric_limits<double>::quiet_NaN();  ///< NaN if not measured.
+    double reached = std::numeric_limits<double>::quiet_NaN();  ///< Reached value; NaN if it was not measured.
     Fulfilment verdict = Fulfilment::not_measured;
 };
 

@@ -35,7 +35,7 @@ bool is_between(const Flat& p, const Flat& a, const Flat& b) {
 bool meet(const Flat& a, const Flat& b, const Flat& c, const Flat& d) {
     const bool touches = a == c || a == d || b == c || b == d;
     const double abc = turn(a, b, c), abd = turn(a, b, d), cda = turn(c, d, a), cdb = turn(c, d, b);
-    if (touches) {  // they meet elsewhere only if they overlap
+    if (touches) {  // two edges with a common end meet elsewhere only if they overlap
         if (abc != 0 || abd != 0) return false;
         const Flat& common = a == c || a == d ? a : b;
         const Flat &other = common == a ? b : a, &end = common == c ? d : c;

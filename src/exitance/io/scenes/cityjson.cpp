@@ -290,7 +290,7 @@ class CityJsonReader {
     std::map<std::string, std::uint32_t> materials_;
     const std::vector<Point>* current_ = nullptr;   ///< Vertices of the current geometry.
     std::optional<std::array<double, 16>> matrix_;  ///< Placement of an instance, row by row.
-    std::string id_, type_;                         ///< The current city object.
+    std::string id_, type_;                         ///< Identifier and type of the current city object.
     std::uint32_t group_ = 0;
     std::size_t without_lod_ = 0, skipped_ = 0;
 };

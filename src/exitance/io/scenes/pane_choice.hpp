@@ -6,8 +6,8 @@ namespace exitance {
 
 /// A choice of panes. Empty: all panes.
 struct PaneChoice {
-    std::vector<std::string> materials, objects;  ///< A pane has one of these materials or objects ...
-    std::optional<Box> box;                       ///< ... and lies within this box, metres.
+    std::vector<std::string> materials, objects;  ///< Accepted materials and objects: a pane needs one of them.
+    std::optional<Box> box;                       ///< Box in which a pane must lie, metres; empty: anywhere.
 };
 
 /// Returns whether each pane of the scene belongs to a choice. `named`: the panes before they were cut into convex

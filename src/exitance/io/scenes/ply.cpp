@@ -159,7 +159,7 @@ class PlyReader {
             line.next();
             const std::string_view key = line.word();
             if (header.lines == 1) {
-                if (key != "ply") return error(1, "is no PLY file: its first line is not 'ply'");
+                if (key != "ply") return error(1, "is not a PLY file: its first line is not 'ply'");
             } else if (key == "format") {
                 const std::string name(line.word());
                 if (!read_format(name, line.word(), header)) return std::nullopt;
@@ -253,7 +253,7 @@ class PlyReader {
 
     /// Reads all rows of an element. False where the file ends early or holds no number.
     bool read_rows(const Element& element, Numbers& numbers, int header_lines) {
-        if (element.properties.empty()) return true;  // without properties, its rows take no space in the file
+        if (element.properties.empty()) return true;  // rows of an element without properties take no space in the file
         const bool is_vertex = element.name == "vertex", is_face = element.name == "face",
                    are_strips = element.name == "tristrips";
         for (std::size_t row = 0; row < element.count; ++row) {

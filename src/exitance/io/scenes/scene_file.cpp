@@ -78,7 +78,8 @@ bool looks_like_gltf(const std::string& path) {
     return std::string_view(magic, sizeof magic) == "glTF";
 }
 
-/// Names what was downloaded in place of a scene, by the first bytes of the file; nullptr for other files.
+/// Detects by its first bytes whether a file is something else that was downloaded in place of a scene, and returns its
+/// name; nullptr for other files.
 const char* stand_in_for_scene(const std::string& path) {
     constexpr std::size_t looked_at = 256;  // derived from web pages of GitHub: blank lines, then the first tag
     std::string begin(looked_at, ' ');

@@ -14,8 +14,8 @@ namespace exitance {
 
 /// Treatment of faults in a scene file that can be repaired safely.
 enum class Faults : std::uint8_t {
-    repair,  ///< Repair and report them.
-    refuse,  ///< Report them as errors.
+    repair,  ///< Repair the faults and report them.
+    refuse,  ///< Report the faults as errors.
 };
 
 /// A sky that is added to a scene.
@@ -30,17 +30,17 @@ struct ChosenSky {
 struct LoadOptions {
     Faults faults = Faults::repair;
     bool run_commands = false;          ///< Runs installed Radiance programs for lines that begin with '!'.
-    const StopRequest* stop = nullptr;  ///< Ends such programs when a stop is requested.
+    const StopRequest* stop = nullptr;  ///< When a stop is requested, programs that `!` lines run are ended.
     bool older_sky_programs = false;    ///< Interprets !gensky and !gendaylit as before November 2019.
     std::optional<ChosenSky> sky = {};
     std::string luminaires = {};           ///< Path of a table of luminaires to add to the scene; empty: none.
     bool light_groups = false;             ///< Gives the emitters of each group materials of their own.
-    std::optional<bool> photometric = {};  ///< True if the scene's light is in lumens; empty: as in its files.
+    std::optional<bool> photometric = {};  ///< True if the scene's light is in lumens; empty: as stated in the files.
     bool turn_bodies = false;              ///< Reverses the faces of closed bodies whose fronts are inside.
     /// Length unit and upright axis of files that do not define them; empty: metres, Z up.
     std::optional<double> metres_per_unit = {};
     std::optional<bool> y_is_up = {};
-    bool without_panes = false;  ///< Leaves clear glass out, for view factors, which it does not change.
+    bool without_panes = false;  ///< Omits clear glass, for view factors, which it does not change.
     /// False where emission does not matter (view factors) or comes with the run (a year of daylight): a material file
     /// that cannot be read is then a repair even if nothing emits.
     bool needs_light = true;

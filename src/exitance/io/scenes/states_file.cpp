@@ -60,7 +60,7 @@ class StatesReader {
         PaneGroup group;
         keys.need("name", group.name);
         if (out_.groups.size() == PaneGroups::max_groups)
-            keys.fail(keys.table(), fmt::format("is one group more than {}", PaneGroups::max_groups));
+            keys.fail(keys.table(), fmt::format("exceeds the limit of {} groups", PaneGroups::max_groups));
         for (const PaneGroup& other : out_.groups)
             if (other.name == group.name) keys.fail(keys.table(), fmt::format("'{}' names two groups", group.name));
         PaneChoice choice = read_choice(keys);

@@ -48,7 +48,7 @@ class StlReader {
         std::memcpy(&count, bytes.data() + header_bytes - sizeof count, sizeof count);
         return count;
     }
-    /// Detects a binary file by its length: some binary files also begin with "solid".
+    /// Detects a binary file by its length, since some binary files also begin with "solid".
     static bool is_binary(const std::string& bytes) {
         return bytes.size() >= header_bytes &&
                bytes.size() == header_bytes + triangle_bytes * std::size_t(count_of(bytes));

@@ -29,10 +29,12 @@ using Polygon = std::vector<Point>;
 struct Piece {
     char kind = 'S';
     int line = 0;
-    std::vector<Polygon> parts;  ///< Convex unless it crosses itself; several after other surfaces were cut out.
+    /// Polygons of the surface: convex unless it crosses itself, and several if other surfaces were cut out of it.
+    std::vector<Polygon> parts;
     bool crosses_itself = false;
     Normal normal;
-    std::size_t base = 0, merged = 0;  ///< Numbers of other surfaces; 0: none.
+    /// Numbers of the base surface and of the surface with which this one is merged; 0: none.
+    std::size_t base = 0, merged = 0;
     double emittance = 0.9;
     std::string name;
 };
@@ -123,7 +125,7 @@ class View3dReader {
     void read_vertex(TextLines& items) {
         const auto number = parse_integer(items.word());
         if (!number || *number != static_cast<long long>(vertices_.size()) + 1)
-            error(line_, fmt::format("vertex {} is not numbered so", vertices_.size() + 1),
+            error(line_, fmt::format("the number of vertex {} is out of order", vertices_.size() + 1),
                   "vertices are numbered 1, 2, 3, ...");
         Point p;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -148,7 +150,7 @@ class View3dReader {
     void read_surface(char kind, TextLines& items) {
         const auto number = parse_integer(items.word());
         if (!number || *number != static_cast<long long>(pieces_.size()) + 1)
-            error(line_, fmt::format("surface {} is not numbered so", pieces_.size() + 1),
+            error(line_, fmt::format("the number of surface {} is out of order", pieces_.size() + 1),
                   "surfaces of all kinds are numbered 1, 2, 3, ...");
         Piece piece;
         piece.kind = kind, piece.line = line_;
@@ -356,9 +358,9 @@ class View3dReader {
     std::vector<View3dMask> masks_;
     std::map<double, std::uint32_t> materials_;
     bool planes_ = false, ended_ = false;
-    bool waiting_ = false;         ///< The last surface is not complete.
+    bool waiting_ = false;         ///< True if the last surface is not complete.
     char shape_ = 0;               ///< Shape of the incomplete surface.
-    std::vector<double> numbers_;  ///< Numbers read for it.
+    std::vector<double> numbers_;  ///< Numbers of the incomplete surface so far.
     int line_ = 0;
 };
 

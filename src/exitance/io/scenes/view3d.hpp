@@ -22,7 +22,7 @@ ReadScene read_view3d(const std::string& path);
 
 /// A mask surface: it lies on a part of its base and faces it, so that this part exchanges heat with the mask only.
 struct View3dMask {
-    std::uint32_t row, base;  ///< Rows of View3D's result, from 0: of the mask, and of its base.
+    std::uint32_t row, base;  ///< Rows of the mask and of its base in View3D's result, from 0.
 };
 
 /// Returns the masks of a file that read_view3d() reads without errors; none if it cannot be read.

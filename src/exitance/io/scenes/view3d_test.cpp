@@ -97,14 +97,14 @@ TEST(View3d, ACrossedQuadrangleWithASubsurfaceIsAnError) {
 
 TEST(View3d, InputThatView3dRejectsIsAnErrorWithItsLine) {
     const std::pair<std::string, int> wrong[] = {
-        {"F 3\nV 2 0 0 0\n", 2},                                                                  // out of order
+        {"F 3\nV 2 0 0 0\n", 2},  // vertex numbers out of order
         {"F 3\n" + square + "S 1 1 2 3 4 0 0 .9\nS 2 1 2 3 0 0 1 .9\nS 3 1 2 3 0 0 2 .9\n", 12},  // chained cmb
         {"F 3\n" + square + "V 9 1 1.5 0\nS 1 1 2 9 4 0 0 .9\n", 11},                             // concave
         {"F 3\n" + square + "S 1 1 2 3 99 0 0 .9\n", 10},
-        {"F 3\n" + square + "S 1 1 2 3 4 0 0 .9\nM 2 5 6 7 8 1 0 .9\n", 11},  // faces like its base
+        {"F 3\n" + square + "S 1 1 2 3 4 0 0 .9\nM 2 5 6 7 8 1 0 .9\n", 11},  // the mask faces the same way as its base
         {"F 3\n" + square + "S 1 1 2 3 4 0 0 .9\nM 2 5 8 7 6 0 0 .9\n", 11},  // no base
         {"F 2\n", 1},
-        {"F 3a\nS 1 R 0 0 .9\n1 2 3\n", 2},  // ends within a surface
+        {"F 3a\nS 1 R 0 0 .9\n1 2 3\n", 2},  // the file ends within a surface
     };
     for (const auto& [text, line] : wrong) {
         const ReadScene scene = read_vs3_text(text);

@@ -37,7 +37,7 @@ void for_each_part(const std::string& checkpoint,
                    const std::function<void(const std::filesystem::path&, std::uint64_t)>& take) {
     const std::filesystem::path path(checkpoint);
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-    std::vector<std::filesystem::path> names;  // complete before `take` may remove files
+    std::vector<std::filesystem::path> names;  // list all names first, since `take` may remove files
     std::error_code failed;
     for (std::filesystem::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed))
         names.push_back(at->path());

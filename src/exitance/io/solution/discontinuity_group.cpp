@@ -127,7 +127,7 @@ SixNodeMesh read_discontinuity(Hdf5Reader& file, const std::string& group, std::
                        std::all_of(shadow.begin(), shadow.end(), [](std::uint8_t v) { return v <= 2; }) &&
                        std::all_of(order.begin(), order.end(), is_order) &&
                        std::all_of(cause.begin(), cause.end(), [](std::uint8_t v) { return v <= 4; });
-    if (!known) return file.fail(in("edge_order"), "or another one holds a kind that there is not"), SixNodeMesh();
+    if (!known) return file.fail(in("edge_order"), "or a related data set holds an unknown kind"), SixNodeMesh();
     for (std::size_t i = 0; i < points.size() / 3; ++i) {
         mesh.points.push_back({points[3 * i], points[3 * i + 1], points[3 * i + 2]});
         mesh.values.emplace_back();

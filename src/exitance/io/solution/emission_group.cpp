@@ -76,18 +76,20 @@ Field<ProfileId, EmissionProfile> read_profiles(Hdf5Reader& file, const std::str
         p.body = static_cast<EmissionProfile::Body>(body[i]), p.size = sizes[i];
         for (std::size_t k = 2 * i; k < 2 * i + 2; ++k) {
             if (count[k] > angles.size() - angle)
-                return file.fail(group + "/profile_angle_count", "names angles that are not there"), out;
+                return file.fail(group + "/profile_angle_count", "refers to angles that do not exist"), out;
             const auto first = angles.begin() + static_cast<std::ptrdiff_t>(angle);
             p.axes[k - 2 * i] = {static_cast<EmissionProfile::Angle>(kind[k]), offset[k], {first, first + count[k]}};
             angle += count[k];
         }
         const std::size_t entries = p.axes[0].at.size() * p.axes[1].at.size();
         if (entries > values.size() - value)
-            return file.fail(group + "/profile_value", "holds fewer values than its angles ask for"), out;
+            return file.fail(group + "/profile_value", "holds fewer values than its angles require"), out;
         const auto first = values.begin() + static_cast<std::ptrdiff_t>(value);
         p.values.assign(first, first + static_cast<std::ptrdiff_t>(entries));
         value += entries;
-        if (!p.is_sane()) return file.fail(group + "/profile_value", "and the sets beside it make no profile"), out;
+        if (!p.is_sane())
+            return file.fail(group + "/profile_value", "and related data sets do not form a valid emission profile"),
+                   out;
         p.find_smooth_width();
         out.add(std::move(p));
     }

@@ -59,7 +59,7 @@ class Replay {
                           shape_[i] == 1 ? Patch::Shape::triangle : Patch::Shape::parallelogram};
         const double squared_area = squared_norm(cross(patch.a, patch.b));
         if (!(squared_area > 0 && std::isfinite(1 / squared_area)))
-            return false;  // no area: its points would have no coordinates
+            return false;  // points of a patch without area have no coordinates
         tree.add_root(RegionId(region_[i]), patch);
         return true;
     }
@@ -100,7 +100,8 @@ class Replay {
         Fan fan;
         for (std::size_t i = 0; i < places; ++i) {
             const double* at = &fan_[2 * (fan_places_read_ + i)];
-            constexpr double around = 1e-6;  // an element may exceed its frame by this much due to rounding
+            // tolerance: rounding may place points of an element slightly outside its frame
+            constexpr double around = 1e-6;
             for (int k = 0; k < 2; ++k)
                 if (!(at[k] >= -around && at[k] <= 1 + around)) return false;
             (i == 0 ? fan.apex : fan.border.emplace_back()) = {at[0], at[1]};
@@ -251,7 +252,7 @@ ElementFunction read_function(Hdf5Reader& file, const std::string& group, std::s
     }
     if (count * bands != values.size() || count >= none)
         return file.fail(group + "/values",
-                         "has " + std::to_string(values.size() / bands) + " rows in place of " + std::to_string(count)),
+                         "has " + std::to_string(values.size() / bands) + " rows instead of " + std::to_string(count)),
                ElementFunction();
     function.values.resize(count);
     for (std::size_t i = 0; i < count; ++i)

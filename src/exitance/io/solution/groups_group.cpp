@@ -50,16 +50,16 @@ void read_emitters(Hdf5Reader& file, const std::string& group, const Scene& scen
     const std::size_t count = out.groups.size();
     for (std::size_t i = 0; i + 1 < materials.size(); i += 2) {
         if (materials[i] >= count || materials[i + 1] >= scene.materials().size())
-            return file.fail(group + "/materials", "leads nowhere");
+            return file.fail(group + "/materials", "refers to something that does not exist");
         out.groups[materials[i]].emitters.materials.push_back(MaterialId(materials[i + 1]));
     }
     for (std::size_t i = 0; i + 1 < lights.size(); i += 2) {
         if (lights[i] >= count || lights[i + 1] >= scene.lights().size())
-            return file.fail(group + "/lights", "leads nowhere");
+            return file.fail(group + "/lights", "refers to something that does not exist");
         out.groups[lights[i]].emitters.lights.push_back(lights[i + 1]);
     }
     for (const std::uint32_t g : distant) {
-        if (g >= count) return file.fail(group + "/distant_groups", "leads nowhere");
+        if (g >= count) return file.fail(group + "/distant_groups", "refers to something that does not exist");
         out.groups[g].emitters.is_distant = true;
     }
 }
@@ -77,7 +77,7 @@ void read_values(Hdf5Reader& file, const std::string& name, std::size_t corners,
 std::vector<std::uint32_t> read_elements(Hdf5Reader& file, const std::string& name, std::size_t count) {
     std::vector<std::uint32_t> out = file.read<std::uint32_t>(name, 1);
     for (const std::uint32_t e : out)
-        if (e >= count) return file.fail(name, "leads nowhere"), std::vector<std::uint32_t>();
+        if (e >= count) return file.fail(name, "refers to something that does not exist"), std::vector<std::uint32_t>();
     return out;
 }
 
@@ -91,7 +91,7 @@ void read_transport(Hdf5Reader& file, const std::string& group, const Solution& 
     if (file.failed()) return;
     if (out.first.front() != 0 || out.first.back() != out.source.size() ||
         !std::is_sorted(out.first.begin(), out.first.end()))
-        return file.fail(in("first"), "are no rows");
+        return file.fail(in("first"), "are not valid rows");
     if (!std::all_of(weight.begin(), weight.end(), is_light))
         return file.fail(in("weight"), "holds a number that is not finite");
     out.weight.resize(out.source.size());
@@ -108,7 +108,7 @@ void read_facts(Hdf5Reader& file, const std::string& group, std::vector<LightGro
     const auto reflected = file.read<double>(group + "/reflected", 1, groups.size());
     for (std::size_t g = 0; g < groups.size() && !file.failed(); ++g) {
         if (!(factor[g] >= 0) || !std::isfinite(factor[g]) || !std::isfinite(reflected[g]))
-            return file.fail(group + "/factor", "is no factor");
+            return file.fail(group + "/factor", "is not a dimming factor of at least 0");
         groups[g].factor = factor[g], groups[g].reflected = reflected[g];
         if (std::isfinite(error[g])) groups[g].error = error[g];
     }

@@ -39,7 +39,7 @@ void unshuffle(std::span<const std::byte> bytes, std::size_t item_bytes, std::sp
 /// Fletcher's checksum of big-endian words of 16 bits, as defined by the HDF5 library.
 std::uint32_t fletcher32(std::span<const std::byte> bytes) {
     EXI_ASSERT(bytes.size() % 2 == 0);
-    constexpr std::size_t before_carry = 360;  // number of words whose sums fit into 32 bits
+    constexpr std::size_t before_carry = 360;  // number of words that can be added before a sum exceeds 32 bits
     std::uint32_t low = 0, high = 0;
     const auto fold = [](std::uint32_t sum) { return (sum & 0xffff) + (sum >> 16); };
     const auto byte = [&](std::size_t i) { return static_cast<std::uint32_t>(bytes[i]); };

@@ -25,7 +25,8 @@ namespace {
 std::int64_t half_type() {
     static const hid_t type = [] {
         const hid_t half = H5Tcopy(H5T_IEEE_F32LE);
-        H5Tset_fields(half, 15, 10, 5, 0, 10);  // sign, exponent and its bits, mantissa and its bits
+        // position of the sign; position and size of the exponent; position and size of the mantissa
+        H5Tset_fields(half, 15, 10, 5, 0, 10);
         H5Tset_size(half, sizeof(Half));
         H5Tset_ebias(half, 15);
         return half;

@@ -49,7 +49,7 @@ void Hdf5Reader::fail(const std::string& name, const std::string& what) {
 }
 
 bool Hdf5Reader::has(const std::string& name) const {
-    // Each part of the path must exist before the next one may be looked up.
+    // Each part of the path must exist before the next one can be opened.
     for (std::size_t end = name.find('/');; end = name.find('/', end + 1)) {
         if (H5Lexists(file_, name.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
         if (end == std::string::npos) return true;
@@ -79,7 +79,7 @@ std::optional<std::size_t> Hdf5Reader::open_numbers(const std::string& name, Hdf
     if (rank != wanted || H5Sget_simple_extent_dims(space, extent.data(), nullptr) != wanted || extent[1] != columns)
         return fail(name, "does not have rows of " + std::to_string(columns)), std::nullopt;
     if (rows && extent[0] != *rows)
-        return fail(name, "has " + std::to_string(extent[0]) + " rows in place of " + std::to_string(*rows)),
+        return fail(name, "has " + std::to_string(extent[0]) + " rows instead of " + std::to_string(*rows)),
                std::nullopt;
     if (extent[0] >= (std::uint64_t{1} << 40) || !holds_really(set_, H5Tget_size(held), extent[0] * columns, bytes_))
         return fail(name, "claims " + std::to_string(extent[0]) + " rows, more than the file holds"), std::nullopt;
@@ -117,7 +117,7 @@ std::vector<std::string> Hdf5Reader::read_texts(const std::string& name, std::op
         H5Sget_simple_extent_dims(space, &extent, nullptr) != 1)
         return fail(name, "is not a row of texts of fixed length"), std::vector<std::string>();
     if (count && extent != *count)
-        return fail(name, "has " + std::to_string(extent) + " rows in place of " + std::to_string(*count)),
+        return fail(name, "has " + std::to_string(extent) + " rows instead of " + std::to_string(*count)),
                std::vector<std::string>();
     if (length > max_text_bytes || extent >= (std::uint64_t{1} << 32) || !holds_really(set, length, extent, bytes_))
         return fail(name, "claims more texts than the file holds"), std::vector<std::string>();

@@ -119,11 +119,12 @@ std::int64_t Hdf5Writer::make_set(const std::string& name, std::int64_t file_typ
     H5Pset_obj_track_times(creation, false);
     H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
     if (items * item_bytes < min_compressed_bytes) {
-        if (items > 0) H5Pset_layout(creation, H5D_COMPACT);  // in the header, under its checksum
+        // small data sets are stored in the header, whose checksum protects them
+        if (items > 0) H5Pset_layout(creation, H5D_COMPACT);
     } else if (rank > 0) {
         chunk[0] = rows_of_chunk(items / shape[0] * item_bytes, shape[0]);
         H5Pset_chunk(creation, rank, chunk.data());
-        // These must agree with `filters_of`.
+        // The filters set below must agree with `filters_of`.
         if (H5Tequal(file_type, hdf5_stored_type(Hdf5Type::float32)) > 0) {
             H5Pset_fletcher32(creation);
         } else {
@@ -280,7 +281,7 @@ void Hdf5Writer::set_numbers(const std::string& object, const char* name, const 
 Result<void> Hdf5Writer::commit() {
     if (!output_) return output_.error();
     if (file_ >= 0 && H5Fclose(std::exchange(file_, -1)) < 0) fail("the file");
-    // A disk error is reported first, since it may have caused the library's failure.
+    // Report a disk error first, since it may have caused a failure of the library.
     const Result<void> written = failure_.empty() || output_->failed() ? output_->commit() : Result<void>();
     if (!written) return written;
     if (!failure_.empty()) return Error{ErrorCode::cannot_write, "cannot be written: " + failure_, path_, ""};

@@ -90,7 +90,7 @@ Result<Scene> StoredScene::from_bytes(std::string_view bytes) {
     Scene scene;
     archive_all(reader, scene);
     if (!reader.good() || reader.left() != 0)
-        return Error{ErrorCode::failure, "did not come whole from the process that read it", "the scene", ""};
+        return Error{ErrorCode::failure, "was not received completely from the process that read it", "the scene", ""};
     return scene;
 }
 

@@ -187,7 +187,7 @@ struct MaterialColumns {
         if (file.has(group + "/material_through")) through = in.read<double>("material_through", 1, name.size());
         for (const double share : through)
             if (!file.failed() && !(share >= 0 && share <= 1))
-                file.fail(group + "/material_through", "holds a value that is not a share");
+                file.fail(group + "/material_through", "holds a value that is not between 0 and 1");
     }
 };
 
@@ -217,7 +217,7 @@ struct FaceColumns {
         for (std::size_t i = 0; i < size() && !file.failed(); ++i)
             if (corner_count[i] < 3 || corner_count[i] > corners || first_corner[i] > corners - corner_count[i])
                 file.fail(in_group + "/face_corner_count",
-                          "names corners that are not there, at face " + std::to_string(i));
+                          "refers to corners that do not exist, at face " + std::to_string(i));
     }
 };
 
@@ -247,7 +247,7 @@ struct RegionColumns {
         loop_count = in.counts("region_loop_count", 1, loop_corners.size(), size());
         for (std::size_t i = 0; i < size() && !file.failed(); ++i)
             if (behind[i] != RegionId::none_value && (behind[i] >= size() || behind[behind[i]] != i))
-                file.fail(group + "/region_behind", "holds sides that do not belong together");
+                file.fail(group + "/region_behind", "pairs sides of different panes");
     }
 
     std::size_t size() const { return area.size(); }
@@ -334,7 +334,7 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
     for (std::uint32_t s : emitters) scene.emitters_.emplace_back(s);
     scene.box_.lo = box[0], scene.box_.hi = box[1];
     if (const std::optional<std::string> wrong = find_nonsense(scene))
-        return file.fail(group + "/corner", "and the sets beside it make no scene: " + *wrong), Scene();
+        return file.fail(group + "/corner", "and related data sets do not form a valid scene: " + *wrong), Scene();
     return scene;
 }
 

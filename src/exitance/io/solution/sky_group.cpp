@@ -106,7 +106,8 @@ DistantLight read_sky(Hdf5Reader& file, const std::string& group) {
         for (std::size_t i = 0; i < half_angle.size() && !file.failed(); ++i)
             out.discs.push_back({towards[i], half_angle[i], spectrum(irradiance, i)});
     }
-    if (!file.failed() && !out.is_sane()) file.fail(group + "/sky_model", "and the sets beside it make no light");
+    if (!file.failed() && !out.is_sane())
+        file.fail(group + "/sky_model", "and related data sets do not describe valid light");
     return out;
 }
 
@@ -140,7 +141,8 @@ std::vector<Pane> read_panes(Hdf5Reader& file, const std::string& group) {
         const auto first = corners.begin() + static_cast<std::ptrdiff_t>(next);
         next += counts[i];
         out.push_back({{first, first + counts[i]}, normals[i], spectrum(transmissivity, i), index[i], 0});
-        if (!out.back().is_sane()) file.fail(group + "/pane_corner", "and the sets beside it make no panes");
+        if (!out.back().is_sane())
+            file.fail(group + "/pane_corner", "and related data sets do not describe valid panes");
     }
     return out;
 }

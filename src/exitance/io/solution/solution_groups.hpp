@@ -69,7 +69,7 @@ struct LightFormGroup {
     const char* name;  ///< Name of the group, below "exitance".
     /// Writes the group if the solution has such a form.
     void (*write)(Hdf5Writer& file, const std::string& group, const Solution& solution);
-    /// Reads the group, which is there, into the solution, whose scene is read.
+    /// Reads the group, which must exist, into a solution whose scene has been read.
     void (*read)(Hdf5Reader& file, const std::string& group, Solution& solution);
 };
 

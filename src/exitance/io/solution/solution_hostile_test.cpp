@@ -66,12 +66,12 @@ TEST(HostileSolutions, WithInvalidTreesAreErrors) {
     EXPECT_EQ(outcome([](Parts& p) { p.cut[3] = 1; }), "data set f/parent lacks the children of element 3");
     EXPECT_EQ(outcome([](Parts& p) { p.ratio[0] = 1; }), "data set f/parent makes no tree at element 1");
     EXPECT_EQ(outcome([](Parts& p) { p.ratio[0] = NAN; }), "data set f/parent makes no tree at element 1");
-    EXPECT_EQ(outcome([](Parts& p) { p.ratio.pop_back(); }), "data set f/ratio has 4 rows in place of 5");
+    EXPECT_EQ(outcome([](Parts& p) { p.ratio.pop_back(); }), "data set f/ratio has 4 rows instead of 5");
     EXPECT_EQ(outcome([](Parts& p) { p.root_region[0] = 1; }), "data set f/parent makes no tree at element 0");
     EXPECT_EQ(outcome([](Parts& p) { p.root_shape[0] = 2; }), "data set f/parent makes no tree at element 0");
     EXPECT_EQ(outcome([](Parts& p) { p.root_patch[4] = INFINITY; }), "data set f/parent makes no tree at element 0");
-    EXPECT_EQ(outcome([](Parts& p) { p.root_region.push_back(0); }), "data set f/root_shape has 1 rows in place of 2");
-    EXPECT_EQ(outcome([](Parts& p) { p.values.resize(15 * bands); }), "data set f/values has 15 rows in place of 16");
+    EXPECT_EQ(outcome([](Parts& p) { p.root_region.push_back(0); }), "data set f/root_shape has 1 rows instead of 2");
+    EXPECT_EQ(outcome([](Parts& p) { p.values.resize(15 * bands); }), "data set f/values has 15 rows instead of 16");
 }
 
 TEST(HostileSolutions, WithLinesThatMissTheirElementAreErrors) {
@@ -168,12 +168,12 @@ TEST(HostileSolutions, WithElementsOutsideTheSceneAreErrors) {
     EXPECT_NE(outcome(with_root(bad)).find("does not lie on its region"), std::string::npos);
     bad = good, bad.a = 1e150 * good.a;
     EXPECT_NE(outcome(with_root(bad)), "");
-    bad = good, bad.b = bad.a;  // no area, so no coordinates
+    bad = good, bad.b = bad.a;  // a patch without area has no coordinates
     EXPECT_NE(outcome(with_root(bad)).find("makes no tree at element 0"), std::string::npos);
 }
 
 TEST(HostileSolutions, AreDarkAtNonFinitePoints) {
-    // In a damaged scene, rays may hit such points.
+    // Rays may hit such points if a scene is damaged.
     const Solution s = sample_solution();
     const ElementLocator locator(s.indirect.tree, s.scene.regions().size());
     const double nan = std::numeric_limits<double>::quiet_NaN();

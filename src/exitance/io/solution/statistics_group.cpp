@@ -143,7 +143,7 @@ SolveStatistics read_statistics(Hdf5Reader& file, const std::string& group) {
     });
     if (!file.text_attribute(group, energy_unit))
         for (double* sum : {&statistics.energy.emitted, &statistics.energy.absorbed, &statistics.energy.escaped})
-            *sum /= static_cast<double>(bands);  // without a unit, the file has the sum of the bands
+            *sum /= static_cast<double>(bands);  // files without this attribute store the sum over the bands
     if (const std::string of_mesh = group + "/discontinuity"; file.has(of_mesh)) {
         DiscontinuityCounts& counts = statistics.discontinuity.emplace();
         for_counts(counts, [&](const char* name, std::size_t& count) {

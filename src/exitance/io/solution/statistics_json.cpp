@@ -123,7 +123,7 @@ std::string statistics_json(const SolveStatistics& s, const LightUnit& own) {
 
 namespace {
 
-/// Adds the facts about a published form that its recorded options tell. Files of versions before 0.3 hold them.
+/// Adds the facts about a published form that follow from its recorded options.
 void add_published_facts(const Json& options, bool is_linked, Json& facts) {
     const Json& classical = options["classical"];
     const auto given = [](const Json& in, const char* key) { return in.contains(key) && !in[key].is_null(); };

@@ -12,8 +12,7 @@ namespace exitance {
 /// and one number per row of areas, emittances, sums, errors, and shares of the sky and of backs.
 void write_factor_rows(Hdf5Writer& file, const std::string& group, const SparseFactors& table);
 
-/// Reads what write_factor_rows() wrote. `further_columns`: columns beyond one per row. Check file.failed() before
-/// using the result.
+/// Reads rows that write_factor_rows() has written.
 SparseFactors read_factor_rows(Hdf5Reader& file, const std::string& group, std::size_t further_columns);
 
 /// Error (bad_input) if the attribute `version` of a group is above `known`. Files without one are of version 1.

@@ -30,9 +30,9 @@ FactorNodes view3d_rows(const Scene& scene, const std::string& path);
 /// Returns the table of nodes: the rows of faces are merged (merge_rows), and masks take their parts of their bases.
 SparseFactors merge_nodes(const SparseFactors& table, const FactorNodes& nodes);
 
-/// Accounts for masks in a table whose rows are those of View3D's result. The area of a base, which is without the
-/// covered parts, becomes the whole one; the covered parts exchange heat with their masks only, F_mb = 1 and F_bm = A_m
-/// / A_b, and no other row has a factor to a mask. Keeps reciprocity.
+/// Accounts for masks in a table whose rows are those of View3D's result. The area of a base, which excludes its
+/// covered parts, is extended to include them. The covered parts exchange heat with their masks only, F_mb = 1 and F_bm
+/// = A_m / A_b, and no other row has a factor to a mask. Keeps reciprocity.
 void apply_masks(SparseFactors& table, std::span<const View3dMask> masks);
 
 /// Reads a CSV file with a header and the columns `face` (its number from 1 in the order of the scene file) and `node`

@@ -11,7 +11,7 @@ namespace {
 constexpr std::int64_t operator_version = 1;  ///< Version of the format; raised if older programs cannot read the file.
 const std::string group = "factor_operator";
 
-/// The tree, if its order names every face once.
+/// Reads the tree, if its order contains every face exactly once.
 FaceTree read_tree(Hdf5Reader& file, std::size_t faces) {
     const auto order = file.read<std::int32_t>(group + "/order", 1, faces);
     std::vector<std::uint8_t> named(faces);

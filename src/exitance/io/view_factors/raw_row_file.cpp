@@ -59,7 +59,7 @@ Result<std::size_t> count_rows(const std::string& path) {
     const std::size_t bytes = std::fread(found.data(), 1, found.size(), file.get());
     if (bytes == 0) return 0;
     if (bytes < found.size() || !std::equal(found.begin(), found.end() - 1, magic.begin())) return not_rows(path);
-    if (found != magic) return 0;  // of another version, which no program of this one resumes
+    if (found != magic) return 0;  // a file of another version cannot be resumed
     std::fseek(file.get(), sizeof(std::array<std::uint64_t, 2>), SEEK_CUR);
     std::size_t rows = 0;
     for (RecordHead head; std::fread(&head, sizeof head, 1, file.get()) == 1; ++rows) {

@@ -19,7 +19,7 @@ class EnergyPlus final : public TextFormat {
 };
 
 /// CSV with the columns from_id, to_id and F: one line per entry, ids from 0 in the order of rows. With the sky, column
-/// n is the sky and n + 1 stands for backs of faces.
+/// n is the sky and column n + 1 the backs of faces.
 class FactorPairs final : public TextFormat {
   public:
     FactorPairs(const SparseFactors& table, bool with_sky) : TextFormat(table), with_sky_(with_sky) {}

@@ -67,14 +67,14 @@ Result<std::array<double, 4>> read_row(const LineReader& lines, std::string_view
                                    "the column surface holds numbers from 1, 0 for all, or names of rows");
             value = static_cast<double>(named - names.begin() + 1);
         }
-        // Empty cells stand for unknown values as NaN does within the table; the word "nan" of a file does not.
+        // Empty cells are unknown values, which are NaN within the table; the word "nan" of a file does not.
         if (!value || std::isnan(*value)) return lines.error(fmt::format("'{}' is not a number", shown(fields[k])), "");
         row[columns[k]] = *value;
     }
     return row;
 }
 
-/// A fault of a row, with what to do; empty if there is none.
+/// A fault of a row, with its remedy.
 std::pair<std::string, std::string> fault_of(const std::array<double, 4>& row, std::size_t surfaces) {
     const auto& [number, emissivity, temperature, heat] = row;
     if (!(number == std::floor(number) && number >= 0 && number <= static_cast<double>(surfaces)))

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t header_size = 30;  // given by View3D
+constexpr std::size_t header_size = 30;  // given by View3D's format
 
 std::string header(const SparseFactors& table, const View3dControls& controls) {
     std::string text = fmt::format("View3D 4.0.0 {} {} {} {}", controls.out, controls.is_enclosure ? 1 : 0,
@@ -39,7 +39,7 @@ std::string binary(const SparseFactors& table, const View3dControls& controls) {
 }
 
 std::string exchange_areas(const SparseFactors& table, const View3dControls& controls) {
-    constexpr std::size_t numbers_a_line = 5;  // given by View3D
+    constexpr std::size_t numbers_a_line = 5;  // given by View3D's format
     std::string text =
         header(table, controls) + fmt::format("\nT {}\n", controls.title) + "!  #     area          emit    name\n";
     for (std::size_t i = 0; i < table.size(); ++i) {

@@ -27,7 +27,7 @@ enum class FactorFormat {
 FactorFormat factor_format_of(const std::string& path);
 
 struct FactorFileOptions {
-    std::optional<FactorFormat> format = {};     ///< Empty: by the path's ending.
+    std::optional<FactorFormat> format = {};     ///< Format of the file; empty: given by the path's ending.
     bool with_sky = false;                       ///< Adds the columns `sky` and `back`: csv, mtx and pairs.
     std::string zone = "zone";                   ///< Name of the zone or enclosure in EnergyPlus.
     Point origin = {};                           ///< Subtracted from the coordinates of the scene's file; hdf5 only.

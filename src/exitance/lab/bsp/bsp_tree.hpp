@@ -43,7 +43,8 @@ class BspTree {
         return std::span(fragments_).subspan(node.first_fragment, node.fragment_count);
     }
     std::span<const Fragment> fragments() const { return fragments_; }
-    std::span<const Point> outline(const Fragment& f) const {  ///< Same direction as the piece's outline.
+    /// Returns the fragment's outline, in the direction of the piece's outline.
+    std::span<const Point> outline(const Fragment& f) const {
         return std::span(corners_).subspan(f.first_corner, f.corner_count);
     }
     double thickness() const { return thickness_; }
@@ -81,7 +82,7 @@ class BspTree {
 
     /// First piece that a ray hits, on either side, at a distance of at least `least` (in lengths of the direction).
     struct Hit {
-        PieceId piece;  ///< None if nothing is hit.
+        PieceId piece;  ///< The piece that is hit; none if nothing is hit.
         double distance = std::numeric_limits<double>::infinity();
         bool front = false;
     };

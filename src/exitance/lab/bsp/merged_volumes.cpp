@@ -20,7 +20,8 @@ std::vector<Point> square_in(const Plane& plane, const Point& near, double reach
 MergedVolumes::MergedVolumes(const Box& space, double thickness, std::size_t most)
     : thickness_(thickness), reach_(2 * space.diagonal() + 4 * thickness), most_(most), nodes_(1) {
     const Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    const Vec3 margin = Vec3{1, 1, 1} * (0.01 * space.diagonal() + 2 * thickness);  // so that a flat box has a volume
+    // ensures that a flat box has a volume
+    const Vec3 margin = Vec3{1, 1, 1} * (0.01 * space.diagonal() + 2 * thickness);
     const Point lo = space.lo - margin, hi = space.hi + margin;
     std::vector<Point> rest;
     for (const Vec3& axis : axes) {

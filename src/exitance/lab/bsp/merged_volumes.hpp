@@ -46,7 +46,7 @@ class MergedVolumes {
     static constexpr std::uint32_t none = 0xffffffffu;
     /// A face of a convex body. Its plane belongs either to the volume being merged or to an earlier cut.
     struct Face {
-        Plane plane;  ///< Its front is the inside of the body.
+        Plane plane;  ///< Plane of the node; its front is the inside of the body.
         bool is_own = false;
         std::vector<Point> corners;
     };

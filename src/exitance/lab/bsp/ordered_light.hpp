@@ -18,7 +18,7 @@ namespace exitance {
 /// equal to rounding. Source: [Gatenby95], [Chin89].
 class OrderedLight : public BlockerSearch {
   public:
-    /// `direct` must outlive this. O(emitters x corners x fragments) memory.
+    /// `direct` must outlive this object. O(emitters x corners x fragments) memory.
     explicit OrderedLight(const DirectLight& direct, bool merges_volumes = false);
 
     ReceiverLight look(std::span<const Point> outline, RegionId region, DirectLight::Workspace& workspace,

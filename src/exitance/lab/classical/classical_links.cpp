@@ -31,7 +31,7 @@ struct Link {
     bool has_block = false;
     /// Strength of the link per exitance of the source by the kernel oracle, m^2; negative: not computed.
     float kernel_strength = -1;
-    std::uint64_t block = 0;  ///< Position of its block in `blocks_`.
+    std::uint64_t block = 0;  ///< Position of the link's block in `blocks_`.
 };
 
 /// Coefficients of all elements, one per node.
@@ -357,7 +357,7 @@ ElementFunction LinkedElements::irradiance() const {
     ElementFunction out;
     out.tree = tree_;
     const std::vector<ElementId> leaves = tree_.leaves();
-    std::vector<std::pair<ElementId, ElementId>> cells;  // a leaf, and a cell of it
+    std::vector<std::pair<ElementId, ElementId>> cells;  // pairs of a leaf and one of its cells
     for (ElementId leaf : leaves) {
         if (basis_.order() < 3) {
             cells.push_back({leaf, leaf});

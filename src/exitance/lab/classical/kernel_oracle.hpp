@@ -19,7 +19,7 @@ namespace exitance {
 /// touch. Source: [Gortler93]. O((M + 1)^2 M^2 (M^2 + (M + 1)^2)).
 class KernelOracle {
   public:
-    /// The basis must outlive it.
+    /// The basis must outlive this object.
     explicit KernelOracle(const NodalBasis& basis);
 
     struct Misfit {
@@ -37,7 +37,7 @@ class KernelOracle {
     /// Points between the nodes of a shape, and the factor of every node at each of them.
     struct Between {
         std::span<const PlanarNode> points;
-        std::vector<double> factors;  ///< points x nodes
+        std::vector<double> factors;  ///< Values per point and node (points x nodes).
     };
     Between between(Patch::Shape shape) const;
     const Between& of(Patch::Shape shape) const { return shape == Patch::Shape::triangle ? triangle_ : square_; }

@@ -17,7 +17,7 @@ std::vector<double> project(LineBasis basis, std::size_t k, std::size_t interval
         std::vector<double> values;
     };
     const double width = 1 / static_cast<double>(intervals);
-    std::vector<Node> nodes;  // three in every box of an interval
+    std::vector<Node> nodes;  // quadrature nodes, three per box of an interval
     const LineRule rule = gauss_legendre(3);
     for (std::size_t box = 0; box < k; ++box)
         for (std::size_t q = 0; q < rule.size(); ++q) {

@@ -41,7 +41,7 @@ class KernelTerms {
 
     TwoScaleStep step_;
     Decomposition way_;
-    std::size_t intervals_, side_;  ///< side_ = k intervals_
+    std::size_t intervals_, side_;  ///< Number of intervals, and k times that number.
     std::vector<double> finest_, terms_;
     /// Norms of the basis functions, by position among the coefficients of a line: as a detail, and as a coarse
     /// function.

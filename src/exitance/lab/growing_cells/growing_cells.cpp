@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t leaf_size = 8;
 constexpr double max_increment = 1e12;  ///< Resources are rescaled above this.
-constexpr double min_width = 1e-9;      ///< For units that coincide.
+constexpr double min_width = 1e-9;      ///< Width of units that coincide.
 
 }  // namespace
 

@@ -11,7 +11,7 @@ namespace exitance {
 
 /// Parameters of learning; defaults as in [Fritzke94] unless stated otherwise.
 struct GrowingCellsOptions {
-    std::size_t simplex = 2;    ///< k, dimension of the complex.
+    std::size_t simplex = 2;    ///< Dimension k of the complex.
     std::size_t dimension = 3;  ///< n, of the samples, at least k.
     std::size_t outputs = 0;    ///< Number of output values per unit; 0: none is learned.
     double winner_rate = 0.06;

@@ -14,7 +14,7 @@ namespace exitance {
 /// Quantity that the kernel network learns for a ray from y to x.
 enum class KernelTarget {
     flow,       ///< G V B(y), W/m^4, a value per band, as published.
-    visibility  ///< V only; the analytic G and B(y) are multiplied when it is used.
+    visibility  ///< Visibility V only; the kernel multiplies it by the exact G and B(y).
 };
 
 struct KernelNetworkOptions {
@@ -48,7 +48,7 @@ class KernelNetwork {
         bool resampled = false;  ///< True if drawn near a unit with a large resource.
     };
 
-    /// All arguments must outlive this. `radiosity`: B of every point of the pool, W/m^2; sources are drawn in
+    /// All arguments must outlive this object. `radiosity`: B of every point of the pool, W/m^2; sources are drawn in
     /// proportion to it.
     KernelNetwork(const Stage& stage, const SurfacePool& pool, const KernelNetworkOptions& options,
                   std::span<const Spectrum> radiosity);

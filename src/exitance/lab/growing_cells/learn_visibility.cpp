@@ -356,7 +356,8 @@ LearnedLight learn_visibility(const MethodInput& input, const SurfacePool& pool)
 /// pair agree on visibility only if nothing blocks any pair of surfaces. Otherwise rays determine it, in both rounds.
 MethodForecast forecast_cells(const Stage& stage, const SolveOptions& options, const Knobs& knobs, double facing,
                               bool blocked) {
-    constexpr double units_near = 80;    // per sample, at most: 12 (chairs in a room) to 79 (the Cornell box)
+    // maximum per sample: measured values are 12 (chairs in a room) to 79 (the Cornell box)
+    constexpr double units_near = 80;
     constexpr double insertions = 2;     // insertions per requested unit
     constexpr double vector_room = 1.5;  // capacity of growing vectors per size, on average
     const double n = static_cast<double>(units_of(stage, knobs, options));

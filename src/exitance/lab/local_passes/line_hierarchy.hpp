@@ -40,7 +40,7 @@ class LineHierarchy {
     /// Limit on the pieces of a scene: all pairs are tested, which would take too much memory and time.
     static constexpr std::size_t most_pieces = 5'000;
 
-    /// `stage` must outlive this.
+    /// `stage` must outlive this object.
     LineHierarchy(const Stage& stage, const LineHierarchyOptions& options);
 
     /// Finds links and light. Returns false after a request to stop; the light is then that of fewer rounds, or

@@ -23,7 +23,7 @@ TEST(LocalPassStudy, HasARowForEveryAccuracyAndRule) {
     ASSERT_TRUE(rows);
     ASSERT_EQ(rows->size(), 10u);
     EXPECT_GT(rows->back().leaves, rows->front().leaves);
-    EXPECT_LT((*rows)[3].error, (*rows)[0].error);  // d against a
+    EXPECT_LT((*rows)[3].error, (*rows)[0].error);  // local pass d is more accurate than local pass a
     const std::string csv = local_pass_csv("floor", *rows);
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 11);
     EXPECT_EQ(csv.find("scene,accuracy,"), 0u);

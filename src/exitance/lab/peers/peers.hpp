@@ -19,7 +19,7 @@ namespace exitance {
 struct PeerScene {
     struct Face {
         std::span<const Point> outline;
-        std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Indices of its corners.
+        std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Indices of each triangle's corners.
         Spectrum reflectance, exitance;
     };
     /// A surface point at which light is wanted.
@@ -38,7 +38,7 @@ struct PeerTask {
     const PeerScene& scene;
     std::vector<std::string> options;  ///< Options of a study's row, word by word.
     int threads = 1;
-    std::string folder;  ///< For its files.
+    std::string folder;  ///< Folder for the peer's files.
 };
 
 struct PeerLight {

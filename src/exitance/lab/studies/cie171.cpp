@@ -53,7 +53,7 @@ Evaluate evaluate_direct(const Stage& stage) {
 double flux_of(const Evaluate& light, const Cie171Case::Flux& flux, std::size_t band) {
     constexpr std::array<double, 9> borders{0, 0.002, 0.02, 0.1, 0.5, 0.9, 0.98, 0.998, 1};
     const LineRule rule = gauss_legendre(8);
-    std::vector<std::pair<double, double>> line;  // positions and weights
+    std::vector<std::pair<double, double>> line;  // positions and weights of the rule
     for (std::size_t i = 0; i + 1 < borders.size(); ++i)
         for (std::size_t k = 0; k < rule.size(); ++k) {
             const double width = borders[i + 1] - borders[i];

@@ -17,7 +17,7 @@ struct Cie171Row {
     std::string point;      ///< Letter of the report, "floor 0.2,2", or the name of a flux: "flux floor".
     Point x;                ///< Metres; meaningless for fluxes.
     Normal n;
-    double exact = 0;  ///< lx; lm for fluxes.
+    double exact = 0;  ///< Exact value: lx, or lm for fluxes.
     double computed = 0;
     /// |computed - exact| / exact. If exact is 0: |computed| / largest exact value of the scene.
     double relative_error = 0;

@@ -190,7 +190,7 @@ void add_iterations(const TaskGraph& graph, const Rows& rows, Table& iterations)
     }
 }
 
-/// An ordinary solve.
+/// Trace and times of one complete solve, as the solver schedules it.
 struct ProductionRun {
     TaskTrace trace;
     double seconds = 0, processor_seconds = 0;

@@ -44,7 +44,7 @@ std::string view3d_text(const Scene& scene, double eps);
 
 /// A square matrix with the areas of its rows, m^2.
 struct AreaMatrix {
-    std::vector<double> areas, factors;  ///< n; n x n, row by row.
+    std::vector<double> areas, factors;  ///< n areas; n x n factors, row by row.
 };
 
 /// Reads View3D's binary output: a header of 32 bytes, areas, factors, emittances, all floats in the machine's byte

@@ -8,7 +8,7 @@ namespace exitance {
 /// Result of a study.
 struct StudyReport {
     StudyTables tables;
-    std::vector<Verdict> verdicts;  ///< They refer to the study.
+    std::vector<Verdict> verdicts;  ///< Results of the study's claims; they refer to the study.
     std::size_t runs = 0, runs_done = 0;
     std::string page;                   ///< Path of the page.
     std::vector<std::string> warnings;  ///< For example "no plots: gnuplot is not installed".

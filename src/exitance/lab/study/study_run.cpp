@@ -30,7 +30,7 @@ struct Chain {
     const StudyRow* row;
     std::string setting;
     std::vector<double> values;
-    std::vector<Table> tables;  ///< One per value that was reached.
+    std::vector<Table> tables;  ///< One table per value that was reached.
 };
 
 std::string lower(std::string text) {

@@ -26,8 +26,8 @@ struct TaskPatch {
     Plane plane;
     RegionId region;
     double area = 0;              ///< m^2
-    std::uint32_t polygon = 0;    ///< Index of the piece that contains it.
-    std::uint32_t parent = none;  ///< None for a piece.
+    std::uint32_t polygon = 0;    ///< Index of the piece that contains the patch.
+    std::uint32_t parent = none;  ///< Index of the parent; none for a piece.
     std::uint8_t level = 0, corner_count = 4;
     /// Two bits per level from the highest down. Identifies the patch independently of its id.
     std::uint64_t path = 0;
@@ -37,7 +37,7 @@ struct TaskPatch {
 
     std::atomic<std::uint32_t> first_child{none};  ///< First of four consecutive children.
     std::vector<Interaction> list;
-    Spectrum irradiance;                  ///< Irradiance gathered by it and its ancestors in an iteration, W/m^2.
+    Spectrum irradiance;  ///< Irradiance that the patch and its ancestors have gathered in this iteration, W/m^2.
     std::array<Spectrum, 2> radiosity{};  ///< After iterations of even and odd number, W/m^2.
     /// Number of children whose radiosity is not known yet in this iteration.
     std::atomic<std::uint32_t> open_children{0};

@@ -17,7 +17,7 @@ namespace {
 GlobalLight light_of(const TaskEngine& engine, const Stage& stage) {
     const PatchPool& patches = engine.patches();
     GlobalLight light;
-    std::vector<std::uint32_t> patch_of;  // the patch of each element
+    std::vector<std::uint32_t> patch_of;  // patch of each element
     for (std::uint32_t root = 0; root < patches.root_count(); ++root) {
         light.tree.add_root(patches[root].region, patches[root].shape);
         patch_of.push_back(root);

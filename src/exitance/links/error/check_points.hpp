@@ -13,7 +13,7 @@ class CheckPoints {
   public:
     explicit CheckPoints(const NodalBasis& basis);
 
-    /// At most five points, in coordinates of the shape.
+    /// Returns the check points, at most five, in coordinates of the shape.
     std::span<const Vec2> at(Patch::Shape shape) const { return points(shape).at; }
     /// Weights of the basis's nodes in the interpolated value at check point i.
     std::span<const double> factors(Patch::Shape shape, std::size_t i) const {
@@ -23,7 +23,7 @@ class CheckPoints {
   private:
     struct Points {
         std::vector<Vec2> at;
-        std::vector<double> factors;  ///< One row of weights (one per node) per point.
+        std::vector<double> factors;  ///< Weights of the nodes at each check point, one row per point.
     };
     static Points make_points(const NodalBasis& basis, Patch::Shape shape);
     const Points& points(Patch::Shape shape) const {

@@ -11,7 +11,7 @@
 namespace exitance {
 namespace {
 
-/// Number of rays for one value, and for a weak link.
+/// Number of visibility rays per value of a link, and of a weak link.
 constexpr unsigned rays_per_link = 16, rays_per_weak_link = 4;
 
 /// Returns whether a link is so weak that a few rays suffice for its visibility.
@@ -168,7 +168,7 @@ LinkDecision LinkJudge::decide_by_error(LinkPair& pair, std::span<const PieceId>
     if (!leaf && transfer.rule_error > allowed) return cut_source;
     double visibility_error = 0;
     if (pair.view == View::mixed) {
-        // If the error of the rays would be far too large anyway, they are not cast.
+        // Rays are not cast if their error would be far too large.
         const double rays_per_node = n_ == 1 ? rays_per_link : static_cast<double>(n_);
         constexpr double hopeless_excess = 3;
         if (!leaf && error_half_hidden(light, rays_per_node) > hopeless_excess * allowed) return cut_source;

@@ -11,12 +11,13 @@
 
 namespace exitance {
 
-/// A pair of elements that will become one or more links, with what is known about occluders in between.
+/// A pair of elements that will become one or more links, with the available information about occluders in between.
 struct LinkPair {
     ElementId receiver, source;
     View view = View::mixed;
-    bool triaged = false;                ///< True if this pair, or one that contains it, has been classified.
-    std::uint32_t first = 0, count = 0;  ///< If mixed and classified: its candidates in the round's pool.
+    bool triaged = false;  ///< True if this pair, or one that contains it, has been classified.
+    /// If `view` is mixed and the pair is classified: range of its occluder candidates in the round's pool.
+    std::uint32_t first = 0, count = 0;
 };
 
 /// The decision about a pair.
@@ -53,8 +54,7 @@ class LinkJudge {
     LinkJudge(const LinkSites& sites, const NodalField& b, const Field<ElementId, double>& roughness,
               const LinkTolerance& tolerance);
 
-    /// Judges a pair. `pool` contains the pairs' candidates. If the pair is split, candidates() is what its parts
-    /// inherit.
+    /// Judges a pair. `pool` contains the pairs' candidates. If the pair is split, its parts inherit candidates().
     LinkDecision judge(LinkPair& pair, std::span<const PieceId> pool);
 
     std::span<const float> block() const { return block_; }  ///< nodes() x nodes() entries, receiver first.

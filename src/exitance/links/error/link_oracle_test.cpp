@@ -72,8 +72,8 @@ struct Room {
 
 TEST(LinkOracle, PowerIsBetterThanFormFactorAndErrorIsBetterThanBoth) {
     const Room room;
-    // Walls that meet have form factors that splitting does not reduce. From one threshold to the next their links are
-    // split down to the minimum area, so the number of links jumps. The other oracles are allowed as many.
+    // The form factor of adjacent walls is not reduced by splitting. At some threshold their links are split down to
+    // the minimum area, so that the number of links jumps. The other oracles may make as many links.
     const Outcome ff = room.around(LinkOracle::form_factor, 2000).second,
                   bf = room.around(LinkOracle::power, ff.links).first,
                   error = room.around(LinkOracle::transport, ff.links).first;

@@ -25,14 +25,15 @@ struct LinkTolerance {
     std::size_t most_links = std::numeric_limits<std::size_t>::max();
     double least_area = 0;    ///< Elements smaller than this are not split, m^2.
     bool fractional = false;  ///< Use one unoccluded share for all nodes of a link instead of one per pair of nodes.
-    bool quadrature = false;  ///< One ray from each node to each node: visible or not.
+    bool quadrature = false;  ///< Test visibility by one ray from each node to each node, instead of several.
     /// True if rays later correct the mean of the received light. Links with a small contribution may then be constants
     /// whatever the basis, and peaks between check points are left to the rays.
     bool corrected = false;
     /// Weight of squared errors, per receiving element; null: uniform.
     const Field<ElementId, double>* importance = nullptr;
-    bool gives_up = false;  ///< True if pairs are dropped after a stop request; otherwise they are linked as they are.
-    bool triage = true;     ///< Classify pairs (open, none, mixed) before casting rays.
+    /// True if pairs are dropped after a stop request; otherwise they are linked without further splits.
+    bool gives_up = false;
+    bool triage = true;  ///< Classify pairs (open, none, mixed) before casting rays.
     LinkOracle oracle = LinkOracle::transport;
     double strongest = 0;  ///< Limit for the other oracles: form factor, or power (W), of a link.
     std::uint64_t seed = 1;

@@ -92,7 +92,7 @@ double NearRow::operator()(const Point& x, const Normal& n, double* out) {
     for (std::size_t l = 0; l < count; ++l) all += out[l];
     if (all > 1e-12 * F) {  // derived from rounding: some of the source is visible
         for (std::size_t l = 0; l < count; ++l) out[l] *= F / all;
-    } else {  // only a sliver between the rule's points is visible
+    } else {  // only a sliver of the source between the rule's points is visible
         for (std::size_t l = 0; l < count; ++l) out[l] = F * basis.nodes(frame_.shape)[l].weight;
     }
     return F;

@@ -24,7 +24,8 @@ class NearRow {
 
   private:
     struct Box {
-        Vec2 origin, size;  ///< In the element's coordinates. A negative size denotes an inverted triangle.
+        /// Origin and size in the element's coordinates. A negative size denotes an inverted triangle.
+        Vec2 origin, size;
     };
     void add(const Point& x, const Normal& n, const Box& box, int depth);
     void add_point(Vec2 uv, double K);

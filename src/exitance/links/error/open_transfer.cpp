@@ -94,8 +94,9 @@ double OpenTransferRule::error_of_kernel(OpenTransfer& transfer, ElementId recei
         }
     }
     const double scale = transfer.kernel_scale = scale_to(exact, rule);
-    constexpr double rounding = 1e-6;                                        // derived from rounding
-    if (std::abs(scale * rule - exact) > rounding * exact) return HUGE_VAL;  // errors of one sign would accumulate
+    constexpr double rounding = 1e-6;  // derived from rounding
+    // even small errors of one sign accumulate over links
+    if (std::abs(scale * rule - exact) > rounding * exact) return HUGE_VAL;
     double most = 0;
     for (std::size_t k = 0; k < nodes_; ++k)
         most = std::max(most, std::abs(scale * source.received(kernel[k]) - transfer.light[k]));

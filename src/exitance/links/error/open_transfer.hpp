@@ -14,13 +14,14 @@ using Departure = std::array<double, 5>;
 
 /// Unoccluded transport from a source to a receiver.
 struct OpenTransfer {
-    std::array<NodeRow, 9> rows{};  ///< Per node of the receiver.
-    NodeRow light{};                ///< At the receiver's nodes, w E, W/m^2.
+    std::array<NodeRow, 9> rows{};  ///< Row of weights for each node of the receiver.
+    NodeRow light{};                ///< Light w E at the receiver's nodes, W/m^2.
     Departure departure{};
     double rule_error = 0;  ///< RMS error over the receiver of the rule and of the source's polynomial, W/m^2.
     double brightest = 0;   ///< Largest light at nodes and check points, W/m^2.
     double ratio = 0;       ///< Size of the source relative to its distance.
-    bool near = false;      ///< True if the rows are integrated (NearRow) and not those of the basis's rule.
+    /// True if the rows are integrated (NearRow); false if they come from the basis's quadrature rule.
+    bool near = false;
     /// True if the rows must be stored with the link; otherwise the kernel is recomputed when it is applied.
     bool has_block = false;
     double kernel_scale = 1;  ///< Scale of the recomputed kernel, if the rows are integrated ones.

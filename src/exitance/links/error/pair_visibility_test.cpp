@@ -43,7 +43,7 @@ TEST(PairVisibility, ByNodeIsExactPerPairOfNodes) {
     for (std::size_t k = 0; k < sites.nodes(); ++k)
         for (std::size_t l = 0; l < sites.nodes(); ++l) {
             const double x = 0.5 * (sites.node(plates.lower, k).x + sites.node(plates.upper, l).x);
-            if (std::abs(x - 0.5) < 1e-6) continue;  // through the edge
+            if (std::abs(x - 0.5) < 1e-6) continue;  // the line passes through the edge: either result is valid
             EXPECT_EQ(visible.share(k * sites.nodes() + l), x > 0.5 ? 1 : 0) << k << " " << l;
         }
 }

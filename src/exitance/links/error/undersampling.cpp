@@ -37,7 +37,7 @@ FrontPart front_part(const LinkSites& sites, ElementId element, ElementId other)
     return out;
 }
 
-/// Compares one transfer at points away from its check points.
+/// Tests a transfer for errors at points other than the check points of its rule.
 class Undersampling {
   public:
     Undersampling(OpenTransferRule& rule, const LinkSites& sites, const OpenTransfer& transfer, ElementId receiver,

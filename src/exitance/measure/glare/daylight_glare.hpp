@@ -10,10 +10,10 @@ namespace exitance {
 
 /// Daylight glare at an observer at one moment.
 struct DaylightGlare {
-    double vertical_illuminance = 0;           ///< E_v, illuminance of the eye's plane, lx.
+    double vertical_illuminance = 0;           ///< Illuminance E_v of the eye's plane, lx.
     double mean_luminance = 0;                 ///< Mean over the half of the directions in front of the eye, cd/m^2.
     double threshold = 0;                      ///< Luminance above which parts are sources, cd/m^2.
-    std::vector<DaylightGlareSource> sources;  ///< In descending order of their term.
+    std::vector<DaylightGlareSource> sources;  ///< Sources, in descending order of their glare terms.
     std::vector<std::string> names;            ///< Name of each source: a group of faces, a light, "sky" or "sun".
 
     double probability() const;  ///< DGP

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-/// Index of Guth's formula beside the line of sight, tau = 90 degrees, at an angle beta below it [Iwata10].
+/// Index of Guth's formula to the side of the line of sight, tau = 90 degrees, at an angle beta below it [Iwata10].
 double position_below(double ahead, double aside, double above) {
     constexpr double stretch = 0.3225;  // [Iwata10]
     const double off = std::hypot(aside, above), cosine = above / off;

@@ -10,8 +10,8 @@
 namespace exitance {
 
 /// Position index of daylight glare for a source in direction d (any length, in front of the observer), at most 16. It
-/// is Guth's index above the line of sight. Below it, the index of a source is that of a source beside the line of
-/// sight at the angle beta:
+/// is Guth's index above the line of sight. Below it, the index of a source equals that of a source to the side of the
+/// line of sight at the angle beta:
 ///
 ///     tan beta = tan sigma sqrt(1 + 0.3225 cos^2 tau)
 ///
@@ -29,19 +29,19 @@ struct GlareThreshold {
 
 /// A small part of the field of view with one luminance.
 struct GlarePart {
-    Normal towards;            ///< Direction to its middle.
+    Normal towards;            ///< Direction from the eye to the middle of the part.
     double luminance = 0;      ///< cd/m^2
     double solid_angle = 0;    ///< sr
-    std::uint32_t origin = 0;  ///< Number of what shines there, for the names of sources.
+    std::uint32_t origin = 0;  ///< Number of the object that shines there; it gives sources their names.
 };
 
 /// A source of daylight glare: parts of the field of view above the threshold that belong together.
 struct DaylightGlareSource {
-    Normal towards;            ///< Direction to its centre: the mean of its parts, weighted by their light.
+    Normal towards;  ///< Direction from the eye to the source's centre: the mean of its parts, weighted by their light.
     double luminance = 0;      ///< Mean luminance, cd/m^2.
     double solid_angle = 0;    ///< sr
-    double position = 1;       ///< daylight_position() of its centre.
-    std::uint32_t origin = 0;  ///< The origin with most of its light.
+    double position = 1;       ///< daylight_position() of the source's centre.
+    std::uint32_t origin = 0;  ///< The origin (see GlarePart) that contributes most of the light.
     double term() const { return luminance * luminance * solid_angle / (position * position); }
 };
 

@@ -20,7 +20,7 @@ namespace exitance {
 /// the threshold of glare divides. Bright spots of less than 0.05 rad on a surface can be missed.
 class FieldOfView {
   public:
-    /// `eye`: not on a surface. All must outlive this. O(pieces + parts): about 1 s for a room.
+    /// `eye`: not on a surface. All arguments must outlive this object. O(pieces + parts): about 1 s for a room.
     FieldOfView(const RadiosityFunction& light, const Receiver& eye, const LightUnit& lux);
 
     /// Returns the mean luminance of the half of the directions in front of the eye, cd/m^2.
@@ -40,7 +40,7 @@ class FieldOfView {
         std::array<double, 4> luminance{}, reflected{};  ///< cd/m^2: all light, and reflected light.
 
         bool varies(double threshold) const;  ///< True if the threshold divides the luminances.
-        bool is_coarse() const;               ///< True if it may be cut further.
+        bool is_coarse() const;               ///< True if the triangle is large enough to be split further.
         double variation() const;             ///< Largest difference of the luminances times the solid angle, lx.
     };
 

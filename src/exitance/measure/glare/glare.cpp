@@ -127,7 +127,8 @@ class Eye {
     /// True if an area is at most that of the visible faces of a cube that represents a luminaire without extent.
     static bool is_point(double area) {
         constexpr double rounding = 1e-6;
-        return area <= 3 * point_opening_size * point_opening_size * (1 + rounding);  // three faces of the cube
+        // three of the cube's faces are visible
+        return area <= 3 * point_opening_size * point_opening_size * (1 + rounding);
     }
 
     /// True if all corners of the faces are above the height of the eye.

@@ -20,7 +20,7 @@ struct Observer {
 
 /// A luminaire as seen by an observer.
 struct GlareSource {
-    std::string name;        ///< Name of its faces' group, or of a light without extent.
+    std::string name;        ///< Name of the group of its faces, or of the light without extent.
     double luminance = 0;    ///< Mean over the visible part, cd/m^2; for lights without extent, over 0.005 m^2.
     double solid_angle = 0;  ///< Solid angle of the visible part, sr.
     double position = 0;     ///< Guth's position index p.
@@ -33,7 +33,7 @@ struct GlareSource {
 ///     UGR = 8 log10(0.25 / L_b  sum L^2 omega / p^2),   L_b = E_indirect at the eye / pi.      [CIE117]
 struct Glare {
     double background = 0;              ///< L_b, cd/m^2
-    std::vector<GlareSource> sources;   ///< Sources that count, in descending order of their term.
+    std::vector<GlareSource> sources;   ///< Sources that contribute to UGR, in descending order of their terms.
     std::vector<GlareSource> left_out;  ///< Sources in front of the observer that a limit of CIE 117 excludes.
     /// UGR. Not finite if no source counts or the background is black.
     double rating() const;

@@ -29,7 +29,7 @@ double guth_position(const Normal& view, const Vec3& d);
 /// Reason why a luminaire does not count in UGR. CIE 117 rates luminaires in the field of view for which Guth measured
 /// position indices.
 enum class GlareLimit {
-    none,      ///< The luminaire counts.
+    none,      ///< No reason: the luminaire counts.
     aside,     ///< T / R is above 3: too far to the side.
     overhead,  ///< H / R is beyond the end of Guth's table: hidden by the brow.
     level,     ///< The luminaire is seen at more than 85 degrees from its nadir: its light is nearly horizontal.

@@ -54,7 +54,7 @@ TEST(GlareLimit, FollowsGuthsTableForAnyDirectionAndDistance) {
 
 TEST(GlareLimit, ExcludesLuminairesAboveTheEyeWithNearlyHorizontalLight) {
     const Normal view{0, 1, 0};
-    // On either side of 85 degrees from the nadir.
+    // Directions slightly below and above the limit of 85 degrees from the nadir.
     const double low = std::tan(4.9 * pi / 180), high = std::tan(5.1 * pi / 180);
     EXPECT_EQ(glare_limit(view, {0, 1, high}, true), GlareLimit::none);
     EXPECT_EQ(glare_limit(view, {0, 1, low}, true), GlareLimit::level);

@@ -9,8 +9,8 @@
 namespace exitance {
 
 /// Observers of CIE 117 in every room: seated (eyes 1.2 m above the floor, or at half of the height of a low room), in
-/// the middle of each side, looking across the room. Where a wall or an object is within `clearance`, the observer
-/// stands at the nearest place that is free; a side without one has no observer. Casts some dozens of rays per place.
+/// the middle of each side, looking across the room. Where a wall or an object is within `clearance`, the observer is
+/// placed at the nearest free place; a side without one has no observer. Casts some dozens of rays per place.
 constexpr double observer_clearance = 0.25;  // metres; derived from the space that a head and a body take
 std::vector<Observer> room_observers(const Stage& stage, const FloorRooms& rooms);
 

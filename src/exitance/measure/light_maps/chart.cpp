@@ -138,7 +138,7 @@ Result<std::vector<Chart>> make_charts(const Scene& scene, double density, int m
                              " texels along a side of a map",
                          "--density", "at most " + std::to_string(std::floor(most / longest)) + " fit"};
         }
-        const Point& corner = region.loops.front().front();  // any point of the plane
+        const Point& corner = region.loops.front().front();  // any point of the plane serves as origin
         const double s = lattice.left + (column + 0.5) / density, t = lattice.top + (row + 0.5) / density;
         Chart chart;
         chart.region = r;

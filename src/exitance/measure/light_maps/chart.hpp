@@ -19,9 +19,9 @@ struct Chart {
     Vec3 du, dv;                ///< Vectors from a texel to its right and lower neighbours, metres.
     double skew = 0;            ///< du . dv, m^2; 0 if texels are rectangles.
     int width = 0, height = 0;  ///< Number of texels that the region's bounding box touches.
-    std::uint32_t map = 0;      ///< Index of the map that contains it.
+    std::uint32_t map = 0;      ///< Index of the map that contains the chart.
     int x = 0, y = 0;           ///< Position of texel (0, 0) in that map.
-    Rectangle room;             ///< The chart with the padding around it; no other chart has texels there.
+    Rectangle room;             ///< Rectangle of the chart including its padding; no other chart has texels in it.
 
     /// The point at a position in texels, counted from the corner of texel (0, 0), whose centre is (0.5, 0.5).
     Point at(Vec2 place) const { return origin + (place.x - 0.5) * du + (place.y - 0.5) * dv; }

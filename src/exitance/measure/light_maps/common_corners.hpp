@@ -12,7 +12,7 @@ namespace exitance {
 /// since each face is flattened when it is read.
 class CommonCorners {
   public:
-    /// O(n log n).
+    /// Collects the corners of all faces. O(n log n).
     explicit CommonCorners(const Scene& scene) : cell_(cell_share * scene.size()) {
         for (const SurfaceId s : scene.surfaces().ids())
             for (const Point& p : scene.outline(s)) first_.emplace(key(p), p);

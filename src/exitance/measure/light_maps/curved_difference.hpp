@@ -18,7 +18,7 @@ struct CurvedDifference {
 
 /// Differences of all curved regions of a scene.
 struct CurvedDifferences {
-    std::vector<CurvedDifference> regions;  ///< In the order of their ids.
+    std::vector<CurvedDifference> regions;  ///< Differences of the curved regions, in the order of their ids.
 
     bool empty() const { return regions.empty(); }
     /// RMS of the differences, relative to the RMS of the solution's irradiance on these regions; both weighted by

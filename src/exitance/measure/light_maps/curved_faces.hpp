@@ -13,15 +13,15 @@ namespace exitance {
 struct NormalTriangle {
     SurfaceId surface;
     std::array<Point, 3> corner;   ///< Metres.
-    std::array<Normal, 3> normal;  ///< On the front side of the face.
+    std::array<Normal, 3> normal;  ///< Normals at the corners, on the front side of the face.
 };
 
-/// The place on the curved surface that a point of a face stands for.
+/// The place on the curved surface that corresponds to a point of a face.
 struct CurvedPlace {
     Point x;                         ///< On the curved patch or, where that is behind the face, on the face; metres.
-    Normal n;                        ///< The interpolated normal.
+    Normal n;                        ///< Normal, interpolated between the corners.
     std::size_t triangle = 0;        ///< Index into CurvedFaces::triangles().
-    std::array<double, 3> weight{};  ///< Barycentric coordinates in it.
+    std::array<double, 3> weight{};  ///< Barycentric coordinates in the triangle.
 };
 
 /// Faces that approximate a curved surface, with the normals of the scene's file.
@@ -53,9 +53,9 @@ class CurvedFaces {
     CurvedPlace at(std::size_t triangle, const std::array<double, 3>& weight) const;
 
   private:
-    std::vector<NormalTriangle> triangles_;  ///< In the order of their faces.
+    std::vector<NormalTriangle> triangles_;  ///< Triangles, in the order of their faces.
     Field<SurfaceId, std::uint32_t> first_;  ///< First triangle of each face,
-    Field<SurfaceId, std::uint32_t> count_;  ///< and the number of its triangles.
+    Field<SurfaceId, std::uint32_t> count_;  ///< Number of triangles of each face.
     Field<RegionId, std::uint8_t> is_curved_;
 };
 

@@ -36,7 +36,7 @@ class CurvedLight {
 
     struct Mean {
         Spectrum irradiance;     ///< Irradiance of the component, W/m^2.
-        std::size_t places = 0;  ///< Number of places that were evaluated, the first ones.
+        std::size_t places = 0;  ///< Number of places that were evaluated; these are the first ones in the list.
     };
     /// Returns the mean irradiance at places of a curved region that are not covered. The first two and the first four
     /// must be well distributed; if all light at them differs by less than 1% and the noise of rays, the others are not
@@ -69,8 +69,8 @@ class CurvedLight {
     const RadiosityFunction& light_;
     const CurvedFaces& faces_;
     LightAccuracy accuracy_;            ///< Accuracy of direct light by rays.
-    std::vector<Lattice> lattices_;     ///< One per triangle of `faces_`.
-    std::vector<NodeLight> reflected_;  ///< Row by row, lattice by lattice.
+    std::vector<Lattice> lattices_;     ///< One lattice per triangle of `faces_`.
+    std::vector<NodeLight> reflected_;  ///< Light at the nodes, lattice by lattice, row by row.
 };
 
 /// Temporary storage; one per thread.

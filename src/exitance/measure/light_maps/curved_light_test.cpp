@@ -165,7 +165,8 @@ TEST(CurvedLight, TheMapOfASphereIsThatOfTheExactSphere) {
         const CurvedFaces faces(solution.scene, s.triangles);
         const LightMaps curved = bake(solution, &faces, 24 / motion.scale),
                         faceted = bake(solution, nullptr, 24 / motion.scale);
-        // Required is 3%. Chords alone are 1% off; places are on patches, so only texels and rounding remain.
+        // At most 3% error is required. Places on the chords would cause 1%; those on the curved patches leave only
+        // the errors of texels and rounding.
         EXPECT_LT(sphere_error(curved, 512, motion), 0.005);
         EXPECT_GT(sphere_error(faceted, 512, motion), 0.05);
         ASSERT_EQ(curved.curved.regions.size(), 512u);
@@ -302,7 +303,7 @@ TEST(CurvedLight, NoiseOfRaysNeedsNoFurtherPlaces) {
     sky.domes.push_back({{}, Spectrum(100)});
     const CurvedScene s = curved_scene(triangles, normal, as_written, {}, sky);
     Solution solution = quick_solution(s.scene);
-    solution.statistics.relative_error_estimate = 0.05;  // rays have a fifth of it
+    solution.statistics.relative_error_estimate = 0.05;  // the rays of the bake may have a fifth of this error
     const CurvedFaces faces(solution.scene, s.triangles);
     const RadiosityFunction function(solution);
     const StopRequest stop;

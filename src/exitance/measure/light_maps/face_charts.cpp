@@ -228,7 +228,7 @@ ChartFrame smallest_frame(const Scene& scene, const FaceChart& chart) {
         const double width = width_hi - width_lo, height = height_hi - height_lo;
         if (width * height >= smallest * (1 - rounding)) continue;
         smallest = width * height;
-        right = width >= height ? u : v;  // lying, as the packing prefers
+        right = width >= height ? u : v;  // wider than high, as the packing prefers
     }
     const Vec3 across = right.x * frame.u + right.y * frame.v;
     return {across, cross(chart.axis, across)};

@@ -9,7 +9,7 @@ namespace exitance {
 /// Connected regions that are shown together in a light map, by parallel projection along an axis.
 struct FaceChart {
     std::vector<RegionId> regions;
-    Normal axis;  ///< At most 40 degrees from the normals of all regions.
+    Normal axis;  ///< Normal of the chart, at most 40 degrees from the normals of all its regions.
 };
 
 /// Divides the regions of a scene into charts. A chart has regions of one object and one material that are connected by

@@ -61,13 +61,13 @@ struct LightMap {
 struct LightMaps {
     double density = 0;  ///< Texels per metre.
     int padding = 0;
-    std::vector<Chart> charts;  ///< One per region, in the order of their ids.
+    std::vector<Chart> charts;  ///< One chart per region, in the order of their ids.
     std::vector<LightMap> maps;
     std::size_t texels = 0;    ///< Number of texels that are on surfaces, wholly or in part.
     CurvedDifferences curved;  ///< Empty for maps of a part of the light.
 };
 
-/// True if direct and indirect light of a solution can be told apart.
+/// True if direct and indirect light of a solution are stored separately.
 bool is_divisible(const Solution& solution);
 /// Returns an error of code `usage` if the solution is not divisible and a part of its light is requested.
 Result<void> check_component(const Solution& solution, Component component);

@@ -47,7 +47,7 @@ class PlacedPolynomial {
     Vec2 origin_, a_, b_;
     double area_;
     std::array<Spectrum, 6> values_;
-    std::vector<CloughTocher> elements_;  ///< One per band; empty: quadratic.
+    std::vector<CloughTocher> elements_;  ///< One Clough-Tocher element per band; empty: the triangle is quadratic.
 };
 
 bool holds_texel(const Triangle2& t, int x, int y) {

@@ -92,7 +92,7 @@ void TexelCutter::add(const TexelOutline& outline, const Chart::Rectangle& recta
             const double u = x, v = y;
             if (holds(outline, {u, v}) && holds(outline, {u + 1, v}) && holds(outline, {u, v + 1}) &&
                 holds(outline, {u + 1, v + 1}))
-                area_[texel] = 2;  // all of the texel, regardless of other outlines
+                area_[texel] = 2;  // mark as wholly covered, regardless of other outlines
             else
                 add_part(outline, x, y, texel);
         }

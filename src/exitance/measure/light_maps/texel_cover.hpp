@@ -28,9 +28,9 @@ constexpr std::uint32_t texel_points = 16;
 /// Part of a texel that is on its region, with points of uniform density on that part. The first four points alone are
 /// well distributed, too.
 struct TexelCover {
-    int x = 0, y = 0;       ///< Texel in the chart.
+    int x = 0, y = 0;       ///< Column and row of the texel in the chart.
     double share = 0;       ///< Covered share, in (0, 1].
-    std::size_t first = 0;  ///< Index of its `texel_points` positions.
+    std::size_t first = 0;  ///< Index of the first of its `texel_points` positions.
 };
 
 /// Clips a convex polygon to the texel whose corner nearest to (0, 0) is (x, y); `rest` is scratch memory.

@@ -19,14 +19,14 @@ inline constexpr double most_texels = 134217728;  ///< 2^27 texels, up to 6 GB w
 /// A part of a chart that is baked as a unit.
 struct ChartTile {
     std::size_t chart = 0;
-    Chart::Rectangle rectangle;  ///< In texels of the chart.
+    Chart::Rectangle rectangle;  ///< Rectangle in texels of the chart.
 };
 
 std::vector<ChartTile> cut_into_tiles(std::span<const Chart> charts);
 
 /// Light on the part of a texel that a chart covers.
 struct BakedTexel {
-    std::size_t index = 0;  ///< In the map.
+    std::size_t index = 0;  ///< Index of the texel in the map.
     double share = 0;       ///< Share of the texel that the chart covers, in (0, 1].
     bool is_open = false;   ///< False: another surface or a body covers that part, so it has no light of its own.
     Spectrum irradiance;    ///< Mean of the component over the uncovered part, W/m^2; 0 if there is none.

@@ -128,7 +128,7 @@ Result<Unwrapped> unwrap(const Scene& scene, const UnwrapOptions& options) {
         for (int k = 0; !packed(charts, fits, out.size, out.padding); fits /= 2)
             if (++k > max_halvings) return does_not_fit(charts.size(), out.size, "--padding");
     }
-    constexpr double at_most = 4;  // a map of twice the side would have been chosen before
+    constexpr double at_most = 4;  // upper limit, since a map with sides twice as long would otherwise have been chosen
     out.density = densest(charts, fits, at_most * fits, out.size, out.padding);
     const std::vector<Chart> boxes = *packed(charts, out.density, out.size, out.padding);
     out.charts = charts.size();

@@ -29,10 +29,10 @@ struct Unwrapped {
 
     /// Projection of a chart to the map, texels.
     struct Projection {
-        Vec3 right, down;  ///< Texels per metre along both sides.
+        Vec3 right, down;  ///< Directions of increasing column and row; their lengths are texels per metre.
         Vec2 origin;       ///< Position of the point (0, 0, 0).
     };
-    std::vector<Projection> projections;  ///< One per chart.
+    std::vector<Projection> projections;  ///< Projection of each chart.
     std::vector<std::uint32_t> chart_of;  ///< The chart of every region.
 
     /// Coordinates of a point of a region: (0, 0) is the upper left of the map, (1, 1) the lower right. All regions of

@@ -10,16 +10,18 @@
 
 namespace exitance {
 
-/// An object's charts in its light map, and what is wrong with them. Faces are counted as triangles.
+/// An object's charts in its light map, and their faults. Faces are counted as triangles.
 struct UvObject {
     std::string name;
     std::uint32_t map = 0;  ///< Index of its map.
     std::size_t triangles = 0;
-    std::size_t charts = 0;        ///< Number of connected parts in the map.
-    std::size_t mirrored = 0;      ///< Triangles that are mirrored in the map.
-    std::size_t overlapping = 0;   ///< Triangles that overlap others of this object in the map.
-    std::size_t outside = 0;       ///< Triangles that are partly or wholly outside the map and get no texels there.
-    std::size_t moved_charts = 0;  ///< Charts in another unit square: moved by whole numbers, as repetition reads them.
+    std::size_t charts = 0;       ///< Number of connected parts in the map.
+    std::size_t mirrored = 0;     ///< Triangles that are mirrored in the map.
+    std::size_t overlapping = 0;  ///< Triangles that overlap others of this object in the map.
+    std::size_t outside = 0;      ///< Triangles that are partly or wholly outside the map and get no texels there.
+    /// Number of charts that lie outside the unit square and are moved into it by whole numbers, as texture repetition
+    /// does.
+    std::size_t moved_charts = 0;
     std::size_t collapsed = 0;     ///< Triangles without area in the map, which get no texels.
     bool overlaps_others = false;  ///< True if it overlaps another object, so that each object has a map of its own.
     double area = 0;               ///< m^2
@@ -30,12 +32,12 @@ struct UvObject {
 struct UvLayout {
     static constexpr std::uint32_t no_chart = std::numeric_limits<std::uint32_t>::max();
 
-    std::vector<UvObject> objects;  ///< In the order of UvSet::objects.
+    std::vector<UvObject> objects;  ///< Results for each object, in the order of UvSet::objects.
     std::size_t maps = 1;
     std::size_t charts = 0;
-    std::vector<std::array<Vec2, 3>> places;  ///< Each triangle in its map, (0, 0) to (1, 1).
-    std::vector<std::uint32_t> chart;         ///< Each triangle's chart; no_chart: it has no area in the map.
-    std::vector<std::uint8_t> is_overlapped;  ///< For each triangle: overlaps another one of its object.
+    std::vector<std::array<Vec2, 3>> places;  ///< Corners of each triangle in its map, (0, 0) to (1, 1).
+    std::vector<std::uint32_t> chart;         ///< Chart of each triangle; no_chart: it has no area in the map.
+    std::vector<std::uint8_t> is_overlapped;  ///< For each triangle: true if it overlaps another one of its object.
 };
 
 /// Finds the charts of each object: its triangles that are connected by vertices with equal positions and texture

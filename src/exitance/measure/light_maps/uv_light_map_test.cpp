@@ -225,8 +225,8 @@ TEST(UvLayout, ReportsFaultsByObject) {
     const Scene scene = rectangles({{1, 1}, {1, 1}, {1, 1}, {1, 1}, {1, 1}});
     UvSet set = uvs_of(scene, {upright_chart({0.0, 0.0}, {0.2, 0.2}),         // correct, at the border of the map
                                {{0.3, 0}, {0.5, 0}, {0.5, 0.2}, {0.3, 0.2}},  // mirrored
-                               upright_chart({2.6, -0.9}, {2.8, -0.7}),       // in another unit square
-                               upright_chart({0.9, 0.5}, {1.1, 0.7}),         // across the border
+                               upright_chart({2.6, -0.9}, {2.8, -0.7}),       // chart in another unit square
+                               upright_chart({0.9, 0.5}, {1.1, 0.7}),  // chart that crosses the border of the map
                                {{0.7, 0.9}, {0.8, 0.9}, {0.9, 0.9}, {0.75, 0.9}}});  // without area
     const UvLayout layout = lay_out(set);
     ASSERT_EQ(layout.objects.size(), 5u);
@@ -259,7 +259,7 @@ TEST(UvLayout, ObjectsShareAMapUnlessTheirChartsOverlap) {
     EXPECT_EQ(apart.maps, 3u);
     EXPECT_TRUE(apart.objects[0].overlaps_others && apart.objects[1].overlaps_others);
     EXPECT_FALSE(apart.objects[2].overlaps_others);
-    EXPECT_EQ(apart.objects[0].overlapping, 0u);  // not within the object
+    EXPECT_EQ(apart.objects[0].overlapping, 0u);  // the overlap is between objects, not within one
     const Solution s = light_of(scene, [](RegionId r, const Point&) { return 1.0 + r.value; });
     const UvSet set = uvs_of(scene, std::vector(3, upright_chart({0, 0}, {1, 1})));
     const UvLightMaps maps = bake(s, set, {8, 8});
@@ -321,7 +321,7 @@ TEST(UvLightMap, SizesFollowTheDensity) {
         const Result<UvLightMaps> maps = bake_uv_light_maps(light, set, {.density = density}, progress, stop);
         return maps ? maps->maps[0].light.size.width : 0;
     };
-    EXPECT_EQ(side(16), 64);  // 2 m are half of the map
+    EXPECT_EQ(side(16), 64);  // the chart's 2 m are half of the map's side
     EXPECT_EQ(side(17), 128);
     EXPECT_EQ(side(1e5), 0);
     UvSet stacked = set;

@@ -21,7 +21,7 @@ struct UvTriangle {
 /// One set of texture coordinates of a scene's file.
 struct UvSet {
     std::string file;                  ///< Path of the file.
-    std::string name;                  ///< Such as TEXCOORD_1; "vt" in OBJ files.
+    std::string name;                  ///< Name of the set, such as TEXCOORD_1; "vt" in OBJ files.
     std::vector<std::string> objects;  ///< Names of glTF nodes or OBJ groups; all differ.
     std::vector<UvTriangle> triangles;
     std::size_t back_faces = 0;  ///< Number of faces that are the backs of double-sided ones and have no coordinates.

@@ -110,7 +110,8 @@ class Scout {
     }
 
   private:
-    /// The place on the vertical through a point that is at eye level above what is below, or lower if less is free.
+    /// The place on the vertical through a point that is at eye level above the surface below, or lower if there is
+    /// less space.
     Point at_eye_level(const Point& p) const {
         constexpr double eyes = 1.6;  // metres
         const Vec3 down{0, 0, -1};
@@ -153,7 +154,7 @@ std::optional<Camera> camera_inside(const Scene& scene, const Scout& scout, Pict
     constexpr double least_lit = 1.0 / 3;
     const Box& box = scene.box();
     const Vec3 extent = box.size();
-    const double height = std::min(extent.z, 3.0);  // metres; in a high hall as in a room
+    const double height = std::min(extent.z, 3.0);  // metres; limited, so that a high hall is viewed like a room
     const double fov = size.width >= size.height ? 75 : 55;
     std::optional<Camera> best;
     double best_quality = 0;
@@ -260,7 +261,7 @@ Camera camera_amid(const Scene& scene, const Scout& scout) {
         for (const double t : {0.5, 0.35, 0.65, 0.2, 0.8})
             consider({box.lo.x + s * box.size().x, box.lo.y + t * box.size().y, box.lo.z + height},
                      std::hypot(s - 0.5, t - 0.5));
-    constexpr double corner = 0.7;  // as far from the middle as the corners of the box
+    constexpr double corner = 0.7;  // treat these positions as equally far from the middle as the corners of the box
     for (const Point& eye : scout.places_in_light(24)) consider(eye, corner);
     return best;
 }

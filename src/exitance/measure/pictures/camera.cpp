@@ -25,7 +25,7 @@ CameraRays::CameraRays(const Camera& camera, PictureSize size)
     : projection_(camera.projection), size_(size), eye_(camera.eye), pixel_(pixel_width(camera, size)) {
     ahead_ = normalized(camera.target - camera.eye);
     Vec3 up = normalized(camera.up);
-    if (projection_ == Projection::panorama) {  // the middle row is the horizon
+    if (projection_ == Projection::panorama) {  // in a panorama the middle row of pixels is the horizon
         const Vec3 level = ahead_ - dot(ahead_, up) * up;
         ahead_ = norm(level) > 1e-6 ? normalized(level) : Frame(up).u;
     }

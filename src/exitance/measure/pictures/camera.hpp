@@ -26,7 +26,7 @@ struct Camera {
     /// Field of view from the left to the right edge, degrees in (0, 180); fisheye: across the disc, degrees in (0,
     /// 360]; orthographic: width in metres; panorama: unused.
     double fov = 60;
-    Vec3 up = {0, 0, 1};  ///< If it is parallel to the line of sight, Y is used.
+    Vec3 up = {0, 0, 1};  ///< Upward direction. Y is used instead if it is parallel to the line of sight.
     Projection projection = Projection::perspective;
 };
 

@@ -28,7 +28,7 @@ CurveOrder order_at_exit(const SixNodeMesh& mesh, std::uint32_t triangle, const 
     for (std::size_t k = 0; k < 3; ++k) {
         if (!(to[k] < 0)) continue;
         const double start = std::max(from[k], 0.0), crossing = start / (start - to[k]);
-        // Opposite corner k.
+        // The edge that is opposite to corner k.
         if (crossing < nearest) nearest = crossing, order = mesh.edge_order[triangle][(k + 1) % 3];
     }
     return order;

@@ -192,7 +192,7 @@ class TilePainter {
 
 /// Median irradiance of the exported elements over some pixels that show fronts, W/m^2.
 double usual_brightness(const RadiosityFunction& light, const PictureOptions& options) {
-    constexpr int side = 24;  // pixels in each direction
+    constexpr int side = 24;  // number of sampled pixels in each direction
     const Solution& solution = light.solution();
     const CameraRays rays(options.camera, options.size);
     std::vector<ProbePoint> places;

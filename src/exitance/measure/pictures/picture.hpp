@@ -13,7 +13,7 @@ namespace exitance {
 struct Pixel {
     Spectrum radiosity;    ///< B, W/m^2; the radiance is B / pi.
     Spectrum irradiance;   ///< E, W/m^2
-    Spectrum from_lamps;   ///< B of the samples that hit emitters, mean over these, W/m^2.
+    Spectrum from_lamps;   ///< Mean B over the samples that hit emitters, W/m^2.
     float front = 0;       ///< Share of the samples that hit a front.
     float emitting = 0;    ///< Share that hit an emitter's front.
     float back = 0;        ///< Share that hit a back; the remaining samples hit nothing.
@@ -36,7 +36,7 @@ struct PictureOptions {
     unsigned gather = 0;
     std::uint64_t seed = 1;
     /// Relative difference below which light without shadow edges may be interpolated between pixels, for pictures that
-    /// are only looked at; 0: the light of every pixel is evaluated.
+    /// are viewed, not measured; 0: the light of every pixel is evaluated.
     double interpolation = 0;
 };
 

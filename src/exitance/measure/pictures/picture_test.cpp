@@ -216,7 +216,7 @@ TEST(Picture, InterpolatesLightWithoutVisibleDifference) {
         changed += found != expected, visible += std::abs(found - expected) > 0.02 * expected;
     }
     EXPECT_GT(changed, exact.pixels.size() / 10);    // light is interpolated
-    EXPECT_LT(visible, exact.pixels.size() / 1000);  // in shadow edges
+    EXPECT_LT(visible, exact.pixels.size() / 1000);  // differences are large only in shadow edges
 }
 
 TEST(Picture, ShowsTheFunctionUpToNoiseWithManyShadows) {
@@ -290,7 +290,7 @@ TEST(AutomaticCamera, LooksIntoARoomThroughItsOpenSide) {
     SceneDescription d;
     for (const double z : {0.0, 1.0}) d.points.insert(d.points.end(), {{0, 0, z}, {1, 0, z}, {1, 1, z}, {0, 1, z}});
     d.materials = {{"wall", Spectrum(0.5), Spectrum()}, {"ceiling", Spectrum(0.5), Spectrum(1)}};
-    d.groups = {"box"};  // without the wall at y = 0
+    d.groups = {"box"};  // box without the wall at y = 0
     const std::vector<std::vector<std::uint32_t>> faces = {
         {0, 1, 2, 3}, {4, 7, 6, 5}, {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
     for (std::size_t i = 0; i < faces.size(); ++i) d.faces.push_back({faces[i], i == 1 ? 1u : 0u, 0, 1});

@@ -60,7 +60,7 @@ Spectrum TileLight::light_by_rays(const Spot& spot) {
         for (std::uint32_t i = 0; i < spot.count; ++i) at += points_[spot.first + i] / spot.count;
     }
     const Normal& n = stage.scene.regions()[spot.region].plane.n;
-    LightAccuracy asked = accuracy(mean(spot.irradiance));  // light found so far
+    LightAccuracy asked = accuracy(mean(spot.irradiance));  // accuracy relative to the light found so far
     // A part of a pixel may have more noise than the pixel.
     const double looser = std::sqrt(static_cast<double>(samples_) / spot.count);
     asked.relative *= looser, asked.absolute *= looser;

@@ -49,7 +49,8 @@ class Octagon {
     Range u_, v_, sum_, difference_;
 };
 
-constexpr std::uint32_t probing = 4;  ///< Points of a spot by which to decide whether the others are needed.
+/// Number of points of a spot that are evaluated first, to decide whether the others are needed.
+constexpr std::uint32_t probing = 4;
 
 bool agree(const Spectrum& a, const Spectrum& b, double difference = TileLight::alike) {
     return std::abs(mean(a) - mean(b)) <= difference * std::max(mean(a), mean(b));
@@ -124,8 +125,8 @@ bool TileLight::looks_small(const Spot& spot, const ReceiverLight& known, const 
         radius_squared = std::max(radius_squared, squared_norm(points_[spot.first + i] - middle));
     for (const Beam& beam : known.beams) {
         const PunctualLight& lamp = light_.solution().scene.lights()[beam.light];
-        const double distance = small * norm(lamp.position - middle);  ///< its cone may have a sharp edge
-        if (lamp.kind == PunctualLight::Kind::spot) return false;      // its cone may have a sharp edge
+        const double distance = small * norm(lamp.position - middle);
+        if (lamp.kind == PunctualLight::Kind::spot) return false;  // the cone of a spotlight may have a sharp edge
         if (!lamp.is_directional() && radius_squared > distance * distance) return false;
     }
     for (const ReceiverLight::Source& source : known.sources) {
@@ -148,7 +149,7 @@ Spectrum TileLight::elements(const Spot& spot) {
             return shown_ ? (*shown_)(spot.region, x) : light_.elements(spot.region, x);
         });
     const Normal& n = light_.stage().scene.regions()[spot.region].plane.n;
-    Spectrum sum;  // every gather has its own noise
+    Spectrum sum;  // sum over all points, since every gather has independent noise
     for (std::uint32_t i = 0; i < spot.count; ++i) {
         const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::gather), spot.pixel, i);
         sum += light_.gathered({points_[spot.first + i], n}, spot.region, gather_, key, gathering_);
@@ -190,7 +191,7 @@ bool TileLight::first_guess(Spot& spot, const ReceiverLight* known, Spectrum& li
 }
 
 bool TileLight::differs_from_neighbours(std::span<const Spot> spots, std::size_t i) const {
-    // Pixels that are only looked at show fainter edges without steps being seen.
+    // In pictures for viewing, fainter edges show no visible steps.
     constexpr double unseen_edge = 0.05;  // derived from steps of 1% between pixels within a shadow edge of some pixels
     const double difference = interpolation_ > 0 ? unseen_edge : alike;
     int neighbours = 0;
@@ -202,7 +203,7 @@ bool TileLight::differs_from_neighbours(std::span<const Spot> spots, std::size_t
             ++neighbours;
             if (!agree(spots[found - 1].irradiance, spots[i].irradiance, difference)) return true;
         }
-    return neighbours < 3;  // with fewer than three known neighbours, it counts as different
+    return neighbours < 3;  // a pixel with fewer than three known neighbours is treated as different
 }
 
 /// True if light at a square differs from the mean of its two neighbours, horizontally or vertically. If one of them is

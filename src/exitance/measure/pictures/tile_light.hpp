@@ -17,10 +17,10 @@ constexpr int tile_side = 32;  ///< Pixels.
 struct Spot {
     RegionId region;
     int x = 0, y = 0;                    ///< The pixel's position in its tile, from 0 to tile_side - 1.
-    std::uint32_t pixel = 0;             ///< Selects the random numbers of its gather.
-    std::uint32_t first = 0, count = 0;  ///< Range of its points, of which the first four are well distributed.
+    std::uint32_t pixel = 0;             ///< Number that selects the random numbers of the pixel's gather.
+    std::uint32_t first = 0, count = 0;  ///< Range of the spot's points; the first four of them are well distributed.
     Spectrum irradiance = {};            ///< Mean over the points, W/m^2.
-    Spectrum elements = {};              ///< The part of it that is not exact direct light, W/m^2.
+    Spectrum elements = {};              ///< The part of `irradiance` that is not exact direct light, W/m^2.
     /// If the solution's mesh is integrated over the spot: the mean of its MeshLight. Points then only give the
     /// difference from the mesh, which has no edges.
     std::optional<Spectrum> meshed = {};
@@ -49,7 +49,7 @@ class TileLight {
         shown_ = &shown, direct_share_ = Spectrum();
     }
     /// Adds all direct light to that of the elements, even if these hold a share of it, so that the parts of the light
-    /// can be told apart.
+    /// can be shown separately.
     void add_all_direct() { direct_share_ = Spectrum(1); }
     /// Interpolates light without shadow edges between pixels if the light at the centre of a cell of pixels differs
     /// from it by at most this share; 0: never.
@@ -90,7 +90,7 @@ class TileLight {
     /// Light at the centres of pixels, as far as it is known.
     struct PixelLight {
         std::array<Spectrum, tile_side * tile_side> light;  ///< W/m^2
-        std::array<double, tile_side * tile_side> noise;    ///< Its standard deviation, W/m^2.
+        std::array<double, tile_side * tile_side> noise;    ///< Standard deviation of `light`, W/m^2.
         std::array<std::uint8_t, tile_side * tile_side> is_known{}, is_interpolated{};
 
         const Spectrum& set(std::size_t pixel, const Spectrum& found, double deviation) {
@@ -161,8 +161,9 @@ class TileLight {
     std::array<std::uint32_t, tile_side * tile_side> spot_at_;
     std::vector<std::uint8_t> settled_;
     std::vector<Spectrum> rest_;  ///< All light except exact direct light, for every spot.
-    PixelLight by_pixel_;         ///< Direct light by rays, or that of the open part of its block's light.
-    PixelLight shadowed_;         ///< Direct light of the shadowed part, where it is interpolated.
+    /// Direct light by rays; for blocks with exact light, the light of their unoccluded emitters.
+    PixelLight by_pixel_;
+    PixelLight shadowed_;  ///< Direct light of partly occluded emitters, where it is interpolated.
     DirectLight::Workspace visibility_;
     PlaceLight::Workspace place_;
     GatherWorkspace gathering_;

@@ -16,7 +16,7 @@ struct TimedPicture {
     /// Minimum number of rays of a pixel. 0: pixels share rays, in squares of side `block`, or nothing was finished.
     int samples = 0;
     int block = 0;  ///< Side of the largest square whose pixels share one ray, pixels; 0: nothing is painted.
-    bool is_complete = false;  ///< All samples that the options request.
+    bool is_complete = false;  ///< True if the picture has all samples that the options request.
 };
 
 /// Like take_picture, but in passes. The first pass casts one ray per square of 128 pixels a side. The next pass is the

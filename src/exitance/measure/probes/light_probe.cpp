@@ -25,7 +25,7 @@ struct RuleNode {
 /// because the odd part of E is linear: E(n) - E(-n) = V . n, V = int L w dw. The integral is by Gauss-Legendre nodes
 /// along z times equal steps around it.
 std::vector<RuleNode> make_rule() {
-    constexpr int rows = 12, columns = 2 * rows;          // of the whole sphere
+    constexpr int rows = 12, columns = 2 * rows;          // number of rows and columns over the whole sphere
     constexpr std::array<std::size_t, 3> along{3, 1, 2};  // harmonics that are proportional to x, y, z
     std::vector<RuleNode> rule;
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -154,7 +154,7 @@ class Prober {
         for (Spectrum& variance : out.standard_error)
             for (double& value : variance.value) value = std::sqrt(value);
     }
-    /// Until the fit is complete, standard errors hold variances.
+    /// Until the fit is complete, the fields for standard errors store variances.
     static Spectrum& variance_of(LightProbe& probe, std::size_t i) { return probe.standard_error[i]; }
 
     void add_direct(const Point& x, LightProbe& out) {

@@ -9,7 +9,8 @@ CloughTocher::CloughTocher(const Data& data) : corner_(data.value) {
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t j = (i + 1) % 3;
         edge_[i] = {corner_[i] + data.to_next[i][0] / 3, corner_[j] + data.to_next[j][1] / 3};
-        spoke_[i] = corner_[i] + (data.to_next[i][0] + data.to_next[i][1]) / 9;  // S - V = (sum of both vectors) / 3
+        // the centroid S minus the corner V is a third of the sum of both edge vectors
+        spoke_[i] = corner_[i] + (data.to_next[i][0] + data.to_next[i][1]) / 9;
     }
     // The slope at an edge's middle towards S, which is a third of the way across, equals that of the cubic at the
     // edge: across / 3 = 3 (d_0 / 4 + d_1 / 2 + d_2 / 4), where d_k are differences of ordinates, one of which is the

@@ -33,7 +33,7 @@ struct CloughTocher {
     std::array<std::array<double, 2>, 3> edge_;  ///< On edge i, next to corner i, and next to corner i + 1.
     std::array<double, 3> spoke_,
         hub_;                     ///< On the line from corner i to S: next to the corner (spoke), next to S (hub).
-    std::array<double, 3> wing_;  ///< In the middle of the sub-triangle at edge i.
+    std::array<double, 3> wing_;  ///< Ordinate in the middle of the sub-triangle at edge i.
     double centre_;
 };
 

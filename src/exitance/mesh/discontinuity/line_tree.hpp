@@ -19,7 +19,8 @@ class LineTree {
 
     struct Node {
         RegionId region;
-        std::uint32_t parent = none, first_child = none;  ///< The two children are consecutive.
+        std::uint32_t parent = none,
+                      first_child = none;  ///< Indices of the parent and of the first of two consecutive children.
         std::uint32_t root = 0;
         std::vector<Vec2> outline;  ///< Convex, counter-clockwise, in the region's plane coordinates, metres.
         /// Curves that cross the interior. For inner nodes they have been passed on to the children.

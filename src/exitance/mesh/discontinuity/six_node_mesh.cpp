@@ -113,7 +113,7 @@ SixNodeLocator::Place SixNodeLocator::find(RegionId region, const Point& p) cons
         const Vec3 a = mesh_->points[n[1]] - o, b = mesh_->points[n[2]] - o, w = p - o;
         const double aa = dot(a, a), ab = dot(a, b), bb = dot(b, b), det = aa * bb - ab * ab;
         // Triangles thinner than rounding contain no point that their neighbours do not.
-        constexpr double min_aspect = 1e-7;  // height over length
+        constexpr double min_aspect = 1e-7;  // minimum height over length
         const double longest = std::max({aa, bb, aa + bb - 2 * ab});
         if (!(det > min_aspect * min_aspect * longest * longest)) return false;
         const double s = (bb * dot(a, w) - ab * dot(b, w)) / det, u = (aa * dot(b, w) - ab * dot(a, w)) / det;

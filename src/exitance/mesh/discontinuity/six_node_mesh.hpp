@@ -45,10 +45,11 @@ enum class ShadowClass : std::uint8_t { lit, penumbra, umbra };
 struct SixNodeMesh {
     using Slope = std::array<float, bands>;  ///< W/m^3
 
-    std::vector<Point> points;                        ///< Per node, metres.
-    std::vector<std::array<float, bands>> values;     ///< Per node.
-    std::vector<std::array<std::uint32_t, 6>> nodes;  ///< Per triangle; counter-clockwise seen from the front.
-    std::vector<RegionId> region;                     ///< Per triangle.
+    std::vector<Point> points;                     ///< Positions of the nodes, metres.
+    std::vector<std::array<float, bands>> values;  ///< Per node.
+    /// Six nodes of each triangle, counter-clockwise seen from the front.
+    std::vector<std::array<std::uint32_t, 6>> nodes;
+    std::vector<RegionId> region;  ///< Per triangle.
     /// Per triangle; entry i is the edge from corner i to the next.
     std::vector<std::array<CurveOrder, 3>> edge_order;
     std::vector<ShadowClass> shadow;  ///< Per triangle.

@@ -14,7 +14,7 @@ SolveOptions galerkin(BasisKind basis) {
     SolveOptions options;
     options.method = Method::matrix;
     options.basis = basis;
-    options.smoothing = false;  // compare the elements' own light
+    options.smoothing = false;  // compare the light of the method's elements, unsmoothed
     options.residual = 1e-8;
     return options;
 }

@@ -23,7 +23,7 @@ void cut_for_delivery(Hierarchy& h, const NodalLight& E) {
             for (ElementId child : tree.children(e)) active.push_back(child);
     }
     h.light.numbering = LeafNumbering(tree);
-    h.light.kept.clear();  // belonged to the leaves before the split
+    h.light.kept.clear();  // these values belong to the leaves before the split
 }
 
 }  // namespace

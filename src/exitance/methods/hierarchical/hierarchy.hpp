@@ -41,7 +41,7 @@ struct Hierarchy {
     const Material& material(ElementId e) const { return input.stage.scene.material(light.tree.region(e)); }
     /// Evaluates `of_leaf` for all leaves and pulls the result up to all elements.
     NodalField pulled(const std::function<NodalValues(ElementId leaf)>& of_leaf) const;
-    /// F b by the links.
+    /// Returns F b, gathered over the links.
     NodalField gather() const;
     /// E_ind of any element no larger than those with coefficients: F b plus the correction by rays.
     NodalValues indirect_light(const NodalField& F_b, ElementId e) const;
@@ -51,7 +51,7 @@ struct Hierarchy {
     NodalBasis basis;
     GlobalLight light;
     LinkSites sites;
-    LightBelow reflected_direct_below;       ///< rho E_dir of leaves.
+    LightBelow reflected_direct_below;       ///< rho E_dir of the leaves, for elements below those with coefficients.
     NodalField reflected_direct, radiosity;  ///< rho E_dir, and all reflected light b.
     LinkRefiner refiner;
     LinkedSystem system;

@@ -51,8 +51,9 @@ std::size_t most_links(const Hierarchy& h) {
     constexpr std::size_t default_memory = 8'000'000'000;  // bytes; default limit
     const std::size_t used = peak_memory_bytes(),
                       limit = h.input.options.memory_limit_bytes.value_or(used + default_memory);
-    constexpr std::size_t others_share = 2;  // half of the memory is for meshes, gathers and files
-    constexpr std::size_t fields = 7;        // fields of light and of the solver's vectors
+    // links get half of the memory; the other half is for meshes, gathers and files
+    constexpr std::size_t others_share = 2;
+    constexpr std::size_t fields = 7;  // fields of light and of the solver's vectors
     const std::size_t taken = used + fields * h.radiosity.memory_bytes();
     return (limit - std::min(limit, taken)) / (others_share * LinkRefiner::bytes_a_link);
 }
@@ -177,7 +178,8 @@ LinkTolerance link_tolerance(const Hierarchy& h, double error) {
             .fractional = o.visibility == VisibilityKind::fractional,
             .quadrature = o.visibility == VisibilityKind::quadrature,
             .gives_up = h.input.may_give_up,
-            .triage = o.triage && h.input.stage.scene.panes().empty(),  // only rays take glass into account
+            // with glass only rays test visibility, since triage ignores panes
+            .triage = o.triage && h.input.stage.scene.panes().empty(),
             .seed = o.seed};
 }
 

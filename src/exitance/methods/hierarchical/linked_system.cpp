@@ -58,7 +58,7 @@ SolveReport LinkedSystem::solve(const NodalField& rhs, NodalField& x, bool close
     x.clear();
     parallel_for(part.ends.size(), 256, [&](std::size_t i) {
         for (std::size_t k = 0; k < n; ++k)
-            x.set_node(part.ends[i], k, value[i * n + k] - first[i * n + k]);  // rho F x
+            x.set_node(part.ends[i], k, value[i * n + k] - first[i * n + k]);  // the values of rho F x
     });
     x.push();
     const std::vector<ElementId> ends = sites_.ends();

@@ -12,7 +12,7 @@ namespace exitance {
 /// The radiosity equation over the links of a hierarchy, and over cluster links if there are any.
 class LinkedSystem {
   public:
-    /// `sites`: the linked elements; must outlive this.
+    /// `sites`: the linked elements; must outlive this object.
     LinkedSystem(const MethodInput& input, const LinkSites& sites) : input_(input), sites_(sites) {}
 
     void set_links(Links near, std::optional<ClusterLinks> far = {});

@@ -136,7 +136,7 @@ bool all_arrives(const Stage& stage, const ElementTree& tree, const LeafNumberin
 }  // namespace
 
 Spectrum keep_emitted_flux(DirectProjection& direct, const Stage& stage, std::uint64_t seed) {
-    // is_closed uses diffuse rays, so it does not apply to other lights
+    // is_closed casts diffuse rays only, so it says nothing about directed emitters and other lights
     if (stage.scene.has_light_apart() || stage.scene.has_directed_emission()) return Spectrum(1.0);
     const auto exitance = [&](ElementId e) { return stage.scene.material(direct.tree.region(e)).exitance; };
     if (!all_arrives(stage, direct.tree, LeafNumbering(direct.tree), exitance, seed)) return Spectrum(1.0);
@@ -161,7 +161,7 @@ bool keeps_reflected_light(const Stage& stage, const GlobalLight& light, std::ui
 
 namespace {
 
-/// k of every region: mean over the method's leaves, weighted by their reflected power.
+/// Returns the factor k of every region: its mean over the method's leaves, weighted by their reflected power.
 Field<RegionId, double> kept_by_region(const Scene& scene, const GlobalLight& light) {
     EXI_CHECK(light.kept.empty() || light.kept.size() == light.numbering.leaves.size());
     Field<RegionId, double> sent(scene.regions().size(), 0.0), kept(scene.regions().size(), 0.0);

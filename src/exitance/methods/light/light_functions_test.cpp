@@ -25,7 +25,7 @@ struct Furnace {
         direct.fit.resize(direct.tree.size());
         gathered.tree = direct.tree, gathered.first_value.resize(gathered.tree.size(), 0);
         for (ElementId e : direct.tree.leaves()) {
-            direct.fit[e].mean = Spectrum(kept);  // for M = 1
+            direct.fit[e].mean = Spectrum(kept);  // light of emitters with exitance M = 1
             gathered.first_value[e] = static_cast<std::uint32_t>(gathered.values.size());
             for (int i = 0; i < 4; ++i) gathered.add_value(Spectrum(wrong * exact(kept)));
         }

@@ -43,8 +43,9 @@ class ReadNextLight {
     /// True if `next` is not needed any more.
     bool stands_alone() const;
 
-    const ReflectedLight& whole() const { return whole_; }             ///< b'
-    const ReflectedLight* change() const { return change_.if_any(); }  ///< b' - b, or null.
+    const ReflectedLight& whole() const { return whole_; }  ///< b'
+    /// Returns the change b' - b; null if there is none.
+    const ReflectedLight* change() const { return change_.if_any(); }
     /// Places at which rays that gather b' are aimed.
     void aim_at(const BrightPlaces& places) { whole_.aim_at(places); }
     /// Locator of the method's mesh.

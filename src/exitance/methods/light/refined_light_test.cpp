@@ -21,7 +21,8 @@ TEST(RefinedLight, CorrectsGatheredLightInAFurnace) {
     ElementFunction gathered;
     gathered.tree = direct.tree, gathered.first_value.resize(gathered.tree.size(), 0);
     for (ElementId e : direct.tree.leaves()) {
-        direct.fit[e].mean = Spectrum(1.0), direct.fit[e].corners.fill(Spectrum(1.0));  // for M = 1
+        // light of emitters with exitance M = 1
+        direct.fit[e].mean = Spectrum(1.0), direct.fit[e].corners.fill(Spectrum(1.0));
         gathered.first_value[e] = static_cast<std::uint32_t>(gathered.values.size());
         for (int i = 0; i < 4; ++i) gathered.add_value(Spectrum(wrong * rho / (1 - rho)));
     }

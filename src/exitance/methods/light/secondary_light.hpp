@@ -29,8 +29,8 @@ std::vector<SecondarySource> secondary_sources(const Stage& stage, const Solutio
 /// panes, which H does not see through. Results are clamped at 0.
 class SecondaryLight {
   public:
-    /// All arguments except `sources` must outlive this. If `stop` is requested during construction, it has no effect.
-    /// O(leaves x sources).
+    /// All arguments except `sources` must outlive this object. If `stop` is requested during construction, it has no
+    /// effect. O(leaves x sources).
     SecondaryLight(const Stage& stage, const ElementFunction& elements, const ElementLocator& locator,
                    std::vector<SecondarySource> sources, const StopRequest& stop);
 
@@ -56,7 +56,7 @@ class SecondaryLight {
     const ElementLocator& locator_;
     std::vector<SecondarySource> sources_;
     ElementFunction fit_;                        ///< H_e.
-    std::optional<ElementLocator> fit_locator_;  ///< None if this has no effect.
+    std::optional<ElementLocator> fit_locator_;  ///< Locator in `fit_`; none if a stop prevented the fit.
 };
 
 }  // namespace exitance

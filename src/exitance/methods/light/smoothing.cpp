@@ -104,8 +104,8 @@ class Surroundings {
     Point middle_;
     Vec3 a_, b_;
     std::vector<Point> outline_;
-    std::vector<Neighbour> neighbours_;  ///< In the order of the edges.
-    std::vector<Vec2> walls_;            ///< For edges without a neighbour: the place where its centre would be.
+    std::vector<Neighbour> neighbours_;  ///< Neighbours across the edges, in the order of the edges.
+    std::vector<Vec2> walls_;            ///< Per edge without a neighbour: where a neighbour's centre would be.
 };
 
 }  // namespace

@@ -41,13 +41,13 @@ struct OptionValue {
     std::string type = {};  ///< "R", "N|off", "jacobi|cg"; empty: the option is a flag.
     /// Stores a word in the request. Returns the message of an error, or an empty text.
     std::function<std::string(const std::string& word, SolveRequest& request)> read = {};
-    /// The word in force; none while the option has its default.
+    /// Returns the current value as a word; none while the option has its default.
     std::function<std::optional<std::string>(const SolveRequest& request)> word = {};
     /// JSON with which a solution file records the option; "null" if it is not set.
     std::function<std::string(const SolveRequest& request)> json = {};
 };
 
-/// Support of an option: `ways` support its `values`.
+/// Methods and forms (`ways`) that support an option, and the values of it that they support.
 struct OptionSupport {
     Ways ways = {};
     std::string values = {};                         ///< "a|b"; empty: all values.
@@ -58,7 +58,7 @@ struct OptionSupport {
 /// Another option that an option needs or cannot be combined with.
 struct OptionRule {
     std::string other = {};         ///< "--oracle ff|bf"; without values: the option with any value.
-    std::string values = {};        ///< The rule holds for these values of the option; empty: for all.
+    std::string values = {};        ///< Values of the option for which the rule holds; empty: all.
     std::optional<Form> form = {};  ///< The rule holds in this form; empty: in all.
 };
 
@@ -67,13 +67,13 @@ struct OptionRow {
     std::string name = {};  ///< "--epsilon"
     OptionValue value = {};
     std::string does = {};     ///< Effect of the option: one sentence without a full stop.
-    std::string initial = {};  ///< Its default in words; empty: nothing is set.
+    std::string initial = {};  ///< Default in words; empty: nothing is set.
     std::string when = {};     ///< When to use it, or the meaning of its values; may be empty.
     OptionGroup group = {};
-    std::vector<OptionSupport> support = {};  ///< Empty: every way supports it.
+    std::vector<OptionSupport> support = {};  ///< Support by methods and forms; empty: all of them support the option.
     std::vector<OptionRule> needs = {}, excludes = {};
     std::string one_process = {};  ///< Values that do not work over several processes; "*": all.
-    std::string section = {};      ///< Object of the recorded options that holds it; "-": it is not recorded.
+    std::string section = {};  ///< Object of the recorded options that contains this option; "-": it is not recorded.
 };
 
 /// Help text of an option: its effect, its default, and when to use it.

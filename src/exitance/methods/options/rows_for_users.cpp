@@ -103,7 +103,7 @@ std::vector<OptionRow> rows_of_light() {
          .value = choice(output_light_names, at(&R::output_light)),
          .does = "Light that the solution holds: the final gather, the method's own elements, or these smoothed",
          .initial = "gathered",
-         .when = "Elements show what a method alone finds",
+         .when = "Elements show the result of the method alone",
          .group = group::light,
          .support = {{every_standard | every_published}, {tasks, "elements|smoothed-elements"}}},
         {.name = "--bounces",

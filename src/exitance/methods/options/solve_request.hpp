@@ -21,11 +21,11 @@ inline constexpr std::array<std::pair<OutputLight, std::string_view>, 3> output_
 struct SolveRequest {
     SolveOptions options = {};
     std::optional<OutputLight> output_light = {};
-    std::string recipe = {};                      ///< Name of the recipe whose presets are included; empty: none.
-    std::string importance = {};                  ///< File with the points of options.importance; empty: none.
-    std::string sky = {}, epw = {};               ///< Description of a sky, and a weather file for it; empty: none.
-    std::optional<bool> photometric = {};         ///< Unit of the scene's light; empty: as the file says.
-    bool light_groups = false;                    ///< Also solve each group of emitters and keep its light.
+    std::string recipe = {};               ///< Name of the recipe whose presets are included; empty: none.
+    std::string importance = {};           ///< File with the points of options.importance; empty: none.
+    std::string sky = {}, epw = {};        ///< Description of a sky, and a weather file for it; empty: none.
+    std::optional<bool> photometric = {};  ///< Unit of the scene's light; empty: as the file says.
+    bool light_groups = false;  ///< True if each group of emitters is also solved separately, and its light kept.
     std::optional<double> checkpoint_every = {};  ///< Seconds between checkpoints.
     bool resume = false;                          ///< Continue from the checkpoint of the same output.
     bool dry_run = false;                         ///< Print a forecast only.

@@ -126,7 +126,8 @@ TEST(OptionSupport, TakesWhatAMethodSupports) {
         {{.relaxation = Relaxation::jacobi}, Method::monte_carlo},
         {{.visibility_samples = 4, .form_factors = FormFactorKind::analytic}, Method::matrix},
         {{.basis = BasisKind::galerkin2, .epsilon = 0.01, .triage = false}, Method::matrix},
-        {{.bounces = 2, .relaxation = Relaxation::cg}, Method::wavelet},  // matrix replaces it
+        // accepted, since `matrix` replaces the method
+        {{.bounces = 2, .relaxation = Relaxation::cg}, Method::wavelet},
         {{.keep_links = true}, Method::discontinuity},
     };
     for (const auto& [options, method] : taken)

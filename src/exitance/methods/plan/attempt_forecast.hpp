@@ -13,7 +13,7 @@ struct AttemptFacts {
     double method = 0;            ///< Part of the error that is not due to the local pass.
     double wanted = 0;            ///< Required value of that part.
     double left = 0;              ///< Expected share of that part that remains after one refinement step.
-    double finer = 1;             ///< Expected share of it that remains with finer elements of the method.
+    double finer = 1;             ///< Expected share of `method` that remains with finer elements of the method.
 };
 
 /// Rays of two ways to the same error. The first takes refinement steps on the delivered light (`next_light`); each of

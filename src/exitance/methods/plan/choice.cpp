@@ -72,7 +72,8 @@ MethodChoice choose_method(const Stage& stage, const SolveOptions& options) {
     }
     const bool by_rays = runs_over_processes(choice.options.method, choice.options) &&
                          !(choice.options.method == Method::hierarchical &&
-                           links_outgrow_memory(stage.pieces.size(), choice.options));  // clusters are used then
+                           // such a solve uses clusters instead of rays
+                           links_outgrow_memory(stage.pieces.size(), choice.options));
     if (processes() == 1 || by_rays) return choice;
     choice.why = fmt::format("{} would be the choice ({}), but does not run over processes",
                              name_in(method_names, choice.options.method), choice.why);

@@ -31,7 +31,8 @@ constexpr double element_rays = 2.6;     ///< Rays of an element over those of a
 constexpr double shooting_share = 0.48;  ///< Share of the pairs of elements whose form factors shooting needs.
 constexpr double gathered_by_patches = 3;  ///< Gather elements per patch of substructuring.
 constexpr double random_sweeps = 1.9;      ///< Light sent in random directions over the light of the first reflection.
-/// Time of a ray between elements or of a hemicube over that of a gather's ray, which looks up the light that it finds.
+/// Time of a ray between elements, or of a hemicube's ray, relative to a ray of the gather, which also evaluates the
+/// light at its hit.
 constexpr double published_ray_time = 0.25;
 constexpr unsigned shooting_samples = 16;
 /// Evaluations of direct light per element: nodes of the projection and of the exported mesh, and splits.
@@ -47,7 +48,7 @@ struct Pilot {
     /// Mean reflected light, W/m^2, extrapolated from the first reflection as a geometric series.
     double mean_light = 0;
     double facing = 0;     ///< Share of the pairs of points that face each other.
-    bool blocked = false;  ///< True if any of these pairs is occluded.
+    bool blocked = false;  ///< True if something occludes any of these pairs.
 };
 
 /// Finds the share of pairs of points that face each other, and whether any of these is occluded.
@@ -157,7 +158,8 @@ double method_rays(const Plan& plan, const Pilot& pilot, double patches, double 
     switch (o.method) {
         case Method::progressive:
             return shooting_share * elements * elements * samples;
-        case Method::substructuring:  // rows of all patches, and of all split elements including those split again
+        // counts rows of all patches and of all split elements, including those split again
+        case Method::substructuring:
             return pilot.facing * patches * (patches + 4.0 / 3 * elements) * samples;
         case Method::monte_carlo:
             return 8 * random_sweeps * rows;

@@ -35,7 +35,7 @@ double method_bytes(const Stage& stage, const SolveOptions& options, const Knobs
     }
     if (options.bounces < 0 && options.basis && is_galerkin(*options.basis)) return bytes_a_galerkin_pair * pairs;
     switch (options.form_factors.value_or(FormFactorKind::ray_cast)) {
-        case FormFactorKind::analytic:  // to patches one level above the leaves
+        case FormFactorKind::analytic:  // entries lead to patches one level above the leaves
             return sizeof(float) * pairs / 4;
         case FormFactorKind::hemicube:
             return (sizeof(float) + sizeof(std::uint32_t)) * pairs;

@@ -37,7 +37,7 @@ void fit_links(Plan& plan, const Stage& stage) {
 }  // namespace
 
 void survey(Stage& stage, const SolveOptions& options, const StopRequest& stop) {
-    // Published forms solve on all sides, and know of rooms only if errors are judged by them.
+    // Published forms solve on all sides, and use rooms only if errors are judged by room.
     if (form_of(options) == Form::standard) stage.leave_out(find_unlit_sides(stage, options.seed, stop));
     if (has_estimate(options)) stage.rooms = find_light_rooms(stage, options.seed, stop);
 }

@@ -19,7 +19,7 @@ namespace {
 
 // Measured by `solve --threads 1 --verbose` on tubes, boxes and prisms at 2 to 0.1% (bench/results/empty_rooms.csv).
 constexpr double terms_a_ray = 10;           ///< Elements summed in the time of one gather ray, at 25 ns each.
-constexpr double terms_beside_pieces = 300;  ///< Elements per place into which pieces near it are split.
+constexpr double terms_beside_pieces = 300;  ///< Number of elements per place into which nearby pieces are split.
 constexpr double light_rays = 64;            ///< Cost of direct light per element, in rays.
 constexpr double late_light_rays = 12;       ///< Rays per element of the method's mesh, for late light.
 constexpr double pair_form_factors = 100;  ///< Form factors per pair of pieces; each pair needs a search for occluders.

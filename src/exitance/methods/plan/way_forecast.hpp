@@ -9,7 +9,7 @@
 namespace exitance {
 
 /// Predicted work of the ways to reach the requested error in a scene, in rays: numbers of elements, places and pairs
-/// times the cost of one. Infinite if a way does not suit the scene or was not evaluated.
+/// times the cost of one. Infinite if a way is not applicable to the scene or was not evaluated.
 struct WayForecast {
     double rays = HUGE_VAL;   ///< `matrix`, with light gathered by rays.
     double sums = HUGE_VAL;   ///< `matrix`, with light summed over elements (`ElementGather`).

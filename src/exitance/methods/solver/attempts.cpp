@@ -70,8 +70,8 @@ void Solver::solve_indirect_light() {
 }
 
 bool Solver::refines_bodies(double demand, double last_seconds) {
-    // An attempt for bodies is made once, or twice if the first one halved what was too much. Others would cost more
-    // than the whole solve, for the sake of bodies whose errors are uncertain themselves.
+    // One attempt is made for bodies, or two if the first one halved the excess error. Others would cost more than the
+    // whole solve, for the sake of bodies whose errors are uncertain themselves.
     constexpr int most_for_bodies = 2;
     const double limit = max_body_errors * demand, worst = certificate_.worst_body.value_or(0);
     const bool helps = worst_body_before_ == 0 || worst - limit < 0.5 * (worst_body_before_ - limit);
@@ -80,8 +80,8 @@ bool Solver::refines_bodies(double demand, double last_seconds) {
         as_first(last_seconds) > seconds_left(stop_))
         return false;
     ++body_attempts_, worst_body_before_ = worst;
-    // A refinement step keeps what is accurate enough. Beside near surfaces, it replaces the method's elements by the
-    // delivered ones, which are finer there. Errors of the direct light that bodies see need a new solve.
+    // A refinement step keeps sufficiently accurate results. Next to near surfaces, it replaces the method's elements
+    // by the delivered ones, which are finer there. Errors of the direct light that bodies see need a new solve.
     takes_step_ = body_attempts_ == 1 && plan_.may_refine_delivered && light_->on_projection;
     tighten_bodies(limit);
     if (!takes_step_) light_.reset(), next_ = {}, steps_.not_local = 0;
@@ -92,7 +92,7 @@ bool Solver::refines_bodies(double demand, double last_seconds) {
 }
 
 void Solver::tighten_bodies(double limit) {
-    constexpr double aim = 0.7;  // of the limit, as for the whole: derived from attempt_aim
+    constexpr double aim = 0.7;  // share of the limit to aim at, derived from attempt_aim
     for (const BodyError& body : statistics().bodies) {
         if (!body.error || *body.error <= limit) continue;
         BodyShares& shares = body_shares_[bodies().body[body.first]];
@@ -104,7 +104,6 @@ bool Solver::lower_error() {
     // Factor on the error between intermediate solutions, given by work ~ error^-2.5 to error^-1. Solutions that differ
     // less are not worth an attempt.
     constexpr double step = 0.4;
-    // worth an attempt of its own
     const double before = *options_.error;
     while (*options_.error > requested_error_ && has_reached(*options_.error)) {
         const double next = step * std::min(*options_.error, certificate_.largest());
@@ -210,7 +209,7 @@ void Solver::project_direct() {
         progress_.note(fmt::format("direct light scaled by {:.5f} to the emitted power", mean(scale)));
         direct_ = std::move(fresh);
         unscaled_.direct = inverse(scale);
-        share_on_node(direct_.fit.span());  // not modified from here on
+        share_on_node(direct_.fit.span());  // this array does not change any more, so processes of a node can share it
     }
 }
 
@@ -235,7 +234,7 @@ void Solver::attempt() {
         if (fresh_) project_direct();
         if (fresh_ && !has_memory()) return;
         if (takes_step_) take_step();
-        if (stop_.requested()) return;  // without light of an earlier attempt, the result is direct light only
+        if (stop_.requested()) return;  // no earlier attempt has light: return direct light only
         reach(Step::solve);
     }
     if (step_ == Step::solve) {
@@ -257,7 +256,7 @@ void Solver::attempt() {
         refined_.clear();
         const bool whole = deliver(parts_to_sum(found.parts), b, fresh_);
         if (!whole) return;
-        next_.rest.clear();  // has been gathered
+        next_.rest.clear();  // this light has been gathered
         steps_.gather_rays = std::max(steps_.gather_rays, gathered_.rays);
         reach(Step::refine);
     }
@@ -272,7 +271,7 @@ void Solver::attempt() {
     CertificateOptions look{.error = options_.error_target(),
                             .seed = certificate_seed(),
                             .points = CertificateOptions::points_for(elements_of_continuous(solution_.indirect.tree))};
-    if (sums_) look.points /= 2;  // sums have no noise
+    if (sums_) look.points /= 2;  // half as many points suffice, since sums have no noise
     if (gathers()) look.leaves = &gathered_.leaves, look.gathered = &b.whole();
     look.coarse = &b.method_mesh();
     certify_solution(look, options_.error_demand(), elements);
@@ -384,7 +383,7 @@ void Solver::adopt_method_light() {
 
 Spectrum Solver::unscaled_indirect(const Spectrum& kept) const {
     if (!gathers()) return unscaled_.direct * light_->report.unscaled;
-    // The result of refinement hardly depends on its input.
+    // The result of a refinement step depends little on the light that it starts from.
     const bool refined = step_ == Step::refine || !next_.parts.empty();
     const Spectrum returned = refined ? Spectrum(1.0) : light_->report.unscaled;
     return unscaled_sent(stage_.scene, *light_, unscaled_.direct, returned, share_) * inverse(kept);

@@ -48,8 +48,8 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
         return std::sqrt(direct_.fit[delivered.projected().locator().find(hit.region, hit.y).element].misfit_squared);
     };
     if (!light_->holds_direct()) options.projected = {&delivered.projected(), direct_weight, misfit};
-    // A tenth of the rays so far, but at least about 30 ms of work, so that small solves know the errors of their
-    // bodies.
+    // A tenth of the rays so far, but at least about 30 ms of work, so that small solves can measure the errors of
+    // their bodies.
     constexpr std::size_t least_check_rays = 1 << 17;
     options.check_rays = std::max(statistics().rays / 10, least_check_rays);
     SummedLight summed{.delivered = {}, .gathered = gathered, .share = calibrated::certified_share * options.error};
@@ -89,7 +89,8 @@ void Solver::record_darkness() {
 }
 
 bool Solver::may_be_last(double demand) const {
-    if (options_.error && *options_.error > requested_error_) return false;  // an intermediate solution
+    // only an intermediate solution was requested
+    if (options_.error && *options_.error > requested_error_) return false;
     return has_reached(demand) || attempt_ == attempt_limit() || options_.memory_limit_bytes ||
            seconds_left(stop_) < HUGE_VAL;
 }

@@ -72,10 +72,11 @@ void Solver::make_output_mesh() {
         const double own = scale > 0 ? report.error / scale : 0;
         if (statistics().relative_error_estimate && !report.interrupted)
             statistics().relative_error_estimate_interpolant = std::hypot(own, *statistics().relative_error_estimate);
-        progress_.note(fmt::format("{} elements to export, {:.3f}% from the function by themselves",
+        progress_.note(fmt::format("{} elements to export; their own error is {:.3f}%",
                                    solution_.interpolant.tree.leaves().size(), 100 * own));
     }
-    if (!has_estimate(options_)) stage_.rooms = find_light_rooms(stage_, options_.seed, stop_);  // for escaping light
+    // for the statistics of escaping light
+    if (!has_estimate(options_)) stage_.rooms = find_light_rooms(stage_, options_.seed, stop_);
     EnergyBalance& energy = statistics().energy;
     energy = energy_balance(solution_, direct_, stage_);
     if (!is_published()) energy.defect_before = energy_defect_before(energy, solution_, direct_, unscaled_);

@@ -95,7 +95,7 @@ void Solver::attempt_published() {
 }
 
 bool Solver::aim_lower(double demand, double last_seconds) {
-    // Halving the error takes about four times as many links and nodes.
+    // About four times as many links and nodes are needed to halve the error.
     constexpr double cost_of_finer = 4, min_factor = 0.5;
     if (attempt_ == attempt_limit()) return stop_early("iterations"), false;
     if (stop_.seconds_left() < cost_of_finer * last_seconds) return stop_early("time limit"), false;
@@ -161,7 +161,8 @@ void Solver::certify_published() {
 void Solver::show_snapshot(const Snapshots::Moment& moment) {
     if (!show_) return;
     Solution shown{.scene = solution_.scene, .statistics = statistics()};
-    if (step_ == Step::project) record_work(moment.light, shown.statistics);  // afterwards it has been counted
+    // in later steps the work has been recorded already
+    if (step_ == Step::project) record_work(moment.light, shown.statistics);
     take_published(moment.light, shown);
     make_published_mesh(shown);
     shown.statistics.converged = false;

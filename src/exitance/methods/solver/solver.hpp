@@ -190,7 +190,7 @@ class Solver {
     void make_output_mesh();
     /// Returns the light to which the error of exported elements is relative, W/m^2.
     double interpolant_scale() const;
-    /// Returns direct plus reflected light as plain elements, with an error that suits the target error of the
+    /// Returns direct plus reflected light as plain elements, with an error in proportion to the target error of the
     /// attempts.
     ElementFunction plain_elements(InterpolantReport& report) const;
 
@@ -228,12 +228,12 @@ class Solver {
     std::optional<Snapshots> snapshots_;  ///< Set for published forms.
     int attempt_ = 1;
     int body_attempts_ = 0;         ///< Number of attempts for the sake of bodies.
-    double worst_body_before_ = 0;  ///< `worst_body` before the last of them; 0: there was none.
+    double worst_body_before_ = 0;  ///< Value of `worst_body` before the last of these attempts; 0: there was none.
     /// Factors on the errors that bodies may have due to the light gathered on them and to the direct light they see.
     struct BodyShares {
         double gathered = 1, seen = 1;
     };
-    std::vector<BodyShares> body_shares_;  ///< One per body; empty unless bodies must be accurate.
+    std::vector<BodyShares> body_shares_;  ///< Shares of each body; empty unless bodies must be accurate.
     Step step_ = Step::project;
     bool fresh_ = true;                  ///< True if the method solves in this attempt.
     Spectrum share_;                     ///< c of the method's light, see find_direct_share.

@@ -51,7 +51,7 @@ void drop_straight_corners(std::span<const Point> points, Loop& loop, const Norm
         while (out.size() >= 2 && straight(out[out.size() - 2], out.back(), p)) out.pop_back();
         if (out.empty() || out.back() != p) out.push_back(p);
     }
-    while (out.size() >= 3) {  // across the end of the loop
+    while (out.size() >= 3) {  // also merge across the end of the loop
         if (straight(out[out.size() - 2], out.back(), out.front()))
             out.pop_back();
         else if (straight(out.back(), out.front(), out[1]))

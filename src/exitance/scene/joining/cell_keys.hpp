@@ -29,7 +29,8 @@ void each_cell_key(std::uint64_t kind, const std::array<CellCoordinate, N>& coor
         other[i] = nearest + (x + e >= nearest + 0.5 ? 1 : x - e < nearest - 0.5 ? -1 : 0);
         if (other[i] != own[i]) near |= 1u << i;
     }
-    for (unsigned chosen = near;; chosen = (chosen - 1) & near) {  // every subset of these coordinates
+    // visit every subset of the coordinates that are near a border
+    for (unsigned chosen = near;; chosen = (chosen - 1) & near) {
         std::uint64_t key = kind;
         for (unsigned i = 0; i < N; ++i)
             key = hash(key, std::bit_cast<std::uint64_t>((chosen >> i & 1u) != 0 ? other[i] : own[i]));

@@ -198,7 +198,8 @@ std::vector<EdgePairs::Interval> EdgePairs::intervals_along(const Vec3& d, std::
 /// compared with the scene the line is so uncertain that a cell may contain whole rows of them; those are swept along a
 /// coordinate axis that separates them better.
 void EdgePairs::pair_on_line(std::span<const std::uint32_t> group) {
-    constexpr std::size_t max_direct = 8;  // most lines have only the two edges of a box's corner: not worth sorting
+    // most lines have only the two edges of a box's corner, for which sorting is slower
+    constexpr std::size_t max_direct = 8;
     if (group.size() <= max_direct) {
         for (std::size_t i = 0; i < group.size(); ++i)
             for (std::size_t j = 0; j < i; ++j) pair_parts(group[j], group[i]);
@@ -271,7 +272,7 @@ std::vector<EdgePairs::LineEntry> EdgePairs::line_entries() const {
     };
     std::vector<std::uint8_t> held(std::bit_ceil(4 * entrants.size() + 1));
     const auto slot = [&](const LineEntry& entry) -> std::uint8_t& { return held[entry.key & (held.size() - 1)]; };
-    std::size_t met = 0;  // number of entries whose key is shared
+    std::size_t met = 0;  // number of entries that share their key with another entry
     each_entry([&](const LineEntry& entry) {
         std::uint8_t& n = slot(entry);
         met += n == 0 ? 0 : n == 1 ? 2 : 1;

@@ -11,7 +11,7 @@ namespace exitance {
 /// Lengths and angles below which points, planes and normals count as equal.
 struct Tolerances {
     double place = 0;    ///< Points nearer than this are one point, metres.
-    double plane = 0;    ///< Distance of a face's corners from its plane, at most, metres.
+    double plane = 0;    ///< Maximum distance of a face's corners from its plane, metres.
     double tilt = 1e-3;  ///< Angle between normals of faces that are meant to be coplanar, at most, radians.
 };
 
@@ -28,7 +28,7 @@ struct FaceMesh {
     std::vector<std::uint32_t> first;  ///< First corner of every face, then the number of all corners.
     std::vector<std::uint32_t> corners;
     std::vector<std::uint32_t> material;
-    std::vector<Vec3> area_vector;  ///< m^2, along the face's normal.
+    std::vector<Vec3> area_vector;  ///< Area vector of every face: m^2, along its normal.
 
     std::size_t size() const { return material.size(); }
     std::span<const std::uint32_t> outline(std::uint32_t face) const {

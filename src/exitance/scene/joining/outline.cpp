@@ -9,7 +9,7 @@ namespace {
 /// An edge in the plane's coordinates.
 struct FlatEdge {
     Vec2 p, q;
-    double lo, hi;  ///< Extent along x.
+    double lo, hi;  ///< Extent of an edge along x.
     std::size_t number;
 };
 
@@ -39,7 +39,7 @@ std::size_t drop_repeated_corners(std::vector<std::uint32_t>& outline) {
         else
             out.push_back(p);
     }
-    while (out.size() >= 2) {  // across the end of the outline
+    while (out.size() >= 2) {  // also merge across the end of the outline
         const bool spike = out.size() >= 3 && out[out.size() - 2] == out.front();
         if (out.back() == out.front() || spike)
             out.pop_back();

@@ -13,7 +13,7 @@
 namespace exitance {
 namespace {
 
-/// One attempt to join a set of faces, numbered by their index in it.
+/// One attempt to join a set of faces. Faces are numbered by their index in the set.
 class Joiner {
   public:
     Joiner(const FaceMesh& mesh, const Tolerances& tolerances, std::vector<std::uint32_t> faces)
@@ -147,7 +147,7 @@ void Joiner::collect(std::vector<JoinedFaces>& out, std::vector<std::uint32_t>& 
         root_of[f] = pairs_.root(f);
         if (root_of[f] == f) roots.push_back(f);
     }
-    const Groups sets(root_of, n);  // indexed by their roots
+    const Groups sets(root_of, n);  // sets of joined faces, indexed by their roots
     std::vector<Union> unions(roots.size());
     parallel_for(roots.size(), 256, [&](std::size_t i) { unions[i] = unite(sets[roots[i]]); });
     for (std::size_t i = 0; i < roots.size(); ++i) {

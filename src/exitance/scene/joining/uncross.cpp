@@ -21,7 +21,8 @@ struct Cut {
 /// A directed edge of the arrangement; the opposite one has number `e ^ 1`.
 struct HalfEdge {
     std::uint32_t from, to;
-    int net = 0;  ///< Number of times the outline follows it, minus the number in the opposite direction.
+    /// Number of times the outline follows this edge, minus the number of times it runs in the opposite direction.
+    int net = 0;
     double angle = 0;
     std::uint32_t next = 0, face = 0;
 };
@@ -52,7 +53,7 @@ class Arrangement {
     double tolerance_;
     std::vector<Vec2> flat_;  ///< Corners, then crossings.
     std::vector<std::vector<Cut>> cuts_;
-    std::vector<std::uint32_t> place_;  ///< For a corner or crossing, the first one at its position.
+    std::vector<std::uint32_t> place_;  ///< Per corner or crossing: the first one at the same position.
     UncrossedOutline out_;
     std::vector<HalfEdge> half_edges_;
     std::uint32_t first_half_edge_ = 0;  ///< Half-edge on the outline's first edge.
@@ -186,7 +187,7 @@ bool Arrangement::looks_along_normal() const {
     double net = 0, all = 0;
     for (std::size_t f = 0; f < faces_.size(); ++f)
         net += winding_[f] * area_[f], all += std::abs(winding_[f] * area_[f]);
-    constexpr double equal = 1e-6;  // share of the area: symmetric outlines cancel up to the rounding of their file
+    constexpr double equal = 1e-6;  // share of the area, above the rounding error of files: symmetric outlines cancel
     if (std::abs(net) > equal * all) return net > 0;
     const int left = winding_[half_edges_[first_half_edge_].face],
               right = winding_[half_edges_[first_half_edge_ ^ 1].face];

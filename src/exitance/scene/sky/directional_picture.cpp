@@ -42,7 +42,8 @@ std::array<std::vector<double>, bands> tables_of(const DirectionalPicture& pictu
     for (auto& table : out) table.resize(SkyPicture::size);
     std::vector<double> weight(SkyPicture::rows);
     std::vector<Spectrum> means;
-    const auto sine = [](double row) { return -std::cos(row * SkyPicture::cell_angle); };  // rows from the nadir up
+    // rows are counted from the nadir upwards
+    const auto sine = [](double row) { return -std::cos(row * SkyPicture::cell_angle); };
     constexpr auto rows = static_cast<double>(SkyPicture::rows);
     for (std::size_t r = 0; r < picture.height; ++r) {
         average_row(picture, at, r, means);

@@ -7,8 +7,8 @@
 
 namespace exitance {
 
-/// A picture of all directions: azimuth by column, altitude by row (equirectangular). The middle column looks along +x,
-/// columns to the right turn clockwise seen from above, the first row is at the zenith.
+/// A picture of all directions: azimuth by column, altitude by row (equirectangular). The middle column is the
+/// direction +x, columns to the right turn clockwise seen from above, the first row is at the zenith.
 struct DirectionalPicture {
     std::size_t width = 0, height = 0;
     std::vector<float> radiance;  ///< W/(m^2 sr), `bands` values per pixel, row by row from the top.

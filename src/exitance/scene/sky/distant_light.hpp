@@ -11,7 +11,7 @@ namespace exitance {
 /// A distant polygon that represents a part of the distant light.
 struct DistantFacet {
     std::vector<Vec3> corners;      ///< Directions, not normalized; counter-clockwise seen from inside.
-    Normal n;                       ///< Towards the scene.
+    Normal n;                       ///< Unit normal, towards the scene.
     Spectrum exitance;              ///< W/m^2
     const SkyModel* sky = nullptr;  ///< Directional radiance; null: constant.
     double smooth_width = 0;        ///< Smooth width of the radiance on this facet, radians.
@@ -24,13 +24,13 @@ struct DistantLight {
     /// Half of all directions, above or below the horizon (SkyModel::below).
     struct Dome {
         SkyModel model;       ///< Normalized.
-        Spectrum irradiance;  ///< Irradiance of a horizontal plane that faces it unoccluded, W/m^2 (lx).
+        Spectrum irradiance;  ///< Irradiance of an unobstructed horizontal plane that faces the dome, W/m^2 (lx).
     };
     /// Uniform radiance within half_angle (at most `widest_disc`) of a direction.
     struct Disc {
-        Normal towards;         ///< Direction to its centre, unit vector.
+        Normal towards;         ///< Unit vector towards the centre of the disc.
         double half_angle = 0;  ///< Radians.
-        Spectrum irradiance;    ///< Irradiance of a plane perpendicular to it, W/m^2 (lx).
+        Spectrum irradiance;    ///< Irradiance of a plane perpendicular to this direction, W/m^2 (lx).
     };
     std::vector<Dome> domes;
     std::vector<Disc> discs;

@@ -56,7 +56,7 @@ class SpotFinder {
 
     /// Computes the light of all directions and the mean radiance of the dimmest ones, by a histogram of octaves.
     void measure() {
-        constexpr int steps = 16, octaves = 256;  // per octave; octaves of single precision
+        constexpr int steps = 16, octaves = 256;  // steps per octave, and the number of octaves of single precision
         std::vector<double> solid_angle(steps * octaves), light(steps * octaves);
         for (std::size_t p = 0; p < size(); ++p) {
             const double dw = at_.solid_angle(row(p)), v = brightness_[p];

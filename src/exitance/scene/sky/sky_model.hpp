@@ -60,7 +60,7 @@ SkyModel cie_sky(int type, const Normal& sun);
 struct PerezInput {
     double diffuse_horizontal = 0;  ///< W/m^2
     double direct_normal = 0;       ///< W/m^2
-    int day_of_year = 80;           ///< For the Earth's distance from the sun.
+    int day_of_year = 80;           ///< Day of the year, which determines the Earth's distance from the sun.
 };
 /// Returns Perez' all-weather sky. Clearness is clamped to 1 to 12.01, brightness to 0.01 to 0.6; a sun below the
 /// horizon is moved to it. Source: [Perez93].

@@ -105,7 +105,7 @@ std::vector<double> SkyPatches::mean_values(const SkyModel& sky) const {
     const bool product = is_product(sky);
     auto point = points_.begin();
     for (std::size_t row = 0; row < in_row_.size(); ++row) {
-        std::array<double, points_across> phi{}, weight{};  // of the heights of the points
+        std::array<double, points_across> phi{}, weight{};  // values at the heights of the points
         double all = 0;
         for (std::size_t i = 0; i < points_across; ++i) {
             const double h = altitude(row) + (static_cast<double>(i) + 0.5) / points_across * height_;

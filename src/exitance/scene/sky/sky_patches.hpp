@@ -14,7 +14,7 @@ class SkyPatches {
 
     /// Number of patches of a division, with the ground.
     static constexpr std::size_t count(std::size_t m) { return 144 * m * m + 2; }
-    std::size_t size() const { return middle_.size(); }  ///< Includes the ground.
+    std::size_t size() const { return middle_.size(); }  ///< Number of patches, including the ground.
     /// Returns the patch that contains a direction (unit vector).
     std::size_t of(const Vec3& w) const;
     const Normal& middle(std::size_t patch) const { return middle_[patch]; }
@@ -34,7 +34,8 @@ class SkyPatches {
   private:
     void make_facets();
     void make_points();
-    double altitude(std::size_t row) const { return static_cast<double>(row) * height_; }  ///< Lower border, radians.
+    /// Altitude of the lower border of a row, radians.
+    double altitude(std::size_t row) const { return static_cast<double>(row) * height_; }
 
     double height_;                    ///< Height of a row, radians.
     std::vector<std::size_t> first_;   ///< First patch of every row; the last entry is the zenith's.

@@ -12,7 +12,7 @@ namespace exitance {
 TEST(SkyPatches, HaveThePublishedNumberAndCoverTheSky) {
     for (const auto& [m, count] : {std::pair{1, 145u}, {2, 577u}, {4, 2305u}}) {
         const SkyPatches patches(m);
-        EXPECT_EQ(patches.size(), count + 1);  // and one for the ground
+        EXPECT_EQ(patches.size(), count + 1);  // and one patch for the ground
         EXPECT_EQ(patches.size(), SkyPatches::count(static_cast<std::size_t>(m)));
         double solid_angle = 0;
         for (std::size_t p = 1; p < patches.size(); ++p) {

@@ -50,7 +50,7 @@ double SkyPicture::horizontal_mean(bool is_below) const {
 }
 
 bool SkyPicture::are_sane(std::span<const double> values) {
-    constexpr double largest = 1e30;  // as of other light in files
+    constexpr double largest = 1e30;  // equal to the limit for other light in files
     return std::all_of(values.begin(), values.end(), [](double v) { return v >= 0 && v <= largest; });
 }
 

@@ -32,7 +32,7 @@ SkyWindow::Half::Half(const SkyModel& model, double irradiance)
       is_uniform(model.is_uniform()),
       has_tables(!model.intermediate && !model.blends_ground && !model.picture) {
     if (is_uniform || !has_tables) return;
-    // The factors of `SkyModel::value`, each evaluated with the other one constant.
+    // Tabulate the two factors of `SkyModel::value`, each with the other one constant.
     SkyModel height = model, sun = model;
     height.c = height.e = 0, height.f0 = 1;
     sun.a = sun.g = 0;

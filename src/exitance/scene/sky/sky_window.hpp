@@ -12,7 +12,7 @@ namespace exitance {
 /// The sky seen through a pane, in one band: directional radiance times the transmission of the pane.
 class SkyWindow {
   public:
-    /// The pane's normal must point inwards. `light` must outlive it.
+    /// The pane's normal must point inwards. `light` must outlive this object.
     SkyWindow(const Pane& pane, const DistantLight& light, std::size_t band);
 
     /// Returns the radiance seen in direction w (unit vector, out of the window), relative to `reference`. The tables
@@ -26,7 +26,7 @@ class SkyWindow {
     /// Returns pi times the mean radiance over directions, W/m^2.
     double reference() const { return reference_; }
     bool is_dark() const { return !(reference_ > 0); }
-    /// True if a sky in it is a picture.
+    /// True if a picture lights the window.
     bool shows_picture() const {
         return std::any_of(halves_.begin(), halves_.end(),
                            [](const Half& half) { return half.sky->picture != nullptr; });
@@ -56,7 +56,7 @@ class SkyWindow {
             if (!has_tables) return sky->relative(w);
             const double sine_squared = 0.5 * (1 - dot(w, sky->sun));
             constexpr double max_sine_squared =
-                0.95;  // beyond it, near the sun's opposite point, the table is too steep to interpolate
+                0.95;  // above this limit, near the point opposite to the sun, the table is too steep to interpolate
             if (sine_squared > max_sine_squared) return sky->relative(w);
             const double v = at(by_height, w.z) * at(by_sun, std::sqrt(std::max(0.0, sine_squared)));
             return std::max(0.0, v);

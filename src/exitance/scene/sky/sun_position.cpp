@@ -81,7 +81,7 @@ SunPosition sun_position(const LocalTime& time, const Place& place) {
     const double declination = std::asin(std::sin(obliquity) * std::sin(lambda));
     const double since = universal - 2451545, turned = since / 36525;
     const double sidereal = 280.46061837 + 360.98564736629 * since + 0.000387933 * turned * turned +
-                            in_longitude / 3600 * std::cos(obliquity);  // sidereal time of Greenwich, degrees
+                            in_longitude / 3600 * std::cos(obliquity);  // sidereal time at Greenwich, degrees
     const double hour_angle = (std::fmod(sidereal, 360.0) + place.longitude) * degree - ascension;
 
     const double phi = place.latitude * degree;

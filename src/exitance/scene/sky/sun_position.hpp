@@ -7,11 +7,11 @@ namespace exitance {
 /// A time in the Gregorian calendar, in local standard time.
 struct LocalTime {
     int year = 2021, month = 1, day = 1;
-    double hour = 12;  ///< 0 to 24, including the fraction.
-    double zone = 0;   ///< Hours ahead of universal time.
+    double hour = 12;  ///< Hour of the day, 0 to 24, including the fraction.
+    double zone = 0;   ///< Time zone, hours ahead of universal time.
 };
 bool is_date(int year, int month, int day);
-int day_of_year(int year, int month, int day);  ///< 1 for 1 January.
+int day_of_year(int year, int month, int day);  ///< Returns the day of the year: 1 for 1 January.
 /// Returns the days since noon of 1 January 4713 BC, universal time.
 double julian_day(const LocalTime& time);
 
@@ -25,8 +25,8 @@ struct Place {
 
 /// Position of the sun in the sky, degrees.
 struct SunPosition {
-    double altitude = 0;  ///< Above the horizon, including refraction;
-    double azimuth = 0;   ///< from north towards east, 0 to 360.
+    double altitude = 0;  ///< Angle above the horizon, including refraction.
+    double azimuth = 0;   ///< Angle from north towards east, 0 to 360.
 };
 
 /// Returns the apparent position of the sun's centre: heliocentric longitude, latitude and distance of the Earth by the

@@ -40,7 +40,7 @@ class PaneGroups {
   private:
     std::vector<Pane> panes_;  ///< Panes of the groups.
     std::vector<std::uint32_t> number_;
-    std::vector<std::int32_t> group_of_pane_;  ///< Per pane of the scene.
+    std::vector<std::int32_t> group_of_pane_;  ///< Group of each pane of the scene.
     Bvh tree_;
     double reach_ = 0;  ///< Longer than any segment within the scene, metres.
     std::size_t count_ = 0;

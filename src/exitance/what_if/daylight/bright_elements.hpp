@@ -31,8 +31,8 @@ class BrightElements {
     bool is_ever_bright(std::size_t leaf) const { return is_bright_[leaf] != 0; }
 
   private:
-    std::vector<Entry> entries_;      ///< Hour by hour.
-    std::vector<std::size_t> first_;  ///< First entry of every hour, and their number.
+    std::vector<Entry> entries_;      ///< Entries, hour by hour.
+    std::vector<std::size_t> first_;  ///< Per hour: index of its first entry; the last value is the number of entries.
     std::vector<std::uint8_t> is_bright_;
 };
 

@@ -30,7 +30,7 @@ struct DaylightBias {
     double elements = 0;
     /// Difference of the light of random hours to that with the next finer patches, without straight sunlight.
     double patches = 0;
-    std::size_t sensors = 0;  ///< Number of sensors at which these were measured.
+    std::size_t sensors = 0;  ///< Number of sensors at which both were measured.
 
     double total() const { return std::hypot(elements, patches); }
 };

@@ -22,8 +22,9 @@ struct DaylightMatrix {
     std::size_t patches = 0;
     std::vector<float> direct;     ///< Row by row, one per sensor: light that arrives from the sky, also through glass.
     std::vector<float> reflected;  ///< Light after at least one reflection: the mean of the replicates.
-    std::array<std::vector<float>, daylight_replicates> replicates;  ///< Independent estimates of it.
-    std::vector<DaylightMatrix> through;  ///< The parts of it that have crossed panes of each group of the transport.
+    std::array<std::vector<float>, daylight_replicates> replicates;  ///< Independent estimates of `reflected`.
+    /// Per group of panes: the part of the light that has crossed panes of the group.
+    std::vector<DaylightMatrix> through;
 
     void resize(std::size_t sensors, std::size_t patch_count);
     std::size_t sensors() const { return patches > 0 ? direct.size() / patches : 0; }
@@ -43,7 +44,7 @@ struct KnownSensor {
 class DaylightRows {
   public:
     /// `light`: a column per patch. `through`: the parts of it that have crossed panes of each group; empty if these
-    /// are not needed. All must outlive this.
+    /// are not needed. All arguments must outlive this object.
     DaylightRows(const DaylightTransport& transport, const ElementLight& light, const SkyPatches& patches,
                  unsigned rays_a_sensor, std::span<const ElementLight> through = {})
         : transport_(transport),
@@ -52,8 +53,8 @@ class DaylightRows {
           visible_(transport.stage().occluders, patches),
           rays_a_sensor_(rays_a_sensor) {}
 
-    /// Computes the rows of consecutive sensors, of which `first` is the number of the first. `known`: returns what is
-    /// known of a sensor, or null. O(sensors x (rays + patches)).
+    /// Computes the rows of consecutive sensors, of which `first` is the number of the first. `known`: returns stored
+    /// data of a sensor, or null. O(sensors x (rays + patches)).
     template <class Known>
     DaylightMatrix rows(std::span<const Receiver> sensors, std::size_t first, const Known& known) const {
         std::vector<const KnownSensor*> found;

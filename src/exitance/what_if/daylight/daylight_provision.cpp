@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-constexpr int steps_per_hour = 30;  ///< For the hours of sunlight.
+constexpr int steps_per_hour = 30;  ///< Time steps per hour, for counting hours of sunlight.
 constexpr int year = 2021;          ///< Year of the cloudless day.
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace exitance {
 /// A day for which sunlight is evaluated.
 struct SunDay {
     int month = 3, day = 21;
-    double least_altitude = 0;  ///< Degrees; lower suns are ignored.
+    double least_altitude = 0;  ///< Minimum altitude, degrees; a lower sun is ignored.
 };
 
 /// Daylight provision of a plane over a year according to EN 17037; all sensors have equal weight. Levels: 0 none, 1
@@ -18,7 +18,7 @@ struct DaylightProvision {
     static constexpr std::array<double, 3> targets{300, 500, 750};   ///< Per level: lx on half of the plane.
     static constexpr std::array<double, 3> minimums{100, 300, 500};  ///< Per level: lx on 95% of the plane.
     static constexpr double target_share = 0.5, minimum_share = 0.95;
-    static constexpr double time_share = 0.5;  ///< Share of the daylight hours in which these are required.
+    static constexpr double time_share = 0.5;  ///< Share of the daylight hours in which the levels must be reached.
 
     /// Result of one of the two methods of the standard: shares of sensors that reach each target and minimum.
     struct Shares {
@@ -62,7 +62,7 @@ class ProvisionCount {
 /// 1.5 h (minimum), 3 h (medium) or 4 h (high) on a day between 1 February and 21 March.
 class SunlightHours {
   public:
-    /// `occluders` must outlive this.
+    /// `occluders` must outlive this object.
     SunlightHours(const Occluders& occluders, const DaylightSite& site, const SunDay& day);
     /// Hours at a sensor. About 1 us per step.
     double at(const Receiver& sensor) const;

@@ -112,8 +112,8 @@ struct DaylightSimulation::Data {
     SkyPatches patches;
     std::unique_ptr<SkyPatches> finer;
     YearSky sky;
-    SceneLight open;                                   ///< With all groups in their first states.
-    std::vector<std::unique_ptr<SceneLight>> changed;  ///< The scenes of states.
+    SceneLight open;                                   ///< Light with all groups of panes in their first states.
+    std::vector<std::unique_ptr<SceneLight>> changed;  ///< Light in the scenes of other states.
     HourlyStates states;
     double error_of_states = 0;  ///< Largest error of a grid in the scenes of states.
 };
@@ -277,7 +277,8 @@ Result<std::vector<GlareYear>> DaylightSimulation::glare(std::span<const ProbePo
     const auto evaluate_some = [&](std::size_t at, std::size_t count) {
         const auto together = std::span(std::as_const(eyes)).subspan(at, count);
         const std::size_t first =
-            d.task.sensors.size() + at;  // numbers differ from those of the sensors, and so do random points
+            // number of the first eye, after those of the sensors, so that their random points differ
+            d.task.sensors.size() + at;
         const auto unknown = [](std::size_t) -> const KnownSensor* { return nullptr; };
         return glare.evaluate(together, years.evaluate(first, together, rows.rows(together, first, unknown)));
     };

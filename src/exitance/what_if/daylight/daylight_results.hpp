@@ -10,10 +10,10 @@
 
 namespace exitance {
 
-/// A daylight simulation over a year: what to compute.
+/// Input of a daylight simulation over a year.
 struct DaylightTask {
     std::vector<ProbePoint> sensors;
-    std::vector<SensorGrid> grids;  ///< Together all sensors, in their order.
+    std::vector<SensorGrid> grids;  ///< Grids that together contain all sensors, in their order.
     std::vector<DaylightHour> hours;
     DaylightSite site;
     DaylightCriteria criteria;
@@ -41,7 +41,7 @@ constexpr SensorRange sensors_of_part(std::size_t part, std::size_t parts, std::
 /// Several processes divide the rays and the sensors, and all get all results; every function is collective.
 class DaylightSimulation {
   public:
-    /// All arguments must outlive this.
+    /// All arguments must outlive this object.
     DaylightSimulation(const Scene& scene, const DaylightTask& task, Progress& progress, const StopRequest& stop);
     DaylightSimulation(const Scene&, const DaylightTask&, Progress&, StopRequest&&) = delete;
     ~DaylightSimulation();
@@ -81,7 +81,7 @@ class DaylightSimulation {
 
 /// Evaluates all sensors with daylight coefficients that were computed before, such as by another program: a row per
 /// sensor, lx for 1 cd/m^2 of each patch. The sun is spread over the patches around it, also for its straight light, so
-/// that no direct sunlight is told apart; noise and bias are not known.
+/// that direct sunlight is not separated; noise and bias are not known.
 Result<void> evaluate_coefficients(const Scene& scene, const DaylightTask& task, std::span<const float> coefficients,
                                    const DaylightSink& sink, const StopRequest& stop);
 
@@ -102,9 +102,10 @@ struct DaylightResults {
     DaylightYear year;
     std::vector<SensorResults> sensors;
     DaylightSummary summary;
-    std::vector<std::vector<std::uint8_t>> states;  ///< Per group of panes and hour; empty without states.
-    std::vector<VariantSummary> variants;           ///< One per variant of the states.
-    std::vector<std::string> warnings;              ///< See DaylightSimulation::warnings().
+    /// State of each group of panes in every hour; empty without states.
+    std::vector<std::vector<std::uint8_t>> states;
+    std::vector<VariantSummary> variants;  ///< One summary per variant of the states.
+    std::vector<std::string> warnings;     ///< See DaylightSimulation::warnings().
 };
 
 /// Runs simulate_year() and keeps all results. About 75 kB per sensor.

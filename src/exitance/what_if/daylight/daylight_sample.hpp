@@ -11,7 +11,7 @@ namespace exitance {
 struct DaylightSetting {
     const Scene& scene;
     std::span<const ProbePoint> sensors;
-    std::span<const SensorGrid> grids;  ///< Together all sensors, in their order.
+    std::span<const SensorGrid> grids;  ///< Grids that together contain all sensors, in their order.
     const SkyPatches& patches;
     const SkyPatches* finer;  ///< The next finer patches; null if there are none.
     std::span<const DaylightHour> hours;

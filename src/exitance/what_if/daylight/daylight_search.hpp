@@ -6,10 +6,11 @@ namespace exitance {
 
 /// Light of the patches of the sky on the elements of a scene: all that sensors need to receive it.
 struct DaylightLight {
-    DaylightOptions options;  ///< Rays and elements with which it was found; rays of sensors must be as many.
+    /// Numbers of rays and elements with which the light was found; sensors must use the same number of rays.
+    DaylightOptions options;
     DaylightBias bias;
-    ElementLight elements;  ///< A column per patch.
-    /// The parts of it that have crossed panes of each group of the transport.
+    ElementLight elements;  ///< Light on the elements, one column per patch.
+    /// Per group of panes: the part of the light that has crossed panes of the group.
     std::vector<ElementLight> through = {};
     double twice = 0;  ///< Light that has crossed such panes at least twice, relative to the mean at the sample.
 };

@@ -26,7 +26,7 @@ struct StateRule {
     };
     Kind kind = Kind::schedule;
     std::vector<std::uint8_t> schedule;  ///< State of every hour.
-    std::vector<std::size_t> sensors;    ///< Sensors of `illuminance`.
+    std::vector<std::size_t> sensors;    ///< Sensors of the rule `illuminance`.
     /// Limits of `illuminance`, lx, ascending: in state k, k of them are exceeded. One fewer than states.
     std::vector<double> limits;
 };
@@ -52,16 +52,16 @@ struct StateScene {
 /// Other glass: factors on the light that has crossed panes of each group, in all states of it.
 struct GlassVariant {
     std::string name;
-    std::vector<double> factors;  ///< From 0 to 1, one per group.
+    std::vector<double> factors;  ///< Factor of each group, from 0 to 1.
 };
 
 /// Groups of panes whose states change from hour to hour.
 struct DaylightStates {
     std::vector<PaneGroup> groups;
-    std::vector<std::int32_t> group_of_pane;  ///< A number per pane, see PaneGroups.
+    std::vector<std::int32_t> group_of_pane;  ///< Per pane: the number of its group, as in PaneGroups.
     std::vector<StateScene> scenes;
     bool has_all_panes = false;               ///< True if every pane of the scene belongs to a group.
-    std::vector<GlassVariant> variants = {};  ///< Further results are computed for each.
+    std::vector<GlassVariant> variants = {};  ///< Variants of glass for which further results are computed.
 };
 
 /// Light through the panes of a group in the geometry of a scene, and the multiple of it that is added to the light of
@@ -70,14 +70,14 @@ struct StatePart {
     const PaneGroups* groups = nullptr;
     std::size_t group = 0;                 ///< Number of the group in `groups`.
     const Occluders* occluders = nullptr;  ///< Occluders of a scene with more geometry; null for the scene itself.
-    std::vector<float> weights = {};       ///< One per hour.
+    std::vector<float> weights = {};       ///< Factor for every hour.
 };
 
-/// Weights of the parts for other glass, in the occupied hours.
+/// Weights of the parts if other glass is installed, in the occupied hours.
 struct VariantWeights {
-    std::vector<std::vector<float>> parts;  ///< Per part and occupied hour, as in StatePart.
+    std::vector<std::vector<float>> parts;  ///< Weight of each part in every occupied hour, as in StatePart.
     std::vector<float> uncertainty;         ///< Light that may be wrong in every occupied hour, relative to all light.
-    std::vector<double> factors;            ///< One per group.
+    std::vector<double> factors;            ///< Factor of the transmission of every group.
 };
 
 /// The states of all groups in every hour, as corrections of the light in their first states:
@@ -87,7 +87,7 @@ struct VariantWeights {
 /// E_g,s being the light that has crossed panes of group g in the geometry of its state s, f its factor. This is exact
 /// but for light that crosses panes of groups twice.
 struct HourlyStates {
-    std::vector<std::vector<std::uint8_t>> state;  ///< Per group and hour.
+    std::vector<std::vector<std::uint8_t>> state;  ///< Per group and hour: number of the state.
     std::vector<StatePart> parts;
     std::vector<std::uint8_t> is_changed;  ///< Per hour: 1 if some group is not in its first state.
     double twice = 0;                      ///< Light that crosses panes twice, relative to all light.

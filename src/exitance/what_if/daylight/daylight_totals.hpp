@@ -8,7 +8,7 @@ namespace exitance {
 struct GlareSummary {
     std::size_t views = 0;
     std::array<double, 3> at_level{};  ///< Shares of the views that reach the levels minimum, medium and high.
-    int level = 0;                     ///< Level that all views reach.
+    int level = 0;                     ///< Highest level that all views reach.
     double worst = 0;                  ///< Largest DGP of a view that 5% of the occupied hours exceed.
 };
 
@@ -31,9 +31,9 @@ struct DaylightSummary {
     double most_sunlight = 0;          ///< Largest number of hours of sunlight on the cloudless day.
     DaylightProvision provision;
     DaylightBias bias;
-    std::vector<DaylightError> errors;  ///< One per grid.
+    std::vector<DaylightError> errors;  ///< Errors of each grid.
     std::vector<double> grid_factors;   ///< Mean daylight factor of every grid, per cent.
-    std::optional<GlareSummary> glare;  ///< None without views.
+    std::optional<GlareSummary> glare;  ///< Glare; none if there are no views.
     Lm83Deviations lm83;
 };
 

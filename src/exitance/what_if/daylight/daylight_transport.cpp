@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t max_sweeps = 200;
 constexpr double max_change = 2e-4;  ///< Relative RMS change of the last sweep.
 
-/// Returns the scene under a sky and a ground of radiance 1, which stand for all patches.
+/// Returns the scene under a sky and a ground of radiance 1, which replace all patches.
 Scene under_patches(Scene scene) {
     DistantLight light;
     SkyModel below = uniform_sky();
@@ -128,7 +128,7 @@ struct DaylightTransport::Found {
     struct Numbers {
         std::vector<std::uint32_t> leaves, patches;
     };
-    std::vector<Numbers> through;  ///< Sets as those of RayCounts.
+    std::vector<Numbers> through;  ///< Per set of crossed panes, in the order of RayCounts.
 };
 
 DaylightTransport::DaylightTransport(Scene scene, const SkyPatches& patches, const SkyPatches* finer,

@@ -69,7 +69,7 @@ class SkyColumns {
     void add_light(std::span<const RayCounts::End> patches, std::span<const RayCounts::End> finer, std::uint32_t rays,
                    std::span<float> out) const;
 
-    std::size_t unit_patches_ = 0;  ///< Number of patches if every patch has its column.
+    std::size_t unit_patches_ = 0;  ///< Number of patches, if each patch has a column of its own.
     std::vector<Column> columns_;
 };
 
@@ -102,7 +102,7 @@ class DaylightTransport {
     /// Meshes the scene with about `count` elements and discards all rays. Deterministic.
     void make_elements(double count);
     std::size_t leaves() const;
-    /// Returns the number of the leaf of a region that contains a point (metres); none beside the elements.
+    /// Returns the number of the leaf of a region that contains a point (metres); none outside of the elements.
     std::optional<std::size_t> leaf_at(RegionId region, const Point& x) const;
     /// Returns the centre of a leaf.
     Receiver leaf_centre(std::size_t leaf) const;

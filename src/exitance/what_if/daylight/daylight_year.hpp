@@ -26,7 +26,7 @@ constexpr bool has_light(const DaylightHour& hour) {
 struct DaylightSite {
     Place place;
     double zone = 0;                ///< Time zone, hours ahead of universal time.
-    double north = 0;               ///< Degrees clockwise from y.
+    double north = 0;               ///< Direction of north, degrees clockwise from y.
     double ground = 0.2;            ///< Reflectance of the ground.
     double efficacy_diffuse = 120;  ///< lm/W
     double efficacy_direct = 100;   ///< lm/W
@@ -55,7 +55,7 @@ class YearSky {
     struct Sun {
         Normal towards;
         double illuminance = 0;
-        std::array<std::size_t, 4> patches{};  ///< The patches around it.
+        std::array<std::size_t, 4> patches{};  ///< The four patches around the direction to the sun.
     };
     const Sun& sun(std::size_t hour) const { return suns_[hour]; }
     /// Indices of the hours with light, ascending.
@@ -70,7 +70,7 @@ class YearSky {
 
     std::size_t patches_;
     std::vector<std::size_t> bright_;
-    std::vector<float> sky_, with_sun_;  ///< cd/m^2, a row per hour of `bright_`.
+    std::vector<float> sky_, with_sun_;  ///< Luminances of the patches, cd/m^2, a row per hour of `bright_`.
     std::vector<double> sum_of_sky_, sum_with_sun_;
     std::vector<Sun> suns_;
 };
@@ -104,7 +104,7 @@ constexpr double required_autonomy = 0.5;
 
 /// Annual metrics of standards at a sensor; shares are of the occupied hours.
 struct DaylightMetrics {
-    double daylight_factor = 0;  ///< Per cent, under the traditional overcast sky.
+    double daylight_factor = 0;  ///< Daylight factor under the traditional overcast sky, per cent.
     double autonomy = 0;         ///< DA: share of the hours with the target illuminance.
     double continuous = 0;       ///< Continuous DA: mean of the shares of the target that each hour reaches.
     /// Hours at full power that electric light takes which the sensor dims: power p + (1 - p) max(0, 1 - E / target) in

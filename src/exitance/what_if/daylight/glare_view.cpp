@@ -17,7 +17,7 @@ constexpr double max_extent = 0.05;
 
 }  // namespace
 
-/// A visible triangle.
+/// A visible triangle of a surface or of a patch.
 struct GlareView::Piece {
     std::uint32_t patch = 0;
     Normal towards;

@@ -13,7 +13,7 @@ namespace exitance {
 /// joined to sources as by join_glare_parts().
 class GlareView {
   public:
-    /// `eye`: not on a surface. All arguments must outlive this. About 10 ms.
+    /// `eye`: not on a surface. All arguments must outlive this object. About 10 ms.
     GlareView(const DaylightTransport& transport, const SkyPatches& patches, const BrightElements& bright,
               const Receiver& eye);
 
@@ -35,7 +35,7 @@ class GlareView {
         double solid_angle = 0;   ///< sr
         double transmission = 0;  ///< Mean over the part.
         Vec3 centre;              ///< Integral of the direction times the transmission, sr.
-        std::uint32_t next = 0;   ///< End of its neighbours.
+        std::uint32_t next = 0;   ///< End of the range of its neighbours.
     };
     struct Piece;
     std::vector<Piece> visible_pieces(const DaylightTransport& transport, const SkyPatches& patches,
@@ -46,7 +46,7 @@ class GlareView {
 
     const Receiver eye_;
     std::size_t patches_;
-    std::vector<Part> parts_;                ///< In ascending order of their patch.
+    std::vector<Part> parts_;                ///< Parts, sorted by patch.
     std::vector<std::uint32_t> neighbours_;  ///< Earlier parts within a step, part by part.
     std::size_t sky_parts_ = 0;              ///< Number of parts of the sky and the ground; they come first.
 };

@@ -36,7 +36,7 @@ GlareSummary summary_of(std::span<const GlareYear> years);
 /// visibility of its centre, the sky by patches, and the elements of BrightElements.
 class GlareYears {
   public:
-    /// All arguments must outlive this. `threshold`: luminance of sources, cd/m^2.
+    /// All arguments must outlive this object. `threshold`: luminance of sources, cd/m^2.
     GlareYears(const DaylightSetting& setting, const DaylightTransport& transport, const ElementLight& light,
                double threshold)
         : setting_(setting),

@@ -19,7 +19,7 @@ std::array<Vec3, rings * steps> make_directions() {
     for (std::size_t i = 0; i < rings; ++i)
         for (std::size_t k = 0; k < steps; ++k) {
             const double share = (static_cast<double>(i) + 0.5) / rings;
-            const double shift = static_cast<double>(i) / rings;  // so that no ray is parallel to usual walls
+            const double shift = static_cast<double>(i) / rings;  // avoids rays parallel to walls
             const double angle = 2 * pi * (static_cast<double>(k) + 0.5 * shift + 1.0 / (2 * rings)) / steps;
             const double radius = std::sqrt(share);
             out[i * steps + k] = {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1 - share)};

@@ -9,10 +9,11 @@
 
 namespace exitance {
 
-/// Numbers of sensors whose light is probably not what was meant to be measured.
+/// Numbers of sensors that are probably misplaced, so that their light is not the intended one.
 struct MisplacedSensors {
-    std::vector<std::size_t> behind;    ///< They see mostly backs of faces: below a floor, or inside of a body.
-    std::vector<std::size_t> outdoors;  ///< They have the open sky above them, and other sensors do not.
+    /// Sensors from which mostly backs of faces are visible: below a floor, or inside a body.
+    std::vector<std::size_t> behind;
+    std::vector<std::size_t> outdoors;  ///< Sensors under the open sky, in a model in which other sensors are indoors.
 };
 
 /// Finds sensors that see mostly backs of faces, and sensors outdoors if others are indoors. A sensor is outdoors if

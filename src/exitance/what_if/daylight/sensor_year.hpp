@@ -49,8 +49,8 @@ void for_each_number(Results& r, const F& f) {
 /// Results of consecutive sensors.
 struct DaylightBlock {
     std::size_t first = 0;                ///< Number of the first sensor.
-    DaylightMatrix matrix;                ///< A row per sensor.
-    std::vector<float> illuminance, sun;  ///< lx, and the direct sunlight in it: a row per sensor, a column per hour.
+    DaylightMatrix matrix;                ///< Matrix with a row per sensor.
+    std::vector<float> illuminance, sun;  ///< Illuminance and direct sunlight, lx: a row per sensor, a column per hour.
     std::vector<SensorResults> results;
     std::vector<VariantResult> variants;  ///< Sensor by sensor, one per variant of the states.
 };
@@ -59,7 +59,8 @@ struct DaylightBlock {
 /// patches around the sun.
 class SensorYears {
   public:
-    /// `day`: for SensorResults::sunlight; without it that is 0. `setting` must outlive this.
+    /// `day`: the day on which SensorResults::sunlight is computed; without it that result is 0. `setting` must outlive
+    /// this object.
     SensorYears(const DaylightSetting& setting, const DaylightBias& bias, const std::optional<SunDay>& day);
 
     /// Evaluates sensors at `places` with their rows of the daylight matrix. `first`: number of the first. Every

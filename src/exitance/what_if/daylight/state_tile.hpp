@@ -59,7 +59,8 @@ class StateTile {
     const DaylightSetting& setting_;
     std::span<const StateRows> parts_;
     TileRange tile_;
-    std::vector<std::vector<float>> sun_, straight_;  ///< Per part: direct sunlight, and with it the sky's.
+    /// Per part: direct sunlight, and the sum of direct sunlight and direct light of the sky.
+    std::vector<std::vector<float>> sun_, straight_;
     std::optional<VariantTile> variants_;
 };
 

@@ -20,7 +20,8 @@ struct VariantResult {
 /// hour.
 class VariantTile {
   public:
-    /// `states`: with variants; both must outlive this. `bias`: relative, as of SensorYears.
+    /// `states`: contains the variants. Both references must outlive this object. `bias`: relative error, as for
+    /// SensorYears.
     VariantTile(const HourlyStates& states, const DaylightCriteria& criteria, double bias, std::size_t sensors);
 
     /// Adds an estimate of the light: `lux` in the first states, and its parts. `replicate`: its number, or the number
@@ -48,7 +49,7 @@ class VariantTile {
 /// Results of all sensors with other glass.
 struct VariantSummary {
     double autonomy = 0;     ///< sDA(target, 50%): share of sensors.
-    Interval bounds;         ///< 95% interval of it.
+    Interval bounds;         ///< 95% confidence interval of `autonomy`.
     double exposure = 0;     ///< ASE(1000 lx, 250 h): share of sensors.
     double continuous = 0;   ///< Mean of the sensors.
     double illuminance = 0;  ///< Mean of the sensors and occupied hours, lx.

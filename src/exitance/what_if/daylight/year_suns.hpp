@@ -12,11 +12,11 @@ namespace exitance {
 /// The sun of every hour of a year as parallel light, for exact direct sunlight at sensors.
 class YearSuns {
   public:
-    /// `sky` must outlive this.
+    /// `sky` must outlive this object.
     explicit YearSuns(const YearSky& sky);
 
     /// Writes the direct sunlight of every hour at a sensor, lx. `direct`: irradiance by every patch at the sensor: one
-    /// that sees none of the sun's patches does not see the sun. Hours without sun stay as they are.
+    /// that sees none of the sun's patches does not see the sun. Hours without sun are not changed.
     void find(const Occluders& occluders, const Receiver& at, std::span<const float> direct,
               std::span<float> sun) const;
 

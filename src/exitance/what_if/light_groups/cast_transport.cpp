@@ -152,7 +152,7 @@ class RowMaker {
     GatherWorkspace workspace_;
     std::vector<GatherPlace> gather_places_;
     std::vector<Met> met_, siblings_, row_;
-    std::vector<Met> above_;  ///< A heap: elements that replace their children.
+    std::vector<Met> above_;  ///< A heap of elements that replace their children.
 };
 
 /// Mean square of rho (f - polynomial) on an element, with the polynomial nearest to f at the points of a rule.

@@ -32,14 +32,16 @@ Result<void> check(const Scene& scene, const LightGroups& groups, const LightCha
     for (const auto& [name, factor] : change.dim) {
         if (std::find(names.begin(), names.end(), name) == names.end()) return unknown("light group", name, names);
         if (!(factor >= 0) || !std::isfinite(factor))
-            return Error{ErrorCode::usage, fmt::format("{} is no factor of light", factor), name, "0 turns it off"};
+            return Error{ErrorCode::usage, fmt::format("{} is not a dimming factor", factor), name,
+                         "a factor is at least 0; 0 turns the light off"};
     }
     for (const auto& [name, rho] : change.reflectance) {
         if (std::find(materials.begin(), materials.end(), name) == materials.end())
             return unknown("material", name, materials);
         for (const double r : rho.value)
             if (!(r >= 0 && r < 1))
-                return Error{ErrorCode::usage, fmt::format("{} is no reflectance", r), name, "from 0 to below 1"};
+                return Error{ErrorCode::usage, fmt::format("{} is not a reflectance", r), name,
+                             "a reflectance is at least 0 and below 1"};
     }
     return {};
 }

@@ -20,7 +20,7 @@ constexpr std::size_t points = 1280;  ///< Number of points; as many as a certif
 /// A point, and two estimates of every group's residual there.
 struct Residual {
     ElementTree::Place place;
-    std::uint32_t source = 0;  ///< The source that contains the point.
+    std::uint32_t source = 0;  ///< Index of the source element that contains the point.
     std::vector<Spectrum> r1, r2;
 };
 
@@ -84,7 +84,7 @@ class GroupsLight {
     const std::vector<std::vector<DirectFit>>& direct_;
     const std::vector<std::vector<Spectrum>>& older_;
     ElementLocator indirect_, sources_;
-    std::vector<std::uint32_t> group_of_;  ///< Per emitting material.
+    std::vector<std::uint32_t> group_of_;  ///< Per emitting material: its group.
 };
 
 /// Returns one point in each of `points` strata of equal area.
@@ -175,7 +175,8 @@ BatchMean squared_error(const std::vector<Residual>& all, const std::vector<Spec
 /// Factor by which rays have to be increased so that no group's estimate is noise. The noise of a square falls with the
 /// power 3/2 of the number of rays.
 double missing_rays(const std::vector<BatchMean>& squares, const std::vector<LightGroup>& groups, double error) {
-    constexpr double max_uncertainty = 1.0 / 3;  // of an error; derived from its square, known to a ninth
+    // relative standard error of an error, derived from that of its square: a ninth
+    constexpr double max_uncertainty = 1.0 / 3;
     double factor = 1;
     for (std::size_t g = 0; g < squares.size(); ++g) {
         const double square = std::max(squares[g].mean, std::pow(error * groups[g].reflected, 2));
@@ -213,7 +214,7 @@ void estimate_group_errors(const Stage& stage, const Solution& solution,
         rays = certificate_rays(more * rays);
     }
     for (std::size_t g = 0; g < squares.size(); ++g)
-        // an error below its own uncertainty cannot be claimed
+        // the reported error is at least its own standard error
         if (groups.groups[g].reflected > 0)
             groups.groups[g].error =
                 std::sqrt(std::max(squares[g].mean, squares[g].standard_error)) / groups.groups[g].reflected;

@@ -11,7 +11,7 @@ namespace exitance {
 namespace {
 
 /// Distance from a corner at which a leaf is evaluated, since light may jump at its border; in units of the leaf.
-constexpr double inwards = 1e-3;  // derived from the tolerance of points: a thousandth of an element is above it
+constexpr double inwards = 1e-3;  // derived from the tolerance of points, which is less than a thousandth of an element
 
 /// Row of every element of `indirect` that is a receiver or below one.
 Field<ElementId, std::uint32_t> rows_of(const ElementTree& tree, std::span<const std::uint32_t> receivers) {

@@ -98,7 +98,7 @@ void average_at_nodes(std::span<const std::uint32_t> node, std::size_t count, st
 /// O(entries) per gather.
 class KeptOperator final : public TransportOperator {
   public:
-    /// All arguments must outlive this.
+    /// All arguments must outlive this object.
     KeptOperator(const KeptTransport& transport, const TransportLayout& layout, std::size_t interpolant_elements)
         : transport_(transport), layout_(layout), elements_(interpolant_elements) {}
 

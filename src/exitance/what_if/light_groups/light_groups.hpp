@@ -21,11 +21,13 @@ using CornerValues = std::vector<std::array<float, bands>>;
 /// One group's light, undimmed, on the elements of the whole solution.
 struct LightGroup {
     EmitterGroup emitters;
-    double factor = 1;            ///< Dimming factor in the solution that it is stored with.
-    CornerValues indirect;        ///< Like Solution::indirect, which is the sum over the groups.
-    CornerValues interpolant;     ///< Like Solution::interpolant, which is the sum over the groups.
+    double factor = 1;  ///< Factor by which this group is dimmed in the solution that it is stored with.
+    /// Values at the corners of the elements of Solution::indirect, which is the sum over the groups.
+    CornerValues indirect;
+    /// Values at the corners of the elements of Solution::interpolant, which is the sum over the groups.
+    CornerValues interpolant;
     std::optional<double> error;  ///< Estimated error of this group, relative to its own light.
-    double reflected = 0;         ///< Mean of its reflected light, W/m^2.
+    double reflected = 0;         ///< Mean of the group's reflected light, W/m^2.
 };
 
 /// Data for dimming and repainting a solution. Dimmed light is a sum over groups. Repainting changes the reflected
@@ -36,9 +38,10 @@ struct LightGroup {
 /// where E is the solution's own light and F the stored transport, and adds the light that arrives from d.
 struct LightGroups {
     std::vector<LightGroup> groups;
-    std::vector<Spectrum> reflectance, exitance;  ///< Per material, as solved.
-    std::vector<Spectrum> intensity;              ///< Intensity of point and parallel lights.
-    std::vector<Spectrum> distant;                ///< Irradiance of domes, then of discs.
+    /// Reflectance and exitance of every material in the stored solution.
+    std::vector<Spectrum> reflectance, exitance;
+    std::vector<Spectrum> intensity;  ///< Intensity of point and parallel lights.
+    std::vector<Spectrum> distant;    ///< Irradiance of domes, then of discs.
     KeptTransport transport;
     TransportLayout layout;  ///< Computed on first use, not stored in files.
 

@@ -59,7 +59,7 @@ double error_against_new_solve(const Solution& changed) {
 }
 
 constexpr double fine = 0.01;
-constexpr double coarse = 0.1;  ///< for tests that hold at any error
+constexpr double coarse = 0.1;  ///< requested error of tests that do not depend on accuracy
 
 }  // namespace
 
@@ -114,7 +114,7 @@ TEST(LightGroupsOfTwoLamps, RepaintedLightAgreesWithANewSolve) {
     Lit painted = whole;
     ASSERT_TRUE(change_light(painted.solution, painted.groups, {.reflectance = {{"side", Spectrum(0.8)}}}));
     const double off = error_against_new_solve(painted.solution);
-    EXPECT_LT(off, 0.012);  // the same limit as for dimming
+    EXPECT_LT(off, 0.012);  // equal to the limit for dimming
     ASSERT_TRUE(painted.solution.statistics.relative_error_estimate);
     EXPECT_LT(off, 1.5 * *painted.solution.statistics.relative_error_estimate + 0.005);
     // Without the change, the error would be about 8%.

@@ -102,7 +102,8 @@ class GroupSolver {
         node_ = number_nodes(solution_.interpolant, solution_.scene.size(), nodes_);
         for (const MaterialId m : out_.layout.material) rho_.push_back(out_.reflectance[m.value]);
         if (!reflects()) return;
-        // In proportion to the rays of the solution, which suit its own error; at least those of a gather.
+        // The number of rays is in proportion to those of the solution, which suit its requested error, but at least
+        // that of a gather.
         constexpr double places = 9;
         const double as_before =
             static_cast<double>(solution_.statistics.rays) / (places * static_cast<double>(receivers.size()));
@@ -196,7 +197,7 @@ class GroupSolver {
     std::vector<std::vector<DirectFit>> direct_;  ///< Per group: direct light on the sources.
     /// Per group: radiosity of the sources, if the number of bounces is limited.
     std::vector<std::vector<Spectrum>> older_;
-    std::vector<std::uint32_t> node_;  ///< Per value of the interpolant.
+    std::vector<std::uint32_t> node_;  ///< Per value of the interpolant: its node.
     std::size_t nodes_ = 0;
 };
 

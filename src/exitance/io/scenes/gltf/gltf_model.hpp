@@ -58,7 +58,7 @@ struct GltfModel {
     struct Primitive {
         GltfRows positions, indices;
         bool has_indices = false;
-        int accessor = -1;  ///< Accessor of the positions: primitives with the same one share their points.
+        int accessor = -1;  ///< Accessor of the positions. Primitives with equal accessors share their points.
         int material = -1;
         Mode mode = Mode::triangles;
         std::array<GltfRows, 4> places;  ///< TEXCOORD_0 to 3 if textures were requested; empty if missing.
@@ -84,7 +84,7 @@ struct GltfModel {
     };
     struct Material {
         std::string name;
-        Colour base, emission;  ///< Factors times the means of their textures; emission in W/(m^2 sr).
+        Colour base, emission;  ///< Colour factors times the mean colours of their textures; emission in W/(m^2 sr).
         double metallic = 1;
         /// KHR_materials_diffuse_transmission: transmitted share of the light that leaves diffusely.
         double diffuse_transmission = 0;
@@ -97,7 +97,7 @@ struct GltfModel {
     struct View {
         std::string name;
         double yfov = 1, aspect = 0;  ///< Vertical field of view, radians; width over height, 0 if unknown.
-        double xmag = 0;              ///< Half the width of an orthographic view, m; 0: perspective.
+        double xmag = 0;              ///< Half of the width of an orthographic view, m; 0: perspective.
     };
     struct Lamp {
         std::string name;
@@ -110,7 +110,7 @@ struct GltfModel {
         std::string name;
         Affine to_parent;
         int mesh = -1, view = -1, lamp = -1;
-        bool is_deformed = false;  ///< Has a skin or morph targets; these are ignored.
+        bool is_deformed = false;  ///< True if the node has a skin or morph targets, which are ignored.
         std::vector<int> children;
     };
 

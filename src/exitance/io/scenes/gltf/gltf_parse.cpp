@@ -20,7 +20,7 @@ struct Folder {
     std::uint64_t bytes_left = std::uint64_t(4) << 30;
 };
 
-/// Restricts tinygltf to the scene's folder: it would also search the current folder.
+/// Restricts tinygltf to the scene's folder: tinygltf would also search the current folder.
 bool exists(const std::string& path, void* user) {
     const auto& folder = *static_cast<Folder*>(user);
     std::error_code ignored;

@@ -111,7 +111,8 @@ void SceneMaker::read_holes() {
         const std::span<const std::uint8_t> file = in_.pictures[static_cast<std::size_t>(m.base_texture.picture)];
         Result<std::optional<MaskedPicture>> masked = decode_masked(file, m.hole_opacity, srgb_curve());
         const Result<std::array<double, 3>> whole = mean_colour(file, srgb_curve());
-        if (!masked || !*masked || !whole) continue;  // no holes, or a failure that was reported with the material
+        // the picture has no holes, or its failure was reported with the material
+        if (!masked || !*masked || !whole) continue;
         const TextureArea::Colour opaque = (*masked)->colour.mean();
         const Spectrum before = spread({(*whole)[0], (*whole)[1], (*whole)[2]});
         const Spectrum after = spread({opaque[0], opaque[1], opaque[2]});
@@ -261,7 +262,8 @@ bool SceneMaker::add_primitive(const GltfModel::Primitive& p, const GltfModel::M
             c[k] = p.has_indices ? p.indices.index(at[k]) : static_cast<std::uint32_t>(at[k]);
             restart |= c[k] == 0xffffffffu;
             if (c[k] >= p.positions.size() && !restart)
-                return error(fmt::format("mesh '{}' names vertex {} of {}", mesh.name, c[k], p.positions.size()));
+                return error(fmt::format("mesh '{}' refers to vertex {}, but has {} vertices", mesh.name, c[k],
+                                         p.positions.size()));
         }
         if (restart || (p.mode != GltfModel::Mode::triangles && (c[0] == c[1] || c[1] == c[2] || c[2] == c[0])))
             continue;  // strips contain triangles without area to change direction

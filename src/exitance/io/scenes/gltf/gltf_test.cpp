@@ -73,7 +73,7 @@ TEST_F(GltfFiles, ParentsTransformTheirChildren) {
                     {"mesh":0,"matrix":[1,0,0,0, 0,1,0,0, 0,0,1,0, 1,0,0,1]})";
     const Scene s = scene(text);
     const Point p = s.outline(SurfaceId(0))[0];
-    EXPECT_NEAR(norm(p - Point{0, 2, 0}), 0, 1e-12);  // rounding of the quaternion
+    EXPECT_NEAR(norm(p - Point{0, 2, 0}), 0, 1e-12);  // tolerance: rounding of the quaternion
     EXPECT_NEAR(s.surfaces()[SurfaceId(0)].area, 2, 1e-12);
 }
 
@@ -303,7 +303,7 @@ TEST_F(GltfFiles, MissingDataAreErrors) {
     EXPECT_NE(replaced("\"mesh\":0", "\"mesh\":0,\"children\":[0]").find("two parents"), std::string::npos);
     EXPECT_NE(replaced("\"mesh\":0", "\"mesh\":0,\"children\":[5]").find("child 5 of 1"), std::string::npos);
     text.data[36] = 7;
-    EXPECT_NE(first_error(text).find("vertex 7 of 3"), std::string::npos) << first_error(text);
+    EXPECT_NE(first_error(text).find("refers to vertex 7, but has 3 vertices"), std::string::npos) << first_error(text);
 }
 
 TEST_F(GltfFiles, UnknownRequiredExtensionsAreErrors) {

@@ -13,7 +13,7 @@ JsonShape shape_of_json(std::string_view json) {
         if (c == '"') {
             const std::size_t first = ++i;
             while (i < json.size() && json[i] != '"') i += json[i] == '\\' ? 2 : 1;
-            // A name with escapes may be "buffers", so it counts as one.
+            // A name with escape sequences may spell "buffers", so treat it as such.
             const std::string_view name = json.substr(first, std::min(i, json.size()) - first);
             named = name == "buffers" || name.find('\\') != name.npos;
         } else if (c == '[' || c == '{') {

@@ -75,7 +75,7 @@ std::optional<double> metres_in(const std::string& units) {
 
 /// Position of a sheet in the model, which decides the material that a modifier set gives it.
 struct Host {
-    const HoneybeeModifierSet* set = nullptr;  ///< The set of its room; null outside of rooms.
+    const HoneybeeModifierSet* set = nullptr;  ///< Modifier set of the sheet's room; null outside of rooms.
     std::string face_type = "Wall";
 };
 
@@ -97,7 +97,7 @@ class ModelReader {
             return std::move(out_);
         }
         if (text(model, "type") != "Model") {
-            error(fmt::format("is no Honeybee model but '{}'", shown(text(model, "type"))),
+            error(fmt::format("is not a Honeybee model but '{}'", shown(text(model, "type"))),
                   "save the whole model as HBJSON");
             return std::move(out_);
         }
@@ -200,7 +200,7 @@ class ModelReader {
         } else if (type == "BSDF") {
             return add_bsdf(json, p);
         } else if (type == "Void") {
-            return;  // surfaces with it are left out
+            return;  // surfaces of a void material are omitted
         } else {
             return error(fmt::format("material '{}' is of the unknown type '{}'", shown(p.name), shown(type)));
         }

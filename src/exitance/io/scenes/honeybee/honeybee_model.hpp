@@ -25,9 +25,9 @@ enum class HoneybeeSides : std::uint8_t { back, both };
 /// A face, aperture, door, shade or shade mesh of a model.
 struct HoneybeeSheet {
     std::string name;      ///< Its identifier.
-    std::string modifier;  ///< Name of its material.
+    std::string modifier;  ///< Name of the sheet's material.
     std::vector<HoneybeeOutline> outlines;
-    std::vector<HoneybeeOutline> openings = {};  ///< Apertures and doors, which are cut out of it.
+    std::vector<HoneybeeOutline> openings = {};  ///< Apertures and doors, which are cut out of the sheet.
     HoneybeeSides sides = HoneybeeSides::both;
     /// Sheet of the neighbouring room in the same place; empty without one.
     std::string partner = {};
@@ -51,7 +51,7 @@ struct HoneybeeEye {
 
 /// A state of a dynamic object.
 struct HoneybeeState {
-    std::string modifier;                    ///< Name of its material; empty if the model gives none.
+    std::string modifier;                    ///< Name of the state's material; empty if the model gives none.
     std::vector<HoneybeeSheet> shades = {};  ///< Sheets that exist in this state only.
 };
 
@@ -68,8 +68,8 @@ struct HoneybeeModel {
     std::vector<RadPrimitive> modifiers;  ///< Materials in the words of Radiance, each name once.
     std::vector<HoneybeeSheet> sheets;
     std::vector<HoneybeeGrid> grids;
-    std::vector<SceneCamera> views;  ///< Perspective and parallel ones.
-    std::vector<HoneybeeEye> eyes;   ///< Eyes of all views but parallel ones, in the order of the file.
+    std::vector<SceneCamera> views;  ///< Perspective and parallel views.
+    std::vector<HoneybeeEye> eyes;   ///< Eyes of all views except parallel ones, in the order of the file.
     std::vector<HoneybeeDynamic> dynamic;
     std::vector<Finding> findings;  ///< Errors, and warnings about omitted parts.
 };

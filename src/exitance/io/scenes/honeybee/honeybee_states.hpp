@@ -7,10 +7,11 @@ namespace exitance {
 /// The objects of a dynamic group of a Honeybee model.
 struct HoneybeeStates {
     std::vector<std::string> objects;  ///< Identifiers.
-    /// Per state: its transmittance at normal incidence relative to that of the first state; 1 with a scene of its own.
+    /// Per state: transmittance at normal incidence, relative to the first state; 1 for a state with a scene of its
+    /// own.
     std::vector<double> factors;
-    /// Per state: 0 if the scene of the first state shows it, else the first state with the same shades and materials,
-    /// which need a scene of their own.
+    /// Per state: 0 if it uses the scene of the first state. Otherwise the first state with equal shades and materials,
+    /// which share a scene.
     std::vector<std::size_t> scene;
     bool has_shades = false;  ///< True if one of the objects is a shade, whose states change all light of the scene.
 

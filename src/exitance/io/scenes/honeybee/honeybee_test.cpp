@@ -70,7 +70,7 @@ const Material& material_of(const SceneDescription& d, const std::string& group)
     return d.materials.front();
 }
 
-// A wall in the plane y = 0 whose front looks to -y, away from a room at y > 0, and a window in it.
+// A wall in the plane y = 0 whose front is towards -y, away from a room at y > 0, and a window in it.
 const std::string wall = "[0, 0, 0], [4, 0, 0], [4, 0, 3], [0, 0, 3]",
                   window = "[1, 0, 1], [2, 0, 1], [2, 0, 2], [1, 0, 2]";
 
@@ -248,7 +248,7 @@ TEST(Honeybee, FaultsAreNamed) {
         return scene.findings.empty() ? std::string() : scene.findings[0].message;
     };
     EXPECT_EQ(message("{\n\"type\": }"), "is not valid JSON here");
-    EXPECT_EQ(message("{\"type\": \"Room\"}"), "is no Honeybee model but 'Room'");
+    EXPECT_EQ(message("{\"type\": \"Room\"}"), "is not a Honeybee model but 'Room'");
     EXPECT_EQ(message(model("'rooms': []", "", "Cubits")), "the unit of length 'Cubits' is unknown");
     EXPECT_EQ(message(model("'orphaned_shades': [" + sheet("s", "[0, 0], [1, 0, 0], [1, 1, 0]", "'x': 0") + "]")),
               "'s' has a corner that is not three finite numbers");

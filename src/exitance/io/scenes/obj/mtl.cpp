@@ -61,13 +61,13 @@ class MtlReader {
     bool open_ = false, has_reflectance_ = false;
     int line_ = 0, reflectance_line_ = 0;
     std::size_t white_materials_ = 0;
-    int white_line_ = 0;  ///< Line of the first of these.
+    int white_line_ = 0;  ///< Line of the first of the `white_materials_`.
     std::string white_name_;
     MtlExtras& extras_;
     double opacity_ = 1;              ///< d
     std::optional<Spectrum> filter_;  ///< Tf
     long long illum_ = 0;
-    std::string texture_, glow_, holes_;  ///< map_Kd, map_Ke, map_d
+    std::string texture_, glow_, holes_;  ///< File names of map_Kd, map_Ke and map_d.
     struct Told {
         std::size_t count = 0;
         int line = 0;

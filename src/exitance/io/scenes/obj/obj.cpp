@@ -70,13 +70,13 @@ class ObjReader {
     bool has_use_ = false, has_group_ = false, library_missing_ = false, has_library_ = false;
     MtlExtras extras_;
     std::vector<std::uint32_t> broken_;  ///< Points that could not be read, in ascending order.
-    std::vector<Vec2> places_;           ///< vt, with (0, 0) at the picture's upper left.
+    std::vector<Vec2> places_;           ///< Texture coordinates (vt lines), with (0, 0) at the picture's upper left.
     /// Per face, the texture coordinates of its corners; empty if it has none.
     std::vector<std::vector<std::uint32_t>> places_of_face_;
     bool with_normals_ = false;
-    std::vector<Vec3> normals_;  ///< vn, if `with_normals_`.
+    std::vector<Vec3> normals_;  ///< Normals (vn lines), if `with_normals_`.
     std::vector<std::vector<std::uint32_t>>
-        normals_of_face_;  ///< Like `places_of_face_`; empty unless `with_normals_`.
+        normals_of_face_;  ///< Per face, the normals of its corners; empty unless `with_normals_`.
 };
 
 void ObjReader::parse() {

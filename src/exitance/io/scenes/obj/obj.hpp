@@ -27,7 +27,7 @@ struct ReadScene {
     std::vector<Spectrum> reflectance_deviation = {};
     Point origin = {};                        ///< Subtracted from the file's coordinates, metres.
     std::vector<std::string> glazed_by = {};  ///< Materials that became panes: "material 'water' (glass.mtl:4)".
-    std::vector<PaneLabel> pane_labels = {};  ///< One per pane of the description.
+    std::vector<PaneLabel> pane_labels = {};  ///< Labels of the panes of the description.
 };
 
 /// Reads Wavefront OBJ with its MTL files: faces with any number of corners, 'g' and 'o' names, 'usemtl', several
@@ -40,9 +40,9 @@ ReadScene read_obj(const std::string& path, std::optional<std::size_t> texture_p
 /// A face of an OBJ file with its texture coordinates and normals.
 struct ObjPlaces {
     int line = 0;
-    std::vector<Point> corners;  ///< In the file's coordinates.
+    std::vector<Point> corners;  ///< Corners in the file's coordinates.
     std::vector<Vec2> places;    ///< One per corner, (0, 0) at the picture's upper left; empty if there are none.
-    std::vector<Vec3> normals;   ///< One per corner, of any length; empty if there are none.
+    std::vector<Vec3> normals;   ///< Normal of each corner, of any length; empty if there are none.
 };
 
 /// Reads the readable faces of an OBJ file with their texture coordinates and normals, in the order of the file. Error

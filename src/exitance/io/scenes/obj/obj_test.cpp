@@ -255,7 +255,7 @@ TEST_F(ObjFiles, GlassBecomesPanesAndTexturesTheirMean) {
 }
 
 TEST_F(ObjFiles, FacesTakeTheirPartOfAnAtlas) {
-    Image atlas(64, 64);  // left half white, right half black
+    Image atlas(64, 64);  // picture whose left half is white and whose right half is black
     for (int y = 0; y < 64; ++y) std::fill_n(atlas.at(0, y), 3 * 32, std::uint8_t(255));
     ASSERT_TRUE(write_png(folder_ + "/a.png", atlas, {}));
     write("t.mtl", "newmtl atlas\nKd 0.8 0.8 0.8\nmap_Kd a.png\nnewmtl lamp\nKd 0\nKe 2 2 2\nmap_Ke a.png\n");
@@ -276,7 +276,7 @@ TEST_F(ObjFiles, FacesTakeTheirPartOfAnAtlas) {
 }
 
 TEST_F(ObjFiles, AMapOfOpacityMakesHoles) {
-    Image mask(64, 64);  // white in the left quarter
+    Image mask(64, 64);  // mask that is white in its left quarter
     for (int y = 0; y < 64; ++y) std::fill_n(mask.at(0, y), 3 * 16, std::uint8_t(255));
     ASSERT_TRUE(write_png(folder_ + "/mask.png", mask, {}));
     write("h.mtl", "newmtl fence\nKd 0.5 0.5 0.5\nmap_d mask.png\nnewmtl bad\nKd 0.5\nmap_d no.png\n");

@@ -112,7 +112,7 @@ bool RadMaterials::take_material(const RadPrimitive& p, const std::string& file)
                                         numbers_of(p.type)));
         return true;
     }
-    meanings_[p.name] = below(p, file);  // patterns below the material change its light, too
+    meanings_[p.name] = below(p, file);  // a pattern below the material in the modifier chain also changes its light
     if (reflects) {
         add_material(p, RadMeaning::Kind::reflects, reflectance_of(p, file), {});
         if (p.type.starts_with("trans")) {
@@ -153,7 +153,7 @@ const RadMeaning* RadMaterials::meaning_of(const RadPrimitive& p, const std::str
     if (found == meanings_.end() && p.modifier != "void")
         findings_.error(at, fmt::format("material '{}' is not defined before '{}'", shown(p.modifier), shown(p.name)),
                         "files of one scene are read in the order given, materials first");
-    else if (found == meanings_.end())  // such as those that mkillum replaces
+    else if (found == meanings_.end())  // void surfaces occur, for example, in files for mkillum
         findings_.note("surfaces of void, which light passes", at);
     else if (found->second.kind == RadMeaning::Kind::pattern)
         findings_.error(at, fmt::format("'{}' has no supported material", shown(p.name)),

@@ -88,7 +88,7 @@ void find_irradiances(Perez& p) {
     p.diffuse = p.diffuse_lux * solar_irradiance / solar_illuminance;
     p.direct = p.direct_lux * solar_irradiance / solar_illuminance;
     p.find_parameters();
-    constexpr int rounds = 9;             // number of iterations in gendaylit
+    constexpr int rounds = 9;             // number of iterations, as in gendaylit
     constexpr double min_efficacy = 0.1;  // lm/W; below it, gendaylit ignores the sun
     for (int i = 0; i < rounds; ++i) {
         const double of_sky = diffuse_efficacy(p), of_sun = direct_efficacy(p);
@@ -212,7 +212,7 @@ Result<PrintedSky> gendaylit_output(const RadSkyWords& in) {
     const Perez& p = *read;
     const Vec3 sun = in.sun();
     std::string dark = in.is_night ? "the sun is below the horizon at that hour" : darkness(in, p);
-    Normal above = sun;  // or its projection to the horizon
+    Normal above = sun;  // direction of the sun, or its projection to the horizon if the sun is below it
     if (above.z < 0) above = {-std::sin(in.azimuth), -std::cos(in.azimuth), 0};
     const SkyModel sky = perez_sky_of({p.clearness, p.brightness}, above);
     if (dark.empty() && sky.b > 0) dark = "Perez' sky has no such state";

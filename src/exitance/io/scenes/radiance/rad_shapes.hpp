@@ -12,8 +12,8 @@ bool is_rad_shape(const std::string& type);
 /// Polygons of a surface: polygon, ring, sphere, bubble, cone, cup, cylinder, tube.
 struct RadShape {
     Facets facets;
-    bool inwards = false;    ///< The fronts are inside.
-    bool is_closed = false;  ///< The backs cannot be seen.
+    bool inwards = false;    ///< True if the fronts are on the inside.
+    bool is_closed = false;  ///< True if the backs cannot be seen from anywhere.
 };
 
 /// Converts a surface to polygons. Empty, with an error among the findings, if its numbers do not define a shape.

@@ -24,7 +24,7 @@ Result<Normal> sun_of(const RadPattern& pattern, const Vec3& given) {
 
 enum class Kind { clear = 1, overcast = 2, uniform = 3, intermediate = 4 };
 
-/// gensky's sky, from Radiance's skybright.cal.
+/// Returns gensky's sky, defined by Radiance's skybright.cal.
 Result<SkyModel> gensky(const RadPattern& pattern) {
     const std::vector<double>& v = pattern.primitive.numbers;
     if (v.size() != 3 && v.size() != 7) return no_sky(fmt::format("skybr has {} numbers, not 3 or 7", v.size()));
@@ -57,7 +57,7 @@ Result<SkyModel> gensky(const RadPattern& pattern) {
     return no_sky(fmt::format("skybr has no kind {:g}", v[0]));
 }
 
-/// gendaylit's sky, from Radiance's perezlum.cal.
+/// Returns gendaylit's sky, defined by Radiance's perezlum.cal.
 Result<SkyModel> gendaylit(const RadPattern& pattern) {
     const std::vector<double>& v = pattern.primitive.numbers;
     if (v.size() != 10) return no_sky(fmt::format("skybright has {} numbers, not 10", v.size()));

@@ -224,7 +224,7 @@ Result<PrintedSky> sky_command_output(const CommandWords& words, bool older) {
     if (const Result<void> read = read_options(words, *in); !read) return read.error();
     place_rad_sun(*in);
     const bool overcast = in->kind == 'c' || in->kind == 'u';
-    constexpr double max_altitude = 87 * pi / 180;  // limit of both programs
+    constexpr double max_altitude = 87 * pi / 180;  // given by a limit in both programs
     if (!overcast) in->altitude = std::min(in->altitude, max_altitude);
     return in->program == "gendaylit" ? gendaylit_output(*in) : PrintedSky{gensky(*in)};
 }

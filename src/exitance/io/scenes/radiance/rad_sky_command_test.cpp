@@ -136,7 +136,7 @@ TEST(RadSkyCommand, GendaylitHasPerezSky) {
     const double Z = 50 * pi / 180, k = 1.041 * Z * Z * Z, clearness = (5 + k) / (1 + k);
     ASSERT_TRUE(clearness > 2.8 && clearness < 4.5);
     const double mass = 1 / (std::cos(Z) + 0.15 * std::pow(93.885 - 50, -1.253));
-    const double delta = 150 * mass / (1367 * orbit(0));  // without a date, the program uses day 0
+    const double delta = 150 * mass / (1367 * orbit(0));  // the program uses day 0 if there is no date
     EXPECT_NEAR(sky[2], -1.0156 - 0.3670 * Z + delta * (1.0078 + 1.4051 * Z), 1e-7);
     EXPECT_NEAR(sky[5], -3.4 - 0.1078 * Z + delta * (-1.0750 + 1.5702 * Z), 1e-7);
     // Specifies the same state of the sky by its parameters.
@@ -202,7 +202,8 @@ TEST(RadSkyCommand, GendaylitPrintsSkiesOfNightHours) {
 
 TEST(RadSkyCommand, GendaylitSupportsGlobalLightAndDewPoint) {
     // For k = 0.2, below 0.22, the diffuse share is 1 - 0.09 k [Erbs82].
-    const double outside = 1367 * orbit(0) * 0.5;  // at 30 degrees
+    // extraterrestrial irradiance of a horizontal plane, with the sun at 30 degrees
+    const double outside = 1367 * orbit(0) * 0.5;
     const std::string global = std::to_string(0.2 * outside);
     const std::vector<double> split = numbers_after(output("gendaylit -ang 30 0 -O 1 -E " + global), "skyfunc");
     const double diffuse = 0.2 * outside * (1 - 0.09 * 0.2), direct = (0.2 * outside - diffuse) / 0.5;
@@ -214,7 +215,7 @@ TEST(RadSkyCommand, GendaylitSupportsGlobalLightAndDewPoint) {
     EXPECT_GT(scale("gendaylit -ang 40 0 -W 500 150 -d 20"), 1.01 * scale("gendaylit -ang 40 0 -W 500 150 -d 0"));
     EXPECT_EQ(scale("gendaylit -ang 40 0 -W 500 150 -O 1 -d 20"), scale("gendaylit -ang 40 0 -W 500 150 -O 1"));
     EXPECT_EQ(output("gendaylit -ang 40 0 -W 500 150 -c").find("source sun"), std::string::npos);
-    // Without diffuse light only the sun is left.
+    // If diffuse light is zero, only the sun is left.
     const std::string sun_alone = output("gendaylit -ang 40 0 -O 1 -W 500 0");
     EXPECT_EQ(numbers_after(sun_alone, "skyfunc")[0], 0);
     EXPECT_NE(sun_alone.find("source sun"), std::string::npos);

@@ -73,7 +73,7 @@ std::optional<RadFault> read_primitive(RadWords& words, RadPrimitive& out) {
         out.words = {std::string(*old)};
         return std::nullopt;
     }
-    for (int list = 0; list < 3; ++list) {  // words, integers, numbers
+    for (int list = 0; list < 3; ++list) {  // the three argument lists: words, integers, numbers
         const auto word = words.next();
         if (!word && words.is_open_quote()) return ended(words.line(), shown_name);
         const std::optional<long long> count = parse_integer(word.value_or(""));

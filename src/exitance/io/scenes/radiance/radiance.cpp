@@ -26,12 +26,12 @@ namespace {
 
 constexpr std::size_t max_copies = 100'000, max_depth = 16;
 
-/// A text being read, and how it was called.
+/// A text being read, and the transform and options with which it was included.
 struct Call {
     const std::string* name;  ///< Path of the file, or a description of the command that printed the text.
     Affine to_world;
     std::string prefix;
-    std::string material;  ///< Replaces the materials of all surfaces; empty: they keep their own.
+    std::string material;  ///< Material that replaces those of all surfaces; empty: they keep their own.
     int first_line = 0;    ///< Offset of the file's lines in SceneLines.
     int command_line = 0;  ///< SceneLines number of the command that printed the text; 0 for files.
     std::size_t depth = 0;
@@ -57,7 +57,7 @@ class RadianceReader {
     void read_text(std::string_view text, const Call& call);
     void run_command(const std::string& command, int line, const Call& call);
     void read_copies(const std::vector<CommandWords>& stages, int line, const Call& call);
-    /// A text and the transforms of its copies.
+    /// A text, and the transforms with which it is repeated.
     struct Copied {
         const std::string* name = nullptr;
         const std::string* text = nullptr;
@@ -390,7 +390,7 @@ ReadScene RadianceReader::read() {
         }
         bytes_ += text->size();
         read_text(*text, {&path, {}, "", "", first_line(path, *text), 0, 0});
-        if (findings_.failed()) break;  // later files may use names that it failed to define
+        if (findings_.failed()) break;  // stop: later files may use names that the failed file should have defined
     }
     if (!findings_.failed()) open_up();
     out_.description.materials = std::move(materials_.materials);

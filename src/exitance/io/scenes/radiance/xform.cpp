@@ -35,7 +35,7 @@ Affine power(const Affine& a, std::size_t times) {
     return out;
 }
 
-/// A sequence of transforms and its repetition.
+/// A sequence of transforms, and how often it is repeated.
 struct Stretch {
     Affine once;
     std::size_t times = 1;

@@ -10,11 +10,11 @@ namespace exitance {
 
 /// Parsed arguments of a Radiance command `xform ... file`.
 struct Xform {
-    std::vector<std::string> files;    ///< May be empty.
-    std::vector<std::string> options;  ///< All words that do not name files.
+    std::vector<std::string> files;    ///< Files to transform; may be empty.
+    std::vector<std::string> options;  ///< Words of the command that do not name files.
     std::string name;                  ///< Prefix for the names in the files, or empty.
-    std::string material;        ///< Replaces the materials of all surfaces in the files; empty: they keep their own.
-    std::vector<Affine> copies;  ///< One transform per copy: one, or more for an array.
+    std::string material;  ///< Material that replaces those of all surfaces in the files; empty: they keep their own.
+    std::vector<Affine> copies;  ///< Transform of each copy: one, or several for an array.
 };
 
 /// Parses the words after `xform`: -t x y z, -rx, -ry, -rz degrees, -s factor, -mx, -my, -mz, -i times, -a copies, -n

@@ -44,7 +44,8 @@ double signed_area(std::span<const Vec2> polygon) {
 std::vector<double> covered_areas(std::span<const std::vector<Vec2>> polygons, std::span<const double> columns,
                                   std::span<const double> rows) {
     const std::size_t nx = columns.size() - 1, ny = rows.size() - 1;
-    std::vector<double> area(nx * ny), right(nx * ny);  // right: heights of edges, for all cells to their right
+    // `right`: per cell, the heights of edges, which count for all cells to the right
+    std::vector<double> area(nx * ny), right(nx * ny);
     for (const std::vector<Vec2>& polygon : polygons) {
         const double sign = signed_area(polygon) > 0 ? -1 : 1;
         for (std::size_t k = 0; k < polygon.size(); ++k) {

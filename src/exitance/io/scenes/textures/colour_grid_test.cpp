@@ -50,7 +50,7 @@ TEST(ColourGrid, HasMeansDeviationsAndRangesOfBoxes) {
     EXPECT_EQ(g.colour({0, 4, 0, 8}).reflectance.deviation[0], 0) << "even colours deviate by nothing";
 }
 
-/// Squared deviation times area that remains in a patch of a square metre after so many cuts.
+/// Squared deviation times area that remains in a patch of a square metre after the given number of cuts.
 double left_after(const TextureCuts& cuts, std::size_t count, double mean_square) {
     std::vector<bool> is_cut(cuts.parts.size());
     for (std::size_t c = 0; c < count; ++c) is_cut[cuts.cuts[c].part] = true;
@@ -60,7 +60,8 @@ double left_after(const TextureCuts& cuts, std::size_t count, double mean_square
         const std::size_t child = cuts.parts[p].children;
         const double below = cuts.parts[child].colour.reflectance.mean[0];
         const double above = cuts.parts[child + 1].colour.reflectance.mean[0];
-        const double share = (mean - above) / (below - above);  // children have the mean of their parent
+        // the area-weighted mean of the two children is the mean of their parent
+        const double share = (mean - above) / (below - above);
         return squares_of_means(child, share * area) + squares_of_means(child + 1, (1 - share) * area);
     };
     return mean_square - squares_of_means(0, 1);
@@ -73,7 +74,7 @@ TEST(TextureCuts, TheErrorOfAGradientFallsAsTheNumberOfParts) {
     for (std::size_t i = 0; i < 256; ++i) mean_square += value(i, 0) * value(i, 0) / 256;
     const TextureCuts cuts = cut_texture(g, {.length = 1, .reflected = 1, .flux = 1, .min_benefit = 0}, 63, 1, 1);
     ASSERT_EQ(cuts.cuts.size(), 63u);
-    for (std::size_t parts : {2, 4, 8, 16, 32, 64})  // of equal width, if their number is a power of two
+    for (std::size_t parts : {2, 4, 8, 16, 32, 64})  // parts have equal widths if their number is a power of two
         EXPECT_NEAR(left_after(cuts, parts - 1, mean_square), 1.0 / 12 / static_cast<double>(parts * parts), 2e-5)
             << parts;
     for (std::size_t c = 1; c < cuts.cuts.size(); ++c) EXPECT_LE(cuts.cuts[c].benefit, cuts.cuts[c - 1].benefit);

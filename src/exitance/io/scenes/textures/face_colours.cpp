@@ -16,7 +16,7 @@ void multiply(ColourRange& range, std::span<const Spectrum> factors) {
             lowest = std::min(lowest, factor[b]), highest = std::max(highest, factor[b]);
         }
         const double centre = sum / n;
-        // Variance of a linear function over a triangle, by its values at the corners.
+        // Variance of a linear function over a triangle, computed from its values at the corners.
         for (const Spectrum& factor : factors) variance += (factor[b] - centre) * (factor[b] - centre) / (4 * n);
         range.deviation[b] = std::sqrt(std::pow(range.deviation[b], 2) * (centre * centre + variance) +
                                        std::pow(range.mean[b], 2) * variance);

@@ -57,7 +57,7 @@ TEST_F(NormalFile, ObjNormalsTurnWithTheUprightAxis) {
     const std::vector<NormalTriangle> found = load_normals(scene, path);
     ASSERT_EQ(found.size(), 1u);
     for (const Normal& n : found[0].normal) {
-        EXPECT_LT(n.y, -0.9);  // the file's z
+        EXPECT_LT(n.y, -0.9);  // the z axis of the file
         EXPECT_GE(n.x, 0);
     }
 }

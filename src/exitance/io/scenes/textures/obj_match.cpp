@@ -46,7 +46,7 @@ std::vector<Point> ObjMatch::outline(const ObjPlaces& face) const {
 bool ObjMatch::align() {
     double longest = 0;
     const ObjPlaces* best = nullptr;
-    std::vector<Point> points;                // of the scene, where the corners of `best` are
+    std::vector<Point> points;                // points of the scene at the corners of `best`
     std::map<int, std::vector<Point>> parts;  // corners of parts of cut faces, by line
     for (SurfaceId s : scene_.surfaces().ids()) {
         const ObjPlaces* face = face_of(s);
@@ -61,7 +61,7 @@ bool ObjMatch::align() {
     for (const auto& [line, own] : parts)
         if (const double length = diagonal(own); !has_whole && length > longest)
             longest = length, best = &faces_[face_of_line_.at(line)], points = own;
-    if (!best) return true;  // all faces were repaired, or have no line
+    if (!best) return true;  // nothing to align: all faces were repaired, or have no line number
     scale_ = longest / diagonal(best->corners);
     // derived from rounding: units of length differ by more from 1.
     constexpr double rounding = 1e-6;

@@ -217,7 +217,7 @@ std::vector<double> TextureArea::borders(bool along_s, double low, double high, 
     const double across = along_s ? levels_.front().across : levels_.front().down;
     double block = 1;  // pixels
     while ((high - low) * across / block > static_cast<double>(max_cells) && block < across) block *= 2;
-    double periods = 1;  // in a cell, if a cell has whole repetitions
+    double periods = 1;  // number of repetitions in a cell, if a cell contains whole ones
     while ((high - low) / periods > static_cast<double>(max_cells)) periods *= 2;
     // A cell narrower than this share of the whole would be a sliver without effect.
     constexpr double min_share = 1e-3;  // derived from the narrowest face that rays hit

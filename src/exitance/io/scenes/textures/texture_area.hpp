@@ -66,7 +66,7 @@ class TextureArea {
     struct Level {
         std::size_t width = 0, height = 0;
         double across = 0, down = 0;     ///< Size of the picture, pixels: the last column and row may be cut off.
-        std::vector<std::uint16_t> rgb;  ///< Linear; 65535 is 1.
+        std::vector<std::uint16_t> rgb;  ///< Colours, linear; 65535 is 1.
         Colour at(std::size_t x, std::size_t y) const {
             const std::uint16_t* c = rgb.data() + 3 * (y * width + x);
             return {c[0] / 65535.0, c[1] / 65535.0, c[2] / 65535.0};
@@ -75,7 +75,7 @@ class TextureArea {
     const Level& level_for(const Vec2& step) const;
 
     Colour mean_{};
-    std::vector<Level> levels_;  ///< From the finest to the coarsest.
+    std::vector<Level> levels_;  ///< Levels of resolution, from the finest to the coarsest.
 };
 
 }  // namespace exitance

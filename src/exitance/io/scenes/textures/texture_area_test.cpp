@@ -55,7 +55,8 @@ TEST(TextureArea, CoordinatesMayBeBeyondTheBorder) {
 TEST(TextureArea, ManyRepetitionsGiveTheMean) {
     const TextureArea stripes = picture(256, 256, [](std::size_t x, std::size_t y) { return (x + y) % 4 == 0; });
     EXPECT_NEAR(stripes.mean(square(0.1, 0.3, 40), Wrap::repeat, Wrap::repeat)[0], 0.25, 1e-4);
-    const std::vector<Vec2> narrow = {{0, 0.5}, {1, 0.5}, {1, 0.502}, {0, 0.502}};  // half a pixel high
+    // a quadrilateral that is half a pixel high
+    const std::vector<Vec2> narrow = {{0, 0.5}, {1, 0.5}, {1, 0.502}, {0, 0.502}};
     EXPECT_NEAR(stripes.mean(narrow, Wrap::repeat, Wrap::repeat)[0], 0.25, 0.1);
 }
 

@@ -12,7 +12,7 @@ struct CutScale {
     double area = 1;         ///< Total area of the faces, m^2.
     double reflected = 1;    ///< (Sum of area times mean reflectance)^2 over the total area, m^2.
     double flux = 1;         ///< Emitted flux of the scene, mean over bands, W.
-    double min_benefit = 0;  ///< Cuts with less are not made.
+    double min_benefit = 0;  ///< Minimum benefit of a cut.
 };
 
 /// A part of a textured patch: a box in its texture coordinates. A tree of parts by cuts along the axes.
@@ -26,12 +26,12 @@ struct TexturePart {
 
 /// The cuts of a patch, the most beneficial first.
 struct TextureCuts {
-    std::vector<TexturePart> parts;  ///< The first is the whole patch.
+    std::vector<TexturePart> parts;  ///< Parts of the patch; the first one is the whole patch.
     struct Cut {
         std::size_t part = 0;
         double benefit = 0;  ///< Never larger than that of an earlier cut.
     };
-    std::vector<Cut> cuts;  ///< A part is listed after the part that it belongs to.
+    std::vector<Cut> cuts;  ///< Every cut is listed after the cut that made the part it divides.
 };
 
 /// Cuts a patch greedily at borders of the grid's cells. The benefit of a cut is an estimate of the squared relative

@@ -53,7 +53,7 @@ class MeanOfRows {
 struct TexturePixels {
     std::size_t width = 0, height = 0;
     std::vector<std::uint8_t> rgb;
-    std::vector<std::uint8_t> opacity = {};  ///< One byte per pixel; empty: opaque.
+    std::vector<std::uint8_t> opacity = {};  ///< Opacity, one byte per pixel; empty: opaque.
 };
 Result<TexturePixels> decode_texture(std::span<const std::uint8_t> file);
 Result<TexturePixels> decode_png(std::span<const std::uint8_t> file);

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-/// Squared relative error of the scene's light below which a cut is not worth a part.
+/// Squared relative error of the scene's light below which a face is not cut.
 constexpr double min_benefit =
     1e-6;  // derived from a gradient on a wall: the reflectance within a part then varies by 2% of the mean
 /// Limit on the parts of emitting faces: direct light is computed for each emitter.
@@ -109,7 +109,7 @@ class FaceCutter {
     /// Returns the patches whose potential is at least `min_benefit`, ascending; at most `max_patches`, those of
     /// largest potential.
     std::vector<std::size_t> promising_patches(std::size_t max_patches) const {
-        std::vector<std::pair<double, std::size_t>> found;  // by use, then in the order of the file
+        std::vector<std::pair<double, std::size_t>> found;  // potential with negative sign, and index of the patch
         for (std::size_t p = 0; p < all_.patches.size(); ++p)
             if (const double use = potential_of(all_.patches[p]); use >= min_benefit) found.emplace_back(-use, p);
         std::sort(found.begin(), found.end());
@@ -155,7 +155,7 @@ class FaceCutter {
         const double near = std::min(1.0, std::sqrt(area) / scale_.length);
         const double variance = std::max(0.0, squares - mean(sum * sum) / area);
         const double moved = std::sqrt(std::max(0.0, emitted * area - mean(flux * flux))) * near / scale_.flux;
-        const double shape = holes * (1 - holes / area);  // largest variance of coverage
+        const double shape = holes * (1 - holes / area);  // largest possible variance of coverage, times the area
         return (variance / scale_.reflected + std::max(0.0, shape) / scale_.area) * near + moved * moved;
     }
 
@@ -176,7 +176,7 @@ class FaceCutter {
         return out;
     }
 
-    /// Takes the most beneficial cuts of all patches, as many as there may be parts of patches.
+    /// Selects the most beneficial cuts of all patches, up to the maximum number of parts.
     void choose(std::size_t max_parts) {
         struct Offer {
             double benefit;
@@ -196,7 +196,7 @@ class FaceCutter {
             // The first cut of a face makes two parts.
             const std::size_t more = patch.taken == 0 ? 2 : 1;
             if (parts + more > max_parts || (patch.emits && emitting + more > max_emitting_parts)) continue;
-            if (patch.taken != offer.cut) continue;  // an earlier one was not taken
+            if (patch.taken != offer.cut) continue;  // an earlier cut of this patch was rejected
             parts += more, emitting += patch.emits ? more : 0, ++patch.taken;
         }
     }

@@ -18,13 +18,13 @@ struct FacePart {
 
 /// Textured faces that were cut.
 struct CutFaces {
-    std::vector<std::vector<FacePart>> parts;  ///< Per face. A cut face without parts is a hole.
+    std::vector<std::vector<FacePart>> parts;  ///< Parts of each face. A face that is cut but has no parts is a hole.
     std::vector<std::uint8_t> is_cut;          ///< Per face.
     /// Area of holes that were closed and of opaque parts that were left out, m^2.
     double misplaced = 0;
 };
 
-/// Largest number of parts by default, for a scene of so many faces.
+/// Largest number of parts by default, for a scene with the given number of faces.
 std::size_t default_texture_parts(std::size_t faces);
 
 /// Cuts textured faces where their colour varies: along the axes of their texture coordinates, at borders of pixels,

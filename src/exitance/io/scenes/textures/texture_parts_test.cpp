@@ -168,7 +168,7 @@ TEST(TexturedFaces, FineRepeatedPatternsAreNotCut) {
 TEST(TexturedFaces, AConcaveFaceIsCutWithoutGaps) {
     const TextureArea tones = grey_picture(64, 64, [](std::size_t x, std::size_t) { return x < 32 ? 1.0 : 0.2; });
     Wall wall(tones);
-    wall.d.points.push_back({3, 0, 1});  // the outline goes in at the upper border
+    wall.d.points.push_back({3, 0, 1});  // a corner that makes the upper border concave
     wall.d.faces.push_back({{0, 1, 2, 4, 3}, 0, 0, 1});
     const double area = wall.total_area();
     TexturedFaces textured(wall.d, most_reflected, {});
@@ -293,7 +293,7 @@ TEST(TexturedFaces, HolesAreCutOutAndTheAreaIsBalanced) {
     });
     Wall wall(ring);
     wall.d.materials[0].reflectance = Spectrum(0.5);
-    wall.add({0, 1, 2, 3}), wall.add({3, 2, 1, 0});  // with its back
+    wall.add({0, 1, 2, 3}), wall.add({3, 2, 1, 0});  // a face and its back
     TexturedFaces textured(wall.d, most_reflected, {});
     for (std::size_t f = 0; f < 2; ++f) {
         FaceColours colours;

@@ -63,7 +63,7 @@ void TexturedFaces::keep(VaryingFace face) {
     const auto effect = [](const VaryingFace& f) {
         const ColourRange &r = f.colour.reflectance, &m = f.colour.exitance;
         const double emitted = max(m.mean) > 0 ? mean(m.deviation * m.deviation) / mean(m.mean * m.mean) : 0;
-        // Faces with holes are kept: some of them may have to be left out.
+        // Faces with holes are never dropped, since some of them may have to be omitted.
         return f.colour.coverage < 1 ? HUGE_VAL : f.area * (mean(r.deviation * r.deviation) + emitted);
     };
     const auto last = varying_.begin() + max_varying;
@@ -178,10 +178,10 @@ void TexturedFaces::replace_cut_faces() {
         holes_.faces += has_holes, holes_.area += has_holes ? varying_[v].area : 0;
         if (cut.is_cut[v]) continue;
         holes_.uncut += has_holes && varying_[v].colour.coverage > 0;
-        if (!stays(varying_[v])) cut.is_cut[v] = 1;  // without parts: it is left out
+        if (!stays(varying_[v])) cut.is_cut[v] = 1;  // replaces the face by no parts, so that it is omitted
     }
     std::vector<SceneDescription::Face> faces;
-    std::vector<std::size_t> place(out_->faces.size());  // of each face in the new list
+    std::vector<std::size_t> place(out_->faces.size());  // index of each face in the new list
     std::vector<std::size_t> first_part(varying_.size());
     std::size_t next = 0;
     for (std::size_t f = 0; f < out_->faces.size(); ++f) {
@@ -211,7 +211,7 @@ void TexturedFaces::replace_cut_faces() {
 void TexturedFaces::finish() {
     if (!varying_.empty()) replace_cut_faces();
     for (const auto& [key, sum] : sums_) {
-        if (!(sum.area > 0)) continue;  // without area there is no light
+        if (!(sum.area > 0)) continue;  // skip materials without area, whose mean is not defined
         Material material = out_->materials[static_cast<std::size_t>(key[0])];
         material.reflectance = sum.reflectance / sum.area, material.exitance = sum.exitance / sum.area;
         material.name = name_with_colour(

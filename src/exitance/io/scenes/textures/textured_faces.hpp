@@ -59,7 +59,8 @@ class TexturedFaces {
         void add(const ColourRange& range, double of, bool varies, const std::string& name);
     };
     void keep(VaryingFace face);
-    /// Decides whether a face with holes stays whole: as many stay as the pictures cover, of each material.
+    /// Decides whether a face with holes stays whole: of each material, the area of faces that stay equals the area
+    /// that the pictures cover.
     bool stays(const VaryingFace& face);
     /// Adds a face or a part with its final colour.
     void add(std::size_t face, const PartColour& colour, double area);
@@ -71,7 +72,7 @@ class TexturedFaces {
     std::optional<std::size_t> max_parts_;
     std::vector<VaryingFace> varying_;
     std::map<Key, Sum> sums_;
-    std::map<std::uint32_t, Sum> unchanged_;  ///< Keyed by material: faces that keep their material.
+    std::map<std::uint32_t, Sum> unchanged_;  ///< Per material: sums over the faces that keep their material.
     std::vector<Spectrum> deviation_;
     Variation reflects_, emits_;
     std::size_t cut_faces_ = 0, parts_ = 0;
@@ -79,9 +80,10 @@ class TexturedFaces {
     /// Faces with holes.
     struct Holes {
         std::size_t faces = 0, uncut = 0;
-        double area = 0, misplaced = 0;           ///< m^2
-        std::map<std::uint32_t, double> balance;  ///< Per material: opaque area left out less holes closed so far, m^2.
-        std::vector<std::uint32_t> before;        ///< Corners of the face before, whose back may follow.
+        double area = 0, misplaced = 0;  ///< m^2
+        /// Per material: opaque area omitted so far minus area of holes closed so far, m^2.
+        std::map<std::uint32_t, double> balance;
+        std::vector<std::uint32_t> before;  ///< Corners of the previous face; the next face may be its back.
         bool before_stays = false;
     } holes_;
 };

@@ -139,7 +139,7 @@ class GltfUvs {
     Locator locator_;
     FaceParts parts_;
     Field<SurfaceId, Match> matched_;
-    std::vector<int> object_of_;  ///< Per node; -1: none yet.
+    std::vector<int> object_of_;  ///< Object of each node; -1: not determined yet.
     UniqueNames names_;
     UvSet out_;
 };

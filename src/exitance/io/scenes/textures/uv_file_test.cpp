@@ -113,7 +113,7 @@ TEST_F(UvFile, ABentFaceKeepsTheCoordinatesOfItsCorners) {
         }
         if (t.corner[0].z < 2) area -= 0.5 * cross(t.place[1] - t.place[0], t.place[2] - t.place[0]);
     }
-    EXPECT_NEAR(area, 1, 1e-12);  // both triangles together are the whole chart
+    EXPECT_NEAR(area, 1, 1e-12);  // both triangles together cover the whole chart
 }
 
 TEST_F(UvFile, MissingCoordinatesAreErrorsThatNameTheObjects) {
