@@ -156,6 +156,8 @@ struct ReportArguments : CommonArguments {
     std::vector<std::string> tasks;  ///< Tasks of rooms, "NAME" or "ROOM=NAME".
     std::string tasks_file;          ///< Further tasks (TOML); empty: none.
     bool lists_tasks = false;        ///< Print the known tasks, and nothing else.
+    std::string words;               ///< Template of the page: "german" or a TOML file; empty: English.
+    bool lists_words = false;        ///< Print the German template, and nothing else.
     PictureSize size{960, 600};
     UnitArguments unit;
     int threads = 0;

@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <deque>
 #include <future>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "exitance/base/parallel.hpp"
@@ -18,6 +17,7 @@
 #include "exitance/cli/view/view_pair.hpp"
 #include "exitance/cli/view/view_share.hpp"
 #include "exitance/cli/view/view_words.hpp"
+#include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/export/viewer_data.hpp"
 #include "exitance/io/export/viewer_part.hpp"
 #include "exitance/io/files/atomic_file.hpp"
@@ -393,12 +393,10 @@ ExitCode run(const ViewArguments& given, Terminal& terminal) {
     const std::vector<std::string>& files = arguments.scene.files;
     const bool solves =
         files.size() > 2 || !std::all_of(files.begin(), files.end(), [](const auto& f) { return f.ends_with(".h5"); });
-    const nlohmann::json state{{"solving", solves},
-                               {"files", !solves && files.size() == 2 ? nlohmann::json(files) : nlohmann::json()}};
-    server.get("/data/state",
-               [text = state.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)](const Parameters&) {
-                   return ViewAnswer{200, "application/json", text};
-               });
+    const std::string pair =
+        solves || files.size() < 2 ? "null" : fmt::format("[{}, {}]", json_text(files[0]), json_text(files[1]));
+    const std::string state = fmt::format(R"({{"solving": {}, "files": {}}})", solves, pair);
+    server.get("/data/state", [state](const Parameters&) { return ViewAnswer{200, "application/json", state}; });
     return solves ? view_scene(arguments, *page, server, terminal) : view_solutions(arguments, *page, server, terminal);
 }
 
