@@ -51,9 +51,9 @@ const std::vector<Door> doors{
     {"PETSc", std::regex("petsc.*"), {"solve/petsc.cpp"}},
     {"nlohmann-json",
      std::regex("nlohmann/.*"),
-     {"cli/json_output.cpp", "lab/study/run_facts.cpp", "io/export/viewer_data.cpp", "io/report/honeybee_results.cpp",
-      "io/scenes/cityjson.cpp", "io/scenes/honeybee/honeybee_model.cpp", "io/solution/statistics_json.cpp",
-      "sweep/sweep_json.cpp"}},
+     {"cli/json_output.cpp", "cli/view/view_share.cpp", "lab/study/run_facts.cpp", "io/export/viewer_data.cpp",
+      "io/report/honeybee_results.cpp", "io/scenes/cityjson.cpp", "io/scenes/honeybee/honeybee_model.cpp",
+      "io/solution/statistics_json.cpp", "sweep/sweep_json.cpp"}},
     {"toml++", std::regex("toml\\+\\+/.*"), {"io/files/toml_keys.hpp"}},
 };
 

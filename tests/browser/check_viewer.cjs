@@ -403,6 +403,114 @@ async function check_sliders(page) {
     program.kill();
 }
 
+/** A kept setting, and a second solution: with a divider, side by side, and as a difference with its range and values. */
+async function check_compare(page, first, second) {
+    const {program, origin} = await start(first, second);
+    const keep = async name => { if (process.env.KEEP) await page.screenshot({path: path.join(process.env.KEEP, name + '.png')}); };
+    await page.goto(origin);
+    await page.waitForFunction('document.body.dataset.other');
+    await page.evaluate(() => { document.getElementById('compare_section').open = true; });
+    const names = await page.textContent('#panes');
+    check(names === path.basename(first) + path.basename(second), `two solutions beside a divider: ${names}`);
+    await keep('compare_files');
+    await page.evaluate(() => { document.getElementById('change_section').open = true; });
+    await page.click('#keep');
+    const kept = await page.evaluate(() => exitance.canvas());
+    await page.focus('#group_0');
+    for (let i = 0; i < 50; ++i) await page.keyboard.press('ArrowLeft');
+    await page.waitForFunction(() => /:0.5/.test(JSON.parse(document.body.dataset.refilled ?? '{}').change?.dim));
+    await keep('compare_kept');
+    await page.focus('#half');
+    for (let i = 0; i < 12; ++i) await page.keyboard.press('Shift+ArrowLeft');
+    check(await difference(page, kept, await page.evaluate(() => exitance.canvas())) < 0.002, 'the kept setting stays as it was');
+    await page.selectOption('#compare_as', 'beside');
+    check(await page.textContent('#panes') === 'nowkept 1', 'two pictures have their names');
+    await keep('compare_beside');
+    await page.selectOption('#compare_as', 'difference');
+    await page.waitForFunction(() => /minus/.test(document.getElementById('legend').textContent));
+    const legend = await page.textContent('#legend');
+    check(/difference of .*, (lx|W\/m²)now minus kept 1.*above [−+].*below −/.test(legend), `a difference has a range: ${legend}`);
+    await page.mouse.move(size[0] * 0.4, size[1] * 0.7);
+    await page.waitForFunction(() => /difference/.test(document.getElementById('hover').textContent));
+    const hover = await page.textContent('#hover'), [now, was, apart] = hover.replace('−', '-').match(/-?\d[\d.]*(?=,| lx| W)/g).map(Number);
+    check(now < was && Math.abs(now - was - apart) <= 0.02 * was, `and values: ${hover}`);
+    await keep('compare_difference');
+    const blue = await page.evaluate(async () => {
+        const image = new Image();
+        image.src = exitance.canvas();
+        await image.decode();
+        const canvas = new OffscreenCanvas(image.width, image.height), context = canvas.getContext('2d');
+        context.drawImage(image, 0, 0);
+        const p = context.getImageData(0, 0, image.width, image.height).data;
+        let blue = 0, red = 0;
+        for (let i = 0; i < p.length; i += 4) p[i + 2] > p[i] + 20 ? ++blue : p[i] > p[i + 2] + 20 ? ++red : 0;
+        return 4 * (blue - red) / p.length;
+    });
+    check(blue > 0.3, `dimmed light is blue: ${(100 * blue).toFixed(0)}% more of the pixels than red`);
+    await page.fill('#difference_to', '1');
+    check(await page.textContent('#legend') !== legend, 'the range can be chosen');
+    await page.selectOption('#other', '');
+    check(await page.isHidden('#compare_ways') && await page.textContent('#panes') === '', 'and nothing is compared again');
+    await page.goto('about:blank');
+    program.kill();
+}
+
+/** A page to share has the light, the hidden objects and the view of the page that it was made of, and asks nobody. */
+async function check_share(page, solution) {
+    const {program, origin} = await start(solution), file = path.join(folder, 'shared.html');
+    const keep = async name => { if (process.env.KEEP) await page.screenshot({path: path.join(process.env.KEEP, name + '.png')}); };
+    await page.goto(origin);
+    await page.waitForFunction('document.body.dataset.whatif');
+    await page.evaluate(() => document.querySelectorAll('details').forEach(d => { d.open = true; }));
+    await page.selectOption('#source', 'delivered');
+    await page.focus('#group_0');
+    for (let i = 0; i < 60; ++i) await page.keyboard.press('ArrowLeft');
+    await page.waitForFunction(() => /:0.4/.test(JSON.parse(document.body.dataset.refilled ?? '{}').change?.dim));
+    await page.fill('#material_0', '#c04040');
+    await page.waitForFunction(() => JSON.parse(document.body.dataset.refilled).change.paint);
+    await page.uncheck('#object_1');
+    await page.focus('#exposure');
+    for (let i = 0; i < 10; ++i) await page.keyboard.press('ArrowRight');
+    await page.click('#save_view');
+    await page.focus('#picture');
+    for (let i = 0; i < 3; ++i) { await page.keyboard.press('ArrowLeft'); await page.waitForTimeout(60); }
+    const shown = await page.evaluate(() => exitance.canvas());
+    await keep('share_before');
+    const [download] = await Promise.all([page.waitForEvent('download'), page.click('#share')]);
+    await download.saveAs(file);
+    await page.goto('about:blank');
+    program.kill();
+    const foreign = [];
+    page.on('request', r => { if (!/^(file|data|blob):/.test(r.url())) foreign.push(r.url()); });
+    await page.goto('file://' + file);
+    await page.waitForFunction('document.body.dataset.ready');
+    const apart = await difference(page, shown, await page.evaluate(() => exitance.canvas()));
+    check(apart < 0.002 && foreign.length === 0, `a shared page of ${(fs.statSync(file).size / 1e6).toFixed(1)} MB differs by ${(100 * apart).toFixed(2)}% of white, and calls nobody`);
+    await page.evaluate(() => document.querySelectorAll('details').forEach(d => { d.open = true; }));
+    check(await page.isVisible('#views_list >> text=View 1') && await page.isHidden('#how_section'), 'it has the saved views, and not what needs the program');
+    await page.mouse.click(size[0] * 0.4, size[1] * 0.7);
+    await page.waitForFunction(() => /lx|W\/m²/.test(document.getElementById('card').textContent));
+    check(/material/.test(await page.textContent('#card')), 'and answers: ' + (await page.textContent('#card')).slice(0, 60));
+    await keep('share_after');
+    const written = path.join(folder, 'written.html'), views = path.join(folder, 'views.json');
+    fs.writeFileSync(views, JSON.stringify([{name: 'from </script>', camera: '1.5,1.2,1.2;2.5,2,1;70'}]));
+    execFileSync(exitance, ['view', solution, '-o', written, '--views', views, '-q']);
+    await page.goto('file://' + written);
+    await page.waitForFunction('document.body.dataset.ready');
+    check(/^1.5,1.2,1.2 /.test(await page.evaluate(() => exitance.words())), 'a page that view -o writes opens with its first view');
+    await page.goto('about:blank');
+}
+
+/** An office with light groups, and the same office solved again, less accurately. */
+async function check_office(page) {
+    const obj = path.join(folder, 'office.obj'), first = path.join(folder, 'before.h5'), second = path.join(folder, 'after.h5');
+    execFileSync(exitance, ['generate', 'office', 'nx=1', 'ny=1', 'nfurn=2', 'books=3', '-o', obj, '-q']);
+    execFileSync(exitance, ['solve', obj, '-o', first, '--error', '0.05', '--light-groups', '-q']);
+    execFileSync(exitance, ['solve', obj, '-o', second, '--error', '0.2', '-q']);
+    await check_compare(page, first, second);
+    await check_share(page, first);
+}
+
 /** A solve that would take long is stopped, and what it has is saved and can be shown. */
 async function check_stop(page) {
     const saved = path.join(folder, 'stopped.h5');
@@ -457,6 +565,7 @@ async function check_scene(page) {
     page.on('console', message => { if (message.type() === 'error') check(false, `console: ${message.text()} (${message.location().url})`); });
     await check_solution(page);
     await check_sliders(page);
+    await check_office(page);
     await check_rooms(page);
     if (scene) await check_layers(page);
     if (scene) await check_scene(page);

@@ -360,6 +360,41 @@ TEST(ProgramReport, MeasuresWorkingPlanesByStandards) {
     EXPECT_EQ(run_program({"report", solution, "-o", folder / "r.html", "--maintenance", "0.8"}).status, 2);
 }
 
+TEST(ProgramReport, IsGermanOrShortByATemplate) {
+    const TemporaryFolder folder;
+    const std::string solution = folder / "room.h5", page = folder / "room.html", order = folder / "order.toml";
+    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
+    const auto report = [&](const std::string& words) {
+        return run_program({"report", solution, "-o", page, "--size", "16x10", "--unit", "lux", "--task", "office",
+                            "--project", "Haus 3", "--template", words, "-q"});
+    };
+    ASSERT_EQ(report("german").status, 0);
+    std::string german = read_text(page);
+    EXPECT_NE(german.find("<html lang=\"de\">"), std::string::npos);
+    EXPECT_NE(german.find("<h2>Energiebilanz</h2>"), std::string::npos);
+    EXPECT_NE(german.find("Blick nach +x"), std::string::npos);
+    // Numbers for programs stay as they are.
+    EXPECT_TRUE(nlohmann::json::parse(read_text(folder / "room.json")).contains("grids"));
+    for (std::size_t at = 0; (at = german.find("<script")) != std::string::npos;)
+        german.erase(at, german.find("</script>", at) - at);
+    german.erase(german.find("<style"), german.find("</style>") - german.find("<style"));
+    for (const char* english :
+         {" the ", " of ", " is ", " are ", " and ", "Mean ", "Minimum", ">reached", "at least", "Where"})
+        EXPECT_EQ(german.find(english), std::string::npos)
+            << german.substr(std::max<std::size_t>(german.find(english), 60) - 60, 160);
+    write_text(order, "sections = [\"energy\", \"rooms\"]\n[words]\n\"Energy balance\" = \"Watts\"\n");
+    ASSERT_EQ(report(order).status, 0);
+    const std::string brief = read_text(page);
+    EXPECT_LT(brief.find("<h2>Watts</h2>"), brief.find("<h2>Rooms</h2>"));
+    EXPECT_EQ(brief.find("<h2>Pictures</h2>"), std::string::npos);
+    EXPECT_EQ(report(folder / "absent.toml").status, 3);
+    EXPECT_EQ(
+        run_program({"report", solution, "--plane", "0.75", "--tables", folder / "t", "--template", "german"}).status,
+        2);
+    EXPECT_NE(run_program({"report", "--list-words"}).out.find("\"Energy balance\" = \"Energiebilanz\""),
+              std::string::npos);
+}
+
 TEST(ProgramReport, JudgesRoomsByTheirTasks) {
     const TemporaryFolder folder;
     const std::string solution = folder / "room.h5", page = folder / "room.html", own = folder / "own.toml";

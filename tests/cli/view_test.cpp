@@ -9,6 +9,7 @@
 #include "exitance/io/export/viewer_data.hpp"
 #include "exitance/io/export/viewer_frame.hpp"
 #include "exitance/io/export/viewer_part.hpp"
+#include "exitance/io/files/base64.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "support/places.hpp"
 #include "support/sample_solution.hpp"
@@ -265,7 +266,8 @@ TEST(ProgramView, SolvesASceneUnderASkyWithLightGroupsInLux) {
     ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
     EXPECT_EQ(run_program({"view", folder / "s.h5", "--sky", "uniform,dhi=50"}).status, 2);
     EXPECT_EQ(run_program({"view", scene, "--light-groups", "--method", "discontinuity"}).status, 2);
-    EXPECT_NE(run_program({"view", folder / "s.h5", folder / "s.h5"}).err.find("one solution"), std::string::npos);
+    EXPECT_NE(run_program({"view", folder / "s.h5", folder / "s.h5", folder / "s.h5"}).err.find("one solution"),
+              std::string::npos);
 }
 
 TEST(ProgramView, DimsAndPaintsAsMixDoes) {
@@ -292,6 +294,59 @@ TEST(ProgramView, DimsAndPaintsAsMixDoes) {
     EXPECT_EQ(answer.substr(body + 4), viewer_part_light(*mixed, ViewerLayer::exported, 0));
     run.send(SIGINT);
     EXPECT_EQ(run.finish().status, 130);
+}
+
+TEST(ProgramView, ComparesTwoSolutionsOfOneRoomInOneUnit) {
+    if (!has_page()) GTEST_SKIP() << "the viewer's page was not built";
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_solution(folder / "a.h5", sample_solution(40)));
+    ASSERT_TRUE(write_solution(folder / "b.h5", sample_solution(80)));
+    ASSERT_TRUE(write_solution(folder / "lux.h5", sample_solution(40, true)));
+    const std::string scene = write_small_room(folder);
+    ASSERT_EQ(run_program({"solve", scene, "-o", folder / "room.h5", "--error", "0.3", "-q"}).status, 0);
+    const int port = free_port();
+    RunningProgram run({"view", folder / "a.h5", folder / "b.h5", "--port", std::to_string(port)});
+    ASSERT_TRUE(run.wait_for("ends the viewer"));
+    const auto get = [&](const std::string& path) {
+        const std::string answer = ask(port, "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(port) +
+                                                 "\r\nConnection: close\r\n\r\n");
+        return answer.substr(answer.find("\r\n\r\n") + 4);
+    };
+    EXPECT_NE(get("/data/state").find("b.h5"), std::string::npos);
+    EXPECT_EQ(get("/data/part?layer=exported&part=0&of=other"),
+              viewer_part(sample_solution(80), ViewerLayer::exported, 0));
+    EXPECT_EQ(get("/data/part?layer=exported&part=0"), viewer_part(sample_solution(40), ViewerLayer::exported, 0));
+    run.send(SIGINT);
+    EXPECT_EQ(run.finish().status, 130);
+    const Finished unit = run_program({"view", folder / "a.h5", folder / "lux.h5"});
+    EXPECT_EQ(unit.status, 2);
+    EXPECT_NE(unit.err.find("another unit"), std::string::npos) << unit.err;
+    const Finished room = run_program({"view", folder / "a.h5", folder / "room.h5"});
+    EXPECT_EQ(room.status, 2);
+    EXPECT_NE(room.err.find("is of another scene"), std::string::npos) << room.err;
+}
+
+TEST(ProgramView, WritesAPageThatHoldsItsData) {
+    if (!has_page()) GTEST_SKIP() << "the viewer's page was not built";
+    const TemporaryFolder folder;
+    ASSERT_TRUE(write_solution(folder / "s.h5", sample_solution()));
+    write_text(folder / "views.json", R"([{"name": "</script>", "camera": "1,1,1 2,2,1 60"}])");
+    const Finished run =
+        run_program({"view", folder / "s.h5", "-o", folder / "s.html", "--views", folder / "views.json"});
+    ASSERT_EQ(run.status, 0) << run.err;
+    const std::string page = read_text(folder / "s.html");
+    EXPECT_EQ(page.find("src=\"/"), std::string::npos);
+    EXPECT_EQ(page.find("href=\"/"), std::string::npos);
+    EXPECT_NE(page.find(R"(id="shared">{"state":null,"views":[{"camera":"1,1,1 2,2,1 60","name":"<\/script>"}])"),
+              std::string::npos);
+    const std::string part = viewer_part(sample_solution(), ViewerLayer::exported, 0);
+    EXPECT_NE(page.find(base64(std::as_bytes(std::span(part)))), std::string::npos);
+    EXPECT_EQ(run_program({"view", folder / "s.h5", "-o", folder / "s.png"}).status, 2);
+    EXPECT_EQ(run_program({"view", folder / "s.h5", "--views", folder / "views.json"}).status, 2);
+    EXPECT_EQ(run_program({"view", folder / "s.h5", folder / "s.h5", "-o", folder / "s.html"}).status, 2);
+    write_text(folder / "views.json", R"([{"name": 1}])");
+    EXPECT_EQ(run_program({"view", folder / "s.h5", "-o", folder / "s.html", "--views", folder / "views.json"}).status,
+              3);
 }
 
 TEST(ProgramRender, RendersNumberedPicturesAlongAPath) {

@@ -58,8 +58,9 @@ export class Card {
     /** `number`: all bands as one number, in the unit. */
     show(light: Light, at: THREE.Vector3, number: (bands: Triple) => number, unit: string, group: number): void {
         const place = at.toArray().map(x => x.toFixed(3)).join(', ');
-        const rows: [string, string][] = [['from lamps and sky', `${short(number(light.direct))} ${unit}`],
-            ['reflected', `${short(number(light.indirect))} ${unit}`], ['at', `${place} m`]];
+        const rows: [string, string][] = [['at', `${place} m`]];
+        if (light.direct && light.indirect) rows.unshift(['from lamps and sky', `${short(number(light.direct))} ${unit}`],
+            ['reflected', `${short(number(light.indirect))} ${unit}`]);
         if (light.group) rows.unshift(['object', light.group]);
         if (light.material) rows.splice(light.group ? 1 : 0, 0, ['material', light.material]);
         const buttons = make('div'), button = (name: string, act: () => void) => {
@@ -73,8 +74,8 @@ export class Card {
             button('Show only this', () => this.actions.isolate(group));
         }
         button('Copy', () => this.actions.copied(`${number(light.irradiance)} ${unit} at ${place} m`));
-        const more = make('details'), deep: [string, string][] = [['E: red, green, blue', three(light.irradiance)], ['direct', three(light.direct)],
-            ['reflected', three(light.indirect)]];
+        const more = make('details'), deep: [string, string][] = [['E: red, green, blue', three(light.irradiance)]];
+        if (light.direct && light.indirect) deep.push(['direct', three(light.direct)], ['reflected', three(light.indirect)]);
         if (light.radiosity) deep.push(['B: red, green, blue', three(light.radiosity)]);
         if (light.surface !== undefined)
             deep.push(['face', `${light.surface}${light.line ? ` (line ${light.line})` : ''}`], ['element', String(light.element ?? 'none')],

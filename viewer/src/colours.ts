@@ -55,3 +55,23 @@ export function steps_within(lo: number, hi: number, by_ratio: boolean): number[
     const near = 1e-6 * (hi - lo), inner = round_steps(lo, hi, by_ratio).filter(s => s > lo + near && s < hi - near);
     return [lo, ...inner.slice(0, most_steps - 2), hi];
 }
+
+/** From blue (less) over white to red (more). */
+const diverging: Triple[] = [[33, 80, 160], [67, 147, 195], [146, 197, 222], [209, 229, 240], [247, 247, 247], [253, 219, 199], [244, 165, 130], [214, 96, 77], [165, 20, 40]];
+const most_on_a_side = 5;
+
+/** Bands of a difference: the middle one includes 0, the outer ones are open. One colour more than there are steps. */
+export function difference_colours(most: number): {steps: number[]; colours: Triple[]} {
+    const raw = Math.max(most, 1e-9) / (most_on_a_side - 0.5), power = 10 ** Math.floor(Math.log10(raw)), factor = raw / power;
+    const width = power * (factor <= 1 ? 1 : factor <= 2 ? 2 : factor <= 4 ? 4 : 10);
+    const side = Math.min(most_on_a_side, Math.max(1, Math.ceil(most / width - 0.5)));
+    const steps = Array.from({length: 2 * side}, (_, i) => Number(((i - side + 0.5) * width).toPrecision(6)));
+    const colours = Array.from({length: 2 * side + 1}, (_, i) => {
+        const at = i / (2 * side) * (diverging.length - 1), k = Math.min(Math.floor(at), diverging.length - 2);
+        return [0, 1, 2].map(c => diverging[k][c] + (diverging[k + 1][c] - diverging[k][c]) * (at - k)) as Triple;
+    });
+    return {steps, colours};
+}
+
+/** A difference with its sign. */
+export const signed = (x: number) => (x > 0 ? '+' : x < 0 ? '−' : '') + short(Math.abs(x));

@@ -1,5 +1,7 @@
 // What the program sends: facts as JSON, elements and pictures as arrays of numbers (viewer_part.hpp and viewer_frame.hpp
-// tell their order).
+// tell their order). A shared page holds them itself.
+import {shared, shared_part} from './shared';
+
 export type Triple = [number, number, number];
 export type Layer = 'exported' | 'method' | 'raw';
 
@@ -20,7 +22,7 @@ export interface Part {
 export const face_words = 5, six_nodes = 262, no_group = 0xffffffff;
 
 export interface Light {
-    irradiance: Triple; direct: Triple; indirect: Triple; radiosity?: Triple; surface?: number; line?: number;
+    irradiance: Triple; direct?: Triple; indirect?: Triple; radiosity?: Triple; surface?: number; line?: number;
     material?: string; group?: string; element?: number | null; links?: {outline: Triple[]; form_factor: number}[];
 }
 
@@ -30,8 +32,11 @@ export interface Frame { width: number; height: number; light: Float32Array; res
 /** What is seen: backs of faces or what is behind them; hidden groups of faces; a plane (n, d) beyond which all is hidden. */
 export interface Seen { backs: boolean; hidden: number[]; cut: number[] | null }
 
-/** Dimmed groups and painted materials, as requests tell them; empty: the light as it was solved. */
-export interface Change { dim: string; paint: string }
+/**
+ * Dimmed groups and painted materials, as requests tell them; empty: the light as it was solved. `of`: the second of two
+ * solutions that are compared, which is always shown as it was solved.
+ */
+export interface Change { dim: string; paint: string; of?: 'other' }
 export const unchanged: Change = {dim: '', paint: ''};
 
 /** What can be dimmed and repainted; empty where the solution keeps nothing for it. */
@@ -45,6 +50,7 @@ function query(path: string, words: Record<string, string>, change: Change): str
     const all = new URLSearchParams(words);
     if (change.dim) all.set('dim', change.dim);
     if (change.paint) all.set('paint', change.paint);
+    if (change.of) all.set('of', change.of);
     return `${path}?${all}`;
 }
 
@@ -59,17 +65,23 @@ const bytes_of = async (path: string) => (await answer(path)).arrayBuffer();
 const letters = (bytes: ArrayBuffer) => new TextDecoder().decode(new Uint8Array(bytes, 0, 4));
 
 export const post = (path: string) => answer(path, 'POST').then(r => r.text());
-export const load_state = () => answer('/data/state').then(r => r.json() as Promise<{solving: boolean}>);
+/** `files`: of two solutions that are compared; null: there is one. */
+export interface State { solving: boolean; files: [string, string] | null }
+export const load_state = (): Promise<State> =>
+    shared ? Promise.resolve({solving: false, files: null}) : answer('/data/state').then(r => r.json() as Promise<State>);
 export async function load_facts(change: Change = unchanged): Promise<Facts> {
-    const facts = await (await answer(query('/data/scene', {}, change))).json() as Facts;
+    const facts = shared?.scene ?? await (await answer(query('/data/scene', {}, change))).json() as Facts;
     return {...facts, units: facts.lux ? {irradiance: 'lx', radiosity: 'lm/m²'} : {irradiance: 'W/m²', radiosity: 'W/m²'}};
 }
+/** The page with the light of a change as one file, without the state of the page. */
+export const load_share = (change: Change) => answer(query('/share', {}, change)).then(r => r.text());
 export const load_point = (at: number[], change: Change) =>
     answer(query('/data/point', {at: at.join(',')}, change)).then(r => r.json() as Promise<Light>);
 export const load_line = (at: number[], change: Change) =>
     answer(query('/data/line', {at: at.join(',')}, change)).then(r => r.json() as Promise<{length: number; values: number[]}>);
 
 export async function load_changes(): Promise<Changes> {
+    if (shared) return {groups: [], materials: []};
     try {
         const found = await (await answer('/groups')).json() as Partial<Changes>;
         return {groups: found.groups ?? [], materials: found.materials ?? []};
@@ -80,7 +92,7 @@ export async function load_changes(): Promise<Changes> {
 }
 
 export async function load_part(layer: Layer, part: number, change: Change): Promise<Part> {
-    const bytes = await bytes_of(query('/data/part', {layer, part: String(part)}, change));
+    const bytes = shared ? shared_part(part) : await bytes_of(query('/data/part', {layer, part: String(part)}, change));
     if (letters(bytes) !== 'EXV2') throw new Error('not a part of a mesh');
     const [v, f] = new Uint32Array(bytes, 4, 2);
     return {positions: new Float32Array(bytes, 12, 3 * v), irradiance: new Float32Array(bytes, 12 + 12 * v, 3 * v),

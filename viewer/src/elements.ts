@@ -47,6 +47,24 @@ export class Elements {
 
     constructor(private facts: Facts, private shading: Shading, readonly layer: Layer) { this.lines.visible = false; }
 
+    /** The same elements with the light that they have now. They share the geometry; `shading` has their materials. */
+    kept(shading: Shading): Elements {
+        const copy = new Elements(this.facts, shading, this.layer);
+        for (const l of this.loaded) {
+            const irradiance = (l.mesh.geometry.getAttribute('irradiance').array as Float32Array).slice(), geometry = new THREE.BufferGeometry();
+            for (const [name, values] of Object.entries(l.mesh.geometry.attributes)) geometry.setAttribute(name, values);
+            geometry.setAttribute('irradiance', new THREE.BufferAttribute(irradiance, 3));
+            geometry.setIndex(l.mesh.geometry.index);
+            geometry.boundsTree = l.mesh.geometry.boundsTree;
+            const mesh = new THREE.Mesh(geometry, shading.material);
+            mesh.raycast = acceleratedRaycast;
+            copy.whole.add(mesh);
+            copy.loaded.push({...l, part: {...l.part, irradiance}, mesh});
+        }
+        copy.loading = Promise.resolve();
+        return copy;
+    }
+
     /** How much of it is there, in words; empty when all is. */
     get progress(): string {
         const all = this.facts.parts[this.layer];
@@ -117,9 +135,9 @@ export class Elements {
         if (this.lines.visible) this.add_lines(this.loaded.length - 1);
     }
 
-    /** Materials of three.js may have changed. */
-    shade(): void {
-        for (const {mesh} of this.loaded) mesh.material = this.shading.material;
+    /** Materials of three.js may have changed. `numbers`: values are drawn, for differences. */
+    shade(numbers = false): void {
+        for (const {mesh} of this.loaded) mesh.material = numbers ? this.shading.numbers : this.shading.material;
     }
 
     /** Edges are made when they are asked for. */
@@ -166,6 +184,9 @@ export class Elements {
 
     private of(hit: THREE.Intersection): Loaded { return this.loaded.find(l => l.mesh === hit.object)!; }
 
+    /** The name of the material that a ray has hit. */
+    material(hit: THREE.Intersection): string { return this.facts.materials[this.of(hit).materials[hit.face!.a]].name; }
+
     /** The group of the face that a ray has hit; the number of groups if it is in none. */
     group(hit: THREE.Intersection): number { return this.of(hit).groups[hit.face!.a]; }
 
@@ -175,7 +196,7 @@ export class Elements {
     }
 
     /** Irradiance at a hit, interpolated between the corners as the picture is. */
-    private light(hit: THREE.Intersection): Triple | null {
+    light(hit: THREE.Intersection): Triple | null {
         const {a, b, c} = hit.face!, {part} = this.of(hit), corner = (v: number) => new THREE.Vector3().fromArray(part.positions, 3 * v);
         const light = (v: number) => new THREE.Vector3().fromArray(part.irradiance, 3 * v);
         const found = THREE.Triangle.getInterpolation(hit.point, corner(a), corner(b), corner(c), light(a), light(b), light(c), new THREE.Vector3());

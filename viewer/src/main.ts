@@ -1,16 +1,18 @@
 import * as THREE from 'three';
 import {Card} from './card';
 import {css, round_steps, short} from './colours';
-import {load_facts, load_line, load_point, load_state, post, type Facts, type Triple} from './data';
+import {Compare} from './compare';
+import {load_facts, load_line, load_point, load_share, load_state, post, type Facts, type Light, type State, type Triple} from './data';
 import {order_colours} from './elements';
 import {clear_labels, show_labels} from './labels';
-import {by_id, draw_outlines, line_words, make, profile_csv, show_plot, type Profile} from './measure';
+import {by_id, distance_words, draw_outlines, line_words, make, profile_csv, show_plot, type Profile} from './measure';
 import {Objects} from './objects';
 import {overview} from './overview';
-import {Panes, type Arrangement, type Source} from './panes';
+import {Panes, type Arrangement, type Found, type Source} from './panes';
 import {save_file, save_picture} from './save';
 import {ScaleControl} from './scale_control';
 import {class_colours, Shading, type Shown} from './shading';
+import {shared, shared_controls, with_state, type SharedState} from './shared';
 import {Space} from './space';
 import {toolbar} from './toolbar';
 import {Viewpoint} from './camera';
@@ -29,9 +31,9 @@ performance.mark('renderer');
 const chosen = new THREE.Group(), shooters = new THREE.Group(), marks = new THREE.Group();
 marks.add(chosen, shooters);
 const box = (id: string) => by_id<HTMLInputElement>(id), choice = (id: string) => by_id<HTMLSelectElement>(id).value;
-let facts: Facts, shading: Shading, panes: Panes, view: Viewpoint, space: Space | null = null, objects: Objects;
+let facts: Facts, shading: Shading, panes: Panes, view: Viewpoint, space: Space | null = null, objects: Objects, compare: Compare | null = null, views: Views;
 let wanted = true, measuring: {point: THREE.Vector3; normal: THREE.Vector3}[] | null = null, csv = '', told_panes = '';
-let exposure = 1, labelled = '', ranged = '', range: [number, number] = [0, 1], rested = 0, hovered: [number, number] | null = null;
+let files: [string, string] | null = null, exposure = 1, labelled = '', ranged = '', range: [number, number] = [0, 1], rested = 0, hovered: [number, number] | null = null;
 
 const redraw = () => { wanted = true; };
 const width = () => Math.max(1, place.clientWidth), height = () => Math.max(1, place.clientHeight);
@@ -77,9 +79,10 @@ function label_lines(now: number): void {
 
 function show_hover(): void {
     if (!hovered || !panes || view.dragging) return;
-    const [x, y] = hovered, found = panes.hit(x, y, width(), height(), view);
+    const [x, y] = hovered, pair = panes.compared(x, y, width(), height(), view), found = panes.hit(x, y, width(), height(), view);
     hovered = null;
-    card.show_hover(x, y, found ? `${short(found.value)} ${unit()}` : null);
+    if (pair) card.show_hover(x, y, compare!.words(pair));
+    else card.show_hover(x, y, found ? `${short(found.value)} ${unit()}` : null);
 }
 
 function size_picture(): void {
@@ -109,6 +112,14 @@ function legend_row(colour: string, words: string, line = false): HTMLElement {
 
 function show_legend(shown: Shown, isolux: boolean): void {
     const legend = by_id('legend'), rows: (HTMLElement | string)[] = [], values = shown === 'radiosity' || shown === 'irradiance';
+    if (panes.arrangement === 'difference') {
+        const quantity = title_of(shown === 'radiosity');
+        rows.push(make('strong', `difference of ${quantity}`), make('div', panes.words('difference')),
+            ...compare!.legend().map(({colour, words}) => legend_row(css(colour), words)), legend_row('#737373', 'another surface'));
+        legend.hidden = false;
+        legend.replaceChildren(...rows);
+        return;
+    }
     if (values || isolux) rows.push(make('strong', title_of(shown === 'radiosity')));
     for (const {colour, from, to} of values || isolux ? shading.legend() : [])
         rows.push(values ? legend_row(colour, `${short(from)} – ${short(to)}`) : legend_row(colour, short(from), true));
@@ -139,6 +150,10 @@ function apply(): void {
     by_id('values').hidden = !values && !isolux;
     by_id('threshold_unit').textContent = unit();
     if (values || isolux) shading.set_steps(scale.steps(visible_range(shown === 'radiosity')), scale.palette);
+    if (panes.arrangement === 'difference') compare!.set_steps(() => {
+        view.resize(width() / height());
+        return panes.most_difference(view, shown === 'radiosity');
+    }, shown === 'radiosity');
     by_id('tool_colours').setAttribute('aria-pressed', String(values));
     by_id('tool_isolux').setAttribute('aria-pressed', String(isolux));
     show_legend(shown, isolux);
@@ -157,17 +172,19 @@ function show_panes(): void {
         return name;
     }));
     document.querySelectorAll<HTMLElement>('.divider').forEach((divider, i) => {
-        divider.hidden = !split;
-        divider.style.left = `${panes.dividers[i] * width()}px`;
-        divider.setAttribute('aria-valuenow', String(Math.round(100 * panes.dividers[i])));
+        const at = divider.id === 'half' ? panes.half : panes.dividers[i];
+        divider.hidden = divider.id === 'half' ? panes.arrangement !== 'halves' : !split;
+        divider.style.left = `${at * width()}px`;
+        divider.setAttribute('aria-valuenow', String(Math.round(100 * at)));
     });
     redraw();
 }
 
 async function arrange(): Promise<void> {
-    panes.arrangement = choice('arrangement') as Arrangement;
+    panes.arrangement = compare?.arrangement ?? choice('arrangement') as Arrangement;
     panes.source = choice('source') as Source;
     by_id<HTMLSelectElement>('source').disabled = panes.arrangement !== 'one';
+    by_id<HTMLSelectElement>('arrangement').disabled = panes.other !== null;
     show_panes();
     try { await panes.load(); } catch (error) { card.tell(String(error)); }
     if (panes.sources().includes('raw')) document.body.dataset.raw = '1';
@@ -176,8 +193,16 @@ async function arrange(): Promise<void> {
 
 function move_divider(i: number, to: number): void {
     const d = panes.dividers;
-    d[i] = Math.min(Math.max(to, i === 0 ? 0 : d[0]), i === 0 ? d[1] : 1);
+    if (i > 1) panes.half = Math.min(Math.max(to, 0), 1);
+    else d[i] = Math.min(Math.max(to, i === 0 ? 0 : d[0]), i === 0 ? d[1] : 1);
     show_panes();
+}
+
+/** The light at a point that somebody chose: the exact one from the program, the interpolated one in a shared page. */
+async function light_at(found: Found): Promise<Light> {
+    const {point, face} = found.hit;
+    if (shared) return {irradiance: found.light!, material: found.material, group: facts.groups[found.group]};
+    return load_point([...point.toArray(), ...face!.normal.toArray()], found.change);
 }
 
 async function pick(x: number, y: number): Promise<void> {
@@ -186,7 +211,7 @@ async function pick(x: number, y: number): Promise<void> {
     const point = found.hit.point, normal = found.hit.face.normal;
     try {
         if (measuring) return await add_end(point, normal);
-        const light = await load_point([...point.toArray(), ...normal.toArray()], panes.change);
+        const light = await light_at(found);
         chosen.clear();
         if (box('mesh').checked || panes.source === 'raw') draw_outlines(chosen, [found.outline], 0xff7a1a);
         const linked = (light.links ?? []).map(l => l.outline.map(p => new THREE.Vector3(...p)));
@@ -208,6 +233,7 @@ async function add_end(point: THREE.Vector3, normal: THREE.Vector3): Promise<voi
     chosen.clear();
     draw_outlines(chosen, [[a.point, b.point]], 0xff7a1a, false);
     redraw();
+    if (shared) { card.tell(distance_words(a.point, b.point)); return; }
     const profile = await load_line([...a.point.toArray(), ...b.point.toArray(), ...b.normal.toArray()], panes.change) as Profile;
     card.tell(line_words(profile, a.point, b.point, unit()));
     csv = profile_csv(profile, a.point, b.point, unit());
@@ -271,7 +297,7 @@ function enter_room(): void {
 function begin(): void {
     view = new Viewpoint(facts, canvas, () => space, redraw);
     performance.mark('viewpoint');
-    const views = new Views(facts.file.split('/').pop() ?? '', camera => { if (view.from_words(camera)) redraw(); });
+    views = new Views(facts.file.split('/').pop() ?? '', shared && shared.views, camera => { if (view.from_words(camera)) redraw(); });
     by_id('save_view').addEventListener('click', () => views.add(view.words()));
     by_id('views_save').addEventListener('click', () => save_file('views.json', 'application/json', views.text()));
     by_id('views_load').addEventListener('click', () => box('views_file').click());
@@ -288,7 +314,8 @@ async function load(first: boolean, known: Facts | null = null): Promise<void> {
     const old = panes, old_objects = objects;
     shading = new Shading(facts);
     const fresh: Panes = new Panes(facts, shading, marks, redraw);
-    if (old) [fresh.arrangement, fresh.source, fresh.dividers] = [old.arrangement, old.source, old.dividers];
+    if (old) [fresh.source, fresh.dividers, fresh.half] = [old.source, old.dividers, old.half];
+    if (old) fresh.arrangement = choice('arrangement') as Arrangement, compare = null;
     exposure = facts.exposure, ranged = '';
     // What was there stays in sight until there is something new.
     await fresh.layers.delivered.load(fresh.change, () => {
@@ -315,9 +342,44 @@ async function load(first: boolean, known: Facts | null = null): Promise<void> {
     space = new Space(panes.layers.delivered);
     view.find_place();
     apply();
+    if (shared) show_shared();
     document.body.dataset.ready = '1';
     await new WhatIf(facts, panes, shading, apply).show();
+    compare = new Compare(panes, shading, facts, () => void arrange());
     document.body.dataset.whatif = '1';
+    await compare.show(!by_id('change_section').hidden, files);
+}
+
+/** What the page shows, for a page that is passed on. */
+function present_state(): SharedState {
+    const controls = Object.fromEntries(shared_controls.map(id => [id, box(id).type === 'checkbox' ? box(id).checked : box(id).value]));
+    return {camera: view.words(), controls, range: scale.choice, exposure, hidden: objects.hidden_groups, factors: shading.dimmed,
+        reflectances: shading.reflectances};
+}
+
+/** The state in which this page was shared. What only the program can answer is left out. */
+function show_shared(): void {
+    for (const id of ['share', 'how_section', 'exposure_auto']) by_id(id).hidden = true;
+    const state = shared!.state;
+    if (!state) { if (shared!.views.length > 0) view.from_words(shared!.views[0].camera); return redraw(); }
+    for (const [id, value] of Object.entries(state.controls))
+        if (typeof value === 'boolean') box(id).checked = value; else box(id).value = value;
+    exposure = state.exposure, scale.choice = state.range;
+    shading.dim(state.factors);
+    shading.paint(state.reflectances);
+    objects.hidden_groups = state.hidden;
+    if (!location.hash) view.from_words(state.camera);
+    cut();
+    apply();
+}
+
+async function share(): Promise<void> {
+    card.tell('The page is made.');
+    try {
+        const page = with_state(await load_share(panes.change), present_state(), views.list);
+        save_file((facts.file.split('/').pop() ?? 'room').replace(/\.\w+$/, '') + '.html', 'text/html', page);
+        card.close();
+    } catch (error) { card.tell(String(error)); }
 }
 
 /** A running solve tells what it does, and when there is better light. */
@@ -370,6 +432,7 @@ const tools: Record<string, [string, () => void]> = {
     tool_panel: ['h', toggle_panel], tool_value: ['v', () => use_tool(false)], tool_line: ['l', () => use_tool(measuring === null)],
     tool_section: ['x', toggle_section], tool_colours: ['r', toggle_colours], tool_isolux: ['i', () => toggle('isolux')],
     fit: ['f', show_overview], enter: ['g', enter_room], save_view: ['b', () => {}],
+    share: ['t', () => void share()],
     save_picture: ['p', () => { paint(); save_picture(canvas, by_id('legend'), by_id('labels'), (facts.file.split('/').pop() ?? 'picture').replace(/\.\w+$/, '') + '.png'); }],
 };
 for (const [id, [, act]] of Object.entries(tools)) by_id(id).addEventListener('click', () => { if (panes) act(); });
@@ -402,7 +465,7 @@ document.querySelectorAll<HTMLElement>('.divider').forEach((divider, i) => {
     });
     divider.addEventListener('keydown', event => {
         const step = (event.shiftKey ? 0.05 : 0.01) * (event.key === 'ArrowRight' ? 1 : event.key === 'ArrowLeft' ? -1 : 0);
-        if (step !== 0) { event.preventDefault(); move_divider(i, panes.dividers[i] + step); }
+        if (step !== 0) { event.preventDefault(); move_divider(i, (i > 1 ? panes.half : panes.dividers[i]) + step); }
     });
 });
 let pressed: [number, number] = [0, 0];
@@ -419,6 +482,7 @@ canvas.addEventListener('keyup', event => {
     const tool = Object.entries(tools).find(([, [k]]) => k === key && k !== 'h');
     if (tool) by_id(tool[0]).click();
     if (key === 'm') toggle('mesh');
+    if (key === 'k') compare?.keep();
     if (key === 'escape') { use_tool(false); chosen.clear(); redraw(); }
     if (key === 'c') {
         const select = by_id<HTMLSelectElement>('arrangement');
@@ -442,7 +506,10 @@ const debug = renderer.getContext().getExtension('WEBGL_debug_renderer_info');
 const processor = debug ? String(renderer.getContext().getParameter(debug.UNMASKED_RENDERER_WEBGL)) : '';
 by_id('software').hidden = !/swiftshader|llvmpipe|software|basic render/i.test(processor);
 
-asked_state.then(async state => state.solving ? follow() : load(true, await asked_facts))
+asked_state.then(async (state: State) => {
+    files = state.files;
+    return state.solving ? follow() : load(true, await asked_facts);
+})
     .catch(error => { by_id('facts').textContent = String(error); });
 // What tests of the page ask for.
 Object.assign(window, {exitance: {words: () => view.words(), exposure: () => shading.uniforms.scale.value as number,

@@ -18,9 +18,14 @@ const series = ['exact', 'delivered', 'raw'] as const;
 const titles = {exact: 'exact', delivered: 'continuous', raw: "method's elements"};
 const values_of = (profile: Profile, name: typeof series[number]) => name === 'exact' ? profile.values : profile[name];
 
+export function distance_words(a: THREE.Vector3, b: THREE.Vector3): string {
+    const way = b.clone().sub(a);
+    return `${way.length().toFixed(3)} m  (${way.toArray().map(x => x.toFixed(3)).join(', ')} along x, y, z)`;
+}
+
 export function line_words(profile: Profile, a: THREE.Vector3, b: THREE.Vector3, unit: string): string {
-    const way = b.clone().sub(a), mean = profile.values.reduce((sum, v) => sum + v, 0) / profile.values.length;
-    return `${profile.length.toFixed(3)} m  (${way.toArray().map(x => x.toFixed(3)).join(', ')} along x, y, z)\n` +
+    const mean = profile.values.reduce((sum, v) => sum + v, 0) / profile.values.length;
+    return `${distance_words(a, b)}\n` +
         `light along it: ${short(Math.min(...profile.values))} to ${short(Math.max(...profile.values))} ${unit}, mean ${short(mean)} ${unit}`;
 }
 

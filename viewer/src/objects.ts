@@ -20,6 +20,9 @@ export class Objects {
         this.tell();
     }
 
+    get hidden_groups(): number[] { return [...this.hidden].sort((a, b) => a - b); }
+    set hidden_groups(groups: number[]) { this.hidden = new Set(groups); this.tell(); }
+
     private alike(group: number): number[] { return this.of_name.get(this.facts.groups[group] ?? '') ?? [group]; }
 
     hide(group: number): void {
@@ -39,7 +42,7 @@ export class Objects {
     }
 
     private tell(): void {
-        this.changed([...this.hidden].sort((a, b) => a - b));
+        this.changed(this.hidden_groups);
         this.show();
     }
 
@@ -53,7 +56,7 @@ export class Objects {
             box.checked = !groups.some(g => this.hidden.has(g));
             box.addEventListener('change', () => {
                 for (const g of groups) box.checked ? this.hidden.delete(g) : this.hidden.add(g);
-                this.changed([...this.hidden].sort((a, b) => a - b));
+                this.changed(this.hidden_groups);
                 by_id('objects_all').hidden = this.hidden.size === 0;
             });
             only.addEventListener('click', () => { this.isolate(groups[0]); document.getElementById(`object_${i}`)?.focus(); });

@@ -24,6 +24,10 @@ export class ScaleControl {
         by_id('scale_auto').addEventListener('click', () => { this.chosen = null, this.log.checked = false; renewed(); });
     }
 
+    /** The range that somebody chose; null: automatic. */
+    get choice(): [number, number] | null { return this.chosen; }
+    set choice(range: [number, number] | null) { this.chosen = range; }
+
     get palette(): string { return by_id<HTMLSelectElement>('palette').value; }
     /** Negative: none. */
     get threshold(): number { return this.threshold_number.value === '' ? -1 : Math.max(0, Number(this.threshold_number.value)); }

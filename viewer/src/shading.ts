@@ -1,11 +1,13 @@
 // From light to what is shown: the program's tone curves and its palettes, so that pictures agree with `render`.
 import * as THREE from 'three';
-import {colour_at, css, most_steps} from './colours';
+import {colour_at, css, difference_colours, most_steps} from './colours';
 import type {Facts, Seen, Triple} from './data';
 
 /** Sources, lit, penumbra, umbra, no class; as `render --shadow-classes` has them. */
 export const class_colours: [string, Triple][] = [['source', [255, 255, 255]], ['lit', [246, 226, 138]],
     ['penumbra', [176, 122, 150]], ['umbra', [58, 62, 110]], ['no class', [20, 20, 24]]];
+/** Surfaces of two scenes are the same in a pixel if their distances differ by at most this share. */
+export const same_place = 0.01;
 export type Shown = 'picture' | 'radiosity' | 'irradiance' | 'classes';
 
 /**
@@ -123,7 +125,33 @@ void main() {
 #ifdef VALUES
     colour = valued(colour, dot(shown == 1 ? B : E, weights));
 #endif
+#ifdef NUMBERS
+    gl_FragColor = vec4(dot(shown == 1 ? B : E, weights), 1.0 / gl_FragCoord.w, gl_FrontFacing ? 1.0 : 0.0, 1.0);
+#else
     gl_FragColor = vec4(gl_FrontFacing ? colour : srgb(vec3(0.02)), 1.0);
+#endif
+}`;
+
+/**
+ * Present light minus other light, each a value, a distance and whether it is of a front. Where only one of them shows a
+ * surface, or one at another distance, a pixel is hatched.
+ */
+const difference_fragment = `
+uniform sampler2D present;
+uniform sampler2D other;
+uniform int difference_count;
+uniform float difference_steps[${most_steps}];
+uniform vec3 difference_colours[${most_steps}];
+varying vec2 at;
+void main() {
+    vec4 a = texture2D(present, at), b = texture2D(other, at);
+    if (a.a < 0.5 && b.a < 0.5) discard;
+    bool apart = a.a < 0.5 || b.a < 0.5 || abs(a.g - b.g) > ${same_place} * max(a.g, b.g);
+    vec3 colour = difference_colours[0];
+    for (int i = 1; i < ${most_steps}; ++i) if (i < difference_count && a.r - b.r >= difference_steps[i - 1]) colour = difference_colours[i];
+    if (apart) colour = vec3(mod(gl_FragCoord.x + gl_FragCoord.y, 8.0) < 2.0 ? 0.55 : 0.35);
+    else if (min(a.b, b.b) < 0.5) colour = vec3(0.15);
+    gl_FragColor = vec4(colour, 1.0);
 }`;
 
 const frame_vertex = `varying vec2 at; void main() { at = 0.5 * position.xy + 0.5; gl_Position = vec4(position.xy, 0.0, 1.0); }`;
@@ -151,6 +179,9 @@ export class Shading {
     /** Of elements and of the program's pictures; they change with `show`. */
     material: THREE.ShaderMaterial;
     frame: THREE.ShaderMaterial;
+    /** Values instead of colours, and what is made of two of them. */
+    numbers: THREE.ShaderMaterial;
+    readonly difference: THREE.ShaderMaterial;
     readonly uniforms: Record<string, THREE.IUniform>;
     readonly seen: Seen = {backs: true, hidden: [], cut: null};
     private made = new Map<string, THREE.ShaderMaterial>();
@@ -162,10 +193,14 @@ export class Shading {
     private threshold = -1;
     private under_lines = false;
     steps: number[] = [0, 1];
+    /** Bounds of the bands of differences; the outer bands are open. */
+    difference_steps: number[] = [];
     /** By material, as painted. */
     reflectances: Triple[] = [];
+    /** Of other light in the same picture: it has materials and lamps of its own, and these settings. */
+    private twin: Shading | null = null;
 
-    constructor(private facts: Facts) {
+    constructor(private facts: Facts, leader: Shading | null = null) {
         this.table = float_table(Math.max(1, facts.materials.length), 2);
         this.factors = float_table(facts.groups.length + 1, 1);
         (this.factors.image.data as unknown as Float32Array).fill(1);
@@ -175,16 +210,53 @@ export class Shading {
             steps: {value: new Float32Array(most_steps)}, weights: {value: new THREE.Vector3(...facts.weights)},
             colours: {value: Array.from({length: most_steps}, () => new THREE.Vector3())},
             classes: {value: class_colours.map(([, c]) => new THREE.Vector3(...c).divideScalar(255))},
-            light: {value: null}, rest: {value: null}, opacity: {value: 1}, cut: {value: new THREE.Vector4()}};
-        this.material = this.make(false), this.frame = this.make(true);
+            light: {value: null}, rest: {value: null}, opacity: {value: 1}, cut: {value: new THREE.Vector4()},
+            present: {value: null}, other: {value: null}, difference_count: {value: 0}, difference_steps: {value: new Float32Array(most_steps)},
+            difference_colours: {value: Array.from({length: most_steps}, () => new THREE.Vector3())}};
+        if (leader) for (const name of ['shown', 'curve', 'scale', 'isolux', 'step_count', 'threshold', 'steps', 'colours', 'cut'])
+            this.uniforms[name] = leader.uniforms[name];
+        this.difference = new THREE.ShaderMaterial({uniforms: this.uniforms, toneMapped: false, vertexShader: frame_vertex,
+            fragmentShader: difference_fragment, depthTest: false, depthWrite: false});
+        this.material = this.make(false), this.frame = this.make(true), this.numbers = this.make(false, true);
         this.paint(facts.materials.map(m => m.reflectance));
-        this.set_steps([0, 1], 'viridis');
+        if (!leader) this.set_steps([0, 1], 'viridis');
     }
 
-    private make(frame: boolean): THREE.ShaderMaterial {
+    /** A shading of other light, of this scene or another. It has the lamps and materials of now and follows none of the settings yet. */
+    make_twin(facts: Facts): Shading {
+        const twin = new Shading(facts, this);
+        if (facts === this.facts) {
+            twin.paint(this.reflectances);
+            (twin.factors.image.data as unknown as Float32Array).set(this.factors.image.data as unknown as Float32Array);
+            twin.use_groups(this.grouped);
+        }
+        return twin;
+    }
+
+    /** Has the shading of other light follow all settings but lamps and materials. */
+    lead(twin: Shading | null): void {
+        this.twin = twin;
+        if (!twin) return;
+        twin.see_backs(this.seen.backs);
+        twin.leave_room_for_lines(this.under_lines);
+        twin.show(this.shown, this.isolux, this.threshold);
+        twin.cut(this.seen.cut);
+        this.hide_in_twin();
+    }
+
+    /** Hides the groups of the same names in other light. */
+    private hide_in_twin(): void {
+        if (!this.twin) return;
+        const {groups} = this.twin.facts, names = new Set(this.seen.hidden.map(g => this.facts.groups[g] ?? ''));
+        const hidden = [...groups, ''].flatMap((name, g) => names.has(name) ? [g] : []);
+        this.twin.hide(hidden);
+    }
+
+    private make(frame: boolean, numbers = false): THREE.ShaderMaterial {
         const defines: Record<string, string> = {};
+        if (numbers) defines.VALUES = defines.NUMBERS = '1';
         if (this.shown === 'radiosity' || this.shown === 'irradiance' || this.isolux || this.threshold >= 0) defines.VALUES = '1';
-        if (this.shown === 'classes' && !frame) defines.CLASSES = '1';
+        if (this.shown === 'classes' && !frame && !numbers) defines.CLASSES = '1';
         if (this.grouped && !frame) defines.GROUPS = '1';
         if (this.seen.cut && !frame) defines.CUT = '1';
         const key = Object.keys(defines).join() + frame;
@@ -200,7 +272,7 @@ export class Shading {
         return found;
     }
 
-    private remake(): void { this.material = this.make(false), this.frame = this.make(true); }
+    private remake(): void { this.material = this.make(false), this.frame = this.make(true), this.numbers = this.make(false, true); }
 
     show(shown: Shown, isolux: boolean, threshold: number): void {
         this.shown = shown, this.isolux = isolux, this.threshold = threshold;
@@ -208,6 +280,7 @@ export class Shading {
         this.uniforms.isolux.value = isolux;
         this.uniforms.threshold.value = threshold;
         this.remake();
+        this.twin?.show(shown, isolux, threshold);
     }
 
     /**
@@ -215,6 +288,7 @@ export class Shading {
      * the backs of their neighbours, which would show as dark dashes along the edges of bodies.
      */
     leave_room_for_lines(lines: boolean): void {
+        this.twin?.leave_room_for_lines(lines);
         if (lines === this.under_lines) return;
         this.under_lines = lines;
         this.remake();
@@ -222,6 +296,7 @@ export class Shading {
 
     /** Backs of faces are nearly black, or what is behind them is seen. */
     see_backs(backs: boolean): void {
+        this.twin?.see_backs(backs);
         if (backs === this.seen.backs) return;
         this.seen.backs = backs;
         this.remake();
@@ -232,6 +307,7 @@ export class Shading {
         this.seen.cut = plane;
         if (plane) (this.uniforms.cut.value as THREE.Vector4).fromArray(plane);
         this.remake();
+        this.twin?.cut(plane);
     }
 
     hide(groups: number[]): void {
@@ -239,6 +315,7 @@ export class Shading {
         const data = this.factors.image.data as unknown as Float32Array;
         for (let g = 0; g <= this.facts.groups.length; ++g) data[4 * g + 1] = groups.includes(g) ? 0 : 1;
         this.use_groups(groups.length > 0);
+        this.hide_in_twin();
     }
 
     /** Reflectances in the first row, exitances in the second. */
@@ -262,6 +339,21 @@ export class Shading {
         this.factors.needsUpdate = true;
         if (needed) this.grouped = true;
         this.remake();
+    }
+
+    /** Colours of the differences up to `most` either way. */
+    set_differences(most: number): void {
+        const {steps, colours} = difference_colours(most), u = this.uniforms;
+        this.difference_steps = steps;
+        u.difference_count.value = colours.length;
+        steps.forEach((s, i) => { u.difference_steps.value[i] = s; });
+        colours.forEach((c, i) => { (u.difference_colours.value[i] as THREE.Vector3).set(...c).divideScalar(255); });
+    }
+
+    /** What `dim` and `paint` were last given. */
+    get dimmed(): number[] {
+        const data = this.factors.image.data as unknown as Float32Array;
+        return this.facts.groups.map((_, i) => data[4 * i]);
     }
 
     set_steps(steps: number[], palette: string): void {

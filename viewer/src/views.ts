@@ -6,12 +6,16 @@ export interface SavedView { name: string; camera: string }
 export class Views {
     private all: SavedView[] = [];
 
-    constructor(private file: string, private go: (camera: string) => void) {
-        try { this.all = JSON.parse(localStorage.getItem(this.key) ?? '[]') as SavedView[]; } catch { this.all = []; }
+    /** `given`: views that a shared page has; null: those that the browser keeps. */
+    constructor(private file: string, private given: SavedView[] | null, private go: (camera: string) => void) {
+        if (given) this.all = [...given];
+        else try { this.all = JSON.parse(localStorage.getItem(this.key) ?? '[]') as SavedView[]; } catch { this.all = []; }
         this.show();
     }
 
     private get key(): string { return `exitance views of ${this.file}`; }
+
+    get list(): SavedView[] { return this.all; }
 
     add(camera: string): void {
         this.all.push({name: `View ${this.all.length + 1}`, camera});
@@ -33,7 +37,7 @@ export class Views {
     }
 
     private keep(): void {
-        try { localStorage.setItem(this.key, JSON.stringify(this.all)); } catch { /* A browser may refuse to keep anything. */ }
+        if (!this.given) try { localStorage.setItem(this.key, JSON.stringify(this.all)); } catch { /* A browser may refuse to keep anything. */ }
         this.show();
     }
 

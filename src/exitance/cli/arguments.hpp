@@ -156,6 +156,8 @@ struct ReportArguments : CommonArguments {
     std::vector<std::string> tasks;  ///< Tasks of rooms, "NAME" or "ROOM=NAME".
     std::string tasks_file;          ///< Further tasks (TOML); empty: none.
     bool lists_tasks = false;        ///< Print the known tasks, and nothing else.
+    std::string words;               ///< Template of the page: "german" or a TOML file; empty: English.
+    bool lists_words = false;        ///< Print the German template, and nothing else.
     PictureSize size{960, 600};
     UnitArguments unit;
     int threads = 0;
@@ -260,7 +262,9 @@ struct SweepArguments : CommonArguments {
 };
 
 struct ViewArguments : CommonArguments {
-    SceneArguments scene;  ///< A scene to solve, or one solution (.h5).
+    SceneArguments scene;  ///< A scene to solve, or one or two solutions (.h5).
+    std::string output;    ///< Page to write (.html) instead of serving one; empty: none.
+    std::string views;     ///< Saved views (.json) for that page; empty: none.
     int port = 0;          ///< Port on 127.0.0.1; 0: any free port.
     double error = 0.02;   ///< Requested relative RMS error if a scene is solved.
     /// For a scene: its method, its threads, and the options of `view_light_options`.

@@ -129,6 +129,10 @@ void declare_standards(CLI::App& app, ReportArguments& arguments) {
         ->type_name("TASK")
         ->expected(1)
         ->take_all();
+    app.add_option("--template", arguments.words,
+                   "Words and sections of the page: german, or a TOML file. Default: English, all sections")
+        ->type_name("FILE");
+    app.add_flag("--list-words", arguments.lists_words, "Print the German template, from which others can be made");
     app.add_option("--tasks", arguments.tasks_file, "Further tasks (TOML), which replace known ones of the same name")
         ->type_name("FILE");
     app.add_flag("--list-tasks", arguments.lists_tasks, "Print the known tasks with their requirements, and end");

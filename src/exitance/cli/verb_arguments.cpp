@@ -347,7 +347,15 @@ void declare(CLI::App& app, ViewFactorArguments& arguments) {
 
 void declare(CLI::App& app, ViewArguments& arguments) {
     declare_scene(app, arguments.scene);
-    app.get_option("SCENE")->description("Solution file (.h5), or a scene, whose light is shown while it is solved");
+    app.get_option("SCENE")->description(
+        "Solution file (.h5), two solutions of one room to compare, or a scene, whose light is shown while it is "
+        "solved");
+    app.add_option("-o,--output", arguments.output,
+                   "Page to write (.html) instead of serving one: it holds a solution and needs no program")
+        ->type_name("FILE");
+    app.add_option("--views", arguments.views,
+                   "Saved views for the page of -o (.json), as the viewer saves them; it opens with the first")
+        ->type_name("FILE");
     add_count(app, "--port", arguments.port, 0, "Port on 127.0.0.1. Default: any free port")
         ->check(CLI::Range(0, 65535));
     add_positive(app, "--error", arguments.error, "R", "Requested relative RMS error of a scene. Default 0.02")

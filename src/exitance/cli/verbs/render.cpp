@@ -132,7 +132,7 @@ Result<void> write_display(const RenderArguments& arguments, const RadiosityFunc
     if (arguments.isolux) {
         const Quantity quantity = unit.is_lux() ? Quantity::illuminance : Quantity::irradiance;
         draw_isolux(image, shown, quantity, make_colour_scale(shown, quantity, arguments.scale),
-                    title(quantity, unit.is_lux()));
+                    "lines " + title(quantity, unit.is_lux()));
     }
     if (arguments.false_colour)
         draw_legend(image, title(*arguments.false_colour, unit.is_lux()),

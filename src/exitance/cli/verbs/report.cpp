@@ -62,8 +62,9 @@ void add_pictures(const ReportArguments& arguments, const RadiosityFunction& lig
     const Picture shown = in_unit(picture, content.unit);
     const ColourScale scale = make_colour_scale(shown, quantity);
     Image image = false_colour_image(shown, quantity, scale);
-    if (lux) draw_isolux(image, shown, quantity, scale, title(quantity, lux));
-    draw_legend(image, title(quantity, lux), scale);
+    const std::string legend = content.words.text(title(quantity, lux));
+    if (lux) draw_isolux(image, shown, quantity, scale, content.words.text("lines " + title(quantity, lux)));
+    draw_legend(image, legend, scale);
     content.pictures.push_back(
         {(lux ? "Illuminance in lx" : "Irradiance in W/m²") + note, describe(camera), std::move(image)});
 }
@@ -164,6 +165,9 @@ std::optional<Error> find_misuse(const ReportArguments& arguments) {
     if (!arguments.requirements.empty() && !measures && arguments.observers.empty())
         return Error{ErrorCode::usage, "has no effect without measuring planes or observers", "--require",
                      "add --plane 0.75 or --observers auto"};
+    if (!arguments.words.empty() && arguments.output.empty())
+        return Error{ErrorCode::usage, "is for a page, and tables stay as they are", "--template",
+                     "add a page, -o room.html"};
     if (!arguments.pdf.empty() && arguments.output.empty())
         return Error{ErrorCode::usage, "is printed from a page", "--pdf", "add a page, -o room.html"};
     if (!arguments.pdf.empty() && ending(arguments.pdf) != ".pdf")
@@ -244,6 +248,11 @@ ExitCode make_report(const ReportArguments& arguments, std::span<const LightingT
             return terminal.fail(printer.error());
     ReportContent content;
     content.heading = arguments.heading, content.requirements = arguments.requirements;
+    if (!arguments.words.empty()) {
+        Result<ReportWords> words = ReportWords::load(arguments.words);
+        if (!words) return terminal.fail(words.error());
+        content.words = std::move(*words);
+    }
     for (const MeasuringPlane& plane : arguments.planes) {
         Result<GridLight> grid = make_grid(plane);
         if (!grid) return terminal.fail(grid.error());
@@ -275,12 +284,16 @@ ExitCode make_report(const ReportArguments& arguments, std::span<const LightingT
 
 }  // namespace
 
-/// Runs `exitance report SOLUTION -o PAGE --tables FOLDER` or `exitance report --list-tasks`.
+/// Runs `exitance report SOLUTION -o PAGE --tables FOLDER`, `exitance report --list-tasks` or `--list-words`.
 ExitCode run(const ReportArguments& given, Terminal& terminal) {
     const Result<std::vector<LightingTask>> tasks = load_tasks(given.tasks_file);
     if (!tasks) return terminal.fail(tasks.error());
     if (given.lists_tasks) {
         terminal.print(table_of_tasks(*tasks));
+        return ExitCode::done;
+    }
+    if (given.lists_words) {
+        terminal.print(known_report_words("german"));
         return ExitCode::done;
     }
     const ReportArguments arguments = with_needs_of_tasks(given, *tasks);

@@ -14,9 +14,14 @@
 #include "exitance/cli/view/view_changes.hpp"
 #include "exitance/cli/view/view_events.hpp"
 #include "exitance/cli/view/view_frames.hpp"
+#include "exitance/cli/view/view_pair.hpp"
+#include "exitance/cli/view/view_share.hpp"
 #include "exitance/cli/view/view_words.hpp"
+#include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/export/viewer_data.hpp"
 #include "exitance/io/export/viewer_part.hpp"
+#include "exitance/io/files/atomic_file.hpp"
+#include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/io/solution/solution_file.hpp"
 #include "exitance/measure/pictures/automatic_camera.hpp"
@@ -70,19 +75,35 @@ class Gallery {
         return all_.empty() ? nullptr : all_.back().get();
     }
 
+    /// The second of two solutions that are compared; null if there is one only.
+    const Viewed* other() const { return other_.get(); }
+    void set_other(Solution solution) { other_ = std::make_unique<Viewed>(std::move(solution), newest()->camera); }
+
   private:
     mutable std::mutex mutex_;
     std::deque<std::unique_ptr<Viewed>> all_;
+    std::unique_ptr<Viewed> other_;
 };
+
+/// The viewer's page with the light of a solution as one file. `facts`: the solution whose materials and lamps the page
+/// describes; the page multiplies and paints them by itself.
+Result<std::string> share(const std::string& page, const Viewed& facts, const Viewed& light, const LightUnit& unit,
+                          const std::string& views) {
+    std::vector<std::string> parts;
+    for (std::size_t i = 0; i < viewer_part_count(light.solution, ViewerLayer::exported); ++i)
+        parts.push_back(viewer_part(light.solution, ViewerLayer::exported, i));
+    return make_shared_page(page, {viewer_scene_json(facts.solution, facts.camera, unit), parts, views});
+}
 
 /// Registers the requests that read the newest solution, with the changes of light that they specify.
 void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames, ViewChanges<Viewed>& changes,
                  const ViewUnits& units) {
     const auto with_light = [&gallery, &changes](auto answer) {
         return [&gallery, &changes, answer](const Parameters& parameters) -> ViewAnswer {
-            const Viewed* viewed = gallery.newest();
+            const bool is_other = view_text(parameters, "of") == "other";
+            const Viewed* viewed = is_other ? gallery.other() : gallery.newest();
             if (!viewed) return view_absent;
-            if (!changes.are_asked_for(parameters)) return answer(*viewed, parameters);
+            if (is_other || !changes.are_asked_for(parameters)) return answer(*viewed, parameters);
             const auto changed = changes.find(*viewed, parameters);
             return changed ? answer(**changed, parameters)
                            : ViewAnswer{400, "text/plain", changed.error().message + " " + changed.error().hint};
@@ -134,6 +155,25 @@ void serve_light(ViewServer& server, const Gallery& gallery, ViewFrames& frames,
                                      viewer_line_json(v.light(), {n[0], n[1], n[2]}, {n[3], n[4], n[5]},
                                                       normalized(normal), points, units(v.solution.scene))};
                }));
+}
+
+/// Registers the request for a page that holds its data.
+void serve_share(ViewServer& server, const Gallery& gallery, ViewChanges<Viewed>& changes, const ViewUnits& units,
+                 const std::string& page) {
+    server.get("/share", [&gallery, &changes, units, page](const Parameters& parameters) -> ViewAnswer {
+        const Viewed* viewed = gallery.newest();
+        if (!viewed) return view_absent;
+        std::shared_ptr<const Viewed> changed;
+        if (changes.are_asked_for(parameters)) {
+            const auto found = changes.find(*viewed, parameters);
+            if (!found) return {400, "text/plain", found.error().message + " " + found.error().hint};
+            changed = *found;
+        }
+        const LightUnit unit = units(viewed->solution.scene);
+        const Result<std::string> shared = share(page, *viewed, changed ? *changed : *viewed, unit, "[]");
+        if (!shared) return {500, "text/plain", shared.error().message};
+        return {200, "text/html; charset=utf-8", *shared};
+    });
 }
 
 /// A solve that shows its light as it converges.
@@ -247,14 +287,31 @@ std::optional<Error> find_options_of_scenes(const ViewArguments& arguments) {
     return {};
 }
 
+/// The error of options for a page to share that do not fit; none if they do.
+std::optional<Error> find_misused_output(const ViewArguments& arguments) {
+    if (arguments.output.empty() && !arguments.views.empty())
+        return Error{ErrorCode::usage, "is for a page that is written", "--views", "add -o ROOM.html"};
+    if (arguments.output.empty()) return {};
+    if (ending(arguments.output) != ".html")
+        return Error{ErrorCode::usage, "pages are written as .html", arguments.output,
+                     "name the output something.html"};
+    if (arguments.scene.files.size() > 1)
+        return Error{ErrorCode::usage, "holds one solution", arguments.output, "name one solution, or omit -o"};
+    return {};
+}
+
 /// Checks the options for a scene, and completes those for loading it.
 Result<void> prepare(ViewArguments& arguments) {
     LoadOptions& load = arguments.scene.load;
     const std::vector<std::string>& files = arguments.scene.files;
     const auto solution = std::find_if(files.begin(), files.end(), [](const auto& f) { return f.ends_with(".h5"); });
     if (solution != files.end())
-        return Error{ErrorCode::usage, "is a solution, and view shows one solution, or one scene of several files",
-                     *solution, "show each solution by a view of its own"};
+        return Error{ErrorCode::usage,
+                     "is a solution, and view shows one solution, two solutions, or one scene of several files",
+                     *solution, "name two solutions at most, and no scenes beside them"};
+    if (!arguments.output.empty() || !arguments.views.empty())
+        return Error{ErrorCode::usage, "-o and --views are for solutions", files[0],
+                     "solve the scene first: exitance solve SCENE -o S.h5"};
     SolveRequest request = arguments.request;
     request.options.error = arguments.error;
     if (const Result<Way> way = find_way(request); !way) return way.error();
@@ -262,40 +319,55 @@ Result<void> prepare(ViewArguments& arguments) {
     return read_sky(request, load);
 }
 
-}  // namespace
-
-/// Runs `exitance view SOLUTION` or `exitance view SCENE`.
-ExitCode run(const ViewArguments& given, Terminal& terminal) {
-    ViewArguments arguments = given;
-    const Result<std::string> page = find_viewer_page();
-    if (!page) return terminal.fail(page.error());
-    set_threads(arguments.request.options.threads);
+/// Runs `exitance view SOLUTION [SOLUTION]`, or writes a page to share.
+ExitCode view_solutions(const ViewArguments& arguments, const std::string& page, ViewServer& server,
+                        Terminal& terminal) {
+    if (const std::optional<Error> error = find_options_of_scenes(arguments)) return terminal.fail(*error);
+    const std::vector<std::string>& files = arguments.scene.files;
+    if (const std::optional<Error> error = find_misused_output(arguments)) return terminal.fail(*error);
     Gallery gallery;
     const ViewUnits units(arguments.unit);
-    ViewFrames frames(units);
-    ViewServer server;
-    if (const Result<void> read = server.serve_page(*page); !read) return terminal.fail(read.error());
     LightGroups groups;
-    const bool solves = arguments.scene.files.size() > 1 || !arguments.scene.files[0].ends_with(".h5");
-    server.get("/data/state", [solves](const Parameters&) {
-        return ViewAnswer{200, "application/json", solves ? R"({"solving": true})" : R"({"solving": false})"};
-    });
-    if (!solves) {
-        if (const std::optional<Error> error = find_options_of_scenes(arguments)) return terminal.fail(*error);
-        Result<Solution> solution = load_solution(arguments.scene.files[0], Rehearsed::not_yet, &groups);
-        if (!solution) return terminal.fail(solution.error());
-        unit_of(arguments.unit, solution->scene, terminal);
-        gallery.add(std::move(*solution));
-        ViewChanges<Viewed> changes(std::move(groups));
-        serve_light(server, gallery, frames, changes, units);
-        return serve(server, arguments, nullptr, terminal);
+    Result<Solution> solution = load_solution(files[0], Rehearsed::not_yet, &groups);
+    if (!solution) return terminal.fail(solution.error());
+    unit_of(arguments.unit, solution->scene, terminal);
+    gallery.add(std::move(*solution));
+    const Scene& scene = gallery.newest()->solution.scene;
+    if (!arguments.output.empty()) {
+        Result<std::string> views("[]");
+        if (!arguments.views.empty()) views = read_saved_views(arguments.views);
+        if (!views) return terminal.fail(views.error());
+        const Result<std::string> shared = share(page, *gallery.newest(), *gallery.newest(), units(scene), *views);
+        if (!shared) return terminal.fail(shared.error());
+        const Result<void> written = write_file(arguments.output, *shared);
+        return written ? ExitCode::done : terminal.fail(written.error());
     }
+    if (files.size() == 2) {
+        Result<Solution> other = load_solution(files[1]);
+        if (!other) return terminal.fail(other.error());
+        const Result<void> fits = check_pair(scene, other->scene, units, files[1]);
+        if (!fits) return terminal.fail(fits.error());
+        gallery.set_other(std::move(*other));
+    }
+    ViewFrames frames(units);
+    ViewChanges<Viewed> changes(std::move(groups));
+    serve_light(server, gallery, frames, changes, units);
+    serve_share(server, gallery, changes, units, page);
+    return serve(server, arguments, nullptr, terminal);
+}
+
+/// Runs `exitance view SCENE`.
+ExitCode view_scene(ViewArguments& arguments, const std::string& page, ViewServer& server, Terminal& terminal) {
     if (const Result<void> fit = prepare(arguments); !fit) return terminal.fail(fit.error());
     const LoadOptions& load = arguments.scene.load;
     if (load.sky)
         for (const std::string& warning : load.sky->warnings) terminal.progress().warn(warning);
-    ViewChanges<Viewed> changes(std::move(groups));
+    Gallery gallery;
+    const ViewUnits units(arguments.unit);
+    ViewFrames frames(units);
+    ViewChanges<Viewed> changes({});
     serve_light(server, gallery, frames, changes, units);
+    serve_share(server, gallery, changes, units, page);
     CheckedScene checked = load_scene(arguments.scene.files, load);
     terminal.show(checked.findings);
     if (!checked.scene) return terminal.fail(checked);
@@ -306,6 +378,26 @@ ExitCode run(const ViewArguments& given, Terminal& terminal) {
     RunningSolve running(arguments, std::move(*checked.scene), gallery, changes, terminal);
     running.serve(server);
     return serve(server, arguments, &running, terminal);
+}
+
+}  // namespace
+
+/// Runs `exitance view`.
+ExitCode run(const ViewArguments& given, Terminal& terminal) {
+    ViewArguments arguments = given;
+    const Result<std::string> page = find_viewer_page();
+    if (!page) return terminal.fail(page.error());
+    set_threads(arguments.request.options.threads);
+    ViewServer server;
+    if (const Result<void> read = server.serve_page(*page); !read) return terminal.fail(read.error());
+    const std::vector<std::string>& files = arguments.scene.files;
+    const bool solves =
+        files.size() > 2 || !std::all_of(files.begin(), files.end(), [](const auto& f) { return f.ends_with(".h5"); });
+    const std::string pair =
+        solves || files.size() < 2 ? "null" : fmt::format("[{}, {}]", json_text(files[0]), json_text(files[1]));
+    const std::string state = fmt::format(R"({{"solving": {}, "files": {}}})", solves, pair);
+    server.get("/data/state", [state](const Parameters&) { return ViewAnswer{200, "application/json", state}; });
+    return solves ? view_scene(arguments, *page, server, terminal) : view_solutions(arguments, *page, server, terminal);
 }
 
 }  // namespace exitance

@@ -128,7 +128,7 @@ void draw_segments(Image& image, const std::vector<Segment>& segments, double wi
 }  // namespace
 
 void draw_isolux(Image& image, const Picture& picture, Quantity quantity, const ColourScale& scale,
-                 const std::string& title) {
+                 const std::string& caption) {
     constexpr Rgb paper{20, 20, 24}, ink{255, 255, 255};
     const int s = std::max(1, std::min(image.width / 600, image.height / 375)), size = 11 * s;
     const std::vector<Segment> segments = find_segments(picture, quantity, scale);
@@ -136,7 +136,6 @@ void draw_isolux(Image& image, const Picture& picture, Quantity quantity, const 
     std::vector<int> lines = lines_of(segments, picture.size);
 
     const std::vector<std::string> names = scale.names();
-    const std::string caption = "lines " + title;
     std::vector<Label> labels{{0, image.height - 16 * s, text_width(caption, size) + 8 * s, 16 * s}};
     const auto write = [&](const Label& label, const std::string& text) {
         fill_rectangle(image, label.left, label.top, label.width, label.height, paper);

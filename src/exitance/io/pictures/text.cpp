@@ -28,6 +28,16 @@ class Font {
         if (library_) FT_Done_FreeType(library_);  // also releases the face
     }
 
+    static constexpr FT_ULong last_ascii = 0x7f;
+
+    /// The letter at a place of UTF-8. Letters of two bytes, up to U+07FF, have Europe's accents; others are read byte
+    /// by byte.
+    static FT_ULong letter_at(std::string_view text, std::size_t i) {
+        const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(k < text.size() ? text[k] : 0); };
+        const bool is_pair = (byte(i) & 0xe0u) == 0xc0u && (byte(i + 1) & 0xc0u) == 0x80u;
+        return is_pair ? (byte(i) & 0x1fu) << 6 | (byte(i + 1) & 0x3fu) : byte(i) & last_ascii;
+    }
+
     /// Calls visit(bitmap, left, above) for each letter: its coverage, the column of the bitmap's left side, and the
     /// rows from the bitmap's top down to the baseline. Returns the width of the text in pixels.
     template <class Visit>
@@ -38,8 +48,8 @@ class Font {
         FT_Pos pen = 0;
         for (std::size_t i = 0; i < text.size(); ++i) {
             const bool raises = text.substr(i, 2) == "^2";
-            const FT_ULong letter = raises ? raised_two : static_cast<unsigned char>(text[i]);
-            if (raises) ++i;
+            const FT_ULong letter = raises ? raised_two : letter_at(text, i);
+            if (raises || letter > last_ascii) ++i;
             if (FT_Load_Char(face_, letter, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP) != 0) continue;
             FT_GlyphSlot glyph = face_->glyph;
             const FT_Pos advance = glyph->advance.x;

@@ -46,6 +46,11 @@ TEST(PictureText, WidthsAddUp) {
     EXPECT_NEAR(text_width("100", 22), 2 * text_width("100", 11), 1);
 }
 
+TEST(PictureText, AccentedLettersOfUtf8AreOneLetter) {
+    EXPECT_EQ(text_width("ä", 20), text_width("a", 20));
+    EXPECT_LT(bounds(written("ä", 20))[1], bounds(written("a", 20))[1]);
+}
+
 TEST(PictureText, SquaresAreRaised) {
     const std::array<int, 4> two = bounds(written("2", 20)), square = bounds(written("^2", 20));
     EXPECT_LT(square[3], two[3] - 4);  // a raised 2 ends well above the line

@@ -8,6 +8,7 @@
 #include "exitance/error/error_percentile.hpp"
 #include "exitance/evaluate/surface_levels.hpp"
 #include "exitance/io/pictures/false_colour.hpp"
+#include "exitance/io/report/report_words.hpp"
 #include "exitance/measure/floor_rooms.hpp"
 #include "exitance/measure/glare/glare.hpp"
 #include "exitance/measure/light_maps/light_map.hpp"
@@ -47,6 +48,7 @@ struct ReportHeading {
 /// Content of a report. The solution must outlive this object.
 struct ReportContent {
     ReportHeading heading;
+    ReportWords words;  ///< Language and order of the page.
     std::vector<Requirement> requirements;
     const Solution* solution = nullptr;
     LightUnit unit;  ///< Unit of all light values.

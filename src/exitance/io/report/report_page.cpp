@@ -311,6 +311,18 @@ std::string embedded(std::string json) {
     return json;
 }
 
+/// Parts of the page by name, in their own order or in that of `names`. The part without a name comes first then.
+std::string in_order(const std::vector<std::pair<std::string, std::string>>& parts,
+                     const std::vector<std::string>& names) {
+    std::string html;
+    for (const auto& [name, part] : parts)
+        if (names.empty() || name.empty()) html += part;
+    for (const std::string& name : names)
+        for (const auto& [other, part] : parts)
+            if (other == name) html += part;
+    return html;
+}
+
 }  // namespace
 
 Result<void> write_report(const ReportContent& content, const std::string& path) {
@@ -322,28 +334,32 @@ Result<void> write_report(const ReportContent& content, const std::string& path)
     const std::string name = std::filesystem::path(content.solution->scene.file()).filename().string();
     const std::string title = content.heading.title.empty() ? "Light in " + name : content.heading.title;
     const SolveStatistics& s = content.solution->statistics;
-    const std::string page =
+    const std::vector<std::pair<std::string, std::string>> parts{
+        {"requirements", section("requirements", "Requirements", requirements(content, figures))},
+        {"", overview(content, figures) + unfinished(content)},
+        {"rooms", section("rooms", "Rooms", rooms_part(content))},
+        {"luminaires", section("luminaires", "Luminaires", schedule_html(content, figures.luminaires))},
+        {"pictures", section("pictures", "Pictures", *shown)},
+        {"walk", viewer->empty() ? "" : "<div class=\"viewer\">" + section("walk", "Look around", *viewer) + "</div>"},
+        {"grids", section("grids", "Measuring planes", grids(content, figures))},
+        {"glare", section("glare", "Glare", observers_html(content))},
+        {"materials", section("materials", "Materials", materials(content, figures))},
+        {"surfaces", section("surfaces", "Surfaces", surfaces(content, figures))},
+        {"energy", section("energy", "Energy balance",
+                           energy_part(s.energy, own_unit(content.solution->scene.is_photometric())))},
+        {"error", section("error", "Error", error_part(content))},
+        {"method", section("method", "Method and what it took", method_part(content))},
+        {"warnings", section("warnings", "Warnings", warnings(s))}};
+    std::string page =
         fmt::format(
-            "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+            "<!doctype html>\n<html lang=\"{2}\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
             "content=\"width=device-width\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n"
             "<h1>{0}</h1>\n",
-            escaped(title), style) +
-        heading(content.heading) + section("requirements", "Requirements", requirements(content, figures)) +
-        overview(content, figures) + unfinished(content) + section("rooms", "Rooms", rooms_part(content)) +
-        section("luminaires", "Luminaires", schedule_html(content, figures.luminaires)) +
-        section("pictures", "Pictures", *shown) +
-        (viewer->empty() ? "" : "<div class=\"viewer\">" + section("walk", "Look around", *viewer) + "</div>") +
-        section("grids", "Measuring planes", grids(content, figures)) +
-        section("glare", "Glare", observers_html(content)) +
-        section("materials", "Materials", materials(content, figures)) +
-        section("surfaces", "Surfaces", surfaces(content, figures)) +
-        section("energy", "Energy balance", energy_part(s.energy, own_unit(content.solution->scene.is_photometric()))) +
-        section("error", "Error", error_part(content)) +
-        section("method", "Method and what it took", method_part(content)) +
-        section("warnings", "Warnings", warnings(s)) +
-        fmt::format("<p class=\"note\">Made by exitance {}.</p>\n<script type=\"application/json\" id=\"numbers\">\n",
-                    program_version) +
-        embedded(json) + "</script>\n</body>\n</html>\n";
+            escaped(title), style, escaped(content.words.language())) +
+        heading(content.heading) + in_order(parts, content.words.sections()) +
+        fmt::format("<p class=\"note\">Made by exitance {}.</p>\n", program_version);
+    if (content.words.translates()) page = content.words.page(page);
+    page += "<script type=\"application/json\" id=\"numbers\">\n" + embedded(json) + "</script>\n</body>\n</html>\n";
     const std::string twin = std::filesystem::path(path).replace_extension(".json").string();
     if (const Result<void> written = write_file(twin, json); !written) return written;
     return write_file(path, page);
