@@ -24,10 +24,9 @@ namespace exitance {
 /// where L is the light of the part without occlusion. Rays to the sky have the density of radiance times cosine
 /// (SkyTree), rays to an emitter that of its area or solid angle (SeenPolygon), rays to openings lead to uniform points
 /// of them (PortalAim), rays to the other emitters choose one by a cut through the tree of emitters [Walter05]; for
-/// openings and other emitters the mean of w V is used, since L is not known exactly. The
-/// mean over many places is the exact light. Rays are points of a scrambled Sobol sequence, so that the error falls
-/// about as n^(-3/4) where light is cut by edges. The sequence depends on the coordinates of the place alone: every
-/// caller gets the same light there.
+/// openings and other emitters the mean of w V is used, since L is not known exactly. The mean over many places is the
+/// exact light. Rays are points of a scrambled Sobol sequence, so that the error falls about as n^(-3/4) where light is
+/// cut by edges. The sequence depends on the coordinates of the place alone: every caller gets the same light there.
 ///
 /// A pilot of a few rays per part estimates variances; rays are then added to each part in the proportion that reaches
 /// the required accuracy with fewest. Panes let rays pass at random, in proportion to their transmission. Light of

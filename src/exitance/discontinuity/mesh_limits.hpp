@@ -10,8 +10,7 @@ namespace mesh_limits {
 constexpr double unfindable_area = 1e-5;
 /// Limit in place of `unfindable_area` where there are so many emitters and regions that WeakLight pays off. Objects a
 /// millimetre above hundreds of desks have penumbras about a millimetre wide; following all of them to 1e-5 would take
-/// most of the triangles. Derived from the 1,000 sample points that measure the
-/// error: the area of one.
+/// most of the triangles. Derived from the 1,000 sample points that measure the error: the area of one.
 constexpr double unfindable_area_among_many = 1e-3;
 
 /// Least light that gets curves, as a multiple of the largest permitted error T. Where light G falls to 0 across a

@@ -20,8 +20,7 @@ struct LeafResidual {
 /// zero as if it had a few more samples without residual; then of the roots, of their children, and so on. Each is
 /// shrunk towards the mean of its parent, the more the less the samples of one element agree in their deviation from
 /// it. The agreement is that of all elements of a level together. Samples agree next to concave edges and in gaps,
-/// where
-/// faces reflect to each other a residual that the mean over a whole face does not show.
+/// where faces reflect to each other a residual that the mean over a whole face does not show.
 ///
 /// groups   number of groups; each leaf and each sample belongs to one
 /// Returns  one mean per leaf, by leaf number. O(elements + samples x depth).

@@ -24,10 +24,8 @@ struct InterpolatedLeaf {
 ///
 /// Light is compared at places that no fit has seen: the residual of a fit at its own places does not contain errors to
 /// which the fit adapted, nor shadow edges between the places. Places are stratified over the leaves, half by area and
-/// half by the
-/// expected square. Standard error of the square: a tenth or so; the result is at least the error that this noise may
-/// hide. O(places)
-/// exact direct light.
+/// half by the expected square. Standard error of the square: a tenth or so; the result is at least the error that this
+/// noise may hide. O(places) exact direct light.
 double interpolant_error(const Stage& stage, const ElementFunction& interpolant,
                          std::span<const InterpolatedLeaf> leaves, const InterpolatedLight& light, std::uint64_t seed);
 

@@ -4,9 +4,8 @@
 
 namespace exitance {
 
-/// Chooses emitters for shadow rays, each by about its unoccluded light: by a descent
-/// through the tree of emitters. Every emitter that may be visible has a chance. O(log emitters) per choice. Windows to
-/// the sky are left out.
+/// Chooses emitters for shadow rays, each by about its unoccluded light: by a descent through the tree of emitters.
+/// Every emitter that may be visible has a chance. O(log emitters) per choice. Windows to the sky are left out.
 class LightChoice {
   public:
     /// `direct` must outlive this object.

@@ -37,8 +37,8 @@ bool ShadowEventFinder::clip_to_source(Wedge& wedge, const Vec3& normal) const {
     return wedge.first < wedge.last;
 }
 
-/// Adds the event of a blocker's corner w over an edge. `beyond`: the edge is between the
-/// corner and the source; otherwise the corner is between the source and the edge.
+/// Adds the event of a blocker's corner w over an edge. `beyond`: the edge is between the corner and the source;
+/// otherwise the corner is between the source and the edge.
 void ShadowEventFinder::add_corner_before_edge(std::uint32_t corner, const Point& w, const BlockerEdges::Edge& edge,
                                                bool beyond, std::vector<ShadowEvent>& events) {
     const double height = frame_->height(w), ha = frame_->height(edge.a), hb = frame_->height(edge.b);

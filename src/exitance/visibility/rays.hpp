@@ -20,8 +20,8 @@ struct RayHit {
 };
 
 /// Treatment of rays that a pane reflects. `lost`: they end there, as absorbed rays do. `followed`: they continue to
-/// the first surface, unless another pane stops them. Light of emitters and sky at their hits
-/// is part of direct light (`MirroredLight`): count it once.
+/// the first surface, unless another pane stops them. Light of emitters and sky at their hits is part of direct light
+/// (`MirroredLight`): count it once.
 enum class Mirrored { lost, followed };
 
 /// Position of a hit.

@@ -90,8 +90,7 @@ double automatic_density(const Scene& scene);
 /// map.
 /// Maps of direct and indirect light add up to that of all light, but for rounding.
 /// Returns an error of code `usage` if the maps would have more than 2^27 texels, or if the solution is not divisible
-/// and a part of its light is requested; after a stop request the maps are
-/// incomplete.
+/// and a part of its light is requested; after a stop request the maps are incomplete.
 Result<LightMaps> bake_light_maps(const RadiosityFunction& light, const BakeOptions& options, Progress& progress,
                                   const StopRequest& stop);
 

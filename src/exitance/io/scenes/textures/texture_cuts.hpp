@@ -42,8 +42,8 @@ struct TextureCuts {
 ///     + (flux that is in the wrong part / flux  min(1, d / length))^2
 ///
 /// for parts of the size d. The factor min(1, d / length) is there because other surfaces see a pattern only within
-/// about its size. Where a finer pattern, such as
-/// a checkerboard, needs several cuts before any shows an effect, the benefit per cut of 2^k x 2^k equal parts counts.
+/// about its size. Where a finer pattern, such as a checkerboard, needs several cuts before any shows an effect, the
+/// benefit per cut of 2^k x 2^k equal parts counts.
 /// max_cuts       stops after this many
 /// metres_s, metres_t  length of a unit of the texture coordinates on the patch
 TextureCuts cut_texture(const ColourGrid& grid, const CutScale& scale, std::size_t max_cuts, double metres_s,
