@@ -131,6 +131,7 @@ void write_inputs(const TemporaryFolder& folder) {
     }
     const Finished solved = run_program({"solve", folder / "room.obj", "-o", folder / "room.h5", "--error", "0.5"});
     ASSERT_EQ(solved.status, 0) << solved.err;
+    for (const char* copy : {"before.h5", "after.h5"}) fs::copy_file(folder / "room.h5", folder / copy);
 }
 
 }  // namespace

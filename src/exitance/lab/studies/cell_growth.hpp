@@ -10,7 +10,7 @@
 
 namespace exitance {
 
-/// Growth of cells as [Bohn02] shows it. The tables of pictures have the columns of `add_shape`.
+/// Growth of cells as Bohn showed it in 2002. The tables of pictures have the columns of `add_shape`.
 struct CellGrowthTables {
     /// Columns: `scene`, `form` (classic, improved), `units` (requested), `cells` (of the shading network), `rays`
     /// (units of the kernel network), `error` (estimated, relative RMS of radiosity), `seconds`, `stopped_by`.

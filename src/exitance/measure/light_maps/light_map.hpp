@@ -11,7 +11,7 @@
 
 namespace exitance {
 
-/// What light maps tell about the directions of light, for normal maps.
+/// Form in which light maps describe the directions of light, for normal maps.
 enum class Directions : std::uint8_t {
     none,
     sh,        ///< Spherical harmonics of degrees 0 and 1, for every band.
