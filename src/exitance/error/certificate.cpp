@@ -365,7 +365,7 @@ Certificate Certifier::Content::judge() {
         ResidualSample& s = samples[k];
         const double weight = s.weight / static_cast<double>(looks);
         residual_squared[k % batches] += weight * batches * mean(s.r1 * s.r2);
-        s.squared = mean((s.r1 + late[s.leaf]) * (s.r2 + late[s.leaf]));
+        s.squared = s.is_covered ? 0 : mean((s.r1 + late[s.leaf]) * (s.r2 + late[s.leaf]));
         error_squared[k % batches] += weight * batches * s.squared;
         mean_error += weight * mean(0.5 * (s.r1 + s.r2) + late[s.leaf]);
         if (s.tells_local) {

@@ -5,8 +5,8 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/error/area_samples.hpp"
-#include "exitance/evaluate/open_points.hpp"
 #include "exitance/gather/gather.hpp"
+#include "exitance/transport/open_points.hpp"
 
 namespace exitance {
 namespace {

@@ -7,6 +7,7 @@
 #include "exitance/base/polygon.hpp"
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/processes/distributed.hpp"
+#include "exitance/transport/open_points.hpp"
 
 namespace exitance {
 namespace {
@@ -70,7 +71,7 @@ void ResidualSampler::locate(const WeightedSample& at, ResidualSample& sample, W
     const RegionId region = sample.region = indirect_.tree.region(at.place.element);
     const Point x = point(sample);
     const Normal& n = stage_.scene.regions()[region].plane.n;
-    sample.is_covered = stage_.occluders.is_covered(x, n, region);
+    sample.is_covered = !is_in_open(stage_, x, n, region);
     if (!sample.is_covered) sample.delivered = indirect_.at(at.place);
     if (!sample.is_covered && options_.direct_in_elements)
         sample.delivered -= stage_.place_light.at(x, n, region, point_accuracy(options_.error), w.clustered).irradiance;

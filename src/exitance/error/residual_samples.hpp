@@ -12,7 +12,8 @@ struct ResidualSample {
     RegionId region;
     SurfaceId surface;
     std::uint32_t room = 0;
-    /// True if another surface covers the point. It is dark there, and the residual is 0 for any delivered light.
+    /// True if another surface covers the point or a body contains it (`is_in_open`). It is dark there and cannot be
+    /// seen, and the residual is 0 for any delivered light.
     bool is_covered = false;
     double weight = 0;
     Spectrum r1, r2;          ///< Two estimates of the residual, W/m^2.

@@ -5,7 +5,7 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/triangulation.hpp"
-#include "exitance/evaluate/open_points.hpp"
+#include "exitance/transport/open_points.hpp"
 
 namespace exitance {
 namespace {

@@ -1,5 +1,6 @@
 #include "exitance/gather/local_pass.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -12,6 +13,7 @@
 #include "exitance/processes/distributed.hpp"
 #include "exitance/solution/continuous.hpp"
 #include "exitance/transport/narrow_places.hpp"
+#include "exitance/transport/open_points.hpp"
 
 namespace exitance {
 
@@ -147,13 +149,30 @@ unsigned LocalPass::gather_at(ElementId e, const std::vector<WeightedPlace>& pla
     return rays * (count + (more ? count / 2 : 0));
 }
 
+/// True if a place is covered by another surface or inside a body, where no light arrives that anybody could see.
+bool LocalPass::is_hidden(ElementId e, const Point& x, const Gathered& gathered) const {
+    const RegionId region = tree_.region(e);
+    return gathered.irradiance == Spectrum() && !is_in_open(stage_, x, stage_.scene.regions()[region].plane.n, region);
+}
+
+/// Fits a polynomial to the gathered light of those places that can be seen.
+SampledElement LocalPass::fitted(ElementId e, const std::vector<WeightedPlace>& places, bool curved,
+                                 Workspace& w) const {
+    w.hidden.clear();
+    for (std::size_t i = 0; i < places.size(); ++i)
+        w.hidden.push_back(is_hidden(e, tree_.patch(e).at(places[i].uv), w.gathered[i]));
+    if (std::find(w.hidden.begin(), w.hidden.end(), true) != w.hidden.end())
+        continue_below(tree_, e, places, w.hidden, curved, w.gathered);
+    return fit_gathered(tree_, e, places, w.gathered, stage_.scene.material(tree_.region(e)).reflectance, curved,
+                        spread_.gain());
+}
+
 /// Samples an element: starts with the number of rays that its area suggests or that it or its parent took before, and
 /// repeats with one and a half times as many, twice as many and so on until the noise is small enough. An element that
 /// must be split is left noisy, since its pieces will be gathered.
 SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const LocalPassDemand& demand, bool may_cut,
                                  Workspace& w) const {
     const std::vector<WeightedPlace> places = element_rule(tree_, e, rule_order(demand.curved));
-    const Spectrum& rho = stage_.scene.material(tree_.region(e)).reflectance;
     const ElementId parent = tree_.parent(e);
     const unsigned before = sampled_[e].place_rays > 0 ? sampled_[e].place_rays
                             : parent.is_none()         ? 0
@@ -171,7 +190,7 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
     w.growing.assign(places.size(), {});
     for (bool more = false;; rays *= more ? 2 : 1, more = !more) {
         const unsigned cast = gather_at(e, places, b, rays, more, demand, w);
-        SampledElement out = fit_gathered(tree_, e, places, w.gathered, rho, demand.curved, spread_.gain());
+        SampledElement out = fitted(e, places, demand.curved, w);
         out.place_rays = rays;
         out.rays = cast;
         if (may_cut && is_too_rough(e, out, demand)) return out;
@@ -190,11 +209,10 @@ SampledElement LocalPass::changed(ElementId e, const LocalPassDemand& demand, Wo
     if (noise_excess(e, before, demand) > calibrated::kept_noise) return before;
     constexpr unsigned least_rays = 4, share = 8;  // initial share of the rays of a place: 1 / share
     const std::vector<WeightedPlace> places = element_rule(tree_, e, rule_order(before.curved));
-    const Spectrum& rho = stage_.scene.material(tree_.region(e)).reflectance;
     w.growing.assign(places.size(), {});
     for (unsigned rays = std::max(least_rays, before.place_rays / share);; rays *= 2) {
         const unsigned cast = gather_at(e, places, *demand.change, rays, false, demand, w);
-        SampledElement out = fit_gathered(tree_, e, places, w.gathered, rho, before.curved, spread_.gain());
+        SampledElement out = fitted(e, places, before.curved, w);
         for (std::size_t k = 0; k < out.coefficient.size(); ++k)
             for (std::size_t b = 0; b < bands; ++b) out.coefficient[k][b] += before.coefficient[k][b];
         out.light = before.light, out.quarters = before.quarters, out.halves = before.halves;
@@ -228,7 +246,9 @@ void LocalPass::look_between(ElementId e, SampledElement& sampled, const Reflect
     double misfit = 0, noise = 0;
     for (unsigned k = 0; k < count; ++k) {
         const Vec2 uv = tree_.uniform(e, random(k, 0), random(k, 1));
-        const Gathered g = gather_reflected(stage_, tree_.patch(e).at(uv), n, region, rays, hash(key, k), b, w.rays);
+        const Point x = tree_.patch(e).at(uv);
+        const Gathered g = gather_reflected(stage_, x, n, region, rays, hash(key, k), b, w.rays);
+        if (is_hidden(e, x, g)) continue;
         misfit += squared(rho * (g.irradiance - polynomial.at(uv))) / static_cast<double>(bands) / count;
         noise += spread_.gain() * mean(rho * rho * g.quarters) / count;
     }

@@ -96,6 +96,7 @@ class LocalPass {
         ElementGather::Workspace elements;
         std::vector<GrowingGather> growing;  ///< Gathers under way, one per place.
         std::vector<Gathered> gathered;
+        std::vector<bool> hidden;               ///< For each place, whether it cannot be seen (`is_hidden`).
         std::vector<GatherPlace> short_places;  ///< Places that need more rays.
         std::vector<GrowingGather*> short_of;   ///< Entries of `growing` for `short_places`.
     };
@@ -118,6 +119,9 @@ class LocalPass {
     SampledElement changed(ElementId e, const LocalPassDemand& demand, Workspace& workspace) const;
     unsigned gather_at(ElementId e, const std::vector<WeightedPlace>& places, const ReflectedLight& b, unsigned rays,
                        bool more, const LocalPassDemand& demand, Workspace& workspace) const;
+    SampledElement fitted(ElementId e, const std::vector<WeightedPlace>& places, bool curved,
+                          Workspace& workspace) const;
+    bool is_hidden(ElementId e, const Point& x, const Gathered& gathered) const;
     void look_between(ElementId e, SampledElement& sampled, const ReflectedLight& b, const LocalPassDemand& demand,
                       Workspace& workspace) const;
     bool is_suspect(ElementId e) const;

@@ -152,6 +152,55 @@ TEST_F(OneBrightFace, MayBeNoisierWhereItIsMuchBrighter) {
     EXPECT_LT(truth, 1.5 * std::hypot(dim.whole.noise, dim.whole.interpolation));
 }
 
+/// A table's leg that is open below stands on the floor of a room with b = 1 W/m^2. The floor inside of the leg is
+/// dark, but nobody sees it. Next to the leg the floor's irradiance is 1 less the form factors of the leg's sides.
+TEST(LocalPass, LightNextToAnOpenLegIsThatOfTheFloorAroundIt) {
+    const Point lowest{0.93, 0.61, 0}, highest{1.05, 0.73, 0.4};
+    std::vector<test::Face> faces = test::closed_box({}, {2, 1.5, 1});
+    const std::size_t room_faces = faces.size();
+    const auto side = [&](const Point& a, const Point& b) {
+        faces.push_back({{a, b, {b.x, b.y, highest.z}, {a.x, a.y, highest.z}}});
+    };
+    const Point right{highest.x, lowest.y, 0}, back{highest.x, highest.y, 0}, left{lowest.x, highest.y, 0};
+    side(lowest, right), side(right, back), side(back, left), side(left, lowest);
+    const double z = highest.z;
+    faces.push_back({{{lowest.x, lowest.y, z}, {right.x, right.y, z}, {back.x, back.y, z}, {left.x, left.y, z}}});
+    const Scene scene = test::make(faces);
+    const Stage stage(scene);
+    std::vector<bool> is_leg(scene.regions().size(), false);
+    for (std::size_t i = room_faces; i < faces.size(); ++i)
+        is_leg[scene.surfaces()[SurfaceId(static_cast<std::uint32_t>(i))].region.value] = true;
+    const PointwiseLight b{[&](RegionId region, const Point&) { return Spectrum(is_leg[region.value] ? 0.0 : 1.0); }};
+    LocalPass pass(stage, {.edge = 0.4, .grading_levels = 0}, 1);
+    Progress progress;
+    const StopRequest stop;
+    LocalPassReport report;
+    const ElementFunction E =
+        pass.gather(b, false, {.rays = {.average = 256}, .noise = 0.002, .tolerance = 0.002}, report, progress, stop);
+    double squares = 0, count = 0;
+    for (ElementId e : E.tree.leaves()) {
+        RandomStream random(1, Stream::mesh, e.value);
+        for (int k = 0; k < 16; ++k) {
+            const double s = random.uniform(), t = random.uniform();
+            const Vec2 uv = E.tree.uniform(e, s, t);
+            const Point x = E.tree.patch(e).at(uv);
+            const Normal& n = scene.regions()[E.tree.region(e)].plane.n;
+            const bool is_inside = x.x > lowest.x && x.x < highest.x && x.y > lowest.y && x.y < highest.y;
+            if (std::abs(x.z) > 1e-9 || n.z < 0.5 || is_inside) continue;
+            double exact = 1;
+            for (std::size_t i = room_faces; i + 1 < faces.size(); ++i) {
+                const auto id = SurfaceId(static_cast<std::uint32_t>(i));
+                if (dot(x - faces[i].corners[0], scene.regions()[scene.surfaces()[id].region].plane.n) > 0)
+                    exact -= point_to_polygon(x, n, scene.outline(id));
+            }
+            squares += E.tree.area(e) * std::pow(0.5 * (E.at({e, uv})[0] - exact), 2), count += E.tree.area(e);
+        }
+    }
+    // Noise and interpolation may each have 0.002, and steep light at the leg's foot is smoothed.
+    EXPECT_LT(std::sqrt(squares / count), 0.005);
+    EXPECT_LT(report.whole.interpolation, 0.003);
+}
+
 TEST(LocalPass, GathersConstantLightExactly) {
     const Scene scene = box_scene(2, 1, 1.5, 0.5, 0);
     const Stage stage(scene);

@@ -62,7 +62,9 @@ void LocalPass::look_closely(ElementId e, SampledElement& sampled, const Reflect
     std::array<Strips, 2> strips;
     for (unsigned k = 0; k < places; ++k) {
         const Vec2 uv = tree_.uniform(e, random(k, 0), random(k, 1));
-        const Gathered g = gather_reflected(stage_, tree_.patch(e).at(uv), n, region, rays, hash(key, k), b, w.rays);
+        const Point x = tree_.patch(e).at(uv);
+        const Gathered g = gather_reflected(stage_, x, n, region, rays, hash(key, k), b, w.rays);
+        if (is_hidden(e, x, g)) continue;
         const Spectrum residual = rho * (g.irradiance - polynomial.at(uv));
         misfit += mean(residual * residual) / places, noise += spread_.gain() * mean(rho * rho * g.quarters) / places;
         strips[0].add(uv.x, mean(residual)), strips[1].add(uv.y, mean(residual));

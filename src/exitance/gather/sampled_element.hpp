@@ -24,6 +24,14 @@ struct SampledElement {
     unsigned place_rays = 0;          ///< Rays per place; 0: not gathered yet.
 };
 
+/// Gives places that cannot be seen the light that the polynomial through the other places has there, so that a fit
+/// follows what can be seen: below the leg of a table a seat is dark, and its light next to the leg is not. Their noise
+/// is the mean of the others. Does nothing if no place can be seen.
+///
+/// hidden  for every place, whether it is covered or inside a body
+void continue_below(const ElementTree& tree, ElementId e, const std::vector<WeightedPlace>& places,
+                    const std::vector<bool>& hidden, bool curved, std::span<Gathered> gathered);
+
 /// Weighted least-squares polynomial of the light gathered at `places`. If it is `curved`, its terms of second degree
 /// are shrunk according to their noise (James-Stein estimator, [Efron73]), so that they do not add noise to uniform
 /// light. `rho`: the element's reflectance. `gain`: ratio of the actual variance to its estimate from quarters of the

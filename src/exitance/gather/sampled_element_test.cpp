@@ -61,6 +61,30 @@ TEST(SampledElement, IsNotNoisierDueToAbsentCurvature) {
     EXPECT_NEAR(error, told, 0.15 * told);
 }
 
+TEST(SampledElement, FollowsThePlacesThatCanBeSeen) {
+    const auto line = [](Vec2 p) { return 1 + p.x - 0.5 * p.y; };
+    for (const auto shape : {Patch::Shape::parallelogram, Patch::Shape::triangle})
+        for (const bool curved : {false, true})
+            for (std::size_t below = 0; below < 4; ++below) {  // a leg that hides one place, or two
+                Noisy exact(shape, line, 0, 1, curved);
+                std::vector<bool> hidden(exact.places.size(), false);
+                for (const std::size_t i : {below, 2 * below}) hidden[i] = true, exact.gathered[i] = {};
+                EXPECT_GT(exact.fit(curved).misfit_squared, 1e-3);
+                continue_below(exact.tree, ElementId(0), exact.places, hidden, curved, exact.gathered);
+                const SampledElement s = exact.fit(curved);
+                EXPECT_LT(s.misfit_squared, 1e-5);
+                EXPECT_NEAR(SampledFunction(exact.tree, ElementId(0), s).at({0.2, 0.7})[0], line({0.2, 0.7}), 0.02);
+            }
+}
+
+TEST(SampledElement, StaysDarkIfNoPlaceCanBeSeen) {
+    Noisy dark(
+        Patch::Shape::parallelogram, [](Vec2) { return 0.0; }, 0, 1);
+    continue_below(dark.tree, ElementId(0), dark.places, std::vector<bool>(dark.places.size(), true), true,
+                   dark.gathered);
+    EXPECT_EQ(dark.fit().light, 0);
+}
+
 TEST(SampledElement, IsSplitIntoLinearElementsWithinTheTolerance) {
     for (const auto shape : {Patch::Shape::parallelogram, Patch::Shape::triangle}) {
         const Noisy exact(shape, parabola, 0, 1);

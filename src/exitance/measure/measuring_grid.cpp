@@ -5,7 +5,7 @@
 #include <string>
 
 #include "exitance/base/parallel.hpp"
-#include "exitance/evaluate/open_points.hpp"
+#include "exitance/transport/open_points.hpp"
 
 namespace exitance {
 namespace {

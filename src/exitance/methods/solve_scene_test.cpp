@@ -374,7 +374,7 @@ class InterruptsSecondAttempt final : public Progress {
 /// Unfinished results of an interrupted attempt are neither delivered nor reported.
 TEST(SolveScene, AnInterruptedAttemptDeliversTheResultOfThePreviousOne) {
     const Scene scene = built_scene("cornell");
-    SolveOptions options{.method = Method::wavelet, .basis = BasisKind::haar, .error = 0.05};
+    SolveOptions options{.method = Method::wavelet, .basis = BasisKind::haar, .error = 0.03};
     options.smoothing = false;
     std::vector<Solution> found;
     for (const int round : {1, 2}) {

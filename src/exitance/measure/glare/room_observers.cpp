@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "exitance/evaluate/open_points.hpp"
+#include "exitance/transport/open_points.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/evaluate/open_points.hpp"
 #include "exitance/processes/distributed.hpp"
+#include "exitance/transport/open_points.hpp"
 
 namespace exitance {
 namespace {

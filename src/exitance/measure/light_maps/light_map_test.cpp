@@ -6,8 +6,8 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
-#include "exitance/evaluate/open_points.hpp"
 #include "exitance/measure/light_maps/texel_cover.hpp"
+#include "exitance/transport/open_points.hpp"
 #include "exitance/transport/stage.hpp"
 #include "support/built_scene.hpp"
 #include "support/sample_solution.hpp"

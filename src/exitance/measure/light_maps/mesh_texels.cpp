@@ -5,9 +5,9 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/quadrature.hpp"
-#include "exitance/evaluate/open_points.hpp"
 #include "exitance/measure/light_maps/texel_cover.hpp"
 #include "exitance/measure/pictures/tile_light.hpp"
+#include "exitance/transport/open_points.hpp"
 
 namespace exitance {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "exitance/evaluate/open_points.hpp"
 #include "exitance/processes/exchange_archived.hpp"
+#include "exitance/transport/open_points.hpp"
 
 namespace exitance {
 

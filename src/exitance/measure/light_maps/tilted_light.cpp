@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/evaluate/open_points.hpp"
+#include "exitance/transport/open_points.hpp"
 
 namespace exitance {
 namespace {

@@ -1,4 +1,4 @@
-#include "exitance/evaluate/open_points.hpp"
+#include "exitance/transport/open_points.hpp"
 
 #include <gtest/gtest.h>
 
