@@ -48,10 +48,10 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
         return std::sqrt(direct_.fit[delivered.projected().locator().find(hit.region, hit.y).element].misfit_squared);
     };
     if (!light_->holds_direct()) options.projected = {&delivered.projected(), direct_weight, misfit};
-    // A tenth of the rays so far, but at least about 30 ms of work, so that small solves can measure the errors of
-    // their bodies.
-    constexpr std::size_t least_check_rays = 1 << 17;
-    options.check_rays = std::max(statistics().rays / 10, least_check_rays);
+    // A tenth of the rays so far, but at least about 30 ms of work, and 2 ms for each body, so that the errors of
+    // bodies can be measured.
+    constexpr std::size_t least_check_rays = 1 << 17, least_rays_of_body = 1 << 13;
+    options.check_rays = std::max({statistics().rays / 10, least_check_rays, least_rays_of_body * bodies().all.size()});
     SummedLight summed{.delivered = {}, .gathered = gathered, .share = calibrated::certified_share * options.error};
     if (sums_) {
         for (const ElementFunction& part : delivered_functions(stage_.scene, indirect, direct_, direct_weight, c))
