@@ -77,8 +77,8 @@ std::string made_quick(std::string commands) {
     return commands;
 }
 
-/// Calls the program for a quick form of a command: coarse solves, small pictures, a viewer that ends, studies that are
-/// only read.
+/// Calls the program for a quick form of a command: coarse solves, small pictures and maps, a viewer that ends, studies
+/// that are only read.
 constexpr const char* stand_in = R"(#!/bin/bash
 case "$1" in
 solve)
@@ -92,7 +92,10 @@ render | report)
 view)
     timeout --signal INT 1 "$PROGRAM" "$@" --progress none -q
     status=$?
-    [[ $status -eq 124 || $status -eq 130 ]] ;;
+    [[ $status -eq 124 || $status -eq 130 || ($status -eq 0 && " $* " == *" -o "*) ]] ;;
+bake)
+    [[ " $* " == *" --density "* || " $* " == *" --uv "* ]] || set -- "$@" --density 8
+    exec "$PROGRAM" "$@" -q ;;
 experiment)
     [[ "$2" == list ]] && exec "$PROGRAM" "$@"
     exec "$PROGRAM" experiment "$2" --print ;;
