@@ -235,14 +235,8 @@ SweepPlan read_plan(const toml::table& table, const std::string& path) {
 }  // namespace
 
 Result<SweepPlan> parse_sweep_plan(const std::string& text, const std::string& path) {
-    try {
-        return read_plan(toml::parse(text, path), path);
-    } catch (const WrongToml& wrong) {
-        return wrong.error;
-    } catch (const toml::parse_error& error) {
-        return Error{ErrorCode::bad_input, std::string(error.description()),
-                     fmt::format("{}:{}", path, error.source().begin.line), hint_for(error.description())};
-    }
+    return read_toml(
+        text, path, [&](const toml::table& table) { return read_plan(table, path); }, hint_for);
 }
 
 Result<SweepPlan> load_sweep_plan(const std::string& path) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,7 +20,7 @@ namespace exitance {
 
 // Readers of TOML tables. Only the .cpp files that read TOML include this header.
 
-/// Exception of TomlKeys. The function that reads a file catches it and returns the error.
+/// Exception of TomlKeys. `read_toml` catches it and returns the error.
 struct WrongToml {
     Error error;
 };
@@ -107,6 +108,28 @@ class TomlKeys {
     std::string file_;
     std::set<std::string> known_;
 };
+
+/// Parses a text in TOML and returns read(table), or the error of the text or of `read`.
+/// file  name in errors
+/// hint  function that returns the hint for the description of an error of syntax
+template <class Read, class Hint>
+auto read_toml(const std::string& text, const std::string& file, const Read& read, const Hint& hint)
+    -> Result<decltype(read(std::declval<const toml::table&>()))> {
+    try {
+        return read(toml::parse(text, file));
+    } catch (const WrongToml& wrong) {
+        return wrong.error;
+    } catch (const toml::parse_error& wrong) {
+        return Error{ErrorCode::bad_input, std::string(wrong.description()),
+                     fmt::format("{}:{}", file, wrong.source().begin.line), hint(wrong.description())};
+    }
+}
+
+/// Reads TOML with the address of the language's description as the hint.
+template <class Read>
+auto read_toml(const std::string& text, const std::string& file, const Read& read) {
+    return read_toml(text, file, read, [](std::string_view) -> std::string { return "see https://toml.io"; });
+}
 
 /// Calls read(TomlKeys&) for each of the tables `[[key]]`.
 template <class Read>

@@ -38,8 +38,7 @@ LightingTask read_task(TomlKeys keys, const std::string& edition) {
 }
 
 Result<std::vector<LightingTask>> read_tasks(const std::string& text, const std::string& file) {
-    try {
-        const toml::table table = toml::parse(text, file);
+    return read_toml(text, file, [&](const toml::table& table) {
         TomlKeys keys(table, file);
         std::string edition;
         keys.take("edition", edition);
@@ -50,12 +49,7 @@ Result<std::vector<LightingTask>> read_tasks(const std::string& text, const std:
         for (const toml::node& node : *list->as_array())
             out.push_back(read_task(TomlKeys(*node.as_table(), file), edition));
         return out;
-    } catch (const WrongToml& wrong) {
-        return wrong.error;
-    } catch (const toml::parse_error& wrong) {
-        return Error{ErrorCode::bad_input, std::string(wrong.description()),
-                     fmt::format("{}:{}", file, wrong.source().begin.line), "see https://toml.io"};
-    }
+    });
 }
 
 std::string names_of(std::span<const LightingTask> tasks) {

@@ -94,8 +94,7 @@ Result<ReportWords> ReportWords::load(const std::string& name_or_path) {
 }
 
 Result<ReportWords> ReportWords::parse(const std::string& text, const std::string& file) {
-    try {
-        const toml::table table = toml::parse(text, file);
+    return read_toml(text, file, [&](const toml::table& table) {
         TomlKeys keys(table, file);
         ReportWords out;
         keys.take("language", out.language_);
@@ -124,12 +123,7 @@ Result<ReportWords> ReportWords::parse(const std::string& text, const std::strin
         std::stable_sort(out.patterns_.begin(), out.patterns_.end(),
                          [](const Pattern& a, const Pattern& b) { return size_of(a.pieces) > size_of(b.pieces); });
         return out;
-    } catch (const WrongToml& wrong) {
-        return wrong.error;
-    } catch (const toml::parse_error& wrong) {
-        return Error{ErrorCode::bad_input, std::string(wrong.description()),
-                     fmt::format("{}:{}", file, wrong.source().begin.line), "see https://toml.io"};
-    }
+    });
 }
 
 /// Decimal commas in numbers, and semicolons between them.

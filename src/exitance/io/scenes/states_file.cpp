@@ -25,8 +25,7 @@ class StatesReader {
         out_.group_of_pane.assign(input.scene.panes().size(), PaneGroups::no_group);
     }
 
-    DaylightStates read() {
-        const toml::table table = parse();
+    DaylightStates read(const toml::table& table) {
         TomlKeys keys(table, path_);
         for_each_table(keys, "group", [&](TomlKeys& group) { read_group(group), group.finish(); });
         take_list(keys, "variant", out_.variants,
@@ -40,17 +39,6 @@ class StatesReader {
     }
 
   private:
-    toml::table parse() const {
-        const Result<std::string> text = read_whole_file(path_);
-        if (!text) throw WrongToml{text.error()};
-        try {
-            return toml::parse(*text, path_);
-        } catch (const toml::parse_error& e) {
-            throw WrongToml{{ErrorCode::bad_input, std::string(e.description()),
-                             fmt::format("{}:{}", path_, e.source().begin.line), ""}};
-        }
-    }
-
     /// A path of the file, relative to it.
     std::string beside(const std::string& name) const {
         return (std::filesystem::path(path_).parent_path() / name).string();
@@ -288,11 +276,9 @@ class StatesReader {
 }  // namespace
 
 Result<DaylightStates> read_states(const std::string& path, const StatesInput& input) {
-    try {
-        return StatesReader(path, input).read();
-    } catch (const WrongToml& wrong) {
-        return wrong.error;
-    }
+    const Result<std::string> text = read_whole_file(path);
+    if (!text) return text.error();
+    return read_toml(*text, path, [&](const toml::table& table) { return StatesReader(path, input).read(table); });
 }
 
 }  // namespace exitance

@@ -215,18 +215,12 @@ Study read_study(const toml::table& table, const std::string& file) {
 }  // namespace
 
 Result<Study> parse_study(const std::string& text, const std::string& name, const std::string& file) {
-    try {
-        const toml::table table = toml::parse(text, file);
+    return read_toml(text, file, [&](const toml::table& table) {
         Study study = read_study(table, file);
         study.name = name, study.text = text;
         study.folder = std::filesystem::path(file).parent_path().string();
         return study;
-    } catch (const WrongToml& wrong) {
-        return wrong.error;
-    } catch (const toml::parse_error& error) {
-        return Error{ErrorCode::bad_input, std::string(error.description()),
-                     fmt::format("{}:{}", file, error.source().begin.line), "studies are written in TOML"};
-    }
+    });
 }
 
 Result<Study> load_study(const std::string& path) {
