@@ -10,9 +10,6 @@ namespace exitance {
 /// Smallest error that is distinguished from noise, as a multiple of the requested error.
 constexpr double resolved_errors = 1.5;  // given by the warning, whose limit is a multiple of 3: half of it
 
-/// Number of bodies of which the worst says something about the others.
-constexpr std::size_t many = 19;  // derived from one chance in twenty that the next one is worse than all of them
-
 double BodyMeasure::standard_error() const {
     if (points_ < 2) return 0;
     const double m = mean_square(), n = static_cast<double>(points_);
@@ -214,20 +211,12 @@ bool BodySurvey::look_closely_at(std::uint32_t body) {
     // of its root, an eighth.
     constexpr double sufficient_error = 0.25;
     const std::uint64_t name = hash(c_.seed, static_cast<std::uint64_t>(Stream::certificate), 2, body);
-    // The noise of each gather may be as large as the requested error or, if larger, the apparent one. Of many bodies,
-    // those with the largest noise seem to have the largest error: there the limit of a body's error bounds the noise,
-    // and a body may take an eighth of the remaining rays.
-    const bool is_one_of_many = c_.bodies.all.size() > many;
+    // The noise of each gather may be as large as the requested error or, if larger, the apparent one.
     const BodyMeasure before = measured_[body];
     const double requested = std::pow(error_ * before.reference(), 2);
     const CheckPlan of_body = plan(pilots(body, 16, name), name, std::sqrt(requested));
-    const double limit = is_one_of_many ? max_body_errors * max_body_errors * requested : HUGE_VAL;
-    const double seems = std::clamp(before.mean_square(), requested, limit);
-    unsigned rays = certificate_rays((of_body.gather_variance + of_body.variance) / seems);
-    constexpr std::size_t largest_share = 8;  // 1 / share of the remaining rays
-    while (is_one_of_many && rays > certificate_rays(0) &&
-           work(of_body, rays, max_batches * batch) > left_ / largest_share)
-        rays /= 2;
+    const double seems = std::max(requested, before.mean_square());
+    const unsigned rays = certificate_rays((of_body.gather_variance + of_body.variance) / seems);
     measured_[body] = before.without_points();
     for (std::size_t k = 0; k < max_batches && !c_.is_stopped(); ++k) {
         if (work(of_body, rays, batch) > left_) break;
@@ -255,15 +244,8 @@ void BodySurvey::look_closely() {
     }
 }
 
-/// Returns the bodies whose error may exceed the limit, but is not known. Bodies are measured in descending order of
-/// the error that they may have: if none of many exceeded the limit, the others do not count.
 HiddenErrors BodySurvey::hidden() const {
-    std::size_t known = 0;
-    double worst = 0;
-    for (std::uint32_t b = 0; b < measured_.size(); ++b)
-        if (is_known_[b]) ++known, worst = std::max(worst, measured_[b].error(error_).value_or(HUGE_VAL));
     HiddenErrors out;
-    if (known >= many && worst <= max_body_errors * error_) return out;
     for (std::uint32_t b = 0; b < measured_.size(); ++b) {
         const double possible = measured_[b].suspected();
         if (!is_unknown_[b] || possible <= max_body_errors * error_) continue;
