@@ -1,6 +1,9 @@
 #include "exitance/discontinuity/discontinuity_mesh.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "exitance/base/parallel.hpp"
@@ -16,6 +19,7 @@
 #include "exitance/discontinuity/node_values.hpp"
 #include "exitance/discontinuity/shadow_class.hpp"
 #include "exitance/mesh/discontinuity/bisection_mesh.hpp"
+#include "exitance/scene/named_regions.hpp"
 #include "exitance/transport/direct_projection.hpp"
 
 namespace exitance {
@@ -34,6 +38,8 @@ class Builder {
 
     SixNodeMesh run() {
         Stopwatch watch;
+        if (options_.lines.kind == ShadowLines::Kind::on_surfaces)
+            followed_ = regions_named(stage_.scene, options_.lines.names);
         resume();
         look_ahead();
         find_weak_light();
@@ -75,7 +81,8 @@ class Builder {
     /// If there are many emitters, most contribute little to any region: weak ones are estimated by rays.
     void find_weak_light() {
         if (options_.search) search_ = options_.search(stage_.direct);
-        if (stop_.requested() || search_ || !WeakLight::pays(stage_.direct)) return;
+        const bool exact_everywhere = options_.lines.kind == ShadowLines::Kind::all;
+        if (stop_.requested() || search_ || exact_everywhere || !WeakLight::pays(stage_.direct)) return;
         // Regions below the average area may have more noise, since the refinement criterion permits triangles there
         // more error.
         constexpr double part = mesh_limits::ray_noise;
@@ -84,7 +91,7 @@ class Builder {
         const auto regions = static_cast<double>(stage_.scene.regions().size());
         weak_.emplace(stage_.direct, stage_.tracer,
                       WeakLight::Asked{mesh_limits::unseen_light * std::min(rms, largest_error), part * rms,
-                                       part * largest_error, area_ / regions},
+                                       part * largest_error, area_ / regions, &followed_},
                       stop_);
     }
 
@@ -125,16 +132,50 @@ class Builder {
     }
 
     CurveOptions curve_options() const {
+        CurveOptions out{.conics = options_.conics,
+                         .secondary = options_.secondary,
+                         .stop = &stop_,
+                         .weak = weak_ ? &*weak_ : nullptr,
+                         .search = search_.get()};
+        if (followed_.size() > 0) out.regions = &followed_;
+        if (follows_all()) {
+            out.most_curves = out.most_edges = SIZE_MAX;
+            return out;
+        }
         const double T = options_.largest_error * largest_;
-        return {.least_effect = (weak_ ? mesh_limits::least_kink_among_many : mesh_limits::least_kink) * T,
-                .least_area = mesh_limits::unfindable_area * area_,
-                .least_bend = (weak_ ? mesh_limits::least_bend_among_many : mesh_limits::least_bend) * T,
-                .least_narrow_bend = weak_ ? HUGE_VAL : T,
-                .conics = options_.conics,
-                .secondary = options_.secondary,
-                .stop = &stop_,
-                .weak = weak_ ? &*weak_ : nullptr,
-                .search = search_.get()};
+        out.least_effect = (weak_ ? mesh_limits::least_kink_among_many : mesh_limits::least_kink) * T;
+        out.least_area = mesh_limits::unfindable_area * area_;
+        out.least_bend = (weak_ ? mesh_limits::least_bend_among_many : mesh_limits::least_bend) * T;
+        out.least_narrow_bend = weak_ ? HUGE_VAL : T;
+        return out;
+    }
+
+    /// True if curves are followed however little light they change.
+    bool follows_all() const {
+        return options_.lines.kind == ShadowLines::Kind::all || options_.lines.kind == ShadowLines::Kind::on_surfaces;
+    }
+
+    /// Keeps the curves with the largest gain times length, and all contacts, if the number of curves is limited.
+    void keep_strongest(std::span<std::optional<ReceiverCurves>> receivers) const {
+        if (options_.lines.kind != ShadowLines::Kind::strongest) return;
+        const auto is_contact = [](const FlatCurve& c) { return c.cause == CurveCause::contact; };
+        const auto effect = [](const FlatCurve& c) { return c.gain * std::hypot(c.b.x - c.a.x, c.b.y - c.a.y); };
+        std::vector<double> effects;
+        for (const auto& receiver : receivers)
+            for (const FlatCurve& c : receiver->curves)
+                if (!is_contact(c)) effects.push_back(effect(c));
+        if (effects.size() <= options_.lines.count) return;
+        std::sort(effects.begin(), effects.end(), std::greater<>());
+        // The first ones of several curves with the same effect are kept.
+        const double least = options_.lines.count > 0 ? effects[options_.lines.count - 1] : HUGE_VAL;
+        const auto above = std::count_if(effects.begin(), effects.end(), [&](double e) { return e > least; });
+        std::size_t equal = options_.lines.count - static_cast<std::size_t>(above);
+        for (auto& receiver : receivers)
+            receiver->left_out += std::erase_if(receiver->curves, [&](const FlatCurve& c) {
+                if (is_contact(c) || effect(c) > least) return false;
+                if (effect(c) < least || equal == 0) return true;
+                return --equal, false;
+            });
     }
 
     ReceiverTriangles triangles_of(const ReceiverCurves& receiver) const {
@@ -156,10 +197,14 @@ class Builder {
             parallel_for(std::min(batch, regions - first), 1, [&](std::size_t k) {
                 if (stop_.requested()) return;
                 receivers[first + k].emplace(curves_of(finder, static_cast<std::uint32_t>(first + k)));
-                if (!stop_.requested()) triangles[first + k] = triangles_of(*receivers[first + k]);
             });
             keep();
         }
+        if (stop_.requested()) return;
+        keep_strongest(receivers);
+        parallel_for(regions, 1, [&](std::size_t r) {
+            if (!stop_.requested()) triangles[r] = triangles_of(*receivers[r]);
+        });
         if (stop_.requested()) return;
         std::vector<std::size_t> first_face{0};
         for (const RegionId r : stage_.scene.regions().ids()) {
@@ -399,8 +444,9 @@ class Builder {
     bool is_lit_ = false;  ///< True once every triangle has light.
     MeshProgress found_;   ///< Results of an earlier run, and the curves of this one.
     TriedTriangles tried_;
-    std::unique_ptr<BlockerSearch> search_;  ///< The search for blockers; null: shafts and a tree of boxes are used.
-    std::optional<WeakLight> weak_;          ///< Set if weak sources are estimated by rays.
+    std::unique_ptr<BlockerSearch> search_;   ///< The search for blockers; null: shafts and a tree of boxes are used.
+    Field<RegionId, std::uint8_t> followed_;  ///< With curves on named surfaces only: 1 for these. Else empty.
+    std::optional<WeakLight> weak_;           ///< Set if weak sources are estimated by rays.
     std::optional<ExactPlaces> places_;
     std::vector<DiscontinuityCurve> curves_;
     double largest_ = 0, area_ = 0;

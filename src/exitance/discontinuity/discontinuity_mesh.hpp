@@ -1,12 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "exitance/base/checkpoint.hpp"
 #include "exitance/base/progress.hpp"
 #include "exitance/discontinuity/receiver_triangles.hpp"
 #include "exitance/mesh/discontinuity/six_node_mesh.hpp"
 #include "exitance/solution/solution.hpp"
+#include "exitance/solve/discontinuity_choice.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {
@@ -21,6 +23,7 @@ struct DiscontinuityOptions {
     Spectrum direct_weight = Spectrum(1.0);       ///< Factor by which direct light is multiplied.
     std::vector<SecondarySource> secondary = {};  ///< Sources whose shadows are cut into the mesh as well.
     ConicCurves conics = ConicCurves::at_umbras;
+    ShadowLines lines = {};         ///< Curves to follow. Contacts, where light jumps, are always followed.
     FaceCutter cutter = {};         ///< Cuts receivers along their curves; empty: Delaunay triangulation.
     MakeBlockerSearch search = {};  ///< Finds the blockers of sources; empty: shafts and a tree of boxes.
     bool refined = false;           ///< Refine for triangle quality before light is evaluated; not with a `cutter`.

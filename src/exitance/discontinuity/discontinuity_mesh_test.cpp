@@ -61,6 +61,72 @@ TEST(DiscontinuityMesh, ShadowClassesAgreeWithTheClosedForm) {
     EXPECT_EQ(class_at(two, {0, 0.05, 0}), ShadowClass::penumbra);
 }
 
+/// A mesh along chosen lines, otherwise like `meshed`.
+Solution meshed_along(const Scene& scene, const ShadowLines& lines) {
+    SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.01};
+    options.discontinuity.lines = lines;
+    return solved(scene, options);
+}
+
+std::size_t curves_that_are_no_contacts(const Solution& s) {
+    return static_cast<std::size_t>(
+        std::count_if(s.discontinuity.curves.begin(), s.discontinuity.curves.end(),
+                      [](const DiscontinuityCurve& c) { return c.cause != CurveCause::contact; }));
+}
+
+TEST(DiscontinuityMesh, FollowsTheLinesThatAreChosenAndIsAsAccurateWithout) {
+    using Kind = ShadowLines::Kind;
+    const Scene scene = built_scene("complex", {{"m", "6"}});
+    const Solution usual = meshed_along(scene, {}), all = meshed_along(scene, {.kind = Kind::all}),
+                   none = meshed_along(scene, {.kind = Kind::strongest}),
+                   few = meshed_along(scene, {.kind = Kind::strongest, .count = 100});
+    EXPECT_GT(curves_that_are_no_contacts(all), curves_that_are_no_contacts(usual));
+    EXPECT_EQ(curves_that_are_no_contacts(none), 0u);
+    EXPECT_EQ(curves_that_are_no_contacts(few), 100u);
+    for (const Solution* s : {&usual, &all, &none, &few})
+        EXPECT_LE(*s->statistics.relative_error_estimate_interpolant, 0.01);
+    // The shorter and weaker lines are the ones that are left out.
+    const auto longest = [](const Solution& s) {
+        double out = 0;
+        for (const DiscontinuityCurve& c : s.discontinuity.curves)
+            if (c.cause != CurveCause::contact) out = std::max(out, norm(c.b - c.a));
+        return out;
+    };
+    EXPECT_GE(longest(few), 0.5 * longest(usual));
+}
+
+TEST(DiscontinuityMesh, FollowsLinesOnNamedSurfacesOnly) {
+    const Scene scene = built_scene("complex", {{"m", "6"}});
+    const std::string name = scene.groups()[scene.surfaces()[SurfaceId(0)].group];
+    ASSERT_FALSE(name.empty());
+    const Solution s = meshed_along(scene, {.kind = ShadowLines::Kind::on_surfaces, .names = {name}});
+    EXPECT_GT(curves_that_are_no_contacts(s), 0u);
+    for (const DiscontinuityCurve& c : s.discontinuity.curves) {
+        if (c.cause == CurveCause::contact) continue;
+        const auto& faces = scene.regions()[c.region].surfaces;
+        EXPECT_TRUE(std::any_of(faces.begin(), faces.end(),
+                                [&](SurfaceId f) { return scene.groups()[scene.surfaces()[f].group] == name; }));
+    }
+    SolveOptions options{.method = Method::discontinuity};
+    options.discontinuity.lines = {.kind = ShadowLines::Kind::on_surfaces, .names = {"no such thing"}};
+    Progress progress;
+    const StopRequest stop;
+    const Result<Solution> wrong = solve_scene(scene, options, progress, stop);
+    ASSERT_FALSE(wrong);
+    EXPECT_NE(wrong.error().message.find("no such thing"), std::string::npos);
+}
+
+TEST(DiscontinuityMesh, KeepsTheLargestErrorThatIsRequested) {
+    // Triangles at the borders of shadows determine the largest error, but hardly the mean one.
+    const Scene scene = blocker(0.3);
+    SolveOptions options{.method = Method::discontinuity, .bounces = 0, .error_interpolant = 0.05};
+    options.discontinuity.lines = {.kind = ShadowLines::Kind::strongest};
+    const Solution usual = solved(scene, options);
+    options.discontinuity.largest_error = 0.005;
+    const Solution fine = solved(scene, options);
+    EXPECT_GT(fine.discontinuity.size(), 2 * usual.discontinuity.size());
+}
+
 TEST(DiscontinuityMesh, ATurnedBlockersCurvesAreThoseOfAllPairsOfCornersAndEdges) {
     const double turn = pi / 6;
     const Solution s = meshed(blocker(turn), 0.01);

@@ -95,7 +95,8 @@ ReceiverCurves CurveFinder::find(RegionId number) const {
     const bool is_dark = options_.weak ? !options_.weak->is_reached(number) : out.light.is_dark();
     if (is_dark && options_.secondary.empty()) return out;
     add_contacts(number, out);
-    if (region.area >= options_.least_area)
+    const bool is_followed = !options_.regions || (*options_.regions)[number];
+    if (region.area >= options_.least_area && is_followed)
         add_events(number, out), add_secondary(number, out), add_curves_behind(number, out);
     else if (!out.light.is_unshadowed())
         out.left_out += out.light.sources.size();
@@ -275,8 +276,7 @@ void CurveFinder::add_events(RegionId region, const EventSource& source, const E
 void CurveFinder::add_non_emitter_events(RegionId region, const EventSource& source, double gain,
                                          const WedgeLists* lists, std::span<const std::uint32_t> edges,
                                          ReceiverCurves& out) const {
-    constexpr std::size_t max_edges = 400;
-    if (edges.size() > max_edges) {
+    if (edges.size() > options_.most_edges) {
         ++out.left_out;
         return;
     }

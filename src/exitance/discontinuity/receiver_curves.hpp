@@ -40,9 +40,12 @@ struct SecondarySource {
 enum class ConicCurves { none, at_umbras, all };
 
 struct CurveOptions {
-    double least_effect = 0;              ///< W/m^2 of rho E. Weaker sources get no curves.
-    double least_area = 0;                ///< Smaller regions get contact curves only, m^2.
-    std::size_t most_curves = 1'000;      ///< Limit on the curves of a region.
+    double least_effect = 0;          ///< W/m^2 of rho E. Weaker sources get no curves.
+    double least_area = 0;            ///< Smaller regions get contact curves only, m^2.
+    std::size_t most_curves = 1'000;  ///< Limit on the curves of a region.
+    std::size_t most_edges = 400;     ///< With more blockers' edges, pairs are not searched for NEV and EEE events.
+    /// Regions that get curves; others get contact curves only. Null: all regions.
+    const Field<RegionId, std::uint8_t>* regions = nullptr;
     double least_bend = 0;                ///< W/m^2 of rho E. Weaker sources get no D2 curves, except
     double least_narrow_bend = HUGE_VAL;  ///< along long and narrow penumbras, where this lower limit applies.
     ConicCurves conics = ConicCurves::at_umbras;

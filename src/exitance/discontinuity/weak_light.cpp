@@ -50,7 +50,8 @@ void WeakLight::choose(RegionId r, std::span<const PossibleSources::Source> from
     const double noise = std::min(asked.noise * larger, std::max(asked.noise, asked.most_noise)) / w;
     double sum = 0;
     std::size_t weak = 0;
-    const double max_bound_sum = 2 * noise * std::sqrt(static_cast<double>(most_rays));
+    const bool is_exact = asked.exact && asked.exact->size() > 0 && (*asked.exact)[r];
+    const double max_bound_sum = is_exact ? -1 : 2 * noise * std::sqrt(static_cast<double>(most_rays));
     while (weak < from.size() && sum + from[weak].bound <= max_bound_sum) sum += from[weak++].bound;
     const double rays = noise > 0 ? sum * sum / (4 * noise * noise) : 0;
     OfRegion& out = regions_[r];

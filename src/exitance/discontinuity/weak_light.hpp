@@ -30,6 +30,8 @@ class WeakLight {
         double most_noise = 0;  ///< Largest permitted RMS error on regions smaller than `area`, W/m^2 of w E.
         /// Below this area (m^2) the permitted error grows with (area / region)^(1/2), up to `most_noise`.
         double area = 0;
+        /// Regions where all sources count as strong; null or empty: none.
+        const Field<RegionId, std::uint8_t>* exact = nullptr;
     };
     WeakLight(const DirectLight& direct, const RayTracer& tracer, const Asked& asked, const StopRequest& stop);
 

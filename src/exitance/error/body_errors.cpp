@@ -24,6 +24,11 @@ std::optional<double> BodyMeasure::error(double requested) const {
     return std::sqrt(std::max({mean_square(), standard_error(), 0.0})) / relative_to;
 }
 
+double BodyMeasure::at_least() const {
+    const double relative_to = reference();
+    return relative_to > 0 ? std::sqrt(std::max(0.0, mean_square() - standard_error())) / relative_to : 0;
+}
+
 double BodyMeasure::suspected() const {
     const double relative_to = reference();
     return relative_to > 0 ? std::sqrt(std::max(0.0, mean_square() + standard_error())) / relative_to : 0;
@@ -261,7 +266,8 @@ std::vector<BodyError> BodySurvey::errors() const {
         const SceneBody& body = c_.bodies.all[b];
         const BodyMeasure& found = measured_[b];
         out.push_back({body.surfaces, body.area, found.mean_reflected(),
-                       is_unknown_[b] ? std::nullopt : found.error(error_), found.points(), body.first});
+                       is_unknown_[b] ? std::nullopt : found.error(error_), found.points(), body.first,
+                       found.at_least()});
     }
     std::stable_sort(out.begin(), out.end(), [](const BodyError& a, const BodyError& b) { return a.area > b.area; });
     return out;

@@ -39,6 +39,8 @@ class BodyMeasure {
     /// below `min_points` points, and if noise hides the error: if the standard error of the mean square exceeds both
     /// half of it and the square of 1.5 times the error `requested`.
     std::optional<double> error(double requested) const;
+    /// Returns an optimistic estimate of the error, relative to `reference`: one standard error below the mean square.
+    double at_least() const;
     /// Returns a pessimistic estimate of the error, relative to `reference`: one standard error above the mean square.
     double suspected() const;
 

@@ -7,6 +7,7 @@
 #include "exitance/methods/extensions.hpp"
 #include "exitance/methods/options/support.hpp"
 #include "exitance/methods/solver/solver.hpp"
+#include "exitance/scene/named_regions.hpp"
 
 namespace exitance {
 namespace {
@@ -36,6 +37,9 @@ Result<Solution> solve_scene(Scene scene, const SolveOptions& options, Progress&
     if (!settled) return settled.error();
     if (const Result<void> linked = check_extensions(*settled); !linked) return linked.error();
     if (const Result<void> passes = check_diffusing_panes(scene, *settled); !passes) return passes.error();
+    if (const auto& lines = settled->discontinuity.lines)
+        if (const Result<void> named = check_face_names(scene, lines->names, "--dm-lines"); !named)
+            return named.error();
     if (const Result<void> carried = check_carried_light(scene, *settled); !carried) return carried.error();
     const Stopwatch watch;
     Result<Solution> solution = Solver(std::move(scene), *settled, progress, stop, checkpoints, show).run();

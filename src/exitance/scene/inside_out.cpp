@@ -11,7 +11,7 @@
 namespace exitance {
 namespace {
 
-constexpr double position_tolerance = 1e-6;  ///< Relative to the scene's size: nearer corners are equal.
+constexpr double corner_tolerance = 1e-6;  ///< Relative to the scene's size: nearer corners are equal.
 
 /// A connected part of space, with the face sides that bound it.
 struct Space {
@@ -28,7 +28,7 @@ class BodyFinder {
   public:
     explicit BodyFinder(const BodyFaces& in)
         : in_(in),
-          borders_(bordered(in), position_tolerance * in.size),
+          borders_(bordered(in), corner_tolerance * in.size),
           turned_(in.outlines.size()),
           box_of_face_(in.outlines.size()) {
         for (std::size_t f = 0; f < in.outlines.size(); ++f) box_of_face_[f] = box_of(in.outlines[f]);
@@ -82,7 +82,7 @@ class BodyFinder {
 };
 
 void BodyFinder::find_emitters() {
-    const Vec3 beside = 10 * position_tolerance * in_.size * Vec3{1, 1, 1};
+    const Vec3 beside = 10 * corner_tolerance * in_.size * Vec3{1, 1, 1};
     std::vector<Box> places;
     for (std::uint32_t f = 0; f < in_.emits.size(); ++f) {
         if (!in_.emits[f]) continue;
@@ -181,7 +181,7 @@ Point BodyFinder::point_within(const Space& space) const {
             if (area <= largest) continue;
             largest = area;
             const Vec3 inwards = side.is_front ? Vec3(in_.normals[side.face]) : -Vec3(in_.normals[side.face]);
-            out = (t[0] + t[1] + t[2]) / 3 + 10 * position_tolerance * in_.size * inwards;
+            out = (t[0] + t[1] + t[2]) / 3 + 10 * corner_tolerance * in_.size * inwards;
         }
     return out;
 }
@@ -206,7 +206,7 @@ std::optional<std::size_t> BodyFinder::space_around(std::size_t space) {
 /// Returns a point just in front of the middle of an emitting face, in its current orientation.
 Point BodyFinder::place_of_light(std::uint32_t f) const {
     const Vec3 up = turned_[f] ? -Vec3(in_.normals[f]) : Vec3(in_.normals[f]);
-    return centroid(in_.outlines[f]) + 10 * position_tolerance * in_.size * up;
+    return centroid(in_.outlines[f]) + 10 * corner_tolerance * in_.size * up;
 }
 
 bool BodyFinder::holds_light(std::size_t space) {

@@ -56,6 +56,7 @@ struct BodyError {
     std::optional<double> error;
     std::size_t points = 0;  ///< Number of points at which the error was measured.
     SurfaceId first;         ///< The first of its faces.
+    double at_least = 0;     ///< `error` less its standard error; 0 in solutions that were read from files.
 };
 
 /// Error of the light of one input face.

@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace exitance {
 
@@ -68,10 +70,25 @@ struct SecondarySources {
     std::optional<double> power = {};  ///< Minimum power, W, mean over bands.
 };
 
+/// Which of the curves where direct light changes its form become edges of the mesh.
+struct ShadowLines {
+    enum class Kind : std::uint8_t {
+        automatic,   ///< Curves that the requested error needs.
+        all,         ///< All that are found, of all sources.
+        strongest,   ///< The `count` curves of `automatic` with the largest gain times length.
+        on_surfaces  ///< All curves on surfaces whose material or object is one of `names`, and none elsewhere.
+    };
+    Kind kind = Kind::automatic;
+    std::size_t count = 0;
+    std::vector<std::string> names = {};
+};
+
 /// Options of a discontinuity mesh. Empty ones are chosen by the method.
 struct DiscontinuityChoice {
     std::optional<SecondarySources> sources = {};
     std::optional<ThreeEdgeEvents> three_edges = {};
+    std::optional<ShadowLines> lines = {};
+    std::optional<double> largest_error = {};  ///< Largest error of the mesh, as a share of the brightest light.
     std::optional<TriangulationScheme> triangulation = {};
     std::optional<Premesh> premesh = {};
     std::optional<MeshQuality> quality = {};
@@ -80,7 +97,8 @@ struct DiscontinuityChoice {
     std::optional<OccluderStructure> structure = {};
 
     bool any() const {
-        return sources || three_edges || triangulation || premesh || quality || element || layers || structure;
+        return sources || three_edges || lines || largest_error || triangulation || premesh || quality || element ||
+               layers || structure;
     }
 };
 

@@ -2,13 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <utility>
 
 #include "exitance/cli/named_files.hpp"
 #include "exitance/cli/processes.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/probe_file.hpp"
+#include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/wea_file.hpp"
+#include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/sky_words.hpp"
 #include "exitance/methods/options/support.hpp"
 #include "exitance/processes/distributed.hpp"
@@ -33,6 +36,20 @@ Result<void> read_importance(SolveArguments& arguments) {
                      "leave out --importance for equal accuracy everywhere"};
     for (std::size_t i = 0; i < points->size(); ++i)
         arguments.options.importance.push_back({points->points[i], points->normals[i]});
+    return {};
+}
+
+/// Replaces a file name in --dm-lines by the names on the lines of that file.
+Result<void> read_line_surfaces(SolveArguments& arguments) {
+    std::optional<ShadowLines>& lines = arguments.options.discontinuity.lines;
+    if (!lines || lines->names.size() != 1 || !std::filesystem::is_regular_file(lines->names[0])) return {};
+    const std::string path = lines->names[0];
+    const Result<std::string> text = read_whole_file(path);
+    if (!text) return text.error();
+    lines->names.clear();
+    for (TextLines line(*text); line.next();) lines->names.emplace_back(line.rest());
+    if (lines->names.empty())
+        return Error{ErrorCode::bad_input, "names no surfaces", path, "one name of a material or object a line"};
     return {};
 }
 
@@ -67,6 +84,7 @@ Result<void> settle_options(SolveArguments& arguments) {
     Result<void> settled = check_support(arguments);
     if (settled) settled = check_processes(arguments);
     if (settled) settled = read_importance(arguments);
+    if (settled) settled = read_line_surfaces(arguments);
     if (settled) settled = read_sky(arguments, arguments.scene.load);
     if (settled) settled = check_solution_name("solve", arguments.output);
     if (!settled) return settled;

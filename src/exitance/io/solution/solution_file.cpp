@@ -1,6 +1,7 @@
 #include "exitance/io/solution/solution_file.hpp"
 
 #include "exitance/base/version.hpp"
+#include "exitance/discontinuity/discontinuity_mesh.hpp"
 #include "exitance/io/solution/solution_groups.hpp"
 #include "exitance/io/solution/stored_scene_check.hpp"
 
@@ -12,6 +13,13 @@ constexpr std::int64_t format = 1;  ///< Format number; raised if older programs
 std::vector<LightFormGroup>& known_groups() {
     static std::vector<LightFormGroup> groups;
     return groups;
+}
+
+/// True if the exported elements are those of the discontinuity mesh, so that they need not be stored.
+bool follows_from_mesh(const Solution& solution) {
+    if (solution.discontinuity.empty()) return false;
+    const ElementFunction found = linear_elements(solution.discontinuity, solution.scene);
+    return found.tree.size() == solution.interpolant.tree.size() && found.values == solution.interpolant.values;
 }
 
 }  // namespace
@@ -43,8 +51,9 @@ Result<void> write_solution(const std::string& path, const Solution& solution, c
     const Spectrum& c = solution.direct_share;
     file.write("exitance/direct_share", std::span<const double>(c.value), 1,
                {"1", "share of the direct light that the values of indirect hold too, a value a band"});
-    write_function(file, "exitance/interpolant", solution.interpolant,
-                   WrittenTree{"exitance/indirect", solution.indirect.tree});
+    if (!follows_from_mesh(solution))
+        write_function(file, "exitance/interpolant", solution.interpolant,
+                       WrittenTree{"exitance/indirect", solution.indirect.tree});
     if (!solution.discontinuity.empty()) write_discontinuity(file, "exitance/discontinuity", solution.discontinuity);
     for (const LightFormGroup& form : light_form_groups())
         form.write(file, std::string("exitance/") + form.name, solution);
@@ -82,9 +91,12 @@ Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed, Lig
         std::copy(c.begin(), c.end(), solution.direct_share.value.begin());
         if (!is_finite(solution.direct_share)) file.fail("exitance/direct_share", "holds a number that is not finite");
     }
-    solution.interpolant = read_function(file, "exitance/interpolant", regions);
     if (file.has("exitance/discontinuity"))
         solution.discontinuity = read_discontinuity(file, "exitance/discontinuity", regions);
+    if (solution.discontinuity.empty() || file.has("exitance/interpolant"))
+        solution.interpolant = read_function(file, "exitance/interpolant", regions);
+    else if (!file.failed())
+        solution.interpolant = linear_elements(solution.discontinuity, solution.scene);
     for (const LightFormGroup& form : light_form_groups())
         if (const std::string group = std::string("exitance/") + form.name; file.has(group))
             form.read(file, group, solution);

@@ -10,7 +10,9 @@
 #include "exitance/base/parallel.hpp"
 #include "exitance/io/solution/checkpoint_file.hpp"
 #include "exitance/io/solution/solution_groups.hpp"
+#include "support/built_scene.hpp"
 #include "support/sample_solution.hpp"
+#include "support/solved.hpp"
 #include "support/temporary_folder.hpp"
 
 /// HDF5 1.10 leaks memory when it finds damaged metadata; the leak sanitizer ignores its leaks.
@@ -237,6 +239,28 @@ TEST_F(SolutionFiles, HoldADiscontinuityMeshAndRejectAnInvalidOne) {
     read_discontinuity(*in, "mesh", 2);
     ASSERT_TRUE(in->failed());
     EXPECT_TRUE(in->error().message.ends_with("leads to a gradient that is not there")) << in->error().message;
+}
+
+TEST_F(SolutionFiles, DoNotHoldElementsThatFollowFromTheDiscontinuityMesh) {
+    for (const MeshElement element : {MeshElement::quadratic, MeshElement::clough_tocher}) {
+        SolveOptions options{.method = Method::discontinuity, .error = 0.1};
+        options.discontinuity.element = element;
+        Solution s = solved(built_scene("cornell"), options);
+        ASSERT_FALSE(s.discontinuity.empty());
+        ASSERT_TRUE(write_solution(path("s.h5"), s));
+        Result<Hdf5Reader> file = Hdf5Reader::open(path("s.h5"));
+        ASSERT_TRUE(file);
+        EXPECT_FALSE(file->has("exitance/interpolant"));
+        const Result<Solution> t = load_solution(path("s.h5"));
+        ASSERT_TRUE(t) << t.error().message;
+        expect_same(s.interpolant, t->interpolant);
+        // Elements of another origin are stored.
+        s.interpolant.values[0][0] *= 2;
+        ASSERT_TRUE(write_solution(path("other.h5"), s));
+        const Result<Solution> other = load_solution(path("other.h5"));
+        ASSERT_TRUE(other) << other.error().message;
+        expect_same(s.interpolant, other->interpolant);
+    }
 }
 
 /// A lamp below a pane of two faces that transmits half of what leaves it.

@@ -36,8 +36,9 @@ DiscontinuityReport add_discontinuity_mesh(const Stage& stage, const SolveOption
                              .direct_weight = Spectrum(1.0) - solution.direct_share,
                              .seed = options.seed,
                              .safe_points = safe_points};
-    ask.largest_error = calibrated::largest_dm_error * ask.error;
     const DiscontinuityChoice& choice = options.discontinuity;
+    ask.largest_error = choice.largest_error.value_or(calibrated::largest_dm_error * ask.error);
+    ask.lines = choice.lines.value_or(ShadowLines());
     if (choice.sources && options.bounces != 0)
         ask.secondary = secondary_sources(stage, solution, locator, *choice.sources, stop);
     const SecondaryLight secondary(stage, solution.indirect, locator, ask.secondary, stop);

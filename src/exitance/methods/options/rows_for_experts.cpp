@@ -1,6 +1,9 @@
 #include "exitance/methods/options/option_rows.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "exitance/methods/hierarchical/hierarchical.hpp"
 #include "exitance/methods/options/value_kinds.hpp"
@@ -122,6 +125,55 @@ OptionValue secondary_sources() {
         if (!set) return "null";
         return fmt::format(R"({{"count": {}, "power": {}}})", set->count ? std::to_string(*set->count) : "null",
                            set->power ? text_of(*set->power) : "null");
+    };
+    return out;
+}
+
+std::string text_of_lines(const ShadowLines& lines) {
+    switch (lines.kind) {
+        case ShadowLines::Kind::automatic:
+            return "auto";
+        case ShadowLines::Kind::all:
+            return "all";
+        case ShadowLines::Kind::strongest:
+            return std::to_string(lines.count);
+        case ShadowLines::Kind::on_surfaces:
+            break;
+    }
+    return fmt::format("{}", fmt::join(lines.names, ","));
+}
+
+/// Value of --dm-lines: a number of lines, names that commas separate, or a file, which settle_options() reads.
+OptionValue shadow_lines() {
+    OptionValue out;
+    out.type = "auto|all|N|NAMES|FILE";
+    out.read = [](const std::string& word, SolveRequest& r) -> std::string {
+        using Kind = ShadowLines::Kind;
+        ShadowLines& lines = r.options.discontinuity.lines.emplace();
+        if (const std::optional<double> number = number_in(word)) {
+            if (*number != std::floor(*number) || *number < 0 || *number > 1e9)
+                return "must be a whole number of lines, not " + word;
+            lines = {.kind = Kind::strongest, .count = static_cast<std::size_t>(*number)};
+        } else if (word == "auto" || word == "all") {
+            lines = {.kind = word == "all" ? Kind::all : Kind::automatic};
+        } else {
+            lines.kind = Kind::on_surfaces;
+            for (std::size_t at = 0; at <= word.size();) {
+                const std::size_t end = std::min(word.find(',', at), word.size());
+                if (end > at) lines.names.push_back(word.substr(at, end - at));
+                at = end + 1;
+            }
+            if (lines.names.empty()) return "names no surfaces";
+        }
+        return "";
+    };
+    out.word = [](const SolveRequest& r) -> std::optional<std::string> {
+        const auto& set = r.options.discontinuity.lines;
+        return set ? std::optional(text_of_lines(*set)) : std::nullopt;
+    };
+    out.json = [](const SolveRequest& r) -> std::string {
+        const auto& set = r.options.discontinuity.lines;
+        return set ? json_text(text_of_lines(*set)) : "null";
     };
     return out;
 }
@@ -320,6 +372,23 @@ std::vector<OptionRow> rows_of_shadows() {
          .group = group::shadows,
          .support = {{discontinuities}},
          .excludes = {{"--bounces 0"}},
+         .section = "discontinuity"},
+        {.name = "--dm-lines",
+         .value = shadow_lines(),
+         .does = "Shadow lines that the mesh follows: all; the N with the largest change of light times length; or all "
+                 "on the surfaces of some materials or objects, separated by commas or on the lines of a file, and "
+                 "none on others",
+         .initial = "auto: those that the requested error needs",
+         .when = "The mesh is as accurate with fewer lines, but has more triangles",
+         .group = group::shadows,
+         .support = {{standard({discontinuity})}},
+         .section = "discontinuity"},
+        {.name = "--error-largest",
+         .value = positive("R", at(&DiscontinuityChoice::largest_error), 1),
+         .does = "Requested largest error of the mesh anywhere, as a share of the brightest reflected light",
+         .initial = "5/3 of --error-interpolant",
+         .group = group::shadows,
+         .support = {{standard({discontinuity})}},
          .section = "discontinuity"},
         {.name = "--eee",
          .value = choice(three_edge_names, at(&DiscontinuityChoice::three_edges)),

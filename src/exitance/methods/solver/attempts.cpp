@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -73,9 +74,12 @@ bool Solver::refines_bodies(double demand, double last_seconds) {
     // One attempt is made for bodies, or two if the first one halved the excess error. Others would cost more than the
     // whole solve, for the sake of bodies whose errors are uncertain themselves.
     constexpr int most_for_bodies = 2;
+    // Errors that are above the limit only by their noise are no reason for another attempt.
     const double limit = max_body_errors * demand, worst = certificate_.worst_body.value_or(0);
+    const bool is_above = std::any_of(statistics().bodies.begin(), statistics().bodies.end(),
+                                      [&](const BodyError& body) { return body.error && body.at_least > limit; });
     const bool helps = worst_body_before_ == 0 || worst - limit < 0.5 * (worst_body_before_ - limit);
-    if (!holds_bodies() || !gathers() || sums_ || worst <= limit || !helps || body_attempts_ == most_for_bodies ||
+    if (!holds_bodies() || !gathers() || sums_ || !is_above || !helps || body_attempts_ == most_for_bodies ||
         attempt_ == attempt_limit() || (options_.error && *options_.error > requested_error_) ||
         as_first(last_seconds) > seconds_left(stop_))
         return false;

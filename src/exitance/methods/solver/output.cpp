@@ -33,10 +33,21 @@ bool Solver::make_discontinuity() {
     statistics().seconds[RunPart::direct] += report.direct_seconds;
     if (report.interrupted) stop_early(stop_.interrupted() ? "interrupt" : "time limit");
     const bool follows_shadows = !solution_.discontinuity.empty();
+    if (follows_shadows) warn_of_lines();
     // The reported mesh must not depend on whether there was a time limit.
     if (follows_shadows && options_.bounces == 0 && !solution_.scene.has_light_from_outside()) direct_ = {};
     if (!follows_shadows && direct_.tree.size() == 0) project_coarsely();
     return follows_shadows;
+}
+
+void Solver::warn_of_lines() {
+    const DiscontinuityCounts& c = *statistics().discontinuity;
+    const std::size_t followed = c.d0 + c.d1 + c.d2 + c.eee;
+    if (options_.discontinuity.lines || c.left_out <= followed) return;
+    warn(
+        fmt::format("the mesh follows {} of about {} shadow lines; across the others light changes too little for the "
+                    "requested error to need them (--dm-lines all follows all)",
+                    followed, followed + c.left_out));
 }
 
 double Solver::interpolant_scale() const {
