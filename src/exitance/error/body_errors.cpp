@@ -1,6 +1,7 @@
 #include "exitance/error/body_errors.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "exitance/processes/distributed.hpp"
@@ -90,6 +91,7 @@ class BodySurvey {
     std::size_t work(const CheckPlan& plan, unsigned rays, std::size_t points) const;
     std::vector<ResidualSample> measure(std::span<const BodyPoint> points) const;
     std::vector<PointError> add(std::span<const BodyPoint> points);
+    bool measure_closely(std::uint32_t body, const CheckPlan& of_body, unsigned rays);
     bool look_closely_at(std::uint32_t body);
 
     const BodyCheck& c_;
@@ -192,16 +194,24 @@ void BodySurvey::look_at_all() {
              pilots(order[k].second, std::max<std::size_t>(1, pilots_of_all / order.size()), name))
             at.push_back({p.at, p.weight / static_cast<double>(std::min(order.size(), pilots_of_all))});
     const CheckPlan common_plan = plan(at, name, error_ * light_of_room_(0));
-    std::vector<BodyPoint> todo;
+    // Half of the rays are for the bodies that seem worst.
+    std::vector<double> wanted(leaves_.size());  // rays a point, a power of two
+    double wanted_by_all = 0;
     for (const auto& [chance, body] : order) {
-        const std::vector<WeightedSample> places =
-            places_on_body(c_.indirect.tree, leaves_[body], points, hash(name, body));
         const double allowed = resolved_errors * error_ * measured_[body].reference();
         if (allowed <= 0) continue;
         const double noise = allowed * allowed * std::sqrt(static_cast<double>(points));
-        const unsigned rays = certificate_rays((common_plan.gather_variance + common_plan.variance) / noise);
-        if (work(common_plan, rays, points) > left_ / 2)
-            continue;  // the remaining rays are for the bodies that seem worst
+        wanted[body] = certificate_rays((common_plan.gather_variance + common_plan.variance) / noise);
+        wanted_by_all += static_cast<double>(work(common_plan, 1, points)) * wanted[body];
+    }
+    const double share = std::min(1.0, 0.5 * static_cast<double>(left_) / std::max(1.0, wanted_by_all));
+    std::vector<BodyPoint> todo;
+    for (const auto& [chance, body] : order) {
+        if (wanted[body] == 0) continue;
+        const std::vector<WeightedSample> places =
+            places_on_body(c_.indirect.tree, leaves_[body], points, hash(name, body));
+        const unsigned rays = certificate_rays(std::bit_floor(static_cast<unsigned>(share * wanted[body])));
+        if (work(common_plan, rays, points) > left_) break;
         left_ -= work(common_plan, rays, points);
         for (std::size_t i = 0; i < points; ++i)
             todo.push_back({places[i], body, common_plan, rays, hash(name, body, i)});
@@ -209,43 +219,71 @@ void BodySurvey::look_at_all() {
     add(todo);
 }
 
-/// Measures a body at further points. Returns false if the rays do not suffice.
-bool BodySurvey::look_closely_at(std::uint32_t body) {
-    constexpr std::size_t batch = 16, max_batches = 16;
+constexpr std::size_t max_close_points = 128;  ///< Limit on the further points of a body.
+
+/// Measures a body at further points with this many rays each. Returns true if its error is then sufficiently known.
+bool BodySurvey::measure_closely(std::uint32_t body, const CheckPlan& of_body, unsigned rays) {
+    constexpr std::size_t batch = 16;
     // Standard error of the mean square at which to stop, as a share of the mean square; given by the required accuracy
     // of its root, an eighth.
     constexpr double sufficient_error = 0.25;
     const std::uint64_t name = hash(c_.seed, static_cast<std::uint64_t>(Stream::certificate), 2, body);
-    // The noise of each gather may be as large as the requested error or, if larger, the apparent one.
-    const BodyMeasure before = measured_[body];
-    const double requested = std::pow(error_ * before.reference(), 2);
-    const CheckPlan of_body = plan(pilots(body, 16, name), name, std::sqrt(requested));
-    const double seems = std::max(requested, before.mean_square());
-    const unsigned rays = certificate_rays((of_body.gather_variance + of_body.variance) / seems);
-    measured_[body] = before.without_points();
-    for (std::size_t k = 0; k < max_batches && !c_.is_stopped(); ++k) {
-        if (work(of_body, rays, batch) > left_) break;
+    const double resolved = std::pow(resolved_errors * error_ * measured_[body].reference(), 2);
+    measured_[body] = measured_[body].without_points();
+    for (std::size_t k = 0; k < max_close_points / batch && !c_.is_stopped(); ++k) {
+        if (work(of_body, rays, batch) > left_) return false;
         left_ -= work(of_body, rays, batch);
         std::vector<BodyPoint> todo;
-        for (const WeightedSample& place : places_on_body(c_.indirect.tree, leaves_[body], batch, hash(name, k)))
-            todo.push_back({place, body, of_body, rays, hash(name, k, todo.size())});
+        for (const WeightedSample& place : places_on_body(c_.indirect.tree, leaves_[body], batch, hash(name, k, rays)))
+            todo.push_back({place, body, of_body, rays, hash(name, k, todo.size(), rays)});
         const std::vector<PointError> found = add(todo);
         close_points_.insert(close_points_.end(), found.begin(), found.end());
         const BodyMeasure& now = measured_[body];
-        if (now.standard_error() <= sufficient_error * std::max(now.mean_square(), requested)) break;
+        if (now.standard_error() <= std::max(sufficient_error * now.mean_square(), resolved)) return true;
     }
-    is_known_[body] = measured_[body].points() >= BodyMeasure::min_points;
-    if (!is_known_[body]) measured_[body] = before;
-    return is_known_[body];
+    return false;
 }
 
+/// Measures a body at further points. Returns false if the rays do not suffice.
+bool BodySurvey::look_closely_at(std::uint32_t body) {
+    const std::uint64_t name = hash(c_.seed, static_cast<std::uint64_t>(Stream::certificate), 2, body);
+    // The noise of each gather may be as large as the apparent error, but not above the limit of a body's error, at
+    // which users are warned: among many bodies, the noisiest ones seem worst.
+    const BodyMeasure before = measured_[body];
+    const double requested = std::pow(error_ * before.reference(), 2);
+    const double limit = max_body_errors * max_body_errors * requested;
+    const CheckPlan of_body = plan(pilots(body, 16, name), name, std::sqrt(requested));
+    const double noise = std::clamp(before.mean_square(), requested, limit);
+    // Noise takes more rays a point rather than more points: the standard error falls in proportion to the rays. Rare
+    // large differences take more than the pilot predicts; they may take a part of the remaining ones.
+    constexpr unsigned more_rays = 4, largest_part = 16;
+    unsigned rays = certificate_rays((of_body.gather_variance + of_body.variance) / noise);
+    bool is_sufficient = measure_closely(body, of_body, rays);
+    while (!is_sufficient && !c_.is_stopped()) {
+        const unsigned more = certificate_rays(more_rays * rays);
+        if (more == rays || work(of_body, more, max_close_points) > left_ / largest_part) break;
+        rays = more;
+        is_sufficient = measure_closely(body, of_body, rays);
+    }
+    if (measured_[body].points() < BodyMeasure::min_points) measured_[body] = before;
+    return measured_[body].points() > BodyMeasure::min_points && measured_[body].error(error_);
+}
+
+/// Measures bodies at further points, in descending order of the error that they may have, until the others can neither
+/// be the worst nor exceed the limit of a body's error.
 void BodySurvey::look_closely() {
-    for (std::size_t round = 0; round < measured_.size(); ++round) {
+    double largest = 0;  // largest error that is known
+    for (;;) {
         std::optional<std::uint32_t> worst;
         for (std::uint32_t b = 0; b < measured_.size(); ++b)
-            if (!is_unknown_[b] && (!worst || measured_[b].suspected() > measured_[*worst].suspected())) worst = b;
-        if (!worst || is_known_[*worst] || measured_[*worst].suspected() <= 0) return;
-        is_unknown_[*worst] = !look_closely_at(*worst);
+            if (!is_known_[b] && !is_unknown_[b] &&
+                (!worst || measured_[b].suspected() > measured_[*worst].suspected()))
+                worst = b;
+        const double of_interest = std::clamp(largest, error_, max_body_errors * error_);
+        if (!worst || measured_[*worst].suspected() <= of_interest) return;
+        is_known_[*worst] = look_closely_at(*worst);
+        is_unknown_[*worst] = !is_known_[*worst];
+        if (is_known_[*worst]) largest = std::max(largest, *measured_[*worst].error(error_));
     }
 }
 

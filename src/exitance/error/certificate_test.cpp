@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/error/body_errors.hpp"
 #include "exitance/transport/direct_projection.hpp"
 #include "support/built_scene.hpp"
 
@@ -403,6 +407,63 @@ TEST(Certificate, MeasuresSmallBodiesAtAdditionalPoints) {
         EXPECT_NEAR(*found.worst_body, 0.1 / 1.1, 0.15 * 0.1);
         EXPECT_LT(certifier.bodies()[0].error.value_or(1), 0.01);
         EXPECT_LT(found.estimate, 0.03);  // weighted by area, the error is negligible
+    }
+}
+
+/// Forty-nine separate furnaces with the same error. Rays hit rare bright speckles, so that eight points with few rays
+/// make some of so many bodies seem far worse than they are.
+TEST(Certificate, LooksCloselyAtEveryBodyThatMayExceedTheLimit) {
+    SceneDescription d;
+    d.materials = {{"wall", Spectrum(0.5), Spectrum(1.0)}};
+    const std::vector<std::vector<std::uint32_t>> box = {{0, 1, 2, 3}, {4, 7, 6, 5}, {0, 4, 5, 1},
+                                                         {1, 5, 6, 2}, {2, 6, 7, 3}, {3, 7, 4, 0}};
+    constexpr std::uint32_t bodies_a_row = 7, count = bodies_a_row * bodies_a_row;
+    for (std::uint32_t k = 0; k < count; ++k) {
+        d.groups.push_back("body " + std::to_string(k));
+        const double x = 5 * (k % bodies_a_row), y = 5 * (k / bodies_a_row), size = 2;
+        for (const double z : {0.0, size})
+            d.points.insert(d.points.end(), {{x, y, z}, {x + size, y, z}, {x + size, y + size, z}, {x, y + size, z}});
+        for (std::vector<std::uint32_t> face : box) {
+            for (std::uint32_t& corner : face) corner += 8 * k;
+            d.faces.push_back({face, 0, k, 1});
+        }
+    }
+    PlantedError planted(rough, 0.5, std::move(*make_scene(d).scene));
+    planted.stage.rooms = {};  // treat the scene as one room
+    const SceneBodies bodies = find_bodies(planted.scene);
+    ASSERT_EQ(bodies.all.size(), count);
+    const ElementLocator locator(planted.delivered.tree, planted.scene.regions().size());
+    // One cell of 2 cm in fifty holds all of the light that the other cells lack.
+    const auto speckles = [](const Point& p) {
+        constexpr double share = 0.02, size = 0.02, lacking = 0.2;
+        const auto cell = [](double x) {
+            return static_cast<std::uint64_t>(std::llround(std::floor(x / size + 1e-6)));
+        };
+        const bool is_bright = hash(cell(p.x), cell(p.y), cell(p.z)) % 1000 < 1000 * share;
+        return lacking * ((is_bright ? 1 / share : 0) - 1);
+    };
+    const PointwiseLight b([&](RegionId region, const Point& y) {
+        return Spectrum(planted.rho * (planted.emitted(region) + planted.exact) + speckles(y));
+    });
+    const PointwiseLight direct([](RegionId, const Point&) { return Spectrum(1.0); });
+    const double truth = planted.error(rough);
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        CertificateOptions options{.error = 0.02, .seed = seed, .check_rays = count << 15};
+        options.bodies = &bodies, options.projected = {&direct};
+        Certifier certifier(planted.stage, planted.light, planted.delivered, b, options);
+        Certificate found = certifier.look();
+        certifier.look_at_bodies(found);
+        // Eight points do not suffice to say that a body exceeds the limit.
+        std::size_t close = 0;
+        for (const BodyError& body : certifier.bodies()) {
+            close += body.points > BodyMeasure::min_points;
+            const bool exceeds = body.error.value_or(0) > max_body_errors * options.error;
+            EXPECT_TRUE(!exceeds || body.points > BodyMeasure::min_points);
+        }
+        EXPECT_GT(close, count / 3) << "one body must not take the rays of all";
+        ASSERT_TRUE(found.worst_body);
+        EXPECT_GT(*found.worst_body, truth);
+        EXPECT_LT(*found.worst_body, 2 * truth);
     }
 }
 
