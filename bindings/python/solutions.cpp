@@ -166,10 +166,7 @@ void add_mesh(py::module_& m) {
         });
 }
 
-}  // namespace
-
-void add_solutions(py::module_& m) {
-    add_mesh(m);
+void add_solution(py::module_& m) {
     static const std::string irradiance_doc =
         std::string("Irradiance at points.") + probe_arguments + docs::Solution::light;
     static const std::string radiosity_doc =
@@ -212,6 +209,13 @@ void add_solutions(py::module_& m) {
         .def("bake", &bake, "density"_a = 0.0, "padding"_a = 4, "uv"_a = "", "size"_a = py::none(), "faceted"_a = false,
              "progress"_a = py::none(), docs::bake)
         .def("__repr__", &describe);
+}
+
+}  // namespace
+
+void add_solutions(py::module_& m) {
+    add_mesh(m);
+    add_solution(m);
     static const std::string solve_doc = std::string(docs::solve) + solve_arguments;
     m.def("solve", &solve, "scene"_a, "error"_a = py::none(), py::kw_only(), "method"_a = "auto",
           "bounces"_a = py::none(), "time_limit"_a = py::none(), "memory_limit"_a = py::none(),

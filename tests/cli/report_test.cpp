@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <regex>
 
@@ -291,21 +292,36 @@ TEST(ProgramReport, LuxAreWattsByTheEfficacy) {
               0);
 }
 
-TEST(ProgramReport, MeasuresWorkingPlanesByStandards) {
-    const TemporaryFolder folder;
-    const std::string solution = folder / "room.h5";
-    ASSERT_EQ(run_program({"solve", write_small_room(folder), "-o", solution, "--error", "0.1", "-q"}).status, 0);
-    const auto report = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> words{"report", solution, "-o", folder / "r.html", "--size", "16x10", "-q"};
+/// The page, results and tables of a room of 4 x 3 m with a lamp.
+class ProgramReportOfARoom : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        folder_ = std::make_unique<TemporaryFolder>();
+        ASSERT_EQ(run_program({"solve", write_small_room(*folder_), "-o", solution(), "--error", "0.1", "-q"}).status,
+                  0);
+        const Finished run =
+            report({"--unit", "lux", "--plane", "0.75", "--plane", "floor,border=0.2,spacing=0.5", "--cylindrical",
+                    "1.2,spacing=1", "--maintenance", "0.8", "--observers", "auto", "--observers", "0.2,1.5,1.2 1,0,0",
+                    "--observers", "1.9,1.5,1.2 1,0,0", "--tables", path("t")});
+        ASSERT_EQ(run.status, 0) << run.err;
+    }
+    static void TearDownTestSuite() { folder_.reset(); }
+
+    static std::string path(const std::string& name) { return *folder_ / name; }
+    static std::string solution() { return path("room.h5"); }
+    static Finished report(const std::vector<std::string>& more) {
+        std::vector<std::string> words{"report", solution(), "-o", path("r.html"), "--size", "16x10", "-q"};
         words.insert(words.end(), more.begin(), more.end());
         return run_program(words);
-    };
-    const Finished run =
-        report({"--unit", "lux", "--plane", "0.75", "--plane", "floor,border=0.2,spacing=0.5", "--cylindrical",
-                "1.2,spacing=1", "--maintenance", "0.8", "--observers", "auto", "--observers", "0.2,1.5,1.2 1,0,0",
-                "--observers", "1.9,1.5,1.2 1,0,0", "--tables", folder / "t"});
-    ASSERT_EQ(run.status, 0) << run.err;
-    const auto json = nlohmann::json::parse(read_text(folder / "r.json"));
+    }
+    static nlohmann::json results() { return nlohmann::json::parse(read_text(path("r.json"))); }
+
+  private:
+    static inline std::unique_ptr<TemporaryFolder> folder_;
+};
+
+TEST_F(ProgramReportOfARoom, MeasuresWorkingPlanesByStandards) {
+    const auto json = results();
     ASSERT_EQ(json["grids"].size(), 3u);
     const auto& plane = json["grids"][0];
     // 4 x 3 m without 0.5 m on every side are 3 x 2 m. With p = 0.2 x 5^log10(3) = 0.431 m, there are 7 x 5 points.
@@ -320,9 +336,13 @@ TEST(ProgramReport, MeasuresWorkingPlanesByStandards) {
     // `probe` at the same points, in watts times the factor.
     const auto& p = plane["points"][9];
     const Finished probe =
-        run_program({"probe", solution, "--points", "-", "--unit", "lux"},
+        run_program({"probe", solution(), "--points", "-", "--unit", "lux"},
                     "x,y,z,nx,ny,nz\n" + p[0].dump() + "," + p[1].dump() + "," + p[2].dump() + ",0,0,1\n");
     EXPECT_NEAR(plane["values"][9], 0.8 * std::stod(probe.out.substr(probe.out.rfind(',') + 1)), 1e-3 * sum);
+}
+
+TEST_F(ProgramReportOfARoom, RatesTheGlareOfObservers) {
+    const auto json = results();
     ASSERT_EQ(json["observers"].size(), 6u);
     const auto& observer = json["observers"][4];
     ASSERT_EQ(observer["sources"].size(), 1u);
@@ -331,33 +351,39 @@ TEST(ProgramReport, MeasuresWorkingPlanesByStandards) {
     const double term = std::pow(source["luminance"].get<double>() / source["position"].get<double>(), 2) *
                         source["solid_angle"].get<double>();
     EXPECT_NEAR(observer["ugr"], 8 * std::log10(0.25 * term / observer["background"].get<double>()), 1e-2);
+    EXPECT_TRUE(observer["left_out"].empty());
     // For the sixth observer, the lamp is overhead.
     EXPECT_TRUE(json["observers"][5]["ugr"].is_null());
     EXPECT_TRUE(json["observers"][5]["sources"].empty());
     ASSERT_EQ(json["observers"][5]["left_out"].size(), 1u);
     EXPECT_EQ(json["observers"][5]["left_out"][0]["name"], "lamp");
     EXPECT_EQ(json["observers"][5]["left_out"][0]["reason"].get<std::string>().find("overhead"), 0u);
-    EXPECT_TRUE(observer["left_out"].empty());
-    EXPECT_NE(read_text(folder / "t/observers.csv").find(",large_source,left_out\n"), std::string::npos);
-    const std::string table = read_text(folder / "t/planes.csv");
+}
+
+TEST_F(ProgramReportOfARoom, WritesTablesAndDrawings) {
+    EXPECT_NE(read_text(path("t/observers.csv")).find(",large_source,left_out\n"), std::string::npos);
+    const std::string table = read_text(path("t/planes.csv"));
     EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 4);
-    EXPECT_TRUE(read_text(folder / "t/plane_1.svg").starts_with("<svg xmlns"));
-    EXPECT_TRUE(read_text(folder / "t/plane_3.pdf").starts_with("%PDF"));
-    EXPECT_NE(read_text(folder / "t/observers.csv").find("\"looking +x\""), std::string::npos);
-    EXPECT_NE(read_text(folder / "r.html").find("<section id=\"glare\">"), std::string::npos);
+    EXPECT_TRUE(read_text(path("t/plane_1.svg")).starts_with("<svg xmlns"));
+    EXPECT_TRUE(read_text(path("t/plane_3.pdf")).starts_with("%PDF"));
+    EXPECT_NE(read_text(path("t/observers.csv")).find("\"looking +x\""), std::string::npos);
+    EXPECT_NE(read_text(path("r.html")).find("<section id=\"glare\">"), std::string::npos);
+    // Writes only tables, without a page.
+    EXPECT_EQ(run_program({"report", solution(), "--plane", "0.75", "--tables", path("u"), "-q"}).status, 0);
+    EXPECT_TRUE(std::filesystem::exists(path("u/plane_1.csv")));
+}
+
+TEST_F(ProgramReportOfARoom, RejectsOptionsThatDoNotFit) {
     for (const std::vector<std::string>& wrong : std::vector<std::vector<std::string>>{{"--plane", "chair"},
                                                                                        {"--plane", "0.7,size=3"},
                                                                                        {"--cylindrical", "floor"},
                                                                                        {"--observers", "1,2,3 0,0,0"},
                                                                                        {"--maintenance", "1.2"}})
         EXPECT_EQ(report(wrong).status, 2) << wrong[1];
-    EXPECT_EQ(report({"--observers", folder / "none.csv"}).status, 3);
-    // Writes only tables, without a page.
-    EXPECT_EQ(run_program({"report", solution, "--plane", "0.75", "--tables", folder / "u", "-q"}).status, 0);
-    EXPECT_TRUE(std::filesystem::exists(folder / "u/plane_1.csv"));
-    EXPECT_EQ(run_program({"report", solution, "-q"}).status, 2);
-    EXPECT_EQ(run_program({"report", solution, "--tables", folder / "u"}).status, 2);
-    EXPECT_EQ(run_program({"report", solution, "-o", folder / "r.html", "--maintenance", "0.8"}).status, 2);
+    EXPECT_EQ(report({"--observers", path("none.csv")}).status, 3);
+    EXPECT_EQ(run_program({"report", solution(), "-q"}).status, 2);
+    EXPECT_EQ(run_program({"report", solution(), "--tables", path("u")}).status, 2);
+    EXPECT_EQ(run_program({"report", solution(), "-o", path("r.html"), "--maintenance", "0.8"}).status, 2);
 }
 
 TEST(ProgramReport, IsGermanOrShortByATemplate) {

@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 import {short} from './colours';
 import type {Light, Triple} from './data';
-import {by_id, make} from './measure';
+import {by_id, make} from './page';
 
 export interface CardActions { hide(group: number): void; isolate(group: number): void; copied(words: string): void }
 

@@ -2,7 +2,7 @@
 import {difference_colours, short, signed} from './colours';
 import {load_facts, unchanged, type Change, type Facts} from './data';
 import {Elements} from './elements';
-import {by_id, make} from './measure';
+import {by_id, make} from './page';
 import type {Comparison, Other, Panes} from './panes';
 import type {Shading} from './shading';
 

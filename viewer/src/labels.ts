@@ -1,7 +1,7 @@
 // Numbers at lines of equal light, where the lines cross a coarse grid of the picture. Made when the camera rests.
 import type * as THREE from 'three';
 import {short} from './colours';
-import {by_id, make} from './measure';
+import {by_id, make} from './page';
 
 export interface Probe { value: number; object: number; normal: THREE.Vector3; point: THREE.Vector3 }
 

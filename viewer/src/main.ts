@@ -1,17 +1,21 @@
 import * as THREE from 'three';
 import {Card} from './card';
-import {css, round_steps, short} from './colours';
+import {round_steps, short} from './colours';
 import {Compare} from './compare';
-import {load_facts, load_line, load_point, load_share, load_state, post, type Facts, type Light, type State, type Triple} from './data';
-import {order_colours} from './elements';
+import {load_facts, load_point, load_share, load_state, type Facts, type Light, type State, type Triple} from './data';
 import {clear_labels, show_labels} from './labels';
-import {by_id, distance_words, draw_outlines, line_words, make, profile_csv, show_plot, type Profile} from './measure';
+import {show_legend, title_of} from './legend';
+import {LineTool} from './line_tool';
+import {draw_outlines} from './measure';
 import {Objects} from './objects';
 import {overview} from './overview';
+import {box, by_id, choice, make} from './page';
 import {Panes, type Arrangement, type Found, type Source} from './panes';
+import {follow_solve} from './running_solve';
 import {save_file, save_picture} from './save';
 import {ScaleControl} from './scale_control';
-import {class_colours, Shading, type Shown} from './shading';
+import {cut, toggle_section} from './section';
+import {Shading, type Shown} from './shading';
 import {shared, shared_controls, with_state, type SharedState} from './shared';
 import {Space} from './space';
 import {toolbar} from './toolbar';
@@ -30,9 +34,8 @@ size_picture();
 performance.mark('renderer');
 const chosen = new THREE.Group(), shooters = new THREE.Group(), marks = new THREE.Group();
 marks.add(chosen, shooters);
-const box = (id: string) => by_id<HTMLInputElement>(id), choice = (id: string) => by_id<HTMLSelectElement>(id).value;
 let facts: Facts, shading: Shading, panes: Panes, view: Viewpoint, space: Space | null = null, objects: Objects, compare: Compare | null = null, views: Views;
-let wanted = true, measuring: {point: THREE.Vector3; normal: THREE.Vector3}[] | null = null, csv = '', told_panes = '';
+let wanted = true, told_panes = '';
 let files: [string, string] | null = null, exposure = 1, labelled = '', ranged = '', range: [number, number] = [0, 1], rested = 0, hovered: [number, number] | null = null;
 
 const redraw = () => { wanted = true; };
@@ -42,7 +45,9 @@ const card = new Card({
     hide: group => { objects.hide(group); card.close(); }, isolate: group => objects.isolate(group),
     copied: words => { void navigator.clipboard.writeText(words); },
 });
+const line = new LineTool(card, chosen, redraw);
 const unit = () => facts.units.irradiance;
+const show_section = () => { cut(facts, shading); redraw(); };
 
 function paint(): void {
     const sky = getComputedStyle(document.documentElement).getPropertyValue('--sky').trim();
@@ -96,41 +101,6 @@ function resize(): void {
     redraw();
 }
 
-const title_of = (radiosity: boolean) => {
-    const symbol = radiosity ? facts.units.radiosity : facts.units.irradiance;
-    const lux = facts.units.irradiance === 'lx';
-    return `${radiosity ? (lux ? 'luminous exitance' : 'radiosity') : lux ? 'illuminance' : 'irradiance'}, ${symbol}`;
-};
-
-function legend_row(colour: string, words: string, line = false): HTMLElement {
-    const row = document.createElement('div'), mark = document.createElement('i');
-    if (line) mark.className = 'line', mark.style.borderColor = colour;
-    else mark.style.background = colour;
-    row.append(mark, words);
-    return row;
-}
-
-function show_legend(shown: Shown, isolux: boolean): void {
-    const legend = by_id('legend'), rows: (HTMLElement | string)[] = [], values = shown === 'radiosity' || shown === 'irradiance';
-    if (panes.arrangement === 'difference') {
-        const quantity = title_of(shown === 'radiosity');
-        rows.push(make('strong', `difference of ${quantity}`), make('div', panes.words('difference')),
-            ...compare!.legend().map(({colour, words}) => legend_row(css(colour), words)), legend_row('#737373', 'another surface'));
-        legend.hidden = false;
-        legend.replaceChildren(...rows);
-        return;
-    }
-    if (values || isolux) rows.push(make('strong', title_of(shown === 'radiosity')));
-    for (const {colour, from, to} of values || isolux ? shading.legend() : [])
-        rows.push(values ? legend_row(colour, `${short(from)} – ${short(to)}`) : legend_row(colour, short(from), true));
-    if (scale.threshold >= 0 && values) rows.push(legend_row('#ff3399', `threshold ${short(scale.threshold)}`, true));
-    if (shown === 'classes') for (const [name, colour] of class_colours) rows.push(legend_row(css(colour), name));
-    if (box('mesh').checked && facts.discontinuities)
-        for (const [name, colour] of Object.values(order_colours)) rows.push(legend_row(css(colour), name, true));
-    legend.hidden = rows.length === 0;
-    legend.replaceChildren(...rows);
-}
-
 /** The range of the light in the picture, found again when other light is shown, but not while the camera moves. */
 function visible_range(radiosity: boolean): [number, number] {
     const words = JSON.stringify([radiosity, panes.change, panes.source, panes.arrangement, panes.layers.delivered.progress]);
@@ -156,7 +126,7 @@ function apply(): void {
     }, shown === 'radiosity');
     by_id('tool_colours').setAttribute('aria-pressed', String(values));
     by_id('tool_isolux').setAttribute('aria-pressed', String(isolux));
-    show_legend(shown, isolux);
+    show_legend({facts, shading, panes, compare, shown, isolux, threshold: scale.threshold});
     redraw();
 }
 
@@ -207,10 +177,10 @@ async function light_at(found: Found): Promise<Light> {
 
 async function pick(x: number, y: number): Promise<void> {
     const found = panes.hit(x, y, width(), height(), view);
-    if (!found || !found.hit.face) { measuring ? card.tell('There is nothing. Click on a surface.') : card.close(); return; }
+    if (!found || !found.hit.face) { line.in_use ? card.tell('There is nothing. Click on a surface.') : card.close(); return; }
     const point = found.hit.point, normal = found.hit.face.normal;
     try {
-        if (measuring) return await add_end(point, normal);
+        if (line.in_use) return await line.add_end(point, normal, unit(), panes.change);
         const light = await light_at(found);
         chosen.clear();
         if (box('mesh').checked || panes.source === 'raw') draw_outlines(chosen, [found.outline], 0xff7a1a);
@@ -225,50 +195,6 @@ async function pick(x: number, y: number): Promise<void> {
     } catch (error) { card.tell(String(error)); }
 }
 
-async function add_end(point: THREE.Vector3, normal: THREE.Vector3): Promise<void> {
-    measuring!.push({point: point.clone(), normal: normal.clone()});
-    if (measuring!.length < 2) { card.tell('Now the other end.'); return; }
-    const [a, b] = measuring!;
-    measuring = [];
-    chosen.clear();
-    draw_outlines(chosen, [[a.point, b.point]], 0xff7a1a, false);
-    redraw();
-    if (shared) { card.tell(distance_words(a.point, b.point)); return; }
-    const profile = await load_line([...a.point.toArray(), ...b.point.toArray(), ...b.normal.toArray()], panes.change) as Profile;
-    card.tell(line_words(profile, a.point, b.point, unit()));
-    csv = profile_csv(profile, a.point, b.point, unit());
-    by_id('measured_hint').hidden = true;
-    by_id<HTMLDetailsElement>('measured_section').open = true;
-    show_plot(profile, unit());
-}
-
-/** Which answer a click gives: the light at a point, or what lies between two. */
-function use_tool(line: boolean): void {
-    measuring = line ? [] : null;
-    by_id('tool_line').setAttribute('aria-pressed', String(line));
-    by_id('tool_value').setAttribute('aria-pressed', String(!line));
-    if (line) card.tell('Click on one end, or press Enter for the cross in the middle.'); else card.close();
-}
-
-/** The section that the panel describes. */
-function cut(): void {
-    const axis = choice('cut_axis'), c = axis ? 'xyz'.indexOf(axis) : -1, sign = box('cut_flip').checked ? -1 : 1;
-    by_id('tool_section').setAttribute('aria-pressed', String(c >= 0));
-    const [low, high] = c < 0 ? [0, 1] : [facts.box[0][c], facts.box[1][c]], at = low + (high - low) * Number(box('cut_at').value) / 1000;
-    by_id('cut_text').textContent = c < 0 ? '' : `${at.toFixed(2)} m`;
-    const normal = [0, 0, 0];
-    if (c >= 0) normal[c] = sign;
-    shading.cut(c < 0 ? null : [...normal, sign * at]);
-    redraw();
-}
-
-function toggle_section(): void {
-    const select = by_id<HTMLSelectElement>('cut_axis');
-    select.value = select.value ? '' : 'z';
-    if (select.value) by_id<HTMLDetailsElement>('section').open = true;
-    cut();
-}
-
 function show_facts(): void {
     by_id('name').textContent = facts.file.split('/').pop() ?? 'exitance';
     by_id('facts').textContent = `${facts.surfaces} faces` + (facts.error === null ? '' : `; light accurate to about ${(100 * facts.error).toPrecision(2)}%`);
@@ -277,7 +203,7 @@ function show_facts(): void {
     const classes = by_id<HTMLSelectElement>('quantity').querySelector<HTMLOptionElement>('[value=classes]')!;
     classes.hidden = classes.disabled = !facts.shadow_classes;
     const options = by_id<HTMLSelectElement>('quantity').options;
-    options[1].text = title_of(false), options[2].text = title_of(true);
+    options[1].text = title_of(facts, false), options[2].text = title_of(facts, true);
 }
 
 function show_overview(): void {
@@ -328,7 +254,7 @@ async function load(first: boolean, known: Facts | null = null): Promise<void> {
             objects = new Objects(facts, hidden => { shading.hide(hidden); redraw(); });
             if (old_objects) objects.restore(old_objects);
             objects.show();
-            cut();
+            show_section();
         }
         apply();
         if (!document.body.dataset.first) {
@@ -369,7 +295,7 @@ function show_shared(): void {
     shading.paint(state.reflectances);
     objects.hidden_groups = state.hidden;
     if (!location.hash) view.from_words(state.camera);
-    cut();
+    show_section();
     apply();
 }
 
@@ -380,38 +306,6 @@ async function share(): Promise<void> {
         save_file((facts.file.split('/').pop() ?? 'room').replace(/\.\w+$/, '') + '.html', 'text/html', page);
         card.close();
     } catch (error) { card.tell(String(error)); }
-}
-
-/** A running solve tells what it does, and when there is better light. */
-function follow(): void {
-    const events = new EventSource('/data/events');
-    by_id('running').hidden = false;
-    events.addEventListener('progress', event => {
-        const {phase, fraction, shooter} = JSON.parse((event as MessageEvent).data) as {phase: string; fraction: number; shooter: Triple[]};
-        shooters.clear();
-        if (shooter.length > 2) {
-            draw_outlines(shooters, [shooter.map(p => new THREE.Vector3(...p))], 0xffd21a);
-            document.body.dataset.shooters = String(Number(document.body.dataset.shooters ?? 0) + 1);
-        }
-        redraw();
-        by_id<HTMLProgressElement>('progress').value = fraction;
-        by_id('phase').textContent = phase;
-    });
-    let loading: Promise<void> = Promise.resolve(), shown = false;
-    events.addEventListener('light', event => {
-        const {count} = JSON.parse((event as MessageEvent).data);
-        document.body.dataset.snapshots = String(count);
-        loading = loading.then(() => load(!shown)).then(() => { shown = true; });
-    });
-    events.addEventListener('end', event => {
-        by_id('phase').textContent = JSON.parse((event as MessageEvent).data).message;
-        by_id<HTMLProgressElement>('progress').value = 1;
-        by_id('stop').setAttribute('disabled', '');
-        shooters.clear();
-        redraw();
-        document.body.dataset.ended = '1';
-        events.close();
-    });
 }
 
 function toggle(id: string): void { box(id).checked = !box(id).checked; apply(); }
@@ -429,8 +323,8 @@ function toggle_colours(): void {
 }
 
 const tools: Record<string, [string, () => void]> = {
-    tool_panel: ['h', toggle_panel], tool_value: ['v', () => use_tool(false)], tool_line: ['l', () => use_tool(measuring === null)],
-    tool_section: ['x', toggle_section], tool_colours: ['r', toggle_colours], tool_isolux: ['i', () => toggle('isolux')],
+    tool_panel: ['h', toggle_panel], tool_value: ['v', () => line.use(false)], tool_line: ['l', () => line.use(!line.in_use)],
+    tool_section: ['x', () => { toggle_section(); show_section(); }], tool_colours: ['r', toggle_colours], tool_isolux: ['i', () => toggle('isolux')],
     fit: ['f', show_overview], enter: ['g', enter_room], save_view: ['b', () => {}],
     share: ['t', () => void share()],
     save_picture: ['p', () => { paint(); save_picture(canvas, by_id('legend'), by_id('labels'), (facts.file.split('/').pop() ?? 'picture').replace(/\.\w+$/, '') + '.png'); }],
@@ -440,7 +334,7 @@ toolbar(by_id('bar'));
 by_id('tool_panel').setAttribute('aria-pressed', String(!document.body.classList.contains('alone')));
 for (const id of ['quantity', 'tone', 'exposure', 'mesh', 'isolux']) by_id(id).addEventListener('input', () => panes && apply());
 for (const id of ['source', 'arrangement']) by_id(id).addEventListener('input', () => panes && void arrange());
-for (const id of ['cut_axis', 'cut_at', 'cut_flip']) by_id(id).addEventListener('input', () => panes && cut());
+for (const id of ['cut_axis', 'cut_at', 'cut_flip']) by_id(id).addEventListener('input', () => panes && show_section());
 by_id('objects_all').addEventListener('click', () => objects?.show_all());
 by_id('exposure_auto').addEventListener('click', () => void load_facts(panes.change).then(now => {
     exposure = now.exposure, box('exposure').value = '0';
@@ -453,11 +347,6 @@ by_id('record').addEventListener('click', () => {
 });
 by_id('replay').addEventListener('click', () => view.replay());
 by_id('save_path').addEventListener('click', () => save_file('path.csv', 'text/csv', view.path_text()));
-by_id('copy').addEventListener('click', () => navigator.clipboard.writeText(csv).then(() => card.tell('Copied.'),
-    () => save_file('line.csv', 'text/csv', csv)));
-by_id('stop').addEventListener('click', () => post('/data/stop').catch(error => { by_id('phase').textContent = String(error); }));
-by_id('save').addEventListener('click', () => post('/data/save').then(text => { by_id('phase').textContent = text; },
-    error => { by_id('phase').textContent = String(error); }));
 document.querySelectorAll<HTMLElement>('.divider').forEach((divider, i) => {
     divider.addEventListener('pointerdown', event => divider.setPointerCapture(event.pointerId));
     divider.addEventListener('pointermove', event => {
@@ -483,7 +372,7 @@ canvas.addEventListener('keyup', event => {
     if (tool) by_id(tool[0]).click();
     if (key === 'm') toggle('mesh');
     if (key === 'k') compare?.keep();
-    if (key === 'escape') { use_tool(false); chosen.clear(); redraw(); }
+    if (key === 'escape') { line.use(false); chosen.clear(); redraw(); }
     if (key === 'c') {
         const select = by_id<HTMLSelectElement>('arrangement');
         select.selectedIndex = (select.selectedIndex + 1) % select.options.length;
@@ -508,7 +397,7 @@ by_id('software').hidden = !/swiftshader|llvmpipe|software|basic render/i.test(p
 
 asked_state.then(async (state: State) => {
     files = state.files;
-    return state.solving ? follow() : load(true, await asked_facts);
+    return state.solving ? follow_solve(shooters, redraw, load) : load(true, await asked_facts);
 })
     .catch(error => { by_id('facts').textContent = String(error); });
 // What tests of the page ask for.

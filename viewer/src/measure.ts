@@ -1,18 +1,9 @@
 // Distances, and light along a line, in numbers.
 import * as THREE from 'three';
 import {short} from './colours';
-
-export const by_id = <T extends Element = HTMLElement>(id: string) => document.getElementById(id) as unknown as T;
+import {by_id} from './page';
 
 export interface Profile { length: number; values: number[]; delivered: number[]; raw: number[] }
-
-/** Makes an element with text and attributes. */
-export function make<K extends keyof HTMLElementTagNameMap>(tag: K, text = '', attributes: Record<string, string> = {}): HTMLElementTagNameMap[K] {
-    const made = document.createElement(tag);
-    if (text) made.textContent = text;
-    for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
-    return made;
-}
 
 const series = ['exact', 'delivered', 'raw'] as const;
 const titles = {exact: 'exact', delivered: 'continuous', raw: "method's elements"};

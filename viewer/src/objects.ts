@@ -1,6 +1,6 @@
 // The list of objects: groups of faces by name, which can be hidden or shown alone. Objects of one name are one entry.
 import type {Facts} from './data';
-import {by_id, make} from './measure';
+import {by_id, make} from './page';
 
 export class Objects {
     private hidden = new Set<number>();

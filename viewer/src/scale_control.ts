@@ -1,6 +1,6 @@
 // The range of the colours: two handles on one track, two numbers, linear or logarithmic, palette and threshold.
 import {above_zero, round_steps, short, steps_within} from './colours';
-import {by_id} from './measure';
+import {by_id} from './page';
 
 const track = 1000;  // positions of a handle
 

@@ -1,5 +1,5 @@
 // Saved views: cameras with names, kept by the browser for this address, and as a file.
-import {by_id, make} from './measure';
+import {by_id, make} from './page';
 
 export interface SavedView { name: string; camera: string }
 

@@ -1,7 +1,7 @@
 // What if: a slider dims each light group, a colour repaints each material, and the light follows. Of requests that wait
 // for one another the newest counts; elements stay, their light is filled in again.
 import {load_changes, Newest, type Change, type Changes, type Facts, type Triple} from './data';
-import {by_id} from './measure';
+import {by_id} from './page';
 import type {Panes} from './panes';
 import type {Shading} from './shading';
 

@@ -220,6 +220,24 @@ Result<void> save(const SolveArguments& arguments, Solution& solution, const Lig
     return {};
 }
 
+/// Prints the warnings about the options, and sets threads and schedule.
+void begin(const SolveArguments& arguments, Terminal& terminal) {
+    for (const std::string& warning : arguments.warnings) terminal.progress().warn(warning);
+    if (arguments.scene.load.sky)
+        for (const std::string& warning : arguments.scene.load.sky->warnings) terminal.progress().warn(warning);
+    set_threads(arguments.options.threads);
+    set_schedule(arguments.options.schedule);
+}
+
+/// Ends a run whose solution has no estimate of its error. The checkpoint is kept.
+ExitCode fail_without_estimate(const Error& error, const std::optional<CheckpointFile>& checkpoint,
+                               std::optional<ExitCode> signal, Terminal& terminal) {
+    terminal.progress().finish();
+    close_checkpoint(checkpoint, true, terminal);
+    const ExitCode failure = terminal.fail(error);
+    return signal ? *signal : failure;
+}
+
 void tell(const SolveArguments& arguments, const Solution& solution, Terminal& terminal) {
     if (arguments.json) {
         terminal.print(statistics_json(solution));
@@ -229,15 +247,6 @@ void tell(const SolveArguments& arguments, const Solution& solution, Terminal& t
 }
 
 }  // namespace
-
-/// Prints the warnings about the options, and sets threads and schedule.
-void begin(const SolveArguments& arguments, Terminal& terminal) {
-    for (const std::string& warning : arguments.warnings) terminal.progress().warn(warning);
-    if (arguments.scene.load.sky)
-        for (const std::string& warning : arguments.scene.load.sky->warnings) terminal.progress().warn(warning);
-    set_threads(arguments.options.threads);
-    set_schedule(arguments.options.schedule);
-}
 
 /// Runs `exitance solve SCENE -o SOLUTION`.
 ExitCode run(const SolveArguments& given, Terminal& terminal) {
@@ -277,12 +286,8 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (!solution) return terminal.fail(solution.error());
 
     if (const std::optional<Error> failed =
-            error_of_missing_estimate(solution->statistics, arguments.options, arguments.output)) {
-        terminal.progress().finish();
-        close_checkpoint(checkpoint, true, terminal);
-        const ExitCode failure = terminal.fail(*failed);
-        return signal ? *signal : failure;
-    }
+            error_of_missing_estimate(solution->statistics, arguments.options, arguments.output))
+        return fail_without_estimate(*failed, checkpoint, signal, terminal);
     add_texture_error(*solution, checked.reflectance_deviation, arguments.options.error_demand());
     warn_of_useless_light(solution->statistics);
     const Result<LightGroups> groups = arguments.light_groups

@@ -14,6 +14,20 @@ struct TowardsEnds {
     explicit TowardsEnds(double s) : at(s * s * (3 - 2 * s)), share(6 * s * (1 - s)) {}
 };
 
+/// Divides the running sum of the leaves' weights into `count` equal strata. Calls visit(k, leaf) with the leaf that
+/// contains a random point of stratum k. `total`: sum of the weights of all `leaves` leaves.
+template <class WeightOf, class Visit>
+void for_strata(const ScrambledSobol& points, std::size_t count, std::size_t leaves, double total,
+                const WeightOf& weight_of, const Visit& visit) {
+    double before = 0;
+    std::size_t leaf = 0;
+    for (std::uint32_t k = 0; k < count; ++k) {
+        const double wanted = total * (k + points(k, 0)) / static_cast<double>(count);
+        while (leaf + 1 < leaves && before + weight_of(leaf) <= wanted) before += weight_of(leaf++);
+        visit(k, leaf);
+    }
+}
+
 }  // namespace
 
 std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementTree& tree,
@@ -51,22 +65,18 @@ std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementT
         const double expected = mean_error > 0 ? 0.5 + 0.5 * own[i].error / mean_error : 1.0;
         density[i] = reduction * stage.rooms.weight(tree, e) * (expected + (narrow[e] ? of_narrow : 0));
     });
+    const auto weight_of = [&](std::size_t i) { return tree.area(leaves[i]) * density[i]; };
     double total = 0;
-    for (std::size_t i = 0; i < leaves.size(); ++i) total += tree.area(leaves[i]) * density[i];
+    for (std::size_t i = 0; i < leaves.size(); ++i) total += weight_of(i);
     const double share_of_all = total / stage.area;  // 1 if no leaf is excluded or narrow
     const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::certificate)));
     std::vector<WeightedSample> out;
-    double before = 0;
-    std::size_t leaf = 0;
-    for (std::uint32_t k = 0; k < count; ++k) {
-        const double wanted = total * (k + points(k, 0)) / static_cast<double>(count);
-        const auto share_of = [&] { return tree.area(leaves[leaf]) * density[leaf]; };
-        while (leaf + 1 < leaves.size() && before + share_of() <= wanted) before += share_of(), ++leaf;
+    for_strata(points, count, leaves.size(), total, weight_of, [&](std::uint32_t k, std::size_t leaf) {
         const ElementId e = leaves[leaf];
         const TowardsEnds s(points(k, 1)), t(points(k, 2));
         out.push_back({{e, tree.uniform(e, s.at, t.at)},
                        share_of_all * s.share * t.share / (density[leaf] * static_cast<double>(count))});
-    }
+    });
     return out;
 }
 
@@ -76,15 +86,11 @@ std::vector<WeightedSample> places_on_body(const ElementTree& tree, std::span<co
     for (ElementId e : leaves) total += tree.area(e);
     const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::certificate)));
     std::vector<WeightedSample> out;
-    double before = 0;
-    std::size_t leaf = 0;
-    for (std::uint32_t k = 0; k < count; ++k) {
-        const double wanted = total * (k + points(k, 0)) / static_cast<double>(count);
-        while (leaf + 1 < leaves.size() && before + tree.area(leaves[leaf]) <= wanted)
-            before += tree.area(leaves[leaf++]);
-        out.push_back(
-            {{leaves[leaf], tree.uniform(leaves[leaf], points(k, 1), points(k, 2))}, 1 / static_cast<double>(count)});
-    }
+    const auto weight_of = [&](std::size_t i) { return tree.area(leaves[i]); };
+    for_strata(points, count, leaves.size(), total, weight_of, [&](std::uint32_t k, std::size_t leaf) {
+        const ElementId e = leaves[leaf];
+        out.push_back({{e, tree.uniform(e, points(k, 1), points(k, 2))}, 1 / static_cast<double>(count)});
+    });
     return out;
 }
 

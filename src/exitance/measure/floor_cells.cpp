@@ -159,13 +159,6 @@ std::size_t FloorCells::cell_of(std::uint32_t part, const Point& p) const {
     return size();
 }
 
-std::uint32_t FloorCells::part_at(const Point& p) const {
-    if (!floor_.holds(p)) return none;
-    for (std::uint32_t part = 0; part < parts_.size(); ++part)
-        if (cell_of(part, p) < size()) return part;
-    return none;
-}
-
 bool FloorCells::holds(std::uint32_t part, const Point& p, double border) const {
     constexpr int places = 24;
     if (!floor_.holds(p)) return false;

@@ -35,8 +35,6 @@ class FloorCells {
     std::uint32_t part(std::size_t cell) const { return part_[cell]; }
     Point centre(std::size_t cell) const;
 
-    /// Number of the part that contains a point of the floor's plane, or `none`.
-    std::uint32_t part_at(const Point& p) const;
     /// True if a point of the floor's plane is in a part, by at least `border` metres from its walls and outline.
     bool holds(std::uint32_t part, const Point& p, double border) const;
     /// Bounding rectangle of a part along the sides of the floor's rectangle, exact to 1e-6 of the scene's size.

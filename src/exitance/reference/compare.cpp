@@ -122,15 +122,4 @@ ErrorMeasure measure_error(const ErrorSamples& samples, const Scene& scene) {
     return measure(samples, scene, points_by_face(samples));
 }
 
-std::vector<SurfaceError> measure_error_by_surface(const ErrorSamples& samples, const Scene& scene) {
-    const std::vector<std::size_t> points = points_by_face(samples);
-    std::vector<SurfaceError> out;
-    for (std::size_t first = 0, last = 0; first < points.size(); first = last) {
-        const SurfaceId s = samples.surfaces[points[first]];
-        while (last < points.size() && samples.surfaces[points[last]] == s) ++last;
-        if (!s.is_none()) out.push_back({s, measure(samples, scene, Indices(points).subspan(first, last - first))});
-    }
-    return out;
-}
-
 }  // namespace exitance

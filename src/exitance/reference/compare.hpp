@@ -35,11 +35,4 @@ struct ErrorMeasure {
 /// result is not finite, or if it is not 0 and the reference is 0 at all points. O(n log n).
 ErrorMeasure measure_error(const ErrorSamples& samples, const Scene& scene);
 
-/// Error measure of one face.
-struct SurfaceError {
-    SurfaceId surface;
-    ErrorMeasure error;
-};
-std::vector<SurfaceError> measure_error_by_surface(const ErrorSamples& samples, const Scene& scene);
-
 }  // namespace exitance

@@ -96,21 +96,5 @@ TEST(ErrorMeasure, OfAResultThatIsNotFiniteIsInfinite) {
     EXPECT_EQ(measure_error(s.view(), s.scene).relative_rms_error, HUGE_VAL);
 }
 
-TEST(ErrorMeasure, PerFaceIsSortedByFace) {
-    Samples s;
-    s.add(wall, 5.5, 5);
-    s.add(SurfaceId(), 1, 2);
-    s.add(floor_face, 11, 10);
-    s.add(wall, 4.5, 5);
-    const std::vector<SurfaceError> faces = measure_error_by_surface(s.view(), s.scene);
-    ASSERT_EQ(faces.size(), 2u);
-    EXPECT_EQ(faces[0].surface, floor_face);
-    EXPECT_EQ(faces[1].surface, wall);
-    EXPECT_EQ(faces[1].error.points, 2u);
-    EXPECT_NEAR(faces[1].error.bias, 0, 1e-15);  // rounding
-    const Spectrum w = s.scene.material(wall).reflectance;
-    EXPECT_NEAR(faces[1].error.relative_rms_error, std::sqrt(mean_square(w)) / mean_of(w) / 10, 1e-14);
-}
-
 }  // namespace
 }  // namespace exitance

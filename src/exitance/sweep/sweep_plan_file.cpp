@@ -154,16 +154,7 @@ void read_output(TomlKeys& keys, SweepPlan& plan) {
     keys.take("json", output.json);
     keys.take("column", output.column);
     keys.take("row", output.row);
-    std::string take = "value";
-    keys.take("take", take);
-    const auto known =
-        std::find_if(take_names.begin(), take_names.end(), [&](const auto& t) { return t.second == take; });
-    if (known == take_names.end()) {
-        std::vector<std::string_view> names;
-        for (const auto& [value, name] : take_names) names.push_back(name);
-        keys.fail(*keys.find("take"), fmt::format("'{}' is not one of {}", take, fmt::join(names, ", ")));
-    }
-    output.take = known->first;
+    keys.take_choice("take", take_names, output.take);
     if (output.step.empty() == output.file.empty())
         keys.fail(keys.table(), "an output has either 'file' or 'step'",
                   "file = \"light.csv\" is a file in {dir}, and step = \"solve\" what the step prints");

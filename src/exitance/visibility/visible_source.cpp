@@ -362,24 +362,4 @@ double VisibleSource::unoccluded(const Point& x, const Normal& n) {
     return std::max(0.0, terms_.sum());
 }
 
-bool VisibleSource::is_hidden_from(std::span<const Point> receiver) {
-    double heights[Polygon::most + Polygon::lanes];
-    for (const Body& body : bodies_) {
-        bool hides = true;
-        for (const Point& x : receiver) {
-            look_from(x);
-            Pyramid pyramid{};
-            bool inside = false;
-            hides = find_box(body, pyramid) && pyramid.low_u <= whole_.low_u && pyramid.high_u >= whole_.high_u &&
-                    pyramid.low_v <= whole_.low_v && pyramid.high_v >= whole_.high_v &&
-                    add_pyramid(body, pyramid, inside) && !inside;
-            for (std::uint32_t k = pyramid.first; hides && k < pyramid.last; ++k)
-                hides = !measure(whole_, lines_[k], heights).any_out;
-            if (!hides) break;
-        }
-        if (hides) return true;
-    }
-    return false;
-}
-
 }  // namespace exitance

@@ -35,10 +35,6 @@ class VisibleSource {
     /// Form factor without occluders.
     double unoccluded(const Point& x, const Normal& n);
 
-    /// Returns whether one blocker alone hides all of the source from all of a convex receiver. True is certain: the
-    /// segments between the corners of both decide for all segments.
-    bool is_hidden_from(std::span<const Point> receiver);
-
   private:
     /// A convex part of the source, in coordinates of its plane with the origin at the foot of the current point.
     struct Polygon {

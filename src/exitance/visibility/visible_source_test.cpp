@@ -130,15 +130,6 @@ TEST(VisibleSource, ManyShadowsThatCoverEverythingLeaveNothing) {
     EXPECT_EQ(how, Seen::nothing_past_several);
 }
 
-TEST(VisibleSource, CertifiesPairsThatOneBodyHides) {
-    const ConvexBlocker body = box({-2, -2, 0.9}, {2, 2, 1.1});
-    VisibleSource visible;
-    const std::array<const ConvexBlocker*, 1> blockers = {&body};
-    visible.set(ceiling_above, blockers);
-    EXPECT_TRUE(visible.is_hidden_from(level_square(0, 0, 0, 0.5)));
-    EXPECT_FALSE(visible.is_hidden_from(level_square(3, 0, 0, 0.5)));
-}
-
 TEST(VisibleFromFour, AgreesWithSinglePointsWheneverItAnswers) {
     const ConvexBlocker a = box({-0.3, -0.2, 0.5}, {0.2, 0.4, 1.1}), b = box({0.3, -0.6, 0.7}, {0.8, 0.1, 0.9});
     const ConvexBlocker c = sheet({{-0.9, -0.5, 1.2}, {-0.4, -0.6, 1.3}, {-0.5, 0.3, 1.1}});

@@ -60,7 +60,7 @@ void ViewProgress::shot(std::span<const Point> outline, double unshot) {
 
 void ViewProgress::tell(double fraction, std::string_view detail, std::span<const Point> shooter) {
     since_.restart();
-    std::string words = fmt::format("{}{}{}{}", round_, phase_, detail.empty() ? "" : ", ", detail);
+    std::string words = fmt::format("{}{}{}", phase_, detail.empty() ? "" : ", ", detail);
     std::replace_if(
         words.begin(), words.end(), [](char c) { return c == '"' || c == '\\' || (c >= 0 && c < ' '); }, '\'');
     std::string outline;

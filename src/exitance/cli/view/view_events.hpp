@@ -42,15 +42,13 @@ class ViewProgress : public ShotProgress {
     void shot(std::span<const Point> outline, double unshot) override;
     void note(std::string_view message) override { inner_.note(message); }
     void warn(std::string_view message) override { inner_.warn(message); }
-    /// Sets the text that precedes the name of the phase in events.
-    void set_round(std::string words) { round_ = std::move(words); }
 
   private:
     void tell(double fraction, std::string_view detail, std::span<const Point> shooter = {});
 
     ViewEvents& events_;
     Progress& inner_;
-    std::string round_, phase_;
+    std::string phase_;
     Stopwatch since_, since_shot_;
 };
 

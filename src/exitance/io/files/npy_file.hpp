@@ -48,7 +48,7 @@ class NpyWriter {
     NpyType type_;
 };
 
-/// Reads rows or columns of a two-dimensional array that NpyWriter or NumPy has written.
+/// Reads rows of a two-dimensional array that NpyWriter or NumPy has written.
 class NpyReader {
   public:
     /// Errors: ErrorCode::cannot_read; bad_input if the header is not one of a little-endian array of numbers in C
@@ -66,18 +66,6 @@ class NpyReader {
         std::vector<T> out(count * columns_);
         const Result<void> done = read_at(first * columns_, std::as_writable_bytes(std::span(out)));
         if (!done) return done.error();
-        return out;
-    }
-    /// Reads some columns of all rows, a row after the other. One access per row.
-    template <class T>
-    Result<std::vector<T>> read_columns(std::size_t first, std::size_t count) {
-        EXI_ASSERT(npy_type<T>() == type_);
-        std::vector<T> out(rows_ * count);
-        for (std::size_t i = 0; i < rows_; ++i) {
-            const Result<void> done =
-                read_at(i * columns_ + first, std::as_writable_bytes(std::span(out).subspan(i * count, count)));
-            if (!done) return done.error();
-        }
         return out;
     }
 

@@ -47,6 +47,20 @@ class TomlKeys {
         if (!find(key)) fail(table_, fmt::format("'{}' is missing", key));
         take(key, target);
     }
+    /// Takes a value by its name. `names`: pairs of a value and its name.
+    template <class Value, class Names>
+    void take_choice(const std::string& key, const Names& names, Value& target) {
+        const toml::node* node = find(key);
+        if (!node) return;
+        std::string word;
+        read(*node, key, word);
+        std::vector<std::string_view> known;
+        for (const auto& [value, name] : names) {
+            if (name == word) return void(target = value);
+            known.push_back(name);
+        }
+        fail(*node, fmt::format("'{}' is not one of {}", word, fmt::join(known, ", ")));
+    }
     void finish() const {
         for (const auto& [key, node] : table_)
             if (!known_.contains(std::string(key.str())))

@@ -7,34 +7,20 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/bridged_holes.hpp"
 #include "exitance/io/scenes/gltf/json_shape.hpp"
+#include "exitance/io/scenes/json_members.hpp"
 
 namespace exitance {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr std::size_t max_depth = 64;  ///< Limit on the nesting of the file; CityJSON needs at most 12 levels.
 /// Coordinates above this many metres are moved to the origin. Near 10 km, single precision of rays is 1 mm.
 constexpr double far_from_origin = 1e4;
-
-/// Member of an object, or null.
-const Json& member(const Json& object, const char* name) {
-    static const Json none;
-    if (!object.is_object()) return none;
-    const auto at = object.find(name);
-    return at == object.end() ? none : *at;
-}
-
-std::string text_of(const Json& value) {
-    return value.is_string() ? value.get<std::string>() : std::string();
-}
 
 /// A level of detail, which is a number in version 1.0 and text later.
 std::string lod_of(const Json& geometry) {
@@ -76,37 +62,26 @@ class CityJsonReader {
     }
 
     bool check_version(const Json& city) {
-        if (text_of(member(city, "type")) != "CityJSON")
+        if (text_in(city, "type") != "CityJSON")
             return error("is neither a CityJSON file nor a Honeybee model",
                          "its type must be 'CityJSON' or 'Model'; files of features (CityJSONSeq) are combined to "
                          "CityJSON by the "
                          "program cjio"),
                    false;
-        const std::string version = text_of(member(city, "version"));
+        const std::string version = text_in(city, "version");
         if (version.starts_with("1.") || version == "2.0") return true;
         return error(fmt::format("CityJSON version '{}' is not supported", shown(version)), "1.0, 1.1 and 2.0 are"),
                false;
     }
 
-    std::optional<Point> point_of(const Json& triple) {
-        if (!triple.is_array() || triple.size() != 3) return std::nullopt;
-        Point p;
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (!triple[k].is_number()) return std::nullopt;
-            p[k] = triple[k].get<double>();
-            if (!std::isfinite(p[k])) return std::nullopt;
-        }
-        return p;
-    }
-
     bool read_vertices(const Json& city) {
         const Json& transform = member(city, "transform");
-        const Point scale = point_of(member(transform, "scale")).value_or(Point{1, 1, 1});
-        const Point translate = point_of(member(transform, "translate")).value_or(Point{});
+        const Point scale = vector_of(member(transform, "scale")).value_or(Point{1, 1, 1});
+        const Point translate = vector_of(member(transform, "translate")).value_or(Point{});
         const Json& vertices = member(city, "vertices");
         if (!vertices.is_array()) return error("has no vertices"), false;
         for (std::size_t k = 0; k < vertices.size(); ++k) {
-            const std::optional<Point> p = point_of(vertices[k]);
+            const std::optional<Point> p = vector_of(vertices[k]);
             if (!p) return error(fmt::format("vertex {} is not three finite numbers", k)), false;
             vertices_.push_back(
                 {p->x * scale.x + translate.x, p->y * scale.y + translate.y, p->z * scale.z + translate.z});
@@ -117,12 +92,12 @@ class CityJsonReader {
     void read_templates() {
         const Json& vertices = member(*templates_, "vertices-templates");
         if (!vertices.is_array()) return;
-        for (const Json& vertex : vertices) template_vertices_.push_back(point_of(vertex).value_or(Point{}));
+        for (const Json& vertex : vertices) template_vertices_.push_back(vector_of(vertex).value_or(Point{}));
     }
 
     /// Geometry of a template, if `geometry` is an instance; otherwise the geometry itself.
     const Json& resolved(const Json& geometry) const {
-        if (text_of(member(geometry, "type")) != "GeometryInstance") return geometry;
+        if (text_in(geometry, "type") != "GeometryInstance") return geometry;
         const Json& list = member(*templates_, "templates");
         const Json& index = member(geometry, "template");
         static const Json none;
@@ -143,7 +118,7 @@ class CityJsonReader {
         const std::size_t before = out_.description.faces.size();
         group_ = static_cast<std::uint32_t>(out_.description.groups.size());
         out_.description.groups.push_back(id);
-        id_ = id, type_ = text_of(member(object, "type"));
+        id_ = id, type_ = text_in(object, "type");
         bool has_lod = false;
         for (const Json& geometry : geometries) {
             const Json& shape = resolved(geometry);
@@ -161,7 +136,7 @@ class CityJsonReader {
 
     void read_geometry(const Json& geometry, const Json& shape) {
         set_place(geometry, &shape != &geometry);
-        const std::string type = text_of(member(shape, "type"));
+        const std::string type = text_in(shape, "type");
         const std::size_t depth = type == "MultiSurface" || type == "CompositeSurface" ? 0
                                   : type == "Solid"                                    ? 1
                                   : type == "MultiSolid" || type == "CompositeSolid"   ? 2

@@ -51,17 +51,6 @@ std::vector<PieceId> SourceOrderings::candidate_pieces(std::uint32_t node, bool 
     return out;
 }
 
-std::uint64_t SourceOrderings::may_be_hidden(std::uint32_t node) const {
-    std::uint64_t out = 0;
-    for (std::size_t k = 0; k < orders_.size(); ++k)
-        for (std::uint32_t i = 0; i < places_[k][node]; ++i)
-            if (turns_front_to(orders_[k][i], k)) {
-                out |= std::uint64_t(1) << k;
-                break;
-            }
-    return out;
-}
-
 std::vector<Point> convex_hull(std::span<const Point> points, const Normal& n) {
     if (points.size() < 3) return {points.begin(), points.end()};
     const Frame frame(n);

@@ -37,10 +37,6 @@ class SourceOrderings {
     std::vector<std::uint32_t> candidates(std::uint32_t node, bool facing = false) const;
     /// Pieces of the candidate nodes, each once.
     std::vector<PieceId> candidate_pieces(std::uint32_t node, bool facing = false) const;
-    /// Bit mask over corners: bit k is set if a node with a front that faces corner k precedes this node in that
-    /// corner's ordering. If this holds for all corners in appears(node), the node may be in the umbra; if for none,
-    /// nothing hides any of the source from it.
-    std::uint64_t may_be_hidden(std::uint32_t node) const;
 
   private:
     bool turns_front_to(std::uint32_t node, std::size_t corner) const;

@@ -1,17 +1,10 @@
 #include <cmath>
-#include <memory>
 #include <utility>
 
-#include "exitance/base/parallel.hpp"
-#include "exitance/base/random.hpp"
-#include "exitance/form_factors/point_to_polygon.hpp"
-#include "exitance/lab/classical/classical.hpp"
 #include "exitance/lab/classical/corner_steps.hpp"
-#include "exitance/lab/classical/element_vertices.hpp"
+#include "exitance/lab/classical/shooting_columns.hpp"
 #include "exitance/mesh/adaptive.hpp"
 #include "exitance/solve/shooting.hpp"
-#include "exitance/transport/hemicube_rows.hpp"
-#include "exitance/transport/patch_transfer.hpp"
 
 namespace exitance {
 namespace {
@@ -27,17 +20,10 @@ class Shooting {
     void report(GlobalLight& light) const;
 
   private:
-    std::size_t samples() const { return input_.options.visibility_samples.value_or(default_visibility_samples); }
     void cut(ElementId e);
     void add_receivers(std::size_t first_element);
     void drop_receiver(std::size_t i);
     std::vector<Spectrum> first_light() const;
-    void make_rows();
-    std::span<const float> column(std::size_t patch);
-    std::span<const float> vertex_column(std::size_t patch);
-    void fill_column(std::size_t patch, std::size_t first);
-    void keep_end(std::vector<float>& kept, std::span<const float> column);
-    float factor_at(std::size_t vertex, std::size_t patch) const;
     void add_vertices(std::span<const ElementId> elements);
     void note_change(const Spectrum& sent, std::span<const float> column);
     double least_area() const { return input_.options.min_area.value_or(default_min_share * input_.stage.area); }
@@ -51,236 +37,108 @@ class Shooting {
 
     const MethodInput& input_;
     bool at_vertices_;
-    ElementTree tree_;
-    std::vector<ElementId> patches_;
+    ShootingMesh mesh_;
+    std::optional<ShootingColumns> columns_;
     Field<ElementId, std::uint32_t> patch_of_element_;
-    std::unique_ptr<PatchTransfer> transfer_;
-    std::optional<HemicubeRows> hemicubes_;
-    std::optional<RayRows> ray_rows_;
-    std::vector<double> patch_area_;
-    std::vector<Spectrum> sent_, unshot_;  ///< Per patch.
-    // Per receiver: the leaves in the order of their ids. Elements that have been cut since stay in the list, with area
-    // and form factors of 0. Receivers keep their numbers; new ones are appended.
-    std::vector<ElementId> receivers_;
-    std::vector<double> area_;
-    std::vector<std::uint32_t> patch_of_;
-    std::vector<Spectrum> reflectance_, direct_, irradiance_;
+    std::vector<Spectrum> sent_, unshot_;                      ///< Per patch.
+    std::vector<std::uint32_t> patch_of_;                      ///< Per receiver.
+    std::vector<Spectrum> reflectance_, direct_, irradiance_;  ///< Per receiver.
     std::size_t leaf_count_ = 0;
     CornerSteps steps_;  ///< Steps of receivers, if they are refined.
     double change_ = 0;  ///< Bound on the change of light on any receiver since the last look at the steps, W/m^2.
-    ElementVertices vertices_;
     std::vector<Spectrum> at_vertex_;
-    std::vector<float> column_, vertex_column_;                ///< The columns computed last.
-    std::size_t vertex_column_of_ = ~std::size_t(0);           ///< Patch of `vertex_column_`, or none.
-    std::vector<std::vector<float>> kept_, kept_at_vertices_;  ///< Per patch; may lack the newest receivers.
-    std::size_t kept_bytes_ = 0, shots_ = 0;
-    mutable std::atomic<std::size_t> rays_{0}, form_factors_{0};
+    std::size_t shots_ = 0;
     double first_power_ = 0;
 };
 
 Shooting::Shooting(const MethodInput& input, bool substructuring)
     : input_(input),
       at_vertices_(input.options.classical.receivers == ShootingReceivers::vertex),
-      tree_(constant_mesh(input.stage, input.options, input.knobs, input.stop)),
-      patches_(tree_.leaves()),
-      patch_of_element_(tree_.size()),
-      sent_(patches_.size()),
-      steps_(vertex_rounding * input.stage.scene.size()),
-      kept_(patches_.size()),
-      kept_at_vertices_(patches_.size()) {
-    for (std::size_t p = 0; p < patches_.size(); ++p) {
-        patch_of_element_[patches_[p]] = static_cast<std::uint32_t>(p);
-        patch_area_.push_back(tree_.area(patches_[p]));
-    }
+      mesh_(constant_mesh(input.stage, input.options, input.knobs, input.stop)),
+      patch_of_element_(mesh_.tree.size()),
+      sent_(mesh_.patches.size()),
+      steps_(vertex_rounding * input.stage.scene.size()) {
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
+        patch_of_element_[mesh_.patches[p]] = static_cast<std::uint32_t>(p);
     if (substructuring)
-        for (ElementId patch : patches_) cut(patch);
-    transfer_ =
-        std::make_unique<PatchTransfer>(input.stage, tree_, static_cast<unsigned>(samples()), input.options.seed);
+        for (ElementId patch : mesh_.patches) cut(patch);
+    columns_.emplace(input, mesh_);
     add_receivers(0);
-    if (!carries_light(input)) direct_ = mean_direct_light(input, tree_, receivers_);
+    if (!carries_light(input)) direct_ = mean_direct_light(input, mesh_.tree, mesh_.receivers);
     unshot_ = first_light();
-    first_power_ = unshot_power(unshot_, patch_area_);
-    make_rows();
+    first_power_ = unshot_power(unshot_, mesh_.patch_area);
 }
 
 /// Cuts an element into four. Cells of contact lines are bisected twice across their longest extents.
 void Shooting::cut(ElementId e) {
     const std::uint32_t patch = patch_of_element_[e];
-    if (tree_.is_cell(e)) {
-        const IdRange<ElementId> halves = refine_element(tree_, e);
-        for (ElementId half : halves) refine_element(tree_, half);
+    if (mesh_.tree.is_cell(e)) {
+        const IdRange<ElementId> halves = refine_element(mesh_.tree, e);
+        for (ElementId half : halves) refine_element(mesh_.tree, half);
     } else {
-        tree_.split(e, Cut::both);
+        mesh_.tree.split(e, Cut::both);
     }
-    patch_of_element_.resize(tree_.size(), patch);
+    patch_of_element_.resize(mesh_.tree.size(), patch);
 }
 
 /// Adds the leaves from `first_element` on as receivers.
 void Shooting::add_receivers(std::size_t first_element) {
-    const std::size_t first = receivers_.size();
-    for (std::size_t i = first_element; i < tree_.size(); ++i) {
+    const std::size_t first = mesh_.receivers.size();
+    for (std::size_t i = first_element; i < mesh_.tree.size(); ++i) {
         const ElementId e(i);
-        if (!tree_.is_leaf(e)) continue;
-        receivers_.push_back(e);
-        area_.push_back(tree_.area(e));
+        if (!mesh_.tree.is_leaf(e)) continue;
+        mesh_.receivers.push_back(e);
+        mesh_.area.push_back(mesh_.tree.area(e));
         patch_of_.push_back(patch_of_element_[e]);
-        reflectance_.push_back(material_of(input_, tree_, e).reflectance);
+        reflectance_.push_back(material_of(input_, mesh_.tree, e).reflectance);
         if (input_.options.classical.refine_gradient)
-            steps_.add(tree_.region(e), tree_.patch(e), area_.back() / 4 >= least_area());
+            steps_.add(mesh_.tree.region(e), mesh_.tree.patch(e), mesh_.area.back() / 4 >= least_area());
     }
-    direct_.resize(receivers_.size()), irradiance_.resize(receivers_.size());
-    leaf_count_ += receivers_.size() - first;
-    if (at_vertices_) add_vertices(std::span(receivers_).subspan(first));
+    direct_.resize(mesh_.receivers.size()), irradiance_.resize(mesh_.receivers.size());
+    leaf_count_ += mesh_.receivers.size() - first;
+    if (at_vertices_) add_vertices(std::span(mesh_.receivers).subspan(first));
 }
 
 /// Removes the receiver of an element that has been cut.
 void Shooting::drop_receiver(std::size_t i) {
-    area_[i] = 0;
+    mesh_.area[i] = 0;
     direct_[i] = irradiance_[i] = {};
     steps_.remove(i);
     --leaf_count_;
-    for (std::vector<float>& kept : kept_)
-        if (i < kept.size()) kept[i] = 0;
+    columns_->drop(i);
 }
 
 /// Adds vertices. New ones gather the light that all patches have sent.
 void Shooting::add_vertices(std::span<const ElementId> elements) {
-    const std::size_t before = vertices_.at.size();
-    vertices_.add(input_.stage, tree_, elements);
-    const std::size_t fresh = vertices_.at.size() - before;
-    at_vertex_.resize(vertices_.at.size());
-    vertex_column_.resize(vertices_.at.size());
-    vertex_column_of_ = ~std::size_t(0);
-    for (std::size_t p = 0; p < patches_.size(); ++p) {
+    const std::size_t before = mesh_.vertices.at.size();
+    mesh_.vertices.add(input_.stage, mesh_.tree, elements);
+    at_vertex_.resize(mesh_.vertices.at.size());
+    columns_->update_vertices();
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
         if (!(squared(sent_[p]) > 0)) continue;
-        parallel_for(fresh, 16, [&](std::size_t i) {
-            const std::size_t v = before + i;
-            vertex_column_[v] = factor_at(v, p);
-            at_vertex_[v] += static_cast<double>(vertex_column_[v]) * sent_[p];
-        });
-        if (kept_at_vertices_[p].size() == before) keep_end(kept_at_vertices_[p], vertex_column_);
+        const std::span<const float> factors = columns_->of_new_vertices(p, before);
+        for (std::size_t v = before; v < factors.size(); ++v)
+            at_vertex_[v] += static_cast<double>(factors[v]) * sent_[p];
     }
 }
 
 /// Initial unshot light of patches: their exitance, or the reflected direct light.
 std::vector<Spectrum> Shooting::first_light() const {
-    if (carries_light(input_)) return exitances(input_, tree_, patches_);
-    std::vector<Spectrum> out(patches_.size());
+    if (carries_light(input_)) return exitances(input_, mesh_.tree, mesh_.patches);
+    std::vector<Spectrum> out(mesh_.patches.size());
     for (std::size_t i = 0; i < direct_.size(); ++i)
-        out[patch_of_[i]] += (area_[i] / patch_area_[patch_of_[i]]) * (reflectance_[i] * direct_[i]);
+        out[patch_of_[i]] += (mesh_.area[i] / mesh_.patch_area[patch_of_[i]]) * (reflectance_[i] * direct_[i]);
     return out;
-}
-
-/// Computes rows of form factors of patches. Reciprocity turns them into the columns for shooting, F_ij = F_ji A_j /
-/// A_i.
-void Shooting::make_rows() {
-    if (!input_.options.form_factors || input_.options.form_factors == FormFactorKind::analytic) return;
-    const ElementLocator locator(tree_, input_.stage.scene.regions().size());
-    const LeafNumbering numbering(tree_);
-    const SolveOptions& o = input_.options;
-    if (o.form_factors == FormFactorKind::hemicube) {
-        hemicubes_.emplace(input_.stage, tree_, numbering, locator, hemicube_cells(o));
-        return;
-    }
-    ray_rows_.emplace(input_.stage, tree_, numbering, locator, ray_budget(o, input_.knobs), o.seed);
-}
-
-/// Form factor from a vertex to a patch: exact for the polygon, times the unblocked share of rays from the vertex
-/// [Wallace89].
-float Shooting::factor_at(std::size_t v, std::size_t p) const {
-    const ElementId patch = patches_[p];
-    const RegionId own = vertices_.region[v], source = tree_.region(patch);
-    if (own == source) return 0;
-    const Normal& n = input_.stage.scene.regions()[own].plane.n;
-    const double F = point_to_polygon(vertices_.at[v], n, tree_.outline(patch));
-    ++form_factors_;
-    if (!(F > 0)) return 0;
-    RandomStream random(input_.options.seed, Stream::shooting, v, p);
-    const std::size_t count = samples();
-    std::vector<Point> from(count, vertices_.at[v]), to(count);
-    const auto grid = static_cast<std::size_t>(std::max(1.0, std::floor(std::sqrt(static_cast<double>(count)))));
-    for (std::size_t i = 0; i < count; ++i) {
-        const double step = 1.0 / static_cast<double>(grid);
-        const double s = step * (static_cast<double>(i % grid) + random.uniform());
-        const double t = step * (static_cast<double>(i / grid % grid) + random.uniform());
-        to[i] = tree_.patch(patch).at(tree_.uniform(patch, s, t));
-    }
-    const std::unique_ptr<bool[]> blocked(new bool[count]);
-    rays_ += input_.stage.tracer.occluded(from, to, own, source, {blocked.get(), count});
-    const auto free = std::count(blocked.get(), blocked.get() + count, false);
-    return static_cast<float>(F * static_cast<double>(free) / static_cast<double>(count));
-}
-
-/// Appends the missing rest of a column to the kept part if it fits into memory.
-void Shooting::keep_end(std::vector<float>& kept, std::span<const float> column) {
-    const std::span<const float> end = column.subspan(kept.size());
-    if (kept_bytes_ + end.size_bytes() > column_memory) return;
-    kept_bytes_ += end.size_bytes();
-    kept.insert(kept.end(), end.begin(), end.end());
-}
-
-/// Form factors from all vertices to a patch.
-std::span<const float> Shooting::vertex_column(std::size_t patch) {
-    std::vector<float>& kept = kept_at_vertices_[patch];
-    const std::size_t first = kept.size(), count = vertices_.at.size();
-    if (first == count) return kept;
-    if (vertex_column_of_ == patch) return vertex_column_;
-    vertex_column_of_ = patch;
-    vertex_column_.resize(count);
-    std::copy(kept.begin(), kept.end(), vertex_column_.begin());
-    parallel_for(count - first, 16, [&](std::size_t i) { vertex_column_[first + i] = factor_at(first + i, patch); });
-    keep_end(kept, vertex_column_);
-    return vertex_column_;
-}
-
-/// Computes the entries of `column_` from receiver `first` on.
-void Shooting::fill_column(std::size_t patch, std::size_t first) {
-    const std::size_t n = receivers_.size();
-    std::fill(column_.begin() + static_cast<std::ptrdiff_t>(first), column_.end(), 0.0f);
-    if (hemicubes_) {
-        for (std::size_t i = first; i < n; ++i)
-            column_[i] = static_cast<float>(hemicubes_->form_factor(patch, i) * patch_area_[patch] / area_[i]);
-    } else if (ray_rows_) {
-        const auto hits = ray_rows_->hits(patch);
-        for (std::uint32_t hit : hits)
-            if (hit != RayRows::missed)
-                column_[hit] += static_cast<float>(patch_area_[patch] / area_[hit] / static_cast<double>(hits.size()));
-    } else if (at_vertices_) {
-        const std::span<const float> factors = vertex_column(patch);
-        for (std::size_t i = first; i < n; ++i) {
-            if (!tree_.is_leaf(receivers_[i])) continue;
-            const std::vector<std::uint32_t>& around = vertices_.of_element[i];
-            for (std::uint32_t v : around) column_[i] += factors[v] / static_cast<float>(around.size());
-        }
-    } else {
-        std::vector<std::size_t> numbers;
-        std::vector<ElementId> leaves;
-        for (std::size_t i = first; i < n; ++i)
-            if (tree_.is_leaf(receivers_[i])) numbers.push_back(i), leaves.push_back(receivers_[i]);
-        std::vector<float> factors(leaves.size());
-        transfer_->column(leaves, patches_[patch], factors);
-        for (std::size_t k = 0; k < numbers.size(); ++k) column_[numbers[k]] = factors[k];
-    }
-}
-
-/// Form factors from all receivers to a patch. Entries that are kept are not computed again.
-std::span<const float> Shooting::column(std::size_t patch) {
-    std::vector<float>& kept = kept_[patch];
-    if (kept.size() == receivers_.size()) return kept;
-    column_.resize(receivers_.size());
-    std::copy(kept.begin(), kept.end(), column_.begin());
-    fill_column(patch, kept.size());
-    keep_end(kept, column_);
-    return column_;
 }
 
 /// Shoots once, from the patch with the most unshot light.
 SolveReport Shooting::shoot_once() {
     const std::vector<Spectrum> before = unshot_;
-    std::size_t shooter = patches_.size();
+    std::size_t shooter = mesh_.patches.size();
     std::span<const float> to_receivers;
-    const ShootingProblem problem{patch_of_, area_, patch_area_, reflectance_,
-                                  [&](std::size_t patch) { return shooter = patch, to_receivers = column(patch); }};
+    const ShootingProblem problem{patch_of_, mesh_.area, mesh_.patch_area, reflectance_, [&](std::size_t patch) {
+                                      return shooter = patch, to_receivers = columns_->of_receivers(patch);
+                                  }};
     const SolveReport report = shoot(problem,
                                      {.overshooting = input_.options.overshooting,
                                       .unshot = input_.knobs.residual,
@@ -288,12 +146,12 @@ SolveReport Shooting::shoot_once() {
                                       .max_shots = 1,
                                       .request = &input_.stop},
                                      unshot_, irradiance_);
-    if (shooter == patches_.size()) return report;
+    if (shooter == mesh_.patches.size()) return report;
     const Spectrum sent = before[shooter] - unshot_[shooter];
     sent_[shooter] += sent;
     if (input_.options.classical.refine_gradient) note_change(sent, to_receivers);
     if (at_vertices_) {
-        const std::span<const float> factors = vertex_column(shooter);
+        const std::span<const float> factors = columns_->of_vertices(shooter);
         for (std::size_t v = 0; v < at_vertex_.size(); ++v) at_vertex_[v] += static_cast<double>(factors[v]) * sent;
     }
     return report;
@@ -322,9 +180,9 @@ std::size_t Shooting::refine() {
     const std::vector<std::size_t> steep =
         steps_.steeper_than(*input_.options.classical.refine_gradient, std::exchange(change_, 0), light);
     if (steep.empty()) return 0;
-    const std::size_t elements = tree_.size(), first = receivers_.size();
-    for (std::size_t i : steep) cut(receivers_[i]), drop_receiver(i);
-    transfer_->update_places();
+    const std::size_t elements = mesh_.tree.size(), first = mesh_.receivers.size();
+    for (std::size_t i : steep) cut(mesh_.receivers[i]), drop_receiver(i);
+    columns_->update_elements();
     add_receivers(elements);
     gather_new(first);
     return steep.size();
@@ -332,31 +190,27 @@ std::size_t Shooting::refine() {
 
 /// Computes direct light and the light of all patches for the receivers from `first` on.
 void Shooting::gather_new(std::size_t first) {
-    const std::span<const ElementId> fresh = std::span(receivers_).subspan(first);
+    const std::span<const ElementId> fresh = std::span(mesh_.receivers).subspan(first);
     if (!carries_light(input_)) {
-        const std::vector<Spectrum> exact = mean_direct_light(input_, tree_, fresh);
+        const std::vector<Spectrum> exact = mean_direct_light(input_, mesh_.tree, fresh);
         std::copy(exact.begin(), exact.end(), direct_.begin() + static_cast<std::ptrdiff_t>(first));
     }
     if (!at_vertices_) return gather_new_at_centres(first);
-    for (std::size_t i = first; i < receivers_.size(); ++i) irradiance_[i] = mean_at_vertices(i);
+    for (std::size_t i = first; i < mesh_.receivers.size(); ++i) irradiance_[i] = mean_at_vertices(i);
 }
 
 void Shooting::gather_new_at_centres(std::size_t first) {
-    const std::span<const ElementId> fresh = std::span(receivers_).subspan(first);
-    std::vector<double> factors(fresh.size());
-    column_.resize(receivers_.size());
-    const std::span<float> column = std::span(column_).subspan(first);
-    for (std::size_t p = 0; p < patches_.size(); ++p) {
+    std::vector<double> factors(mesh_.receivers.size() - first);
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
         if (!(squared(sent_[p]) > 0)) continue;
-        transfer_->column(fresh, patches_[p], column, factors);
-        for (std::size_t k = 0; k < fresh.size(); ++k) irradiance_[first + k] += factors[k] * sent_[p];
-        if (kept_[p].size() == first) keep_end(kept_[p], column_);
+        columns_->of_new_receivers(p, first, factors);
+        for (std::size_t k = 0; k < factors.size(); ++k) irradiance_[first + k] += factors[k] * sent_[p];
     }
 }
 
 /// Unshot power, relative to the initial power.
 double Shooting::unshot_share() const {
-    return first_power_ > 0 ? unshot_power(unshot_, patch_area_) / first_power_ : 0;
+    return first_power_ > 0 ? unshot_power(unshot_, mesh_.patch_area) / first_power_ : 0;
 }
 
 SolveReport Shooting::run() {
@@ -397,7 +251,7 @@ SolveReport Shooting::run() {
 
 /// Mean irradiance of the vertices around a receiver.
 Spectrum Shooting::mean_at_vertices(std::size_t receiver) const {
-    const std::vector<std::uint32_t>& around = vertices_.of_element[receiver];
+    const std::vector<std::uint32_t>& around = mesh_.vertices.of_element[receiver];
     Spectrum sum;
     for (std::uint32_t v : around) sum += at_vertex_[v];
     return sum / static_cast<double>(around.size());
@@ -407,8 +261,9 @@ Spectrum Shooting::mean_at_vertices(std::size_t receiver) const {
 Spectrum Shooting::ambient() const {
     Spectrum flux, reflected;
     double whole = 0;
-    for (std::size_t p = 0; p < patches_.size(); ++p) flux += patch_area_[p] * unshot_[p], whole += patch_area_[p];
-    for (std::size_t i = 0; i < area_.size(); ++i) reflected += (area_[i] / whole) * reflectance_[i];
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p)
+        flux += mesh_.patch_area[p] * unshot_[p], whole += mesh_.patch_area[p];
+    for (std::size_t i = 0; i < mesh_.area.size(); ++i) reflected += (mesh_.area[i] / whole) * reflectance_[i];
     Spectrum out;
     for (std::size_t b = 0; b < bands; ++b) out[b] = std::max(0.0, flux[b]) / (whole * (1 - reflected[b]));
     return out;
@@ -417,34 +272,33 @@ Spectrum Shooting::ambient() const {
 ElementFunction Shooting::irradiance() const {
     const Spectrum more = input_.options.classical.ambient ? ambient() : Spectrum();
     ElementFunction out;
-    out.tree = tree_;
-    out.first_value.resize(tree_.size(), 0);
-    for (std::size_t i = 0; i < receivers_.size(); ++i) {
-        const ElementId leaf = receivers_[i];
-        if (!tree_.is_leaf(leaf)) continue;
+    out.tree = mesh_.tree;
+    out.first_value.resize(mesh_.tree.size(), 0);
+    for (std::size_t i = 0; i < mesh_.receivers.size(); ++i) {
+        const ElementId leaf = mesh_.receivers[i];
+        if (!mesh_.tree.is_leaf(leaf)) continue;
         out.first_value[leaf] = static_cast<std::uint32_t>(out.values.size());
         if (!at_vertices_) {
             for (int k = 0; k < 4; ++k) out.add_value(irradiance_[i] + more);
             continue;
         }
         // The corners of a cell differ from those of its frame, so its mean is returned.
-        for (int k = 0; k < tree_.patch(leaf).corner_count(); ++k)
-            out.add_value(more + (tree_.is_cell(leaf)
+        for (int k = 0; k < mesh_.tree.patch(leaf).corner_count(); ++k)
+            out.add_value(more + (mesh_.tree.is_cell(leaf)
                                       ? mean_at_vertices(i)
-                                      : at_vertex_[vertices_.of_element[i][static_cast<std::size_t>(k)]]));
+                                      : at_vertex_[mesh_.vertices.of_element[i][static_cast<std::size_t>(k)]]));
     }
     return out;
 }
 
 void Shooting::report(GlobalLight& light) const {
     light.published->irradiance = irradiance();
-    light.published->elements = tree_.size(), light.published->leaf_elements = leaf_count_;
-    light.work.rays =
-        transfer_->rays() + rays_ + (hemicubes_ ? hemicubes_->rays() : 0) + (ray_rows_ ? ray_rows_->rays() : 0);
-    light.work.form_factors = transfer_->form_factors() + form_factors_;
-    light.work.link_memory_bytes = kept_bytes_;
+    light.published->elements = mesh_.tree.size(), light.published->leaf_elements = leaf_count_;
+    light.work.rays = columns_->rays();
+    light.work.form_factors = columns_->form_factors();
+    light.work.link_memory_bytes = columns_->kept_bytes();
     light.published->figures["coefficient_memory_bytes"] =
-        static_cast<double>(sizeof(Spectrum) * (2 * patches_.size() + 2 * leaf_count_ + at_vertex_.size()));
+        static_cast<double>(sizeof(Spectrum) * (2 * mesh_.patches.size() + 2 * leaf_count_ + at_vertex_.size()));
 }
 
 /// Progressive refinement [Cohen88] and substructuring [Cohen86]: the patch with the most unshot light shoots it to all

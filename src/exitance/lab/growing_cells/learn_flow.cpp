@@ -167,6 +167,65 @@ std::vector<Spectrum> reflected_radiosity(const Stage& stage, const SurfacePool&
     return out;
 }
 
+/// The outputs of the shading network's cells from the light of kernel networks: G b = rhs, with the mass matrix G.
+class CellEquation {
+  public:
+    CellEquation(const Stage& stage, const SurfacePool& pool, const ShadingNetwork& network)
+        : network_(network), integrals_(stage, pool.in_plane()), G_(mass_matrix(network.cells, integrals_)) {}
+
+    /// Returns the right-hand side for the light of a kernel network.
+    std::vector<Spectrum> arriving_from(const KernelNetwork& kernel, bool of_emitters) const {
+        return arriving(network_.cells, network_.own_regions, kernel, integrals_, of_emitters);
+    }
+    void solve(const std::vector<Spectrum>& rhs, std::vector<CellLight::Cell>& cells) const {
+        solve_outputs(G_, rhs, cells);
+    }
+    std::size_t memory_bytes() const { return G_.size() * sizeof(double); }
+
+  private:
+    const ShadingNetwork& network_;
+    PolygonIntegrals integrals_;
+    std::vector<double> G_;
+};
+
+/// Learns the reflected light in `reflected`, one reflection per round, and computes E in `out` from it and `first`,
+/// the right-hand side for the light of emitters. Ends when E is settled, or grows without limit.
+void learn_reflections(const MethodInput& input, const SurfacePool& pool, std::size_t units,
+                       const CellEquation& equation, const std::vector<Spectrum>& first, KernelNetwork& reflected,
+                       LearnedLight& out) {
+    const std::size_t max_rounds = std::min(max_reflections, input.knobs.max_iterations);
+    std::vector<Spectrum> B(pool.size());
+    GrowthWatch watch;
+    for (std::size_t round = 0; round < max_rounds && !input.stop.requested(); ++round) {
+        std::vector<Spectrum> next = reflected_radiosity(input.stage, pool, out.light);
+        double change = 0, all = 0;
+        for (std::size_t i = 0; i < pool.size(); ++i) {
+            const Spectrum& M = input.stage.scene.material(pool[i].region).exitance;
+            change += mean(next[i] - B[i]), all += mean(next[i] + M);
+        }
+        B = std::move(next);
+        out.report.iterations = round + 1;
+        out.report.residual = all > 0 ? std::abs(change) / all : 0;
+        input.progress.advance(static_cast<double>(round) / static_cast<double>(max_rounds),
+                               fmt::format("change {:.1e}", out.report.residual));
+        // Fresh samples alone cause a change of this size, so further reflections would learn nothing.
+        constexpr double settled = 2e-3;
+        out.report.converged = out.report.residual < std::max(settled, input.knobs.residual);
+        if (out.report.converged) break;
+        if (watch.grows(std::max(std::abs(change), settled * all))) {
+            out.report.residual = 1;  // has_diverged
+            break;
+        }
+        reflected.renew(B);
+        if (round == 0 && !reflected.grow(units / 2, input.stop, &input.progress)) break;
+        if (round > 0) reflected.learn_more(10 * units, input.stop);
+        reflected.fit();
+        std::vector<Spectrum> rhs = equation.arriving_from(reflected, false);
+        for (std::size_t q = 0; q < rhs.size(); ++q) rhs[q] += first[q];
+        equation.solve(rhs, out.light.cells);
+    }
+}
+
 }  // namespace
 
 /// Bohn's classic scheme:
@@ -199,49 +258,21 @@ LearnedLight learn_flow(const MethodInput& input, const SurfacePool& pool) {
     out.light.normalised = false;
     input.progress.phase("grow");
     const bool has_light = emitted.grow(units / 2, input.stop, &input.progress);
-    ShadingNetwork network = grow_at_ends(input, pool, emitted.receivers_drawn(), units);
+    const ShadingNetwork network = grow_at_ends(input, pool, emitted.receivers_drawn(), units);
     out.light.cells = network.cells;
     out.light.triangles = network.triangles;
     if (!has_light) return out;
-    const PolygonIntegrals integrals(stage, pool.in_plane());
-    const std::vector<double> G = mass_matrix(out.light.cells, integrals);
+    const CellEquation equation(stage, pool, network);
     emitted.fit();
-    const std::vector<Spectrum> first = arriving(out.light.cells, network.own_regions, emitted, integrals, true);
-    solve_outputs(G, first, out.light.cells);
+    const std::vector<Spectrum> first = equation.arriving_from(emitted, true);
+    equation.solve(first, out.light.cells);
     input.progress.phase("solve");
-    const std::size_t max_rounds = std::min(max_reflections, input.knobs.max_iterations);
-    std::vector<Spectrum> B(pool.size());
-    GrowthWatch watch;
-    for (std::size_t round = 0; round < max_rounds && !input.stop.requested(); ++round) {
-        std::vector<Spectrum> next = reflected_radiosity(stage, pool, out.light);
-        double change = 0, all = 0;
-        for (std::size_t i = 0; i < pool.size(); ++i) change += mean(next[i] - B[i]), all += mean(next[i] + M[i]);
-        B = std::move(next);
-        out.report.iterations = round + 1;
-        out.report.residual = all > 0 ? std::abs(change) / all : 0;
-        input.progress.advance(static_cast<double>(round) / static_cast<double>(max_rounds),
-                               fmt::format("change {:.1e}", out.report.residual));
-        // Fresh samples alone cause a change of this size, so further reflections would learn nothing.
-        constexpr double settled = 2e-3;
-        out.report.converged = out.report.residual < std::max(settled, input.knobs.residual);
-        if (out.report.converged) break;
-        if (watch.grows(std::max(std::abs(change), settled * all))) {
-            out.report.residual = 1;  // has_diverged
-            break;
-        }
-        reflected.renew(B);
-        if (round == 0 && !reflected.grow(units / 2, input.stop, &input.progress)) break;
-        if (round > 0) reflected.learn_more(10 * units, input.stop);
-        reflected.fit();
-        std::vector<Spectrum> rhs = arriving(out.light.cells, network.own_regions, reflected, integrals, false);
-        for (std::size_t q = 0; q < rhs.size(); ++q) rhs[q] += first[q];
-        solve_outputs(G, rhs, out.light.cells);
-    }
+    learn_reflections(input, pool, units, equation, first, reflected, out);
     keep_network(emitted, out.light);
     keep_network(reflected, out.light);
     out.rays = emitted.rays() + reflected.rays();
     out.kernels = emitted.sample_count() + reflected.sample_count();
-    out.memory_bytes = G.size() * sizeof(double);
+    out.memory_bytes = equation.memory_bytes();
     return out;
 }
 

@@ -50,7 +50,6 @@ class LineHierarchy {
     const Stage& stage() const { return stage_; }
     const LineTree& tree() const { return tree_; }
     const ReceiverCurves& receiver(RegionId region) const { return receivers_[region.value]; }
-    std::span<const std::uint32_t> roots_of(RegionId region) const { return roots_[region.value]; }
     std::span<const Link> links_of(std::uint32_t node) const {
         return std::span(links_).subspan(first_link_[node], first_link_[node + 1] - first_link_[node]);
     }

@@ -24,6 +24,11 @@ constexpr std::array<std::pair<Measure, std::string_view>, 8> measure_names{{
     {Measure::crossing, "crossing"},
     {Measure::quadratic_misfit, "quadratic_misfit"},
 }};
+constexpr std::array<std::pair<StudyPicture::Shows, std::string_view>, 3> picture_names{{
+    {StudyPicture::Shows::light, "light"},
+    {StudyPicture::Shows::mesh, "mesh"},
+    {StudyPicture::Shows::halves, "halves"},
+}};
 
 void read_scene(TomlKeys& keys, StudyScene& scene) {
     keys.need("name", scene.name);
@@ -104,13 +109,7 @@ void read_picture(TomlKeys& keys, StudyPicture& picture) {
     keys.take("caption", picture.caption);
     keys.take("options", picture.options);
     keys.take("at", picture.of.at);
-    std::string shows = "light";
-    keys.take("shows", shows);
-    if (shows != "light" && shows != "mesh" && shows != "halves")
-        keys.fail(*keys.find("shows"), fmt::format("'{}' is not light, mesh or halves", shows));
-    picture.shows = shows == "light"  ? StudyPicture::Shows::light
-                    : shows == "mesh" ? StudyPicture::Shows::mesh
-                                      : StudyPicture::Shows::halves;
+    keys.take_choice("shows", picture_names, picture.shows);
 }
 
 void read_drawing(TomlKeys& keys, StudyDrawing& drawing) {
@@ -144,19 +143,11 @@ void read_conclusion(TomlKeys& keys, StudyConclusion& conclusion) {
     keys.take("against", conclusion.against);
     keys.take("least", conclusion.least);
     keys.take("most", conclusion.most);
-    std::string measure = "value";
-    keys.take("measure", measure);
-    const auto known = std::find_if(measure_names.begin(), measure_names.end(),
-                                    [&](const auto& entry) { return entry.second == measure; });
-    if (known == measure_names.end()) {
-        std::vector<std::string_view> names;
-        for (const auto& [value, name] : measure_names) names.push_back(name);
-        keys.fail(*keys.find("measure"), fmt::format("'{}' is not one of {}", measure, fmt::join(names, ", ")));
-    }
-    conclusion.measure = known->first;
-    const bool along =
-        known->first != Measure::value && known->first != Measure::largest && known->first != Measure::ratio;
-    if (along && conclusion.x.empty()) keys.fail(keys.table(), fmt::format("'{}' needs an 'x'", measure));
+    keys.take_choice("measure", measure_names, conclusion.measure);
+    const Measure m = conclusion.measure;
+    const bool along = m != Measure::value && m != Measure::largest && m != Measure::ratio;
+    if (along && conclusion.x.empty())
+        keys.fail(keys.table(), fmt::format("'{}' needs an 'x'", measure_names[static_cast<std::size_t>(m)].second));
 }
 
 void read_reference(TomlKeys& keys, StudyReference& reference) {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "exitance/base/parallel.hpp"
+#include "exitance/measure/pictures/pixel_hits.hpp"
 
 namespace exitance {
 namespace {
@@ -39,20 +39,9 @@ CurveOrder order_at_exit(const SixNodeMesh& mesh, std::uint32_t triangle, const 
 MeshView view_mesh(const SixNodeMesh& mesh, const Scene& scene, const RayTracer& tracer, const Camera& camera,
                    PictureSize size) {
     const SixNodeLocator locator(mesh, scene);
-    const CameraRays rays(camera, size);
     MeshView view{size, std::vector<MeshView::Pixel>(size.pixels())};
-    const auto width = static_cast<std::size_t>(size.width);
-    parallel_for(static_cast<std::size_t>(size.height), 4, [&](std::size_t y) {
-        for (std::size_t x = 0; x < width; ++x) {
-            Point origin;
-            Vec3 direction;
-            RayHit hit;
-            if (!rays.ray(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5, origin, direction)) continue;
-            tracer.nearest(std::span(&direction, 1), origin, RegionId(), std::span(&hit, 1));
-            if (hit.surface.is_none() || !hit.front) continue;
-            const Point at = origin + hit.distance * direction;
-            view.pixels[y * width + x] = {hit.region, locator.find(hit.region, at).triangle, at};
-        }
+    for_visible_fronts(tracer, camera, size, [&](std::size_t pixel, const RayHit& hit, const Point& at) {
+        view.pixels[pixel] = {hit.region, locator.find(hit.region, at).triangle, at};
     });
     return view;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "exitance/base/parallel.hpp"
+#include "exitance/measure/pictures/pixel_hits.hpp"
 #include "exitance/measure/pictures/tile_light.hpp"
 #include "exitance/measure/pictures/timed_picture.hpp"
 #include "exitance/mesh/element_locator.hpp"
@@ -356,21 +357,11 @@ TimedPicture take_picture_in_time(const RadiosityFunction& light, const PictureO
 std::vector<bool> element_edges(const ElementTree& tree, const Scene& scene, const RayTracer& tracer,
                                 const Camera& camera, PictureSize size) {
     const ElementLocator locator(tree, scene.regions().size());
-    const CameraRays rays(camera, size);
     std::vector<ElementId> seen(size.pixels());
-    const auto width = static_cast<std::size_t>(size.width);
-    parallel_for(static_cast<std::size_t>(size.height), 4, [&](std::size_t y) {
-        for (std::size_t x = 0; x < width; ++x) {
-            Point origin;
-            Vec3 direction;
-            RayHit hit;
-            if (!rays.ray(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5, origin, direction)) continue;
-            tracer.nearest(std::span(&direction, 1), origin, RegionId(), std::span(&hit, 1));
-            if (hit.surface.is_none() || !hit.front) continue;
-            const RegionId region = hit.region;
-            seen[y * width + x] = locator.find(region, origin + hit.distance * direction).element;
-        }
+    for_visible_fronts(tracer, camera, size, [&](std::size_t pixel, const RayHit& hit, const Point& at) {
+        seen[pixel] = locator.find(hit.region, at).element;
     });
+    const auto width = static_cast<std::size_t>(size.width);
     std::vector<bool> edges(seen.size());
     for (std::size_t i = 0; i < seen.size(); ++i) {
         const bool right = (i + 1) % width != 0 && seen[i] != seen[i + 1];

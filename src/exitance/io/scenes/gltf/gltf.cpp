@@ -1,6 +1,5 @@
-// Data read by tinygltf is used only after the checks in this file.
+// Data read by tinygltf is used only after the checks in this file and in gltf_materials.cpp.
 #include <fmt/format.h>
-#include <tiny_gltf.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +9,9 @@
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/gltf/gltf_accessor.hpp"
-#include "exitance/io/scenes/gltf/gltf_model.hpp"
+#include "exitance/io/scenes/gltf/gltf_materials.hpp"
 #include "exitance/io/scenes/gltf/gltf_parse.hpp"
-#include "exitance/io/scenes/textures/texture_mean.hpp"
+#include "exitance/io/scenes/gltf/gltf_values.hpp"
 
 namespace exitance {
 namespace {
@@ -45,16 +44,12 @@ class GltfReader {
     bool check_extensions();
     bool read_meshes();
     bool read_primitive(const tinygltf::Primitive& in, const std::string& mesh, GltfModel::Mesh& out);
-    void read_materials();
-    GltfModel::Colour texture_mean(int texture, const ByteCurve& decode, const std::string& material);
-    std::optional<std::span<const std::uint8_t>> view_bytes(int view) const;
     bool rows(int accessor, int type, bool is_index, const std::string& what, GltfRows& out);
     GltfAccessor accessor_of(const tinygltf::Accessor& in) const;
     void read_views_and_lamps();
-    void read_places(const tinygltf::Primitive& in, GltfModel::Primitive& out);
-    void read_normals(const tinygltf::Primitive& in, GltfModel::Primitive& out);
-    void read_colours(const tinygltf::Primitive& in, GltfModel::Primitive& out);
-    GltfModel::TextureUse texture_use(int index, int place_set, const tinygltf::ExtensionMap& extensions) const;
+    GltfRows vertex_rows(const tinygltf::Primitive& in, const std::string& attribute, std::initializer_list<int> types,
+                         std::size_t vertices);
+    void read_attributes(const tinygltf::Primitive& in, GltfModel::Primitive& out);
     void read_pictures();
     bool read_nodes();
     bool read_node(const tinygltf::Node& in, std::size_t number);
@@ -62,16 +57,6 @@ class GltfReader {
     bool error(std::string message, std::string hint = "") {
         findings_.push_back({Finding::Kind::error, path_, 0, std::move(message), std::move(hint)});
         return false;
-    }
-    void warn(std::string message, std::string hint = "") {
-        findings_.push_back({Finding::Kind::warning, path_, 0, std::move(message), std::move(hint)});
-    }
-    static std::string name_or(const std::string& name, const char* kind, std::size_t number) {
-        return name.empty() ? fmt::format("{} {}", kind, number) : name;
-    }
-    template <class List>
-    static bool names_one(int index, const List& list) {
-        return index >= 0 && static_cast<std::size_t>(index) < list.size();
     }
 
     const std::string& path_;
@@ -90,30 +75,20 @@ bool GltfReader::check_extensions() {
     return true;
 }
 
-/// Returns the bytes of a buffer view; empty if some of them are missing.
-std::optional<std::span<const std::uint8_t>> GltfReader::view_bytes(int view) const {
-    if (!names_one(view, in_.bufferViews)) return std::nullopt;
-    const tinygltf::BufferView& v = in_.bufferViews[static_cast<std::size_t>(view)];
-    if (!names_one(v.buffer, in_.buffers)) return std::nullopt;
-    const std::vector<unsigned char>& bytes = in_.buffers[static_cast<std::size_t>(v.buffer)].data;
-    if (v.byteOffset > bytes.size() || v.byteLength > bytes.size() - v.byteOffset) return std::nullopt;
-    return std::span(bytes).subspan(v.byteOffset, v.byteLength);
-}
-
 /// Describes an accessor, with the bytes it refers to.
 GltfAccessor GltfReader::accessor_of(const tinygltf::Accessor& in) const {
     GltfAccessor a;
     a.component = in.componentType, a.count = in.count, a.normalized = in.normalized;
     a.view = in.bufferView, a.first = in.byteOffset;
-    a.bytes = view_bytes(in.bufferView);
+    a.bytes = view_bytes(in_, in.bufferView);
     if (a.bytes) a.stride = in_.bufferViews[static_cast<std::size_t>(in.bufferView)].byteStride;
     if (in.sparse.isSparse) {
         const auto& places = in.sparse.indices;
         const auto& values = in.sparse.values;
         a.sparse = GltfAccessor::Sparse{in.sparse.count,
                                         places.componentType,
-                                        view_bytes(places.bufferView),
-                                        view_bytes(values.bufferView),
+                                        view_bytes(in_, places.bufferView),
+                                        view_bytes(in_, values.bufferView),
                                         static_cast<std::int64_t>(places.byteOffset),
                                         static_cast<std::int64_t>(values.byteOffset)};
     }
@@ -169,86 +144,40 @@ bool GltfReader::read_primitive(const tinygltf::Primitive& in, const std::string
     if (in.material >= 0 && !names_one(in.material, in_.materials))
         return error(fmt::format("mesh '{}' has material {} of {}", mesh, in.material, in_.materials.size()));
     p.material = in.material;
-    if (with_textures_) read_places(in, p), read_normals(in, p), read_colours(in, p);
+    if (with_textures_) read_attributes(in, p);
     out.primitives.push_back(p);
     return true;
 }
 
-double number_in(const tinygltf::ExtensionMap& extensions, const char* extension, const char* key, double otherwise) {
-    const auto found = extensions.find(extension);
-    if (found == extensions.end() || !found->second.IsObject() || !found->second.Has(key)) return otherwise;
-    const tinygltf::Value& value = found->second.Get(key);
-    return value.IsNumber() ? value.GetNumberAsDouble() : otherwise;
-}
-
-void GltfReader::read_places(const tinygltf::Primitive& in, GltfModel::Primitive& out) {
-    for (std::size_t set = 0; set < out.places.size(); ++set) {
-        const auto found = in.attributes.find(fmt::format("TEXCOORD_{}", set));
-        if (found == in.attributes.end() || !names_one(found->second, in_.accessors)) continue;
-        const tinygltf::Accessor& accessor = in_.accessors[static_cast<std::size_t>(found->second)];
-        if (accessor.type != TINYGLTF_TYPE_VEC2) continue;
-        const Result<GltfRows> held = accessors_->rows(accessor_of(accessor), 2, false, "places");
-        if (held && held->size() >= out.positions.size()) out.places[set] = *held;
-    }
-}
-
-void GltfReader::read_normals(const tinygltf::Primitive& in, GltfModel::Primitive& out) {
-    const auto found = in.attributes.find("NORMAL");
-    if (found == in.attributes.end() || !names_one(found->second, in_.accessors)) return;
+/// Returns the rows of an attribute of vertices. They are empty if the file does not have the attribute, if it has none
+/// of these types, and if there are fewer rows than vertices.
+GltfRows GltfReader::vertex_rows(const tinygltf::Primitive& in, const std::string& attribute,
+                                 std::initializer_list<int> types, std::size_t vertices) {
+    const auto found = in.attributes.find(attribute);
+    if (found == in.attributes.end() || !names_one(found->second, in_.accessors)) return {};
     const tinygltf::Accessor& accessor = in_.accessors[static_cast<std::size_t>(found->second)];
-    if (accessor.type != TINYGLTF_TYPE_VEC3) return;
-    const Result<GltfRows> held = accessors_->rows(accessor_of(accessor), 3, false, "normals");
-    if (held && held->size() >= out.positions.size()) out.normals = *held;
+    if (std::find(types.begin(), types.end(), accessor.type) == types.end()) return {};
+    const auto width = static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<unsigned>(accessor.type)));
+    const Result<GltfRows> held = accessors_->rows(accessor_of(accessor), width, false, attribute);
+    return held && held->size() >= vertices ? *held : GltfRows();
 }
 
-/// Reads the colours of vertices. Those of exitance's own exports are light and not paint, and are ignored.
-void GltfReader::read_colours(const tinygltf::Primitive& in, GltfModel::Primitive& out) {
-    const auto found = in.attributes.find("COLOR_0");
-    if (found == in.attributes.end() || in.attributes.contains("_RADIOSITY")) return;
-    if (!names_one(found->second, in_.accessors)) return;
-    const tinygltf::Accessor& accessor = in_.accessors[static_cast<std::size_t>(found->second)];
-    const bool has_alpha = accessor.type == TINYGLTF_TYPE_VEC4;
-    if (!has_alpha && accessor.type != TINYGLTF_TYPE_VEC3) return;
-    const Result<GltfRows> held = accessors_->rows(accessor_of(accessor), has_alpha ? 4 : 3, false, "colours");
-    if (held && held->size() >= out.positions.size()) out.colours = *held;
-}
-
-GltfModel::TextureUse GltfReader::texture_use(int index, int place_set,
-                                              const tinygltf::ExtensionMap& extensions) const {
-    GltfModel::TextureUse out;
-    if (!names_one(index, in_.textures) || (place_set != 0 && place_set != 1)) return out;
-    const tinygltf::Texture& texture = in_.textures[static_cast<std::size_t>(index)];
-    if (!names_one(texture.source, in_.images)) return out;
-    out.picture = texture.source, out.place_set = place_set;
-    if (names_one(texture.sampler, in_.samplers)) {
-        const tinygltf::Sampler& sampler = in_.samplers[static_cast<std::size_t>(texture.sampler)];
-        out.wrap_s = sampler.wrapS, out.wrap_t = sampler.wrapT;
-    }
-    const auto found = extensions.find("KHR_texture_transform");
-    if (found == extensions.end() || !found->second.IsObject()) return out;
-    const auto pair = [&](const char* key, double otherwise) {
-        std::array<double, 2> value{otherwise, otherwise};
-        if (!found->second.Has(key) || found->second.Get(key).ArrayLen() != 2) return value;
-        for (std::size_t k = 0; k < 2; ++k) {
-            const tinygltf::Value& number = found->second.Get(key).Get(k);
-            if (number.IsNumber()) value[k] = number.GetNumberAsDouble();
-        }
-        return value;
-    };
-    const auto offset = pair("offset", 0), scale = pair("scale", 1);
-    const double turn = number_in(extensions, "KHR_texture_transform", "rotation", 0);
-    const double c = std::cos(turn), s = std::sin(turn);
-    out.transform = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
-    const double set = number_in(extensions, "KHR_texture_transform", "texCoord", out.place_set);
-    if (set == 0 || set == 1) out.place_set = static_cast<int>(set);
-    return out;
+/// Reads texture coordinates, normals and colours of vertices. Colours of exitance's own exports are light and not
+/// paint, and are ignored.
+void GltfReader::read_attributes(const tinygltf::Primitive& in, GltfModel::Primitive& out) {
+    const std::size_t vertices = out.positions.size();
+    for (std::size_t set = 0; set < out.places.size(); ++set)
+        out.places[set] = vertex_rows(in, fmt::format("TEXCOORD_{}", set), {TINYGLTF_TYPE_VEC2}, vertices);
+    out.normals = vertex_rows(in, "NORMAL", {TINYGLTF_TYPE_VEC3}, vertices);
+    if (!in.attributes.contains("_RADIOSITY"))
+        out.colours = vertex_rows(in, "COLOR_0", {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4}, vertices);
 }
 
 /// Collects the pictures: those in buffers are referenced, those in separate files move to the model.
 void GltfReader::read_pictures() {
     for (tinygltf::Image& image : in_.images) {
         if (image.bufferView >= 0) {
-            out_.pictures.push_back(view_bytes(image.bufferView).value_or(std::span<const std::uint8_t>()));
+            out_.pictures.push_back(view_bytes(in_, image.bufferView).value_or(std::span<const std::uint8_t>()));
             continue;
         }
         out_.bytes.push_back(std::move(image.image));
@@ -264,115 +193,6 @@ bool GltfReader::read_meshes() {
         out_.meshes.push_back(std::move(mesh));
     }
     return true;
-}
-
-/// Mean colour of a texture; white, with a warning, if it cannot be read.
-GltfModel::Colour GltfReader::texture_mean(int texture, const ByteCurve& decode, const std::string& material) {
-    const auto unread = [&](const std::string& why) {
-        warn(fmt::format("a texture of material '{}' {}: it counts as white", material, why));
-        return GltfModel::Colour{1, 1, 1};
-    };
-    if (texture < 0) return {1, 1, 1};
-    if (!names_one(texture, in_.textures)) return unread("is not there");
-    const int source = in_.textures[static_cast<std::size_t>(texture)].source;
-    if (!names_one(source, in_.images)) return unread("has no picture");
-    const tinygltf::Image& image = in_.images[static_cast<std::size_t>(source)];
-    std::span<const std::uint8_t> bytes = image.image;
-    if (image.bufferView >= 0) {
-        const auto held = view_bytes(image.bufferView);
-        if (!held) return unread("refers to bytes that the file does not have");
-        bytes = *held;
-    } else if (bytes.empty()) {
-        return unread(fmt::format("('{}') cannot be found or read", shown(image.uri)));
-    }
-    const Result<std::array<double, 3>> mean = mean_colour(bytes, decode);
-    if (!mean) return unread(mean.error().message);
-    return {(*mean)[0], (*mean)[1], (*mean)[2]};
-}
-
-GltfModel::Colour colour_of(const std::vector<double>& factor, double otherwise) {
-    if (factor.size() < 3) return {otherwise, otherwise, otherwise};
-    return {factor[0], factor[1], factor[2]};
-}
-
-GltfModel::Colour times(const GltfModel::Colour& a, const GltfModel::Colour& b, double s = 1) {
-    return {s * a.r * b.r, s * a.g * b.g, s * a.b * b.b};
-}
-
-/// Reads the first three numbers of an array of an extension; all are `otherwise` if there is no such array.
-GltfModel::Colour colour_in(const tinygltf::Value& extension, const char* key, double otherwise) {
-    GltfModel::Colour out{otherwise, otherwise, otherwise};
-    if (!extension.Has(key) || extension.Get(key).ArrayLen() < 3) return out;
-    double* const channels[3] = {&out.r, &out.g, &out.b};
-    for (std::size_t k = 0; k < 3; ++k)
-        if (const tinygltf::Value& v = extension.Get(key).Get(k); v.IsNumber()) *channels[k] = v.GetNumberAsDouble();
-    return out;
-}
-
-/// Reads a texture reference of an extension.
-tinygltf::TextureInfo texture_in(const tinygltf::Value& extension, const char* key) {
-    tinygltf::TextureInfo out;
-    if (!extension.Has(key) || !extension.Get(key).IsObject()) return out;
-    const tinygltf::Value& texture = extension.Get(key);
-    const auto integer = [&](const char* name, int otherwise) {
-        return texture.Has(name) && texture.Get(name).IsNumber() ? texture.Get(name).GetNumberAsInt() : otherwise;
-    };
-    out.index = integer("index", -1), out.texCoord = integer("texCoord", 0);
-    if (texture.Has("extensions") && texture.Get("extensions").IsObject())
-        for (const std::string& name : texture.Get("extensions").Keys())
-            out.extensions[name] = texture.Get("extensions").Get(name);
-    return out;
-}
-
-/// The diffuse part of a material: the base colour, of which the metallic share does not reflect diffusely. The diffuse
-/// colour of the older KHR_materials_pbrSpecularGlossiness takes precedence.
-struct DiffusePart {
-    GltfModel::Colour factor;
-    tinygltf::TextureInfo texture;
-    double metallic = 0;
-    int metallic_texture = -1;
-};
-
-DiffusePart diffuse_part(const tinygltf::Material& in) {
-    const auto older = in.extensions.find("KHR_materials_pbrSpecularGlossiness");
-    if (older != in.extensions.end() && older->second.IsObject())
-        return {colour_in(older->second, "diffuseFactor", 1), texture_in(older->second, "diffuseTexture")};
-    const tinygltf::PbrMetallicRoughness& pbr = in.pbrMetallicRoughness;
-    return {colour_of(pbr.baseColorFactor, 1), pbr.baseColorTexture, pbr.metallicFactor,
-            pbr.metallicRoughnessTexture.index};
-}
-
-void GltfReader::read_materials() {
-    for (std::size_t i = 0; i < in_.materials.size(); ++i) {
-        const tinygltf::Material& in = in_.materials[i];
-        const DiffusePart diffuse = diffuse_part(in);
-        GltfModel::Material m;
-        m.name = name_or(shown(in.name), "material", i);
-        m.base = times(diffuse.factor, texture_mean(diffuse.texture.index, srgb_curve(), m.name));
-        m.metallic = diffuse.metallic;
-        if (m.metallic > 0)  // metalness is the texture's blue channel
-            m.metallic *= texture_mean(diffuse.metallic_texture, linear_curve(), m.name).b;
-        const double strength = number_in(in.extensions, "KHR_materials_emissive_strength", "emissiveStrength", 1);
-        m.emission = times(colour_of(in.emissiveFactor, 0), {1, 1, 1}, strength);
-        if (m.emission.r != 0 || m.emission.g != 0 || m.emission.b != 0)
-            m.emission = times(m.emission, texture_mean(in.emissiveTexture.index, srgb_curve(), m.name));
-        m.double_sided = in.doubleSided;
-        if (with_textures_) {
-            const tinygltf::TextureInfo &base = diffuse.texture, &glow = in.emissiveTexture;
-            m.base_texture = texture_use(base.index, base.texCoord, base.extensions);
-            m.emission_texture = texture_use(glow.index, glow.texCoord, glow.extensions);
-        }
-        m.transmission = number_in(in.extensions, "KHR_materials_transmission", "transmissionFactor", 0);
-        m.diffuse_transmission =
-            number_in(in.extensions, "KHR_materials_diffuse_transmission", "diffuseTransmissionFactor", 0);
-        // The opacity of the texture is multiplied by that of the base colour.
-        const std::vector<double>& factor = in.pbrMetallicRoughness.baseColorFactor;
-        const double opacity = factor.size() > 3 ? factor[3] : 1;
-        const bool is_mask = in.alphaMode == "MASK" && m.base_texture.picture >= 0 && opacity > 0;
-        if (is_mask) m.hole_opacity = in.alphaCutoff / opacity;
-        m.transparent = in.alphaMode == "BLEND" || (in.alphaMode == "MASK" && !is_mask && opacity < in.alphaCutoff);
-        out_.materials.push_back(std::move(m));
-    }
 }
 
 void GltfReader::read_views_and_lamps() {
@@ -458,7 +278,7 @@ Result<GltfModel> GltfReader::read() {
     accessors_.emplace(file_bytes, out_.bytes);
     read_views_and_lamps();
     if (check_extensions() && read_meshes()) {
-        read_materials();
+        out_.materials = read_gltf_materials(in_, path_, findings_, with_textures_);
         read_nodes();
         if (with_textures_) read_pictures();
     }

@@ -81,7 +81,6 @@ class SceneMaker {
     std::vector<PlacedLuminaire>& luminaires_;
     std::vector<Spectrum>& deviation_;
     std::vector<PaneLabel>& pane_labels_;
-    std::vector<std::uint32_t> group_of_mesh_;
     std::uint32_t default_material_ = 0;
     bool has_default_ = false;
     std::size_t triangles_ = 0, deformed_ = 0;

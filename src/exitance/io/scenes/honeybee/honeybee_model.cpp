@@ -3,65 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
-#include <set>
 
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/whole_file.hpp"
-#include "exitance/io/scenes/honeybee/honeybee_modifiers.hpp"
+#include "exitance/io/scenes/honeybee/honeybee_materials.hpp"
 
 namespace exitance {
 namespace {
-
-using Json = nlohmann::json;
-
-/// A member of an object; a null value if it has none of this name.
-const Json& member(const Json& object, const char* key) {
-    static const Json none;
-    if (!object.is_object()) return none;
-    const auto found = object.find(key);
-    return found == object.end() ? none : *found;
-}
-
-std::string text(const Json& object, const char* key) {
-    const Json& value = member(object, key);
-    return value.is_string() ? value.get<std::string>() : std::string();
-}
-
-bool flag(const Json& object, const char* key) {
-    const Json& value = member(object, key);
-    return value.is_boolean() && value.get<bool>();
-}
-
-/// The entries of a list; none if there is no such list.
-const Json& entries(const Json& object, const char* key) {
-    static const Json none = Json::array();
-    const Json& value = member(object, key);
-    return value.is_array() ? value : none;
-}
-
-const Json& radiance(const Json& object) {
-    return member(member(object, "properties"), "radiance");
-}
-
-/// Name of a material that is given by its name or as a whole object; empty for neither.
-std::string modifier_name(const Json& value) {
-    return value.is_string() ? value.get<std::string>() : text(value, "identifier");
-}
-
-std::optional<Vec3> vector_of(const Json& value) {
-    if (!value.is_array() || value.size() != 3) return std::nullopt;
-    Vec3 out;
-    for (std::size_t i = 0; i < 3; ++i) {
-        if (!value[i].is_number()) return std::nullopt;
-        out[i] = value[i].get<double>();
-    }
-    if (!is_finite(out)) return std::nullopt;
-    return out;
-}
 
 /// Number of metres in a model's unit of length.
 std::optional<double> metres_in(const std::string& units) {
@@ -81,7 +30,8 @@ struct Host {
 
 class ModelReader {
   public:
-    ModelReader(const std::string& path, const HoneybeeChoices& choices) : path_(path), choices_(choices) {}
+    ModelReader(const std::string& path, const HoneybeeChoices& choices)
+        : path_(path), choices_(choices), materials_(path, out_.findings) {}
 
     HoneybeeModel read() {
         const Result<std::string> bytes = read_whole_file(path_);
@@ -96,8 +46,8 @@ class ModelReader {
                  "save the model again as HBJSON");
             return std::move(out_);
         }
-        if (text(model, "type") != "Model") {
-            error(fmt::format("is not a Honeybee model but '{}'", shown(text(model, "type"))),
+        if (text_in(model, "type") != "Model") {
+            error(fmt::format("is not a Honeybee model but '{}'", shown(text_in(model, "type"))),
                   "save the whole model as HBJSON");
             return std::move(out_);
         }
@@ -114,10 +64,10 @@ class ModelReader {
     }
 
     void read_model(const Json& model) {
-        const std::optional<double> unit = metres_in(text(model, "units"));
-        if (!unit) return error(fmt::format("the unit of length '{}' is unknown", shown(text(model, "units"))));
+        const std::optional<double> unit = metres_in(text_in(model, "units"));
+        if (!unit) return error(fmt::format("the unit of length '{}' is unknown", shown(text_in(model, "units"))));
         metres_ = *unit;
-        read_materials(radiance(model));
+        out_.modifiers = materials_.read(honeybee_radiance(model));
         for (const Json& room : entries(model, "rooms")) read_room(room);
         const Host outside;
         for (const Json& face : entries(model, "orphaned_faces")) read_face(face, outside);
@@ -125,8 +75,8 @@ class ModelReader {
         for (const Json& door : entries(model, "orphaned_doors")) read_part(door, outside, true);
         for (const Json& shade : entries(model, "orphaned_shades")) add_shade(shade, "context_modifier", outside);
         for (const Json& mesh : entries(model, "shade_meshes")) add_mesh(mesh);
-        for (const Json& grid : entries(radiance(model), "sensor_grids")) read_grid(grid);
-        for (const Json& view : entries(radiance(model), "views")) read_view(view);
+        for (const Json& grid : entries(honeybee_radiance(model), "sensor_grids")) read_grid(grid);
+        for (const Json& view : entries(honeybee_radiance(model), "views")) read_view(view);
         if (dynamic_ > 0)
             find(Finding::Kind::warning, 0,
                  fmt::format("{} with several states {} in the first of them",
@@ -136,147 +86,14 @@ class ModelReader {
                  "--states");
     }
 
-    // --- materials
-
-    void read_materials(const Json& properties) {
-        const Json& global = member(properties, "global_modifier_set");
-        add_modifiers(entries(properties, "modifiers"));
-        add_modifiers(entries(global, "modifiers"));
-        read_set(global, global_);
-        for (const Json& set : entries(properties, "modifier_sets")) {
-            add_modifiers(entries(set, "modifiers"));
-            read_set(set, sets_[text(set, "identifier")]);
-        }
-        for (RadPrimitive& modifier : generic_modifiers())
-            if (names_.insert(modifier.name).second) out_.modifiers.push_back(std::move(modifier));
-    }
-
-    void read_set(const Json& json, HoneybeeModifierSet& set) {
-        for (const auto& [key, generic] : generic_modifier_set()) {
-            const std::size_t dot = key.find('.');
-            const Json& group = dot == std::string::npos ? json : member(json, key.substr(0, dot).c_str());
-            const Json& value = member(group, key.substr(dot == std::string::npos ? 0 : dot + 1).c_str());
-            if (value.is_object()) add_modifier(value);
-            if (const std::string name = modifier_name(value); !name.empty()) set[key] = name;
-        }
-    }
-
-    void add_modifiers(const Json& list) {
-        for (const Json& modifier : list) add_modifier(modifier);
-    }
-
-    void add_modifier(const Json& json) {
-        RadPrimitive p;
-        p.modifier = "void", p.name = text(json, "identifier");
-        if (p.name.empty() || !names_.insert(p.name).second) return;
-        const std::string type = type_of_modifier(json);
-        if (member(json, "modifier").is_object() && text(member(json, "modifier"), "type") != "Void")
-            find(Finding::Kind::warning, 0,
-                 fmt::format("the pattern that changes material '{}' is left out", shown(p.name)));
-        const auto take = [&](std::initializer_list<const char*> keys) {
-            for (const char* key : keys) {
-                const Json& value = member(json, key);
-                if (value.is_number()) p.numbers.push_back(value.get<double>());
-                // Honeybee leaves out values that are its defaults: 0, but for the specularity of metals and mirrors.
-                else
-                    p.numbers.push_back(default_of(type, key));
-            }
-        };
-        if (type == "Plastic" || type == "Metal" || type == "Trans") {
-            take({"r_reflectance", "g_reflectance", "b_reflectance", "specularity", "roughness"});
-            if (type == "Trans") take({"transmitted_diff", "transmitted_spec"});
-            p.type = type == "Plastic" ? "plastic" : type == "Metal" ? "metal" : "trans";
-        } else if (type == "Glass") {
-            take({"r_transmissivity", "g_transmissivity", "b_transmissivity"});
-            take_refraction(json, p);
-            p.type = "glass";
-        } else if (type == "Light" || type == "Glow") {
-            take({"r_emittance", "g_emittance", "b_emittance"});
-            if (type == "Glow") take({"max_radius"});
-            p.type = type == "Light" ? "light" : "glow";
-        } else if (type == "Mirror") {
-            take({"r_reflectance", "g_reflectance", "b_reflectance"});
-            p.type = "mirror";
-        } else if (type == "BSDF") {
-            return add_bsdf(json, p);
-        } else if (type == "Void") {
-            return;  // surfaces of a void material are omitted
-        } else {
-            return error(fmt::format("material '{}' is of the unknown type '{}'", shown(p.name), shown(type)));
-        }
-        out_.modifiers.push_back(std::move(p));
-    }
-
-    /// The type of a modifier in the spelling of today's schema; older models have small letters.
-    static std::string type_of_modifier(const Json& json) {
-        const auto small = [](std::string word) {
-            for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-            return word;
-        };
-        const std::string said = text(json, "type");
-        for (const char* known : {"Plastic", "Metal", "Trans", "Glass", "Light", "Glow", "Mirror", "BSDF", "Void"})
-            if (small(said) == small(known)) return known;
-        return said;
-    }
-
-    /// Takes the index of refraction of glass. Some programs write 0 where none was chosen.
-    void take_refraction(const Json& json, RadPrimitive& p) {
-        const Json& index = member(json, "refraction_index");
-        if (!index.is_number()) return;
-        if (index.get<double>() != 0) return p.numbers.push_back(index.get<double>());
-        find(Finding::Kind::warning, 0,
-             fmt::format("glass '{}' has an index of refraction of 0: that of window glass is taken", shown(p.name)),
-             "give the modifier a refraction_index, or none");
-    }
-
-    static double default_of(const std::string& type, std::string_view key) {
-        if (type == "Metal" && key == "specularity") return 0.9;  // honeybee-schema
-        return type == "Mirror" ? 1 : 0;
-    }
-
-    /// A BSDF is replaced by the diffuse pane of its diffuse reflectance and transmittance, if the model names them.
-    void add_bsdf(const Json& json, RadPrimitive& p) {
-        const std::optional<Vec3> through = vector_of(member(json, "diffuse_transmittance")),
-                                  front = vector_of(member(json, "front_diffuse_reflectance"));
-        if (!through && !front)
-            return error(
-                fmt::format("material '{}' is a table of scattered light (BSDF), which is not read", shown(p.name)),
-                "replace it by glass or by a translucent material, or give its diffuse reflectance and "
-                "transmittance");
-        const Vec3 r = front.value_or(Vec3()), t = through.value_or(Vec3());
-        const double all = r.x + r.y + r.z + t.x + t.y + t.z;
-        const double share = all > 0 ? (t.x + t.y + t.z) / all : 0;
-        p.type = "trans";
-        p.numbers = {r.x + t.x, r.y + t.y, r.z + t.z, 0, 0, share, 0};
-        find(Finding::Kind::warning, 0,
-             fmt::format("only the diffuse part of material '{}' (BSDF) is used", shown(p.name)));
-        out_.modifiers.push_back(std::move(p));
-    }
-
-    /// The material of a set's place, in Honeybee's order: the room's set, the model's set, the generic set.
-    std::string from_sets(const std::string& key, const Host& host) const {
-        if (host.set)
-            if (const auto own = host.set->find(key); own != host.set->end()) return own->second;
-        if (const auto own = global_.find(key); own != global_.end()) return own->second;
-        return generic_modifier_set().at(key);
-    }
-
-    /// The material of an object: that of its chosen state, its own, or that of the sets.
     std::string modifier_of(const Json& object, const std::string& key, const Host& host) const {
-        const Json& states = entries(radiance(object), "states");
-        const std::size_t state = state_of(object);
-        if (state < states.size())
-            if (const std::string name = modifier_name(member(states[state], "modifier")); !name.empty()) return name;
-        const std::string name = modifier_name(member(radiance(object), "modifier"));
-        return name.empty() ? from_sets(key, host) : name;
+        return materials_.modifier_of(object, state_of(object), key, host.set);
     }
 
     std::size_t state_of(const Json& object) const {
-        const auto found = choices_.find(text(object, "identifier"));
+        const auto found = choices_.find(text_in(object, "identifier"));
         return found == choices_.end() ? 0 : found->second;
     }
-
-    // --- geometry
 
     std::optional<std::vector<Point>> loop_of(const Json& points, const std::string& name) {
         std::vector<Point> out;
@@ -294,7 +111,7 @@ class ModelReader {
     }
 
     std::optional<HoneybeeOutline> outline_of(const Json& object) {
-        const std::string name = text(object, "identifier");
+        const std::string name = text_in(object, "identifier");
         const Json& geometry = member(object, "geometry");
         std::optional<std::vector<Point>> boundary = loop_of(member(geometry, "boundary"), name);
         if (!boundary) return std::nullopt;
@@ -309,14 +126,13 @@ class ModelReader {
 
     void read_room(const Json& room) {
         Host host;
-        if (const auto set = sets_.find(text(radiance(room), "modifier_set")); set != sets_.end())
-            host.set = &set->second;
+        host.set = materials_.find_set(text_in(honeybee_radiance(room), "modifier_set"));
         for (const Json& face : entries(room, "faces")) read_face(face, host);
         read_shades(room, host);
     }
 
     void read_face(const Json& face, Host host) {
-        host.face_type = text(face, "face_type");
+        host.face_type = text_in(face, "face_type");
         std::vector<HoneybeeOutline> openings;
         for (const char* key : {"apertures", "doors"})
             for (const Json& part : entries(face, key))
@@ -326,13 +142,13 @@ class ModelReader {
         if (host.face_type == "AirBoundary") return;
         std::optional<HoneybeeOutline> outline = outline_of(face);
         if (!outline) return;
-        const std::string boundary = text(member(face, "boundary_condition"), "type");
+        const std::string boundary = text_in(member(face, "boundary_condition"), "type");
         const std::string group = host.face_type == "Floor"         ? "floor_set"
                                   : host.face_type == "RoofCeiling" ? "roof_ceiling_set"
                                                                     : "wall_set";
         const bool is_outer = boundary == "Outdoors" || boundary == "Ground";
         HoneybeeSheet sheet;
-        sheet.name = text(face, "identifier");
+        sheet.name = text_in(face, "identifier");
         sheet.modifier = modifier_of(face, group + (is_outer ? ".exterior_modifier" : ".interior_modifier"), host);
         sheet.outlines.push_back(std::move(*outline));
         sheet.openings = std::move(openings);
@@ -347,22 +163,22 @@ class ModelReader {
     std::optional<HoneybeeOutline> read_part(const Json& part, const Host& host, bool is_door) {
         std::optional<HoneybeeOutline> outline = outline_of(part);
         if (!outline) return std::nullopt;
-        const bool inside = text(member(part, "boundary_condition"), "type") == "Surface",
+        const bool inside = text_in(member(part, "boundary_condition"), "type") == "Surface",
                    on_wall = host.face_type == "Wall";
         std::string key;
         if (is_door)
-            key = flag(part, "is_glass")
+            key = flag_in(part, "is_glass")
                       ? (inside ? "door_set.interior_glass_modifier" : "door_set.exterior_glass_modifier")
                   : inside  ? "door_set.interior_modifier"
                   : on_wall ? "door_set.exterior_modifier"
                             : "door_set.overhead_modifier";
         else
-            key = inside                      ? "aperture_set.interior_modifier"
-                  : flag(part, "is_operable") ? "aperture_set.operable_modifier"
-                  : on_wall                   ? "aperture_set.window_modifier"
-                                              : "aperture_set.skylight_modifier";
+            key = inside                         ? "aperture_set.interior_modifier"
+                  : flag_in(part, "is_operable") ? "aperture_set.operable_modifier"
+                  : on_wall                      ? "aperture_set.window_modifier"
+                                                 : "aperture_set.skylight_modifier";
         HoneybeeSheet sheet;
-        sheet.name = text(part, "identifier");
+        sheet.name = text_in(part, "identifier");
         sheet.modifier = modifier_of(part, key, host);
         sheet.outlines = {*outline};
         sheet.partner = partner_of(part);
@@ -375,7 +191,7 @@ class ModelReader {
     static std::string partner_of(const Json& object) {
         const Json& condition = member(object, "boundary_condition");
         const Json& names = entries(condition, "boundary_condition_objects");
-        return text(condition, "type") == "Surface" && !names.empty() && names[0].is_string()
+        return text_in(condition, "type") == "Surface" && !names.empty() && names[0].is_string()
                    ? names[0].get<std::string>()
                    : std::string();
     }
@@ -391,7 +207,7 @@ class ModelReader {
         std::optional<HoneybeeOutline> outline = outline_of(shade);
         if (!outline) return;
         HoneybeeSheet sheet;
-        sheet.name = text(shade, "identifier");
+        sheet.name = text_in(shade, "identifier");
         sheet.modifier = modifier_of(shade, key, host);
         sheet.outlines.push_back(std::move(*outline));
         out_.sheets.push_back(std::move(sheet));
@@ -402,15 +218,15 @@ class ModelReader {
 
     /// Reads the states of an object, and adds the shades of the chosen one to the scene.
     void read_states(const Json& object, const Host& host) {
-        const Json& states = entries(radiance(object), "states");
+        const Json& states = entries(honeybee_radiance(object), "states");
         if (states.size() > 1) ++dynamic_;
         if (states.empty()) return;
         HoneybeeDynamic& dynamic = out_.dynamic.emplace_back();
-        dynamic.object = text(object, "identifier");
-        dynamic.group = text(radiance(object), "dynamic_group_identifier");
+        dynamic.object = text_in(object, "identifier");
+        dynamic.group = text_in(honeybee_radiance(object), "dynamic_group_identifier");
         for (const Json& state : states) {
-            std::string modifier = modifier_name(member(state, "modifier"));
-            if (modifier.empty()) modifier = modifier_name(member(radiance(object), "modifier"));
+            std::string modifier = honeybee_modifier_name(member(state, "modifier"));
+            if (modifier.empty()) modifier = honeybee_modifier_name(member(honeybee_radiance(object), "modifier"));
             dynamic.states.push_back({std::move(modifier), shades_of(state, host)});
         }
         const std::size_t chosen = state_of(object);
@@ -424,16 +240,16 @@ class ModelReader {
         for (const Json& shade : entries(state, "shades")) {
             std::optional<HoneybeeOutline> outline = outline_of(shade);
             if (!outline) continue;
-            std::string modifier = modifier_name(member(shade, "modifier"));
-            if (modifier.empty()) modifier = from_sets("shade_set.exterior_modifier", host);
-            out.push_back({text(shade, "identifier"), std::move(modifier), {std::move(*outline)}});
+            std::string modifier = honeybee_modifier_name(member(shade, "modifier"));
+            if (modifier.empty()) modifier = materials_.from_sets("shade_set.exterior_modifier", host.set);
+            out.push_back({text_in(shade, "identifier"), std::move(modifier), {std::move(*outline)}});
         }
         return out;
     }
 
     void add_mesh(const Json& mesh) {
         HoneybeeSheet sheet;
-        sheet.name = text(mesh, "identifier");
+        sheet.name = text_in(mesh, "identifier");
         sheet.modifier = modifier_of(mesh, "context_modifier", {});
         const Json &geometry = member(mesh, "geometry"), &vertices = entries(geometry, "vertices");
         std::vector<Point> points;
@@ -457,10 +273,8 @@ class ModelReader {
         out_.sheets.push_back(std::move(sheet));
     }
 
-    // --- sensors and views
-
     void read_grid(const Json& grid) {
-        HoneybeeGrid out{.name = text(grid, "identifier")};
+        HoneybeeGrid out{.name = text_in(grid, "identifier")};
         for (const Json& sensor : entries(grid, "sensors")) {
             const std::optional<Vec3> at = vector_of(member(sensor, "pos")), towards = vector_of(member(sensor, "dir"));
             if (!at || !towards || !(norm(*towards) > 0))
@@ -472,7 +286,7 @@ class ModelReader {
     }
 
     void read_view(const Json& view) {
-        const std::string type = text(view, "view_type"), name = text(view, "identifier");
+        const std::string type = text_in(view, "view_type"), name = text_in(view, "identifier");
         const std::optional<Vec3> at = vector_of(member(view, "position")),
                                   towards = vector_of(member(view, "direction")),
                                   up = vector_of(member(view, "up_vector"));
@@ -502,10 +316,8 @@ class ModelReader {
     const HoneybeeChoices& choices_;
     HoneybeeModel out_;
     double metres_ = 1;
-    HoneybeeModifierSet global_;
-    std::map<std::string, HoneybeeModifierSet> sets_;
-    std::set<std::string> names_;  ///< Materials so far.
-    std::size_t dynamic_ = 0;      ///< Objects with several states.
+    std::size_t dynamic_ = 0;  ///< Objects with several states.
+    HoneybeeMaterials materials_;
 };
 
 }  // namespace
