@@ -107,8 +107,10 @@ ElementLocator::Grid ElementLocator::make_grid(std::span<const Root> roots) {
         return is_finite(sides.first) && is_finite(sides.second);
     };
     Box all;
-    for (const Root& r : roots)
+    for (const Root& r : roots) {
+        all.add(r.origin);
         if (has_area(r)) all.add(box_of(r));
+    }
     // About one cell per root, as square as the region allows.
     const double width = all.size()[grid.s], height = all.size()[grid.t], count = static_cast<double>(roots.size());
     const double side = std::sqrt(width * height / count);
@@ -148,7 +150,7 @@ ElementLocator::Nearest ElementLocator::nearest_root(RegionId region, const Poin
         const double margin = 1e-9 * (1 / std::max(grid.s_scale, 1e-300) + 1 / std::max(grid.t_scale, 1e-300));
         // The point is outside all roots of its cell by more than rounding. This is rare, and any root may be the
         // nearest.
-        if (!(nearest.distance <= margin * margin)) nearest.look_at(roots(region), p);
+        if (!nearest.root || !(nearest.distance <= margin * margin)) nearest.look_at(roots(region), p);
     } else {
         nearest.look_at(roots(region), p);
     }
