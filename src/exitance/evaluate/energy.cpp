@@ -1,6 +1,7 @@
 #include "exitance/evaluate/energy.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
@@ -32,6 +33,36 @@ double directed_loss(const Stage& stage, const Piece& piece) {
         if (is_lost(stage, y, w, piece.region)) lost += p;
     }
     return sent > 0 ? lost / sent : 0;
+}
+
+/// Power of lights without extent that meets no front, such as that of a lamp above a street that shines upwards. Rays
+/// are uniform over all directions, or over the cone of a spotlight.
+double punctual_loss(const Stage& stage) {
+    constexpr std::uint32_t all_rays = 1 << 16, min_rays = 64;  // a single light's share is known to 0.2%
+    const std::span<const PunctualLight> lights = stage.scene.lights();
+    const LightUnit total = own_unit(stage.scene.is_photometric());
+    const std::uint32_t rays =
+        lights.empty() ? 0 : std::max(min_rays, all_rays / static_cast<std::uint32_t>(lights.size()));
+    const auto loss_of = [&](std::size_t k) {
+        const PunctualLight& light = lights[k];
+        if (light.is_directional()) return 0.0;  // counts as emitted only if it reaches a face
+        const double least = light.kind == PunctualLight::Kind::spot ? std::cos(light.outer_cone) : -1.0;
+        const Frame frame(light.direction);
+        const ScrambledSobol points(hash(static_cast<std::uint64_t>(Stream::shooting), ~std::uint64_t(k)));
+        double lost = 0, sent = 0;
+        for (std::uint32_t i = 0; i < rays; ++i) {
+            const double z = 1 - (1 - least) * points(i, 0), r = std::sqrt(std::max(0.0, 1 - z * z));
+            const double angle = 2 * pi * points(i, 1);
+            const Vec3 w = frame.to_world(r * std::cos(angle), r * std::sin(angle), z);
+            const double p = light.share_towards(w);
+            sent += p;
+            if (p > 0 && is_lost(stage, light.position, w, {})) lost += p;
+        }
+        return sent > 0 ? lost / sent * total(light.power()) : 0.0;
+    };
+    std::vector<double> losses(lights.size());
+    parallel_for(lights.size(), 1, [&](std::size_t k) { losses[k] = loss_of(k); });
+    return std::accumulate(losses.begin(), losses.end(), 0.0);
 }
 
 /// Diffuse power that leaves an element or, if `tree` is null, a patch.
@@ -140,6 +171,7 @@ EnergyBalance energy_balance(const Solution& solution, const DirectProjection& d
         if (scene.material(piece.region).is_directed())
             out.escaped +=
                 directed_loss(stage, piece) * piece.patch.area() * total(scene.material(piece.region).exitance);
+    out.escaped += punctual_loss(stage);
     out.defect = out.emitted > 0 ? std::abs(out.emitted - out.absorbed - out.escaped) / out.emitted : 0;
     return out;
 }
@@ -176,6 +208,7 @@ EnergyBalance energy_of_interpolant(const Solution& solution, const Stage& stage
                           {}});
         }
     });
+    out.escaped += punctual_loss(stage);
     out.defect = out.emitted > 0 ? std::abs(out.emitted - out.absorbed - out.escaped) / out.emitted : 0;
     return out;
 }

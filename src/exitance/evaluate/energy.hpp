@@ -7,7 +7,8 @@ namespace exitance {
 
 /// Compares emitted flux with absorbed flux, int (1 - rho) E dA, and escaping flux. Direct light is taken from the
 /// projection's exact means, indirect light from the solution's elements, or both from a discontinuity mesh if there is
-/// one. Escaping light is estimated by rays from surfaces; for emitters that are not diffuse, by their profiles.
+/// one. Escaping light is estimated by rays from surfaces, and from lights without extent; for emitters that are not
+/// diffuse, by their profiles.
 /// Nothing is adjusted to agree. O(elements).
 EnergyBalance energy_balance(const Solution& solution, const DirectProjection& direct, const Stage& stage);
 

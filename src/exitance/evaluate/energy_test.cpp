@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "support/sample_solution.hpp"
 
@@ -70,6 +71,50 @@ TEST(Energy, IsInTheUnitOfTheSceneForLightsWithoutExtent) {
         const EnergyBalance energy = energy_of_interpolant(s, Stage(s.scene));
         EXPECT_NEAR(energy.emitted, 4 * pi * 100, 1e-9);
     }
+}
+
+/// A floor of 1 m x 1 m that reflects nothing, with a lamp without extent `height` above its middle, scaled and turned
+/// about x by `angle`.
+Solution lamp_over_floor(PunctualLight lamp, double height, double scale, double angle) {
+    const auto turned = [&](const Vec3& p) {
+        return Vec3{p.x, std::cos(angle) * p.y - std::sin(angle) * p.z, std::sin(angle) * p.y + std::cos(angle) * p.z};
+    };
+    SceneDescription d;
+    d.materials = {{"black", Spectrum(), Spectrum()}};
+    d.groups = {"floor"};
+    for (const Vec3& p : {Vec3{-0.5, -0.5, 0}, Vec3{0.5, -0.5, 0}, Vec3{0.5, 0.5, 0}, Vec3{-0.5, 0.5, 0}})
+        d.points.push_back(Point{} + scale * turned(p));
+    d.faces.push_back({{0, 1, 2, 3}, 0, 0, 0});
+    lamp.position = Point{} + scale * turned({0, 0, height}), lamp.direction = turned(lamp.direction);
+    lamp.name = "lamp", lamp.intensity = Spectrum(100);
+    d.lights = {lamp};
+    CheckedScene made = make_scene(std::move(d));
+    EXI_CHECK(static_cast<bool>(made.scene));
+    Solution s;
+    s.scene = std::move(*made.scene);
+    s.indirect = s.interpolant = sample_function(s.scene, 1, 0);
+    for (auto& value : s.indirect.values) value.fill(0);
+    return s;
+}
+
+TEST(Energy, LightOfLampsWithoutExtentThatMeetsNothingHasEscaped) {
+    using Kind = PunctualLight::Kind;
+    PunctualLight bulb, spot_down, spot_up;
+    spot_down.kind = spot_up.kind = Kind::spot;
+    spot_down.inner_cone = spot_up.inner_cone = 0.1, spot_down.outer_cone = spot_up.outer_cone = 0.4;
+    spot_up.direction = {0, 0, 1};
+    const double seen = 4 * std::asin(0.2) / (4 * pi);  // solid angle of the floor from 1 m above it, over 4 pi
+    for (const double scale : {0.01, 1.0, 50.0})
+        for (const double angle : {0.0, 1.0, 2.5})
+            for (const auto& [lamp, height, share] : {std::tuple{bulb, 1.0, 1 - seen},
+                                                      {bulb, -1.0, 1.0},
+                                                      {spot_down, 1.0, 0.0},
+                                                      {spot_down, -1.0, 1.0},
+                                                      {spot_up, 1.0, 1.0}}) {
+                const Solution s = lamp_over_floor(lamp, height, scale, angle);
+                const EnergyBalance energy = energy_balance(s, Stage(s.scene));
+                EXPECT_NEAR(energy.escaped / energy.emitted, share, 2e-3) << height << " " << scale << " " << angle;
+            }
 }
 
 }  // namespace

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "exitance/base/random.hpp"
 #include "exitance/mesh/pieces.hpp"
 #include "exitance/mesh/planes.hpp"
@@ -94,6 +97,56 @@ TEST(Conforming, NodesMakeFunctionsContinuousExceptAcrossContacts) {
         }
         EXPECT_GT(jumps, 1000);
     }
+}
+
+/// A floor of 4 m x 4 m with an upright wall from side to side near x = 1.1, whose corners deviate by `tilt` metres as
+/// numbers in a file of single precision do; everything scaled and turned about the vertical.
+Scene floor_and_wall(double tilt, double scale, double angle) {
+    SceneDescription d;
+    const double c = scale * std::cos(angle), s = scale * std::sin(angle);
+    for (const Point& p : {Point{0, 0, 0},
+                           {4, 0, 0},
+                           {4, 4, 0},
+                           {0, 4, 0},
+                           {1.1, 0, -0.01},
+                           {1.1 + tilt, 4, -0.01},
+                           {1.1 + tilt, 4, 1},
+                           {1.1, 0, 1}})
+        d.points.push_back({c * p.x - s * p.y, s * p.x + c * p.y, scale * p.z});
+    d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
+    d.groups = {"all"};
+    d.faces = {{{0, 1, 2, 3}, 0, 0, 1}, {{4, 5, 6, 7}, 0, 0, 2}};
+    return std::move(*make_scene(std::move(d)).scene);
+}
+
+TEST(Conforming, NodesAreNotSharedAcrossAWallThatIsNearlyParallelToTheMesh) {
+    for (const double tilt : {0.0, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-3})
+        for (const double scale : {0.1, 1.0, 30.0})
+            for (const double angle : {0.0, 0.4, 2.0}) {
+                const Scene scene = floor_and_wall(tilt, scale, angle);
+                const ContactLines contacts(scene);
+                ElementTree tree;
+                for (const Piece& piece : cut_into_pieces(scene)) tree.add_root(piece.region, piece.patch);
+                for (int i = 0; i < 3; ++i)
+                    for (ElementId leaf : tree.leaves()) tree.split(leaf, Cut::both, 0.5);
+                cut_along_contacts(tree, tree.leaves(), contacts);
+                const SharedNodes nodes = make_conforming(tree, plane_of_regions(scene), contacts);
+                std::vector<std::uint32_t> left, right, both;
+                for (ElementId leaf : tree.leaves()) {
+                    if (tree.patch(leaf).normal().z < 0.9) continue;
+                    const Point middle = tree.patch(leaf).at(tree.centre(leaf));
+                    const double x = (std::cos(angle) * middle.x + std::sin(angle) * middle.y) / scale;
+                    const double y = (std::cos(angle) * middle.y - std::sin(angle) * middle.x) / scale;
+                    const double from_wall = x - 1.1 - tilt * y / 4;
+                    if (std::abs(from_wall) < 2e-5) continue;  // a sliver may be on either side
+                    std::vector<std::uint32_t>& side = from_wall < 0 ? left : right;
+                    for (const std::uint32_t node : nodes.of(leaf, tree)) side.push_back(node);
+                }
+                std::sort(left.begin(), left.end()), std::sort(right.begin(), right.end());
+                std::set_intersection(left.begin(), left.end(), right.begin(), right.end(), std::back_inserter(both));
+                EXPECT_TRUE(both.empty())
+                    << both.size() << " nodes, tilt " << tilt << " scale " << scale << " " << angle;
+            }
 }
 
 TEST(Conforming, PlanesGroupCoplanarRegionsThatReceiveLightAlike) {

@@ -33,15 +33,19 @@ struct ElementLocator::Nearest {
         }
         for (const Root& r : roots) {  // rounding: no root contains p, so take the nearest one
             const Vec2 at = r.coordinates(p), held = into_shape(at, r.shape);
-            const double d = squared_length(r, at - held);
-            if (d < distance) root = &r, uv = held, distance = d;
+            const auto [a, b] = sides(r);
+            const double d = squared_norm((at - held).x * a + (at - held).y * b);
+            if (!root || d < distance) root = &r, uv = held, distance = d >= 0 ? d : HUGE_VAL;  // NaN without area
         }
     }
 
-    /// Squared length (m^2) of a vector in a root's coordinates. The root's sides are the dual basis of du and dv.
-    static double squared_length(const Root& r, Vec2 v) {
-        const double uu = dot(r.du, r.du), vv = dot(r.dv, r.dv), uv = dot(r.du, r.dv), det = uu * vv - uv * uv;
-        return (vv * v.x * v.x - 2 * uv * v.x * v.y + uu * v.y * v.y) / det;
+    /// The sides of a root: the dual basis of its gradients du and dv. The cross product is accurate even for a root
+    /// that is a billionth as wide as long, unlike the determinant of the inner products. Not finite if the root has no
+    /// area.
+    static std::pair<Vec3, Vec3> sides(const Root& r) {
+        const Vec3 n = cross(r.du, r.dv);
+        const double scale = 1 / squared_norm(n);
+        return {scale * cross(r.dv, n), scale * cross(n, r.du)};
     }
 };
 
@@ -80,22 +84,33 @@ ElementLocator::ElementLocator(const ElementTree& tree, std::size_t region_count
 
 ElementLocator::Grid ElementLocator::make_grid(std::span<const Root> roots) {
     Grid grid;
-    const Vec3 n = cross(roots[0].du, roots[0].dv);
+    Vec3 n = {};  // twice the sum of the roots' areas, so that a thin root does not decide
+    for (const Root& r : roots) {
+        const auto [a, b] = Nearest::sides(r);
+        const Vec3 one = cross(a, b);
+        if (std::isfinite(squared_norm(one))) n += one;
+    }
     const Vec3 size = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
     const std::uint8_t drop = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     grid.s = (drop + 1) % 3, grid.t = (drop + 2) % 3;
 
     const auto box_of = [](const Root& r) {
-        // The sides are the dual basis of the coordinates' gradients.
-        const double uu = dot(r.du, r.du), vv = dot(r.dv, r.dv), uv = dot(r.du, r.dv), det = uu * vv - uv * uv;
-        const Vec3 a = (vv * r.du - uv * r.dv) / det, b = (uu * r.dv - uv * r.du) / det;
+        const std::pair<Vec3, Vec3> sides = Nearest::sides(r);
         Box box;
-        for (const Point& p : {r.origin, r.origin + a, r.origin + b}) box.add(p);
-        if (r.shape == Patch::Shape::parallelogram) box.add(r.origin + a + b);
+        for (const Point& p : {r.origin, r.origin + sides.first, r.origin + sides.second}) box.add(p);
+        if (r.shape == Patch::Shape::parallelogram) box.add(r.origin + sides.first + sides.second);
         return box;
     };
+    const auto has_area = [](const Root& r) {
+        const auto is_finite = [](const Vec3& v) { return std::isfinite(squared_norm(v)); };
+        const std::pair<Vec3, Vec3> sides = Nearest::sides(r);
+        return is_finite(sides.first) && is_finite(sides.second);
+    };
     Box all;
-    for (const Root& r : roots) all.add(box_of(r));
+    for (const Root& r : roots) {
+        all.add(r.origin);
+        if (has_area(r)) all.add(box_of(r));
+    }
     // About one cell per root, as square as the region allows.
     const double width = all.size()[grid.s], height = all.size()[grid.t], count = static_cast<double>(roots.size());
     const double side = std::sqrt(width * height / count);
@@ -110,6 +125,7 @@ ElementLocator::Grid ElementLocator::make_grid(std::span<const Root> roots) {
     // Count, then fill. Boxes are enlarged slightly, so that points on borders find the roots of both sides.
     const double margin = 1e-9 * all.diagonal();
     const auto for_cells = [&](const Root& root, const auto& body) {
+        if (!has_area(root)) return;  // no point is in it
         const Box box = box_of(root);
         const std::uint32_t c0 = grid.column(box.lo[grid.s] - margin), c1 = grid.column(box.hi[grid.s] + margin);
         const std::uint32_t r0 = grid.row(box.lo[grid.t] - margin), r1 = grid.row(box.hi[grid.t] + margin);
@@ -134,7 +150,7 @@ ElementLocator::Nearest ElementLocator::nearest_root(RegionId region, const Poin
         const double margin = 1e-9 * (1 / std::max(grid.s_scale, 1e-300) + 1 / std::max(grid.t_scale, 1e-300));
         // The point is outside all roots of its cell by more than rounding. This is rare, and any root may be the
         // nearest.
-        if (!(nearest.distance <= margin * margin)) nearest.look_at(roots(region), p);
+        if (!nearest.root || !(nearest.distance <= margin * margin)) nearest.look_at(roots(region), p);
     } else {
         nearest.look_at(roots(region), p);
     }

@@ -69,6 +69,35 @@ TEST(ElementLocator, FindsNothingInARegionWithoutRoots) {
     EXPECT_TRUE(ElementLocator(tree, 3).find(RegionId(2), {0, 0, 0}).element.is_none());
 }
 
+/// Roots a billionth as wide as long, as overlapping faces leave, whose sides and gradients are parallel but for
+/// rounding, and one whose gradients are parallel.
+TEST(ElementLocator, SupportsRootsThatAreVeryThin) {
+    for (const double scale : {1e-3, 1.0, 1e3})
+        for (const double thin : {6e-9, 1e-12, 1e-17, 0.0})
+            for (const double angle : {0.0, 0.3, 1.2}) {
+                const Vec3 a = {scale * std::cos(angle), scale * std::sin(angle), 0};
+                const Vec3 b = {-scale * std::sin(angle), scale * std::cos(angle), 0};
+                ElementTree tree;
+                const auto at = [&](double u, double v) { return Point{3 * scale, 0, scale} + u * a + v * b; };
+                tree.add_root(RegionId(0), {at(0, 2), thin * b, 2.7 * (a + thin * b), Shape::parallelogram});
+                for (int i = 0; i < 12; ++i) tree.add_root(RegionId(0), {at(i, 0), a, b, Shape::parallelogram});
+                tree.add_root(RegionId(0), {at(0, 2), 2.7 * a, a + thin * b, Shape::triangle});
+                const ElementLocator locator(tree, 1);
+                for (unsigned i = 0; i < 12; ++i)
+                    EXPECT_EQ(locator.find(RegionId(0), at(i + 0.5, 0.5)).element.value, i + 1) << thin << ' ' << scale;
+                EXPECT_FALSE(locator.find(RegionId(0), at(0.5, 2)).element.is_none());
+            }
+}
+
+TEST(ElementLocator, FindsARootIfAllAreWithoutArea) {
+    for (const int count : {2, 9}) {
+        ElementTree tree;
+        for (int i = 0; i < count; ++i)
+            tree.add_root(RegionId(0), {{0, double(i), 0}, {1, 0, 0}, {0.5, 0, 0}, Shape::triangle});
+        EXPECT_FALSE(ElementLocator(tree, 1).find(RegionId(0), {0.5, 0.5, 0}).element.is_none());
+    }
+}
+
 TEST(ElementLocator, SupportsRootsOnALine) {
     ElementTree tree;
     for (int i = 0; i < 50; ++i)

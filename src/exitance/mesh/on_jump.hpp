@@ -24,7 +24,9 @@ class OnJump {
         tree_ = Bvh(boxes);
     }
 
-    /// Returns whether the segment a b is on such a line. `area`: of the smaller of the two adjacent elements, m^2.
+    /// Returns whether the segment a b is on such a line, or so short that both of its ends are: where elements on a
+    /// nearly parallel line were cut at slightly different places, the element on one side of the line meets the one on
+    /// the other side in such a segment. `area`: of the smaller of the two adjacent elements, m^2.
     bool operator()(const Point& a, const Point& b, double area) const {
         if (lines_.empty()) return false;
         constexpr double parallel = 1e-3;
@@ -36,9 +38,12 @@ class OnJump {
             const Point &p = lines_[i].a, &q = lines_[i].b;
             const Vec3 d = q - p, side = b - a;
             if (lines_[i].height > std::max(tolerance_, ContactLines::height_of_jump(area))) return false;
-            if (norm(cross(d, side)) > parallel * norm(d) * norm(side)) return false;
-            const double at = std::clamp(dot(middle - p, d) / squared_norm(d), 0.0, 1.0);
-            return norm(middle - p - at * d) <= tolerance_;
+            const auto is_near = [&](const Point& x) {
+                const double at = std::clamp(dot(x - p, d) / squared_norm(d), 0.0, 1.0);
+                return norm(x - p - at * d) <= tolerance_;
+            };
+            if (norm(side) <= tolerance_ && is_near(a) && is_near(b)) return true;
+            return norm(cross(d, side)) <= parallel * norm(d) * norm(side) && is_near(middle);
         });
     }
 

@@ -6,6 +6,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 #include "exitance/io/files/text_lines.hpp"
 #include "exitance/io/files/whole_file.hpp"
@@ -108,9 +109,12 @@ std::optional<Error> parse_gltf(const std::string& bytes, const std::string& pat
         done = false, problem = e.what();
     }
     // Compressed meshes have accessors without data, which make tinygltf fail first.
-    if (!done && bytes.find("KHR_draco_mesh_compression") != bytes.npos)
-        return bad("has meshes that are compressed (Draco), which is not supported",
-                   "export it again without compression");
+    for (const auto& [extension, name] : {std::pair{"KHR_draco_mesh_compression", "Draco"},
+                                          {"EXT_meshopt_compression", "meshopt"},
+                                          {"KHR_meshopt_compression", "meshopt"}})
+        if (!done && bytes.find(extension) != bytes.npos)
+            return bad(fmt::format("has meshes that are compressed ({}), which is not supported", name),
+                       "export it again without compression");
     if (!done) {
         const std::string first = problem.substr(0, problem.find('\n'));
         return bad(first.empty() ? "is no glTF" : fmt::format("cannot be read as glTF: {}", shown(first)),

@@ -313,6 +313,19 @@ TEST_F(GltfFiles, UnknownRequiredExtensionsAreErrors) {
     EXPECT_NE(first_error(text).find("KHR_draco_mesh_compression"), std::string::npos);
 }
 
+TEST_F(GltfFiles, CompressedBuffersAreNamedInTheError) {
+    for (const std::string extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+        const std::string compressed = R"({"asset":{"version":"2.0"},"extensionsRequired":[")" + extension +
+                                       R"("],"buffers":[{"byteLength":72,"extensions":{")" + extension +
+                                       R"(":{"fallback":true}}}],"scenes":[{"nodes":[]}]})";
+        ASSERT_TRUE(write_file(folder_ / "s.gltf", compressed));
+        const CheckedScene out = load_scene(folder_ / "s.gltf");
+        ASSERT_FALSE(out.scene);
+        EXPECT_NE(out.scene.error().message.find("compressed (meshopt)"), std::string::npos)
+            << out.scene.error().message;
+    }
+}
+
 TEST_F(GltfFiles, DeeplyNestedJsonIsAnError) {
     GltfText text = triangle();
     text.nodes = R"({"mesh":0,"extras":)" + std::string(100000, '[') + std::string(100000, ']') + "}";
