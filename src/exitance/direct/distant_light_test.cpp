@@ -68,6 +68,31 @@ TEST(DistantLight, OpenGroundHasTheIrradianceOfEverySky) {
     }
 }
 
+TEST(DistantLight, NothingReachesTheInsideOfAClosedBox) {
+    // Rounding leaves slivers of the sky between walls that meet.
+    for (const double turn : {0.0, 0.3, 1.1})
+        for (const double size : {1e-3, 1.0, 1e3}) {
+            const auto at = [&](double x, double y, double z) {
+                return Point{size * (x * std::cos(turn) - y * std::sin(turn)) + 7 * size,
+                             size * (x * std::sin(turn) + y * std::cos(turn)), size * z};
+            };
+            const std::vector<Corners> inside{{{at(0, 0, 0), at(1, 0, 0), at(1, 1, 0), at(0, 1, 0)}},
+                                              {{at(0, 0, 1), at(0, 1, 1), at(1, 1, 1), at(1, 0, 1)}},
+                                              {{at(0, 0, 0), at(0, 0, 1), at(1, 0, 1), at(1, 0, 0)}},
+                                              {{at(1, 0, 0), at(1, 0, 1), at(1, 1, 1), at(1, 1, 0)}},
+                                              {{at(1, 1, 0), at(1, 1, 1), at(0, 1, 1), at(0, 1, 0)}},
+                                              {{at(0, 1, 0), at(0, 1, 1), at(0, 0, 1), at(0, 0, 0)}}};
+            const Scene scene = under({{{uniform_sky(), Spectrum(100.0)}}, {}}, inside);
+            const Stage stage(scene);
+            DirectLight::Workspace workspace;
+            for (int k = 1; k < 100; ++k)
+                EXPECT_EQ(
+                    stage.direct.irradiance(at(0.01 * k, std::fmod(0.618 * k, 1), 0), {0, 0, 1}, first, workspace),
+                    Spectrum())
+                    << "turned by " << turn << ", size " << size << ", place " << k;
+        }
+}
+
 TEST(DistantLight, GroundBesideAWallHasTheLightOfThePixelsThatItSees) {
     // A glow, a sun of 1.5 degrees above it, blue and brown stripes; a wall hides a fifth of the sky and not the sun.
     const Normal sun = normalized(Vec3{-1, 0.3, 0.9});

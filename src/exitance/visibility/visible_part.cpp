@@ -201,6 +201,14 @@ double whole_form_factor(const Occluders& occluders, PieceId source, const Norma
     return known;
 }
 
+/// Returns the form factor `f` to what is left of the source, or 0 if that is no more than rounding leaves between two
+/// shadows that meet.
+double without_rounding(double f, const Normal& n, std::span<const Vec3> source) {
+    constexpr double certain = 1e-9;         // derived from rounding: far above what it leaves of any source
+    constexpr double rounded_share = 1e-12;  // derived from double precision: four digits more than its rounding
+    return f > certain || f > rounded_share * contour_sum(n, source) ? f : 0;
+}
+
 /// Form factor to the visible part after all shadows. The first `cut` shadows have been subtracted already. If
 /// `fragments` is given, appends the visible fragments to it instead and returns 0.
 double finish(const Occluders& occluders, PieceId source, const Normal& n, std::size_t cut, Workspace& scratch,
@@ -218,7 +226,8 @@ double finish(const Occluders& occluders, PieceId source, const Normal& n, std::
         if (!cut_lit(cut, scratch)) return 0;
         scratch.work += work_of_integral * static_cast<double>(scratch.lit.size());
         if (light.radiance.is_picture()) scratch.work += work_of_picture;
-        return scratch.gave_up() ? 0 : scratch.lit.form_factor(n, light.radiance, scratch.clipped);
+        if (scratch.gave_up()) return 0;
+        return without_rounding(scratch.lit.form_factor(n, light.radiance, scratch.clipped), n, scratch.source);
     }
     if (scratch.shadows.empty()) return std::max(0.0, contour_sum(n, scratch.source));
     if (light.method == VisiblePartMethod::edge_sums) {
@@ -226,7 +235,7 @@ double finish(const Occluders& occluders, PieceId source, const Normal& n, std::
         if (!std::isnan(f)) return std::clamp(f, 0.0, 1.0);
         cut = 0;
     }
-    return cut_lit(cut, scratch) ? scratch.lit.form_factor(n) : 0;
+    return cut_lit(cut, scratch) ? without_rounding(scratch.lit.form_factor(n), n, scratch.source) : 0;
 }
 
 void clear_shadows(Workspace& scratch) {
