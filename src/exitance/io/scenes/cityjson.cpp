@@ -25,7 +25,7 @@ constexpr std::size_t max_depth = 64;  ///< Limit on the nesting of the file; Ci
 constexpr double far_from_origin = 1e4;
 
 /// Member of an object, or null.
-const Json& member(const Json& object, const char* name) {
+const Json& member_of(const Json& object, const char* name) {
     static const Json none;
     if (!object.is_object()) return none;
     const auto at = object.find(name);
@@ -38,7 +38,7 @@ std::string text_of(const Json& value) {
 
 /// A level of detail, which is a number in version 1.0 and text later.
 std::string lod_of(const Json& geometry) {
-    const Json& lod = member(geometry, "lod");
+    const Json& lod = member_of(geometry, "lod");
     return lod.is_number() ? fmt::format("{}", lod.get<double>()) : text_of(lod);
 }
 
@@ -57,9 +57,9 @@ class CityJsonReader {
         const Json city = Json::parse(text, nullptr, false);
         if (city.is_discarded()) return error("is not valid JSON"), std::move(out_);
         if (!check_version(city) || !read_vertices(city)) return std::move(out_);
-        templates_ = &member(city, "geometry-templates");
+        templates_ = &member_of(city, "geometry-templates");
         read_templates();
-        const Json& objects = member(city, "CityObjects");
+        const Json& objects = member_of(city, "CityObjects");
         if (!objects.is_object()) return error("has no CityObjects"), std::move(out_);
         for (const auto& [id, object] : objects.items()) read_object(id, object);
         warn();
@@ -76,13 +76,13 @@ class CityJsonReader {
     }
 
     bool check_version(const Json& city) {
-        if (text_of(member(city, "type")) != "CityJSON")
+        if (text_of(member_of(city, "type")) != "CityJSON")
             return error("is neither a CityJSON file nor a Honeybee model",
                          "its type must be 'CityJSON' or 'Model'; files of features (CityJSONSeq) are combined to "
                          "CityJSON by the "
                          "program cjio"),
                    false;
-        const std::string version = text_of(member(city, "version"));
+        const std::string version = text_of(member_of(city, "version"));
         if (version.starts_with("1.") || version == "2.0") return true;
         return error(fmt::format("CityJSON version '{}' is not supported", shown(version)), "1.0, 1.1 and 2.0 are"),
                false;
@@ -100,10 +100,10 @@ class CityJsonReader {
     }
 
     bool read_vertices(const Json& city) {
-        const Json& transform = member(city, "transform");
-        const Point scale = point_of(member(transform, "scale")).value_or(Point{1, 1, 1});
-        const Point translate = point_of(member(transform, "translate")).value_or(Point{});
-        const Json& vertices = member(city, "vertices");
+        const Json& transform = member_of(city, "transform");
+        const Point scale = point_of(member_of(transform, "scale")).value_or(Point{1, 1, 1});
+        const Point translate = point_of(member_of(transform, "translate")).value_or(Point{});
+        const Json& vertices = member_of(city, "vertices");
         if (!vertices.is_array()) return error("has no vertices"), false;
         for (std::size_t k = 0; k < vertices.size(); ++k) {
             const std::optional<Point> p = point_of(vertices[k]);
@@ -115,23 +115,23 @@ class CityJsonReader {
     }
 
     void read_templates() {
-        const Json& vertices = member(*templates_, "vertices-templates");
+        const Json& vertices = member_of(*templates_, "vertices-templates");
         if (!vertices.is_array()) return;
         for (const Json& vertex : vertices) template_vertices_.push_back(point_of(vertex).value_or(Point{}));
     }
 
     /// Geometry of a template, if `geometry` is an instance; otherwise the geometry itself.
     const Json& resolved(const Json& geometry) const {
-        if (text_of(member(geometry, "type")) != "GeometryInstance") return geometry;
-        const Json& list = member(*templates_, "templates");
-        const Json& index = member(geometry, "template");
+        if (text_of(member_of(geometry, "type")) != "GeometryInstance") return geometry;
+        const Json& list = member_of(*templates_, "templates");
+        const Json& index = member_of(geometry, "template");
         static const Json none;
         if (!index.is_number_unsigned() || !list.is_array() || index.get<std::size_t>() >= list.size()) return none;
         return list[index.get<std::size_t>()];
     }
 
     void read_object(const std::string& id, const Json& object) {
-        const Json& geometries = member(object, "geometry");
+        const Json& geometries = member_of(object, "geometry");
         if (!geometries.is_array() || geometries.empty()) return;
         std::string lod = wanted_lod_;
         if (lod.empty()) {
@@ -143,7 +143,7 @@ class CityJsonReader {
         const std::size_t before = out_.description.faces.size();
         group_ = static_cast<std::uint32_t>(out_.description.groups.size());
         out_.description.groups.push_back(id);
-        id_ = id, type_ = text_of(member(object, "type"));
+        id_ = id, type_ = text_of(member_of(object, "type"));
         bool has_lod = false;
         for (const Json& geometry : geometries) {
             const Json& shape = resolved(geometry);
@@ -161,7 +161,7 @@ class CityJsonReader {
 
     void read_geometry(const Json& geometry, const Json& shape) {
         set_place(geometry, &shape != &geometry);
-        const std::string type = text_of(member(shape, "type"));
+        const std::string type = text_of(member_of(shape, "type"));
         const std::size_t depth = type == "MultiSurface" || type == "CompositeSurface" ? 0
                                   : type == "Solid"                                    ? 1
                                   : type == "MultiSolid" || type == "CompositeSolid"   ? 2
@@ -172,8 +172,9 @@ class CityJsonReader {
                 error(fmt::format("object '{}' has a geometry of unknown type '{}'", shown(id_), shown(type)));
             return;
         }
-        const Json& semantics = member(shape, "semantics");
-        read_surfaces(member(shape, "boundaries"), member(semantics, "surfaces"), member(semantics, "values"), depth);
+        const Json& semantics = member_of(shape, "semantics");
+        read_surfaces(member_of(shape, "boundaries"), member_of(semantics, "surfaces"), member_of(semantics, "values"),
+                      depth);
     }
 
     /// Chooses the vertices of a geometry, and for an instance of a template its place.
@@ -182,10 +183,10 @@ class CityJsonReader {
         matrix_.reset();
         if (!is_instance) return;
         std::array<double, 16> matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-        const Json& given = member(geometry, "transformationMatrix");
+        const Json& given = member_of(geometry, "transformationMatrix");
         if (given.is_array() && given.size() == 16)
             for (std::size_t k = 0; k < 16; ++k) matrix[k] = given[k].is_number() ? given[k].get<double>() : 0;
-        const Json& reference = member(geometry, "boundaries");
+        const Json& reference = member_of(geometry, "boundaries");
         if (reference.is_array() && reference.size() == 1 && reference[0].is_number_unsigned() &&
             reference[0].get<std::size_t>() < vertices_.size()) {
             const Point& at = vertices_[reference[0].get<std::size_t>()];
@@ -240,7 +241,7 @@ class CityJsonReader {
         if (loops.empty()) return error(fmt::format("object '{}' has a surface without a boundary", shown(id_)));
         std::string kind = type_;
         if (value.is_number_unsigned() && kinds.is_array() && value.get<std::size_t>() < kinds.size())
-            kind = text_of(member(kinds[value.get<std::size_t>()], "type"));
+            kind = text_of(member_of(kinds[value.get<std::size_t>()], "type"));
         const std::vector<std::vector<Point>> holes(loops.begin() + 1, loops.end());
         add_face(holes.empty() ? loops.front() : bridge_holes(loops.front(), holes), kind);
     }
