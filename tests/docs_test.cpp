@@ -260,7 +260,7 @@ TEST(Documentation, ArchitectureListsEveryFolder) {
 
 TEST(Documentation, UsesOnlyVerbsThatExist) {
     const fs::path root = test::source_folder();
-    const std::string arguments = content(root / "src/exitance/cli/arguments.cpp");
+    const std::string arguments = content(root / "src/exitance/cli/options/arguments.cpp");
     static const std::regex command(R"((^|[\s;&|])exitance (?!as\b)([a-z]+)\b)");  // not Python's 'import exitance as'
     std::size_t found = 0;
     for (const fs::path& document : documents())
