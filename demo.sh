@@ -4,13 +4,14 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
 source scripts/demo_room
+source scripts/build_settings
 out=out/demo
-export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
 
 scripts/install_dependencies.sh
 echo "== Building (Release)"
-cmake --preset release --log-level=WARNING >/dev/null
-cmake --build build --parallel "$(nproc)" --target exitance-cli
+choose_units build
+cmake --preset release "${unit_options[@]}" --log-level=WARNING >/dev/null
+cmake --build build --parallel "$(build_jobs)" --target exitance-cli
 
 mkdir -p "$out"
 exitance=build/bin/exitance

@@ -5,8 +5,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-jobs=$(nproc)
-export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros
+source scripts/build_settings
 
 check_layout() {
     echo "== layout of the code"
@@ -16,10 +15,11 @@ check_layout() {
 run_suite() {  # PRESET FOLDER
     local start=$SECONDS
     echo "== $1: configure and build"
-    cmake --preset "$1" --log-level=WARNING -D EXITANCE_PYTHON=ON
-    cmake --build "$2" --parallel "$jobs"
+    choose_units "$2"
+    cmake --preset "$1" "${unit_options[@]}" --log-level=WARNING -D EXITANCE_PYTHON=ON
+    cmake --build "$2" --parallel "$(build_jobs)"
     echo "== $1: test (built in $((SECONDS - start)) s)"
-    ctest --test-dir "$2" --parallel "$jobs" --output-on-failure --no-tests=error --progress
+    ctest --test-dir "$2" --parallel "$(nproc)" --output-on-failure --no-tests=error --progress
     echo "== $1: done in $((SECONDS - start)) s"
 }
 

@@ -6,7 +6,9 @@ if(NOT EXITANCE_FONT)
     message(FATAL_ERROR "DejaVuSans.ttf is required (Debian's fonts-dejavu-core): give its path as -D EXITANCE_FONT=FILE")
 endif()
 set(EXITANCE_FONT_SOURCE ${PROJECT_BINARY_DIR}/font.cpp)
-file(CONFIGURE OUTPUT ${EXITANCE_FONT_SOURCE} CONTENT "asm(R\"(
+file(SHA256 ${EXITANCE_FONT} font_hash)  # so that the compiler cache tells fonts apart
+file(CONFIGURE OUTPUT ${EXITANCE_FONT_SOURCE} CONTENT "// SHA-256 of the font: @font_hash@
+asm(R\"(
     .section .rodata
     .global exitance_font_begin
     .global exitance_font_end

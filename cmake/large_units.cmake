@@ -1,40 +1,85 @@
-# Compiles several source files of one folder as one unit. Reading headers is most of the time of compiling a file, so that a
-# fresh build takes about half as long. Unnamed namespaces of the files of one unit are one: two files of a folder may not
-# give the same name to different things.
+# Compiles several source files as one unit. Reading headers is most of the time of compiling a file, so that a fresh build
+# takes about half as long. Unnamed namespaces of the files of one unit are one: two files of a unit may not give the same
+# name to different things.
 
-option(EXITANCE_LARGE_UNITS "Compile several files of a folder at once: fast for a fresh build, slower for one file" ON)
+option(EXITANCE_LARGE_UNITS "Compile several files at once: fast for a fresh build, slower for one file" ON)
 
-# Files of a unit at most. Larger units spare little more, and one changed file compiles all files of its unit.
-set(most_files_of_unit 8)
+# Files of one folder that form a unit while developers work: a changed file compiles all files of its unit.
+set(files_of_small_unit 8)
+# First builds take units of 24 files: scripts/build_settings sets this where no build folder exists. A unit of more than 8 files
+# continues in the next folder.
+set(EXITANCE_UNIT_FILES ${files_of_small_unit} CACHE STRING "Files that are compiled as one unit, at most")
 
-# Deals the sources of a target into units. Files with options of their own stay alone.
-function(group_units target)
-    if(NOT EXITANCE_LARGE_UNITS)
-        return()
-    endif()
+# Folders of src/exitance whose code runs briefly or waits for files. Optimising it less saves a third of its compile time.
+# Results have the same bits: no level of optimisation changes the order of floating-point operations.
+set(briefly_optimised "^src/exitance/(cli|io|sweep|samples|methods/(options|plan)|lab/(study|studies|thesis|peers|cie171|flatland))(/|$)")
+set(brief_optimisation "$<$<AND:$<CONFIG:Release,RelWithDebInfo>,$<CXX_COMPILER_ID:GNU,Clang>>:-O1>")
+
+# Sets `result` to the folder of a source, relative to the repository, so that names are equal in every copy of it.
+function(find_folder source result)
+    get_filename_component(folder ${source} ABSOLUTE)
+    file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${folder})
+    get_filename_component(folder "${folder}" DIRECTORY)
+    set(${result} "${folder}" PARENT_SCOPE)
+endfunction()
+
+# Assigns the sources of a target to units of at most `most_files` files. Files with options of their own remain separate.
+function(group_units target most_files)
     get_target_property(sources ${target} SOURCES)
     list(FILTER sources INCLUDE REGEX "\\.cpp$")
     list(SORT sources)
     set(folders "")
+    set(brief_folders "")
     foreach(source IN LISTS sources)
-        # Names without the path of the repository are equal in every copy of it.
-        get_filename_component(folder ${source} ABSOLUTE)
-        file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${folder})
-        get_filename_component(folder ${folder} DIRECTORY)
-        string(MAKE_C_IDENTIFIER "${folder}" folder)
-        list(APPEND folders ${folder})
-        list(APPEND files_${folder} ${source})
+        cmake_path(IS_PREFIX PROJECT_BINARY_DIR "${source}" NORMALIZE is_generated)
+        if(is_generated)  # small, and its path differs between copies of the repository
+            continue()
+        endif()
+        find_folder(${source} folder)
+        list(APPEND "files_${folder}" ${source})
+        if(NOT folder MATCHES ${briefly_optimised})
+            list(APPEND folders "${folder}")
+            continue()
+        endif()
+        list(APPEND brief_folders "${folder}")
+        if(NOT EXITANCE_LARGE_UNITS)
+            set_source_files_properties(${source} PROPERTIES COMPILE_OPTIONS ${brief_optimisation})
+        endif()
     endforeach()
+    list(APPEND folders ${brief_folders})
+    if(NOT EXITANCE_LARGE_UNITS)
+        return()
+    endif()
     list(REMOVE_DUPLICATES folders)
+    set(room 0)  # files that the last unit can still take
+    set(last_is_brief FALSE)
     foreach(folder IN LISTS folders)
-        list(LENGTH files_${folder} count)
-        math(EXPR units "(${count} + ${most_files_of_unit} - 1) / ${most_files_of_unit}")
+        set(files ${files_${folder}})
+        string(MAKE_C_IDENTIFIER "${folder}" name)
+        list(LENGTH files count)
+        math(EXPR units "(${count} + ${most_files} - 1) / ${most_files}")
+        set(is_brief FALSE)
+        if(folder MATCHES ${briefly_optimised})
+            set(is_brief TRUE)
+        endif()
+        if(most_files GREATER files_of_small_unit AND NOT count GREATER room AND is_brief STREQUAL last_is_brief)
+            set_source_files_properties(${files} PROPERTIES UNITY_GROUP ${last_unit})
+            math(EXPR room "${room} - ${count}")
+            continue()
+        endif()
         set(k 0)
-        foreach(source IN LISTS files_${folder})
+        foreach(source IN LISTS files)
             math(EXPR unit "${k} * ${units} / ${count}")  # equal parts
-            set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder}_${unit})
+            set(last_unit ${name}_${unit})
+            set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${last_unit})
+            if(is_brief)  # the file that CMake writes for the unit
+                set_source_files_properties(${CMAKE_CURRENT_BINARY_DIR}/CMakeFiles/${target}.dir/Unity/unity_${last_unit}_cxx.cxx
+                    PROPERTIES COMPILE_OPTIONS ${brief_optimisation})
+            endif()
             math(EXPR k "${k} + 1")
         endforeach()
+        math(EXPR room "${most_files} - (${count} + ${units} - 1) / ${units}")
+        set(last_is_brief ${is_brief})
     endforeach()
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()

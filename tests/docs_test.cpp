@@ -260,7 +260,7 @@ TEST(Documentation, ArchitectureListsEveryFolder) {
 
 TEST(Documentation, UsesOnlyVerbsThatExist) {
     const fs::path root = test::source_folder();
-    const std::string arguments = content(root / "src/exitance/cli/arguments.cpp");
+    const std::string arguments = content(root / "src/exitance/cli/options/arguments.cpp");
     static const std::regex row(R"re(verb<\w+>\(\s*"(\w+)",)re");
     std::set<std::string> verbs;
     for (std::sregex_iterator at(arguments.begin(), arguments.end(), row), end; at != end; ++at)

@@ -45,7 +45,7 @@ const std::vector<Door> doors{
     {"libjpeg", std::regex("jpeglib\\.h"), {"io/scenes/textures/jpeg_mean.cpp"}},
     {"tinygltf", std::regex("tiny_gltf\\.h"), {"io/scenes/gltf/gltf_values.hpp", "io/scenes/gltf/gltf_parse.cpp"}},
     {"OpenEXR", std::regex("OpenEXR/.*|Imf.*"), {"io/pictures/exr.cpp", "io/pictures/read_exr.cpp"}},
-    {"CLI11", std::regex("CLI/.*"), {"cli/option_kinds.hpp"}},
+    {"CLI11", std::regex("CLI/.*"), {"cli/options/option_kinds.hpp"}},
     {"cpp-httplib", std::regex("httplib\\.h"), {"cli/view/view_server.cpp"}},
     {"MPI", std::regex("mpi\\.h"), {"processes/distributed.cpp"}},
     {"PETSc", std::regex("petsc.*"), {"solve/petsc.cpp"}},
@@ -137,7 +137,7 @@ TEST(Includes, OnlyListedFilesIncludeALibrary) {
 /// Headers only include the standard library and the project, except the program's own kinds of options and the readers
 /// of TOML, which only .cpp files include.
 TEST(Includes, HeadersIncludeNoThirdPartyLibrary) {
-    const std::set<std::string> exceptions{"cli/option_kinds.hpp", "io/files/toml_keys.hpp",
+    const std::set<std::string> exceptions{"cli/options/option_kinds.hpp", "io/files/toml_keys.hpp",
                                            "io/scenes/gltf/gltf_values.hpp", "io/scenes/json_members.hpp"};
     const std::regex third_party("(embree[34]|CGAL|tbb|oneapi|CLI|nlohmann|fmt)/.*|hdf5.*|H5.*|png\\.h|tiny_gltf\\.h");
     for (const Include& include : all_includes()) {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "exitance/cli/arguments.hpp"
+#include "exitance/cli/options/arguments.hpp"
 
 namespace exitance {
 

@@ -10,7 +10,7 @@
 
 #include "exitance/base/memory.hpp"
 #include "exitance/base/processor.hpp"
-#include "exitance/cli/arguments.hpp"
+#include "exitance/cli/options/arguments.hpp"
 #include "exitance/cli/processes.hpp"
 #include "exitance/cli/signals.hpp"
 #include "exitance/cli/terminal.hpp"

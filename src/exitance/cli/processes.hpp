@@ -4,8 +4,8 @@
 #include <string>
 
 #include "exitance/base/progress.hpp"
-#include "exitance/cli/arguments.hpp"
 #include "exitance/cli/exit_code.hpp"
+#include "exitance/cli/options/arguments.hpp"
 #include "exitance/solution/solution.hpp"
 
 namespace exitance {

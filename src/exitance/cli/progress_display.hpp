@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "exitance/base/progress.hpp"
-#include "exitance/cli/arguments.hpp"
+#include "exitance/cli/options/arguments.hpp"
 
 namespace exitance {
 

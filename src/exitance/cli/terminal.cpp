@@ -5,15 +5,12 @@
 #include <cstdio>
 
 #include "exitance/processes/distributed.hpp"
+#include "exitance/scene/findings.hpp"
 
 namespace exitance {
 namespace {
 
 constexpr std::size_t most_findings = 20;  ///< Limit on the findings that show() prints.
-
-std::string place(const Finding& finding) {
-    return finding.line > 0 ? fmt::format("{}:{}", finding.file, finding.line) : finding.file;
-}
 
 }  // namespace
 
@@ -52,8 +49,8 @@ void Terminal::show(const std::vector<Finding>& findings) {
     for (const Finding& finding : findings) {
         if (finding.kind == Finding::Kind::error) continue;
         if (++shown > most_findings) continue;
-        fmt::print(stderr, "{}: {}: {}\n", finding.kind == Finding::Kind::repair ? "repair" : "warning", place(finding),
-                   finding.message);
+        fmt::print(stderr, "{}: {}: {}\n", finding.kind == Finding::Kind::repair ? "repair" : "warning",
+                   place_of(finding), finding.message);
     }
     if (shown > most_findings)
         fmt::print(stderr, "warning: {} more findings; `exitance check` shows them all\n", shown - most_findings);
@@ -71,7 +68,7 @@ ExitCode Terminal::fail(const CheckedScene& checked) {
 ExitCode Terminal::fail_with_all(const CheckedScene& checked) {
     for (const Finding& finding : checked.findings)
         if (finding.kind == Finding::Kind::error)
-            fail(Error{ErrorCode::bad_input, finding.message, place(finding), finding.hint});
+            fail(Error{ErrorCode::bad_input, finding.message, place_of(finding), finding.hint});
     return exit_code(checked.scene.error().code);
 }
 

@@ -3,8 +3,8 @@
 #include <string_view>
 #include <vector>
 
-#include "exitance/cli/arguments.hpp"
 #include "exitance/cli/exit_code.hpp"
+#include "exitance/cli/options/arguments.hpp"
 #include "exitance/cli/progress_display.hpp"
 #include "exitance/scene/scene.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "exitance/cli/arguments.hpp"
 #include "exitance/cli/exit_code.hpp"
+#include "exitance/cli/options/arguments.hpp"
 #include "exitance/cli/terminal.hpp"
 
 namespace exitance {

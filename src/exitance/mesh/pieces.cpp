@@ -90,11 +90,11 @@ bool peel_parallelogram(Loop& loop, const Normal& n, double tolerance, std::vect
 }
 
 /// A frame in the polygon's plane along its longest edge, so that right angles are parallel to the axes.
-struct PlaneFrame {
+struct LongestEdgeFrame {
     Point origin;
     Vec3 u, v;
 
-    PlaneFrame(std::span<const Loop> loops, const Normal& n) : origin(loops[0][0]) {
+    LongestEdgeFrame(std::span<const Loop> loops, const Normal& n) : origin(loops[0][0]) {
         double longest = -1;
         for (const Loop& loop : loops)
             for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -149,7 +149,7 @@ std::vector<Patch> tile(std::span<const Loop> loops, const Normal& n) {
         if (is_convex(loops[0], n))
             if (auto two = as_trapezoid(loops[0], tolerance); !two.empty()) return two;
     }
-    const PlaneFrame frame(loops, n);
+    const LongestEdgeFrame frame(loops, n);
     std::vector<std::vector<Vec2>> flat;
     for (const Loop& loop : loops) {
         flat.emplace_back();

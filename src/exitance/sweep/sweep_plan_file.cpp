@@ -26,7 +26,7 @@ constexpr std::array<std::pair<SweepOutput::Take, std::string_view>, 6> take_nam
     {SweepOutput::Take::all, "all"},
 }};
 
-constexpr std::size_t max_name_bytes = 255;  ///< Longest name of a folder.
+constexpr std::size_t max_folder_name_bytes = 255;  ///< Longest name of a folder.
 
 int line_of(const toml::node& node) {
     return static_cast<int>(node.source().begin.line);
@@ -202,10 +202,10 @@ SweepPlan read_plan(const toml::table& table, const std::string& path) {
     keys.take("folder", folder);
     plan.folder = (fs::path(plan.base) / folder).lexically_normal().string();
     for (const fs::path& part : fs::path(folder))
-        if (part.string().size() > max_name_bytes)
+        if (part.string().size() > max_folder_name_bytes)
             keys.fail(table,
                       fmt::format("the name of the folder of the results has {} bytes, and {} are possible: {}",
-                                  part.string().size(), max_name_bytes, part.string()),
+                                  part.string().size(), max_folder_name_bytes, part.string()),
                       "choose a shorter name by the key 'folder', or rename the plan");
     plan.variants = {{}};
     if (const toml::node* const node = keys.find("scene")) {

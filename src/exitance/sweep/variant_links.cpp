@@ -21,9 +21,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* record_file = "variant.json";
-constexpr std::size_t min_digits = 4;  ///< Digits of a variant's number in the name of its folder.
-constexpr std::size_t max_digits = 7;  ///< Digits of the largest number of variants.
-constexpr int max_replacements = 3;    ///< Attempts to replace a folder that other processes write, too.
+constexpr std::size_t min_digits = 4;     ///< Digits of a variant's number in the name of its folder.
+constexpr std::size_t max_digits = 7;     ///< Digits of the largest number of variants.
+constexpr int max_link_replacements = 3;  ///< Attempts to replace a folder that other processes write, too.
 
 /// A link in the folder of a variant.
 struct VariantLink {
@@ -124,7 +124,7 @@ Result<void> link_variant(const SweepPlan& plan, std::size_t index, const Resolv
     // A folder within the scratch folder has the usual permissions.
     const std::string work = (fs::path(scratch) / "variant").string();
     Result<void> written = fill(work, links, record);
-    for (int attempt = 0; written && attempt < max_replacements; ++attempt) {
+    for (int attempt = 0; written && attempt < max_link_replacements; ++attempt) {
         fs::rename(work, folder, failed);
         if (!failed || is_current(folder, record, links)) break;
         remove_own_files(folder);

@@ -27,12 +27,6 @@ constexpr int max_halvings = 6;  ///< Limit on the halvings of a source.
 constexpr double max_blocker_ratio = 1.4;
 constexpr double exact_share = 0.1;  ///< Share of the tolerance: errors of unoccluded cells below it are not reduced.
 
-double squared_distance(const Point& x, const Point& a, const Point& b) {
-    const Vec3 e = b - a, d = x - a;
-    const double length = dot(e, e), t = length > 0 ? std::clamp(dot(d, e) / length, 0.0, 1.0) : 0;
-    return dot(d - t * e, d - t * e);
-}
-
 double area_of(std::span<const Vec2> part) {
     double twice = 0;
     for (std::size_t i = 2; i < part.size(); ++i) twice += cross(part[i - 1] - part[0], part[i] - part[0]);

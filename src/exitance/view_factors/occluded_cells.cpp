@@ -7,8 +7,8 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t max_lines = 24, max_parts = 200;
-constexpr int max_halvings = 6;  ///< Halvings of a receiver with more lines, at most.
+constexpr std::size_t max_lines = 24, max_cell_parts = 200;
+constexpr int max_cell_halvings = 6;  ///< Halvings of a receiver with more lines, at most.
 
 }  // namespace
 
@@ -48,7 +48,7 @@ void OccludedExchange::cut_into_cells(const Part& part, int depth) {
     if (cells_.size() > most_cells_) return;
     finder_.find(frame_, part.corners(), pair_.source, visible_.seen_edges(), nearest_line * size_, max_lines, lines_);
     Part front, back;
-    if (lines_.size() >= max_lines && depth < max_halvings) {
+    if (lines_.size() >= max_lines && depth < max_cell_halvings) {
         std::size_t longest = 0;
         Vec2 along{};
         for (std::size_t i = 0; i < part.count; ++i) {
@@ -67,8 +67,8 @@ void OccludedExchange::cut_into_cells(const Part& part, int depth) {
     parts_.assign(1, part);
     bool complete = lines_.size() < max_lines;
     for (const CriticalLine& line : lines_) {
-        complete &= parts_.size() <= max_parts;
-        if (!complete && parts_.size() > max_parts) break;
+        complete &= parts_.size() <= max_cell_parts;
+        if (!complete && parts_.size() > max_cell_parts) break;
         for (std::size_t i = 0, count = parts_.size(); i < count; ++i)
             if (cut(parts_[i], line, front, back)) {
                 parts_[i] = front;

@@ -10,8 +10,9 @@ namespace {
 
 constexpr int max_depth = 20;              ///< Halvings of a cell, at most: down to 1e-3 of its size in each direction.
 constexpr double dominating_share = 0.25;  ///< Share of the tolerance that applies to entries that dominate their row.
-constexpr double dark_corner = 0.05;  ///< Share of the light that a dark cell may receive, if parts of it may be lit.
-constexpr double unseen_brightness = 0.05;  ///< Share of the whole source that may be visible although no point saw it.
+constexpr double dark_cell_share =
+    0.05;                              ///< Share of the light that a dark cell may receive, if parts of it may be lit.
+constexpr double unseen_share = 0.05;  ///< Share of the whole source that may be visible although no point saw it.
 /// Share of demand.ignored. Estimates below it are treated as negligible; between it and 1 they may be too inaccurate
 /// for that.
 constexpr double surely_ignored = 0.3;
@@ -40,12 +41,6 @@ double diameter(std::span<const Vec2> corners) {
         for (std::size_t j = 0; j < i; ++j)
             squared = std::max(squared, dot(corners[i] - corners[j], corners[i] - corners[j]));
     return std::sqrt(squared);
-}
-
-double squared_distance(const Point& x, const Point& a, const Point& b) {
-    const Vec3 e = b - a, d = x - a;
-    const double length = dot(e, e), t = length > 0 ? std::clamp(dot(d, e) / length, 0.0, 1.0) : 0;
-    return dot(d - t * e, d - t * e);
 }
 
 /// Distance from a point to a convex polygon with normal n, metres.
@@ -221,7 +216,7 @@ double OccludedExchange::share_left(const Task& task) const {
 /// bright corner which the points missed, with the slope of light over the whole receiver.
 double OccludedExchange::dark(const Cell& cell) const {
     if (cell.complete) return 0;
-    return dark_corner * brightest_seen_ * cell.area * std::sqrt(cell.area / receiver_area_);
+    return dark_cell_share * brightest_seen_ * cell.area * std::sqrt(cell.area / receiver_area_);
 }
 
 /// Applies a rule to the cells of all tasks.
@@ -348,7 +343,7 @@ std::optional<double> OccludedExchange::operator()(const OccludedPair& pair, con
 
     bool all = true;
     double estimate = 0;
-    brightest_seen_ = unseen_brightness * visible_.unoccluded(middle_of(whole.corners()));
+    brightest_seen_ = unseen_share * visible_.unoccluded(middle_of(whole.corners()));
     receiver_area_ = std::max(cross_area(whole.corners()), 1e-300);
     for (const Cell& cell : cells_) {
         all &= cell.complete && cell.glance.lit == cell.glance.count;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
@@ -10,6 +11,13 @@
 #include "exitance/visibility/visible_from_many.hpp"
 
 namespace exitance {
+
+/// Squared distance from a point x to the segment from a to b, m^2.
+inline double squared_distance(const Point& x, const Point& a, const Point& b) {
+    const Vec3 e = b - a, d = x - a;
+    const double length = dot(e, e), t = length > 0 ? std::clamp(dot(d, e) / length, 0.0, 1.0) : 0;
+    return dot(d - t * e, d - t * e);
+}
 
 /// Two convex polygons and their possible blockers.
 struct OccludedPair {

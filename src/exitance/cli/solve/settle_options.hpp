@@ -1,7 +1,7 @@
 #pragma once
 
 #include "exitance/base/result.hpp"
-#include "exitance/cli/arguments.hpp"
+#include "exitance/cli/options/arguments.hpp"
 
 namespace exitance {
 

@@ -17,10 +17,6 @@ std::string counted(std::size_t count, const char* noun) {
     return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-std::string place(const Finding& finding) {
-    return finding.line > 0 ? fmt::format("{}:{}", finding.file, finding.line) : finding.file;
-}
-
 /// Findings of one kind under a heading; empty if there are none.
 std::string group(const std::vector<Finding>& findings, Finding::Kind kind, std::string_view singular,
                   std::string_view plural) {
@@ -29,7 +25,7 @@ std::string group(const std::vector<Finding>& findings, Finding::Kind kind, std:
     for (const Finding& finding : findings) {
         if (finding.kind != kind) continue;
         ++count;
-        lines += fmt::format("  {}: {}\n", place(finding), finding.message);
+        lines += fmt::format("  {}: {}\n", place_of(finding), finding.message);
         if (!finding.hint.empty()) lines += fmt::format("    hint: {}\n", finding.hint);
     }
     return count == 0 ? "" : fmt::format("{} {}\n{}", count, count == 1 ? singular : plural, lines);

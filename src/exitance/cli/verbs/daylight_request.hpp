@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/cli/arguments.hpp"
+#include "exitance/cli/options/arguments.hpp"
 #include "exitance/cli/terminal.hpp"
 #include "exitance/io/report/daylight_tables.hpp"
 #include "exitance/io/scenes/states_file.hpp"

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "exitance/cli/arguments.hpp"
+#include "exitance/cli/options/arguments.hpp"
 #include "exitance/io/view_factors/node_table.hpp"
 #include "exitance/io/view_factors/view_factor_file.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/cli/arguments.hpp"
+#include "exitance/cli/options/arguments.hpp"
 #include "exitance/cli/terminal.hpp"
 #include "exitance/cli/view/view_changes.hpp"
 #include "exitance/cli/view/view_events.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "exitance/cli/arguments.hpp"
+#include "exitance/cli/options/arguments.hpp"
 #include "exitance/scene/scene.hpp"
 
 namespace exitance {

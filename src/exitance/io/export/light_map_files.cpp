@@ -17,7 +17,7 @@
 namespace exitance {
 namespace {
 
-LinearImage numbers(const Scene& scene, const LightMaps& light, std::size_t m, LightMapQuantity quantity) {
+LinearImage map_numbers(const Scene& scene, const LightMaps& light, std::size_t m, LightMapQuantity quantity) {
     const LightMap& map = light.maps[m];
     LinearImage image{map.size.width, map.size.height, {}};
     for (const char* name : {"R", "G", "B"}) image.channels.push_back({name, std::vector<float>(map.size.texels())});
@@ -113,7 +113,7 @@ Result<void> write_pictures(const Scene& scene, const LightMaps& light, std::opt
     const ToneMap tones = preview_tones(scene, light, format.quantity);
     for (std::size_t m = 0; m < light.maps.size(); ++m) {
         const std::string stem = folder + "/" + light_map_stem(m, group);
-        const LinearImage image = numbers(scene, light, m, format.quantity);
+        const LinearImage image = map_numbers(scene, light, m, format.quantity);
         if (const Result<void> written = write_map_numbers(stem, image, scene, format); !written) return written;
         const std::string exposure = fmt::format("{} in {} times {:.6g}, then a filmic curve", values_name(format),
                                                  unit_of(scene, format.quantity), tones.scale);

@@ -18,7 +18,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t max_output_bytes = std::size_t{256} << 20;
+constexpr std::size_t max_scene_bytes = std::size_t{256} << 20;
 constexpr int poll_ms = 50;  ///< Milliseconds between checks of the stop request.
 
 using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
@@ -41,7 +41,7 @@ struct Pipe {
 /// Reads from a pipe until it is closed. Returns false if a stop was requested or the output is too long.
 bool read_all(int from, const StopRequest& stop, std::string& out) {
     std::array<char, 65536> block;
-    while (out.size() <= max_output_bytes && !stop.requested()) {
+    while (out.size() <= max_scene_bytes && !stop.requested()) {
         pollfd waiting{from, POLLIN, 0};
         if (::poll(&waiting, 1, poll_ms) <= 0) continue;
         const ssize_t n = ::read(from, block.data(), block.size());
@@ -94,7 +94,7 @@ Result<std::string> run_scene_program(const std::vector<std::string>& words, con
     while (whole && !stop.requested() && !(ended = child.has_ended())) ::poll(nullptr, 0, 1);
     if (stop.requested() && !ended)
         return Error{ErrorCode::limit, fmt::format("'{}' was still running when a stop was requested", name), "", ""};
-    if (!whole) return bad(fmt::format("'{}' prints more than {} MB", name, max_output_bytes >> 20));
+    if (!whole) return bad(fmt::format("'{}' prints more than {} MB", name, max_scene_bytes >> 20));
     if (!child.succeeded()) return bad(fmt::format("'{}' fails: {}", name, shown(first_line(err.get()))));
     return text;
 }

@@ -1,5 +1,8 @@
 #pragma once
 
+// toml_parser.cpp contains the functions of toml++, whose headers would otherwise compile them for each file.
+#define TOML_HEADER_ONLY 0
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>

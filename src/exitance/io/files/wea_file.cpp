@@ -22,11 +22,11 @@ struct WeaNumber {
     double least, most;
 };
 /// Angles are degrees west, as in `gendaylit`; the elevation is in metres.
-constexpr std::array<WeaNumber, 5> numbers{{{"latitude", -90, 90},
-                                            {"longitude", -180, 180},
-                                            {"time_zone", -15 * degrees_per_hour, 13 * degrees_per_hour},
-                                            {"site_elevation", -1000, 9999.9},
-                                            {"weather_data_file_units", 1, 2}}};
+constexpr std::array<WeaNumber, 5> wea_numbers{{{"latitude", -90, 90},
+                                                {"longitude", -180, 180},
+                                                {"time_zone", -15 * degrees_per_hour, 13 * degrees_per_hour},
+                                                {"site_elevation", -1000, 9999.9},
+                                                {"weather_data_file_units", 1, 2}}};
 
 class WeaReader {
   public:
@@ -54,8 +54,8 @@ class WeaReader {
             return {};
         }
         const auto known =
-            std::find_if(numbers.begin(), numbers.end(), [&](const WeaNumber& n) { return n.key == key; });
-        if (known == numbers.end()) return take_hour(line);
+            std::find_if(wea_numbers.begin(), wea_numbers.end(), [&](const WeaNumber& n) { return n.key == key; });
+        if (known == wea_numbers.end()) return take_hour(line);
         std::string value;
         words >> value;
         const std::optional<double> number = parse_number(value);

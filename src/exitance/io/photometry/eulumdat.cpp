@@ -55,7 +55,7 @@ class EulumdatReader {
     std::array<double, 4> lit_height_{};
 };
 
-std::string_view trimmed(std::string_view text) {
+std::string_view trimmed_line(std::string_view text) {
     const std::size_t first = text.find_first_not_of(" \t\x1a");
     if (first == std::string_view::npos) return {};
     return text.substr(first, text.find_last_not_of(" \t\x1a") - first + 1);
@@ -63,13 +63,13 @@ std::string_view trimmed(std::string_view text) {
 
 Result<std::string> EulumdatReader::text(const char* what) {
     if (at_ >= lines_.size()) return error(fmt::format("ends before {}", what), "is the file complete?");
-    return shown(trimmed(lines_[at_++]));
+    return shown(trimmed_line(lines_[at_++]));
 }
 
 /// Reads the number of the next line; the decimal separator may be a comma.
 Result<double> EulumdatReader::number(const std::string& what) {
     if (at_ >= lines_.size()) return error(fmt::format("ends before {}", what), "is the file complete?");
-    const std::string_view line = trimmed(lines_[at_]);
+    const std::string_view line = trimmed_line(lines_[at_]);
     std::string word(line);
     if (std::count(word.begin(), word.end(), ',') == 1) std::replace(word.begin(), word.end(), ',', '.');
     double value = 0;
@@ -245,7 +245,7 @@ std::size_t EulumdatReader::stored_planes() const {
 std::size_t EulumdatReader::numbers_left() const {
     std::size_t n = 0;
     for (std::size_t i = at_; i < lines_.size(); ++i, ++n) {
-        std::string word(trimmed(lines_[i]));
+        std::string word(trimmed_line(lines_[i]));
         if (std::count(word.begin(), word.end(), ',') == 1) std::replace(word.begin(), word.end(), ',', '.');
         double value = 0;
         if (number_of_word(word, value) != NumberKind::finite) break;
@@ -284,7 +284,7 @@ Result<void> EulumdatReader::read_table() {
         }
     }
     if (std::any_of(lines_.begin() + static_cast<std::ptrdiff_t>(at_), lines_.end(),
-                    [](std::string_view line) { return !trimmed(line).empty(); }))
+                    [](std::string_view line) { return !trimmed_line(line).empty(); }))
         tell(out_, Finding::Kind::warning, static_cast<int>(at_) + 1, "the text after the intensities is ignored",
              "are the numbers of planes and angles right?");
     if (const Result<void> taken = take_planes(*circle, std::move(rows)); !taken) return taken;

@@ -16,7 +16,7 @@ constexpr std::array<const char*, 12> columns{
     "file", "x", "y", "z", "aim_x", "aim_y", "aim_z", "rotation", "dimming", "lumens", "maintenance_factor", "group"};
 constexpr std::size_t required = 4;
 
-std::string trimmed(std::string_view text) {
+std::string trimmed_field(std::string_view text) {
     const std::size_t first = text.find_first_not_of(" \t");
     if (first == std::string_view::npos) return {};
     return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
@@ -34,11 +34,11 @@ std::vector<std::string> fields_of(std::string_view line) {
         else if (c == '"')
             quoted = !quoted;
         else if (c == ',' && !quoted)
-            out.push_back(trimmed(field)), field.clear();
+            out.push_back(trimmed_field(field)), field.clear();
         else
             field += c;
     }
-    out.push_back(trimmed(field));
+    out.push_back(trimmed_field(field));
     return out;
 }
 

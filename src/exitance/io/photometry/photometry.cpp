@@ -7,13 +7,13 @@ namespace exitance {
 namespace {
 
 /// Position of an angle between two table entries; `inside` is false beyond both ends.
-struct Place {
+struct AnglePlace {
     std::size_t first = 0;
     double t = 0;
     bool inside = true;
 };
 
-Place find(const std::vector<double>& at, double angle) {
+AnglePlace find(const std::vector<double>& at, double angle) {
     constexpr double rounding = 1e-9;  // degrees
     if (at.size() == 1) return {};
     if (angle < at.front() - rounding || angle > at.back() + rounding) return {0, 0, false};
@@ -58,11 +58,11 @@ const char* name_of(Opening::Shape shape) {
 double Photometry::intensity(const Vec3& d) const {
     const Vec3 e{dot(axis_x, d), dot(axis_y, d), dot(axis_z, d)};
     const double across = std::sqrt(e.x * e.x + e.y * e.y);
-    const Place t = find(theta, std::atan2(across, -e.z) / degree);
+    const AnglePlace t = find(theta, std::atan2(across, -e.z) / degree);
     if (!t.inside) return 0;
     double angle = phi.size() > 1 ? std::atan2(e.y, e.x) / degree : 0;
     if (angle < 0) angle += 360;
-    const Place p = find(phi, angle);
+    const AnglePlace p = find(phi, angle);
     if (!p.inside) return 0;
     const auto ring = [&](std::size_t plane) {
         if (theta.size() == 1) return at(plane, 0);

@@ -5,7 +5,7 @@
 namespace exitance {
 namespace {
 
-constexpr Rgb white{255, 255, 255}, night{20, 20, 24};
+constexpr Rgb pure_white{255, 255, 255}, background{20, 20, 24};
 constexpr Rgb lit{246, 226, 138}, penumbra{176, 122, 150}, umbra{58, 62, 110};
 constexpr Rgb value_breaks{222, 30, 40}, slope_breaks{0, 150, 90}, curvature_breaks{40, 110, 245}, conic{170, 60, 200},
     border{0, 0, 0};
@@ -20,9 +20,9 @@ Image shadow_class_image(const SixNodeMesh& mesh, const Scene& scene, const Mesh
     Image image(view.size.width, view.size.height);
     std::uint8_t* out = image.rgb.data();
     for (const MeshView::Pixel& pixel : view.pixels) {
-        Rgb colour = night;
+        Rgb colour = background;
         if (!pixel.region.is_none() && scene.material(pixel.region).emits())
-            colour = white;
+            colour = pure_white;
         else if (pixel.triangle != SixNodeLocator::none)
             colour = colour_of(mesh.shadow[pixel.triangle]);
         out = std::copy(colour.begin(), colour.end(), out);
@@ -31,7 +31,7 @@ Image shadow_class_image(const SixNodeMesh& mesh, const Scene& scene, const Mesh
 }
 
 std::vector<KeyEntry> shadow_class_key() {
-    return {{"source", white}, {"lit", lit}, {"penumbra", penumbra}, {"umbra", umbra}};
+    return {{"source", pure_white}, {"lit", lit}, {"penumbra", penumbra}, {"umbra", umbra}};
 }
 
 void draw_ordered_edges(Image& image, std::span<const std::optional<CurveOrder>> edges) {
@@ -64,11 +64,11 @@ void draw_key(Image& image, std::span<const KeyEntry> key) {
     int widest = 0;
     for (const KeyEntry& entry : key) widest = std::max(widest, text_width(entry.name, size));
     const int height = static_cast<int>(key.size()) * row + 2 * margin;
-    fill_rectangle(image, margin, margin, widest + swatch + 3 * margin, height, night);
+    fill_rectangle(image, margin, margin, widest + swatch + 3 * margin, height, background);
     int y = 2 * margin;
     for (const KeyEntry& entry : key) {
         fill_rectangle(image, 2 * margin, y, swatch, swatch, entry.colour);
-        draw_text(image, 3 * margin + swatch, y + 2 * s, entry.name, size, white);
+        draw_text(image, 3 * margin + swatch, y + 2 * s, entry.name, size, pure_white);
         y += row;
     }
 }

@@ -26,8 +26,8 @@ std::string cell(double value) {
     return std::isfinite(value) ? figure(value) : "";
 }
 
-/// Formats a quoted CSV field.
-std::string quoted(const std::string& text) {
+/// Formats a csv_field CSV field.
+std::string csv_field(const std::string& text) {
     std::string out = "\"";
     for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
     return out + "\"";
@@ -42,7 +42,7 @@ std::string planes_csv(const ReportContent& content, const ReportFigures& figure
         const GridLight& light = *grid.light;
         const Levels& l = grid.levels;
         const bool known = l.count > 0;
-        text += fmt::format("{},{},{},{},{},{},{:.6g},{},{},{:.6g},{:.6g},{},{},", i + 1, quoted(light.name),
+        text += fmt::format("{},{},{},{},{},{},{:.6g},{},{},{:.6g},{:.6g},{},{},", i + 1, csv_field(light.name),
                             light.is_cylindrical ? "cylindrical" : "plane", content.unit.is_lux() ? "lx" : "W/m^2",
                             triple(light.plane.origin, ","), triple(light.n, ","), light.plane.margin, light.columns,
                             light.rows, light.step_u, light.step_v, l.count, grid.hidden);
@@ -68,7 +68,7 @@ std::string points_csv(const ReportFigures::Grid& grid, const LightUnit& unit) {
 std::string observers_csv(const ReportContent& content) {
     std::string text = "name,x,y,z,dx,dy,dz,UGR,background,sources,large_source,left_out\n";
     for (const auto& [observer, glare] : content.observers)
-        text += fmt::format("{},{},{},{},{},{},{},{}\n", quoted(observer.name), triple(observer.eye, ","),
+        text += fmt::format("{},{},{},{},{},{},{},{}\n", csv_field(observer.name), triple(observer.eye, ","),
                             triple(observer.view, ","), cell(glare.rating()), figure(glare.background),
                             glare.sources.size(), glare.has_large_source() ? 1 : 0, glare.left_out.size());
     return text;
@@ -77,7 +77,7 @@ std::string observers_csv(const ReportContent& content) {
 std::string requirements_csv(const std::vector<Judgement>& judged) {
     std::string text = "where,quantity,required,reached,verdict\n";
     for (const Judgement& j : judged)
-        text += fmt::format("{},{},{:.6g},{},{}\n", quoted(j.where), j.quantity, j.required, cell(j.reached),
+        text += fmt::format("{},{},{:.6g},{},{}\n", csv_field(j.where), j.quantity, j.required, cell(j.reached),
                             words_of(j.verdict));
     return text;
 }
@@ -86,8 +86,8 @@ std::string surfaces_csv(const ReportFigures& figures) {
     std::string text = "surface,line,group,material,area,points,mean,minimum,maximum,uniformity,radiosity\n";
     for (const ReportFigures::Face& face : figures.faces) {
         const Levels& l = face.irradiance;
-        text += fmt::format("{},{},{},{},{},{},", face.surface.value, face.line, quoted(face.group),
-                            quoted(face.material), figure(face.area), l.count);
+        text += fmt::format("{},{},{},{},{},{},", face.surface.value, face.line, csv_field(face.group),
+                            csv_field(face.material), figure(face.area), l.count);
         text += l.count == 0 ? ",,,,\n"
                              : fmt::format("{},{},{},{},{}\n", figure(l.mean), figure(l.least), figure(l.most),
                                            figure(l.uniformity()), figure(face.radiosity));

@@ -8,8 +8,8 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t max_chunk_bytes = 1 << 26;  ///< Limit on the bytes of a chunk.
-constexpr double max_compression = 1100;          ///< Limit on the compression ratio; deflate's is 1032.
+constexpr std::size_t max_stored_chunk_bytes = 1 << 26;  ///< Limit on the bytes of a chunk.
+constexpr double max_compression = 1100;                 ///< Limit on the compression ratio; deflate's is 1032.
 
 }  // namespace
 
@@ -117,7 +117,7 @@ bool holds_really(std::int64_t set, std::size_t item_bytes, std::size_t items, s
         if (rank < 1 || rank > 2) return false;
         double bytes = static_cast<double>(item_bytes);
         for (hsize_t extent : chunk) bytes *= static_cast<double>(std::max<hsize_t>(extent, 1));
-        if (bytes > static_cast<double>(max_chunk_bytes)) return false;
+        if (bytes > static_cast<double>(max_stored_chunk_bytes)) return false;
         if (H5Pget_nfilters(creation) > 0) grows = max_compression;
     }
     const hsize_t held = H5Dget_storage_size(set);

@@ -31,16 +31,16 @@ std::vector<GrowingCells::Unit> winners(const SurfacePool& pool, const GrowingCe
     return out;
 }
 
-struct Gathered {
+struct UnitWins {
     Vec3 place, normal;
     double count = 0;
 };
 
 /// Sums of the points that every unit has won, in the order of the pool.
-std::vector<Gathered> gather(const SurfacePool& pool, const std::vector<GrowingCells::Unit>& won, std::size_t units) {
-    std::vector<Gathered> out(units);
+std::vector<UnitWins> gather(const SurfacePool& pool, const std::vector<GrowingCells::Unit>& won, std::size_t units) {
+    std::vector<UnitWins> out(units);
     for (std::size_t i = 0; i < pool.size(); ++i) {
-        Gathered& g = out[won[i]];
+        UnitWins& g = out[won[i]];
         g.place += pool[i].at, g.normal += pool[i].n, g.count += 1;
     }
     return out;
@@ -48,7 +48,7 @@ std::vector<Gathered> gather(const SurfacePool& pool, const std::vector<GrowingC
 
 /// Mean distance to a unit's neighbours on the same surface, metres: those of equal normal that are not above or below
 /// it. 0 if there are none.
-double edge_length(const GrowingCells& cells, GrowingCells::Unit u, const std::vector<Gathered>& gathered) {
+double edge_length(const GrowingCells& cells, GrowingCells::Unit u, const std::vector<UnitWins>& gathered) {
     double sum = 0, count = 0;
     const Vec3 at = gathered[u].place / gathered[u].count;
     for (const GrowingCells::Unit c : cells.complex().neighbours(u)) {
@@ -73,7 +73,7 @@ void put_on_surface(const PoolPoint& nearest, CellLight::Cell& cell) {
 
 /// Index of the point nearest to the mean of those that each unit has won.
 std::vector<std::uint32_t> nearest_won(const SurfacePool& pool, const std::vector<GrowingCells::Unit>& won,
-                                       const std::vector<Gathered>& gathered) {
+                                       const std::vector<UnitWins>& gathered) {
     std::vector<std::uint32_t> out(gathered.size());
     std::vector<double> least(gathered.size(), HUGE_VAL);
     for (std::uint32_t i = 0; i < pool.size(); ++i) {
@@ -136,13 +136,13 @@ ShadingNetwork grow_shading_network(const SurfacePool& pool, const std::function
     const double scale = turn_by_size * scene_size;
     GrowingCells cells = grow_units(pool, draw, scale, units, seed, stop);
     const std::vector<GrowingCells::Unit> won = winners(pool, cells, scale);
-    const std::vector<Gathered> gathered = gather(pool, won, cells.complex().unit_end());
+    const std::vector<UnitWins> gathered = gather(pool, won, cells.complex().unit_end());
     const std::vector<std::uint32_t> nearest = nearest_won(pool, won, gathered);
     ShadingNetwork out;
     constexpr std::uint32_t none = 0xffffffffu;
     std::vector<std::uint32_t> number(gathered.size(), none);
     for (GrowingCells::Unit u = 0; u < gathered.size(); ++u) {
-        const Gathered& g = gathered[u];
+        const UnitWins& g = gathered[u];
         if (g.count == 0 || norm(g.normal) < min_normal_length * g.count) continue;
         number[u] = static_cast<std::uint32_t>(out.cells.size());
         const double area = g.count * pool.area_each(), by_area = width_by_area * std::sqrt(area);

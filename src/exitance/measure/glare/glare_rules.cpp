@@ -6,8 +6,8 @@
 namespace exitance {
 namespace {
 
-constexpr double largest_aside = 3;            ///< T / R; last row of Guth's table.
-constexpr double largest_angle = 85 * degree;  ///< Angle from a luminaire's nadir.
+constexpr double largest_aside = 3;                  ///< T / R; last row of Guth's table.
+constexpr double largest_nadir_angle = 85 * degree;  ///< Angle from a luminaire's nadir.
 
 /// Largest H / R in Guth's table of position indices for a given T / R. Rows are 0.1 apart: the table is empty beyond
 /// 1.7 up to T / R = 0.3 and beyond 1.8 from 0.4 to 0.8, and ends at 1.9. A place between two rows must have an entry
@@ -41,7 +41,7 @@ GlareLimit glare_limit(const Normal& view, const Vec3& d, bool hangs_above) {
     if (aside > largest_aside * ahead) return GlareLimit::aside;
     if (above > end_of_guth_table(aside / ahead) * ahead) return GlareLimit::overhead;
     // -d is the direction from the luminaire to the eye.
-    if (hangs_above && std::hypot(d.x, d.y) > std::tan(largest_angle) * d.z) return GlareLimit::level;
+    if (hangs_above && std::hypot(d.x, d.y) > std::tan(largest_nadir_angle) * d.z) return GlareLimit::level;
     return GlareLimit::none;
 }
 

@@ -14,7 +14,7 @@ constexpr double min_angle = 0.1 * pi / 180;
 constexpr double max_angle = pi / 4;
 
 /// The largest angle between a normal of the triangle and that of its face, radians.
-double largest_angle(const NormalTriangle& triangle, const Normal& front) {
+double largest_turn(const NormalTriangle& triangle, const Normal& front) {
     double largest = 0;
     for (const Normal& n : triangle.normal)
         largest = std::max(largest, std::atan2(norm(cross(n, front)), dot(n, front)));
@@ -56,7 +56,7 @@ CurvedFaces::CurvedFaces(const Scene& scene, std::span<const NormalTriangle> tri
     Field<RegionId, std::uint8_t> is_coarse(scene.regions().size());
     for (const NormalTriangle& t : triangles) {
         const Surface& face = scene.surfaces()[t.surface];
-        const double angle = largest_angle(t, face.normal);
+        const double angle = largest_turn(t, face.normal);
         is_curved_[face.region] |= angle > min_angle;
         is_coarse[face.region] |= !(angle <= max_angle);
     }

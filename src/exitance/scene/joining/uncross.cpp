@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t max_cuts_per_corner = 16;  ///< Limits the work for outlines whose edges all cross each other.
 
 /// A point on an edge, by its parameter in [0, 1].
-struct Cut {
+struct Crossing {
     double t;
     std::uint32_t node;
 };
@@ -52,7 +52,7 @@ class Arrangement {
     Frame frame_;
     double tolerance_;
     std::vector<Vec2> flat_;  ///< Corners, then crossings.
-    std::vector<std::vector<Cut>> cuts_;
+    std::vector<std::vector<Crossing>> cuts_;
     std::vector<std::uint32_t> place_;  ///< Per corner or crossing: the first one at the same position.
     UncrossedOutline out_;
     std::vector<HalfEdge> half_edges_;
@@ -124,9 +124,9 @@ void Arrangement::make_half_edges() {
     };
     for (std::size_t i = 0; i < outline_.size(); ++i) {
         std::sort(cuts_[i].begin(), cuts_[i].end(),
-                  [](const Cut& a, const Cut& b) { return a.t < b.t || (a.t == b.t && a.node < b.node); });
+                  [](const Crossing& a, const Crossing& b) { return a.t < b.t || (a.t == b.t && a.node < b.node); });
         std::uint32_t at = place_[i];
-        for (const Cut& cut : cuts_[i]) add(at, place_[cut.node]), at = place_[cut.node];
+        for (const Crossing& cut : cuts_[i]) add(at, place_[cut.node]), at = place_[cut.node];
         add(at, place_[after(i)]);
     }
 }

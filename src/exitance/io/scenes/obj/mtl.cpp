@@ -20,7 +20,7 @@ std::string band_name(std::size_t band, std::size_t count) {
 }
 
 /// Converts a file's values to the bands of this build: unchanged, one for all, or three mapped to more or fewer bands.
-Spectrum spread(const std::vector<double>& values) {
+Spectrum spectrum_of_values(const std::vector<double>& values) {
     Spectrum out;
     if (values.size() == 3 && bands == 1) return Spectrum((values[0] + values[1] + values[2]) / 3);
     for (std::size_t b = 0; b < bands; ++b) out[b] = values[values.size() == bands ? b : b * values.size() / bands];
@@ -131,7 +131,7 @@ void MtlReader::read_filter(std::string_view key) {
     else if (key == "illum")
         illum_ = std::llround(values[0]);
     else
-        filter_ = spread(values.size() == 3 ? values : std::vector<double>(3, values[0]));
+        filter_ = spectrum_of_values(values.size() == 3 ? values : std::vector<double>(3, values[0]));
 }
 
 /// Reads the name after options of one or more words each. Without options, the name may contain blanks.
@@ -169,7 +169,7 @@ void MtlReader::take_textures() {
     MtlPictures pictures;
     const auto mean_of = [](const TextureArea& picture) {
         const TextureArea::Colour c = picture.mean();
-        return spread({c[0], c[1], c[2]});
+        return spectrum_of_values({c[0], c[1], c[2]});
     };
     if (!texture_.empty()) pictures.reflectance = picture(texture_, "Kd is used alone");
     if (pictures.reflectance) {
@@ -259,7 +259,7 @@ void MtlReader::read_values(const std::string& key, Spectrum Material::*value) {
                                      band_name(b, values.size()), v),
                          "emitted radiance is 0 or more, W/(m^2 sr)");
     }
-    material_.*value = reflectance ? spread(values) : exitance_of_radiance(spread(values));
+    material_.*value = reflectance ? spectrum_of_values(values) : exitance_of_radiance(spectrum_of_values(values));
     if (reflectance) reflectance_line_ = lines_.number();
 }
 

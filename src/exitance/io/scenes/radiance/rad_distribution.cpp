@@ -23,9 +23,9 @@ Error bad(std::string message, std::string hint = "") {
 // ------------------------------------------------------------------------------------------------ tables
 
 /// Reads the numbers of a data file, in which '#' begins comments.
-class Numbers {
+class DataNumbers {
   public:
-    explicit Numbers(std::string_view text) : words_(text) {}
+    explicit DataNumbers(std::string_view text) : words_(text) {}
     std::optional<double> next() {
         double value = 0;
         const auto word = words_.next();
@@ -45,7 +45,7 @@ class Numbers {
 constexpr double max_entries = 4e6;
 
 /// Reads the angles of an axis: evenly spaced from begin to end, or a list if these are equal.
-std::optional<std::vector<double>> read_axis(Numbers& numbers) {
+std::optional<std::vector<double>> read_axis(DataNumbers& numbers) {
     const auto begin = numbers.next(), end = begin ? numbers.next() : std::nullopt;
     const auto count = end ? numbers.count(max_entries) : std::nullopt;
     if (!count) return std::nullopt;
@@ -83,7 +83,7 @@ void make_ascending(EmissionProfile& p) {
 
 /// Reads a table of one or two dimensions.
 Result<void> read_table(std::string_view text, std::size_t dimensions, EmissionProfile& p) {
-    Numbers numbers(text);
+    DataNumbers numbers(text);
     const auto wrong = [&](const std::string& what) {
         return bad(fmt::format("{}, at its line {}", what, numbers.line()));
     };

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "exitance/cli/option_kinds.hpp"
+#include "exitance/cli/options/option_kinds.hpp"
 #include "exitance/methods/options/solve_option_table.hpp"
 
 namespace exitance {

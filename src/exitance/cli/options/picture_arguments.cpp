@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "exitance/cli/option_kinds.hpp"
+#include "exitance/cli/options/option_kinds.hpp"
 
 namespace exitance {
 namespace {

@@ -1,6 +1,6 @@
 #include <cstdio>
 
-#include "exitance/cli/option_kinds.hpp"
+#include "exitance/cli/options/option_kinds.hpp"
 #include "exitance/io/report/requirements.hpp"
 
 namespace exitance {

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "exitance/cli/option_kinds.hpp"
+#include "exitance/cli/options/option_kinds.hpp"
 
 namespace exitance {
 namespace {

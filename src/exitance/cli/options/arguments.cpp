@@ -1,4 +1,4 @@
-#include "exitance/cli/arguments.hpp"
+#include "exitance/cli/options/arguments.hpp"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,9 @@
 
 #include "exitance/base/nearest.hpp"
 #include "exitance/base/version.hpp"
+#include "exitance/cli/libraries.hpp"
 #include "exitance/cli/named_files.hpp"
-#include "exitance/cli/option_kinds.hpp"
+#include "exitance/cli/options/option_kinds.hpp"
 #include "exitance/cli/reference/pages.hpp"
 #include "exitance/methods/options/solve_option_table.hpp"
 #include "exitance/methods/options/support.hpp"
@@ -294,7 +295,7 @@ Result<Parsed> parse_arguments(const std::vector<std::string>& arguments) {
     const std::string& first = arguments.front();
     if (first == "--help" || first == "-h" || first == "help") return Parsed(Information{help()});
     if (first == "--version")
-        return Parsed(Information{fmt::format("exitance {}\n{}\n", program_version, EXITANCE_LIBRARIES)});
+        return Parsed(Information{fmt::format("exitance {}\n{}\n", program_version, program_libraries)});
     const std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
     if (first == "--man") return parse_arguments({"reference", "--format", "man"});
     if (first == "--completion") return parse_arguments({"reference", "--format", rest.empty() ? "" : rest.front()});

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "exitance/cli/arguments.hpp"
+#include "exitance/cli/options/arguments.hpp"
 #include "exitance/methods/options/make_request.hpp"
 
 namespace exitance {

@@ -1,4 +1,4 @@
-#include "exitance/cli/option_kinds.hpp"
+#include "exitance/cli/options/option_kinds.hpp"
 
 #include <algorithm>
 #include <sstream>
