@@ -6,8 +6,8 @@ option(EXITANCE_LARGE_UNITS "Compile several files at once: fast for a fresh bui
 
 # Files of one folder that form a unit while developers work: a changed file compiles all files of its unit.
 set(files_of_small_unit 8)
-# First builds take units of 24 files: scripts/build_settings sets this where no build folder exists. A unit of more than 8 files
-# continues in the next folder.
+# First builds take units of 24 files: scripts/build_settings sets this where no build folder exists. Above 8 files, a folder
+# that fits into the unit of the folder before it joins that unit.
 set(EXITANCE_UNIT_FILES ${files_of_small_unit} CACHE STRING "Files that are compiled as one unit, at most")
 
 # Folders of src/exitance whose code runs briefly or waits for files. Optimising it less saves a third of its compile time.

@@ -194,7 +194,8 @@ void BodySurvey::look_at_all() {
              pilots(order[k].second, std::max<std::size_t>(1, pilots_of_all / order.size()), name))
             at.push_back({p.at, p.weight / static_cast<double>(std::min(order.size(), pilots_of_all))});
     const CheckPlan common_plan = plan(at, name, error_ * light_of_room_(0));
-    // Half of the rays are for the bodies that seem worst.
+    // About half of the rays are for the bodies that seem worst; each point here gets at least the least number of
+    // rays.
     std::vector<double> wanted(leaves_.size());  // rays a point, a power of two
     double wanted_by_all = 0;
     for (const auto& [chance, body] : order) {
@@ -263,7 +264,9 @@ bool BodySurvey::look_closely_at(std::uint32_t body) {
         const unsigned more = certificate_rays(more_rays * rays);
         if (more == rays || work(of_body, more, max_close_points) > left_ / largest_part) break;
         rays = more;
+        const BodyMeasure last = measured_[body];
         is_sufficient = measure_closely(body, of_body, rays);
+        if (measured_[body].points() < BodyMeasure::min_points) measured_[body] = last;  // a stop ended it
     }
     if (measured_[body].points() < BodyMeasure::min_points) measured_[body] = before;
     return measured_[body].points() > BodyMeasure::min_points && measured_[body].error(error_);

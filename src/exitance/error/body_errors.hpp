@@ -69,10 +69,11 @@ struct BodyCheck {
 /// Measures the error of every body that reflects. First, each body gets eight points, with enough rays for the
 /// standard error of a mean square to be that of 1.5 times the requested error, or as many as half of `max_rays` allow.
 /// Three times the requested error, at which users are warned, is then four standard errors above zero. Afterwards,
-/// bodies are measured at up to 128 further points each, in descending order of their possible error, until the others
-/// can neither be the worst nor exceed that limit. A mean square then has a standard error of a quarter, or of 1.5
-/// times the requested error. Bodies for which the rays do not suffice, or whose turn does not come before a stop, get
-/// no error.
+/// bodies are measured at up to 128 further points, in descending order of their possible error, until the others can
+/// neither be the worst nor exceed that limit, or are below the requested error. Each is measured again with more rays
+/// until the standard error of its mean square is a quarter of it, or that of 1.5 times the requested error. An error
+/// is given where it is at most half. Bodies for which the rays do not suffice, or whose turn does not come before a
+/// stop, get no error.
 ///
 /// light_of_room  function that returns the reflected radiosity of a room, W/m^2
 /// error          requested relative error

@@ -9,7 +9,7 @@ namespace exitance {
 /// projection's exact means, indirect light from the solution's elements, or both from a discontinuity mesh if there is
 /// one. Escaping light is estimated by rays from surfaces, and from lights without extent; for emitters that are not
 /// diffuse, by their profiles.
-/// Nothing is adjusted to agree. O(elements).
+/// Nothing is adjusted to agree. O(elements + rays).
 EnergyBalance energy_balance(const Solution& solution, const DirectProjection& direct, const Stage& stage);
 
 /// Like the above, for solutions without a projection: the emitted flux is taken from the pieces.

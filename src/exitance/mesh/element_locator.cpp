@@ -25,6 +25,7 @@ struct ElementLocator::Nearest {
     double distance = HUGE_VAL;  ///< Squared, m^2.
 
     void look_at(std::span<const Root> roots, const Point& p) {
+        if (!std::isfinite(p.x + p.y + p.z)) return;  // as of rays in damaged scenes: no root
         for (const Root& r : roots) {
             const Vec2 at = r.coordinates(p);
             if (!r.holds(at)) continue;
@@ -84,7 +85,7 @@ ElementLocator::ElementLocator(const ElementTree& tree, std::size_t region_count
 
 ElementLocator::Grid ElementLocator::make_grid(std::span<const Root> roots) {
     Grid grid;
-    Vec3 n = {};  // twice the sum of the roots' areas, so that a thin root does not decide
+    Vec3 n = {};  // sum of the roots' normals, weighted by area, so that a thin root does not decide
     for (const Root& r : roots) {
         const auto [a, b] = Nearest::sides(r);
         const Vec3 one = cross(a, b);

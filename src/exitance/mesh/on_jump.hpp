@@ -24,9 +24,9 @@ class OnJump {
         tree_ = Bvh(boxes);
     }
 
-    /// Returns whether the segment a b is on such a line, or so short that both of its ends are: where elements on a
-    /// nearly parallel line were cut at slightly different places, the element on one side of the line meets the one on
-    /// the other side in such a segment. `area`: of the smaller of the two adjacent elements, m^2.
+    /// Returns whether the segment a b follows such a line, or is shorter than the tolerance with both ends on it. Such
+    /// short edges arise where neighbours were cut at slightly different places.
+    /// `area`: of the smaller of the two adjacent elements, m^2.
     bool operator()(const Point& a, const Point& b, double area) const {
         if (lines_.empty()) return false;
         constexpr double parallel = 1e-3;

@@ -204,9 +204,9 @@ double whole_form_factor(const Occluders& occluders, PieceId source, const Norma
 /// Returns the form factor `f` to what is left of the source, or 0 if that is no more than rounding leaves between two
 /// shadows that meet.
 double without_rounding(double f, const Normal& n, std::span<const Vec3> source) {
-    constexpr double certain = 1e-9;         // derived from rounding: far above what it leaves of any source
+    constexpr double certain = 1e-9;         // derived from rounding: larger factors never come from it
     constexpr double rounded_share = 1e-12;  // derived from double precision: four digits more than its rounding
-    return f > certain || f > rounded_share * contour_sum(n, source) ? f : 0;
+    return f <= certain && f <= rounded_share * contour_sum(n, source) ? 0 : f;
 }
 
 /// Form factor to the visible part after all shadows. The first `cut` shadows have been subtracted already. If

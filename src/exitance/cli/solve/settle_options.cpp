@@ -42,7 +42,8 @@ Result<void> read_importance(SolveArguments& arguments) {
 /// Replaces a file name in --dm-lines by the names on the lines of that file.
 Result<void> read_line_surfaces(SolveArguments& arguments) {
     std::optional<ShadowLines>& lines = arguments.options.discontinuity.lines;
-    if (!lines || lines->names.size() != 1 || !std::filesystem::is_regular_file(lines->names[0])) return {};
+    std::error_code none;
+    if (!lines || lines->names.size() != 1 || !std::filesystem::is_regular_file(lines->names[0], none)) return {};
     const std::string path = lines->names[0];
     const Result<std::string> text = read_whole_file(path);
     if (!text) return text.error();

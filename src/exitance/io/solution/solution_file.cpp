@@ -8,7 +8,8 @@
 namespace exitance {
 namespace {
 
-constexpr std::int64_t format = 1;  ///< Format number; raised if older programs cannot read the file.
+/// Format numbers: programs that know the first one alone cannot read files without `interpolant`.
+constexpr std::int64_t first_format = 1, without_interpolant = 2;
 
 std::vector<LightFormGroup>& known_groups() {
     static std::vector<LightFormGroup> groups;
@@ -40,7 +41,8 @@ Result<void> write_solution(const std::string& path, const Solution& solution, c
     if (solution.scene.is_photometric()) file.use_lumens();
     if (vtk == VtkGroup::written) write_vtkhdf(file, solution);
     file.make_group("exitance");
-    file.set_attribute("exitance", "format", format);
+    const bool omits_interpolant = follows_from_mesh(solution);
+    file.set_attribute("exitance", "format", omits_interpolant ? without_interpolant : first_format);
     file.set_attribute("exitance", "program_version", std::string_view(program_version));
     file.set_attribute("exitance", "bands", static_cast<std::int64_t>(bands));
     file.set_attribute("exitance", "bounces", static_cast<std::int64_t>(solution.bounces));
@@ -51,7 +53,7 @@ Result<void> write_solution(const std::string& path, const Solution& solution, c
     const Spectrum& c = solution.direct_share;
     file.write("exitance/direct_share", std::span<const double>(c.value), 1,
                {"1", "share of the direct light that the values of indirect hold too, a value a band"});
-    if (!follows_from_mesh(solution))
+    if (!omits_interpolant)
         write_function(file, "exitance/interpolant", solution.interpolant,
                        WrittenTree{"exitance/indirect", solution.indirect.tree});
     if (!solution.discontinuity.empty()) write_discontinuity(file, "exitance/discontinuity", solution.discontinuity);
@@ -72,9 +74,9 @@ Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed, Lig
     };
     const auto found = file.integer_attribute("exitance", "format");
     if (!found) return wrong("is an HDF5 file, but no solution of exitance");
-    if (*found != format)
-        return wrong("is of format " + std::to_string(*found) + "; this program reads format " +
-                     std::to_string(format));
+    if (*found < first_format || *found > without_interpolant)
+        return wrong("is of format " + std::to_string(*found) + "; this program reads formats " +
+                     std::to_string(first_format) + " to " + std::to_string(without_interpolant));
     const std::int64_t held = file.integer_attribute("exitance", "bands").value_or(0);
     if (held != static_cast<std::int64_t>(bands))
         return wrong("has " + std::to_string(held) + " bands; this program carries " + std::to_string(bands));

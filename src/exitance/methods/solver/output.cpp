@@ -45,9 +45,9 @@ void Solver::warn_of_lines() {
     const std::size_t followed = c.d0 + c.d1 + c.d2 + c.eee;
     if (options_.discontinuity.lines || c.left_out <= followed) return;
     warn(
-        fmt::format("the mesh follows {} of about {} shadow lines; across the others light changes too little for the "
-                    "requested error to need them (--dm-lines all follows all)",
-                    followed, followed + c.left_out));
+        fmt::format("the mesh follows {} shadow lines; {} sources, edges and lines were left out, as they change the "
+                    "light little or are too many (--dm-lines all leaves none out)",
+                    followed, c.left_out));
 }
 
 double Solver::interpolant_scale() const {

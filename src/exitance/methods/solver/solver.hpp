@@ -187,7 +187,7 @@ class Solver {
     /// Computes direct light on triangles that follow its shadows, and adds the reflected light. Returns false if a
     /// stop request left no time for any triangles; plain elements are then exported.
     bool make_discontinuity();
-    /// Warns if the mesh follows fewer than half of the shadow lines and the user did not choose them.
+    /// Warns if more is left out than the mesh follows, and the user did not choose the shadow lines.
     void warn_of_lines();
     void make_output_mesh();
     /// Returns the light to which the error of exported elements is relative, W/m^2.
