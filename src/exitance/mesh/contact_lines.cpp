@@ -71,6 +71,34 @@ void leave_worthy(std::vector<Segment>& lines, std::span<const Point> outline, d
     });
 }
 
+/// True if a point is on a border of a region.
+bool is_on_border(const Region& region, const Point& x, double tolerance) {
+    for (const std::vector<Point>& loop : region.loops)
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            const Point& a = loop[i];
+            const Vec3 d = loop[(i + 1) % loop.size()] - a;
+            const double at = std::clamp(dot(x - a, d) / squared_norm(d), 0.0, 1.0);
+            if (norm(x - a - at * d) <= tolerance) return true;
+        }
+    return false;
+}
+
+/// Adds the edges of a face that are in a plane and at which the face's region crosses the plane: on the other side of
+/// such an edge is a coplanar face, so that it is no border of the region. Of these two faces, the one in front of the
+/// plane adds the edge.
+void crossings_along_edges(std::span<const Point> outline, const Region& region, const Plane& plane, double tolerance,
+                           std::vector<Segment>& out) {
+    const std::size_t m = outline.size();
+    double highest = 0;
+    for (const Point& p : outline) highest = std::max(highest, plane.signed_distance(p));
+    if (highest <= tolerance) return;
+    for (std::size_t i = 0; i < m; ++i) {
+        const Point &p = outline[i], &q = outline[(i + 1) % m];
+        if (std::abs(plane.signed_distance(p)) > tolerance || std::abs(plane.signed_distance(q)) > tolerance) continue;
+        if (!is_on_border(region, 0.5 * (p + q), tolerance)) out.push_back({p, q, 0});
+    }
+}
+
 /// Adds the line in which a face crosses a plane; edges of the face just above the plane are excluded.
 void crossing_of_face(std::span<const Point> outline, const Plane& plane, double tolerance, double gap,
                       std::vector<Segment>& out) {
@@ -205,7 +233,10 @@ std::vector<ContactLines::Line> ContactLines::around(const ElementTree& tree, El
     leave_worthy(out, tree.outline(e), std::sqrt(area / tree.area(e)), plane.n, tolerance_);
     faces_.visit_box(box, [&](std::uint32_t i) {
         const SurfaceId s(i);
-        if (scene_->surfaces()[s].region != own) crossing_of_face(scene_->outline(s), plane, tolerance_, gap, out);
+        const RegionId region = scene_->surfaces()[s].region;
+        if (region == own) return;
+        crossing_of_face(scene_->outline(s), plane, tolerance_, gap, out);
+        crossings_along_edges(scene_->outline(s), scene_->regions()[region], plane, tolerance_, out);
     });
     return out;
 }
@@ -262,7 +293,10 @@ std::vector<ContactLines::Line> ContactLines::over_plane(std::span<const RegionI
     });
     faces_.visit_box(box, [&](std::uint32_t i) {
         const SurfaceId s(i);
-        if (is_of_others(scene_->surfaces()[s].region)) crossing_of_face(scene_->outline(s), plane, near, highest, out);
+        const RegionId region = scene_->surfaces()[s].region;
+        if (!is_of_others(region)) return;
+        crossing_of_face(scene_->outline(s), plane, near, highest, out);
+        crossings_along_edges(scene_->outline(s), scene_->regions()[region], plane, near, out);
     });
     return out;
 }

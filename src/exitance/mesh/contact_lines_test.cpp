@@ -37,6 +37,45 @@ TEST(ContactLines, AnElementIsCutAlongAPlateOnIt) {
     EXPECT_FALSE(tree.is_cell(left) || tree.is_cell(right));
 }
 
+TEST(ContactLines, AnElementIsCutAlongAPlateThatIsDividedWhereItCrosses) {
+    // The faces of the plate meet in the plane of the floor: none of them crosses it, and their common edge is no
+    // border of the plate. Models are often divided in this way.
+    for (const Motion& motion : {as_written, turned_and_moved})
+        for (const bool has_triangles : {false, true}) {
+            SceneDescription d;
+            for (const Point& p : {Point{0, 0, 0},
+                                   {4, 0, 0},
+                                   {4, 4, 0},
+                                   {0, 4, 0},
+                                   {1, 0, -1},
+                                   {1, 4, -1},
+                                   {1, 4, 0},
+                                   {1, 0, 0},
+                                   {1, 4, 1},
+                                   {1, 0, 1}})
+                d.points.push_back(motion(p));
+            d.materials = {{"grey", Spectrum(0.5), Spectrum(0.0)}};
+            d.groups = {"all"};
+            d.faces = {{{0, 1, 2, 3}, 0, 0, 1}};
+            for (const std::vector<std::uint32_t>& half :
+                 {std::vector<std::uint32_t>{4, 5, 6, 7}, std::vector<std::uint32_t>{7, 6, 8, 9}}) {
+                if (!has_triangles) d.faces.push_back({half, 0, 0, 2});
+                if (has_triangles)
+                    d.faces.push_back({{half[0], half[1], half[2]}, 0, 0, 2}),
+                        d.faces.push_back({{half[0], half[2], half[3]}, 0, 0, 3});
+            }
+            const Scene scene = std::move(*make_scene(std::move(d)).scene);
+            ASSERT_EQ(scene.regions().size(), 2u);
+            ElementTree tree;
+            tree.add_root(RegionId(0), {motion({0, 0, 0}), motion({4, 0, 0}) - motion({0, 0, 0}),
+                                        motion({0, 4, 0}) - motion({0, 0, 0}), Patch::Shape::parallelogram});
+            cut_along_contacts(tree, {ElementId(0)}, ContactLines(scene));
+            ASSERT_EQ(tree.leaves().size(), 2u);
+            EXPECT_NEAR(tree.area(tree.leaf_at(ElementId(0), {0.2499, 0.5}).element), 4 * motion.scale * motion.scale,
+                        1e-9);
+        }
+}
+
 TEST(ContactLines, AnElementIsCutAlongAPaneOnIt) {
     SceneDescription d;
     d.points = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}};
