@@ -36,7 +36,9 @@ struct ElementLocator::Nearest {
             const Vec2 at = r.coordinates(p), held = into_shape(at, r.shape);
             const auto [a, b] = sides(r);
             const double d = squared_norm((at - held).x * a + (at - held).y * b);
-            if (!root || d < distance) root = &r, uv = held, distance = d >= 0 ? d : HUGE_VAL;  // NaN without area
+            if (root && !(d < distance)) continue;
+            const bool has_area = d >= 0;  // else d is NaN, and there are no coordinates
+            root = &r, uv = has_area ? held : Vec2{}, distance = has_area ? d : HUGE_VAL;
         }
     }
 
