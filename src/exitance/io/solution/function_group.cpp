@@ -1,18 +1,51 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "exitance/io/solution/solution_groups.hpp"
+#include "exitance/io/solution/vertex_table.hpp"
 
 namespace exitance {
 namespace {
 
 constexpr std::uint32_t none = ElementId::none_value;
 
+/// Stands in `root_corner` for a root whose corners are not those of its region's border.
+constexpr std::uint8_t not_on_border = 255;
+
+/// Returns the corners of the border loops of a region, one loop after the other. A root of a triangulated surface has
+/// its corners among them, and the file refers to them by their numbers in this list. The list of a region with more
+/// corners than numbers is empty.
+std::vector<Point> border_corners(const Region& region) {
+    std::vector<Point> out;
+    for (const std::vector<Point>& loop : region.loops) out.insert(out.end(), loop.begin(), loop.end());
+    if (out.size() >= not_on_border) out.clear();
+    return out;
+}
+
+/// Numbers of the corners at u = v = 0, at u = 1 and at v = 1 of a patch.
+using RootCorners = std::array<std::uint8_t, 3>;
+
+/// Returns the corners of the border from which the patch follows bit for bit; `not_on_border` if there are none.
+RootCorners find_corners(const Patch& patch, const std::vector<Point>& border) {
+    const auto first_where = [&](const auto& is_it) {
+        const auto found = std::find_if(border.begin(), border.end(), is_it);
+        return found == border.end() ? not_on_border : static_cast<std::uint8_t>(found - border.begin());
+    };
+    const RootCorners out = {
+        first_where([&](const Point& p) { return are_same_bits(p, patch.origin); }),
+        first_where([&](const Point& p) { return are_same_bits(p - patch.origin, patch.a); }),
+        first_where([&](const Point& p) { return are_same_bits(p - patch.origin, patch.b); }),
+    };
+    if (std::find(out.begin(), out.end(), not_on_border) == out.end()) return out;
+    return {not_on_border, not_on_border, not_on_border};
+}
+
 /// Rebuilds a tree by repeating its splits in the order of the element ids. Reports an error if the data are
 /// inconsistent.
 class Replay {
   public:
-    Replay(Hdf5Reader& file, const std::string& group, std::size_t region_count)
+    Replay(Hdf5Reader& file, const std::string& group, const Field<RegionId, Region>& regions)
         : parent_(file.read<std::uint32_t>(group + "/parent")),
           cut_(file.read<std::uint8_t>(group + "/cut", 1, parent_.size())),
           ratio_(file.read<double>(group + "/ratio", 1, parent_.size())),
@@ -23,8 +56,10 @@ class Replay {
           fan_(file.read<double>(group + "/fan", 2)),
           region_(file.read<std::uint32_t>(group + "/root_region")),
           shape_(file.read<std::uint8_t>(group + "/root_shape", 1, region_.size())),
-          patch_(file.read<double>(group + "/root_patch", 9, region_.size())),
-          region_count_(region_count) {}
+          corner_(file.has(group + "/root_corner") ? file.read<std::uint8_t>(group + "/root_corner", 3, region_.size())
+                                                   : std::vector<std::uint8_t>(3 * region_.size(), not_on_border)),
+          patch_(file.read<double>(group + "/root_patch", 9)),
+          regions_(regions) {}
 
     std::optional<std::string> run(ElementTree& tree) {
         std::size_t root = 0;
@@ -39,8 +74,8 @@ class Replay {
         for (ElementId e : tree.ids())
             if (tree.is_leaf(e) && cut_[e.value] != 0)
                 return "lacks the children of element " + std::to_string(e.value);
-        if (root != region_.size()) return "has fewer roots than patches";
-        std::vector<bool> has_root(region_count_);
+        if (root != region_.size() || patches_read_ != patch_.size() / 9) return "has fewer roots than patches";
+        std::vector<bool> has_root(regions_.size());
         for (const std::uint32_t region : region_) has_root[region] = true;
         const auto bare = std::find(has_root.begin(), has_root.end(), false);
         if (bare != has_root.end()) return "has no element on region " + std::to_string(bare - has_root.begin());
@@ -49,19 +84,31 @@ class Replay {
 
   private:
     bool add_root(ElementTree& tree, std::size_t i) {
-        if (i >= region_.size() || region_[i] >= region_count_ || shape_[i] > 1) return false;
-        const double* p = &patch_[9 * i];
-        for (int k = 0; k < 9; ++k)
-            if (!std::isfinite(p[k])) return false;
-        const Patch patch{{p[0], p[1], p[2]},
-                          {p[3], p[4], p[5]},
-                          {p[6], p[7], p[8]},
-                          shape_[i] == 1 ? Patch::Shape::triangle : Patch::Shape::parallelogram};
-        const double squared_area = squared_norm(cross(patch.a, patch.b));
+        if (i >= region_.size() || region_[i] >= regions_.size() || shape_[i] > 1) return false;
+        std::optional<Patch> patch = corner_[3 * i] == not_on_border ? next_patch() : patch_between_corners(i);
+        if (!patch) return false;
+        patch->shape = shape_[i] == 1 ? Patch::Shape::triangle : Patch::Shape::parallelogram;
+        const double squared_area = squared_norm(cross(patch->a, patch->b));
         if (!(squared_area > 0 && std::isfinite(1 / squared_area)))
             return false;  // points of a patch without area have no coordinates
-        tree.add_root(RegionId(region_[i]), patch);
+        tree.add_root(RegionId(region_[i]), *patch);
         return true;
+    }
+    /// Returns the next patch of those that are stored by their vectors; none if there is no other, or it is not
+    /// finite.
+    std::optional<Patch> next_patch() {
+        if (patches_read_ == patch_.size() / 9) return {};
+        const double* p = &patch_[9 * patches_read_++];
+        for (int k = 0; k < 9; ++k)
+            if (!std::isfinite(p[k])) return {};
+        return Patch{{p[0], p[1], p[2]}, {p[3], p[4], p[5]}, {p[6], p[7], p[8]}};
+    }
+    std::optional<Patch> patch_between_corners(std::size_t i) const {
+        const std::vector<Point> border = border_corners(regions_[RegionId(region_[i])]);
+        const std::uint8_t* at = &corner_[3 * i];
+        if (std::max({at[0], at[1], at[2]}) >= border.size()) return {};
+        const Point& origin = border[at[0]];
+        return Patch{origin, border[at[1]] - origin, border[at[2]] - origin};
     }
     bool split(ElementTree& tree) {
         const std::size_t first = tree.size();
@@ -122,8 +169,10 @@ class Replay {
     std::size_t fans_read_ = 0, fan_places_read_ = 0;
     std::vector<std::uint32_t> region_;
     std::vector<std::uint8_t> shape_;
-    std::vector<double> patch_;
-    std::size_t region_count_;
+    std::vector<std::uint8_t> corner_;
+    std::vector<double> patch_;  ///< Patches of the roots that are not stored by corners.
+    std::size_t patches_read_ = 0;
+    const Field<RegionId, Region>& regions_;
 };
 
 /// Writes the values of a function, leaf by leaf in the order of their ids.
@@ -166,15 +215,11 @@ void write_elements(Hdf5Writer& file, const std::string& group, const ElementTre
                             [&](std::size_t i, std::span<double> row) { row[0] = tree.ratio(ElementId(i)); });
 }
 
-bool are_same(const Vec3& a, const Vec3& b) {
-    return a.x == b.x && a.y == b.y && a.z == b.z;
-}
-
 bool have_same_roots(const ElementTree& a, const ElementTree& b) {
     const auto is_same = [&](ElementId i, ElementId j) {
         const Patch p = a.patch(i), q = b.patch(j);
-        return a.region(i) == b.region(j) && p.shape == q.shape && are_same(p.origin, q.origin) && are_same(p.a, q.a) &&
-               are_same(p.b, q.b);
+        return a.region(i) == b.region(j) && p.shape == q.shape && are_same_bits(p.origin, q.origin) &&
+               are_same_bits(p.a, q.a) && are_same_bits(p.b, q.b);
     };
     const auto &roots = a.roots(), &others = b.roots();
     return std::equal(roots.begin(), roots.end(), others.begin(), others.end(), is_same);
@@ -182,23 +227,30 @@ bool have_same_roots(const ElementTree& a, const ElementTree& b) {
 
 /// Writes the root elements, or refers to those of `other` if they are the same.
 void write_roots(Hdf5Writer& file, const std::string& group, const ElementTree& tree,
-                 const std::optional<WrittenTree>& other) {
+                 const Field<RegionId, Region>& regions, const std::optional<WrittenTree>& other) {
     if (other && have_same_roots(tree, other->tree)) {
-        for (const char* name : {"/root_region", "/root_shape", "/root_patch"})
+        for (const char* name : {"/root_region", "/root_shape", "/root_corner", "/root_patch"})
             file.link(group + name, other->group + name);
         return;
     }
     std::vector<std::uint32_t> region;
-    std::vector<std::uint8_t> shape;
+    std::vector<std::uint8_t> shape, corners;
     std::vector<double> patches;
+    std::vector<Point> border;
     for (ElementId e : tree.roots()) {
         const Patch p = tree.patch(e);
+        if (region.empty() || region.back() != tree.region(e).value) border = border_corners(regions[tree.region(e)]);
         region.push_back(tree.region(e).value);
         shape.push_back(p.is_triangle() ? 1 : 0);
+        const RootCorners found = find_corners(p, border);
+        corners.insert(corners.end(), found.begin(), found.end());
+        if (found[0] != not_on_border) continue;
         for (const Vec3& v : {p.origin, p.a, p.b}) patches.insert(patches.end(), {v.x, v.y, v.z});
     }
     file.write(group + "/root_region", region, 1, {"1", "region of a root"});
     file.write(group + "/root_shape", shape, 1, {"1", "shape of a root: 0 parallelogram, 1 triangle"});
+    file.write(group + "/root_corner", corners, 3,
+               {"1", "corners of the region's loops at (u, v) = (0,0), (1,0), (0,1); 255: the next row of root_patch"});
     file.write(group + "/root_patch", patches, 9,
                {"m", "origin, a and b of a root: its points are origin + u a + v b"});
 }
@@ -206,7 +258,7 @@ void write_roots(Hdf5Writer& file, const std::string& group, const ElementTree& 
 }  // namespace
 
 void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function,
-                    const std::optional<WrittenTree>& other) {
+                    const Field<RegionId, Region>& regions, const std::optional<WrittenTree>& other) {
     const ElementTree& tree = function.tree;
     std::vector<std::uint32_t> line_element, fan_element, fan_places;
     std::vector<double> line, fans;
@@ -232,12 +284,12 @@ void write_function(Hdf5Writer& file, const std::string& group, const ElementFun
     file.write(in("fan_places"), fan_places, 1, {"1", "how many places of `fan` are such an element's"});
     file.write(in("fan"), fans, 2,
                {"1", "places in the element's coordinates: apex p, then q_1 ... q_n of triangles (p, q_i, q_i+1)"});
-    write_roots(file, group, tree, other);
+    write_roots(file, group, tree, regions, other);
     write_values(file, in("values"), function);
 }
 
-ElementFunction read_function(Hdf5Reader& file, const std::string& group, std::size_t region_count) {
-    Replay replay(file, group, region_count);
+ElementFunction read_function(Hdf5Reader& file, const std::string& group, const Field<RegionId, Region>& regions) {
+    Replay replay(file, group, regions);
     const std::vector<float> values = file.read<float>(group + "/values", bands);
     if (file.failed()) return {};
     ElementFunction function;

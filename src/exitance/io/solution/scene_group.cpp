@@ -5,6 +5,7 @@
 #include "exitance/io/solution/solution_groups.hpp"
 #include "exitance/io/solution/stored_columns.hpp"
 #include "exitance/io/solution/stored_scene_check.hpp"
+#include "exitance/io/solution/vertex_table.hpp"
 
 namespace exitance {
 namespace {
@@ -122,8 +123,6 @@ void write_faces(Hdf5Writer& file, const std::string& group, const Field<Surface
         face.write<std::uint32_t>("face_whole", [](const Surface& s) { return s.whole; },
                                   {"1", "number shared by the parts of a textured face; 0: not a part"});
     face.write<double>("face_area", [](const Surface& s) { return s.area; }, {"m^2", "area of a face"});
-    file.write(group + "/face_normal", flat(column<Normal>(faces, [](const Surface& s) { return s.normal; })), 3,
-               {"1", "unit normal of a face, towards its front"});
 }
 
 void write_materials(Hdf5Writer& file, const std::string& group, const Scene& scene) {
@@ -140,17 +139,17 @@ void write_materials(Hdf5Writer& file, const std::string& group, const Scene& sc
                    {"1", "share of what leaves a surface again that leaves by its other side"});
 }
 
-void write_regions(Hdf5Writer& file, const std::string& group, const Scene& scene) {
+/// `vertices`: gets the corners of the borders.
+void write_regions(Hdf5Writer& file, const std::string& group, const Scene& scene, VertexTable& vertices) {
     const auto& regions = scene.regions();
     const auto in = [&](const char* name) { return group + "/" + name; };
-    std::vector<std::uint32_t> members, loop_corners;
-    std::vector<Point> loop_points;
+    std::vector<std::uint32_t> members, loop_corners, loop_vertices;
     std::vector<double> planes;
     for (const Region& r : regions) {
         for (SurfaceId s : r.surfaces) members.push_back(s.value);
         for (const auto& loop : r.loops) {
             loop_corners.push_back(static_cast<std::uint32_t>(loop.size()));
-            loop_points.insert(loop_points.end(), loop.begin(), loop.end());
+            for (const Point& p : loop) loop_vertices.push_back(vertices.add(p));
         }
         planes.insert(planes.end(), {r.plane.n.x, r.plane.n.y, r.plane.n.z, r.plane.offset});
     }
@@ -171,7 +170,17 @@ void write_regions(Hdf5Writer& file, const std::string& group, const Scene& scen
     file.write(in("region_plane"), planes, 4, {"1", "plane of a region: unit normal n, and n . x in metres"});
     file.write(in("region_face"), members, 1, {"1", "faces of the regions, one region after the other"});
     file.write(in("loop_corner_count"), loop_corners, 1, {"1", "corners of a border loop"});
-    file.write(in("loop_corner"), flat(loop_points), 3, {"m", "corners of the border loops, one loop after the other"});
+    file.write(in("loop_vertex"), loop_vertices, 1,
+               {"1", "row of `vertex` of each corner of the border loops, one loop after the other"});
+}
+
+/// Reads points that are stored as rows of `vertex`, or, in formats 1 and 2, one by one under a name of their own.
+std::vector<Point> read_corners(Hdf5Reader& file, const std::string& group, Columns& in, const char* rows,
+                                const char* in_old_formats, const std::vector<Point>& vertices) {
+    if (!file.has(group + "/" + rows)) return in.points(in_old_formats);
+    std::vector<Point> out;
+    for (const std::uint32_t vertex : in.indices(rows, vertices.size())) out.push_back(vertices[vertex]);
+    return out;
 }
 
 /// Columns of the materials.
@@ -196,7 +205,6 @@ struct FaceColumns {
     std::vector<std::uint32_t> corner_count, first_corner, material, group;
     std::vector<std::int32_t> line;
     std::vector<double> area;
-    std::vector<Normal> normal;
     std::vector<std::uint32_t> whole;
 
     FaceColumns(Hdf5Reader& file, const std::string& in_group, Columns& in, std::size_t materials, std::size_t groups)
@@ -206,7 +214,6 @@ struct FaceColumns {
           group(in.indices("face_group", groups, size())),
           line(in.read<std::int32_t>("face_line", 1, size())),
           area(in.read<double>("face_area", 1, size())),
-          normal(in.normals("face_normal", size())),
           whole(size()) {
         if (file.has(in_group + "/face_whole")) whole = in.read<std::uint32_t>("face_whole", 1, size());
     }
@@ -231,7 +238,8 @@ struct RegionColumns {
     std::vector<Point> loop_points;
     std::vector<std::uint32_t> loop_corners, loop_count;
 
-    RegionColumns(Hdf5Reader& file, const std::string& group, Columns& in, std::size_t faces, std::size_t materials)
+    RegionColumns(Hdf5Reader& file, const std::string& group, Columns& in, std::size_t faces, std::size_t materials,
+                  const std::vector<Point>& vertices)
         : area(in.read<double>("region_area")),
           of_face(in.indices("face_region", size(), faces)),
           material(in.indices("region_material", materials, size())),
@@ -242,7 +250,7 @@ struct RegionColumns {
         if (file.has(group + "/region_behind")) behind = in.read<std::uint32_t>("region_behind", 1, size());
         members = in.indices("region_face", faces);
         member_count = in.counts("region_face_count", 1, members.size(), size());
-        loop_points = in.points("loop_corner");
+        loop_points = read_corners(file, group, in, "loop_vertex", "loop_corner", vertices);
         loop_corners = in.counts("loop_corner_count", 3, loop_points.size());
         loop_count = in.counts("region_loop_count", 1, loop_corners.size(), size());
         for (std::size_t i = 0; i < size() && !file.failed(); ++i)
@@ -252,15 +260,17 @@ struct RegionColumns {
 
     std::size_t size() const { return area.size(); }
 
+    /// Returns the normal of a region, which is also that of its faces.
+    Normal normal(std::uint32_t region) const {
+        return {plane[4 * region], plane[4 * region + 1], plane[4 * region + 2]};
+    }
+
     Field<RegionId, Region> regions() const {
         Field<RegionId, Region> out;
         std::size_t member = 0, loop = 0, point = 0;
         for (std::size_t i = 0; i < size(); ++i) {
-            Region region = {MaterialId(material[i]),
-                             {{plane[4 * i], plane[4 * i + 1], plane[4 * i + 2]}, plane[4 * i + 3]},
-                             area[i],
-                             {},
-                             {}};
+            Region region = {
+                MaterialId(material[i]), {normal(static_cast<std::uint32_t>(i)), plane[4 * i + 3]}, area[i], {}, {}};
             for (std::uint32_t k = 0; k < member_count[i]; ++k) region.surfaces.emplace_back(members[member++]);
             for (std::uint32_t k = 0; k < loop_count[i]; ++k) {
                 const auto first = loop_points.begin() + static_cast<std::ptrdiff_t>(point);
@@ -282,11 +292,15 @@ void StoredScene::write(Hdf5Writer& file, const std::string& group, const Scene&
     file.make_group(group);
     file.set_attribute(group, "file", std::string_view(scene.file_));
     file.set_attribute(group, "photometric", static_cast<std::int64_t>(scene.photometric_));
-    file.write(in("corner"), flat(scene.corners_), 3, {"m", "corners of the faces, one face after the other"});
+    VertexTable vertices;
+    file.write(in("corner_vertex"),
+               column<std::uint32_t>(scene.corners_, [&](const Point& p) { return vertices.add(p); }), 1,
+               {"1", "row of `vertex` of each corner of the faces, one face after the other"});
     write_faces(file, group, scene.surfaces_);
     write_materials(file, group, scene);
     file.write_texts(in("group_name"), {scene.groups_.begin(), scene.groups_.end()}, {"1", "names of the groups"});
-    write_regions(file, group, scene);
+    write_regions(file, group, scene, vertices);
+    file.write(in("vertex"), flat(vertices.points()), 3, {"m", "corners of faces and of borders, each once"});
     file.write(in("emitter"), column<std::uint32_t>(scene.emitters_, [](SurfaceId s) { return s.value; }), 1,
                {"1", "faces that emit"});
     file.write(in("box"), flat({scene.box_.lo, scene.box_.hi}), 3, {"m", "lower and upper corner of the scene's box"});
@@ -303,11 +317,12 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
     Scene scene;
     scene.file_ = file.text_attribute(group, "file").value_or("");
     scene.photometric_ = file.integer_attribute(group, "photometric").value_or(0) != 0;
-    scene.corners_ = in.points("corner");
+    const std::vector<Point> vertices = file.has(group + "/vertex") ? in.points("vertex") : std::vector<Point>();
+    scene.corners_ = read_corners(file, group, in, "corner_vertex", "corner", vertices);
     const MaterialColumns materials(file, group, in);
     const std::vector<std::string> group_names = file.read_texts(group + "/group_name");
     const FaceColumns faces(file, group, in, materials.name.size(), group_names.size());
-    const RegionColumns regions(file, group, in, faces.size(), materials.name.size());
+    const RegionColumns regions(file, group, in, faces.size(), materials.name.size(), vertices);
     const auto emitters = in.indices("emitter", faces.size());
     const auto box = in.points("box", 2);
     scene.profiles_ = read_profiles(file, group);
@@ -328,13 +343,13 @@ Scene StoredScene::read(Hdf5Reader& file, const std::string& group) {
     for (const std::string& name : group_names) scene.groups_.add(name);
     for (std::size_t i = 0; i < faces.size(); ++i)
         scene.surfaces_.add({faces.first_corner[i], faces.corner_count[i], MaterialId(faces.material[i]),
-                             GroupId(faces.group[i]), RegionId(regions.of_face[i]), faces.line[i], faces.normal[i],
-                             faces.area[i], faces.whole[i]});
+                             GroupId(faces.group[i]), RegionId(regions.of_face[i]), faces.line[i],
+                             regions.normal(regions.of_face[i]), faces.area[i], faces.whole[i]});
     scene.regions_ = regions.regions();
     for (std::uint32_t s : emitters) scene.emitters_.emplace_back(s);
     scene.box_.lo = box[0], scene.box_.hi = box[1];
     if (const std::optional<std::string> wrong = find_nonsense(scene))
-        return file.fail(group + "/corner", "and related data sets do not form a valid scene: " + *wrong), Scene();
+        return file.fail(group + "/vertex", "and related data sets do not form a valid scene: " + *wrong), Scene();
     return scene;
 }
 

@@ -8,8 +8,9 @@
 namespace exitance {
 namespace {
 
-/// Format numbers: programs that know the first one alone cannot read files without `interpolant`.
-constexpr std::int64_t first_format = 1, without_interpolant = 2;
+/// Format numbers. In format 2, `interpolant` may be left out. Since format 3, points that corners share are stored
+/// once (`vertex`, `root_corner`).
+constexpr std::int64_t first_format = 1, format = 3;
 
 std::vector<LightFormGroup>& known_groups() {
     static std::vector<LightFormGroup> groups;
@@ -42,24 +43,25 @@ Result<void> write_solution(const std::string& path, const Solution& solution, c
     if (vtk == VtkGroup::written) write_vtkhdf(file, solution);
     file.make_group("exitance");
     const bool omits_interpolant = follows_from_mesh(solution);
-    file.set_attribute("exitance", "format", omits_interpolant ? without_interpolant : first_format);
+    file.set_attribute("exitance", "format", format);
     file.set_attribute("exitance", "program_version", std::string_view(program_version));
     file.set_attribute("exitance", "bands", static_cast<std::int64_t>(bands));
     file.set_attribute("exitance", "bounces", static_cast<std::int64_t>(solution.bounces));
     file.set_attribute("exitance", "direct_in_elements", static_cast<std::int64_t>(solution.direct_in_elements));
     file.write_text("exitance/options", solution.options, {"1", "options in force, as JSON"});
     StoredScene::write(file, "exitance/scene", solution.scene);
-    write_function(file, "exitance/indirect", solution.indirect);
+    const Field<RegionId, Region>& regions = solution.scene.regions();
+    write_function(file, "exitance/indirect", solution.indirect, regions);
     const Spectrum& c = solution.direct_share;
     file.write("exitance/direct_share", std::span<const double>(c.value), 1,
                {"1", "share of the direct light that the values of indirect hold too, a value a band"});
     if (!omits_interpolant)
-        write_function(file, "exitance/interpolant", solution.interpolant,
+        write_function(file, "exitance/interpolant", solution.interpolant, regions,
                        WrittenTree{"exitance/indirect", solution.indirect.tree});
     if (!solution.discontinuity.empty()) write_discontinuity(file, "exitance/discontinuity", solution.discontinuity);
     for (const LightFormGroup& form : light_form_groups())
         form.write(file, std::string("exitance/") + form.name, solution);
-    if (!solution.links.links.empty()) write_links(file, "exitance/links", solution.links);
+    if (!solution.links.links.empty()) write_links(file, "exitance/links", solution.links, regions);
     if (groups && !groups->empty()) write_light_groups(file, "exitance/groups", *groups);
     write_statistics(file, "exitance/statistics", solution.statistics, own_unit(solution.scene.is_photometric()));
     return file.commit();
@@ -74,9 +76,9 @@ Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed, Lig
     };
     const auto found = file.integer_attribute("exitance", "format");
     if (!found) return wrong("is an HDF5 file, but no solution of exitance");
-    if (*found < first_format || *found > without_interpolant)
+    if (*found < first_format || *found > format)
         return wrong("is of format " + std::to_string(*found) + "; this program reads formats " +
-                     std::to_string(first_format) + " to " + std::to_string(without_interpolant));
+                     std::to_string(first_format) + " to " + std::to_string(format));
     const std::int64_t held = file.integer_attribute("exitance", "bands").value_or(0);
     if (held != static_cast<std::int64_t>(bands))
         return wrong("has " + std::to_string(held) + " bands; this program carries " + std::to_string(bands));
@@ -86,7 +88,7 @@ Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed, Lig
     solution.direct_in_elements = file.integer_attribute("exitance", "direct_in_elements").value_or(0) != 0;
     solution.options = file.read_text("exitance/options");
     solution.scene = StoredScene::read(file, "exitance/scene");
-    const std::size_t regions = solution.scene.regions().size();
+    const Field<RegionId, Region>& regions = solution.scene.regions();
     solution.indirect = read_function(file, "exitance/indirect", regions);
     if (file.has("exitance/direct_share")) {
         const std::vector<double> c = file.read<double>("exitance/direct_share", 1, bands);
@@ -94,7 +96,7 @@ Result<Solution> load_solution(const std::string& path, Rehearsed rehearsed, Lig
         if (!is_finite(solution.direct_share)) file.fail("exitance/direct_share", "holds a number that is not finite");
     }
     if (file.has("exitance/discontinuity"))
-        solution.discontinuity = read_discontinuity(file, "exitance/discontinuity", regions);
+        solution.discontinuity = read_discontinuity(file, "exitance/discontinuity", regions.size());
     if (solution.discontinuity.empty() || file.has("exitance/interpolant"))
         solution.interpolant = read_function(file, "exitance/interpolant", regions);
     else if (!file.failed())

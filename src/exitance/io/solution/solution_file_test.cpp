@@ -2,15 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <bit>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/io/solution/checkpoint_file.hpp"
 #include "exitance/io/solution/solution_groups.hpp"
 #include "support/built_scene.hpp"
+#include "support/places.hpp"
 #include "support/sample_solution.hpp"
 #include "support/solved.hpp"
 #include "support/temporary_folder.hpp"
@@ -122,6 +125,37 @@ TEST_F(SolutionFiles, RestoreASolutionBitForBit) {
     EXPECT_EQ(s.statistics.warnings, t->statistics.warnings);
     EXPECT_EQ(s.statistics.relative_error_estimate_interpolant, t->statistics.relative_error_estimate_interpolant);
     EXPECT_EQ(s.statistics.energy.defect, t->statistics.energy.defect);
+}
+
+TEST_F(SolutionFiles, OfOlderFormatsAreRead) {
+    for (const std::string format : {"1", "2"}) {
+        const Result<Solution> old = load_solution(test::data_folder() + "/solutions/format_" + format + ".h5");
+        ASSERT_TRUE(old) << old.error().message;
+        ASSERT_EQ(old->scene.surfaces().size(), 14u);  // two boxes, a floor and a lamp
+        EXPECT_EQ(old->discontinuity.empty(), format == "1");
+        EXPECT_GT(old->statistics.relative_error_estimate.value_or(0), 0);
+        ASSERT_TRUE(write_solution(path("new.h5"), *old));
+        const Result<Solution> renewed = load_solution(path("new.h5"));
+        ASSERT_TRUE(renewed) << renewed.error().message;
+        expect_same(old->scene, renewed->scene);
+        expect_same(old->indirect, renewed->indirect);
+        expect_same(old->interpolant, renewed->interpolant);
+    }
+}
+
+TEST_F(SolutionFiles, HoldEveryVertexOnce) {
+    const Solution s = sample_solution();
+    ASSERT_TRUE(write_solution(path("s.h5"), s));
+    Result<Hdf5Reader> file = Hdf5Reader::open(path("s.h5"));
+    ASSERT_TRUE(file) << file.error().message;
+    const auto vertices = file->read<double>("exitance/scene/vertex", 3);
+    const auto corners = file->read<std::uint32_t>("exitance/scene/corner_vertex");
+    ASSERT_FALSE(file->failed()) << file->error().message;
+    std::set<std::array<double, 3>> different;
+    for (std::size_t i = 0; i < vertices.size(); i += 3)
+        different.insert({vertices[i], vertices[i + 1], vertices[i + 2]});
+    EXPECT_EQ(3 * different.size(), vertices.size());
+    EXPECT_LT(different.size(), corners.size());
 }
 
 TEST_F(SolutionFiles, NameTheUnitsOfEnergyAndLight) {

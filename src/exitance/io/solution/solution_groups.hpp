@@ -50,15 +50,17 @@ struct WrittenTree {
 };
 
 /// A tree as the patches of its roots and the split of every element, from which all patches are restored bit for bit,
-/// and the values at the corners of the leaves, in order. If the roots are those of another tree, the file holds them
-/// once.
+/// and the values at the corners of the leaves, in order. Roots whose corners are on the border of their region are
+/// stored by the numbers of these corners. If the roots are those of another tree, the file holds them once. `regions`:
+/// those of the scene that the tree covers.
 void write_function(Hdf5Writer& file, const std::string& group, const ElementFunction& function,
-                    const std::optional<WrittenTree>& other = {});
-ElementFunction read_function(Hdf5Reader& file, const std::string& group, std::size_t region_count);
+                    const Field<RegionId, Region>& regions, const std::optional<WrittenTree>& other = {});
+ElementFunction read_function(Hdf5Reader& file, const std::string& group, const Field<RegionId, Region>& regions);
 
 /// Links of a hierarchy, with their elements as a function.
-void write_links(Hdf5Writer& file, const std::string& group, const KeptLinks& links);
-KeptLinks read_links(Hdf5Reader& file, const std::string& group, std::size_t region_count);
+void write_links(Hdf5Writer& file, const std::string& group, const KeptLinks& links,
+                 const Field<RegionId, Region>& regions);
+KeptLinks read_links(Hdf5Reader& file, const std::string& group, const Field<RegionId, Region>& regions);
 
 /// A discontinuity mesh, with its curves.
 void write_discontinuity(Hdf5Writer& file, const std::string& group, const SixNodeMesh& mesh);

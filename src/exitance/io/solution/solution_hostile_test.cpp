@@ -22,6 +22,7 @@ constexpr Hdf5Label hostile_label = {"1", "made up"};
 struct Parts {
     std::vector<std::uint32_t> parent = {0xffffffffu, 0, 0, 0, 0}, root_region = {0};
     std::vector<std::uint8_t> cut = {3, 0, 0, 0, 0}, root_shape = {0};
+    std::vector<std::uint8_t> root_corner = {255, 255, 255};  // the patch is in root_patch
     std::vector<double> ratio = {0.5, 0.5, 0.5, 0.5, 0.5}, root_patch = {0, 0, 0, 1, 0, 0, 0, 1, 0}, line, fan;
     std::vector<std::uint32_t> line_element, fan_element, fan_places;
     std::vector<float> values = std::vector<float>(16 * bands, 1);
@@ -39,12 +40,17 @@ struct Parts {
         out.write("f/fan", fan, 2, hostile_label);
         out.write("f/root_region", root_region, 1, hostile_label);
         out.write("f/root_shape", root_shape, 1, hostile_label);
+        out.write("f/root_corner", root_corner, 3, hostile_label);
         out.write("f/root_patch", root_patch, 9, hostile_label);
         out.write("f/values", values, bands, hostile_label);
         if (!out.commit()) return "cannot write";
         Result<Hdf5Reader> in = Hdf5Reader::open(path);
         if (!in) return "cannot open";
-        read_function(*in, "f", 1);
+        Field<RegionId, Region> regions;
+        Region square;
+        square.loops = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}};
+        regions.add(std::move(square));
+        read_function(*in, "f", regions);
         return in->failed() ? in->error().message.substr(in->error().message.find("data set")) : "";
     }
 };
@@ -70,6 +76,15 @@ TEST(HostileSolutions, WithInvalidTreesAreErrors) {
     EXPECT_EQ(outcome([](Parts& p) { p.root_region[0] = 1; }), "data set f/parent makes no tree at element 0");
     EXPECT_EQ(outcome([](Parts& p) { p.root_shape[0] = 2; }), "data set f/parent makes no tree at element 0");
     EXPECT_EQ(outcome([](Parts& p) { p.root_patch[4] = INFINITY; }), "data set f/parent makes no tree at element 0");
+    const auto by_corners = [](Parts& p) { p.root_corner = {0, 1, 3}, p.root_patch.clear(); };
+    EXPECT_EQ(outcome(by_corners), "");
+    EXPECT_EQ(outcome([&](Parts& p) { by_corners(p), p.root_corner[2] = 4; }),
+              "data set f/parent makes no tree at element 0");
+    EXPECT_EQ(outcome([&](Parts& p) { by_corners(p), p.root_corner[2] = 1; }),
+              "data set f/parent makes no tree at element 0");  // corners on a line
+    EXPECT_EQ(outcome([](Parts& p) { p.root_patch.clear(); }), "data set f/parent makes no tree at element 0");
+    EXPECT_EQ(outcome([](Parts& p) { p.root_patch.insert(p.root_patch.end(), 9, 1.0); }),
+              "data set f/parent has fewer roots than patches");
     EXPECT_EQ(outcome([](Parts& p) { p.root_region.push_back(0); }), "data set f/root_shape has 1 rows instead of 2");
     EXPECT_EQ(outcome([](Parts& p) { p.values.resize(15 * bands); }), "data set f/values has 15 rows instead of 16");
 }
