@@ -159,7 +159,7 @@ class DirectLight {
                       Workspace& scratch, const WorthCounting& worth) const;
     void look_at(const SourceName& source, std::span<const Point> receiver, ReceiverLight& light, Workspace& scratch,
                  const WorthCounting& worth) const;
-    /// x  any point of the receiver
+    /// Adds a source with its blockers to `light`. `x`: any point of the receiver.
     void add_source(const SourceName& source, View view, const Point& x, ReceiverLight& light,
                     Workspace& scratch) const;
     void add_open(const SourceName& source, const Point& x, ReceiverLight& light, Workspace& scratch) const;

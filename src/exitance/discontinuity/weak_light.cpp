@@ -14,9 +14,9 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t max_exact_emitters = 8,
-                      max_exact_regions = 1000;  // up to these numbers, exact light is cheap
-constexpr std::size_t quad = 4;                  // number of corners; triangles repeat the last one
+/// Up to these numbers of emitters and of regions, exact direct light is cheap.
+constexpr std::size_t max_exact_emitters = 8, max_exact_regions = 1000;
+constexpr std::size_t quad = 4;  // number of corners; triangles repeat the last one
 
 }  // namespace
 

@@ -81,9 +81,10 @@ void LocalPass::look_closely(ElementId e, SampledElement& sampled, const Reflect
 
 /// Returns the leaves that share a border with a leaf, on the same region.
 std::vector<ElementId> LocalPass::beside(ElementId e, const ElementLocator& locator) const {
-    constexpr double side = 6;  // derived from three places in the middles of equal parts of a side
+    constexpr double side = 6;  // derived from three points per side, in the middle of each third
     constexpr std::array<double, 3> along{1 / side, 0.5, 1 - 1 / side};
-    constexpr double outside = 0.02;  // derived from neighbours of up to a fiftieth of the leaf's width
+    // share of the leaf's width; derived from the smallest neighbours, a fiftieth as wide
+    constexpr double outside = 0.02;
     std::vector<ElementId> out;
     for (const double t : along)
         for (const Vec2 uv : {Vec2{t, -outside}, Vec2{t, 1 + outside}, Vec2{-outside, t}, Vec2{1 + outside, t}}) {

@@ -53,8 +53,8 @@ struct Link {
 /// Source: [Hanrahan91], [Gortler93].
 class Links {
   public:
-    /// links  in any order
-    /// blocks  nodes()^2 values for each near link
+    /// `links` may be in any order.
+    /// `blocks`: nodes()^2 values for each near link.
     Links(const LinkSites& sites, std::vector<Link> links, std::vector<float> blocks);
 
     std::size_t size() const { return constants_.size() + kernels_.size(); }

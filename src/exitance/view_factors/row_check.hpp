@@ -46,8 +46,8 @@ struct CheckedRow {
 struct RowCheck {
     std::vector<CheckedRow> rows;
     std::size_t rays = 0;         ///< Rays of all rows together.
-    std::size_t wrong = 0;        ///< Number of rows with an excess above `beyond_noise`.
-    std::size_t wrong_sums = 0;   ///< Number of rows with such an excess of a sum over the row or a group.
+    std::size_t wrong = 0;        ///< Number of rows whose squared error exceeds R^2 by more than `beyond_noise`.
+    std::size_t wrong_sums = 0;   ///< Number of rows where the sum over the row or a group exceeds R by as much.
     double error = 0;             ///< Root mean squared error of the rows; 0 if noise makes the mean negative.
     double sum_error = 0;         ///< Largest difference of a sum over a row or group, including the noise of the rays.
     double detectable_error = 0;  ///< Every larger error of a row would have been found; maximum over the rows.

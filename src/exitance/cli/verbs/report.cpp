@@ -26,7 +26,8 @@
 namespace exitance {
 namespace {
 
-constexpr double unseen_difference = 0.003;  ///< Share of the light; derived from steps of 8-bit pictures, 0.8%.
+/// Share of the light that a picture does not show; derived from steps of 8-bit pictures, 0.8%.
+constexpr double unseen_difference = 0.003;
 constexpr int picture_samples = 2;  ///< Rays per pixel; derived from pages that show pictures at a third of their size.
 
 /// The requested views; by default an automatic one and up to three cameras of the scene.
@@ -83,7 +84,7 @@ std::vector<SurfaceId> largest_faces(const Scene& scene, std::size_t& left_out) 
 
 /// Bakes light maps for the embedded viewer, if the scene is small enough for a page that can be mailed.
 void add_viewer(const RadiosityFunction& light, ReportContent& content, Terminal& terminal, const StopRequest& stop) {
-    constexpr double many_texels = 8000, few_texels = 2000;  // derived from pages of about a megabyte
+    constexpr double many_texels = 8000, few_texels = 2000;  // derived from the size of a page, about a megabyte
     constexpr std::size_t most_faces = 20000;
     const Scene& scene = light.solution().scene;
     if (scene.surfaces().size() > most_faces) return;

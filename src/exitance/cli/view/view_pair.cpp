@@ -5,7 +5,8 @@
 namespace exitance {
 namespace {
 
-constexpr double same_box = 0.01;  ///< Share of the diagonal; derived from lamps that reach through ceilings.
+/// Allowed difference of two scenes' boxes, as a share of the diagonal; derived from lamps that reach through ceilings.
+constexpr double same_box = 0.01;
 
 std::string words(const Box& box) {
     return fmt::format("({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g})", box.lo.x, box.lo.y, box.lo.z, box.hi.x,

@@ -45,8 +45,8 @@ std::string lines(const Picture& picture, Vec2 plan, Vec2 cell, const ColourScal
 
 /// Size of the letters of the numbers in cells, in SVG units.
 double size_of_numbers(Vec2 cell) {
-    constexpr double smallest = 11, largest = 18;            // derived from print on A4
-    constexpr double per_width = 1.0 / 3, per_height = 0.5;  // derived from numbers of four digits
+    constexpr double smallest = 11, largest = 18;            // letter sizes, derived from print on A4
+    constexpr double per_width = 1.0 / 3, per_height = 0.5;  // derived from the width of four digits
     return std::clamp(std::min(per_width * cell.x, per_height * cell.y), smallest, largest);
 }
 
@@ -82,8 +82,8 @@ std::string surroundings(const GridLight& light, const Scene& scene, double to_p
     std::string cut, below;
     for (const SurfaceId s : scene.surfaces().ids())
         for (const auto& [a, b] : section_of(scene.outline(s), light.plane.origin, light.n)) cut += line(a, b);
-    constexpr double highest = 1.2,
-                     parallel = 0.999;  // metres below the plane; derived from furniture and slopes of 4%
+    // metres below the plane, derived from furniture; cosine between directions, derived from slopes of 4%
+    constexpr double highest = 1.2, parallel = 0.999;
     for (const Region& region : scene.regions()) {
         const double depth = -dot(region.loops[0][0] - light.plane.origin, light.n);
         // The floor itself is the face that is larger than the plane.

@@ -19,7 +19,7 @@ class CornerSteps {
     /// Returns the value of an element; not called for removed elements.
     using ValueOf = std::function<Spectrum(std::size_t element)>;
 
-    /// rounding   distance within which corners of one region are the same vertex, metres
+    /// Corners of one region within `rounding` (metres) of each other are the same vertex.
     explicit CornerSteps(double rounding) : rounding_(rounding) {}
 
     /// Adds one element. `is_watched`: false if `steeper_than` need not find it. O(log vertices).

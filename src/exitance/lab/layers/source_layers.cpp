@@ -20,7 +20,7 @@ struct LayerSource {
 
 /// One layer for each of the brightest emitters, in the order of the scene, then one for all others together.
 std::vector<LayerSource> sources_of(const Stage& stage) {
-    constexpr std::size_t max_single_layers = 64;  // each layer processes all regions
+    constexpr std::size_t max_single_layers = 64;  // limit, since each layer processes all regions
     const auto& emitters = stage.direct.emitters();
     const auto power = [&](std::uint32_t e) {
         return mean(emitters[e].exitance) * stage.scene.regions()[emitters[e].region].area;

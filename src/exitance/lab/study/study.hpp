@@ -88,7 +88,7 @@ struct StudyPicture {
 /// one picture.
 struct StudyDrawing {
     std::string name, title, table;
-    std::string x_label, y_label;  ///< Empty: no axis.
+    std::string x_label, y_label;  ///< Labels of the axes; empty: no axis.
     bool equal_axes = false;       ///< True if a unit is as long on both axes.
     RowFilter where;
 };

@@ -119,7 +119,7 @@ class ChartMaker {
 /// Sums the light of a map's texels, weighted by area.
 class TexelSums {
   public:
-    /// has_curved  true if some regions are curved
+    /// `has_curved`: true if some regions are curved.
     TexelSums(UvLightMap& map, bool has_curved)
         : map_(map),
           open_(map.light.size.texels()),

@@ -16,7 +16,7 @@ namespace {
 
 /// Sensors whose results are in memory together.
 constexpr std::size_t block_sensors = 256;
-/// Sensors that each of many processes evaluates at once, unless fewer are left. derived from the tiles of YearSky
+/// Sensors that each of many processes evaluates at once, unless fewer are left. Derived from the tiles of YearSky
 constexpr std::size_t min_own_sensors = 16;
 
 Error stopped() {
