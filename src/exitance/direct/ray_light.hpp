@@ -142,7 +142,7 @@ class RayLight::Workspace {
     SkyTree::Aim aim_;
     std::vector<PortalCell> cells_;  ///< Openings at which rays are aimed.
     PortalAim portals_;
-    Normal disc_normal_;  ///< Normal of the receiver for which
+    Normal disc_normal_;  ///< Receiver's normal, to which `disc_light_` belongs.
     /// Unoccluded light of each disc at a receiver with this normal; empty: not computed yet.
     std::vector<Spectrum> disc_light_;
     EmitterTree::Cut cut_;

@@ -274,7 +274,7 @@ void Certifier::Content::check_late(Certificate& out) {
 }
 
 void Certifier::Content::tell_p99(Certificate& out) {
-    constexpr double share = 0.01;  // given by the name
+    constexpr double share = 0.01;  // share of the points above the 99th percentile, given by its name
     constexpr unsigned max_rays = 1 << 14;
     std::vector<WeightedError> points;
     std::vector<unsigned> rays;
@@ -355,7 +355,7 @@ Certificate Certifier::look() {
 
 void Certifier::look_at_bodies(Certificate& certificate) {
     if (content_->samples.empty()) return;
-    content_->check_late(certificate);  // before the bodies: a single one has the error of the scene
+    content_->check_late(certificate);  // must come first: it corrects the estimate of the whole scene
     content_->look_at_bodies(certificate);
 }
 

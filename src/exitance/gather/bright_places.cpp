@@ -149,7 +149,7 @@ std::vector<LeafLight> light_of_leaves(const ElementTree& tree, std::span<const 
 }  // namespace
 
 BrightPlaces find_bright_places(const Stage& stage, const ElementTree& tree, const ReflectedLight& b) {
-    constexpr double bright = 4;  // a sixteenth of the rays for equal noise
+    constexpr double bright = 4;  // multiple of the room's mean light; from there on aiming saves most rays
     const std::vector<ElementId> leaves = tree.leaves();
     const std::vector<LeafLight> values = light_of_leaves(tree, leaves, b);
     std::vector<RoomLight> rooms(std::max<std::size_t>(1, stage.rooms.count()));

@@ -146,7 +146,7 @@ TEST_F(OneBrightFace, MayBeNoisierWhereItIsMuchBrighter) {
     gather(demand, usual);
     LocalPass other(stage, {.edge = 0.8, .grading_levels = 0}, 1);  // this pass has not gathered before
     Progress progress;
-    demand.light = 0.002;  // of a room that is dark except for this face's light, which is up to 0.1 elsewhere
+    demand.light = 0.002;  // light of a room that is dark except for this face, whose light is up to 0.1
     const double truth = error(other.gather(b, true, demand, dim, progress, StopRequest()));
     EXPECT_LT(dim.rays, usual.rays / 2);
     EXPECT_LT(truth, 1.5 * std::hypot(dim.whole.noise, dim.whole.interpolation));

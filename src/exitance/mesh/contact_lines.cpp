@@ -248,7 +248,7 @@ std::vector<std::pair<Vec2, Vec2>> ContactLines::inside(const ElementTree& tree,
     double longest = 0;
     for (const Point& corner : outline) longest = std::max(longest, norm(corner - outline[0]));
     // The slivers between contacts that differ by tiny angles are too thin to be split accurately.
-    constexpr double min_width_in_tolerances = 100;  // times the tolerance: 1e-5 of the scene's size
+    constexpr double min_width_in_tolerances = 100;  // multiple of the tolerance: 1e-5 of the scene's size
     if (tree.area(e) <= min_width_in_tolerances * tolerance_ * longest) lines.clear();
     std::vector<std::pair<Vec2, Vec2>> out;
     std::erase_if(lines, [&](const Line& line) {
@@ -272,7 +272,7 @@ std::vector<ContactLines::Line> ContactLines::over_plane(std::span<const RegionI
                                    [](RegionId a, RegionId b) { return a.value < b.value; });
     };
     // A surface that covers a point may be above it by this much (Occluders::is_covered).
-    constexpr double coplanar = 1e-6;  // the same distance as there, as a share of the scene's size
+    constexpr double coplanar = 1e-6;  // share of the scene's size, equal to that of Occluders
     const double near = coplanar * scene_->size(), highest = std::max(near, gap);
     Box box;
     for (RegionId region : regions)

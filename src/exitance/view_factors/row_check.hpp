@@ -31,7 +31,7 @@ struct CheckedRow {
     /// groups.
     double largest_sum_excess = 0;
     double largest_sum_error = 0;      ///< Maximum over x of |sum_j (F - G)_j x_j|, including the noise of the rays.
-    double largest_sum_deviation = 0;  ///< Maximum over x of the noise of that sum.
+    double largest_sum_deviation = 0;  ///< Maximum over x of the standard error of that sum.
     /// Excess of the squared error over R^2 in standard errors; negative if it is below.
     double squared_excess(double R) const { return (squared_error - R * R) / squared_error_deviation; }
     /// Smallest error of the row that the rays distinguish from R, by `deviations` standard errors of the squared

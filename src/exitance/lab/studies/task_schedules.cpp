@@ -136,7 +136,8 @@ void add_calibration(const std::string& scene, const std::array<TaskGraph, sched
     const auto graph_of = [&](Schedule schedule) -> const TaskGraph& {
         return graphs[static_cast<std::size_t>(schedule)];
     };
-    for (const int slowness : {100, 300, 1000, 3000}) {  // times of a processor of today
+    // slowness: times of the simulated machine over those of a processor of today
+    for (const int slowness : {100, 300, 1000, 3000}) {
         MachineModel machine = two_rings;
         machine.slowness = slowness;
         const auto lock =
