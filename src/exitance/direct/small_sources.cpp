@@ -10,8 +10,7 @@
 namespace exitance {
 namespace {
 
-/// Maximum width of a penumbra, in extents of a polygon; derived from the three points of a rule across it.
-constexpr double most_penumbra = 0.25;
+constexpr double most_penumbra = 0.25;  ///< Width in extents of a polygon; derived from the three points of a rule.
 /// In extents of a polygon: light from within this distance may peak between the polygon's quadrature points.
 constexpr double nearness = 2;
 

@@ -14,9 +14,9 @@
 namespace exitance {
 namespace {
 
-/// Up to these numbers of emitters and of regions, exact direct light is cheap.
-constexpr std::size_t max_exact_emitters = 8, max_exact_regions = 1000;
-constexpr std::size_t quad = 4;  // number of corners; triangles repeat the last one
+constexpr std::size_t max_exact_emitters = 8,
+                      max_exact_regions = 1000;  // exact light is cheap up to these numbers of emitters and regions
+constexpr std::size_t quad = 4;                  // number of corners; triangles repeat the last one
 
 }  // namespace
 

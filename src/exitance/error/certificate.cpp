@@ -22,8 +22,7 @@ namespace {
 /// as wrong as the solution, this adds a quarter to the squared differences found; where the projection is worse, and
 /// checks matter most, it adds less.
 LightAccuracy check_accuracy(double error) {
-    // limits of exact light's error; derived from the range of errors that can be requested
-    constexpr double least = 2e-4, most = 0.1;
+    constexpr double least = 2e-4, most = 0.1;  // limits, derived from the range of errors that can be requested
     return {.relative = std::clamp(0.5 * error, least, most)};
 }
 
@@ -183,8 +182,8 @@ void Certifier::Content::judge_rooms(Certificate& out) {
 /// light, plus the mean error if that is large and the delivered function holds all light. Relative to itself, light
 /// that is far too bright would look accurate, and light that is far too dark would look worse than it is.
 double Certifier::Content::true_mean(double mean_error) const {
-    // Shares of the mean reflected radiosity, derived from the estimate, whose own uncertainty is larger.
-    constexpr double ignored = 0.1, min_share = 0.1;
+    constexpr double ignored = 0.1, min_share = 0.1;  // shares of the mean reflected radiosity,
+                                                      // derived from the uncertainty of the estimate, which is larger
     if (!options.direct_in_elements || std::abs(mean_error) <= ignored * mean_reflected) return mean_reflected;
     return std::max(mean_reflected + mean_error, min_share * mean_reflected);
 }

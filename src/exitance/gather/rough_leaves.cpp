@@ -83,8 +83,7 @@ void LocalPass::look_closely(ElementId e, SampledElement& sampled, const Reflect
 std::vector<ElementId> LocalPass::beside(ElementId e, const ElementLocator& locator) const {
     constexpr double side = 6;  // derived from three points per side, in the middle of each third
     constexpr std::array<double, 3> along{1 / side, 0.5, 1 - 1 / side};
-    // share of the leaf's width; derived from the smallest neighbours, a fiftieth as wide
-    constexpr double outside = 0.02;
+    constexpr double outside = 0.02;  // share of the width; derived from neighbours at least a fiftieth as wide
     std::vector<ElementId> out;
     for (const double t : along)
         for (const Vec2 uv : {Vec2{t, -outside}, Vec2{t, 1 + outside}, Vec2{-outside, t}, Vec2{1 + outside, t}}) {

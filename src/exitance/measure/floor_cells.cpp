@@ -18,8 +18,8 @@ constexpr double fewest_across = 20;
 /// through centres.
 constexpr double first_centre = 0.118;
 constexpr double furniture_height = 1.9;  ///< Metres; derived from the height of people: lower spaces are not rooms.
-/// Share of the usual height; derived from tall cupboards, for models out of scale.
-constexpr double furniture_share = 0.7;
+constexpr double furniture_share =        ///< Share of the usual height; derived from cupboards in models out of scale.
+    0.7;
 constexpr double door_height = 2.15;    ///< Metres, derived from doors of 2.0 to 2.1 m.
 constexpr double door_share = 0.78;     ///< Share of the height, derived from doors of 2.1 m below ceilings of 2.7 m.
 constexpr double least_lintel = 0.1;    ///< Share of the height, derived from doors of 2.1 m below ceilings of 2.35 m.

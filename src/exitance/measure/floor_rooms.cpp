@@ -10,13 +10,11 @@
 namespace exitance {
 namespace {
 
-constexpr double least_area = 1;  ///< m^2
-/// Of the largest floor's area: smaller floors have no rooms. Derived from models out of scale.
-constexpr double least_floor_share = 0.1;
-constexpr double person = 1.9;  ///< Metres; derived from the height of people: lower spaces are not rooms.
-/// Faces above a floor by less than this share of the room are furniture; derived from tall cupboards.
-constexpr double cupboard_share = 0.75;
-constexpr std::size_t most_floors = 256;  ///< Derived from a few seconds of ray casting.
+constexpr double least_area = 1;           ///< m^2
+constexpr double least_floor_share = 0.1;  ///< Of the largest floor's area. Derived from models out of scale.
+constexpr double person = 1.9;             ///< Metres; derived from the height of people: lower spaces are not rooms.
+constexpr double cupboard_share = 0.75;    ///< Of a room's height: lower faces are furniture. Derived from cupboards.
+constexpr std::size_t most_floors = 256;   ///< Derived from a few seconds of ray casting.
 constexpr std::size_t most_rooms = 64;
 
 /// Floors that are large enough for rooms, the largest first.

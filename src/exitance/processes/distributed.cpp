@@ -35,8 +35,8 @@ struct Team {
     ExchangeTime time;
     std::map<std::string, DealtTime> dealt;
     double dealt_before = 0,
-           /// Values at the end of the last shared loop, seconds: distributed and total processor time.
-        taken_before = 0;
+           taken_before =
+               0;  ///< Values at the end of the last shared loop, seconds: distributed and total processor time.
 };
 Team team;
 
@@ -329,8 +329,8 @@ void map_pages(std::span<char> pages, int file, std::size_t place, int kind) {
 /// Copies the pages of the node's first process to the file and maps the file in their place, in parts, so that little
 /// memory is used twice.
 void move_pages(std::span<char> pages, int file, int kind) {
-    // Bytes of a part, at least, and number of parts, at most: the system limits the number of mappings.
-    constexpr std::size_t min_step = std::size_t(1) << 23, most_parts = 64;
+    constexpr std::size_t min_step = std::size_t(1) << 23,
+                          most_parts = 64;  // the number of mappings is limited by the system
     const std::size_t page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE)),
                       step = std::max(min_step, (pages.size() / most_parts / page + 1) * page);
     int rank = 0;

@@ -137,9 +137,9 @@ PlaceFinder::Sector PlaceFinder::make_sector(const Point& p, const Normal& n, st
         const std::span<const Blade> side = at_start ? start : end;
         // direction from the side into the sector
         const Vec3 off = at_start ? cross(n, side[0].way) : cross(side[0].way, n);
-        // Distance of p from the blade, positive inside the sector.
-        const auto depth = [&](const Blade& b) { return b.before * dot(b.across, off); };
-
+        const auto depth = [&](const Blade& b) {  // distance of p from the blade, positive inside the sector
+            return b.before * dot(b.across, off);
+        };
         double least = HUGE_VAL;
         for (const Blade& b : side) least = std::min(least, depth(b));
         bool is_front = false;

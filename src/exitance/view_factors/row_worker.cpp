@@ -20,9 +20,8 @@ constexpr std::size_t few_blockers = 12;
 constexpr std::size_t many_blockers = 20;
 constexpr double alike_areas = 4;  ///< Ratio of areas below which either face may be the receiver.
 constexpr std::size_t patient_evaluations = 500'000;
-/// If crowding() of two faces differs by more, the less crowded is the receiver.
-constexpr double min_crowding_ratio = 8;
-constexpr double max_area_ratio = 16;           ///< Ratio of areas above which the smaller face is the receiver.
+constexpr double min_crowding_ratio = 8;  ///< Ratio of crowding() above which the less crowded face is the receiver.
+constexpr double max_area_ratio = 16;     ///< Ratio of areas above which the smaller face is the receiver.
 constexpr double max_area_ratio_cluttered = 2;  ///< Like max_area_ratio, if there are more than few_blockers blockers.
 /// Contour sums of faces of very different sizes cancel: with a tenth of the tolerance one was wrong by 0.6%.
 constexpr double entry_contour_share = 1e-4;

@@ -59,8 +59,7 @@ float without_less_than(float c, float limit) {
 // Embree replaces components of directions of less than 1e-18 by that number with a positive sign, and then tests the
 // packet as if the sign were the ray's own: other rays of the packet pass through walls. Zero is safe.
 
-/// Converts a point. `smallest` is derived from 1e-18: differences of coordinates of at least 1e-9 are 0 or larger than
-/// that.
+/// Converts a point. The limit is derived from 1e-18: coordinates of at least 1e-9 differ by 0 or by more than that.
 Float3 to_safe_point(const Vec3& v) {
     constexpr float smallest = 1e-9F;
     const Float3 p = to_float(v);

@@ -26,8 +26,7 @@
 namespace exitance {
 namespace {
 
-/// Share of the light that a picture does not show; derived from steps of 8-bit pictures, 0.8%.
-constexpr double unseen_difference = 0.003;
+constexpr double unseen_difference = 0.003;  ///< Relative; derived from steps of 8-bit pictures, which are 0.8%.
 constexpr int picture_samples = 2;  ///< Rays per pixel; derived from pages that show pictures at a third of their size.
 
 /// The requested views; by default an automatic one and up to three cameras of the scene.

@@ -136,8 +136,7 @@ void show_geometry_findings(const CheckedScene& checked, Terminal& terminal) {
     terminal.show(findings);
 }
 
-/// Options for computing the rows. Rows for an operator are more accurate than requested, since merging entries adds an
-/// error.
+/// Options for computing the rows. For an operator they are more accurate, since merging their entries adds an error.
 RowFactorOptions table_options(const ViewFactorArguments& arguments) {
     const double error = arguments.error.value_or(default_error);
     RowFactorOptions options{.error = error, .smallest = arguments.smallest, .seed = arguments.seed};

@@ -82,8 +82,8 @@ std::string surroundings(const GridLight& light, const Scene& scene, double to_p
     std::string cut, below;
     for (const SurfaceId s : scene.surfaces().ids())
         for (const auto& [a, b] : section_of(scene.outline(s), light.plane.origin, light.n)) cut += line(a, b);
-    // metres below the plane, derived from furniture; cosine between directions, derived from slopes of 4%
-    constexpr double highest = 1.2, parallel = 0.999;
+    constexpr double highest = 1.2,
+                     parallel = 0.999;  // metres below the plane, derived from furniture; cosine of a slope of 4%
     for (const Region& region : scene.regions()) {
         const double depth = -dot(region.loops[0][0] - light.plane.origin, light.n);
         // The floor itself is the face that is larger than the plane.

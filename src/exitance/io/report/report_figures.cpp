@@ -151,8 +151,8 @@ std::string short_figure(double value) {
 }
 
 double shown_width(double width, double height) {
-    // pixels, derived from two drawings on a page of 267 mm at 96 pixels per inch
-    constexpr double widest = 640, highest = 400;
+    constexpr double widest = 640,
+                     highest = 400;  // pixels, derived from two drawings on a page of 267 mm at 96 pixels per inch
     return std::min(widest, highest * width / height);
 }
 

@@ -15,8 +15,7 @@ constexpr int max_steps = 256;
 /// Rays of direct light at a place, at most. Derived from those of a pixel of a flat texel
 /// (measure/pictures/tile_cells.cpp)
 constexpr unsigned most_rays = 1024;
-/// Relative difference up to which light counts as linear; derived from TileLight::alike.
-constexpr double alike = 0.01;
+constexpr double alike = 0.01;  ///< Relative difference of light that counts as linear; derived from TileLight::alike.
 
 constexpr std::size_t node_count(int steps) {
     return static_cast<std::size_t>((steps + 1) * (steps + 2) / 2);
@@ -146,8 +145,7 @@ Spectrum CurvedLight::reflected(const CurvedPlace& place, Workspace& workspace) 
         known += node.weight;
         for (std::size_t k = 0; k < bands; ++k) sum[k] += node.weight * static_cast<double>(light.irradiance[k]);
     }
-    /// Minimum weight of known nodes; derived from the lattice, where one node is near.
-    constexpr double min_known = 0.1;
+    constexpr double min_known = 0.1;  ///< Minimum weight of known nodes; derived from a lattice with one node near.
     if (known > min_known) return sum / known;
     const NodeLight here = gather(place.triangle, place.weight, workspace);
     Spectrum out;

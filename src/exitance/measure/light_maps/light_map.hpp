@@ -94,10 +94,9 @@ double automatic_density(const Scene& scene);
 Result<LightMaps> bake_light_maps(const RadiosityFunction& light, const BakeOptions& options, Progress& progress,
                                   const StopRequest& stop);
 
-/// Fills the texels of a chart's rectangle that are not computed, ring by ring from the computed ones: all of them,
-/// except that only `reach` rings of buried texels are filled. The first ring outside the region is extrapolated
-/// linearly, with a change of at most half of the light there, so that bilinear lookups at a border keep the slope.
-/// O(texels).
+/// Fills the texels of a chart's rectangle that are not computed, ring by ring from the computed ones; of buried
+/// texels, only `reach` rings are filled. The first ring outside the region is extrapolated linearly, with a change of
+/// at most half of the light there, so that bilinear lookups at a border keep the slope. O(texels).
 void extrapolate_texels(const Chart& chart, int reach, LightMap& map);
 
 }  // namespace exitance

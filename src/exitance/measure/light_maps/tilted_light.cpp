@@ -86,8 +86,7 @@ DirectedIrradiance TiltedLight::reflected(int x, int y, const MeasuredPlace& pla
             DirectedIrradiance part = *light;
             part *= w, sum += part, weight += w;
         }
-    /// Minimum weight of known nodes; derived from the lattice, where one node is near.
-    constexpr double min_known = 0.1;
+    constexpr double min_known = 0.1;  ///< Minimum weight of known nodes; derived from a lattice with one node near.
     if (weight > min_known) return sum *= 1 / weight;
     Known& in_block = workspace.in_block_[static_cast<std::size_t>(j * Workspace::blocks + i)];
     if (!in_block) in_block = gather(above(place), workspace);
@@ -97,8 +96,8 @@ DirectedIrradiance TiltedLight::reflected(int x, int y, const MeasuredPlace& pla
 DirectedIrradiance TiltedLight::at(int x, int y, std::span<const MeasuredPlace> open, const Spectrum& irradiance,
                                    Workspace& workspace) const {
     constexpr std::size_t most_points = 4;
-    // Smallest relative difference that shows a shadow edge; derived from light without one: a few percent per texel.
-    constexpr double alike = 0.1;
+    constexpr double alike = 0.1;  ///< Relative difference of irradiance without a shadow edge.
+                                   ///< It is derived from the slope of light, a few percent between texels.
     const ProbePoint first = above(open.front());
     DirectedIrradiance out, straight;
     if (component_ != Component::direct) out = reflected(x, y, open.front(), workspace);

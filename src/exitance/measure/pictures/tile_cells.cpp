@@ -101,8 +101,8 @@ bool TileLight::interpolate(std::span<Spot> spots, const Cell& cell, const CellR
         const double there = mean(E[i] + corners[i]->irradiance);
         least = std::min(least, there), most = std::max(most, there);
     }
-    // standard deviations: a difference due to noise is no reason for a smaller cell
-    constexpr double max_deviations = 3;
+    constexpr double max_deviations =  // standard deviations: a difference due to noise is no reason for a smaller cell
+        3;
     const double all = most + dim * brightness_;
     if (most - least > std::max(rule.even * all, max_deviations * noise)) return false;
     const auto between = [&](double u, double v) {

@@ -10,8 +10,8 @@ namespace exitance {
 namespace {
 
 /// Squared relative error of the scene's light below which a face is not cut.
-// derived from a gradient on a wall: the reflectance within a part then varies by 2% of the mean
-constexpr double min_benefit = 1e-6;
+constexpr double min_benefit =  // derived from a gradient on a wall: a part then varies by 2% of its mean reflectance
+    1e-6;
 /// Limit on the parts of emitting faces: direct light is computed for each emitter.
 constexpr std::size_t max_emitting_parts = 128;  // derived from rooms with 128 luminaires, which solve in seconds
 
@@ -301,8 +301,7 @@ class FaceCutter {
 }  // namespace
 
 std::size_t default_texture_parts(std::size_t faces) {
-    // derived from the time of solves, see docs/formats/scenes.md
-    constexpr std::size_t in_any_scene = 500, faces_per_part = 4;
+    constexpr std::size_t in_any_scene = 500, faces_per_part = 4;  // derived from solve times, see formats/scenes.md
     return in_any_scene + faces / faces_per_part;
 }
 
