@@ -61,7 +61,8 @@ void declare_criteria(CLI::App& app, DaylightArguments& arguments) {
                char rest = 0;
                if (std::sscanf(w.c_str(), "%lf,%lf,%lf%c", &low, &middle, &high, &rest) != 3 || !(0 < low) ||
                    !(low < middle) || !(middle < high) || !std::isfinite(high))
-                   throw CLI::ValidationError("--useful", fmt::format("'{}' is not like 100,300,3000", w));
+                   throw CLI::ValidationError(
+                       "--useful", fmt::format("'{}' is not three ascending numbers such as 100,300,3000", w));
            },
            "Limits of UDI, ascending. Default 100,300,3000")
         ->type_name("LX,LX,LX");

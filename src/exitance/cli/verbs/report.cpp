@@ -166,10 +166,9 @@ std::optional<Error> find_misuse(const ReportArguments& arguments) {
         return Error{ErrorCode::usage, "has no effect without measuring planes or observers", "--require",
                      "add --plane 0.75 or --observers auto"};
     if (!arguments.words.empty() && arguments.output.empty())
-        return Error{ErrorCode::usage, "is for a page, and tables stay as they are", "--template",
-                     "add a page, -o room.html"};
+        return Error{ErrorCode::usage, "applies to the page, not to tables", "--template", "add a page, -o room.html"};
     if (!arguments.pdf.empty() && arguments.output.empty())
-        return Error{ErrorCode::usage, "is printed from a page", "--pdf", "add a page, -o room.html"};
+        return Error{ErrorCode::usage, "needs a page, from which it is printed", "--pdf", "add a page, -o room.html"};
     if (!arguments.pdf.empty() && ending(arguments.pdf) != ".pdf")
         return Error{ErrorCode::usage, "pages are printed as .pdf", arguments.pdf, "name the output something.pdf"};
     if (arguments.output.empty()) return std::nullopt;
