@@ -126,7 +126,7 @@ std::vector<OptionRow> rows_of_light() {
          .value = flag(at(&R::light_groups)),
          .does = "Also solve for each light group (the lamps of one object, see docs/methods/light_groups.md) and "
                  "store its light, so that mix, view and bake can dim it",
-         .when = "With eight groups, a solve takes about three times as long",
+         .when = "A solve then takes two to three times as long",
          .group = group::light,
          .support = {{standard({matrix, hierarchical, wavelet, progressive, substructuring, monte_carlo})}},
          .excludes = {{"--keep-links"}, {"--checkpoint-every"}, {"--resume"}},
