@@ -134,7 +134,7 @@ class RayLight::Workspace {
     struct Ray {
         std::uint32_t part, block;
         bool is_distant;
-        PieceId window;  ///< None unless the ray must be continued beyond a window.
+        PieceId window;  ///< Window beyond which the ray must be continued; none: no window.
         Spectrum weight;
     };
     std::vector<Part> parts_;

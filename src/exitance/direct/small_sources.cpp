@@ -93,7 +93,7 @@ class SmallSources::Centre {
     }
 
     const DirectLight& direct_;
-    const DirectLight::Emitter* emitter_ = nullptr;  ///< Null for a light without extent.
+    const DirectLight::Emitter* emitter_ = nullptr;  ///< The source; null for a light without extent.
     Beam beam_;                                      ///< The light without extent, without blockers.
     double area_ = 0;                                ///< m^2
     Spectrum parallel_;                              ///< Irradiance by the unoccluded sun, W/m^2.

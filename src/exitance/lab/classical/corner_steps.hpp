@@ -42,7 +42,7 @@ class CornerSteps {
     };
     struct Element {
         std::array<std::uint32_t, 4> vertices{};
-        std::uint8_t corners = 0;  ///< 0 if removed.
+        std::uint8_t corners = 0;  ///< Number of corners; 0 if the element was removed.
         bool is_watched = true;
         double next_look = 0;  ///< Sum of changes at which the element is looked at again.
     };

@@ -13,7 +13,7 @@ namespace {
 
 /// The sources of one layer: emitters, and optionally point and parallel lights.
 struct LayerSource {
-    RegionId region;  ///< None if there are several emitters, or if it is not a region.
+    RegionId region;  ///< Region that emits; none if there are several emitters, or if it is not a region.
     std::vector<std::uint32_t> emitters;
     bool beams = false;
 };

@@ -31,10 +31,10 @@ struct BakeOptions {
 struct LightMap {
     /// Origin of a texel's value.
     enum class Source : std::uint8_t {
-        nothing,       ///< None; the texel belongs to no chart: 0.
+        nothing,       ///< No source: the texel belongs to no chart, and its value is 0.
         computed,      ///< Mean over the part of the texel that is on the region and not covered.
         extrapolated,  ///< Neighbouring texels; the texel is outside the region, or covered by an object.
-        buried,        ///< None; the texel is covered by an object, far from uncovered texels: 0.
+        buried,        ///< No source: an object covers the texel, far from uncovered ones; its value is 0.
     };
 
     MapSize size;
@@ -64,7 +64,7 @@ struct LightMaps {
     std::vector<Chart> charts;  ///< One chart per region, in the order of their ids.
     std::vector<LightMap> maps;
     std::size_t texels = 0;    ///< Number of texels that are on surfaces, wholly or in part.
-    CurvedDifferences curved;  ///< Empty for maps of a part of the light.
+    CurvedDifferences curved;  ///< Light of curved regions compared with the solution; empty for a part of the light.
 };
 
 /// True if direct and indirect light of a solution are stored separately.

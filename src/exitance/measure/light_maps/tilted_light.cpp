@@ -96,8 +96,8 @@ DirectedIrradiance TiltedLight::reflected(int x, int y, const MeasuredPlace& pla
 DirectedIrradiance TiltedLight::at(int x, int y, std::span<const MeasuredPlace> open, const Spectrum& irradiance,
                                    Workspace& workspace) const {
     constexpr std::size_t most_points = 4;
-    constexpr double alike = 0.1;  ///< Relative difference of irradiance without a shadow edge.
-                                   ///< It is derived from the slope of light, a few percent between texels.
+    constexpr double alike = 0.1;  ///< Relative difference without a shadow edge; derived from slopes of a few percent.
+
     const ProbePoint first = above(open.front());
     DirectedIrradiance out, straight;
     if (component_ != Component::direct) out = reflected(x, y, open.front(), workspace);

@@ -184,7 +184,7 @@ class TexelSums {
     std::vector<float> open_;          ///< Uncovered area of each texel's parts.
     std::vector<float> largest_;       ///< Area of the largest part.
     std::vector<bool> is_shared_;      ///< True if several charts have parts in a texel.
-    std::vector<CurvedTexel> curved_;  ///< Empty if no region is curved.
+    std::vector<CurvedTexel> curved_;  ///< Texels of curved regions; empty if no region is curved.
 };
 
 /// Number of texels along a side of a square map for a density: a power of two.

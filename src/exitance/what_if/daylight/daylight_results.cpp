@@ -74,7 +74,7 @@ struct DaylightSimulation::SceneLight {
 
     DaylightSetting setting;
     DaylightTransport transport;
-    std::unique_ptr<DaylightSample> sample;  ///< Null if take() has provided the light.
+    std::unique_ptr<DaylightSample> sample;  ///< Finds the light; null if take() has provided it.
     DaylightLight light;
 
     DaylightRows rows() const {
