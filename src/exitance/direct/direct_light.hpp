@@ -24,7 +24,7 @@ struct ReceiverLight {
         PieceId piece;
         /// Range of the source's blockers in `candidates`; empty: the whole piece is visible.
         std::uint32_t first = 0, count = 0;
-        /// The range is only a part of too many candidates: exact light must not be computed.
+        /// The range holds only some of too many candidates: exact light must not be computed.
         bool is_crowded = false;
         bool in_batch = false;   ///< True if the source is in the batch `open`.
         double far_factor = -1;  ///< Form factor F of the sky's unoccluded part, the same at every point.

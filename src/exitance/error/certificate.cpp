@@ -182,7 +182,7 @@ void Certifier::Content::judge_rooms(Certificate& out) {
 /// light, plus the mean error if that is large and the delivered function holds all light. Relative to itself, light
 /// that is far too bright would look accurate, and light that is far too dark would look worse than it is.
 double Certifier::Content::true_mean(double mean_error) const {
-    constexpr double ignored = 0.1, min_share = 0.1;  // of mean_reflected; derived from the estimate's uncertainty
+    constexpr double ignored = 0.1, min_share = 0.1;  // shares of mean_reflected; derived from its uncertainty
 
     if (!options.direct_in_elements || std::abs(mean_error) <= ignored * mean_reflected) return mean_reflected;
     return std::max(mean_reflected + mean_error, min_share * mean_reflected);

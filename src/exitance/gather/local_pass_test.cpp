@@ -189,7 +189,7 @@ TEST(LocalPass, LightAroundOpenLegsDoesNotFollowTheDarknessBelowThem) {
     for (ElementId e : E.tree.leaves()) {
         const RegionId region = E.tree.region(e);
         const Normal& n = scene.regions()[region].plane.n;
-        if (is_of_room(region) || n.z < 0.5 || E.tree.patch(e).centre().z > 0.5 * top) continue;  // not a plate
+        if (is_of_room(region) || n.z < 0.5 || E.tree.patch(e).centre().z > 0.5 * top) continue;  // not on a plate
         ++leaves;
         const std::uint32_t first = scene.regions()[region].surfaces[0].value;
         RandomStream random(1, Stream::mesh, e.value);

@@ -11,9 +11,9 @@ namespace exitance {
 namespace {
 
 constexpr double least_area = 1;           ///< m^2
-constexpr double least_floor_share = 0.1;  ///< Of the largest floor's area. Derived from models out of scale.
+constexpr double least_floor_share = 0.1;  ///< Share of the largest floor's area; derived from models out of scale.
 constexpr double person = 1.9;             ///< Metres; derived from the height of people: lower spaces are not rooms.
-constexpr double cupboard_share = 0.75;    ///< Of a room's height: lower faces are furniture. Derived from cupboards.
+constexpr double cupboard_share = 0.75;    ///< Part of a room's height; derived from cupboards: below it is furniture.
 constexpr std::size_t most_floors = 256;   ///< Derived from a few seconds of ray casting.
 constexpr std::size_t most_rooms = 64;
 

@@ -98,7 +98,7 @@ void ClusterTree::set_children(ClusterId c, std::span<const Body> children) {
 
 ClusterId ClusterTree::build(std::span<Item> items) {
     constexpr std::size_t max_pieces = 6, max_groups = 4;
-    constexpr double min_direct_share = 1.0 / 8;  // of half the box's surface; larger pieces become direct children
+    constexpr double min_direct_share = 1.0 / 8;  // share of half the box's surface; larger pieces become children
     const ClusterId c = nodes_.add({});
     sum_up(c, items);
     Box box;

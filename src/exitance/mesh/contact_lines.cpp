@@ -162,7 +162,7 @@ bool is_point(const std::pair<Vec2, Vec2>& line) {
 /// faces of a curved surface, on which no light changes here. `height`: of the edge above the element, metres.
 bool leads_away(const ElementTree& tree, ElementId e, const Region& region, const Point& p, const Point& q,
                 double height) {
-    constexpr double near = 0.1;  // of the height; derived from nearly coplanar faces, whose corners move by much less
+    constexpr double near = 0.1;  // share of the height; derived from nearly coplanar faces (corners move much less)
 
     const auto is_corner = [&](const Point& x) {
         if (std::abs(region.plane.signed_distance(x)) > near * height) return false;
