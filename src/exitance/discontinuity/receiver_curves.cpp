@@ -220,7 +220,7 @@ void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
         const PunctualLight& light = stage_->scene.lights()[beam.light];
         // A directional light is treated as a point so far away that its shadows are accurate to 1e-8 of the scene's
         // size.
-        constexpr double far_distance =  // in scene sizes; derived from double precision: its square keeps all digits
+        constexpr double far_distance =  // sizes of the scene; derived from double precision: squares keep all digits
             1e8;
         const Point place = light.is_directional()
                                 ? stage_->scene.box().centre() - (far_distance * stage_->scene.size()) * light.direction
