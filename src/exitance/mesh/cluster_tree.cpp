@@ -146,9 +146,9 @@ void ClusterTree::sum_up(ClusterId c, std::span<const Item> items) {
 
 namespace {
 
+constexpr std::size_t kinds = 54;  // classes of directions
 /// Assigns directions to 54 classes: nine squares on each face of a cube, so that each axis is in the middle of a
 /// square.
-constexpr std::size_t kinds = 54;
 std::uint8_t kind_of(const Vec3& n) {
     const Vec3 size = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
     const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;

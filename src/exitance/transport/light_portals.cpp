@@ -45,8 +45,8 @@ class PortalFinder {
     PortalCell opening(std::size_t room, const Way& way) const;
 
   private:
-    /// Writes the room at the hit of each ray from a point of free space; `none` if it hits no front.
     static constexpr std::size_t none = ~std::size_t{0};
+    /// Writes the room at the hit of each ray from a point of free space; `none` if it hits no front.
     void look(const Point& from, std::span<const Vec3> directions, std::vector<std::size_t>& met) const;
     Point middle(std::size_t room, const Way& way) const;
     Normal normal(std::size_t room, const Way& way, const Point& at) const;
