@@ -215,13 +215,13 @@ Result<void> make_empty_maps(const Scene& scene, const UvBakeOptions& options, U
         }
         texels += static_cast<double>(size.texels());
         if (texels > most_texels)
-            return Error{ErrorCode::usage, "the maps would have more than 134 million texels", "--density",
+            return Error{ErrorCode::usage, "the maps would have more than the limit of 134 million texels", "--density",
                          "choose a smaller one, or a smaller --size"};
         covered += static_cast<double>(size.texels()) * map_area[m];
         if (covered > most_texels)
             return Error{ErrorCode::usage,
                          "charts overlap so often that " + std::to_string(std::llround(covered / 1e6)) +
-                             " million texels would be baked, the most is 134 million",
+                             " million texels would be baked; the limit is 134 million",
                          "--uv", "choose coordinates without overlaps, or a smaller --size"};
         UvLightMap map;
         map.light.size = size;
