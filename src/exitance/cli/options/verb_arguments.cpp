@@ -174,7 +174,8 @@ void declare(CLI::App& app, BakeArguments& arguments) {
     add_choice(app, "--directional", direction_form_names, format.directions,
                "Directions of the light, for normal maps. sh: spherical harmonics of degrees 0 and 1 (EXR). dominant: "
                "one direction and its share (EXR, PNG). A bake takes about five times as long. Default none");
-    app.add_flag("--hdr", format.with_hdr, "Also write Radiance pictures (.hdr, RGBE), precise to 0.4% of the brightest band");
+    app.add_flag("--hdr", format.with_hdr,
+                 "Also write Radiance pictures (.hdr, RGBE), precise to 0.4% of the brightest band");
     app.add_flag_callback(
         "--half", [&format] { format.precision = Precision::half; },
         "Write EXR files of 16-bit instead of 32-bit numbers");
