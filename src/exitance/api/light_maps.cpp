@@ -22,7 +22,7 @@ struct MapsInUvs {
 struct LightMapsData {
     Solution solution;
     exitance::LightMaps maps;         ///< Maps of flat parts; empty if the light is in texture coordinates.
-    std::optional<MapsInUvs> in_uvs;  ///< Empty: `maps` has the light.
+    std::optional<MapsInUvs> in_uvs;  ///< Maps in texture coordinates; empty: `maps` has the light.
 
     const exitance::Scene& scene() const { return solution.data().solution.scene; }
 };

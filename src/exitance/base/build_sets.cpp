@@ -1,6 +1,6 @@
 #include "exitance/base/processor_check.hpp"
 
-// Data alone: code of this file might need the instructions that it names.
+// This file contains data only: its code might be compiled to the instructions whose presence is to be checked.
 
 namespace exitance {
 

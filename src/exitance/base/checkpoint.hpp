@@ -27,8 +27,8 @@ class CheckpointStore {
 class SafePoints {
   public:
     SafePoints() = default;
-    /// keep     receives the state of the phase
-    /// resumed  state of the phase to continue from; empty to start from scratch
+    /// `keep` is called with the state of the phase to store it. `resumed`: the state of the phase to continue from;
+    /// empty to start from scratch.
     SafePoints(const CheckpointStore* store, const StopRequest& stop, std::function<void(std::string)> keep,
                std::string resumed)
         : store_(store), stop_(&stop), keep_(std::move(keep)), resumed_(std::move(resumed)) {}

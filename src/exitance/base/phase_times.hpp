@@ -42,7 +42,7 @@ class PhaseTimes : public Progress {
         if (phase == "gather") return RunPart::gather;
         if (phase == "certify") return RunPart::certify;
         if (phase == "reconstruct" || phase == "local pass") return RunPart::reconstruct;
-        return RunPart::solve;  // shooting, growing, solving: a name per method
+        return RunPart::solve;  // the method's own phases: "shoot", "grow", "solve"
     }
 
     Progress& progress_;

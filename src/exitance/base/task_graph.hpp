@@ -44,7 +44,7 @@ struct TaskGraph {
     std::vector<Iteration> iterations;
     /// Sorted by iteration; within one, creators precede their tasks. The order is the same on any machine.
     std::vector<Task> tasks;
-    // Phase and id of this record in a TaskTrace:
+    // Phase and id of this record in a TaskTrace.
     std::size_t phase = 0;
     std::uint64_t id = 0;
 };

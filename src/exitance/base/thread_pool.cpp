@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-thread_local bool runs_alone = false;  // loops that this thread starts are its own
+thread_local bool runs_alone = false;  // true: loops started by this thread run on it alone
 
 /// Sets `runs_alone` for its lifetime.
 class Alone {

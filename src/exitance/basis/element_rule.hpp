@@ -15,10 +15,10 @@ struct WeightedPlace {
 /// Number of points of a rule.
 enum class RuleOrder {
     nodes,  ///< One point per coefficient of the polynomial: 2 x 2 Gauss, 3 on triangles, one per corner on cells.
-    fine,   ///< Enough to measure the error of a linear fit: 3 x 3 Gauss, 7 on triangles [Radon48], 3 per corner on
-            ///< cells.
-    finer,  ///< Enough for a fit of second degree: 16 points, `scattered_square_rule`, [Dunavant85], or these mapped to
-            ///< cells of 3 or 4 corners.
+    fine,   ///< Enough to measure the error of a linear fit: 3 x 3 Gauss points, 7 on triangles [Radon48].
+            ///< Cells have 3 points per corner.
+    finer,  ///< Enough for a fit of second degree: the 16 points of `scattered_square_rule` or of [Dunavant85].
+            ///< Cells of 3 or 4 corners have these points, mapped to the cell.
 };
 
 /// Returns a quadrature rule over the domain of an element, in the element's own coordinates. On parallelograms and

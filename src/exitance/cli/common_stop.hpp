@@ -14,7 +14,7 @@ namespace exitance {
 /// object may exist at a time.
 class CommonStop {
   public:
-    /// asked  the request of the terminal's limits: of RunLimits::keep(), or of stop() if there is no result to keep
+    /// `asked`: the request of the terminal's limits, from RunLimits::keep(), or from stop() without a result to keep.
     CommonStop(Terminal& terminal, StopRequest& asked);
 
     /// Returns the request that long work must check.

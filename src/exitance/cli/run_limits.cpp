@@ -21,7 +21,7 @@ using Clock = StopRequest::Clock;
 constexpr std::chrono::milliseconds grace{200};
 /// Interval of checks of the memory. Pages are first written at about 1 GB/s per core: 10 MB per core and interval.
 constexpr std::chrono::milliseconds memory_interval{10};
-/// With several processes, whose shares of pages the system adds up in 1 to 5 ms per GB.
+/// Longer interval for several processes: reading their shares of common pages takes the system 1 to 5 ms per GB.
 constexpr std::chrono::milliseconds memory_interval_of_several{100};
 
 }  // namespace

@@ -24,7 +24,7 @@ struct ReceiverLight {
         PieceId piece;
         /// Range of the source's blockers in `candidates`; empty: the whole piece is visible.
         std::uint32_t first = 0, count = 0;
-        /// The range is only a part of too many candidates: exact light must not be computed.
+        /// The range holds only some of too many candidates: exact light must not be computed.
         bool is_crowded = false;
         bool in_batch = false;   ///< True if the source is in the batch `open`.
         double far_factor = -1;  ///< Form factor F of the sky's unoccluded part, the same at every point.
@@ -159,7 +159,7 @@ class DirectLight {
                       Workspace& scratch, const WorthCounting& worth) const;
     void look_at(const SourceName& source, std::span<const Point> receiver, ReceiverLight& light, Workspace& scratch,
                  const WorthCounting& worth) const;
-    /// x  any point of the receiver
+    /// Adds a source with its blockers to `light`. `x`: any point of the receiver.
     void add_source(const SourceName& source, View view, const Point& x, ReceiverLight& light,
                     Workspace& scratch) const;
     void add_open(const SourceName& source, const Point& x, ReceiverLight& light, Workspace& scratch) const;

@@ -57,8 +57,8 @@ class EmitterTree {
     struct Cut {
         std::vector<Term> terms;  ///< Clusters that may contribute, in the order of the tree.
         double light = 0;         ///< Sum over terms, W/m^2.
-        double error = 0;  ///< Root of the sum of squared errors of either sign, combined with the sum of the errors of
-                           ///< clusters that count as 0.
+        double error = 0;  ///< Error of `light`, W/m^2: the terms' errors, which have either sign, added in quadrature.
+                           ///< The errors of clusters that count as 0 are then added in full.
 
         std::vector<Term> next;  ///< Temporary storage.
     };

@@ -36,7 +36,7 @@ std::pair<std::size_t, double> chosen(const std::vector<double>& sums, double u)
 }  // namespace
 
 bool panes_may_mirror_light(const Scene& scene) {
-    // Cosine of a grazing angle, derived from Fresnel's equations: every mirroring pane mirrors there.
+    // Cosine of a grazing angle at which every mirroring pane mirrors; derived from Fresnel's equations.
     constexpr double oblique = 0.1;
     constexpr double negligible = 1e-4;  // derived from the accuracy of the tables of RayFates
     const auto mirrors = [](const Pane& pane) { return max(pane.reflection(oblique)) > negligible; };

@@ -16,11 +16,11 @@ constexpr double work_of_shaft = 10;   ///< Work of a search for the blockers be
 constexpr double work_of_blocker = 6;  ///< Work per blocker that is clipped from a source, if there are many fragments.
 constexpr double work_of_integral = 20;  ///< Work per integral of a directed radiance over a fragment.
 /// Exact light is tried again if rays need more than this many times the work that it was allowed. The work allowed for
-/// exact light is then the work of the rays, divided by this number. derived from the cost of trying in vain: at most a
+/// exact light is then the work of the rays, divided by this number. Derived from the cost of trying in vain: at most a
 /// quarter of the rays.
 constexpr double worth_another = 4;
 
-/// Limit on the rays of a place of a polygon below a sky from a picture. derived from RayLight::error_of(), 0.3% of the
+/// Limit on the rays of a place of a polygon below a sky from a picture. Derived from RayLight::error_of(), 0.3% of the
 /// light of a half-hidden sky: elements average over many places.
 constexpr unsigned max_rays_to_picture = 1024;
 

@@ -83,7 +83,7 @@ class PlaceLight {
     RayLight rays_;
     double preparing_ = 0;                           ///< Work of preparing all sources for a polygon, in rays.
     double most_work_ = 0;                           ///< Upper bound on the work of exact light at a place.
-    std::unique_ptr<const MirroredLight> mirrored_;  ///< Null if panes mirror nothing.
+    std::unique_ptr<const MirroredLight> mirrored_;  ///< Light that panes mirror; null: they mirror nothing.
 };
 
 /// Temporary storage; one per thread.

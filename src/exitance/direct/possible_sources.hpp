@@ -27,8 +27,8 @@ class PossibleSources {
         double bound = 0;  ///< Upper bound of E, mean of the bands, W/m^2.
     };
 
-    /// negligible  total irradiance that may be dropped per region, W/m^2
-    /// stop        once a stop is requested, the remaining groups keep all of their sources
+    /// `negligible`: total irradiance that may be dropped per region, W/m^2. Once a stop is requested, the remaining
+    /// groups keep all of their sources.
     PossibleSources(const DirectLight& direct, double negligible, const StopRequest& stop);
 
     /// Returns the possible sources of a region, the weakest first.

@@ -22,9 +22,9 @@ constexpr double strong_share = 1.0 / 8;
 constexpr double half_hidden = 0.5;
 
 constexpr std::uint32_t least_pilot = 16, most_pilot = 64, least_rays_of_part = 4;
-constexpr std::uint32_t fastest_growth = 16;  ///< Per round: a variance from few rays is uncertain.
+constexpr std::uint32_t fastest_growth = 16;  ///< Limit per round, since a variance from few rays is uncertain.
 
-/// Light through openings, as a share of the allowed error, that is left to the sky's own rays. derived from its part
+/// Light through openings, as a share of the allowed error, that is left to the sky's own rays. Derived from its part
 /// of the variance, a sixteenth.
 constexpr double little = 0.25;
 

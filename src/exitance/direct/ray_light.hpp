@@ -134,7 +134,7 @@ class RayLight::Workspace {
     struct Ray {
         std::uint32_t part, block;
         bool is_distant;
-        PieceId window;  ///< None unless the ray must be continued beyond a window.
+        PieceId window;  ///< Window beyond which the ray must be continued; none: no window.
         Spectrum weight;
     };
     std::vector<Part> parts_;
@@ -142,7 +142,7 @@ class RayLight::Workspace {
     SkyTree::Aim aim_;
     std::vector<PortalCell> cells_;  ///< Openings at which rays are aimed.
     PortalAim portals_;
-    Normal disc_normal_;  ///< Normal of the receiver for which
+    Normal disc_normal_;  ///< Receiver's normal, to which `disc_light_` belongs.
     /// Unoccluded light of each disc at a receiver with this normal; empty: not computed yet.
     std::vector<Spectrum> disc_light_;
     EmitterTree::Cut cut_;

@@ -19,7 +19,7 @@ constexpr unsigned rays_for_sight = 16;  // per element
 /// has the least possible randomness: where rays of equal weight are counted, almost none.
 class RayDistributor {
   public:
-    /// begin  random number, uniform in [0, 1)
+    /// `begin`: a random number, uniform in [0, 1).
     explicit RayDistributor(double begin) : sum_(begin) {}
     unsigned next(double expected) {
         const double before = std::floor(sum_);

@@ -48,7 +48,7 @@ class SampledLight {
         double near;
         /// Visible light: all of it if some visibility ray arrived, scaled so that the mean over elements is unbiased.
         Spectrum in_sight;
-        unsigned rays;   ///< Rays cast for the current purpose, 0 or more,
+        unsigned rays;   ///< Rays cast for the current purpose, 0 or more.
         double arrived;  ///< Sum of K V over these rays, 1/m^2.
     };
     struct Ray {

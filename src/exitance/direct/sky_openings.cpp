@@ -21,7 +21,7 @@ constexpr std::size_t most_openings = 128, most_cells = 512;
 constexpr std::size_t most_attempts = 512;  ///< Escaping rays that are followed in the whole scene, at most.
 constexpr unsigned directions_of_point = 64, azimuths = 48, steps_of_azimuth = 24, halvings = 16;
 
-/// Share of directions that lead to the sky, from which on a point is at an opening. derived from the plane of a window
+/// Share of directions that lead to the sky, from which on a point is at an opening. Derived from the plane of a window
 /// above a ground, where it is a quarter; half of that marks a point just indoors.
 constexpr double seen_at_opening = 1.0 / 8;
 

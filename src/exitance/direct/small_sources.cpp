@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-constexpr double most_penumbra = 0.25;  ///< In extents of a polygon, derived from the three points of a rule across it.
+constexpr double most_penumbra = 0.25;  ///< Width in extents of a polygon; derived from the three points of a rule.
 /// In extents of a polygon: light from within this distance may peak between the polygon's quadrature points.
 constexpr double nearness = 2;
 
@@ -93,7 +93,7 @@ class SmallSources::Centre {
     }
 
     const DirectLight& direct_;
-    const DirectLight::Emitter* emitter_ = nullptr;  ///< Null for a light without extent.
+    const DirectLight::Emitter* emitter_ = nullptr;  ///< The source; null for a light without extent.
     Beam beam_;                                      ///< The light without extent, without blockers.
     double area_ = 0;                                ///< m^2
     Spectrum parallel_;                              ///< Irradiance by the unoccluded sun, W/m^2.

@@ -32,8 +32,8 @@ std::array<Vec2, value_count> places_of_values(std::size_t longest) {
     return out;
 }
 
+constexpr std::size_t power_count = 10;  // monomials up to degree three
 /// Adds the monomials x^i y^j up to degree three at p, and their derivatives along d.
-constexpr std::size_t power_count = 10;
 void add_powers(Vec2 p, Vec2 d, std::array<double, power_count>& value, std::array<double, power_count>& slope) {
     std::size_t k = 0;
     for (int degree = 0; degree <= 3; ++degree)

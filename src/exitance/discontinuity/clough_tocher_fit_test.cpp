@@ -161,7 +161,7 @@ TEST(CloughTocherFit, TangentPlanesAgreeAcrossAllEdgesExceptKinks) {
     const Sheet sheet(CurveOrder::d1, 6, [](const Point& p) { return std::sin(40 * p.x) * std::cos(70 * p.y); });
     const Sheet::Jumps smooth = sheet.jumps([](CurveOrder o) { return o > CurveOrder::d1; });
     EXPECT_GT(smooth.edges, 50);
-    constexpr double rounding = 1e-8;  // of slopes up to some hundred per metre, with steps of a thousandth of an edge
+    constexpr double rounding = 1e-8;  // slopes are up to some hundred per metre, steps a thousandth of an edge
     EXPECT_LT(smooth.value, rounding);
     EXPECT_LT(smooth.slope, 1e3 * rounding);
     const Sheet::Jumps kink = sheet.jumps([](CurveOrder o) { return o == CurveOrder::d1; });

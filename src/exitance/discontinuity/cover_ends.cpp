@@ -54,8 +54,8 @@ std::vector<std::pair<Point, Point>> cover_ends(const Occluders& occluders, Regi
                 add_crossing(occluders.corners(p), heights, level, out);
         return false;
     };
-    constexpr double thickest =
-        1e-6;  // share of the scene's size, derived from the largest tolerance of coplanar surfaces
+    // Share of the scene's size, derived from the largest tolerance of coplanar surfaces.
+    constexpr double thickest = 1e-6;
     const ConvexRegion near = around(region, 2 * thickest * occluders.scene().size());
     for (const Occluders::Size size : {Occluders::Size::large, Occluders::Size::small})
         occluders.visit_region(size, near, look, region.plane.n);

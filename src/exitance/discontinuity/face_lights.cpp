@@ -23,7 +23,7 @@ class Halves {
     double along(const Vec3& axis, const Point& p) const { return dot(axis, p - outlines_.faces[0][0]); }
 
     void divide(std::span<std::uint32_t> faces, const ReceiverLight& above) {
-        // Up to these numbers, another common search costs as much as it saves.
+        // Up to these numbers of faces or candidates, another common search costs as much as it saves.
         constexpr std::size_t max_single_faces = 4, max_single_candidates = 64;
         if (stop_.requested()) return;
         if (faces.size() <= max_single_faces || above.candidates.size() <= max_single_candidates) {

@@ -22,17 +22,17 @@ constexpr double unfindable_area_among_many = 1e-3;
 /// light gets no curves there.
 constexpr int least_bend = 5, least_kink_among_many = 160, least_bend_among_many = 300;  // all as multiples of T
 /// Least light that gets kink curves in other scenes, as a share of T: ten omitted sources cause an error of T at most.
-constexpr double least_kink = 0.1;  // derived from ten sources: a tenth of T each
+constexpr double least_kink = 0.1;  // derived from ten sources, each with a tenth of T
 
 /// Light of all omitted sources together, as a share of the requested errors.
-constexpr double unseen_light = 0.02;  // derived from the error that omitting it adds: at most 2%
+constexpr double unseen_light = 0.02;  // derived from the error that omitting this light adds: at most 2%
 /// RMS noise of light that is sampled by rays, as a share of the requested errors: independent noise of half an error
 /// raises it by an eighth at most.
 constexpr double ray_noise = 0.5;
 
 /// Share of the total area. Larger triangles (at most 1,000) are tested at extra nodes even if they seem flat, since
 /// their six nodes may miss a shadow between them.
-constexpr double tried_area = 1e-3;  // derived from the 1,000 sample points that measure the error: one triangle each
+constexpr double tried_area = 1e-3;  // derived from the 1,000 sample points that measure the error, one per triangle
 
 /// Share of the scene's size. Triangles without a longer edge are not bisected, and light at nodes on borders is
 /// evaluated this far inside the region.

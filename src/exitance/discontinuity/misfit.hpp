@@ -31,7 +31,7 @@ double bend(const BisectionMesh& mesh, std::uint32_t triangle, std::span<const S
 /// Limits on the misfits of a mesh.
 struct MisfitLimits {
     double squared = 0;          ///< Limit on the sum of `Misfit::squared` over all triangles, W^2/m^2.
-    double largest = 0;          ///< Limit on `Misfit::largest`, W/m^2. It may be exceeded on triangles
+    double largest = 0;          ///< Limit on `Misfit::largest`, W/m^2, except for `unfindable_area`.
     double unfindable_area = 0;  ///< Total area of the triangles on which `largest` may be exceeded, m^2.
     double shortest_edge = 0;    ///< Triangles without a longer edge are never bisected, metres.
     double tried_area = 0;       ///< Larger triangles are tested even if they are flat, m^2.

@@ -220,8 +220,8 @@ void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
         const PunctualLight& light = stage_->scene.lights()[beam.light];
         // A directional light is treated as a point so far away that its shadows are accurate to 1e-8 of the scene's
         // size.
-        constexpr double far_distance =
-            1e8;  // in units of the scene's size; derived from double precision: its square loses no digits
+        // Distance in sizes of the scene, derived from double precision: its square keeps all digits.
+        constexpr double far_distance = 1e8;
         const Point place = light.is_directional()
                                 ? stage_->scene.box().centre() - (far_distance * stage_->scene.size()) * light.direction
                                 : light.position;
@@ -289,8 +289,8 @@ void CurveFinder::add_non_emitter_events(RegionId region, const EventSource& sou
         out.curves.push_back({e.a, e.b, CurveOrder::d2, CurveCause::blocker_edge, source.region, gain});
     if (options_.conics == ConicCurves::none) return;
     // A larger deviation would place points between a conic and its polyline on the wrong side.
-    constexpr double max_sagitta =
-        1e-3;  // share of the region's width, derived from the D2 error, which grows with its third power
+    // Share of the region's width, derived from the D2 error, which grows with its third power.
+    constexpr double max_sagitta = 1e-3;
     const double sagitta = max_sagitta * std::min(box.hi.x - box.lo.x, box.hi.y - box.lo.y);
     std::vector<ThreeEdgeEvent> conics;
     ThreeEdgeEventFinder(stage_->occluders, *edges_, options_.stop)

@@ -46,8 +46,8 @@ struct CurveOptions {
     std::size_t most_edges = 400;     ///< With more blockers' edges, pairs are not searched for NEV and EEE events.
     /// Regions that get curves; others get contact curves only. Null: all regions.
     const Field<RegionId, std::uint8_t>* regions = nullptr;
-    double least_bend = 0;                ///< W/m^2 of rho E. Weaker sources get no D2 curves, except
-    double least_narrow_bend = HUGE_VAL;  ///< along long and narrow penumbras, where this lower limit applies.
+    double least_bend = 0;                ///< W/m^2 of rho E: weaker sources get no D2 curves.
+    double least_narrow_bend = HUGE_VAL;  ///< W/m^2 of rho E: lower limit for long, narrow penumbras.
     ConicCurves conics = ConicCurves::at_umbras;
     std::vector<SecondarySource> secondary = {};
     const StopRequest* stop = nullptr;      ///< After a request to stop, the results are incomplete.

@@ -15,7 +15,7 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t max_exact_emitters = 8,
-                      max_exact_regions = 1000;  // up to these numbers, exact light is cheap
+                      max_exact_regions = 1000;  // exact light is cheap up to these numbers of emitters and regions
 constexpr std::size_t quad = 4;                  // number of corners; triangles repeat the last one
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace exitance {
 
 /// Smallest error that is distinguished from noise, as a multiple of the requested error.
-constexpr double resolved_errors = 1.5;  // given by the warning, whose limit is a multiple of 3: half of it
+constexpr double resolved_errors = 1.5;  // given by the warning, whose limit is 3 times the requested error: half of it
 
 double BodyMeasure::standard_error() const {
     if (points_ < 2) return 0;

@@ -80,7 +80,7 @@ struct BodyCheck {
 /// max_rays       limit on all rays
 /// Returns the errors, the additional points and the number of rays.
 struct MeasuredBodies {
-    std::vector<BodyError> errors;   ///< One per body, in descending order of area.
+    std::vector<BodyError> errors;   ///< Errors of the bodies, in descending order of area.
     std::vector<PointError> points;  ///< Points of the second stage, relative to the room's light.
     std::size_t rays = 0;            ///< Number of rays cast.
     HiddenErrors hidden = {};        ///< Bodies that the rays did not suffice for.

@@ -22,7 +22,7 @@ namespace {
 /// as wrong as the solution, this adds a quarter to the squared differences found; where the projection is worse, and
 /// checks matter most, it adds less.
 LightAccuracy check_accuracy(double error) {
-    constexpr double least = 2e-4, most = 0.1;  // derived from the range of errors that can be requested
+    constexpr double least = 2e-4, most = 0.1;  // limits, derived from the range of errors that can be requested
     return {.relative = std::clamp(0.5 * error, least, most)};
 }
 
@@ -182,8 +182,8 @@ void Certifier::Content::judge_rooms(Certificate& out) {
 /// light, plus the mean error if that is large and the delivered function holds all light. Relative to itself, light
 /// that is far too bright would look accurate, and light that is far too dark would look worse than it is.
 double Certifier::Content::true_mean(double mean_error) const {
-    constexpr double ignored = 0.1, min_share = 0.1;  // of the mean reflected radiosity; derived from the estimate: a
-                                                      // tenth is below its own uncertainty
+    constexpr double ignored = 0.1, min_share = 0.1;  // shares of mean_reflected; derived from its uncertainty
+
     if (!options.direct_in_elements || std::abs(mean_error) <= ignored * mean_reflected) return mean_reflected;
     return std::max(mean_reflected + mean_error, min_share * mean_reflected);
 }
@@ -273,7 +273,7 @@ void Certifier::Content::check_late(Certificate& out) {
 }
 
 void Certifier::Content::tell_p99(Certificate& out) {
-    constexpr double share = 0.01;  // given by the name
+    constexpr double share = 0.01;  // share of the points above the 99th percentile, given by its name
     constexpr unsigned max_rays = 1 << 14;
     std::vector<WeightedError> points;
     std::vector<unsigned> rays;
@@ -354,7 +354,7 @@ Certificate Certifier::look() {
 
 void Certifier::look_at_bodies(Certificate& certificate) {
     if (content_->samples.empty()) return;
-    content_->check_late(certificate);  // before the bodies: a single one has the error of the scene
+    content_->check_late(certificate);  // must come first: it corrects the estimate of the whole scene
     content_->look_at_bodies(certificate);
 }
 

@@ -60,8 +60,8 @@ class DirectCheck {
         Spectrum light;
         double work = 0;
     };
-    /// Returns the difference with E_dir as at points of a solution. The work of closed forms grows with the blockers
-    /// that were cut from the emitters; a directed radiance makes them quadratures, about twenty times as expensive.
+    /// Returns the difference, with E_dir evaluated as a solution does at points. The work of closed forms grows with
+    /// the blockers cut from the emitters; directed radiance makes them quadratures, some twenty times as expensive.
     Difference exact_difference(const HitPoint& hit, const Spectrum& projected, PlaceLight::Workspace& room) const;
     /// Returns an unbiased sample of the difference, by one step of a path.
     Spectrum sampled_difference(const HitPoint& hit, const Spectrum& projected, RandomStream& random) const;

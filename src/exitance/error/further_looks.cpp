@@ -7,7 +7,7 @@ namespace exitance {
 
 std::size_t further_looks(const UncertainError& error, double limit, double demand) {
     constexpr double sufficient = 2;  // required distance between an estimate and its limit, in standard errors
-    constexpr double max_looks = 4;   // times the points; a standard error of a third then becomes one of a sixth
+    constexpr double max_looks = 4;   // limit, as a multiple of the points; it halves the standard error
     const bool is_above = error.estimate > limit;
     const double distance = is_above ? error.estimate - limit : demand - error.estimate;
     if (error.standard_error <= (is_above ? distance / sufficient : distance)) return 0;

@@ -61,13 +61,13 @@ std::vector<Spectrum> mean_residuals(const ElementTree& tree, const LeafNumberin
                                      std::span<const LeafResidual> samples) {
     const std::vector<Spectrum> of_group = means_of_groups(groups, samples);
     std::vector<std::vector<ElementId>> paths;
-    std::vector<Spectrum> known;  // of each sample: mean of the smallest element on its path that is already estimated
+    std::vector<Spectrum> known;  // per sample: mean of the smallest element on its path that is already estimated
     std::size_t depth = 0;
     for (const LeafResidual& s : samples) {
         depth = std::max(depth, paths.emplace_back(path_to(tree, numbering.leaves[s.leaf])).size());
         known.push_back(of_group[s.group]);
     }
-    // Elements that contain samples, and the deviation of each one's mean from that of its parent.
+    // For each level, finds the elements that contain samples, and how far each one's mean deviates from its parent's.
     constexpr std::uint32_t none = 0xffffffffu;
     Field<ElementId, std::uint32_t> place(tree.size(), none);
     std::vector<Beyond> met;

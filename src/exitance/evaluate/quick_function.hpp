@@ -30,7 +30,7 @@ class QuickFunction final : public ReflectedLight {
 
     Polynomial polynomial(ElementId leaf, ElementId root) const;
 
-    const ElementFunction* function_;  ///< Null if every leaf's polynomial is stored.
+    const ElementFunction* function_;  ///< The function; null if every leaf's polynomial is stored.
     ElementLocator locator_;
     std::vector<Polynomial> leaves_;  ///< Polynomials by leaf number.
 };

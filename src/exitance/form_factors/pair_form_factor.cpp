@@ -94,7 +94,7 @@ class OuterIntegral {
 /// A part of the outer edge on which the inner integral is smooth, except possibly at its ends.
 struct Part {
     double first, last;
-    bool touches;  ///< One of its ends coincides with an end point of the inner edge.
+    bool touches;  ///< One of the part's ends coincides with an end point of the inner edge.
 };
 
 /// Splits the outer edge where it passes end points of the inner edge, near which the inner integral has strong

@@ -126,7 +126,7 @@ struct LeafLight {
 /// Reads b near the corners and at the centre of every leaf, so that leaves at the border of a bright place are known.
 std::vector<LeafLight> light_of_leaves(const ElementTree& tree, std::span<const ElementId> leaves,
                                        const ReflectedLight& b) {
-    constexpr double inside = 0.1;  // derived from the position of samples: slightly inside the element's border
+    constexpr double inside = 0.1;  // distance from the border; derived from samples, which are slightly inside it
     constexpr std::array<Vec2, 5> places{
         {{0.5, 0.5}, {inside, inside}, {1 - inside, inside}, {inside, 1 - inside}, {1 - inside, 1 - inside}}};
     std::vector<LeafLight> out(leaves.size());
@@ -149,7 +149,7 @@ std::vector<LeafLight> light_of_leaves(const ElementTree& tree, std::span<const 
 }  // namespace
 
 BrightPlaces find_bright_places(const Stage& stage, const ElementTree& tree, const ReflectedLight& b) {
-    constexpr double bright = 4;  // a sixteenth of the rays for equal noise
+    constexpr double bright = 4;  // multiple of the room's mean light; from there on aiming saves most rays
     const std::vector<ElementId> leaves = tree.leaves();
     const std::vector<LeafLight> values = light_of_leaves(tree, leaves, b);
     std::vector<RoomLight> rooms(std::max<std::size_t>(1, stage.rooms.count()));

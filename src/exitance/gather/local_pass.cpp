@@ -84,7 +84,7 @@ double LocalPass::misfit_for_body(ElementId e, const LocalPassDemand& demand) co
 /// at the opening of a dark room would take most rays. This concerns at most a quarter of a room's light and adds at
 /// most a quarter to its squared noise.
 double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const {
-    constexpr double far_lighter = 4;  // derived from the limit of a quarter of the room's light
+    constexpr double far_lighter = 4;  // derived from the limit above, a quarter of the light
     const double usual_rays = 4 * demand.rays.average;
     // Exponents derived from those that minimize the rays for a mean squared error: half of them.
     const double effort_factor = std::clamp(std::pow(sampled.place_rays / usual_rays, 0.25), 0.5, 2.0);

@@ -21,11 +21,11 @@ struct LocalPassDemand {
     bool curved = false;   ///< Fit polynomials of second degree where they exceed their noise.
     /// Allowed error of interpolation relative to the light on an element, if elements are summed; 0: not limited.
     double relative_tolerance = 0;
-    /// Parts of b that are summed instead of casting rays, if the scene is suitable (empty: cast rays), and the allowed
-    /// error of one element as a share of the irradiance.
+    /// Parts of b whose light is summed from element to element, without rays, if the scene is suitable. Empty: all
+    /// light is gathered by rays.
     std::span<const ElementGather> elements = {};
-    double element_share = 0;
-    int max_depth = 8;  ///< Limit on the rounds of refinement.
+    double element_share = 0;  ///< Allowed error of one element in such a sum, as a share of the irradiance.
+    int max_depth = 8;         ///< Limit on the rounds of refinement.
     /// Light of every room over the mean light: allowed errors are proportional to it. Empty if the scene is one room.
     std::span<const double> light_in = {};
     /// Factor on the noise allowed in every room, at least 1: rooms that are accurate enough already do not take the
@@ -153,7 +153,7 @@ class LocalPass {
     ElementTree tree_;
     Field<ElementId, SampledElement> sampled_;
     double mean_area_ = 0;
-    double noise_area_ = 0;  ///< Like mean_area_, for allotting noise.
+    double noise_area_ = 0;  ///< Mean area that shares out the allowed noise, m^2 (mean_area_ does so for the misfit).
     /// Mean area of the first elements of every body, and the `even_noise_area` of its present ones, m^2.
     std::vector<double> mean_area_of_, noise_area_of_;
     bool is_crowd_ = false;  ///< True if most elements are whole polygons (`ErrorShare`).

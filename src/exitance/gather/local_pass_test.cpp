@@ -146,7 +146,7 @@ TEST_F(OneBrightFace, MayBeNoisierWhereItIsMuchBrighter) {
     gather(demand, usual);
     LocalPass other(stage, {.edge = 0.8, .grading_levels = 0}, 1);  // this pass has not gathered before
     Progress progress;
-    demand.light = 0.002;  // of a room that is dark except for this face's light, which is up to 0.1 elsewhere
+    demand.light = 0.002;  // light of a room that is dark except for this face, whose light is up to 0.1
     const double truth = error(other.gather(b, true, demand, dim, progress, StopRequest()));
     EXPECT_LT(dim.rays, usual.rays / 2);
     EXPECT_LT(truth, 1.5 * std::hypot(dim.whole.noise, dim.whole.interpolation));
@@ -189,7 +189,7 @@ TEST(LocalPass, LightAroundOpenLegsDoesNotFollowTheDarknessBelowThem) {
     for (ElementId e : E.tree.leaves()) {
         const RegionId region = E.tree.region(e);
         const Normal& n = scene.regions()[region].plane.n;
-        if (is_of_room(region) || n.z < 0.5 || E.tree.patch(e).centre().z > 0.5 * top) continue;  // not a plate
+        if (is_of_room(region) || n.z < 0.5 || E.tree.patch(e).centre().z > 0.5 * top) continue;  // not on a plate
         ++leaves;
         const std::uint32_t first = scene.regions()[region].surfaces[0].value;
         RandomStream random(1, Stream::mesh, e.value);

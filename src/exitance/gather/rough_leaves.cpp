@@ -81,9 +81,9 @@ void LocalPass::look_closely(ElementId e, SampledElement& sampled, const Reflect
 
 /// Returns the leaves that share a border with a leaf, on the same region.
 std::vector<ElementId> LocalPass::beside(ElementId e, const ElementLocator& locator) const {
-    constexpr double side = 6;  // derived from three places in the middles of equal parts of a side
+    constexpr double side = 6;  // derived from three points per side, in the middle of each third
     constexpr std::array<double, 3> along{1 / side, 0.5, 1 - 1 / side};
-    constexpr double outside = 0.02;  // derived from neighbours of up to a fiftieth of the leaf's width
+    constexpr double outside = 0.02;  // share of the width; derived from neighbours at least a fiftieth as wide
     std::vector<ElementId> out;
     for (const double t : along)
         for (const Vec2 uv : {Vec2{t, -outside}, Vec2{t, 1 + outside}, Vec2{-outside, t}, Vec2{1 + outside, t}}) {

@@ -81,7 +81,7 @@ TEST(RoughPlaces, CostNothingWhereLightIsSmooth) {
     demand.rough_places = found;
     const ElementFunction after = pass.gather(plate.b, false, demand, again, progress, stop);
     EXPECT_EQ(before.values, after.values);
-    EXPECT_LE(again.rays, 4096u);  // the rays of one examination
+    EXPECT_LE(again.rays, 4096u);  // the place is examined once, and nothing is refined
 }
 
 }  // namespace

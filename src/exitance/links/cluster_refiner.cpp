@@ -101,8 +101,8 @@ class ClusterRefiner::Judge {
         double most = 0, power = 0;
     };
 
-    /// w  direction from the source to the receiver
-    /// slack  maximum difference of a cosine between any two of their points from that between their centres
+    /// Returns upper bounds of the effect of the light of S on R. `w`: direction from S to R. `slack`: maximum
+    /// difference of a cosine between any two of their points from that between their centres.
     Arrival arrival(Body R, Body S, const Vec3& w, double slack) const {
         double sent = 0;
         const auto send = [&](const Vec3& area, double spread, const VectorPower& v) {

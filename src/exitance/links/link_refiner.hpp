@@ -21,7 +21,7 @@ class LinkRefiner {
     /// their roughness as in NodalField::roughness(). Called when the children get stored values.
     using Light = std::function<void(const std::vector<ElementId>& parents, Field<ElementId, double>& roughness)>;
 
-    /// light  required if `sites` do not hold all elements
+    /// `light` is required if `sites` do not hold all elements.
     LinkRefiner(ElementTree& tree, LinkSites& sites, Light light = {})
         : tree_(tree), sites_(sites), light_below_(std::move(light)), judged_(sites) {}
 

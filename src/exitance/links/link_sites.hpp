@@ -50,9 +50,9 @@ class LinkSites {
     std::size_t nodes() const { return n_; }  ///< Number of values per element.
 
     const Normal& normal(ElementId e) const { return stage_->scene.regions()[tree_->region(e)].plane.n; }
-    double radius(ElementId e) const {
+    double radius(ElementId e) const {  ///< Radius of a ball around the centre, metres; held elements only.
         return radius_[place_[e]];
-    }  ///< Radius of a ball around the centre, metres; held elements only.
+    }
     Point centre(ElementId e) const { return frame(e).centre(); }
     /// The patch; for a cell, the parallelogram that replaces it.
     Patch frame(ElementId e) const;

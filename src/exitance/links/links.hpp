@@ -53,8 +53,8 @@ struct Link {
 /// Source: [Hanrahan91], [Gortler93].
 class Links {
   public:
-    /// links  in any order
-    /// blocks  nodes()^2 values for each near link
+    /// `links` may be in any order.
+    /// `blocks`: nodes()^2 values for each near link.
     Links(const LinkSites& sites, std::vector<Link> links, std::vector<float> blocks);
 
     std::size_t size() const { return constants_.size() + kernels_.size(); }
@@ -133,9 +133,9 @@ ElementPart linked_part(const LinkSites& sites, const Links& links, const Cluste
 /// own ends; it needs the values of these and of the ends below the sources of its links.
 class LinkOperator final : public TransportOperator {
   public:
-    /// far  cluster links; may be null
-    /// together  number of consecutive ends per block of one process, which alone has the links to them; all receivers
-    /// must then be ends. 0: every process has all links
+    /// `far`: cluster links; may be null.
+    /// `together`: number of consecutive ends per block of one process, which alone has the links to them; all
+    /// receivers must then be ends. 0: every process has all links.
     LinkOperator(const LinkSites& sites, const Links& links, const ClusterLinks* far, const ElementPart& part,
                  std::size_t together = 0);
 

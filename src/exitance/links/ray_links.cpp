@@ -38,7 +38,7 @@ class RowLinker {
     RowLinker(const LinkSites& sites, const LeafOrder& order, const Field<ElementId, double>& roughness)
         : tree_(sites.tree()), sites_(sites), order_(order), roughness_(roughness) {}
 
-    /// counts  weight of each ray in `hits`; empty: 1
+    /// Appends the links of a receiver to `out`. `counts`: weight of each ray in `hits`; empty: 1.
     void link(ElementId receiver, std::span<const std::uint32_t> hits, std::span<const float> counts, double allowed,
               std::vector<Link>& out) {
         places_.clear();

@@ -20,7 +20,7 @@ struct FoundLink {
     bool cuts_receiver = false;   ///< True if its receiver must be split whatever the other links contribute.
 };
 
-/// Sum over all links of a receiver: departures, and light that may be occluded.
+/// Sum over all links of a receiver: departures from the receiver's polynomial, and light that may be occluded.
 struct ReceivedLight {
     Departure departure{};
     NodeRow shadowed{}, variance{};

@@ -10,16 +10,16 @@
 namespace exitance {
 namespace {
 
-constexpr double cell_width = 0.1;   ///< Metres, derived from a tenth of the narrowest corridors.
-constexpr double max_cells = 40000;  ///< Derived from half a second of rays.
+constexpr double cell_width = 0.1;   ///< Metres; derived from the narrowest corridors, which are ten times as wide.
+constexpr double max_cells = 40000;  ///< Derived from half a second of ray casting.
 /// Minimum number of cells along the shorter side, derived from models at a tenth of their size.
 constexpr double fewest_across = 20;
 /// Position of the first centre, in cells: derived from the golden section, so that walls at round numbers do not pass
 /// through centres.
 constexpr double first_centre = 0.118;
-constexpr double furniture_height = 1.9;  ///< Metres, derived from the height of people: lower spaces are not rooms.
-constexpr double furniture_share =
-    0.7;  ///< Share of the usual height; derived from tall cupboards, for models out of scale.
+constexpr double furniture_height = 1.9;  ///< Metres; derived from the height of people: lower spaces are not rooms.
+constexpr double furniture_share =        ///< Share of the usual height; derived from cupboards in models out of scale.
+    0.7;
 constexpr double door_height = 2.15;    ///< Metres, derived from doors of 2.0 to 2.1 m.
 constexpr double door_share = 0.78;     ///< Share of the height, derived from doors of 2.1 m below ceilings of 2.7 m.
 constexpr double least_lintel = 0.1;    ///< Share of the height, derived from doors of 2.1 m below ceilings of 2.35 m.
@@ -175,7 +175,7 @@ bool FloorCells::holds(std::uint32_t part, const Point& p, double border) const 
 /// Distance from a cell's centre to the wall or outline in a direction, metres, by bisection.
 double FloorCells::reach(std::size_t cell, const Vec3& way) const {
     constexpr int halvings = 40;
-    constexpr double far = 1.5;  // cells, derived from the distance to the next centre but one
+    constexpr double far = 1.5;  // cells; derived from the distance to the next but one cell's centre
     const Point p = centre(cell);
     const auto is_open = [&](double t) {
         return floor_.holds(p + t * way) && !is_wall_between(p, p + t * way, height_[cell]);
@@ -203,8 +203,8 @@ MeasuringPlane FloorCells::rectangle(std::uint32_t part) const {
             const double at = dot(centre(i) - frame_.origin, ways[k]);
             if (at > far - width_) most[k] = std::max(most[k], at + reach(i, ways[k]));
         }
-        // The sides of the whole floor are known exactly.
-        constexpr double snap = 1e-4;  // metres; derived from the accuracy of rays
+        // The sides of the whole floor are known exactly: a side of a part within `snap` of one is moved onto it.
+        constexpr double snap = 1e-4;  // metres; derived from the accuracy of ray hits
         const double side = k % 2 == 1 ? 0 : k == 0 ? whole.x : whole.y;
         if (std::abs(most[k] - side) < snap) most[k] = side;
     }

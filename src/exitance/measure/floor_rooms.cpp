@@ -11,10 +11,10 @@ namespace exitance {
 namespace {
 
 constexpr double least_area = 1;           ///< m^2
-constexpr double least_floor_share = 0.1;  ///< Share of the largest floor, derived from models out of scale.
-constexpr double person = 1.9;             ///< Metres, derived from the height of people.
-constexpr double cupboard_share = 0.75;    ///< Share of a room's height, derived from tall cupboards.
-constexpr std::size_t most_floors = 256;   ///< Derived from a few seconds of rays.
+constexpr double least_floor_share = 0.1;  ///< Share of the largest floor's area; derived from models out of scale.
+constexpr double person = 1.9;             ///< Metres; derived from the height of people: lower spaces are not rooms.
+constexpr double cupboard_share = 0.75;    ///< Part of a room's height; derived from cupboards: below it is furniture.
+constexpr std::size_t most_floors = 256;   ///< Derived from a few seconds of ray casting.
 constexpr std::size_t most_rooms = 64;
 
 /// Floors that are large enough for rooms, the largest first.

@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-constexpr double upward = 0.999;  ///< Cosine between directions that count as equal, derived from slopes below 4%.
+constexpr double upward = 0.999;  ///< Cosine between directions that count as equal; derived from slopes below 4%.
 
 FloorShape shape_of(RegionId region, std::vector<std::vector<Point>> loops, const Plane& plane, double area) {
     FloorShape out{region, std::move(loops), plane, area, {}};

@@ -49,11 +49,11 @@ struct GridLight {
 /// 100,000 points.
 Result<GridLight> make_grid(const MeasuringPlane& plane);
 
+constexpr int cylinder_planes = 25;  // odd: the error is of the order of the inverse square of twice the number
 /// Computes the light at the points, as `probe` does: exact direct light, and indirect light from the elements on
 /// surfaces or from rays in free space (about 1 ms per point). Points that do not count get no light and are not open.
 /// Cylindrical illuminance is the mean of `cylinder_planes` vertical planes. The error is at most 8e-4 for light from
 /// one direction, and much less for light from all around.
-constexpr int cylinder_planes = 25;  // odd: the error is of the order of the inverse square of twice the number
 void measure(const RadiosityFunction& light, GridLight& grid, Progress& progress, const StopRequest& stop);
 
 /// Mean, minimum and maximum of some values, and their uniformity as defined by lighting standards.

@@ -98,7 +98,7 @@ void ClusterTree::set_children(ClusterId c, std::span<const Body> children) {
 
 ClusterId ClusterTree::build(std::span<Item> items) {
     constexpr std::size_t max_pieces = 6, max_groups = 4;
-    constexpr double min_direct_share = 1.0 / 8;  // share of half the box's surface area
+    constexpr double min_direct_share = 1.0 / 8;  // share of half the box's surface; larger pieces become children
     const ClusterId c = nodes_.add({});
     sum_up(c, items);
     Box box;
@@ -146,9 +146,9 @@ void ClusterTree::sum_up(ClusterId c, std::span<const Item> items) {
 
 namespace {
 
+constexpr std::size_t kinds = 54;  // classes of directions
 /// Assigns directions to 54 classes: nine squares on each face of a cube, so that each axis is in the middle of a
 /// square.
-constexpr std::size_t kinds = 54;
 std::uint8_t kind_of(const Vec3& n) {
     const Vec3 size = {std::abs(n.x), std::abs(n.y), std::abs(n.z)};
     const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;

@@ -54,9 +54,9 @@ class ClusterTree {
         return std::span(children_).subspan(nodes_[c].first, nodes_[c].count);
     }
     const Point& centre(ClusterId c) const { return nodes_[c].centre; }  ///< Centroid of the cluster's area.
-    double radius(ClusterId c) const {
+    double radius(ClusterId c) const {  ///< Radius of a ball around the centre that contains it, metres.
         return nodes_[c].radius;
-    }  ///< Radius of a ball around the centre that contains it, metres.
+    }
     double area(ClusterId c) const { return nodes_[c].area; }  ///< Total area of all members, m^2.
 
     IdRange<FacingId> facings(ClusterId c) const { return nodes_[c].facings; }

@@ -13,8 +13,8 @@ namespace exitance {
 struct SharedNodes {
     /// Per leaf: index of its first corner in `node_of`. Entries of inner elements are unused.
     Field<ElementId, std::uint32_t> first_corner;
-    std::vector<std::uint32_t> node_of;     ///< Node of each corner. The nodes of a plane are contiguous,
-    std::vector<std::uint32_t> first_node;  ///< starting here: one entry per plane, and one past the last.
+    std::vector<std::uint32_t> node_of;     ///< Node of each corner. The nodes of a plane are contiguous.
+    std::vector<std::uint32_t> first_node;  ///< First node of each plane; last entry: number of nodes.
 
     std::span<const std::uint32_t> of(ElementId leaf, const ElementTree& tree) const {
         const int corners = leaf < tree.first_of_fans() ? tree.patch(leaf).corner_count() : 3;

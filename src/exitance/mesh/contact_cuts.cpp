@@ -40,7 +40,7 @@ class ContactCutter {
     ContactCutter(ElementTree& tree, const ContactLines& contacts, const StopRequest* stop)
         : tree_(tree), contacts_(contacts), stop_(stop) {}
 
-    /// around  the lines that cross the element
+    /// Splits an element and its parts. `around`: the lines that cross the element.
     void run(ElementId e, Lines around) {
         open_.push_back(
             {.element = e, .area = tree_.area(e), .around = std::make_shared<const Lines>(std::move(around))});

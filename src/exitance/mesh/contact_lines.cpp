@@ -162,8 +162,8 @@ bool is_point(const std::pair<Vec2, Vec2>& line) {
 /// faces of a curved surface, on which no light changes here. `height`: of the edge above the element, metres.
 bool leads_away(const ElementTree& tree, ElementId e, const Region& region, const Point& p, const Point& q,
                 double height) {
-    constexpr double near = 0.1;  // derived from the strip of light, as wide as the height: corners of nearly coplanar
-                                  // faces, which may have been moved into one plane, are a small part of it apart
+    constexpr double near = 0.1;  // share of the height; derived from nearly coplanar faces (corners move much less)
+
     const auto is_corner = [&](const Point& x) {
         if (std::abs(region.plane.signed_distance(x)) > near * height) return false;
         return std::any_of(region.loops.begin(), region.loops.end(), [&](const std::vector<Point>& loop) {
@@ -247,7 +247,7 @@ std::vector<std::pair<Vec2, Vec2>> ContactLines::inside(const ElementTree& tree,
     double longest = 0;
     for (const Point& corner : outline) longest = std::max(longest, norm(corner - outline[0]));
     // The slivers between contacts that differ by tiny angles are too thin to be split accurately.
-    constexpr double min_width_in_tolerances = 100;  // times the tolerance: 1e-5 of the scene's size
+    constexpr double min_width_in_tolerances = 100;  // multiple of the tolerance: 1e-5 of the scene's size
     if (tree.area(e) <= min_width_in_tolerances * tolerance_ * longest) lines.clear();
     std::vector<std::pair<Vec2, Vec2>> out;
     std::erase_if(lines, [&](const Line& line) {
@@ -271,7 +271,7 @@ std::vector<ContactLines::Line> ContactLines::over_plane(std::span<const RegionI
                                    [](RegionId a, RegionId b) { return a.value < b.value; });
     };
     // A surface that covers a point may be above it by this much (Occluders::is_covered).
-    constexpr double coplanar = 1e-6;  // the same distance as there, as a share of the scene's size
+    constexpr double coplanar = 1e-6;  // share of the scene's size, equal to that of Occluders
     const double near = coplanar * scene_->size(), highest = std::max(near, gap);
     Box box;
     for (RegionId region : regions)

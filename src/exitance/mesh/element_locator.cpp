@@ -25,7 +25,7 @@ struct ElementLocator::Nearest {
     double distance = HUGE_VAL;  ///< Squared, m^2.
 
     void look_at(std::span<const Root> roots, const Point& p) {
-        if (!std::isfinite(p.x + p.y + p.z)) return;  // as of rays in damaged scenes: no root
+        if (!std::isfinite(p.x + p.y + p.z)) return;  // no root; such points come from rays in damaged scenes
         for (const Root& r : roots) {
             const Vec2 at = r.coordinates(p);
             if (!r.holds(at)) continue;
@@ -37,7 +37,7 @@ struct ElementLocator::Nearest {
             const auto [a, b] = sides(r);
             const double d = squared_norm((at - held).x * a + (at - held).y * b);
             if (root && !(d < distance)) continue;
-            const bool has_area = d >= 0;  // else d is NaN, and there are no coordinates
+            const bool has_area = d >= 0;  // false if d is NaN, since the root has no coordinates
             root = &r, uv = has_area ? held : Vec2{}, distance = has_area ? d : HUGE_VAL;
         }
     }

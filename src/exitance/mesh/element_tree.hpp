@@ -98,20 +98,20 @@ class ElementTree {
     IdRange<ElementId> children(ElementId e) const { return node(e).children; }
     bool is_leaf(ElementId e) const { return node(e).children.empty(); }
     Cut way(ElementId e) const { return node(e).way; }  ///< How an element was split; none for a leaf.
-    double ratio(ElementId e) const {
+    double ratio(ElementId e) const {                   ///< Position of the cut, for splits across one direction.
         return node(e).ratio;
-    }  ///< Position of the cut, for splits across one direction.
-    ElementId parent(ElementId e) const {
+    }
+    ElementId parent(ElementId e) const {  ///< Parent of an element; none for a root.
         return is_stored(e) ? content_->parent[e] : fanned(e);
-    }  ///< Parent of an element; none for a root.
+    }
     RegionId region(ElementId e) const { return content_->region[is_stored(e) ? e : fanned(e)]; }
     Patch patch(ElementId e) const { return is_stored(e) ? content_->patch[e] : fan_triangle(e); }
-    double area(ElementId e) const {
+    double area(ElementId e) const {  ///< Area of its domain, m^2.
         return is_stored(e) ? content_->area[e] : fan_triangle(e).area();
-    }  ///< Area of its domain, m^2.
-    const CutLine& line(ElementId e) const {
+    }
+    const CutLine& line(ElementId e) const {  ///< Line along which the element was split, if way(e) is Cut::line.
         return content_->lines[node(e).line].line;
-    }  ///< Line along which the element was split, if way(e) is Cut::line.
+    }
     /// The fan into which an element was split (way(e) is Cut::fan).
     FanView fan(ElementId e) const {
         const std::uint32_t i = node(e).line, first = cuts_->fans[i].first_place;
@@ -126,9 +126,9 @@ class ElementTree {
         const LineCut& cut = content_->lines[node(e).line];
         return {cut.origin[side], cut.size[side]};
     }
-    bool is_cell(ElementId e) const {
+    bool is_cell(ElementId e) const {  ///< True if the element's domain is smaller than its patch.
         return is_stored(e) && content_->cell[e] != none;
-    }  ///< True if the element's domain is smaller than its patch.
+    }
     /// The domain as a convex polygon in the element's coordinates, counter-clockwise.
     std::vector<Vec2> domain(ElementId e) const;
     /// The domain in space, metres.

@@ -63,7 +63,7 @@ class Cutter {
         return size_.edge / std::pow(2.0, size_.grading_levels) / std::pow(rise, 1 / exponent);
     }
 
-    /// open  which borders of the element are on other borders of its piece, whose ends are graded, too
+    /// `open`: which borders of the element are on other borders of its piece, whose ends are graded, too.
     void refine_parallelogram(ElementId e, std::array<bool, 4> touches, std::array<bool, 4> open) {
         const double a = norm(tree_.patch(e).a), b = norm(tree_.patch(e).b);
         const auto strip_at = [&](std::size_t i, std::size_t j) {

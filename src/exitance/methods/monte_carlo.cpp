@@ -107,7 +107,7 @@ GlobalLight solve_monte_carlo(const MethodInput& input) {
         for (const Spectrum& p : power) first_power += mean(p);
         for (left = first_power; left > knobs.residual * first_power && sweeps < runs * knobs.max_iterations;
              ++sweeps) {
-            // The minimum is derived from the generator: one block of its points.
+            // The minimum is derived from the point generator, which makes blocks of 64 points.
             const double rays = std::max(64.0, knobs.solve_rays.average * static_cast<double>(n) * left / first_power);
             const std::vector<Spectrum> arrived = shooter.shoot(power, rays);
             left = 0;

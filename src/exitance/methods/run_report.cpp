@@ -18,7 +18,7 @@ void add_findings(std::vector<std::string>& warnings, std::span<const Finding> f
 }
 
 void warn_of_useless_light(SolveStatistics& statistics) {
-    constexpr double rough = 0.32;  // derived from the error at which a scene is recognizable in its pictures
+    constexpr double rough = 0.32;  // relative error; derived from pictures, in which the scene is just recognizable
     const double error = statistics.relative_error_estimate.value_or(0);
     const bool is_useless = error >= 1;
     if (error < rough || (!is_useless && statistics.stopped_by == "divergence")) return;

@@ -287,7 +287,7 @@ TEST(SolveScene, WarnsIfAllLightFallsOnBacks) {
               (std::vector<std::string>{"no light reaches the front of any face: they may be turned inside out"}));
     std::reverse(d.faces[0].corners.begin(), d.faces[0].corners.end());
     EXPECT_TRUE(solved(*make_scene(d).scene, {.error = 0.05}).statistics.warnings.empty());
-    // The lamp alone, or in front of nothing: there are no faces to turn.
+    // With the lamp turned to face away from the floor, no light meets any face: turning faces would not help.
     std::reverse(d.faces[1].corners.begin(), d.faces[1].corners.end());
     EXPECT_EQ(solved(*make_scene(d).scene, {.error = 0.05}).statistics.warnings,
               (std::vector<std::string>{"no light reaches any face: all of it leaves the scene"}));

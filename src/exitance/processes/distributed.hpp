@@ -233,8 +233,8 @@ void shared_ranges_of(std::span<T> array, std::size_t count, std::size_t grain,
                       const std::function<void(std::size_t, std::size_t)>& body, const Value& value, const Work& work) {
     using Held = std::remove_reference_t<decltype(value(0))>;
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_copyable_v<Held>);
-    constexpr std::size_t sparse =
-        4;  // if less than 1 / sparse of the array is written, sharing would copy more bytes than sending does
+    constexpr std::size_t sparse =  // if less than 1 / sparse of an array is written, sending moves fewer bytes
+        4;
     const bool is_dense = sparse * count * sizeof(Held) >= array.size_bytes();
     const std::span<char> pages =
         processes() > 1 && is_dense ? detail::open_in_common(detail::bytes_of(array)) : std::span<char>();

@@ -89,7 +89,7 @@ class Borders {
         return reached;
     }
 
-    /// The components into which such steps divide all sides; part_of[face][is front] is the component of a side.
+    /// The components into which steps across edges divide all sides; part_of[face][is front] is that of a side.
     /// Bodies that touch along an edge, or whose faces coincide there, are separate components (`separate_bodies`).
     struct Parts {
         std::vector<std::array<std::uint32_t, 2>> part_of;

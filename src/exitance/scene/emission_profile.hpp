@@ -31,8 +31,8 @@ struct EmissionProfile {
         none,      ///< 1: the values are radiance.
         flat,      ///< Cosine to the face's normal: the values are intensity per area of a planar opening.
         box,       ///< Projected area of a box of `size`, metres: the values are intensity.
-        cylinder,  ///< Projected area of an upright cylinder of diameter size.x and height size.y: the values are
-                   ///< intensity.
+        cylinder,  ///< Projected area of an upright cylinder of diameter size.x and height size.y, metres.
+                   ///< The values are intensity, as for a box.
     };
     static constexpr int bodies = 4;
 

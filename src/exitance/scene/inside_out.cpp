@@ -74,10 +74,10 @@ class BodyFinder {
     std::vector<bool> turned_;
     std::vector<Box> box_of_face_;
     Bvh face_tree_;
-    std::vector<std::uint32_t> emitters_;        ///< Faces that emit.
-    Bvh emitter_tree_;                           ///< Boxes around the centroids of `emitters_`.
-    Bvh cavity_tree_;                            ///< Boxes of `cavities_`.
-    std::optional<bool> has_light_outside_;      ///< Empty until needed, and after a body is turned.
+    std::vector<std::uint32_t> emitters_;    ///< Faces that emit.
+    Bvh emitter_tree_;                       ///< Boxes around the centroids of `emitters_`.
+    Bvh cavity_tree_;                        ///< Boxes of `cavities_`.
+    std::optional<bool> has_light_outside_;  ///< Result of `has_light_outside`; empty until needed, and after a turn.
     std::vector<std::optional<double>> fronts_;  ///< Results of `share_of_fronts`; empty until needed.
 };
 

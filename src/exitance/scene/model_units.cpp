@@ -16,8 +16,8 @@ struct BoxSides {
 
     explicit BoxSides(const Scene& scene) {
         const Box& box = scene.box();
-        constexpr double near_side =
-            0.02;  // relative to the box's extent: windows and panelling are slightly off the walls
+        constexpr double near_side =  // relative to the box's extent: windows and panelling are slightly off the walls
+            0.02;
         for (const SurfaceId s : scene.surfaces().ids()) {
             const Surface& surface = scene.surfaces()[s];
             for (std::size_t k = 0; k < 3; ++k)

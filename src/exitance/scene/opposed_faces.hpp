@@ -25,7 +25,7 @@ class OpposedFaces {
   private:
     const Scene* scene_;
     double tolerance_;
-    Field<SurfaceId, char> is_opposed_;  ///< 1 or 0; empty if no face is.
+    Field<SurfaceId, char> is_opposed_;  ///< 1 for opposed faces, else 0; empty if no face is opposed.
     std::vector<SurfaceId> faces_;       ///< Faces in the order of the tree's items.
     Bvh tree_;
 };

@@ -124,8 +124,8 @@ std::vector<PlaceFinder::Blade> PlaceFinder::blades_at(const Point& p, const Nor
     return out;
 }
 
-/// start, end  the blades at either side, each of one direction
-/// angle       from start to end, counter-clockwise
+/// Makes the sector between the blades `start` and `end`, each of one direction. `angle`: from start to end,
+/// counter-clockwise.
 PlaceFinder::Sector PlaceFinder::make_sector(const Point& p, const Normal& n, std::span<const Blade> start,
                                              std::span<const Blade> end, double angle) const {
     Sector out;
@@ -137,9 +137,9 @@ PlaceFinder::Sector PlaceFinder::make_sector(const Point& p, const Normal& n, st
         const std::span<const Blade> side = at_start ? start : end;
         // direction from the side into the sector
         const Vec3 off = at_start ? cross(n, side[0].way) : cross(side[0].way, n);
-        const auto depth = [&](const Blade& b) {
+        const auto depth = [&](const Blade& b) {  // distance of p from the blade, positive inside the sector
             return b.before * dot(b.across, off);
-        };  // distance of p from the blade, positive inside the sector
+        };
         double least = HUGE_VAL;
         for (const Blade& b : side) least = std::min(least, depth(b));
         bool is_front = false;

@@ -14,7 +14,7 @@ namespace exitance {
 /// Builds a scene step by step and collects findings.
 class SceneBuilder {
   public:
-    /// turn_bodies  true: reverses the faces of closed bodies that are inside out (`find_inside_out`)
+    /// `turn_bodies`: if true, closed bodies that are inside out (`find_inside_out`) are reversed.
     explicit SceneBuilder(SceneDescription description, bool turn_bodies = false)
         : in_(std::move(description)), turn_bodies_(turn_bodies) {}
     CheckedScene build();

@@ -37,7 +37,7 @@ struct WedgeLists {
 /// skipped.
 struct EventBounds {
     std::span<const double> gains = {};  ///< Per edge, in the order of `among`; empty: unbounded.
-    double least_bend = 0;               ///< Minimum gain of events that change only the curvature (D2),
+    double least_bend = 0;               ///< Minimum gain of events that change only the curvature (D2).
     /// Minimum gain of D2 events more than eight times as long as their penumbra is wide, if below `least_bend`:
     /// bisection would need more triangles for such events than cutting along the line.
     double least_narrow_bend = HUGE_VAL;

@@ -146,8 +146,8 @@ void ThreeEdgeEventFinder::follow(const Point& q0, const Point& q1, const Blocke
         const double at = std::clamp(static_cast<double>(i) / samples, 1e-6, 1 - 1e-6);
         sights.push_back(sight(part.first + at * (part.last - part.first), q0, q1, e, f));
     }
-    const auto cut = [&](double from,
-                         double to) {  // bisects between a visible and a hidden parameter; returns the last visible one
+    const auto cut = [&](double from,  // a visible parameter
+                         double to) {  // a hidden parameter; bisection returns the last visible one
         constexpr int halvings = 30;
         for (int i = 0; i < halvings; ++i) {
             const double middle = 0.5 * (from + to);

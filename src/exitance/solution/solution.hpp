@@ -91,10 +91,10 @@ struct SolveStatistics {
     /// Error of the exported mesh, relative like the estimate.
     std::optional<double> relative_error_estimate_interpolant;
     std::vector<RoomError> rooms;  ///< In descending order of area; a single one if the scene is one room.
-    std::optional<double> relative_error_estimate_worst_room;  ///< Error of the light that `probe` evaluates.
+    std::optional<double> relative_error_estimate_worst_room;  ///< Largest error of the `rooms`.
     /// Errors of the bodies, in descending order of area; empty if no error was measured.
     std::vector<BodyError> bodies;
-    std::optional<double> relative_error_estimate_worst_body;  ///< Error of the light that `probe` evaluates.
+    std::optional<double> relative_error_estimate_worst_body;  ///< Largest error of the `bodies`.
     std::vector<FaceError> surface_errors;                     ///< Error of each face; empty if no error was measured.
     /// Relative RMS standard error of the light on the elements of a Monte Carlo method; 0 for other methods.
     double standard_error = 0;
@@ -108,7 +108,7 @@ struct SolveStatistics {
     std::vector<std::string> warnings;
     std::optional<DiscontinuityCounts> discontinuity;
     std::map<std::string, double> figures;  ///< Further results of parts of the solver, by JSON key.
-    std::string stopped_by;                 ///< Empty, or "time limit", "memory limit", "iterations", "interrupt".
+    std::string stopped_by;  ///< "time limit", "memory limit", "iterations", "interrupt"; empty: not stopped.
 };
 
 /// Links of a hierarchy and the elements that they connect.

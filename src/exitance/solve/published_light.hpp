@@ -5,7 +5,7 @@
 
 namespace exitance {
 
-/// Result of a published form beyond the light of a method: a function on elements of its own, and its counts.
+/// Result of a method in its published form, in addition to GlobalLight: light on the form's own elements, and counts.
 struct PublishedLight {
     /// All arriving light, or that of reflections, by `GlobalLight::delivery`; empty if it is `GlobalLight::indirect`.
     ElementFunction irradiance = {};

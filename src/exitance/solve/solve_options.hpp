@@ -158,7 +158,7 @@ struct SnapshotPlan {
 struct SolveOptions {
     Method method = Method::automatic;
     std::optional<BasisKind> basis = {};
-    int bounces = all_bounces;  ///< 0: direct light alone; n: at most n reflections; all_bounces: until convergence.
+    int bounces = all_bounces;  ///< Reflections: 0: none; n: at most n; all_bounces: until convergence.
 
     /// Relative RMS error of the light that `probe` evaluates; empty: see error_demand().
     std::optional<double> error = {};
@@ -196,7 +196,7 @@ struct SolveOptions {
     ClassicalOptions classical = {};         ///< Options of classical forms; any of them selects such a form.
     SnapshotPlan snapshots = {};             ///< Intermediate solutions of a published form.
 
-    int threads = 0;                         ///< 0: all cores. Results do not depend on it.
+    int threads = 0;                         ///< Number of threads; 0: all cores. Results do not depend on it.
     Schedule schedule = Schedule::stealing;  ///< How work is distributed to threads. Results do not depend on it.
     std::uint64_t seed = 1;
     std::optional<std::size_t> memory_limit_bytes = {};  ///< Memory limit of the whole process.

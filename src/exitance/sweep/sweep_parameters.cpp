@@ -59,7 +59,7 @@ std::vector<SweepValue> range_of(const TomlKeys& keys, const toml::table& table,
     range.take("step", step), range.take("count", count);
     range.finish();
     const bool by_step = table.contains("step"), by_count = table.contains("count");
-    if (by_step == by_count) keys.fail(table, fmt::format("the range '{}' has either 'step' or 'count'", key));
+    if (by_step == by_count) keys.fail(table, fmt::format("the range '{}' needs either 'step' or 'count'", key));
     if (by_step && (step == 0 || (to - from) / step < 0))
         keys.fail(table, fmt::format("the step of '{}' does not lead from {} to {}", key, from, to));
     if (by_count && (count == 0 || (count == 1 && from != to)))
@@ -178,7 +178,7 @@ SweepBlock table_of(const TomlKeys& keys, const toml::node& node, const std::str
 SweepBlock read_block(TomlKeys& keys, const std::string& base) {
     const toml::node *rows = keys.find("rows"), *table = keys.find("table");
     if (rows || table) {
-        if (keys.table().size() != 1) keys.fail(keys.table(), "a block with 'rows' or 'table' has no other keys");
+        if (keys.table().size() != 1) keys.fail(keys.table(), "a block with 'rows' or 'table' must have no other keys");
         return rows ? rows_of(keys, *rows) : table_of(keys, *table, base);
     }
     std::string combine = "cross";

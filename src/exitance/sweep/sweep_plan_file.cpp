@@ -73,7 +73,7 @@ SweepBlock read_scene(TomlKeys& keys, SweepPlan& plan) {
     const std::vector<std::string> patterns = texts_of(keys, "files");
     keys.finish();
     if (!generate.empty() + !plan.scene_template.files.empty() + !patterns.empty() != 1)
-        keys.fail(keys.table(), "a scene has one of 'generate', 'template' and 'files'");
+        keys.fail(keys.table(), "a scene needs exactly one of 'generate', 'template' and 'files'");
     if (!generate.empty()) {
         SweepStep step{"scene", {"generate"}, {0}, {}, line_of(*keys.find("generate"))};
         for (std::string& word : words_of(keys, *keys.find("generate"), generate))
@@ -156,10 +156,10 @@ void read_output(TomlKeys& keys, SweepPlan& plan) {
     keys.take("row", output.row);
     keys.take_choice("take", take_names, output.take);
     if (output.step.empty() == output.file.empty())
-        keys.fail(keys.table(), "an output has either 'file' or 'step'",
+        keys.fail(keys.table(), "an output needs either 'file' or 'step'",
                   "file = \"light.csv\" is a file in {dir}, and step = \"solve\" what the step prints");
     if (output.json.empty() == output.column.empty())
-        keys.fail(keys.table(), "an output has either 'json' or 'column'");
+        keys.fail(keys.table(), "an output needs either 'json' or 'column'");
     if (output.row == 0) keys.fail(*keys.find("row"), "rows are counted from 1");
     if (const std::string path = path_in_folder(output.file); output.step.empty() && path.empty())
         keys.fail(*keys.find("file"), fmt::format("'{}' is not below {{dir}}", output.file),
@@ -219,7 +219,7 @@ SweepPlan read_plan(const toml::table& table, const std::string& path) {
     for_each_table(keys, "step", [&](TomlKeys& step) { read_step(step, plan), step.finish(); });
     for_each_table(keys, "output", [&](TomlKeys& output) { read_output(output, plan), output.finish(); });
     keys.finish();
-    if (plan.steps.empty()) keys.fail(table, "a plan has a [[step]] at least");
+    if (plan.steps.empty()) keys.fail(table, "a plan needs at least one [[step]]");
     return plan;
 }
 

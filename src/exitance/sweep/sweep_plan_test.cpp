@@ -162,7 +162,7 @@ TEST(SweepPlan, ErrorsNameTheLineAndTheKey) {
     EXPECT_EQ(plan_error(step + "[[step]]\nname = \"b\"\n"), "plan.toml:3: 'run' is missing");
     EXPECT_EQ(plan_error(step + "acept = [0]\n"), "plan.toml:3: 'acept' is not known here");
     EXPECT_EQ(plan_error("[[vary]]\n\na = { from = 0, to = 1 }\n" + step),
-              "plan.toml:3: the range 'a' has either 'step' or 'count'");
+              "plan.toml:3: the range 'a' needs either 'step' or 'count'");
     EXPECT_EQ(plan_error("[[vary]]\na = []\n" + step), "plan.toml:2: 'a' has no values");
     EXPECT_EQ(plan_error("[[vary]]\ncombine = \"zip\"\na = [1, 2]\nb = [3]\n" + step),
               "plan.toml:4: 'b' has 1 values where the lists before have 2");
@@ -171,7 +171,7 @@ TEST(SweepPlan, ErrorsNameTheLineAndTheKey) {
     EXPECT_EQ(plan_error("[[vary]]\na = 1979-05-27\n" + step),
               "plan.toml:2: 'a' has a value that is neither text, a number, true nor false");
     EXPECT_EQ(plan_error("[scene]\ngenerate = \"complex\"\ntemplate = \"a.obj\"\n" + step),
-              "plan.toml:1: a scene has one of 'generate', 'template' and 'files'");
+              "plan.toml:1: a scene needs exactly one of 'generate', 'template' and 'files'");
     EXPECT_EQ(plan_error("[scene]\nfiles = \"/nowhere/*.obj\"\n" + step),
               "plan.toml:2: there is no file /nowhere/*.obj");
     EXPECT_EQ(plan_error(step + step), "plan.toml:3: two steps are called 'check'");
@@ -183,7 +183,7 @@ TEST(SweepPlan, ErrorsNameTheLineAndTheKey) {
               "plan.toml:7: 'median' is not one of value, mean, sum, min, max, all");
     EXPECT_EQ(plan_error("title = \"x\n"), plan_error("title = \"x\n"));
     EXPECT_EQ(plan_error("title = \"x\n").substr(0, 12), "plan.toml:1:");
-    EXPECT_EQ(plan_error(""), "plan.toml:1: a plan has a [[step]] at least");
+    EXPECT_EQ(plan_error(""), "plan.toml:1: a plan needs at least one [[step]]");
 }
 
 }  // namespace exitance

@@ -58,7 +58,7 @@ class BodyNeeds {
 
     /// Allowed mean square of w (E - polynomial) on a leaf, (W/m^2)^2; infinite if no body sees it.
     double allowed_squared(ElementId e) const;
-    /// True if a feature between the nodes of a leaf's fit may be too large an error for a body.
+    /// True if a feature of the light between the nodes of a leaf's fit could make the light of a body too inaccurate.
     bool hides_too_much(ElementId e, const DirectFit& fit, const Spectrum& weight) const;
     /// Finds the leaves of `tree` that the rays hit, after some leaves were split.
     void follow(const ElementTree& tree);

@@ -8,8 +8,8 @@ namespace exitance {
 /// Limits on the noise that a fit may keep, if light is estimated by rays (`PlaceLight`).
 struct NoiseAllowed {
     double squared = 0;  ///< Largest mean square of w (E - polynomial) due to noise, (W/m^2)^2; 0: exact light.
-    double mean_light =
-        0;  ///< Mean of w E over all surfaces, W/m^2, if noise is allotted in proportion to light; else 0.
+    double mean_light =  ///< Mean of w E over all surfaces, W/m^2, if noise is allotted in proportion to light; else 0.
+        0;
     /// Elements smaller than this, m^2, matter only together: the light that their nodes miss averages out.
     double minor_area = 0;
 };

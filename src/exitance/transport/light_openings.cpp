@@ -12,8 +12,8 @@ namespace {
 
 constexpr double max_opening = 0.1;              ///< Opening as a share of the smaller side's walls, at most.
 constexpr double max_ratio_to_neighbours = 0.5;  ///< Opening by that of the neighbouring cuts, at most.
-constexpr double neighbour_distance =
-    0.2;  ///< Distance of the neighbouring cuts, as a share of the smaller side's walls.
+constexpr double neighbour_distance =  ///< Distance of the neighbouring cuts, as a share of the smaller side's walls.
+    0.2;
 /// Number of reflections; each keeps half of the previous values. A third of the difference across an opening of a
 /// twentieth is left.
 constexpr int steps = 60;

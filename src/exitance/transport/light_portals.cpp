@@ -15,8 +15,8 @@ namespace {
 
 constexpr unsigned most_portal_rays = 1 << 18;  ///< Rays that search for openings, in total.
 constexpr unsigned ray_batch = 1 << 10;         ///< Rays of a room that are cast in succession.
-constexpr std::size_t enough_ways =
-    64;  ///< Rays through a room's openings after which the search stops: more would find the same openings.
+constexpr std::size_t enough_ways =  ///< Rays through a room's openings at which the search stops: more find no others.
+    64;
 constexpr std::size_t most_openings = 8;  ///< Maximum number of openings between two rooms.
 constexpr std::size_t most_cells = 16;    ///< Parallelograms at which rays of one room are aimed, at most.
 
@@ -45,8 +45,8 @@ class PortalFinder {
     PortalCell opening(std::size_t room, const Way& way) const;
 
   private:
-    /// Writes the room at the hit of each ray from a point of free space; `none` if it hits no front.
     static constexpr std::size_t none = ~std::size_t{0};
+    /// Writes the room at the hit of each ray from a point of free space; `none` if it hits no front.
     void look(const Point& from, std::span<const Vec3> directions, std::vector<std::size_t>& met) const;
     Point middle(std::size_t room, const Way& way) const;
     Normal normal(std::size_t room, const Way& way, const Point& at) const;

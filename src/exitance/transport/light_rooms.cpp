@@ -17,21 +17,21 @@ namespace exitance {
 namespace {
 
 constexpr double least_share = 0.05;  ///< Area of a room as a share of all area but ground and sky, at least.
-constexpr double least_detail =
-    0.001;  ///< Minimum number of elements of a small room next to ground and sky, as a share of all elements.
+constexpr double least_detail =       ///< Minimum size of a small room below the sky, as a share of all elements.
+    0.001;
 /// Share of an element's rays that reach the sky, above which it is outdoors. Under an open sky that is half of the
 /// rays of a facade, and most of those of a ground.
 constexpr double outdoors = 0.25;
 constexpr double far_larger = 20;  ///< Minimum extent of ground and sky relative to all other geometry.
 constexpr double flattest = 0.1;   ///< Smallest over largest extent of a room; anything flatter is a gap.
-constexpr double thinnest =
-    0.03;  ///< Mean distance between opposite walls over the square root of their area; anything thinner is a gap.
+constexpr double thinnest =        ///< Distance of opposite walls over the root of their area; thinner is a gap.
+    0.03;
 constexpr std::size_t fewest_walls = 4;  ///< Minimum number of walls of a room.
 constexpr std::size_t most_rooms = 64;
-constexpr unsigned least_rays =
-    16;  ///< Rays per leaf, at least; a leaf of mean area has 24. Enough if rooms make up the whole scene.
-constexpr unsigned most_room_rays =
-    256;  ///< Rays per leaf, at most. Outdoors most leaves are ground, and a room may have only a few leaves.
+constexpr unsigned least_rays =  ///< Minimum per leaf; a leaf of mean area has 24. Enough if all is rooms.
+    16;
+constexpr unsigned most_room_rays =  ///< Maximum per leaf: outdoors a room may have only a few leaves.
+    256;
 constexpr std::size_t rays_outdoors = 1 << 18;  ///< Rays of all leaves together, outdoors.
 
 /// Starting values that differ between rooms: by position along a line, by distance from the centre, and a small random

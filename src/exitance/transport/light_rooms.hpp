@@ -23,7 +23,7 @@ class LightRooms {
     /// Treats the whole scene as one room.
     LightRooms() = default;
 
-    std::size_t count() const { return areas_.size(); }           ///< 0 if the whole scene is one room.
+    std::size_t count() const { return areas_.size(); }  ///< Number of rooms; 0 if the whole scene is one room.
     double area(std::size_t room) const { return areas_[room]; }  ///< m^2
     /// Index of the room that contains a point of a region; rooms are sorted by descending area.
     std::size_t at(RegionId region, const Point& x) const;

@@ -10,8 +10,8 @@ namespace exitance {
 namespace {
 
 constexpr std::uint32_t samples = 4;  ///< Points per leaf.
-constexpr double coplanar =
-    1e-6;  ///< Distance of touching surfaces over the scene's size, as in Occluders::is_covered.
+constexpr double coplanar =  ///< Distance of touching surfaces over the scene's size, as in Occluders::is_covered.
+    1e-6;
 
 /// True if a front lies before the leaf at one of some sample points, nearer than `widths` times the leaf's width but
 /// farther than `touching`, metres.

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t rows_a_task = 256, rows_a_block = 16384;
 constexpr int threshold_steps = 10;             ///< Bisections of the logarithm of a row's threshold.
-constexpr double least_threshold_share = 1e-4;  ///< Smallest threshold over the largest; smaller entries cost nothing.
+constexpr double least_threshold_share = 1e-4;  ///< Smallest threshold, as a share of the largest.
 
 /// Sum of the values of all faces of each node, after the values themselves.
 std::vector<double> with_sums(const FaceTree& tree, std::vector<double> of_faces) {

@@ -15,8 +15,8 @@ namespace exitance {
 class NearFaces {
   public:
     NearFaces() = default;
-    /// middles  mean of the corners of each face
-    /// radii  largest distance of a face's corner from its middle, metres
+    /// `middles`: mean of the corners of each face. `radii`: largest distance of a face's corner from its middle,
+    /// metres.
     NearFaces(std::span<const ViewFace> faces, std::span<const Point> middles, std::span<const double> radii);
 
     /// Calls visit(face) for every face j with A_j >= pi d^2 `negligible` or d <= 2 (`reach` + radius of j), d the

@@ -10,8 +10,8 @@ namespace {
 
 constexpr int max_depth = 20;              ///< Halvings of a cell, at most: down to 1e-3 of its size in each direction.
 constexpr double dominating_share = 0.25;  ///< Share of the tolerance that applies to entries that dominate their row.
-constexpr double dark_cell_share =
-    0.05;                              ///< Share of the light that a dark cell may receive, if parts of it may be lit.
+constexpr double dark_cell_share =  ///< Share of the light that a dark cell may receive, if parts of it may be lit.
+    0.05;
 constexpr double unseen_share = 0.05;  ///< Share of the whole source that may be visible although no point saw it.
 /// Share of demand.ignored. Estimates below it are treated as negligible; between it and 1 they may be too inaccurate
 /// for that.

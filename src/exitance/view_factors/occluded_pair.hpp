@@ -33,7 +33,7 @@ struct Demand {
     double absolute = 0;     ///< Error that is always accepted, m^2.
     double ignored = 0;      ///< Smaller exchange areas need no accuracy, m^2.
     double large = 0;        ///< m^2; larger exchange areas are integrated more carefully.
-    double dominating = 0;   ///< Larger exchange areas determine the error of their row, m^2.
+    double dominating = 0;   ///< m^2; larger exchange areas largely determine the error of their row.
     /// Limit on the cells of the receiver: with more, critical lines are not worthwhile.
     std::size_t most_cells = SIZE_MAX;
 };

@@ -31,7 +31,7 @@ struct CheckedRow {
     /// groups.
     double largest_sum_excess = 0;
     double largest_sum_error = 0;      ///< Maximum over x of |sum_j (F - G)_j x_j|, including the noise of the rays.
-    double largest_sum_deviation = 0;  ///< Maximum over x of the noise of that sum.
+    double largest_sum_deviation = 0;  ///< Maximum over x of the standard error of that sum.
     /// Excess of the squared error over R^2 in standard errors; negative if it is below.
     double squared_excess(double R) const { return (squared_error - R * R) / squared_error_deviation; }
     /// Smallest error of the row that the rays distinguish from R, by `deviations` standard errors of the squared
@@ -46,8 +46,8 @@ struct CheckedRow {
 struct RowCheck {
     std::vector<CheckedRow> rows;
     std::size_t rays = 0;         ///< Rays of all rows together.
-    std::size_t wrong = 0;        ///< Number of rows with an excess above `beyond_noise`.
-    std::size_t wrong_sums = 0;   ///< Number of rows with such an excess of a sum over the row or a group.
+    std::size_t wrong = 0;        ///< Number of rows whose squared error exceeds R^2 by more than `beyond_noise`.
+    std::size_t wrong_sums = 0;   ///< Number of rows where the sum over the row or a group exceeds R by as much.
     double error = 0;             ///< Root mean squared error of the rows; 0 if noise makes the mean negative.
     double sum_error = 0;         ///< Largest difference of a sum over a row or group, including the noise of the rays.
     double detectable_error = 0;  ///< Every larger error of a row would have been found; maximum over the rows.

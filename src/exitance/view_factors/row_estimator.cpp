@@ -25,11 +25,11 @@ constexpr double shadow_ray_cost = 0.25;
 /// dimensions for an integrand with a discontinuity.
 constexpr double cast_rate = 1.25, pair_rate = 1.25;
 
-constexpr double near_kernel_sizes =
-    0.5;  ///< Distance over the larger face's size; kernels of nearer pairs vary too much.
+constexpr double near_kernel_sizes =  ///< Distance over the larger face's size; kernels of nearer pairs vary too much.
+    0.5;
 constexpr double contour_share = 1e-4;  ///< Share of the error: tolerance of the contour integral.
-constexpr double integrated_share =
-    1e-2;  ///< Share of the error: bound for integrated entries, including cancellation in contour sums.
+constexpr double integrated_share =     ///< Share of the error for integrated entries, with cancellation in sums.
+    1e-2;
 constexpr std::size_t min_batches = 8, min_rays_a_batch = 16;
 /// Rays that find the shares of sky and backs: up to max_sky_rays, and at least sky_rays_per_error / R, so that a small
 /// share is noticed.

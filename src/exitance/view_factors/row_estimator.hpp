@@ -91,7 +91,7 @@ class RowEstimator {
     std::vector<Pair> pairs_;
     double rest_squares_ = 0, rest_cubes_ = 0;  ///< Sums of the squares and cubes of the terms of rest_.
     double missed_ = 0;                         ///< Pilot's share of rays that hit no front.
-    double missed_deviation_ = 0;               ///< The larger variance of one ray's sky and back.
+    double missed_deviation_ = 0;  ///< Variance per ray of the sky's or the back's share, the larger of the two.
     /// Pilot's sum of F (1 - F) over the entries F that are left to cast rays, each times left_of_cast.
     double rest_ = 0;
 };

@@ -20,7 +20,7 @@ constexpr std::size_t few_blockers = 12;
 constexpr std::size_t many_blockers = 20;
 constexpr double alike_areas = 4;  ///< Ratio of areas below which either face may be the receiver.
 constexpr std::size_t patient_evaluations = 500'000;
-constexpr double min_crowding_ratio = 8;  ///< Ratio of crowding() of two faces that decides for the less crowded one.
+constexpr double min_crowding_ratio = 8;  ///< Ratio of crowding() above which the less crowded face is the receiver.
 constexpr double max_area_ratio = 16;     ///< Ratio of areas above which the smaller face is the receiver.
 constexpr double max_area_ratio_cluttered = 2;  ///< Like max_area_ratio, if there are more than few_blockers blockers.
 /// Contour sums of faces of very different sizes cancel: with a tenth of the tolerance one was wrong by 0.6%.

@@ -59,14 +59,14 @@ float without_less_than(float c, float limit) {
 // Embree replaces components of directions of less than 1e-18 by that number with a positive sign, and then tests the
 // packet as if the sign were the ray's own: other rays of the packet pass through walls. Zero is safe.
 
-/// Converts a point. derived from 1e-18: differences of coordinates that are at least 1e-9 are 0 or more than that.
+/// Converts a point. The limit is derived from 1e-18: coordinates of at least 1e-9 differ by 0 or by more than that.
 Float3 to_safe_point(const Vec3& v) {
     constexpr float smallest = 1e-9F;
     const Float3 p = to_float(v);
     return {without_less_than(p.x, smallest), without_less_than(p.y, smallest), without_less_than(p.z, smallest)};
 }
 
-/// Converts a direction. derived from 1e-18, and from the rounding of the largest component, 6e-8.
+/// Converts a direction. The limits are derived from 1e-18, and from the rounding of the largest component, 6e-8.
 Float3 to_safe_direction(const Vec3& v) {
     constexpr float smallest = 2e-18F, negligible = 1e-12F;
     const Float3 d = to_float(v);

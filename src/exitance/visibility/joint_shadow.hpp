@@ -13,7 +13,7 @@ namespace exitance {
 /// sheet.
 class BlockerPlanes {
   public:
-    /// slack  metres: every blocker is enlarged by this on all sides
+    /// Adds a blocker, enlarged by `slack` (metres) on all sides.
     void add(const ConvexBlocker& blocker, double slack);
     void clear() { planes_.clear(), first_.assign(1, 0); }
 

@@ -123,7 +123,7 @@ class Occluders {
     Field<PieceId, ConvexPiece> pieces_;
     Field<RegionId, IdRange<PieceId>> of_region_;
     std::vector<Point> corners_;
-    Field<RegionId, RegionId> other_side_;  ///< Empty if no region is one side of a sheet.
+    Field<RegionId, RegionId> other_side_;  ///< Other side of each sheet; empty if no region is a side of a sheet.
     struct Tree {
         std::vector<PieceId> pieces;
         Bvh bvh;

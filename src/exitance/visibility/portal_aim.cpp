@@ -29,8 +29,8 @@ void PortalAim::set(std::span<const PortalCell> cells, const Point& x, const Nor
     for (const PortalCell& cell : cells) {
         if (count_ == most_targets || !can_be_aimed_at(cell, x, n)) continue;
         const Vec3 offset = cell.corner - x;
-        // Proportional to its light. The even part below covers parallelograms whose centre is below the horizon or
-        // whose plane is seen edge-on.
+        // Rays are aimed at a parallelogram in proportion to its light. The even part below covers parallelograms whose
+        // centre is below the horizon or whose plane is seen edge-on.
         const double light = form_factor(cell, x, n) * cell.light;
         targets_[count_++] = {&cell, light, dot(offset, cell.n), offset};
         sum += light;

@@ -8,7 +8,7 @@
 
 namespace exitance {
 
-constexpr double no_width = 1e-13;  ///< Edges seen under a smaller angle count as points, derived from rounding.
+constexpr double no_width = 1e-13;  ///< Edges seen under a smaller angle count as points; derived from rounding.
 
 /// Appends to `planes` the unit normals, pointing inwards, of the planes through the origin and the edges of a convex
 /// polygon. `facing`: positive if the polygon is counter-clockwise as seen from the origin, negative if clockwise.

@@ -13,7 +13,7 @@ namespace exitance {
 /// allocations.
 class RegionCover {
   public:
-    /// margin  metres: distance by which the border may reach into the hull
+    /// Begins with another region. `margin`: distance by which its border may reach into the hull, metres.
     void begin(const Region& region, double margin);
     /// Adds the segment between two corners. Returns false if it does not cross the plane from the same side as the
     /// first one.

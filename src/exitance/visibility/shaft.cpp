@@ -130,7 +130,7 @@ bool Shaft::blocks_all(PieceId p) {
     const double slack = slack_;
     const double side = piece.plane.signed_distance(mean(receiver_)) > 0 ? 1 : -1;
     const auto beyond = [&](const Point& x, const Point& y,
-                            double margin) {  // does the piece contain the crossing of x y?
+                            double margin) {  // true if the line x y crosses the plane within the piece or its margin
         const double hx = side * piece.plane.signed_distance(x), hy = side * piece.plane.signed_distance(y);
         if (hx < 0 || hy > 0 || hx - hy <= slack) return false;
         const Point at = x + (hx / (hx - hy)) * (y - x);

@@ -57,7 +57,7 @@ class VisibleFromMany {
     /// Bit masks over functions: which values the functions take on the receiver, judged at its corners.
     struct Signs {
         std::uint32_t above = 0,
-                      below = 0;  ///< Functions that exceed `none` somewhere; that are less than -none somewhere.
+                      below = 0;  ///< above: functions that exceed `none` somewhere; below: less than -none somewhere.
         std::uint32_t away = 0;   ///< Functions whose absolute value exceeds `nil` somewhere.
     };
     Signs signs(const Affine& f, double none, double nil) const;

@@ -276,9 +276,9 @@ void VisibleSource::clip_source(const Pyramid& pyramid, Polygon& inside, bool& i
     }
 }
 
-/// Clips the source to each pyramid in reaching_ and drops those that hide nothing. Each box shrinks to the pyramid's
-/// shadow on the source; boxes of blockers as high as the point were unbounded. Returns false if one pyramid hides
-/// everything.
+/// Clips the source to each pyramid in reaching_ and drops those that hide nothing. Each pyramid's box shrinks to its
+/// shadow on the source; before, the box of a blocker as high as the point is unbounded. Returns false if one pyramid
+/// hides everything.
 bool VisibleSource::find_shadows() {
     if (shadows_.size() < pyramids_.size()) shadows_.resize(pyramids_.size());
     bool is_whole = false;
@@ -333,7 +333,7 @@ double VisibleSource::operator()(const Point& x, const Normal& n, Seen& seen) {
     pool_used_ = 0;
     cuts_.clear();
     for (const Body& body : bodies_) {
-        // A blocker that misses the whole source misses every part of it; most of many blockers do.
+        // A blocker that misses the whole source misses every part of it. If there are many blockers, most miss it.
         Pyramid pyramid{};
         if (!find_box(body, pyramid)) continue;
         const std::size_t mark = lines_.size();

@@ -96,7 +96,7 @@ struct ExportArguments : CommonArguments {
 
 struct RenderArguments : CommonArguments {
     std::string solution, output;
-    std::optional<Camera> camera;  ///< None: the scene's camera `camera_name` or, without a name, an automatic camera.
+    std::optional<Camera> camera;  ///< Camera; none: the scene's `camera_name` or, without a name, an automatic camera.
     std::string camera_name;       ///< Name of a camera of the scene, or its number from 1; empty: none.
     std::optional<double>
         fov;  ///< Angle (degrees) or orthographic width (metres) given with `camera`; none: the default.
@@ -134,7 +134,7 @@ struct BakeArguments : CommonArguments {
     double density = 0;       ///< Texels per metre; 0: chosen for the scene.
     std::size_t padding = 4;  ///< Texels around every chart.
     LightMapFormat format;
-    std::string uv;                   ///< Set of texture coordinates of the scene's file; empty: charts of our own.
+    std::string uv;                   ///< Set of texture coordinates of the scene's file; empty: exitance's own charts.
     std::optional<PictureSize> size;  ///< Texels of each map with `uv`; empty: by density.
     std::string charts;               ///< PNG file for a picture of the charts with `uv`; empty: none.
     bool faceted = false;             ///< Ignore the normals of the scene's file.
@@ -174,7 +174,7 @@ struct GlareArguments : CommonArguments {
 struct DaylightArguments : CommonArguments {
     SceneArguments scene;  ///< A scene, or one solution (.h5) of it.
     std::string epw, output;
-    std::string points;   ///< Empty: the sensor grids of the scene's Honeybee model.
+    std::string points;   ///< File of sensors; empty: the grids of the scene's Honeybee model.
     double error = 0.02;  ///< Requested relative RMS error of every grid.
     int division = 1;     ///< Parts into which Tregenza's sky patches are divided in each direction: 1, 2 or 4.
     double north = 0, ground = 0.2;

@@ -61,7 +61,8 @@ void declare_criteria(CLI::App& app, DaylightArguments& arguments) {
                char rest = 0;
                if (std::sscanf(w.c_str(), "%lf,%lf,%lf%c", &low, &middle, &high, &rest) != 3 || !(0 < low) ||
                    !(low < middle) || !(middle < high) || !std::isfinite(high))
-                   throw CLI::ValidationError("--useful", fmt::format("'{}' is not like 100,300,3000", w));
+                   throw CLI::ValidationError(
+                       "--useful", fmt::format("'{}' is not three ascending numbers such as 100,300,3000", w));
            },
            "Limits of UDI, ascending. Default 100,300,3000")
         ->type_name("LX,LX,LX");
@@ -156,10 +157,12 @@ void declare(CLI::App& app, DaylightArguments& arguments) {
         ->type_name("FOLDER")
         ->required();
     add_positive(app, "--error", arguments.error, "R",
-                 "Requested relative RMS error of the daylight factors and the annual lux hours of every grid of "
-                 "sensors. Default 0.02")
+                 "Requested relative RMS error of the daylight factors and the annual sums of illuminance (lx h) of "
+                 "every grid of sensors. Default 0.02")
         ->check(CLI::Range(1e-4, 1.0));
-    add_choice(app, "--sky-patches", patch_counts, arguments.division, "Number of patches of the sky. Default 146");
+    add_choice(
+        app, "--sky-patches", patch_counts, arguments.division,
+        "Number of patches that represent sky and ground: Tregenza's 145 and the ground, or finer ones. Default 146");
     app.add_option_function<std::string>(
            "--north", [&arguments](const std::string& w) { arguments.north = read_number("--north", w); },
            "Direction of north, degrees clockwise from the y axis as seen from above. Default 0")

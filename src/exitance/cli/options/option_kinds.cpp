@@ -58,17 +58,19 @@ bool read_switch(const char* option, const std::string& word) {
 }
 
 void declare_common(CLI::App& app, CommonArguments& arguments) {
-    app.add_flag("-q,--quiet", arguments.quiet, "Write nothing but errors to the error stream")->group("Run");
-    app.add_flag("-v,--verbose", arguments.verbose, "Write more to the error stream")->group("Run");
+    app.add_flag("-q,--quiet", arguments.quiet, "Write only errors to the error stream")->group("Run");
+    app.add_flag("-v,--verbose", arguments.verbose, "Write more details to the error stream")->group("Run");
 }
 
 void declare_limits(CLI::App& app, LimitArguments& limits, const std::string& at_limit) {
-    add_positive(app, "--time-limit", limits.time_limit, "SECONDS", "Wall time of the whole run; then " + at_limit)
+    add_positive(app, "--time-limit", limits.time_limit, "SECONDS",
+                 "Limit on the wall time of the whole run. At the limit, " + at_limit)
         ->group("Limits");
     if (app.get_option_no_throw("--memory-limit")) return;
     app.add_option_function<std::string>(
            "--memory-limit", [&limits](const std::string& w) { limits.memory_limit = read_bytes("--memory-limit", w); },
-           "Resident memory of the process, such as 4G; if it is exceeded, the run ends as at the time limit")
+           "Limit on the resident memory of the process, such as 4G. If it is exceeded, the run ends as at the time "
+           "limit")
         ->type_name("SIZE")
         ->group("Limits");
 }
@@ -136,12 +138,12 @@ void declare_scene(CLI::App& app, SceneArguments& scene) {
         ->type_name("LEVEL")
         ->group("Scene details");
     app.add_flag("--turn-bodies", scene.load.turn_bodies,
-                 "Turn the faces of closed bodies that are inside out. Use it where check reports such bodies")
+                 "Turn the faces of closed bodies that are inside out. Use it if check reports such bodies")
         ->group("Scene");
     app.add_option("--texture-parts", scene.load.texture_parts,
                    "Limit on the parts into which textured faces are cut where their colour varies. Each part reflects "
-                   "and emits the mean of its part of the texture; 0: faces are not cut. Default 500 and one more for "
-                   "each four faces")
+                   "and emits the mean of its part of the texture; 0: faces are not cut. Default 500 plus a quarter of "
+                   "the number of faces")
         ->check(CLI::Range(0, max_texture_parts))
         ->type_name("N")
         ->group("Scene");

@@ -121,7 +121,8 @@ void declare_display(CLI::App& app, RenderArguments& arguments) {
             ->group("PNG");
     };
     of_scale("--scale",
-             "Range of colours and isolux lines: 0,500, or 1,1000,log for equal ratios. Default: by the light",
+             "Range of colours and isolux lines, such as 0,500, or 1,1000,log for steps of equal ratio. Default: the "
+             "range of the light in the picture",
              "LO,HI[,log]|log", read_scale);
     of_scale("--bands", "Number of colours of equal width, or smooth. Default: round steps", "N|smooth", read_bands);
     add_choice(app, "--palette", palette_names, arguments.scale.palette, "Colours of values. Default viridis")
@@ -140,7 +141,8 @@ void declare(CLI::App& app, CompareArguments& arguments) {
     app.add_flag("--interpolant", arguments.interpolant,
                  "Measure the mesh that export writes, instead of the full solution with its exact direct light");
     app.add_option("--map", arguments.map,
-                   "Picture (.png) of |E - E_ref| in false colours; for a CSV, at its nearest point on the surface")
+                   "Picture (.png) of |E - E_ref| in false colours. If the reference is a CSV, each pixel shows the "
+                   "nearest of its points on the same surface")
         ->type_name("FILE");
     app.add_option_function<std::string>(
            "--camera", [&arguments](const std::string& w) { read_camera(w, arguments.view); },
@@ -152,7 +154,7 @@ void declare(CLI::App& app, CompareArguments& arguments) {
         ->type_name("WxH");
     app.add_option_function<std::string>(
            "--scale", [&arguments](const std::string& w) { read_scale(w, arguments.view.scale); },
-           "Range of the map's colours, W/m^2: 0,5")
+           "Range of the map's colours, W/m^2, such as 0,5")
         ->type_name("LO,HI[,log]");
     declare_json(app, arguments);
     declare_work(app, arguments, arguments.threads);
@@ -186,8 +188,9 @@ void declare(CLI::App& app, RenderArguments& arguments) {
     add_count(app, "--samples", arguments.samples, 1, "Rays per pixel, at most 1024. Default 16")
         ->check(CLI::Range(1, 1024));
     add_count(app, "--gather", arguments.gather, 4,
-              "Rays of a final gather at every sample, instead of the elements' indirect light; a power of two from 4. "
-              "Default: none. It is slow, and shows which details are due to the elements");
+              "Compute indirect light at every sample by N rays (a power of two, at least 4) instead of reading it "
+              "from the elements. "
+              "Default: none. It is slow; use it to see which details are artefacts of the elements");
     app.add_flag("--interpolant", arguments.interpolant,
                  "Show the mesh that export writes, instead of the full solution with its exact direct light; isolux "
                  "lines are those of the mesh, too");
@@ -198,8 +201,8 @@ void declare(CLI::App& app, RenderArguments& arguments) {
     declare_display(app, arguments);
     declare_unit(app, arguments.unit);
     app.add_flag("--mesh", arguments.mesh,
-                 "Draw the edges of the method's own elements; a discontinuity mesh is coloured by order. '--mesh "
-                 "export' draws the exported elements")
+                 "Draw the edges of the method's own elements; the curves of a discontinuity mesh are coloured by the "
+                 "order of the discontinuity. '--mesh export' draws the exported elements")
         ->check(CLI::IsMember({"true", "export"}).description(""))
         ->group("PNG");
     app.add_flag("--shadow-classes", arguments.shadow_classes,
@@ -219,7 +222,8 @@ void declare(CLI::App& app, ReportArguments& arguments) {
                for (const std::string& words : all) arguments.planes.push_back(read_plane(words));
            },
            "Measuring plane 'ox,oy,oz ux,uy,uz vx,vy,vz spacing [margin]', metres: a corner, two edges, distance of "
-           "points (auto: that of EN 12464-1), strip to leave out; it receives light from the side of u x v. May be "
+           "points (auto: that of EN 12464-1), strip to leave out; it measures light that arrives from the side to "
+           "which u x v points. May be "
            "given several times")
         ->type_name("PLANE")
         ->expected(1)

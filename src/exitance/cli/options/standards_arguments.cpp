@@ -96,7 +96,7 @@ void declare_standards(CLI::App& app, ReportArguments& arguments) {
     add_planes(app, "--cylindrical", arguments.working_planes, true,
                "Plane for cylindrical illuminance, '1.2' or 'hall,height=1.6'. May be given several times");
     add_positive(app, "--maintenance", arguments.maintenance, "FACTOR",
-                 "Maintenance factor of light on planes, at most 1. Default 1")
+                 "Maintenance factor, at most 1, by which light on planes is multiplied. Default 1")
         ->check(CLI::Range(0.0, 1.0));
     add_observers(
         app, arguments.observers,

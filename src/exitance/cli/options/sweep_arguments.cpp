@@ -17,7 +17,7 @@ VariantRange read_variants(const std::string& word) {
     range.first = number(word.substr(0, dash));
     range.last = dash == std::string::npos ? range.first : number(word.substr(dash + 1));
     if (range.last < range.first)
-        throw CLI::ValidationError("--run", fmt::format("'{}' is a range without variants", word));
+        throw CLI::ValidationError("--run", fmt::format("the range '{}' contains no variants", word));
     return range;
 }
 

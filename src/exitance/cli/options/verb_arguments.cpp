@@ -41,12 +41,13 @@ void declare(CLI::App& app, ProbeArguments& arguments) {
     app.add_flag("--exact", arguments.exact,
                  "Evaluate direct light by closed forms even where rays are cheaper, so that it has no noise. Slow in "
                  "scenes of thousands of faces under a sky");
-    add_choice(
-        app, "--component", light_component_names, arguments.component,
-        "Part of the light: all of it, light straight from emitters, or light that was reflected. Default total");
+    add_choice(app, "--component", light_component_names, arguments.component,
+               "Part of the light: all of it, light straight from emitters, sky and sun, or light that was reflected. "
+               "Default total");
     declare_unit(app, arguments.unit);
-    CLI::Option* const reference = add_count(app, "--reference", arguments.reference_paths, 1,
-                                             "Trace N unbiased paths per point instead of evaluating the solution");
+    CLI::Option* const reference =
+        add_count(app, "--reference", arguments.reference_paths, 1,
+                  "Trace N unbiased light paths per point instead of evaluating the solution, as a reference");
     add_count(app, "--seed", arguments.seed, 0, "Seed of the paths. Default 1")->needs(reference);
     declare_work(app, arguments, arguments.threads);
 }
@@ -78,8 +79,8 @@ void declare(CLI::App& app, ExportArguments& arguments) {
         ->type_name("FILE")
         ->required();
     app.add_option("--links", arguments.links,
-                   "Export the links of a solution made with --keep-links (.csv, .obj or .glb): to the element of a "
-                   "number, or to the elements of all levels at x,y,z")
+                   "Export the links of a solution made with --keep-links (.csv, .obj or .glb): ELEMENT is the number "
+                   "of the element that receives the links, or a point x,y,z: then the elements of all levels there")
         ->type_name("ELEMENT");
 }
 
@@ -143,14 +144,14 @@ void declare(CLI::App& app, BakeArguments& arguments) {
     CLI::Option* uv =
         app.add_option("--uv", arguments.uv,
                        "Bake into texture coordinates of the scene's file, which must still exist: TEXCOORD_0 to "
-                       "TEXCOORD_3 (glTF), vt (OBJ), or own: the set that light maps use. Objects share one map "
-                       "unless their charts overlap. unwrap: make coordinates for all faces in one map, and write the "
-                       "model with them. Default: a chart for each flat part")
+                       "TEXCOORD_3 (glTF), vt (OBJ), or own: the file's set for light maps. Objects share one map "
+                       "unless their charts (connected parts of the map) overlap. unwrap: make new coordinates for "
+                       "all faces in one map, and write the model with them. Default: a chart for each flat part")
             ->type_name("SET");
     app.add_option_function<std::string>(
            "--size", [&arguments](const std::string& w) { arguments.size = read_size(w); },
            "Texels of each map with --uv. Default: the power of two that gives --density on average, at most 4096 if "
-           "that is the default, too")
+           "--density is not given")
         ->type_name("WxH")
         ->needs(uv)
         ->excludes(density);
@@ -167,13 +168,14 @@ void declare(CLI::App& app, BakeArguments& arguments) {
         ->check(CLI::Range(1, 256));
     add_choice(app, "--quantity", light_map_quantity_names, format.quantity,
                "Quantity in the maps, W/m^2. Default irradiance");
-    add_choice(
-        app, "--component", light_component_names, format.component,
-        "Part of the light: all of it, light straight from emitters, or light that was reflected. Default total");
+    add_choice(app, "--component", light_component_names, format.component,
+               "Part of the light: all of it, light straight from emitters, sky and sun, or light that was reflected. "
+               "Default total");
     add_choice(app, "--directional", direction_form_names, format.directions,
                "Directions of the light, for normal maps. sh: spherical harmonics of degrees 0 and 1 (EXR). dominant: "
                "one direction and its share (EXR, PNG). A bake takes about five times as long. Default none");
-    app.add_flag("--hdr", format.with_hdr, "Also write Radiance pictures (.hdr, RGBE), with 1% of relative precision");
+    app.add_flag("--hdr", format.with_hdr,
+                 "Also write Radiance pictures (.hdr, RGBE), precise to 0.4% of the brightest band");
     app.add_flag_callback(
         "--half", [&format] { format.precision = Precision::half; },
         "Write EXR files of 16-bit instead of 32-bit numbers");
@@ -240,7 +242,7 @@ void declare(CLI::App& app, ExperimentArguments& arguments) {
 
 void declare(CLI::App& app, View3dArguments& arguments) {
     app.add_option("IN", arguments.input,
-                   "Input file of View3D (.vs3). Its controls out (0 text, 1 binary), encl and emit count")
+                   "Input file of View3D (.vs3). Its controls out (0 text, 1 binary), encl and emit are used")
         ->type_name("IN")
         ->required();
     app.add_option("OUT", arguments.output, "File with the factors (.vf) to write")->type_name("OUT")->required();
@@ -299,7 +301,8 @@ void declare(CLI::App& app, ViewFactorArguments& arguments) {
                        "share entries. Use it for 10^5 to 10^6 faces, with --error 1e-2 or 3e-3")
             ->type_name("FILE");
     add_choice(app, "--format", factor_format_names, arguments.format,
-               "Format of the output. Default: by its ending; others are csv. pairs: a line from_id,to_id,F per entry");
+               "Format of the output. Default: given by the file's ending; csv for unknown endings. pairs: a line "
+               "from_id,to_id,F per entry");
     app.add_flag("--sky", arguments.with_sky,
                  "Add columns for the sky and for backs of faces to csv, mtx and pairs; .h5 always has them");
     app.add_option("--nodes", arguments.nodes,
@@ -351,14 +354,15 @@ void declare(CLI::App& app, ViewArguments& arguments) {
         "Solution file (.h5), two solutions of one room to compare, or a scene, whose light is shown while it is "
         "solved");
     app.add_option("-o,--output", arguments.output,
-                   "Page to write (.html) instead of serving one: it holds a solution and needs no program")
+                   "Page to write (.html) instead of serving one; it contains the solution and works without exitance")
         ->type_name("FILE");
     app.add_option("--views", arguments.views,
                    "Saved views for the page of -o (.json), as the viewer saves them; it opens with the first")
         ->type_name("FILE");
     add_count(app, "--port", arguments.port, 0, "Port on 127.0.0.1. Default: any free port")
         ->check(CLI::Range(0, 65535));
-    add_positive(app, "--error", arguments.error, "R", "Requested relative RMS error of a scene. Default 0.02")
+    add_positive(app, "--error", arguments.error, "R",
+                 "Requested relative RMS error if a scene is solved. Default 0.02 (2%)")
         ->check(CLI::Range(1e-5, 1.0));
     add_choice(app, "--method", method_names, arguments.request.options.method,
                "Method for a scene, as for solve. Default auto");

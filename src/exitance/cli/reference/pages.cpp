@@ -189,8 +189,8 @@ std::string help_page(const VerbFacts& verb, bool all) {
     }
     if (all && has_recipes) out += recipe_list();
     if (hides)
-        out += fmt::format("\nexitance {} --help-all also lists the options for experts and of published forms.\n",
-                           verb.name);
+        out += fmt::format("\nexitance {} --help-all also lists options for experts{}.\n", verb.name,
+                           has_recipes ? ", and for reproducing published methods" : "");
     return out;
 }
 

@@ -271,8 +271,7 @@ Result<DaylightSummary> run_whole(const Scene& scene, const DaylightRequest& req
 /// Runs `exitance daylight SCENE --epw WEATHER --points SENSORS -o FOLDER`.
 ExitCode run(const DaylightArguments& arguments, Terminal& terminal) {
     if (arguments.merge && processes() > 1)
-        return terminal.fail(
-            Error{ErrorCode::usage, "merges files, which one process does", "--merge", "run it without mpirun"});
+        return terminal.fail(Error{ErrorCode::usage, "works in one process only", "--merge", "run it without mpirun"});
     if (!arguments.states.empty() && processes() > 1)
         return terminal.fail(Error{ErrorCode::usage, "states of panes are evaluated by one process", "--states",
                                    "run it without mpirun; --threads uses all cores"});

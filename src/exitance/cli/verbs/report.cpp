@@ -26,7 +26,7 @@
 namespace exitance {
 namespace {
 
-constexpr double unseen_difference = 0.003;  ///< Share of the light; derived from steps of 8-bit pictures, 0.8%.
+constexpr double unseen_difference = 0.003;  ///< Relative; derived from steps of 8-bit pictures, which are 0.8%.
 constexpr int picture_samples = 2;  ///< Rays per pixel; derived from pages that show pictures at a third of their size.
 
 /// The requested views; by default an automatic one and up to three cameras of the scene.
@@ -83,7 +83,7 @@ std::vector<SurfaceId> largest_faces(const Scene& scene, std::size_t& left_out) 
 
 /// Bakes light maps for the embedded viewer, if the scene is small enough for a page that can be mailed.
 void add_viewer(const RadiosityFunction& light, ReportContent& content, Terminal& terminal, const StopRequest& stop) {
-    constexpr double many_texels = 8000, few_texels = 2000;  // derived from pages of about a megabyte
+    constexpr double many_texels = 8000, few_texels = 2000;  // derived from the size of a page, about a megabyte
     constexpr std::size_t most_faces = 20000;
     const Scene& scene = light.solution().scene;
     if (scene.surfaces().size() > most_faces) return;
@@ -166,10 +166,9 @@ std::optional<Error> find_misuse(const ReportArguments& arguments) {
         return Error{ErrorCode::usage, "has no effect without measuring planes or observers", "--require",
                      "add --plane 0.75 or --observers auto"};
     if (!arguments.words.empty() && arguments.output.empty())
-        return Error{ErrorCode::usage, "is for a page, and tables stay as they are", "--template",
-                     "add a page, -o room.html"};
+        return Error{ErrorCode::usage, "applies to the page, not to tables", "--template", "add a page, -o room.html"};
     if (!arguments.pdf.empty() && arguments.output.empty())
-        return Error{ErrorCode::usage, "is printed from a page", "--pdf", "add a page, -o room.html"};
+        return Error{ErrorCode::usage, "needs a page, from which it is printed", "--pdf", "add a page, -o room.html"};
     if (!arguments.pdf.empty() && ending(arguments.pdf) != ".pdf")
         return Error{ErrorCode::usage, "pages are printed as .pdf", arguments.pdf, "name the output something.pdf"};
     if (arguments.output.empty()) return std::nullopt;

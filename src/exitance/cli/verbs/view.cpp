@@ -45,7 +45,8 @@ std::optional<Error> find_options_of_scenes(const ViewArguments& arguments) {
     const SolveRequest& r = arguments.request;
     if (load.metres_per_unit || load.y_is_up || !load.lod.empty() || load.turn_bodies || load.texture_parts)
         return Error{ErrorCode::usage, "--length-unit, --up, --lod, --turn-bodies and --texture-parts are for scenes",
-                     arguments.scene.files[0], "a solution is in metres, with Z up, and its faces are cut"};
+                     arguments.scene.files[0],
+                     "leave them out: a solution is in metres, with Z up, and its faces are cut already"};
     if (!r.sky.empty() || !r.epw.empty() || r.photometric || r.light_groups)
         return Error{ErrorCode::usage, "--sky, --epw, --quantity and --light-groups are for scenes",
                      arguments.scene.files[0],
@@ -56,13 +57,13 @@ std::optional<Error> find_options_of_scenes(const ViewArguments& arguments) {
 /// The error of options for a page to share that do not fit; none if they do.
 std::optional<Error> find_misused_output(const ViewArguments& arguments) {
     if (arguments.output.empty() && !arguments.views.empty())
-        return Error{ErrorCode::usage, "is for a page that is written", "--views", "add -o ROOM.html"};
+        return Error{ErrorCode::usage, "applies only to a page that is written", "--views", "add -o ROOM.html"};
     if (arguments.output.empty()) return {};
     if (ending(arguments.output) != ".html")
         return Error{ErrorCode::usage, "pages are written as .html", arguments.output,
                      "name the output something.html"};
     if (arguments.scene.files.size() > 1)
-        return Error{ErrorCode::usage, "holds one solution", arguments.output, "name one solution, or omit -o"};
+        return Error{ErrorCode::usage, "can show only one solution", arguments.output, "name one solution, or omit -o"};
     return {};
 }
 
@@ -73,8 +74,8 @@ Result<void> prepare(ViewArguments& arguments) {
     const auto solution = std::find_if(files.begin(), files.end(), [](const auto& f) { return f.ends_with(".h5"); });
     if (solution != files.end())
         return Error{ErrorCode::usage,
-                     "is a solution, and view shows one solution, two solutions, or one scene of several files",
-                     *solution, "name two solutions at most, and no scenes beside them"};
+                     "is a solution; view shows one solution, two solutions, or one scene of several files", *solution,
+                     "name two solutions at most, and no scenes beside them"};
     if (!arguments.output.empty() || !arguments.views.empty())
         return Error{ErrorCode::usage, "-o and --views are for solutions", files[0],
                      "solve the scene first: exitance solve SCENE -o S.h5"};

@@ -136,7 +136,7 @@ void show_geometry_findings(const CheckedScene& checked, Terminal& terminal) {
     terminal.show(findings);
 }
 
-/// Options of the table; its rows have less than the requested error if an operator is made of it.
+/// Options for computing the rows. For an operator they are more accurate, since merging their entries adds an error.
 RowFactorOptions table_options(const ViewFactorArguments& arguments) {
     const double error = arguments.error.value_or(default_error);
     RowFactorOptions options{.error = error, .smallest = arguments.smallest, .seed = arguments.seed};

@@ -5,7 +5,7 @@
 namespace exitance {
 namespace {
 
-constexpr double same_box = 0.01;  ///< Share of the diagonal; derived from lamps that reach through ceilings.
+constexpr double same_box = 0.01;  ///< Allowed difference, in diagonals; derived from lamps that stick out of ceilings.
 
 std::string words(const Box& box) {
     return fmt::format("({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g})", box.lo.x, box.lo.y, box.lo.z, box.hi.x,

@@ -8,7 +8,7 @@ namespace exitance {
 /// of it that depends on the scene. The power is a guess at first, later an estimate from the last two rounds.
 class ToleranceLaw {
   public:
-    /// exponent  the tolerance is lowered in proportion to the error to this power, or faster
+    /// The tolerance is lowered in proportion to the error to the power `exponent`, or faster.
     explicit ToleranceLaw(double exponent) : exponent_(exponent) {}
 
     /// Returns the factor by which to multiply the tolerance after a round with this error; 1 if the error is allowed.

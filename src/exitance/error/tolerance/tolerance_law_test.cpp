@@ -26,7 +26,7 @@ int rounds_to_a_tenth(double power) {
 TEST(ToleranceLaw, LearnsHowSlowlyErrorsFall) {
     EXPECT_LE(rounds_to_a_tenth(1), 3);
     EXPECT_LE(rounds_to_a_tenth(0.5), 4);
-    EXPECT_LE(rounds_to_a_tenth(0.25), 8);  // 14 with the initial guess alone
+    EXPECT_LE(rounds_to_a_tenth(0.25), 8);  // 14 rounds with the initial guess alone
 }
 
 TEST(ToleranceLaw, LimitsTheStepOfARound) {

@@ -130,7 +130,8 @@ Result<void> EpwReader::read_location(std::string_view line) {
     separator_ = separator_of(line);
     const std::vector<std::string_view> fields = fields_of(line, separator_);
     if (fields.size() < 10 || !is_key(fields[0], "LOCATION"))
-        return lines_.error("a weather file begins with LOCATION and nine fields", "EnergyPlus' format, .epw");
+        return lines_.error("the first line is not LOCATION with nine fields",
+                            "use a weather file in EnergyPlus' format, .epw");
     const auto latitude = number_within(fields[6], -90, 90), longitude = number_within(fields[7], -180, 180),
                zone = number_within(fields[8], -13, 15), elevation = number_within(fields[9], -1000, 9999.9);
     if (!latitude || !longitude || !zone || !elevation)
@@ -196,7 +197,7 @@ Result<void> EpwReader::read_row(const std::vector<std::string_view>& fields) {
     if (!lux) return lux.error();
     row.watts = *watts, row.lux = *lux, row.line = lines_.line();
     rows_.push_back(row);
-    if (rows_.size() > max_rows) return lines_.error("there are too many hours, more than a century has");
+    if (rows_.size() > max_rows) return lines_.error("there are more hours than in a century");
     return {};
 }
 
@@ -314,7 +315,8 @@ Result<Weather> EpwReader::read() {
         if (const Result<void> read = read_line(line->substr(0, end)); !read) return read.error();
     }
     if (lines_.failed()) return lines_.read_error();
-    if (!has_location_) return lines_.error("a weather file begins with LOCATION", "EnergyPlus' format, .epw");
+    if (!has_location_)
+        return lines_.error("the first line is not LOCATION", "use a weather file in EnergyPlus' format, .epw");
     if (rows_.empty()) return lines_.error("the file contains no hours");
     if (const Result<void> counted = count_hours_from_one(); !counted) return counted.error();
     if (const Result<void> made = make_hours(); !made) return made.error();

@@ -60,8 +60,8 @@ class WeaReader {
         words >> value;
         const std::optional<double> number = parse_number(value);
         if (!number || !(*number >= known->least && *number <= known->most))
-            return lines_.error(fmt::format("'{}' is not the number of {}", value, key),
-                                fmt::format("a number from {:g} to {:g}", known->least, known->most));
+            return lines_.error(fmt::format("'{}' is not a valid {}", value, key),
+                                fmt::format("give a number from {:g} to {:g}", known->least, known->most));
         keys_[key] = *number;
         return {};
     }
@@ -92,7 +92,7 @@ class WeaReader {
         const double units = keys_["weather_data_file_units"];
         if (units != 1 && units != 2)
             return lines_.error(fmt::format("weather_data_file_units {:g} is not supported", units),
-                                "1 are W/m^2, 2 are lux");
+                                "use 1 for W/m^2 or 2 for lux");
         out_.place.latitude = keys_["latitude"], out_.place.longitude = -keys_["longitude"];
         out_.place.elevation = keys_["site_elevation"], out_.zone = -keys_["time_zone"] / degrees_per_hour;
         bool is_dark = true;

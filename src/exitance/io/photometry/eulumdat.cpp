@@ -94,7 +94,8 @@ Result<std::size_t> EulumdatReader::count(const char* what, double least, double
     if (!value) return value.error();
     if (!(*value >= least && *value <= most && *value == std::floor(*value))) {
         --at_;
-        return error(fmt::format("{:g} is not a possible {}", *value, what), fmt::format("{:g} to {:g}", least, most));
+        return error(fmt::format("{:g} is not a possible {}", *value, what),
+                     fmt::format("it must be from {:g} to {:g}", least, most));
     }
     return static_cast<std::size_t>(*value);
 }
@@ -119,7 +120,7 @@ Result<void> EulumdatReader::read_counts() {
     if ((symmetry_ == 2 && planes_ % 2 != 0) || (symmetry_ >= 3 && planes_ % 4 != 0)) {
         --at_;
         return error(fmt::format("{} C planes do not fit the symmetry {}", planes_, symmetry_),
-                     symmetry_ == 2 ? "an even number" : "a multiple of 4");
+                     symmetry_ == 2 ? "it needs an even number" : "it needs a multiple of 4");
     }
     const std::array<std::pair<double*, const char*>, 1> step{{{&plane_step_, "the step of C planes"}}};
     if (const Result<void> read = numbers(step); !read) return read;
@@ -163,7 +164,8 @@ Result<void> EulumdatReader::read_sizes() {
         conversion_ = 1;
     }
     if (!(conversion_ > 0 && conversion_ < 1e9))
-        return error(fmt::format("the conversion factor is {:g}", conversion_), "intensities are multiplied by it");
+        return error(fmt::format("the conversion factor is {:g}", conversion_),
+                     "it must be above 0: intensities are multiplied by it");
     if (tilt_ != 0)
         tell(out_, Finding::Kind::warning, static_cast<int>(at_),
              fmt::format("was measured tilted by {:g} degrees", tilt_), "the table is used as given");
@@ -220,7 +222,7 @@ Result<std::vector<double>> EulumdatReader::read_angles(std::size_t wanted, cons
         if (!rises || !(*angle <= most)) {
             --at_;
             return error(fmt::format("{} {} is {:g}", kind, i + 1, *angle),
-                         fmt::format("they rise from 0 to {:g}; is their number right?", most));
+                         fmt::format("angles must rise from 0 to {:g}; is their number right?", most));
         }
         out.push_back(*angle);
     }
@@ -278,7 +280,7 @@ Result<void> EulumdatReader::read_table() {
             if (!value) return value.error();
             if (!(*value >= 0 && *value * factor <= max_photometric_value)) {
                 --at_;
-                return error(fmt::format("the intensity {:g} is invalid", *value), "0 or more");
+                return error(fmt::format("the intensity {:g} is invalid", *value), "intensities must be 0 or more");
             }
             row.push_back(*value * factor);
         }

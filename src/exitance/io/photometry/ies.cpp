@@ -166,11 +166,14 @@ Result<void> IesReader::check_header() {
     if (h.units != 1 && h.units != 2)
         return text_.error(fmt::format("{:g} is not a kind of units", h.units), "1 is feet, 2 is metres");
     if (!(h.multiplier > 0 && h.multiplier < max_photometric_value))
-        return text_.error(fmt::format("the multiplier is {:g}", h.multiplier), "intensities are multiplied by it");
+        return text_.error(fmt::format("the multiplier is {:g}", h.multiplier),
+                           "it must be above 0: intensities are multiplied by it");
     if (!(h.ballast > 0 && h.ballast < 1e6))
-        return text_.error(fmt::format("the ballast factor is {:g}", h.ballast), "intensities are multiplied by it");
+        return text_.error(fmt::format("the ballast factor is {:g}", h.ballast),
+                           "it must be above 0: intensities are multiplied by it");
     for (const double size : {h.width, h.length, h.height})
-        if (!(std::abs(size) <= 1e4)) return text_.error(fmt::format("the opening is {:g} wide", size));
+        if (!(std::abs(size) <= 1e4))
+            return text_.error(fmt::format("the size {:g} of the opening is invalid", size), "sizes are at most 10000");
     if (has_blpf_ && !(h.third > 0 && h.third < 1e6))
         return text_.error(fmt::format("the ballast-lamp photometric factor is {:g}", h.third),
                            "intensities are multiplied by it");
@@ -196,7 +199,7 @@ Result<std::vector<double>> IesReader::read_angles(std::size_t count, const char
         if (!(std::abs(*angle) <= 360)) return text_.error(fmt::format("the {} angle {:g} is invalid", kind, *angle));
         if (i > 0 && !(*angle > out.back()))
             return text_.error(fmt::format("the {} angle {:g} follows {:g}", kind, *angle, out.back()),
-                               "angles rise; is the number of angles right?");
+                               "angles must rise; is the number of angles right?");
         out.push_back(*angle);
     }
     return out;
@@ -217,7 +220,8 @@ Result<void> IesReader::read_table() {
                 fmt::format("intensity {} of {}", h * vertical->size() + v + 1, horizontal->size() * vertical->size()));
             if (!value) return value.error();
             if (!(*value >= 0 && *value * factor <= max_photometric_value))
-                return text_.error(fmt::format("the intensity {:g} cd is invalid", *value), "0 or more");
+                return text_.error(fmt::format("the intensity {:g} cd is invalid", *value),
+                                   "intensities must be 0 or more");
             row.push_back(*value * factor);
         }
     }

@@ -106,7 +106,7 @@ std::string polar_diagram(const Photometry& p) {
 
 std::string small_polar_diagram(const IntensityCurves& curves) {
     constexpr int step_of_lines = 30;     // degrees
-    constexpr double width_of_lines = 7;  // derived from a picture of a seventh of the diagram's size
+    constexpr double width_of_lines = 7;  // line width; derived from pictures a seventh of the diagram's size
     const Circles circles = circles_for(curves);
     return fmt::format(
         "<svg class=\"polar\" viewBox=\"30 30 460 520\" role=\"img\" aria-label=\"distribution of intensity\">{}"

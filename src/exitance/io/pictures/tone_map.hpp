@@ -16,8 +16,8 @@ inline std::array<double, 3> red_green_blue(const Spectrum& s) {
 }
 
 enum class ToneCurve : std::uint8_t {
-    photographic,  ///< s L (1 + s L / w^2) / (1 + s L) for the mean of the bands, which keeps the hue. [Reinhard02],
-                   ///< equation 4.
+    photographic,  ///< s L (1 + s L / w^2) / (1 + s L) for the mean of the bands, which keeps the hue.
+                   ///< Source: [Reinhard02], equation 4.
     filmic,        ///< x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14) for every band, x = 0.7232 s L. [Narkowicz15]
     linear,        ///< Displays s L; values above white are clipped.
 };

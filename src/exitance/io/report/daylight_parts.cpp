@@ -48,7 +48,8 @@ class PartReader {
         if (!fits(*illuminance, NpyType::float32, hours) || !fits(*sun, NpyType::float32, hours) ||
             !fits(*matrix, NpyType::float32, matrix->columns()) || matrix->columns() % 2 != 0 ||
             !fits(*results, NpyType::float64, numbers_of_results()))
-            return Error{ErrorCode::bad_input, "holds tables of other sizes", folder, "run this part again"};
+            return Error{ErrorCode::bad_input, "holds tables whose sizes do not match this simulation", folder,
+                         "run this part again"};
         return PartReader(std::move(*illuminance), std::move(*sun), std::move(*matrix), std::move(*results));
     }
 

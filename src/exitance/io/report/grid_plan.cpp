@@ -45,8 +45,8 @@ std::string lines(const Picture& picture, Vec2 plan, Vec2 cell, const ColourScal
 
 /// Size of the letters of the numbers in cells, in SVG units.
 double size_of_numbers(Vec2 cell) {
-    constexpr double smallest = 11, largest = 18;            // derived from print on A4
-    constexpr double per_width = 1.0 / 3, per_height = 0.5;  // derived from numbers of four digits
+    constexpr double smallest = 11, largest = 18;            // letter sizes, derived from print on A4
+    constexpr double per_width = 1.0 / 3, per_height = 0.5;  // derived from the width of four digits
     return std::clamp(std::min(per_width * cell.x, per_height * cell.y), smallest, largest);
 }
 
@@ -83,7 +83,7 @@ std::string surroundings(const GridLight& light, const Scene& scene, double to_p
     for (const SurfaceId s : scene.surfaces().ids())
         for (const auto& [a, b] : section_of(scene.outline(s), light.plane.origin, light.n)) cut += line(a, b);
     constexpr double highest = 1.2,
-                     parallel = 0.999;  // metres below the plane; derived from furniture and slopes of 4%
+                     parallel = 0.999;  // metres below the plane, derived from furniture; cosine of a slope of 4%
     for (const Region& region : scene.regions()) {
         const double depth = -dot(region.loops[0][0] - light.plane.origin, light.n);
         // The floor itself is the face that is larger than the plane.

@@ -106,7 +106,7 @@ std::string layout(const ReportContent& content, const LuminaireSchedule& schedu
 }
 
 std::string places_table(const ReportContent& content, const LuminaireSchedule& schedule) {
-    constexpr std::size_t most_rows = 60;  // derived from two columns of a page
+    constexpr std::size_t most_rows = 60;  // derived from the two columns of a page
     if (schedule.items.empty()) return "";
     std::string html =
         "<h3>Positions</h3>\n<div class=\"columns\"><table>\n<thead><tr><th class=\"text\">Luminaire</th><th>x "

@@ -24,7 +24,7 @@ struct LayoutFrame {
 };
 
 LayoutFrame frame_of(const FloorRoom& room) {
-    constexpr double border = 0.25;  // metres, derived from the thickness of walls
+    constexpr double border = 0.25;  // metres around the room's rectangle; derived from the thickness of walls
     const MeasuringPlane& r = room.rectangle;
     Box box;
     for (const Point& p : {r.origin, r.origin + r.u, r.origin + r.v, r.origin + r.u + r.v}) box.add(p);
@@ -68,8 +68,8 @@ std::string outline_of(const Scene& scene, const std::vector<SurfaceId>& faces, 
 /// Size of the letters of a label, in SVG units, so that it does not cover that of the nearest luminaire; 0 if no
 /// readable size does.
 double letters_at(const Vec2& at, std::span<const Vec2> places) {
-    constexpr double largest = 20, smallest = 6;  // derived from print on A4
-    constexpr double width_of_label = 3.2;        // derived from three or four letters, in sizes of a letter
+    constexpr double largest = 20, smallest = 6;  // letter sizes, derived from print on A4
+    constexpr double width_of_label = 3.2;        // in letter sizes; derived from labels of three or four letters
     double size = largest;
     for (const Vec2& other : places) {
         const double across = std::abs(other.x - at.x) / width_of_label, along = std::abs(other.y - at.y);
@@ -81,7 +81,7 @@ double letters_at(const Vec2& at, std::span<const Vec2> places) {
 }  // namespace
 
 std::string luminaire_plan(const ReportContent& content, const LuminaireSchedule& schedule, std::size_t room) {
-    constexpr double cut_height = 1.0;  // metres above the floor, derived from the usual cut of plans
+    constexpr double cut_height = 1.0;  // metres above the floor; derived from the usual height at which plans are cut
     const Scene& scene = content.solution->scene;
     const LayoutFrame frame = frame_of(content.rooms[room]);
     const double z = content.rooms[room].rectangle.origin.z + std::min(cut_height, 0.5 * content.rooms[room].height);

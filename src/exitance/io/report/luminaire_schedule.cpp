@@ -30,7 +30,7 @@ std::vector<double> flux_of_groups(const Scene& scene) {
 
 /// Index of the type of a luminaire; adds it if it is new.
 std::size_t type_of(const InstalledLuminaire& luminaire, const Scene& scene, LuminaireSchedule& schedule) {
-    constexpr double equal = 1e-6;  // derived from rounding of the flux
+    constexpr double equal = 1e-6;  // relative difference; derived from the rounding of the flux
     const LuminaireType* facts = &scene.luminaire_types()[luminaire.type];
     for (std::size_t i = 0; i < schedule.types.size(); ++i) {
         const LuminaireSchedule::Type& type = schedule.types[i];
@@ -44,7 +44,7 @@ std::size_t type_of(const InstalledLuminaire& luminaire, const Scene& scene, Lum
 
 /// Room of a luminaire; its opening may be in the plane of the ceiling.
 std::optional<std::size_t> room_of(const FloorRooms& rooms, const Point& position) {
-    constexpr double below = 0.1;  // metres, derived from openings in a recess or in the ceiling itself
+    constexpr double below = 0.1;  // metres; derived from lamps recessed in the ceiling
     for (const double down : {0.0, below})
         if (const std::size_t room = rooms.at(position - Vec3{0, 0, down}); room < rooms.count()) return room;
     return std::nullopt;

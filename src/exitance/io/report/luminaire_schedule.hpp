@@ -36,7 +36,7 @@ struct LuminaireSchedule {
     struct Room {
         std::size_t room = 0;
         std::map<std::size_t, std::size_t> counts;  ///< Number of luminaires of every type.
-        std::optional<double> watts;                ///< None if the power of a luminaire is unknown.
+        std::optional<double> watts;                ///< Power of the luminaires, W; none if that of one is unknown.
         double watts_per_area = 0;                  ///< W/m^2 of floor
         std::optional<double> light;                ///< Mean illuminance on the room's largest plane, lx.
         double per_100_lux() const { return 100 * watts_per_area / *light; }  ///< W/(m^2 100 lx)

@@ -152,7 +152,7 @@ std::string short_figure(double value) {
 
 double shown_width(double width, double height) {
     constexpr double widest = 640,
-                     highest = 400;  // pixels, derived from two drawings on a page, 267 mm at 96 pixels per inch
+                     highest = 400;  // pixels, derived from two drawings on a page of 267 mm at 96 pixels per inch
     return std::min(widest, highest * width / height);
 }
 

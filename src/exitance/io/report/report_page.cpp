@@ -233,7 +233,7 @@ std::string surfaces(const ReportContent& content, const ReportFigures& figures)
         "{0}</th><th>Minimum</th><th>Maximum</th><th>Uniformity</th><th>Radiosity "
         "{0}</th></tr></thead>\n",
         symbol(content.unit));
-    constexpr std::size_t most_rows = 20;  // derived from half a page
+    constexpr std::size_t most_rows = 20;  // derived from the rows that fill half a page
     for (const ReportFigures::Face& face : std::span(figures.faces).first(std::min(most_rows, figures.faces.size()))) {
         const Levels& l = face.irradiance;
         const std::string light =

@@ -38,8 +38,8 @@ double light_of_surroundings(double task) {
 /// Number that a zone around a task area needs where the task area needs `task`. Sources: TRILUX, "Background lighting"
 /// (a third of the surroundings, U_0 0.10) and "Uniformity of illuminance" (U_0 0.40).
 double required_in(PlaneZone zone, const std::string& quantity, double task) {
-    constexpr double uniform_surroundings = 0.4, uniform_background = 0.1;  // derived from these sources
-    constexpr double background_share = 1.0 / 3;                            // derived from these sources
+    constexpr double uniform_surroundings = 0.4, uniform_background = 0.1;  // derived from the sources above
+    constexpr double background_share = 1.0 / 3;                            // derived from the sources above
     if (zone == PlaneZone::task) return task;
     const bool is_near = zone == PlaneZone::surroundings;
     if (quantity == "U0") return is_near ? uniform_surroundings : uniform_background;

@@ -5,7 +5,7 @@
 namespace exitance {
 namespace {
 
-constexpr double rounding = 1e-6;  ///< Error of positions, relative to the scene's size. derived from single precision
+constexpr double rounding = 1e-6;  ///< Error of positions, relative to the scene's size; derived from single precision.
 
 Point middle_of(const Pane& pane) {
     Point out;

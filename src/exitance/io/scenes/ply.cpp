@@ -306,7 +306,9 @@ class PlyReader {
         SceneDescription::Face face;
         for (const double corner : corners) {
             if (!(corner >= 0 && corner < 4294967295.0 && corner == std::floor(corner)))
-                return error(line, fmt::format("face {} has corner {}", row, corner)), false;
+                return error(line,
+                             fmt::format("face {} refers to vertex {}, which is not a vertex number", row, corner)),
+                       false;
             face.corners.push_back(static_cast<std::uint32_t>(corner));
         }
         face.line = line;

@@ -81,7 +81,7 @@ bool looks_like_gltf(const std::string& path) {
 /// Detects by its first bytes whether a file is something else that was downloaded in place of a scene, and returns its
 /// name; nullptr for other files.
 const char* stand_in_for_scene(const std::string& path) {
-    constexpr std::size_t looked_at = 256;  // derived from web pages of GitHub: blank lines, then the first tag
+    constexpr std::size_t looked_at = 256;  // bytes; derived from pages of GitHub, which begin with blank lines
     std::string begin(looked_at, ' ');
     std::ifstream(path, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
     begin.erase(0, std::min(begin.find_first_not_of(" \t\r\n"), begin.size()));

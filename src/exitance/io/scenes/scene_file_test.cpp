@@ -15,7 +15,7 @@ namespace {
 /// Expected result of reading a hard or malformed file.
 struct Expected {
     std::string file;
-    std::size_t surfaces;  ///< 0: the file is rejected.
+    std::size_t surfaces;  ///< Expected number of surfaces; 0: the file is rejected.
     std::size_t regions;
     std::vector<std::string> said;  ///< Findings: "E x.obj:3" is an error in line 3, W a warning, R a repair.
 };

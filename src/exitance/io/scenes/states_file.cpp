@@ -39,7 +39,7 @@ class StatesReader {
     }
 
   private:
-    /// A path of the file, relative to it.
+    /// The path of a file that the file of states names, relative to its folder.
     std::string beside(const std::string& name) const {
         return (std::filesystem::path(path_).parent_path() / name).string();
     }

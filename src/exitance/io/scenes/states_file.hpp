@@ -10,7 +10,7 @@ struct StatesInput {
     std::span<const std::string> files;  ///< Files of the scene; those of a state are added to them.
     const LoadOptions& load;
     const Scene& scene;
-    std::span<const NamedPane> panes;  ///< Empty if the scene comes from a solution.
+    std::span<const NamedPane> panes;  ///< Panes of the scene; empty if the scene comes from a solution.
     std::size_t sensors = 0, hours = 0;
 };
 

@@ -50,16 +50,16 @@ void read_emitters(Hdf5Reader& file, const std::string& group, const Scene& scen
     const std::size_t count = out.groups.size();
     for (std::size_t i = 0; i + 1 < materials.size(); i += 2) {
         if (materials[i] >= count || materials[i + 1] >= scene.materials().size())
-            return file.fail(group + "/materials", "refers to something that does not exist");
+            return file.fail(group + "/materials", "refers to an index that does not exist");
         out.groups[materials[i]].emitters.materials.push_back(MaterialId(materials[i + 1]));
     }
     for (std::size_t i = 0; i + 1 < lights.size(); i += 2) {
         if (lights[i] >= count || lights[i + 1] >= scene.lights().size())
-            return file.fail(group + "/lights", "refers to something that does not exist");
+            return file.fail(group + "/lights", "refers to an index that does not exist");
         out.groups[lights[i]].emitters.lights.push_back(lights[i + 1]);
     }
     for (const std::uint32_t g : distant) {
-        if (g >= count) return file.fail(group + "/distant_groups", "refers to something that does not exist");
+        if (g >= count) return file.fail(group + "/distant_groups", "refers to an index that does not exist");
         out.groups[g].emitters.is_distant = true;
     }
 }
@@ -77,7 +77,7 @@ void read_values(Hdf5Reader& file, const std::string& name, std::size_t corners,
 std::vector<std::uint32_t> read_elements(Hdf5Reader& file, const std::string& name, std::size_t count) {
     std::vector<std::uint32_t> out = file.read<std::uint32_t>(name, 1);
     for (const std::uint32_t e : out)
-        if (e >= count) return file.fail(name, "refers to something that does not exist"), std::vector<std::uint32_t>();
+        if (e >= count) return file.fail(name, "refers to an index that does not exist"), std::vector<std::uint32_t>();
     return out;
 }
 

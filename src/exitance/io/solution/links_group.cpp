@@ -28,7 +28,7 @@ KeptLinks read_links(Hdf5Reader& file, const std::string& group, const Field<Reg
     if (file.failed()) return {};
     for (std::size_t i = 0; i < receiver.size(); ++i) {
         if (std::max(receiver[i], source[i]) >= out.elements.tree.size())
-            return file.fail(group + "/receiver", "leads to an element that is not there"), KeptLinks();
+            return file.fail(group + "/receiver", "refers to an element that does not exist"), KeptLinks();
         out.links.push_back({ElementId(receiver[i]), ElementId(source[i]), form_factor[i]});
     }
     return out;

@@ -61,7 +61,7 @@ std::vector<PunctualLight> read_lights(Hdf5Reader& file, const std::string& grou
         if (kind[i] > static_cast<std::uint8_t>(PunctualLight::Kind::directional))
             file.fail(group + "/light_kind", "holds " + std::to_string(kind[i]) + ", which is not a kind of light");
         if (!(cone[2 * i] >= 0 && cone[2 * i] < cone[2 * i + 1] && cone[2 * i + 1] <= pi / 2))
-            file.fail(group + "/light_cone", "holds cones that no spot has");
+            file.fail(group + "/light_cone", "holds cone angles that are not valid for a spotlight");
     }
     std::vector<PunctualLight> out;
     for (std::size_t i = 0; i < count && !file.failed(); ++i)
@@ -80,7 +80,7 @@ std::vector<SceneCamera> read_cameras(Hdf5Reader& file, const std::string& group
     const auto fov = in.read<double>("camera_fov", 1, count), width = in.read<double>("camera_width", 1, count);
     for (std::size_t i = 0; i < count && !file.failed(); ++i)
         if (!(fov[i] > 0 && fov[i] < 180 && width[i] >= 0))
-            file.fail(group + "/camera_fov", "holds an angle that no camera has");
+            file.fail(group + "/camera_fov", "holds an angle that is not valid for a camera");
     std::vector<SceneCamera> out;
     for (std::size_t i = 0; i < count && !file.failed(); ++i)
         out.push_back({names[i], eye[i], target[i], up[i], fov[i], width[i]});

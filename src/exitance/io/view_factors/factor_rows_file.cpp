@@ -55,7 +55,7 @@ SparseFactors read_factor_rows(Hdf5Reader& file, const std::string& group, std::
         file.fail(in + "indptr", "does not divide the entries into rows");
     for (std::int32_t column : columns)
         if (column < 0 || static_cast<std::size_t>(column) >= n + further_columns)
-            file.fail(in + "indices", "names a face that is not there");
+            file.fail(in + "indices", "refers to a face that does not exist");
     if (file.failed()) return {};
     table.starts.assign(starts.begin(), starts.end());
     table.columns.assign(columns.begin(), columns.end());

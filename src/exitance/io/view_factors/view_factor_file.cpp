@@ -13,8 +13,8 @@
 namespace exitance {
 namespace {
 
-constexpr std::int64_t factors_version =
-    1;  ///< Version of the .h5 format; raised if older programs cannot read the file.
+constexpr std::int64_t factors_version =  ///< Version of the .h5 format; raised if older programs cannot read the file.
+    1;
 
 Error stopped() {
     return {ErrorCode::limit, "stopped while view factors were written", "", "allow more time"};

@@ -18,8 +18,8 @@ namespace exitance {
 /// minimum candidate list. Source: [Gatenby95].
 class SourceOrderings {
   public:
-    /// corners  of the source's convex hull, at most 64 (more fail an EXI_CHECK: a subset of them would not contain the
-    /// source). O(corners x nodes).
+    /// `corners`: corners of the source's convex hull, at most 64 (more fail an EXI_CHECK: a subset of them would not
+    /// contain the source). O(corners x nodes).
     SourceOrderings(const BspTree& tree, std::span<const Point> corners);
 
     std::size_t corner_count() const { return orders_.size(); }

@@ -9,7 +9,7 @@
 namespace exitance {
 namespace {
 
-constexpr double vertex_rounding = 1e-6;  // of the scene's size: corners of a region that are closer are one vertex
+constexpr double vertex_rounding = 1e-6;  // share of the scene's size; closer corners of a region are one vertex
 
 class Shooting {
   public:

@@ -30,7 +30,7 @@ void CornerSteps::remove(std::size_t element) {
     removed.corners = 0;
 }
 
-/// Has all elements around a vertex looked at again.
+/// Marks all elements around a vertex, so that the next call tests them again.
 void CornerSteps::look_around(std::uint32_t vertex) {
     for (std::uint32_t i : vertices_[vertex].elements) elements_[i].next_look = 0;
 }

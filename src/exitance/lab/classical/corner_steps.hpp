@@ -19,7 +19,7 @@ class CornerSteps {
     /// Returns the value of an element; not called for removed elements.
     using ValueOf = std::function<Spectrum(std::size_t element)>;
 
-    /// rounding   distance within which corners of one region are the same vertex, metres
+    /// Corners of one region within `rounding` (metres) of each other are the same vertex.
     explicit CornerSteps(double rounding) : rounding_(rounding) {}
 
     /// Adds one element. `is_watched`: false if `steeper_than` need not find it. O(log vertices).
@@ -42,7 +42,7 @@ class CornerSteps {
     };
     struct Element {
         std::array<std::uint32_t, 4> vertices{};
-        std::uint8_t corners = 0;  ///< 0 if removed.
+        std::uint8_t corners = 0;  ///< Number of corners; 0 if the element was removed.
         bool is_watched = true;
         double next_look = 0;  ///< Sum of changes at which the element is looked at again.
     };

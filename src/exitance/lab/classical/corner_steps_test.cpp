@@ -84,8 +84,8 @@ TEST(CornerSteps, AreFoundAgainAsSoonAsTheChangesMayHaveMadeThemTooLarge) {
     EXPECT_EQ(calls, 0u);  // two corners cannot have moved apart by more than 0.8
     EXPECT_TRUE(grow(1.5).empty());
     EXPECT_GT(calls, 0u);
-    // The corner between the elements 1 and 2 has the mean of both, here 1.05; element 2 is steep, too, but not
-    // watched.
+    // The corner between the elements 1 and 2 has their mean value, here 1.05 from that of element 1. Element 2 is as
+    // steep but was added without being watched.
     EXPECT_EQ(grow(0.2), std::vector<std::size_t>{1});
 }
 

@@ -17,7 +17,7 @@ std::pair<Patch, Patch> squares(double h, double scale = 1) {
             Patch{{0.7 * s, 0.2 * s, s}, {0, h * s, 0}, {h * s, 0, 0}, Patch::Shape::parallelogram}};
 }
 
-/// Two triangles, likewise.
+/// Two triangles placed as the squares are.
 std::pair<Patch, Patch> triangles(double h) {
     auto [p, q] = squares(h);
     p.shape = q.shape = Patch::Shape::triangle;

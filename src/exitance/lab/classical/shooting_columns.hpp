@@ -76,7 +76,7 @@ class ShootingColumns {
     std::optional<RayRows> ray_rows_;
     std::vector<float> column_, vertex_column_;                ///< The columns computed last.
     std::size_t vertex_column_of_ = none;                      ///< Patch of `vertex_column_`, or none.
-    std::vector<std::vector<float>> kept_, kept_at_vertices_;  ///< Per patch; may lack the newest receivers.
+    std::vector<std::vector<float>> kept_, kept_at_vertices_;  ///< Column of each patch; may lack the newest receivers.
     std::size_t kept_bytes_ = 0;
     mutable std::atomic<std::size_t> rays_{0}, form_factors_{0};
 };

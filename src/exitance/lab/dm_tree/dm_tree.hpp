@@ -13,8 +13,8 @@ namespace exitance {
 /// them. If it ends inside a leaf, construction edges complete the split. Source: [Gatenby95].
 class DmTree {
   public:
-    /// outline  convex, counter-clockwise
-    /// tolerance  metres: points nearer to each other than this coincide
+    /// `outline` is convex and counter-clockwise.
+    /// Points nearer to each other than `tolerance` (metres) coincide.
     DmTree(std::span<const Vec2> outline, double tolerance);
 
     /// Inserts a segment with curve number `curve`. Segments on an existing edge add nothing.

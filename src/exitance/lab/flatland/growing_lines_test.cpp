@@ -58,7 +58,7 @@ TEST(GrowingLines, PicturesHaveTheErrorThatIsReported) {
     EXPECT_NEAR(std::sqrt(off / all), grown[1].error, 1e-12);
     EXPECT_EQ(grown[1].centres.size(), 64u);
     for (const auto& centre : grown[1].centres)
-        for (const double at : centre) EXPECT_TRUE(at >= 0 && at <= 1) << at;  // means of samples
+        for (const double at : centre) EXPECT_TRUE(at >= 0 && at <= 1) << at;  // means of samples in [0, 1]
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ struct CellLight {
         Point at;                       ///< metres
         Normal n;                       ///< Normal of its surface.
         double width = 0;               ///< d in exp(-r^2 / d^2), metres.
-        Spectrum value;                 ///< Its output, W/m^2.
+        Spectrum value;                 ///< Output of the cell, W/m^2.
         std::array<Spectrum, 3> slope;  ///< Derivatives of the output along x, y and z, W/m^3.
     };
     /// A unit of the kernel network: light from y to x.

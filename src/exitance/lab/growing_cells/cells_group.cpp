@@ -36,7 +36,7 @@ std::vector<std::array<std::uint32_t, corners>> read_corners(Hdf5Reader& file, c
     const auto flat = file.read<std::uint32_t>(name, corners);
     std::vector<std::array<std::uint32_t, corners>> out(file.failed() ? 0 : flat.size() / corners);
     for (std::size_t i = 0; i < out.size() * corners; ++i) {
-        if (flat[i] >= unit_count) return file.fail(name, "leads to a unit that is not there"), decltype(out)();
+        if (flat[i] >= unit_count) return file.fail(name, "refers to a unit that does not exist"), decltype(out)();
         out[i / corners][i % corners] = flat[i];
     }
     return out;

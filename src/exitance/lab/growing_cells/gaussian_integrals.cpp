@@ -25,8 +25,8 @@ double beside_edge(const Vec3& a, const Vec3& b, const Normal& n, double d) {
     const double h = std::abs(distance);
     if (h < 1e-12 * d) return 0;
     const double first = std::atan2(s_a, h), last = std::atan2(s_b, h);
-    // In units of half the squared width. The integrand varies sharply if the ends of the edge are distant, so the
-    // range is divided.
+    // The sum is in units of half the squared width. The integrand varies sharply if the ends of the edge are distant,
+    // so the range is divided.
     const LineRule rule = gauss_legendre(16);
     double sum = 0;
     constexpr int parts = 4;

@@ -31,7 +31,7 @@ class GrowingCells {
   public:
     using Unit = CellComplex::Unit;
 
-    /// corners  n coordinates of each of the k + 1 first units, unit after unit
+    /// `corners`: n coordinates of each of the k + 1 first units, unit after unit.
     GrowingCells(const GrowingCellsOptions& options, std::span<const double> corners);
 
     const GrowingCellsOptions& options() const { return options_; }

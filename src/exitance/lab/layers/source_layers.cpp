@@ -13,14 +13,14 @@ namespace {
 
 /// The sources of one layer: emitters, and optionally point and parallel lights.
 struct LayerSource {
-    RegionId region;  ///< None if there are several emitters, or if it is not a region.
+    RegionId region;  ///< Region that emits; none if there are several emitters, or if it is not a region.
     std::vector<std::uint32_t> emitters;
     bool beams = false;
 };
 
 /// One layer for each of the brightest emitters, in the order of the scene, then one for all others together.
 std::vector<LayerSource> sources_of(const Stage& stage) {
-    constexpr std::size_t max_single_layers = 64;  // each layer processes all regions
+    constexpr std::size_t max_single_layers = 64;  // limit, since each layer processes all regions
     const auto& emitters = stage.direct.emitters();
     const auto power = [&](std::uint32_t e) {
         return mean(emitters[e].exitance) * stage.scene.regions()[emitters[e].region].area;

@@ -15,7 +15,7 @@
 namespace exitance {
 namespace {
 
-constexpr double nearness = 2e-8;  // of the scene's size; rounding, as for arranged curves
+constexpr double nearness = 2e-8;  // share of the scene's size, due to rounding, as for arranged curves
 
 std::vector<Vec2> flat_outline(const Patch& patch, const PlaneFrame& frame) {
     std::vector<Vec2> out;
@@ -106,7 +106,7 @@ double LineHierarchy::form_factor(std::uint32_t p, std::uint32_t q) const {
         for (const Point& c : corners(n)) out = std::max(out, norm(c - from));
         return out;
     };
-    constexpr double near_distance = 3;  // times the receiver's radius, from the source's border
+    constexpr double near_distance = 3;  // radii of the receiver from the border of the source
     constexpr int parts = 4;             // parts that an edge of the source is divided into
     const Point x = frame.at(node.centre),
                 y = receivers_[tree_.nodes()[q].region.value].frame.at(tree_.nodes()[q].centre);

@@ -6,9 +6,9 @@
 namespace exitance {
 
 /// The method of `--method discontinuity --local-pass a|b|c|d`: global and local pass as published (LineHierarchy,
-/// run_local_pass). Links transport the light of emitters as well. The result are quadratic triangles; the function
-/// that is solved for is exported. The mesh of the result is a coarse one, from which the certificate computes how
-/// errors propagate.
+/// run_local_pass). Links transport the light of emitters as well. The result is a function on quadratic triangles,
+/// which is exported as it is. The mesh of the result is a coarse one, from which the certificate computes how errors
+/// propagate.
 GlobalLight solve_by_lines(const MethodInput& input);
 
 /// Returns the hierarchy's settings for a relative error: rules of thumb that the error estimate checks.

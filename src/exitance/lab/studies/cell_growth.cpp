@@ -94,8 +94,8 @@ void add_samples(const std::string& name, const Scene& scene, const std::vector<
 
 /// Density of centres within a tenth of the step, over the mean density.
 double density_at_step(const std::vector<std::array<double, 2>>& centres) {
-    constexpr double reach = 0.1;                           // derived from a tenth of the lines' length
-    constexpr double area = 1 - (1 - reach) * (1 - reach);  // of the strip in the unit square
+    constexpr double reach = 0.1;                           // distance from the step; derived from a tenth of the line
+    constexpr double area = 1 - (1 - reach) * (1 - reach);  // area of the strip in the unit square
     const auto count =
         std::count_if(centres.begin(), centres.end(), [](const auto& c) { return std::abs(c[0] - c[1]) < reach; });
     return static_cast<double>(count) / static_cast<double>(centres.size()) / area;

@@ -29,7 +29,7 @@ struct FlatlandGrowth {
     /// x = y, over the mean density.
     Table errors;
     Table centres;        ///< Pictures: centres and widths of units, by the delta rule.
-    Table approximation;  ///< Pictures: the kernel, and what units have learned by the delta rule.
+    Table approximation;  ///< Pictures: the kernel, and the approximation that units learned by the delta rule.
 };
 FlatlandGrowth measure_flatland_growth(const std::vector<std::size_t>& units, std::uint64_t seed);
 

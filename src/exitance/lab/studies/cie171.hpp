@@ -26,7 +26,7 @@ struct Cie171Row {
 struct Cie171Options {
     bool quick = false;           ///< Only skies 1, 5, 12 and 15, and reflectances 0.05, 0.5 and 0.95.
     std::string only;             ///< Only this case, for example "5.8"; empty: all.
-    int threads = 0;              ///< 0: all cores.
+    int threads = 0;              ///< Number of threads; 0: all cores.
     double error_of_cube = 1e-4;  ///< Requested error of case 5.8, the only one with reflections.
 };
 

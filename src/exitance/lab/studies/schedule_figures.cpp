@@ -106,7 +106,7 @@ void draw_busy_processors(const std::string& scene, const TaskGraph& graph, Sche
     }
     const std::string drawing = fmt::format("{}, {}, {} processors", scene,
                                             schedule_names[static_cast<std::size_t>(schedule)].second, processors);
-    constexpr double inset = 0.1;  // derived from a gap of a fifth of a row between processors
+    constexpr double inset = 0.1;  // share of a row; derived from a gap of a fifth of a row between processors
     for (const BusyInterval& interval : drawn) {
         const auto row = static_cast<double>(interval.processor);
         add_shape(out, drawing, "box", {interval.begin, row + inset, interval.end, row + 1 - inset},

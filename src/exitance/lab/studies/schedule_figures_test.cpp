@@ -42,7 +42,7 @@ TEST(ScheduleFigures, EveryProcessorThatWorksHasItsRow) {
     Table busy;
     draw_busy_processors("room", even_graph(20), Schedule::stealing, 4, busy);
     EXPECT_GE(rows_with(busy, "colour", "#0072b2"), 4u);
-    EXPECT_EQ(rows_with(busy, "colour", "#d55e00"), 1u);  // behind the barrier
+    EXPECT_EQ(rows_with(busy, "colour", "#d55e00"), 1u);  // the processor behind the barrier
     bool has_row[4] = {};
     for (std::size_t row = 0; row < busy.rows.size(); ++row)
         has_row[static_cast<std::size_t>(busy.number(row, "y1"))] = true;

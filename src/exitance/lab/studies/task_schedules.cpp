@@ -136,7 +136,7 @@ void add_calibration(const std::string& scene, const std::array<TaskGraph, sched
     const auto graph_of = [&](Schedule schedule) -> const TaskGraph& {
         return graphs[static_cast<std::size_t>(schedule)];
     };
-    for (const int slowness : {100, 300, 1000, 3000}) {  // times of a processor of today
+    for (const int slowness : {100, 300, 1000, 3000}) {  // how many times a processor of today is faster
         MachineModel machine = two_rings;
         machine.slowness = slowness;
         const auto lock =

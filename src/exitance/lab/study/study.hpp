@@ -27,7 +27,7 @@ struct StudyRow {
     std::string label;
     std::string options;
     std::string peer;  ///< Another program that these options are for (`peer_names()`); empty: this one.
-    std::vector<std::string> settings, quick_settings;      ///< Empty: one run without a setting.
+    std::vector<std::string> settings, quick_settings;      ///< Settings to run; empty: one run without a setting.
     bool equal_time = true;                                 ///< True if included in the table `equal_time`.
     bool quick = true;                                      ///< True if run with --quick.
     double most = std::numeric_limits<double>::infinity();  ///< Largest value of the parameter that is run.
@@ -38,7 +38,7 @@ struct StudyRow {
 /// table `references`; or those paths only, which are exact if nothing reflects; or the contents of a file.
 struct StudyReference {
     std::string options, quick_options;  ///< Options of the careful solve; empty: only paths.
-    std::size_t points = 0, paths = 0;   ///< 0 points: errors are not measured.
+    std::size_t points = 0, paths = 0;   ///< Size of the reference; 0 points: errors are not measured.
     std::size_t quick_points = 0, quick_paths = 0;
     std::string file;  ///< Probe CSV file instead of paths, in which "{value}" is replaced.
 };
@@ -88,7 +88,7 @@ struct StudyPicture {
 /// one picture.
 struct StudyDrawing {
     std::string name, title, table;
-    std::string x_label, y_label;  ///< Empty: no axis.
+    std::string x_label, y_label;  ///< Labels of the axes; empty: no axis.
     bool equal_axes = false;       ///< True if a unit is as long on both axes.
     RowFilter where;
 };

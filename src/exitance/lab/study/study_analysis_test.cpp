@@ -48,7 +48,7 @@ TEST(StudyAnalysis, FitsRecoverTheirCoefficients) {
 
 TEST(StudyAnalysis, RunsThatMetALimitAreNotMeasured) {
     Table table = two_methods();
-    table.set("status", "memory limit");  // for the last row of b, at x = 8
+    table.set("status", "memory limit");  // applies to the last row of b, at x = 8
     EXPECT_EQ(chosen_rows(table, {{"row", {"b"}}}, true).size(), 4u);
     const std::vector<std::size_t> rows = measured_rows(table, {{"row", {"b"}}}, true);
     ASSERT_EQ(rows.size(), 3u);

@@ -45,7 +45,7 @@ class DrawingFrame {
     double most(std::size_t axis) const { return most_[axis]; }
 
   private:
-    double first_x_ = picture_margin;  ///< Pixel of the least x: shapes are in the middle.
+    double first_x_ = picture_margin;  ///< Pixel of the smallest x; it centres the shapes in the picture.
     std::array<double, 2> least_{HUGE_VAL, HUGE_VAL}, most_{-HUGE_VAL, -HUGE_VAL}, scale_{1, 1};
 };
 

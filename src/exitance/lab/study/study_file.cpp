@@ -38,7 +38,7 @@ void read_scene(TomlKeys& keys, StudyScene& scene) {
     scene.quick_values = scene.values;
     keys.take("quick", scene.quick_values);
     if (scene.generate.empty() == scene.file.empty())
-        keys.fail(keys.table(), "a scene has either 'generate' or 'file'");
+        keys.fail(keys.table(), "a scene needs either 'generate' or 'file'");
     if (scene.name.find_first_of("/\\ ") != std::string::npos)
         keys.fail(keys.table(), fmt::format("'{}' has blanks or slashes: files are named after scenes", scene.name));
     if (scene.values.empty()) scene.values = scene.quick_values = {0};
@@ -101,7 +101,7 @@ void read_line(TomlKeys& keys, StudyLine& line) {
     }
     const auto& n = line.normal;
     if (!(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] > 0)) keys.fail(keys.table(), "the normal has no length");
-    if (line.points < 2) keys.fail(keys.table(), "a line has two points at least");
+    if (line.points < 2) keys.fail(keys.table(), "a line needs at least two points");
 }
 
 void read_picture(TomlKeys& keys, StudyPicture& picture) {
@@ -162,7 +162,7 @@ void read_reference(TomlKeys& keys, StudyReference& reference) {
     keys.take("quick_paths", reference.quick_paths);
     keys.finish();
     if (reference.file.empty() && (reference.points == 0 || reference.paths == 0))
-        keys.fail(keys.table(), "a reference has 'points' and 'paths', or a 'file'");
+        keys.fail(keys.table(), "a reference needs 'points' and 'paths', or a 'file'");
 }
 
 Study read_study(const toml::table& table, const std::string& file) {
@@ -196,7 +196,7 @@ Study read_study(const toml::table& table, const std::string& file) {
     }
     keys.finish();
     if (study.table.empty() && (study.scenes.empty() || study.rows.empty()))
-        keys.fail(table, "a study has a [[scene]] and a [[row]] at least, or a 'table'");
+        keys.fail(table, "a study needs at least one [[scene]] and one [[row]], or a 'table'");
     std::set<std::string> labels;
     for (const StudyRow& row : study.rows)
         if (!labels.insert(row.label).second) keys.fail(table, fmt::format("two rows are called '{}'", row.label));

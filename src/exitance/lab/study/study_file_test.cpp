@@ -37,8 +37,8 @@ TEST(StudyFile, ReportsTheLineOfAnError) {
     expect_error(smallest + "[[row]]\nlabel = \"Haar\"\noptions = \"\"\n", "s.toml:1", "two rows are called 'Haar'");
     expect_error(smallest + "[[conclusion]]\nsays = \"\"\ny = \"links\"\nmeasure = \"slop\"\n", "s.toml:13",
                  "'slop' is not one of");
-    expect_error(smallest + "[reference]\npoints = 10\n", "s.toml:10", "a reference has");
-    expect_error("title = \"T\"\n", "s.toml:1", "a study has");
+    expect_error(smallest + "[reference]\npoints = 10\n", "s.toml:10", "a reference needs");
+    expect_error("title = \"T\"\n", "s.toml:1", "a study needs");
 }
 
 TEST(StudyFile, EveryBuiltInStudyIsValid) {

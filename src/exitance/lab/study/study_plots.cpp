@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr double gnuplot_seconds = 60;
 constexpr std::size_t max_marked = 60;    // curves with more points get no markers
-constexpr double room_for_labels = 0.08;  // of the range of the data
+constexpr double room_for_labels = 0.08;  // share of the range of the data
 
 struct PlotCurve {
     std::string name;

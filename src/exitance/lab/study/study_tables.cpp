@@ -25,7 +25,7 @@
 namespace exitance {
 namespace {
 
-/// A kernel of flatland.
+/// A kernel of two-dimensional transport (flatland), with or without a step at x = y.
 struct FlatKernel {
     bool step;
     double h;

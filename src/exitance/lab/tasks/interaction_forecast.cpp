@@ -8,7 +8,7 @@ double predict_interactions(std::span<const PiecePair> pairs, const std::functio
                             const std::function<double(std::uint32_t)>& power, const TaskOptions& options) {
     double sum = 0;
     for (const PiecePair& pair : pairs) {
-        double receiver = area(pair.receiver), source = area(pair.source);  // areas of one part of each
+        double receiver = area(pair.receiver), source = area(pair.source);  // areas of one part after the cuts so far
         double F = static_cast<double>(pair.form_factor), parts = 1;
         const double B = power(pair.source);
         for (int levels = 0; levels < 2 * PatchPool::deepest; ++levels) {

@@ -172,10 +172,10 @@ std::optional<double> flattening_lock(const TaskGraph& graph, Schedule schedule,
         return simulate_schedule(graph, schedule, 1, machine).seconds /
                simulate_schedule(graph, schedule, processors, machine).seconds;
     };
-    constexpr double shortest = 1e-9, longest = 1;  // derived from a cycle of a processor, and a task's longest time
+    constexpr double shortest = 1e-9, longest = 1;  // seconds; derived from a processor's cycle and the longest task
     if (speedup_with(0) < speedup || speedup_with(longest) > speedup) return std::nullopt;
     double low = shortest, high = longest;
-    constexpr double accuracy = 1.01;  // derived from the digits with which published curves can be read
+    constexpr double accuracy = 1.01;  // relative; derived from how well published curves can be read
     while (high > accuracy * low) {
         const double middle = std::sqrt(low * high);
         (speedup_with(middle) > speedup ? low : high) = middle;

@@ -39,8 +39,8 @@ inline constexpr MachineModel shared_memory{.name = "shared",
                                             .ring = 32,
                                             .slowness = 1};
 /// Rings of 32 processors of 40 MHz with only caches, as in [Vinod95]: 175 or 600 cycles per remote line. Assumptions,
-/// which `flattening_lock` varies: such a processor needs a second for a millisecond's work of a present one; a queue's
-/// lock is taken, written and released, three lines of the own ring.
+/// which `flattening_lock` varies: such a processor takes a second for work that a present one does in a millisecond; a
+/// queue's lock is taken, written and released, three lines of the own ring.
 inline constexpr MachineModel two_rings{.name = "ring",
                                         .queue = 3 * 175 / 40e6,
                                         .probe = 175 / 40e6,

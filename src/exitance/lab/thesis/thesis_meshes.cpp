@@ -27,7 +27,7 @@ constexpr double nudge_share = 1e-6;
 
 struct RefinedMesh {
     BisectionMesh mesh;
-    std::vector<double> value;  ///< Per node; NaN: not evaluated yet.
+    std::vector<double> value;  ///< Value at each node; NaN: not evaluated yet.
     double rms = 0, ratio = 0, area = 0;
 };
 

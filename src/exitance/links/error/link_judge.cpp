@@ -130,7 +130,7 @@ double LinkJudge::cast(const LinkPair& pair, const OpenTransfer& transfer, bool 
 /// Strength oracles: if the link is too strong, selects the larger element for splitting. A source that is a leaf is
 /// not split; as a receiver it is judged separately.
 LinkJudge::Cut LinkJudge::what_to_cut(const LinkPair& pair, const OpenTransfer& transfer) const {
-    constexpr double partial = 0.5;  // share of the limit if occluders are possible; derived from [Hanrahan91]
+    constexpr double partial = 0.5;  // share of the limit for partly hidden pairs; derived from [Hanrahan91]
     const auto [p, q] = std::pair{pair.receiver, pair.source};
     const double allowed = (pair.view == View::mixed ? partial : 1) * tolerance_.strongest;
     const double area = sites_.tree().area(p), ratio = area / sites_.tree().area(q);

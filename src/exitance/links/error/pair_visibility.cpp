@@ -47,7 +47,7 @@ double PairVisibility::look(ElementId p, ElementId q, unsigned count) {
 }
 
 void PairVisibility::look_by_node(ElementId p, ElementId q, unsigned each, bool few) {
-    // Derived from the rule: twice the distance of its first node from the border.
+    // Derived from the quadrature rule at the nodes: twice the distance of its first node from the element's border.
     const double size = at_nodes_ ? 0 : n_ == 4 ? 0.42 : 0.22;
     RandomStream random(seed_, Stream::visibility, p.value, q.value);
     const Patch receiver = sites_.frame(p), source = sites_.frame(q);

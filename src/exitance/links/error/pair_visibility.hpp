@@ -11,7 +11,7 @@ namespace exitance {
 /// object per thread; reuses its memory.
 class PairVisibility {
   public:
-    /// at_nodes  rays join the nodes themselves, as quadrature rules require; otherwise points around them
+    /// `at_nodes`: rays join the nodes themselves, as quadrature rules require; otherwise points around them.
     PairVisibility(const LinkSites& sites, bool at_nodes, std::uint64_t seed)
         : sites_(sites), n_(sites.nodes()), at_nodes_(at_nodes), seed_(seed) {}
 

@@ -73,7 +73,7 @@ class Undersampling {
                         error(receiver.drawn_in(close, off)));
     }
 
-    /// allowed  W/m^2: smaller errors are not computed
+    /// Returns the error due to a steep fall of the light. `allowed`: smaller errors are not computed, W/m^2.
     double fall(double allowed) const {
         // A fall counts if the polynomial is at least `least_factor` times the exact value and the error is at least
         // half of the brightest point; it covers about `fall_area` of the receiver.

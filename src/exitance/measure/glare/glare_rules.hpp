@@ -30,7 +30,7 @@ double guth_position(const Normal& view, const Vec3& d);
 /// position indices.
 enum class GlareLimit {
     none,      ///< No reason: the luminaire counts.
-    aside,     ///< T / R is above 3: too far to the side.
+    aside,     ///< Too far to the side: T / R (see SightOffsets) is above 3.
     overhead,  ///< H / R is beyond the end of Guth's table: hidden by the brow.
     level,     ///< The luminaire is seen at more than 85 degrees from its nadir: its light is nearly horizontal.
 };

@@ -32,7 +32,7 @@ bool is_free(const Stage& stage, const Point& eye) {
 
 /// Names a horizontal line of sight: "looking +x", or by its angle from +x towards +y, "looking 30°".
 std::string words_of_view(const Vec3& view) {
-    constexpr double parallel = 0.999;  // derived from 2.5 degrees
+    constexpr double parallel = 0.999;  // cosine of an angle that counts as parallel; derived from 2.5 degrees
     for (const auto& [axis, name] : {std::pair(Vec3{1, 0, 0}, 'x'), std::pair(Vec3{0, 1, 0}, 'y')})
         if (std::abs(dot(view, axis)) > parallel)
             return fmt::format("looking {}{}", dot(view, axis) > 0 ? '+' : '-', name);
@@ -47,7 +47,7 @@ struct Side {
 
 /// The free place of a side that is nearest to the middle of its wall, on a lattice of 0.1 m; none if there is none.
 std::optional<Point> place_at(const Stage& stage, const FloorRooms& rooms, std::size_t room, const Side& side) {
-    constexpr double spacing = 0.1, from_wall = 0.3;  // metres; derived from the clearance
+    constexpr double spacing = 0.1, from_wall = 0.3;  // metres; derived from observer_clearance
     const double eye_height = std::min(seated, 0.5 * rooms[room].height);
     const auto deep = static_cast<int>(0.5 * norm(side.across) / spacing);
     const auto wide = static_cast<int>(0.5 * norm(side.along) / spacing);

@@ -47,10 +47,10 @@ struct MapSize {
 };
 
 /// Packs charts into few maps: in descending order of height, each as high up as it fits. A skyline algorithm, see
-/// [Jylanki10]. Every chart keeps at least `padding` texels around it, and its room starts and ends at multiples of the
-/// largest power of two 2^m up to `padding`. Bilinear lookups on the region then read no texel of another chart down to
-/// the m-th mip level. O(charts x charts side by side).
-/// most     texels along a side of a map; no chart with its padding may be longer
+/// [Jylanki10]. Every chart has a margin of at least `padding` texels, and its rectangle starts and ends at multiples
+/// of the largest power of two 2^m up to `padding`. Bilinear lookups on the region then read no texel of another chart
+/// down to the m-th mip level. O(charts x charts side by side).
+/// most         texels along a side of a map; no chart with its padding may be longer
 /// given_width  texels along the horizontal sides; 0: such that a map is approximately square
 /// Returns the sizes of the maps, multiples of 2^m.
 std::vector<MapSize> pack_charts(std::vector<Chart>& charts, int padding, int most, int given_width = 0);

@@ -8,10 +8,10 @@ namespace exitance {
 namespace {
 
 constexpr int reach = 2;  ///< Texels from the centre of the fitted square to its sides.
-/// RMS deviation from the plane, relative to the mean, above which there is an edge of light. derived from the bend of
+/// RMS deviation from the plane, relative to the mean, above which there is an edge of light. Derived from the bend of
 /// light on a mesh of 16 sides per turn with four texels per side, which is 5%.
 constexpr double max_deviation = 0.1;
-/// Squared product of the two widths of the texels, texels^4: below it the slope is unknown. derived from a strip one
+/// Squared product of the two widths of the texels, texels^4: below it the slope is unknown. Derived from a strip one
 /// texel wide.
 constexpr double min_spread = 0.02;
 

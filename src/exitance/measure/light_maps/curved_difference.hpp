@@ -34,7 +34,7 @@ struct CurvedDifferences {
 /// Sums the light of the texels of curved regions.
 class CurvedSums {
   public:
-    /// faces  null: no region is curved
+    /// `faces`: null if no region is curved.
     CurvedSums(const Scene& scene, const CurvedFaces* faces);
 
     /// Adds the light of a part of a texel. `area`: m^2; `irradiance`: 0 where it is covered.

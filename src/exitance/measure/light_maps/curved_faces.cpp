@@ -6,7 +6,7 @@
 namespace exitance {
 namespace {
 
-/// Angles between a corner's normal and its face above which the surface is curved. derived from the rounding of
+/// Angles between a corner's normal and its face above which the surface is curved. Derived from the rounding of
 /// normals in single precision and in text of four digits.
 constexpr double min_angle = 0.1 * pi / 180;
 /// Angle above which a mesh is too coarse to approximate a surface: derived from a tube of eight sides at its corners,

@@ -54,7 +54,7 @@ class CurvedFaces {
 
   private:
     std::vector<NormalTriangle> triangles_;  ///< Triangles, in the order of their faces.
-    Field<SurfaceId, std::uint32_t> first_;  ///< First triangle of each face,
+    Field<SurfaceId, std::uint32_t> first_;  ///< First triangle of each face.
     Field<SurfaceId, std::uint32_t> count_;  ///< Number of triangles of each face.
     Field<RegionId, std::uint8_t> is_curved_;
 };

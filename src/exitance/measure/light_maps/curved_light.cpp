@@ -9,13 +9,13 @@
 namespace exitance {
 namespace {
 
-/// Rays of a node. derived from the n^(-3/4) of stratified rays: 0.5% of what a uniform surround would give.
+/// Rays of a node. Derived from the n^(-3/4) of stratified rays: 0.5% of what a uniform surround would give.
 constexpr unsigned node_rays = 512;
 constexpr int max_steps = 256;
-/// Rays of direct light at a place, at most. derived from those of a pixel of a flat texel
+/// Rays of direct light at a place, at most. Derived from those of a pixel of a flat texel
 /// (measure/pictures/tile_cells.cpp)
 constexpr unsigned most_rays = 1024;
-constexpr double alike = 0.01;  ///< Relative difference of light that is linear. derived from TileLight::alike
+constexpr double alike = 0.01;  ///< Relative difference of light that counts as linear; derived from TileLight::alike.
 
 constexpr std::size_t node_count(int steps) {
     return static_cast<std::size_t>((steps + 1) * (steps + 2) / 2);
@@ -104,7 +104,7 @@ ProbePoint CurvedLight::above(const MeasuredPlace& place) const {
 /// border is on the right side of them.
 CurvedLight::NodeLight CurvedLight::gather(std::size_t triangle, const std::array<double, 3>& weight,
                                            Workspace& workspace) const {
-    constexpr double inwards = 0.01;  // share of the way to the centroid; derived from the length of a step
+    constexpr double inwards = 0.01;  // share of the way to the centroid; derived from the distance between nodes
     const NormalTriangle& t = faces_.triangles()[triangle];
     std::array<double, 3> inside{};
     Point on_face;
@@ -145,7 +145,7 @@ Spectrum CurvedLight::reflected(const CurvedPlace& place, Workspace& workspace) 
         known += node.weight;
         for (std::size_t k = 0; k < bands; ++k) sum[k] += node.weight * static_cast<double>(light.irradiance[k]);
     }
-    constexpr double min_known = 0.1;  ///< Weight of known nodes, at least. derived from the lattice: one is near.
+    constexpr double min_known = 0.1;  ///< Minimum weight of known nodes; derived from a lattice with one node near.
     if (known > min_known) return sum / known;
     const NodeLight here = gather(place.triangle, place.weight, workspace);
     Spectrum out;

@@ -10,7 +10,7 @@
 
 namespace exitance {
 
-/// Distance of the nodes at which CurvedLight gathers reflected light, at most, in texels. derived from the solve's
+/// Distance of the nodes at which CurvedLight gathers reflected light, at most, in texels. Derived from the solve's
 /// elements: reflected light varies slowly, and a node costs as much as some ten texels.
 constexpr int node_texels = 8;
 
@@ -24,8 +24,8 @@ class CurvedLight {
   public:
     class Workspace;
 
-    /// spacing  distance of lattice nodes, at most, metres; a triangle has nodes at its corners at least
-    /// Keeps references to `light` and `faces`. O(nodes); 0.1 ms per node.
+    /// `spacing`: maximum distance of lattice nodes, metres; a triangle always has nodes at its corners. Keeps
+    /// references to `light` and `faces`. O(nodes); 0.1 ms per node.
     CurvedLight(const RadiosityFunction& light, const CurvedFaces& faces, double spacing, const StopRequest& stop);
 
     bool is_curved(RegionId region) const { return faces_.is_curved(region); }

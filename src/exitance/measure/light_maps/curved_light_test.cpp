@@ -228,7 +228,7 @@ struct SphereAboveFloor {
     CurvedScene scene;
     Solution solution;
 
-    /// size  half the side of the floor, m
+    /// `size`: half the side of the floor, m.
     explicit SphereAboveFloor(double size)
         : scene(curved_scene(sphere_triangles(3), [](const Point& p) { return normalized(p); }, as_written,
                              {{{-size, -size, -1.5}, {size, -size, -1.5}, {size, size, -1.5}, {-size, size, -1.5}}})),

@@ -116,7 +116,7 @@ void continue_directed(std::span<const std::size_t> others, const Spectrum& irra
 }
 
 std::array<Spectrum, 4> radiance_of(const DirectedIrradiance& light) {
-    const Harmonics<double> Y = harmonics_at({1, 0, 0});  // of degrees 0 and 1: the norms
+    const Harmonics<double> Y = harmonics_at({1, 0, 0});  // its entries 0 and 3 are the norms of degrees 0 and 1
     const double zero = 1 / (irradiance_factors[0] * Y[0]), one = 1 / (irradiance_factors[1] * Y[3]);
     return {zero * light.constant, one * light.slope[1], one * light.slope[2], one * light.slope[0]};
 }

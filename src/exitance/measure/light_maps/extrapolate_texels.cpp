@@ -19,7 +19,7 @@ struct Texel {
 
 constexpr std::array<Texel, 8> around{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}}};
 
-/// Fills the texels of one chart's room.
+/// Fills the texels of one chart's rectangle.
 class Filler {
   public:
     Filler(const Chart::Rectangle& room, LightMap& map) : room_(room), map_(map) {}

@@ -213,7 +213,7 @@ ChartFrame smallest_frame(const Scene& scene, const FaceChart& chart) {
     const std::vector<Vec2> hull = convex_hull(std::move(points));
     double smallest = HUGE_VAL;
     Vec2 right{1, 0};
-    // Rectangles of equal area must not be chosen by rounding. derived from the precision of coordinates.
+    // Rectangles of equal area must not be chosen by rounding; derived from the precision of coordinates.
     constexpr double rounding = 1e-9;
     for (std::size_t i = 0; i < hull.size(); ++i) {
         const Vec2 edge = hull[(i + 1) % hull.size()] - hull[i];

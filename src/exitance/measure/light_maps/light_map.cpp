@@ -69,7 +69,7 @@ Result<LightMaps> make_empty_maps(const Scene& scene, const BakeOptions& options
     if (texels > most_texels)
         return Error{ErrorCode::usage,
                      "the maps would have " + std::to_string(std::llround(texels / 1e6)) +
-                         " million texels, the most is 134 million",
+                         " million texels; the limit is 134 million",
                      "--density", "choose a smaller one, or a smaller --padding"};
     out.charts = std::move(*charts);
     for (const MapSize size : pack_charts(out.charts, options.padding, options.most)) {
@@ -95,7 +95,7 @@ bool is_divisible(const Solution& solution) {
 Result<void> check_component(const Solution& solution, Component component) {
     if (component == Component::total || is_divisible(solution)) return {};
     return Error{ErrorCode::usage, "the solution holds direct and indirect light as one", "--component",
-                 "solve without --output-light elements and --gather off, or leave --component out"};
+                 "solve without --output-light elements and without published forms, or leave --component out"};
 }
 
 double automatic_density(const Scene& scene) {

@@ -31,10 +31,10 @@ struct BakeOptions {
 struct LightMap {
     /// Origin of a texel's value.
     enum class Source : std::uint8_t {
-        nothing,       ///< None; the texel belongs to no chart: 0.
+        nothing,       ///< No source: the texel belongs to no chart, and its value is 0.
         computed,      ///< Mean over the part of the texel that is on the region and not covered.
         extrapolated,  ///< Neighbouring texels; the texel is outside the region, or covered by an object.
-        buried,        ///< None; the texel is covered by an object, far from uncovered texels: 0.
+        buried,        ///< No source: an object covers the texel, far from uncovered ones; its value is 0.
     };
 
     MapSize size;
@@ -64,7 +64,7 @@ struct LightMaps {
     std::vector<Chart> charts;  ///< One chart per region, in the order of their ids.
     std::vector<LightMap> maps;
     std::size_t texels = 0;    ///< Number of texels that are on surfaces, wholly or in part.
-    CurvedDifferences curved;  ///< Empty for maps of a part of the light.
+    CurvedDifferences curved;  ///< Light of curved regions compared with the solution; empty for a part of the light.
 };
 
 /// True if direct and indirect light of a solution are stored separately.
@@ -94,9 +94,9 @@ double automatic_density(const Scene& scene);
 Result<LightMaps> bake_light_maps(const RadiosityFunction& light, const BakeOptions& options, Progress& progress,
                                   const StopRequest& stop);
 
-/// Fills the texels of a chart's room that are not computed, ring by ring from the computed ones: all of them, except
-/// that only `reach` rings of buried texels are filled. The first ring outside the region is extrapolated linearly,
-/// with a change of at most half of the light there, so that bilinear lookups at a border keep the slope. O(texels).
+/// Fills the texels of a chart's rectangle that are not computed, ring by ring from the computed ones; of buried
+/// texels, only `reach` rings are filled. The first ring outside the region is extrapolated linearly, with a change of
+/// at most half of the light there, so that bilinear lookups at a border keep the slope. O(texels).
 void extrapolate_texels(const Chart& chart, int reach, LightMap& map);
 
 }  // namespace exitance

@@ -63,7 +63,7 @@ class TileBaker {
     const CurvedLight* curved_;
     const TiltedLight* tilted_;
     Component component_;
-    Spectrum exact_share_;  ///< Factor of exact direct light in all light; the elements hold the rest of it.
+    Spectrum exact_share_;  ///< The elements hold all light except this share of the exact direct light.
     const StopRequest& stop_;
     CurvedLight::Workspace curved_work_;
     TiltedLight::Workspace tilted_work_;

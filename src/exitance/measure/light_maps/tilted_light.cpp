@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-/// Rays of a node and normal. derived from the n^(-3/4) of stratified rays: 0.8% of what a uniform surround would give.
+/// Rays of a node and normal. Derived from the n^(-3/4) of stratified rays: 0.8% of what a uniform surround would give.
 constexpr unsigned tilted_rays = 256;
 
 /// Returns the position of a node along a side of a chart, in texels.
@@ -86,7 +86,7 @@ DirectedIrradiance TiltedLight::reflected(int x, int y, const MeasuredPlace& pla
             DirectedIrradiance part = *light;
             part *= w, sum += part, weight += w;
         }
-    constexpr double min_known = 0.1;  ///< Weight of known nodes, at least. derived from the lattice: one is near.
+    constexpr double min_known = 0.1;  ///< Minimum weight of known nodes; derived from a lattice with one node near.
     if (weight > min_known) return sum *= 1 / weight;
     Known& in_block = workspace.in_block_[static_cast<std::size_t>(j * Workspace::blocks + i)];
     if (!in_block) in_block = gather(above(place), workspace);
@@ -96,8 +96,8 @@ DirectedIrradiance TiltedLight::reflected(int x, int y, const MeasuredPlace& pla
 DirectedIrradiance TiltedLight::at(int x, int y, std::span<const MeasuredPlace> open, const Spectrum& irradiance,
                                    Workspace& workspace) const {
     constexpr std::size_t most_points = 4;
-    constexpr double alike = 0.1;  ///< Relative difference of irradiance without a shadow edge. derived from the slope
-                                   ///< of light between texels, which is a few percent.
+    constexpr double alike = 0.1;  ///< Relative difference without a shadow edge; derived from slopes of a few percent.
+
     const ProbePoint first = above(open.front());
     DirectedIrradiance out, straight;
     if (component_ != Component::direct) out = reflected(x, y, open.front(), workspace);

@@ -58,7 +58,7 @@ class TiltedLight::Workspace {
 
     const Chart* chart_ = nullptr;
     int x_ = 0, y_ = 0;                                      ///< First texel of the tile.
-    std::array<std::optional<Known>, nodes * nodes> nodes_;  ///< Empty: not gathered; none in it: covered.
+    std::array<std::optional<Known>, nodes * nodes> nodes_;  ///< No entry: not gathered yet; an empty entry: covered.
     std::array<Known, blocks * blocks> in_block_;            ///< Light at a place of a block whose nodes are covered.
     PlaceLight::Workspace direct_;
     GatherWorkspace gather_;

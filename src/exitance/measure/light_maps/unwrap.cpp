@@ -66,7 +66,7 @@ std::optional<std::vector<Chart>> packed(std::span<const FramedChart> charts, do
 
 /// The highest density between two that fits, to within 1%.
 double densest(std::span<const FramedChart> charts, double fits, double too_dense, MapSize size, int padding) {
-    constexpr double enough = 1.01;  // derived from the waste of a packing, which is larger
+    constexpr double enough = 1.01;  // derived from the space that a packing wastes, which is more than 1%
     while (too_dense > enough * fits) {
         const double middle = std::sqrt(fits * too_dense);
         (packed(charts, middle, size, padding) ? fits : too_dense) = middle;

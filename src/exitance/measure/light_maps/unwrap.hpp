@@ -23,8 +23,8 @@ struct Unwrapped {
     std::size_t charts = 0;     ///< Number of charts.
     double filled = 0;          ///< Share of the map that faces cover, without padding.
     double smallest_scale = 1;  ///< Least ratio of a face's area in the map to that of a face parallel to it.
-    /// The linear map of every region, in the order of ids. The first region of a chart has the chart's room; the
-    /// rooms of the others are empty.
+    /// The linear map of every region, in the order of ids. The first region of a chart has the chart's rectangle
+    /// (`room`); those of the others are empty.
     std::vector<Chart> regions;
 
     /// Projection of a chart to the map, texels.

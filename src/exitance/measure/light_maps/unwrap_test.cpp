@@ -81,7 +81,7 @@ void expect_fit(const Scene& scene, const Unwrapped& unwrapped, int padding) {
     }
     EXPECT_NEAR(filled, unwrapped.filled, 1e-9);
     for (const std::uint8_t has : has_place) EXPECT_TRUE(has);
-    // Charts are at least twice the padding apart: rooms contain their padding, and no rooms overlap.
+    // Charts are at least twice the padding apart: their rectangles (`room`) include the padding and do not overlap.
     std::vector<std::uint8_t> taken(unwrapped.size.texels());
     for (const Chart& chart : unwrapped.regions) {
         EXPECT_GE(std::min(chart.x, chart.y), padding);

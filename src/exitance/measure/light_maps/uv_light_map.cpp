@@ -119,7 +119,7 @@ class ChartMaker {
 /// Sums the light of a map's texels, weighted by area.
 class TexelSums {
   public:
-    /// has_curved  true if some regions are curved
+    /// `has_curved`: true if some regions are curved.
     TexelSums(UvLightMap& map, bool has_curved)
         : map_(map),
           open_(map.light.size.texels()),
@@ -184,7 +184,7 @@ class TexelSums {
     std::vector<float> open_;          ///< Uncovered area of each texel's parts.
     std::vector<float> largest_;       ///< Area of the largest part.
     std::vector<bool> is_shared_;      ///< True if several charts have parts in a texel.
-    std::vector<CurvedTexel> curved_;  ///< Empty if no region is curved.
+    std::vector<CurvedTexel> curved_;  ///< Texels of curved regions; empty if no region is curved.
 };
 
 /// Number of texels along a side of a square map for a density: a power of two.
@@ -215,13 +215,13 @@ Result<void> make_empty_maps(const Scene& scene, const UvBakeOptions& options, U
         }
         texels += static_cast<double>(size.texels());
         if (texels > most_texels)
-            return Error{ErrorCode::usage, "the maps would have more than 134 million texels", "--density",
+            return Error{ErrorCode::usage, "the maps would have more than the limit of 134 million texels", "--density",
                          "choose a smaller one, or a smaller --size"};
         covered += static_cast<double>(size.texels()) * map_area[m];
         if (covered > most_texels)
             return Error{ErrorCode::usage,
                          "charts overlap so often that " + std::to_string(std::llround(covered / 1e6)) +
-                             " million texels would be baked, the most is 134 million",
+                             " million texels would be baked; the limit is 134 million",
                          "--uv", "choose coordinates without overlaps, or a smaller --size"};
         UvLightMap map;
         map.light.size = size;

@@ -101,8 +101,8 @@ bool TileLight::interpolate(std::span<Spot> spots, const Cell& cell, const CellR
         const double there = mean(E[i] + corners[i]->irradiance);
         least = std::min(least, there), most = std::max(most, there);
     }
-    constexpr double max_deviations =
-        3;  // standard deviations: a difference due to noise is no reason for a smaller cell
+    constexpr double max_deviations =  // standard deviations: a difference due to noise is no reason for a smaller cell
+        3;
     const double all = most + dim * brightness_;
     if (most - least > std::max(rule.even * all, max_deviations * noise)) return false;
     const auto between = [&](double u, double v) {
@@ -165,7 +165,7 @@ Spectrum TileLight::open_light(const Spot& spot, std::size_t block) {
 
 /// Interpolates the open part of the light of a block between pixels, where it is uniform. Other pixels stay unknown.
 void TileLight::fill_open(std::span<Spot> spots, std::size_t block) {
-    constexpr double steepest = 0.06;  // derived from steps of 1% per pixel
+    constexpr double steepest = 0.06;  // slope of light; derived from steps of 1% per pixel
     const CellRule rule{steepest, interpolation_};
     constexpr int across = tile_side / block_side;
     const int x = static_cast<int>(block) % across * block_side, y = static_cast<int>(block) / across * block_side;
@@ -189,7 +189,7 @@ Spectrum TileLight::shadowed_light(const Spot& spot) {
 /// Interpolates the shadowed part of direct light in small cells, where nine pixels of the cell agree.
 void TileLight::fill_shadowed(std::span<Spot> spots) {
     constexpr int last = tile_side - 1, side = cell_side;
-    constexpr double steepest = 0.03;  // derived from shadow edges, which change faster
+    constexpr double steepest = 0.03;  // slope of light; derived from shadow edges, where light changes faster
     const CellRule rule{steepest, interpolation_, true};
     const auto light_at = [&](const Spot& spot) { return shadowed_light(spot); };
     const auto is_split_at = [&](int x, int y) {

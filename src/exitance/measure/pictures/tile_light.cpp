@@ -149,7 +149,7 @@ Spectrum TileLight::elements(const Spot& spot) {
             return shown_ ? (*shown_)(spot.region, x) : light_.elements(spot.region, x);
         });
     const Normal& n = light_.stage().scene.regions()[spot.region].plane.n;
-    Spectrum sum;  // sum over all points, since every gather has independent noise
+    Spectrum sum;  // summed over all points of the spot, whose gathers have independent noise
     for (std::uint32_t i = 0; i < spot.count; ++i) {
         const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::gather), spot.pixel, i);
         sum += light_.gathered({points_[spot.first + i], n}, spot.region, gather_, key, gathering_);
@@ -192,7 +192,7 @@ bool TileLight::first_guess(Spot& spot, const ReceiverLight* known, Spectrum& li
 
 bool TileLight::differs_from_neighbours(std::span<const Spot> spots, std::size_t i) const {
     // In pictures for viewing, fainter edges show no visible steps.
-    constexpr double unseen_edge = 0.05;  // derived from steps of 1% between pixels within a shadow edge of some pixels
+    constexpr double unseen_edge = 0.05;  // derived from steps of 1% between the pixels within a shadow edge
     const double difference = interpolation_ > 0 ? unseen_edge : alike;
     int neighbours = 0;
     const auto [x, y] = std::pair(spots[i].x, spots[i].y);

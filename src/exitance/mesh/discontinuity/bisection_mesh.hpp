@@ -39,7 +39,7 @@ class BisectionMesh {
         std::uint8_t depth = 0;  ///< Number of bisections since the face was made.
     };
 
-    /// nudge  metres: how far the evaluation points of border nodes are moved inwards
+    /// `nudge`, metres: distance by which the evaluation points of border nodes are moved inwards.
     explicit BisectionMesh(double nudge) : nudge_(nudge) {}
 
     /// Adds the triangles of a region; each becomes a face. Labels are values of CurveOrder.

@@ -34,7 +34,7 @@ class LineTree {
         bool is_leaf() const { return first_child == none; }
     };
 
-    /// tolerance  metres: curves nearer to a node's border than this do not cross it
+    /// `tolerance`, metres: curves nearer to a node's border than this do not cross it.
     explicit LineTree(double tolerance) : tolerance_(tolerance) {}
 
     /// Adds a tree. `outline`: convex, counter-clockwise. `curves` are clipped to the outline. Returns the root's

@@ -50,7 +50,7 @@ struct SixNodeMesh {
     /// Six nodes of each triangle, counter-clockwise seen from the front.
     std::vector<std::array<std::uint32_t, 6>> nodes;
     std::vector<RegionId> region;  ///< Per triangle.
-    /// Per triangle; entry i is the edge from corner i to the next.
+    /// Orders of the edges of each triangle; entry i is the edge from corner i to the next.
     std::vector<std::array<CurveOrder, 3>> edge_order;
     std::vector<ShadowClass> shadow;  ///< Per triangle.
     std::vector<DiscontinuityCurve> curves;

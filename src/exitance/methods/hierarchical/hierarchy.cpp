@@ -97,7 +97,7 @@ void Hierarchy::refine_panes_alike() {
     const Scene& scene = input.stage.scene;
     if (!scene.has_diffusing_panes()) return;
     NodalField* const also[] = {&reflected_direct};
-    constexpr double max_area_ratio = 0.75;  // of the area behind; derived from cuts, which leave a half or less
+    constexpr double max_area_ratio = 0.75;  // share of the area behind; derived from cuts, which leave a half or less
     const double least = input.options.min_area.value_or(calibrated::least_link_area * input.stage.area);
     while (!input.stop.requested()) {
         const std::vector<ElementId> ends = sites.ends();

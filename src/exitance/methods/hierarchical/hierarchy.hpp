@@ -55,7 +55,7 @@ struct Hierarchy {
     NodalField reflected_direct, radiosity;  ///< rho E_dir, and all reflected light b.
     LinkRefiner refiner;
     LinkedSystem system;
-    std::optional<ClusterTree> clusters;  ///< None if links start from all pairs of pieces.
+    std::optional<ClusterTree> clusters;  ///< Clusters; none if links start from all pairs of pieces.
     std::optional<ClusterRefiner> far;
     Field<ElementId, Spectrum> missed;  ///< Per leaf: the part of E_ind that links miss, found by rays; or empty.
 

@@ -146,8 +146,8 @@ class Rounds {
         return knows_all_light && error <= (h_.light.delivers() ? 1 : calibrated::accepted_link_excess) * demand_;
     }
 
-    /// Lowers both tolerances. The square of each error may be half of the permitted one, plus the part that the other
-    /// does not use.
+    /// Lowers both tolerances. The squared error of the links and that of the receivers may each be half of the
+    /// permitted square, plus the part of the other half that is not used.
     void lower_tolerances(double by_link, double by_receiver) {
         const auto beside = [&](double other) {
             return std::sqrt(demand_ * demand_ - std::min(other * other, 0.5 * demand_ * demand_));

@@ -247,8 +247,8 @@ void scale(ElementFunction& f, const Spectrum& factor) {
 bool has_kept_flux(const ElementFunction& E, const Scene& scene, const DirectProjection& direct,
                    const GlobalLight& light, const Spectrum& c) {
     const FluxSums power = flux_sums(E, scene, direct, light, c);
-    constexpr double negligible =
-        0.01;  // of the absorbed power; derived from the noise of the escaping light by few rays
+    // Share of the absorbed power, derived from the noise of escaping light when few rays find it.
+    constexpr double negligible = 0.01;
     if (mean(power.sent - power.first - power.again) > negligible * mean(power.gathered - power.again)) return false;
     const double roundings = 1e-5 * mean(power.gathered);  // derived from the single precision of stored values
     return std::sqrt(squared(power.gathered - power.again - power.first) / static_cast<double>(bands)) <= roundings;

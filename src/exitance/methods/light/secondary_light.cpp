@@ -199,7 +199,7 @@ Spectrum SecondaryLight::light_of(const SecondarySource& source, std::span<const
 }
 
 Spectrum SecondaryLight::hidden(RegionId region, const Point& x, Workspace& scratch) const {
-    constexpr double negligible = 1e-12;  // derived from the rounding of form factors
+    constexpr double negligible = 1e-12;  // derived from the rounding errors of form factors
     const Receiver at = stage_.direct.receiver(x, stage_.scene.regions()[region].plane.n, region);
     Spectrum out;
     for (const SecondarySource& source : sources_) {

@@ -74,7 +74,7 @@ std::string new_spelling(const GivenOption* smoothing, const GivenOption* gather
     const bool smooths = smoothing && smoothing->word == "on";
     if (form_of(request.options) != Form::published)
         return smooths ? "--output-light smoothed-elements" : "--output-light elements";
-    if (!gather) return smooths ? "nothing else" : "";  // the default: gathered light, which is smooth
+    if (!gather) return smooths ? "nothing else" : "";  // gathered light is the default and is smooth already
     const Result<Way> way = find_way(request);
     const std::string recipe =
         fmt::format("--recipe classical-{}", way ? std::string(name_in(method_names, way->method)) : "METHOD");

@@ -95,11 +95,12 @@ std::vector<OptionRow> rows_of_recipes() {
     return {
         {.name = "--recipe",
          .value = recipe_name(),
-         .does = "Preset the options of a published form (list below); options given beside it replace its presets",
+         .does =
+             "Set the options that reproduce a published method (list below); options given in addition replace these",
          .group = group::published},
         {.name = "--direct",
          .value = choice(classical_direct_names, at(&C::direct)),
-         .does = "Direct light of emitters: exact and apart, or carried by the method's own transport",
+         .does = "Direct light of emitters: computed exactly and separately, or carried by the method's own transport",
          .initial = "apart",
          .group = group::published,
          .support = {{every_published}},
@@ -161,7 +162,7 @@ std::vector<OptionRow> rows_of_published_solvers() {
          .section = "classical"},
         {.name = "--sor-factor",
          .value = positive("W", at(&C::sor_factor), 2),
-         .does = "Factor of over-relaxation",
+         .does = "Over-relaxation factor of --relaxation sor, between 0 and 2",
          .initial = "1.15",
          .group = group::published,
          .support = {{published({matrix})}},

@@ -96,7 +96,7 @@ bool Solver::refines_bodies(double demand, double last_seconds) {
 }
 
 void Solver::tighten_bodies(double limit) {
-    constexpr double aim = 0.7;  // share of the limit to aim at, derived from attempt_aim
+    constexpr double aim = 0.7;  // share of the limit to aim at; derived from attempt_aim
     for (const BodyError& body : statistics().bodies) {
         if (!body.error || *body.error <= limit) continue;
         BodyShares& shares = body_shares_[bodies().body[body.first]];

@@ -229,7 +229,7 @@ class Solver {
     double aim_ = default_error;          ///< Error at which an attempt of a published form aims.
     std::optional<Snapshots> snapshots_;  ///< Set for published forms.
     int attempt_ = 1;
-    int body_attempts_ = 0;         ///< Number of attempts for the sake of bodies.
+    int body_attempts_ = 0;         ///< Number of attempts that were made because a body was too inaccurate.
     double worst_body_before_ = 0;  ///< Value of `worst_body` before the last of these attempts; 0: there was none.
     /// Factors on the errors that bodies may have due to the light gathered on them and to the direct light they see.
     struct BodyShares {

@@ -15,8 +15,8 @@ namespace {
 /// Cell sizes for lines: of the coordinates of their direction, and of their position as a share of the scene's size
 /// (find_extent).
 constexpr double direction_cell = 1e-3, place_cell = 1e-4;
-constexpr double max_direction_error =
-    1.0 / 16;                   ///< Radians: edges with a larger error of direction are not matched by line.
+constexpr double max_direction_error =  ///< Radians: edges with a larger error of direction are not matched by line.
+    1.0 / 16;
 constexpr unsigned grades = 8;  ///< Number of cell sizes, see EdgePairs::grade.
 /// Direction that distinguishes the two directions of a line and the two sides of a plane. No line of a practical scene
 /// is perpendicular to it.

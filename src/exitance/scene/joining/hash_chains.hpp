@@ -20,9 +20,9 @@ class HashChains {
     std::uint32_t first(std::uint64_t hash) const { return head_[hash & mask_]; }
     std::uint32_t next(std::uint32_t entry) const { return next_[entry]; }
 
+    static constexpr std::uint32_t ahead = 12;
     /// Prefetches the table entry of a hash that is needed soon, ideally `ahead` iterations later: large tables exceed
     /// the caches.
-    static constexpr std::uint32_t ahead = 12;
     void prefetch(std::uint64_t hash) const { __builtin_prefetch(&head_[hash & mask_]); }
 
     /// Adds the next number (0, 1, 2, ...) and returns it.

@@ -12,19 +12,19 @@ namespace {
 
 constexpr std::size_t max_suns = 16;
 constexpr int max_candidates = 64;
-/// Share of all directions whose radiance is not part of any spot. derived from the sun with its aureole, which fills
+/// Share of all directions whose radiance is not part of any spot. Derived from the sun with its aureole, which fills
 /// less than a cone of 25 degrees, a twentieth of all directions.
 constexpr double plain_share = 0.95;
-/// Radiance of a spot's maximum over the mean of those directions. derived from clear skies without the sun's disc,
+/// Radiance of a spot's maximum over the mean of those directions. Derived from clear skies without the sun's disc,
 /// which are 20 times brighter beside the sun than on average.
 constexpr double min_contrast = 30;
-/// Radiance at the border of a spot over that of its maximum. derived from the limb of the sun, which has 0.3 of the
+/// Radiance at the border of a spot over that of its maximum. Derived from the limb of the sun, which has 0.3 of the
 /// radiance of its middle, and from the blur of lenses.
 constexpr double border_share = 1.0 / 20;
-/// Solid angle of the largest spot, sr. derived from a cone of 5 degrees: larger ones cast soft shadows, for which the
+/// Solid angle of the largest spot, sr. Derived from a cone of 5 degrees: larger ones cast soft shadows, for which the
 /// cells of a picture are fine enough.
 constexpr double max_solid_angle = 0.0239;
-/// Share of the picture's light below which a spot stays in the picture. derived from the accuracy of a solve, 1%.
+/// Share of the picture's light below which a spot stays in the picture. Derived from the accuracy of a solve, 1%.
 constexpr double min_flux_share = 0.001;
 
 /// Pixels of a picture, connected across its left and right ends and across the poles.

@@ -55,8 +55,8 @@ class SkyWindow {
             if (is_uniform) return 1;
             if (!has_tables) return sky->relative(w);
             const double sine_squared = 0.5 * (1 - dot(w, sky->sun));
-            constexpr double max_sine_squared =
-                0.95;  // above this limit, near the point opposite to the sun, the table is too steep to interpolate
+            constexpr double max_sine_squared =  // near the point opposite to the sun, the table is too steep
+                0.95;
             if (sine_squared > max_sine_squared) return sky->relative(w);
             const double v = at(by_height, w.z) * at(by_sun, std::sqrt(std::max(0.0, sine_squared)));
             return std::max(0.0, v);

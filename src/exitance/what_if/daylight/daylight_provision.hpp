@@ -54,7 +54,7 @@ class ProvisionCount {
 
     std::size_t hours_ = 0, sensors_ = 0;
     double median_diffuse_ = 0;
-    DaylightProvision::Shares by_illuminance_, by_factor_;  ///< Numbers of sensors.
+    DaylightProvision::Shares by_illuminance_, by_factor_;  ///< Sensors that reach each level so far.
 };
 
 /// Counts the hours for which sensors see the sun's centre on a cloudless day, also through panes, in steps of two

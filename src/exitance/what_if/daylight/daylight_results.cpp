@@ -16,7 +16,7 @@ namespace {
 
 /// Sensors whose results are in memory together.
 constexpr std::size_t block_sensors = 256;
-/// Sensors that each of many processes evaluates at once, unless fewer are left. derived from the tiles of YearSky
+/// Sensors that each of many processes evaluates at once, unless fewer are left. Derived from the tiles of YearSky
 constexpr std::size_t min_own_sensors = 16;
 
 Error stopped() {
@@ -74,7 +74,7 @@ struct DaylightSimulation::SceneLight {
 
     DaylightSetting setting;
     DaylightTransport transport;
-    std::unique_ptr<DaylightSample> sample;  ///< Null if take() has provided the light.
+    std::unique_ptr<DaylightSample> sample;  ///< Finds the light; null if take() has provided it.
     DaylightLight light;
 
     DaylightRows rows() const {

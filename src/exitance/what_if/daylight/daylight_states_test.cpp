@@ -155,7 +155,7 @@ TEST(DaylightStates, AFactorOfAPaneIsAPaneWithLessLight) {
                               dark = lux_hours(year_of(room, task_of(), &none));
     for (std::size_t i = 0; i < open.size(); ++i) {
         EXPECT_NEAR(dim[i], open[i] / 2, 1e-3 * open[i]) << i;  // all light comes through the panes
-        EXPECT_NEAR(dark[i], 0, 1e-3 * open[i]) << i;           // tolerance of the solve: light of its last sweep
+        EXPECT_NEAR(dark[i], 0, 1e-3 * open[i]) << i;           // the solve stops with some light left
     }
 }
 

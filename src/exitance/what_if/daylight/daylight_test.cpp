@@ -179,7 +179,7 @@ TEST(Daylight, TheToldErrorAndTheIntervalsCoverTheTrueOnes) {
         // Twelve sensors share the noise of the elements, so that the true error varies by half of its mean.
         EXPECT_LT(error, 1.5 * results->summary.errors[g].factor) << g;
     }
-    EXPECT_GE(covered, 21u);  // of 24, for 95%: fewer than 21 happen in one of 30 runs of independent sensors
+    EXPECT_GE(covered, 21u);  // of 24 bounds at 95%, fewer than 21 hold in one of 30 runs of independent sensors
 }
 
 TEST(DaylightMetrics, CriteriaChooseHoursAndThresholds) {

@@ -128,7 +128,7 @@ struct DaylightTransport::Found {
     struct Numbers {
         std::vector<std::uint32_t> leaves, patches;
     };
-    std::vector<Numbers> through;  ///< Per set of crossed panes, in the order of RayCounts.
+    std::vector<Numbers> through;  ///< Hits per set of crossed panes, in the order of RayCounts.
 };
 
 DaylightTransport::DaylightTransport(Scene scene, const SkyPatches& patches, const SkyPatches* finer,

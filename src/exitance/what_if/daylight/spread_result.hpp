@@ -9,7 +9,7 @@ struct Interval {
     double low = 0, high = 0;
 };
 
-/// Values of a result: by the mean of the replicates, by each, and with all light smaller and larger by the bias.
+/// A result: `value` from the mean of the replicates, and `less` and `more` if all light changes by -bias and +bias.
 struct SpreadResult {
     double value = 0, less = 0, more = 0;
     Replicates replicates{};

@@ -17,7 +17,7 @@ class CommonSunlight {
     CommonSunlight(const DaylightSetting& setting, const PaneGroups& groups)
         : setting_(setting), groups_(groups), suns_(setting.sky), hours_(setting.sky.hours()) {}
 
-    /// Returns the largest of the grids, per group and hour; 0 below 1000 lx.
+    /// Returns the sunlight of the grid with the most of it, lx, per group and hour; 0 below 1000 lx.
     std::vector<std::vector<float>> find(const Occluders& occluders, std::span<const Receiver> places) const {
         std::vector<std::vector<float>> out(groups_.count(), std::vector<float>(hours_, 0));
         std::size_t first = 0;

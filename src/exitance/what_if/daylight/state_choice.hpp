@@ -35,8 +35,8 @@ class StateChooser {
     std::vector<std::vector<std::vector<double>>> light_;
 };
 
-/// Returns the states of every hour and the weights of the parts: those of the groups in the setting's scene, in order,
-/// then those of the scenes. `twice`: light that crosses panes twice, relative to all light.
+/// Returns the states of every hour and the weight of each part of the light: first the groups in the setting's scene,
+/// in order, then the scenes with shades. `twice`: light that crosses panes twice, as a share of all light.
 HourlyStates make_hourly_states(const DaylightStates& states, const StateChooser& chooser,
                                 const DaylightSetting& setting, double twice);
 

@@ -87,7 +87,7 @@ class PartOfLight {
 double estimated_mean(const PartOfLight& part, const ElementTree& tree, std::span<const ElementId> elements,
                       const StopRequest& stop) {
     constexpr std::size_t samples = 512;
-    constexpr double any_error = 1e300;  // derived from the largest double: its square root is finite
+    constexpr double any_error = 1e300;  // derived from the largest double: the square of this error is still finite
     const std::size_t step = std::max<std::size_t>(1, elements.size() / samples);
     DirectFitRoom room;
     double flux = 0, area = 0;

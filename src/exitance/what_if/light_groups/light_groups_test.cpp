@@ -99,7 +99,7 @@ TEST(LightGroupsOfTwoLamps, DimmedLightAgreesWithANewSolve) {
     ASSERT_TRUE(change_light(dim.solution, dim.groups, {.dim = {{"left", 0}, {"right", 0.5}}}));
     EXPECT_EQ(dim.solution.scene.emitters().size(), 1u);
     const double off = error_against_new_solve(dim.solution);
-    EXPECT_LT(off, 0.012);  // a requested error of 1%, and 0.5% of the reference
+    EXPECT_LT(off, 0.012);  // the requested error is 1%, and the reference has 0.5%
     ASSERT_TRUE(dim.solution.statistics.relative_error_estimate);
     // The estimate is from some hundred points; the measured error includes 0.5% of the reference.
     EXPECT_LT(off, 1.5 * *dim.solution.statistics.relative_error_estimate + 0.005);
@@ -117,7 +117,7 @@ TEST(LightGroupsOfTwoLamps, RepaintedLightAgreesWithANewSolve) {
     EXPECT_LT(off, 0.012);  // equal to the limit for dimming
     ASSERT_TRUE(painted.solution.statistics.relative_error_estimate);
     EXPECT_LT(off, 1.5 * *painted.solution.statistics.relative_error_estimate + 0.005);
-    // Without the change, the error would be about 8%.
+    // Without repainting, the error would be about 8%.
     Lit left = whole;
     left.solution.scene = painted.solution.scene;
     EXPECT_GT(error_against_new_solve(left.solution), 0.03);

@@ -99,7 +99,7 @@ GltfAccessor GltfReader::accessor_of(const tinygltf::Accessor& in) const {
 /// missing.
 bool GltfReader::rows(int accessor, int type, bool is_index, const std::string& what, GltfRows& out) {
     if (!names_one(accessor, in_.accessors))
-        return error(fmt::format("{} name accessor {} of {}", what, accessor, in_.accessors.size()));
+        return error(fmt::format("{} refer to accessor {}, but there are {}", what, accessor, in_.accessors.size()));
     const tinygltf::Accessor& in = in_.accessors[static_cast<std::size_t>(accessor)];
     if (in.type != type) return error(fmt::format("{} do not have the expected type", what));
     const Result<GltfRows> held = accessors_->rows(accessor_of(in), is_index ? 1 : 3, is_index, what);
@@ -142,7 +142,8 @@ bool GltfReader::read_primitive(const tinygltf::Primitive& in, const std::string
         !rows(in.indices, TINYGLTF_TYPE_SCALAR, true, fmt::format("indices of mesh '{}'", mesh), p.indices))
         return false;
     if (in.material >= 0 && !names_one(in.material, in_.materials))
-        return error(fmt::format("mesh '{}' has material {} of {}", mesh, in.material, in_.materials.size()));
+        return error(
+            fmt::format("mesh '{}' refers to material {}, but there are {}", mesh, in.material, in_.materials.size()));
     p.material = in.material;
     if (with_textures_) read_attributes(in, p);
     out.primitives.push_back(p);
@@ -232,8 +233,8 @@ bool GltfReader::read_node(const tinygltf::Node& in, std::size_t number) {
     node.is_deformed = in.skin >= 0 || !in.weights.empty();
     for (const int child : in.children) {
         if (!names_one(child, in_.nodes))
-            return error(
-                fmt::format("node {} ('{}') has child {} of {} nodes", number, node.name, child, in_.nodes.size()));
+            return error(fmt::format("node {} ('{}') has node {} as child, but there are {} nodes", number, node.name,
+                                     child, in_.nodes.size()));
         node.children.push_back(child);
     }
     if (in.extensions.count("EXT_mesh_gpu_instancing") > 0)
@@ -251,7 +252,7 @@ bool GltfReader::read_nodes() {
         const int scene = names_one(in_.defaultScene, in_.scenes) ? in_.defaultScene : 0;
         for (const int root : in_.scenes[static_cast<std::size_t>(scene)].nodes) {
             if (!names_one(root, in_.nodes))
-                return error(fmt::format("the scene has node {} of {}", root, in_.nodes.size()));
+                return error(fmt::format("the scene refers to node {}, but there are {}", root, in_.nodes.size()));
             out_.roots.push_back(root);
         }
         return true;

@@ -60,7 +60,7 @@ Result<GltfRows> GltfAccessorCheck::rows(const GltfAccessor& a, std::size_t widt
     } else if (!a.sparse) {
         return bad(fmt::format("{} have no data", what));
     } else if (a.count > file_bytes_) {
-        return bad(fmt::format("{} are {} rows of zeros", what, a.count));
+        return bad(fmt::format("{} are {} rows of zeros, more than the file has bytes", what, a.count));
     }
     return a.sparse ? fill_sparse(a, width, *number, out, what) : Result<GltfRows>(out);
 }

@@ -36,8 +36,8 @@ struct GltfAccessor {
 /// bytes of the file.
 class GltfAccessorCheck {
   public:
-    /// file_bytes  size of the file or of its largest buffer, bytes
-    /// copies      receives the copied rows; rows returned by rows() point into it
+    /// `file_bytes`: size of the file or of its largest buffer. Copied rows are appended to `copies`, into which the
+    /// rows returned by rows() may point.
     GltfAccessorCheck(std::uint64_t file_bytes, std::vector<std::vector<std::uint8_t>>& copies)
         : file_bytes_(file_bytes), copies_(copies) {}
 

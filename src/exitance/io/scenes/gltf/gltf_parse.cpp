@@ -83,9 +83,10 @@ std::optional<Error> parse_gltf(const std::string& bytes, const std::string& pat
         json = json.substr(header, length);
     }
     const JsonShape shape = shape_of_json(json);
-    if (shape.depth > 100) return bad(fmt::format("has JSON that is nested {} levels deep", shape.depth));
+    if (shape.depth > 100)
+        return bad(fmt::format("has JSON that is nested {} levels deep, more than 100", shape.depth));
     if (binary && shape.buffers * (bytes.size() - header - json.size()) > 4 * bytes.size() + (std::size_t(32) << 20))
-        return bad(fmt::format("has {} buffers", shape.buffers));
+        return bad(fmt::format("has {} buffers, too many for its size", shape.buffers));
 
     Folder folder{std::filesystem::path(path).parent_path().string()};
     if (folder.path.empty()) folder.path.assign(1, '.');

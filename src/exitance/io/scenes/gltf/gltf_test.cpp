@@ -296,12 +296,13 @@ TEST_F(GltfFiles, MissingDataAreErrors) {
     EXPECT_NE(replaced("\"byteLength\":36", "\"byteLength\":3600").find("the file does not have"), std::string::npos);
     EXPECT_NE(replaced("\"byteOffset\":36", "\"byteOffset\":18446744073709551612").find("the file does not have"),
               std::string::npos);
-    EXPECT_NE(replaced("\"POSITION\":0", "\"POSITION\":17").find("accessor 17 of 2"), std::string::npos);
+    EXPECT_NE(replaced("\"POSITION\":0", "\"POSITION\":17").find("accessor 17, but there are 2"), std::string::npos);
     EXPECT_NE(replaced("5123", "5126").find("whole numbers"), std::string::npos);
     EXPECT_NE(replaced("\"mesh\":0", "\"mesh\":0,\"children\":[0]").find("no root node"), std::string::npos);
     text.more = R"(,"scenes":[{"nodes":[0]}])";
     EXPECT_NE(replaced("\"mesh\":0", "\"mesh\":0,\"children\":[0]").find("two parents"), std::string::npos);
-    EXPECT_NE(replaced("\"mesh\":0", "\"mesh\":0,\"children\":[5]").find("child 5 of 1"), std::string::npos);
+    EXPECT_NE(replaced("\"mesh\":0", "\"mesh\":0,\"children\":[5]").find("node 5 as child, but there are 1"),
+              std::string::npos);
     text.data[36] = 7;
     EXPECT_NE(first_error(text).find("refers to vertex 7, but has 3 vertices"), std::string::npos) << first_error(text);
 }

@@ -19,8 +19,8 @@ std::string honeybee_modifier_name(const Json& value);
 /// The materials and modifier sets of a Honeybee model, and the rules by which objects get their materials.
 class HoneybeeMaterials {
   public:
-    /// path      file that findings name
-    /// findings  gets errors, and warnings about omitted parts
+    /// `path`: name of the file in findings.
+    /// Errors, and warnings about omitted parts, are appended to `findings`.
     HoneybeeMaterials(const std::string& path, std::vector<Finding>& findings) : path_(path), findings_(findings) {}
 
     /// Reads the materials and sets from a model's properties for Radiance. Returns the materials in the words of

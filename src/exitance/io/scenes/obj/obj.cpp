@@ -169,8 +169,9 @@ void ObjReader::read_face() {
         const auto count = static_cast<long long>(description.points.size());
         if (!index) return error(fmt::format("face names '{}', which is not a vertex number", shown(word)));
         if (*index == 0) return error("face names vertex 0", "vertices are numbered from 1");
-        if (*index < -count) return error(fmt::format("face names vertex {}, of {} before it", *index, count));
-        if (*index > max_points) return error(fmt::format("face names vertex {}", *index));
+        if (*index < -count)
+            return error(fmt::format("face names vertex {}, but only {} vertices are above it", *index, count));
+        if (*index > max_points) return error(fmt::format("face names vertex {}, a number that is too large", *index));
         face.corners.push_back(static_cast<std::uint32_t>(*index > 0 ? *index - 1 : count + *index));
         add_index(word, 1, places_.size(), places);
         if (with_normals_) add_index(word, 2, normals_.size(), normals);

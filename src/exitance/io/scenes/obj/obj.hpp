@@ -20,7 +20,7 @@ struct ReadScene {
     SceneDescription description;
     std::vector<Finding> findings;
     std::vector<PlacedLuminaire> luminaires = {};
-    SceneLines lines = {};  ///< Empty: all faces are in the description's file.
+    SceneLines lines = {};  ///< Files and lines of the faces; empty: all are in the description's file.
     /// Repairs that remove light from the scene; errors if nothing in the scene emits.
     std::vector<Finding> darkening = {};
     /// Per material: RMS deviation of reflectance over textured faces (see `TexturedFaces`); may be shorter.

@@ -81,7 +81,7 @@ TEST_F(ObjFiles, EveryErrorNamesItsFileAndLine) {
     EXPECT_EQ(first_error(head + "v 1 1e999 0\nf 1 2 3\n"), "s.obj:7: coordinate '1e999' is not a finite number");
     EXPECT_EQ(first_error(head + "v 1 2\nf 1 2 3\n"), "s.obj:7: vertex has 2 coordinates, not three");
     EXPECT_EQ(first_error(head + "f 1 2 0\n"), "s.obj:7: face names vertex 0");
-    EXPECT_EQ(first_error(head + "f 1 2 -5\n"), "s.obj:7: face names vertex -5, of 4 before it");
+    EXPECT_EQ(first_error(head + "f 1 2 -5\n"), "s.obj:7: face names vertex -5, but only 4 vertices are above it");
     EXPECT_EQ(first_error(head + "f 1 2 5\n"), "s.obj:7: face names vertex 5 of 4");
     EXPECT_EQ(first_error(head + "f 1 2 x\n"), "s.obj:7: face names 'x', which is not a vertex number");
     EXPECT_EQ(first_error(head + "f 1 2 99999999999999999999\n"),

@@ -115,7 +115,7 @@ ColourGrid::Cell ColourGrid::mean(const GridBox& box) const {
 
 PartColour ColourGrid::colour(const GridBox& box) const {
     // The variation of whole faces is measured at 32 x 32 points; finer variation counts by its mean here, too.
-    constexpr std::size_t blocks_per_side = 32;  // derived from TextureArea::part()
+    constexpr std::size_t blocks_per_side = 32;  // derived from TextureArea::part(), which has 32 x 32 points
     const auto block_of = [](std::size_t cells) { return (cells + blocks_per_side - 1) / blocks_per_side; };
     const std::size_t wide = block_of(columns_.size() - 1), high = block_of(rows_.size() - 1);
     const Cell whole = mean(box);

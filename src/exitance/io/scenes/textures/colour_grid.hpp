@@ -29,8 +29,8 @@ class ColourGrid {
         Spectrum reflectance, exitance;
         double coverage = 1;  ///< Share of the area that is not in holes.
     };
-    /// cells   row by row
-    /// emits   false: exitances are not stored, and mean() returns 0 for them
+    /// `cells` are in order of rows.
+    /// `emits`: if false, exitances are not stored, and mean() returns 0 for them.
     ColourGrid(std::vector<double> columns, std::vector<double> rows, std::span<const Cell> cells, bool emits);
 
     const std::vector<double>& columns() const { return columns_; }

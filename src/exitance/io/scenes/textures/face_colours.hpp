@@ -10,7 +10,7 @@ namespace exitance {
 
 /// A picture on a face.
 struct FacePicture {
-    const TextureArea* picture = nullptr;  ///< Null: the colour does not vary. It must outlive its users.
+    const TextureArea* picture = nullptr;  ///< Null: the colour does not vary. The picture must outlive its users.
     std::vector<Vec2> places;              ///< Texture coordinates, one per corner of the face.
     TextureArea::Wrap wrap_s = TextureArea::Wrap::repeat, wrap_t = TextureArea::Wrap::repeat;
 };

@@ -220,7 +220,7 @@ std::vector<double> TextureArea::borders(bool along_s, double low, double high, 
     double periods = 1;  // number of repetitions in a cell, if a cell contains whole ones
     while ((high - low) / periods > static_cast<double>(max_cells)) periods *= 2;
     // A cell narrower than this share of the whole would be a sliver without effect.
-    constexpr double min_share = 1e-3;  // derived from the narrowest face that rays hit
+    constexpr double min_share = 1e-3;  // share of the whole; derived from the narrowest face that rays hit
     const double margin = min_share * (high - low);
     std::vector<double> out = {low};
     const auto add = [&](double place) {

@@ -10,8 +10,8 @@ namespace exitance {
 namespace {
 
 /// Squared relative error of the scene's light below which a face is not cut.
-constexpr double min_benefit =
-    1e-6;  // derived from a gradient on a wall: the reflectance within a part then varies by 2% of the mean
+constexpr double min_benefit =  // derived from a gradient on a wall: a part then varies by 2% of its mean reflectance
+    1e-6;
 /// Limit on the parts of emitting faces: direct light is computed for each emitter.
 constexpr std::size_t max_emitting_parts = 128;  // derived from rooms with 128 luminaires, which solve in seconds
 
@@ -27,7 +27,7 @@ CutScale scale_of(const SceneDescription& d) {
         const Material& material = d.materials[face.material];
         area += own, reflected += own * mean(material.reflectance), flux += own * mean(material.exitance);
     }
-    constexpr double walls = 6;  // derived from a cube, whose faces are as far apart as they are wide
+    constexpr double walls = 6;  // derived from a cube, whose width is the root of a sixth of its area
     constexpr double none = 1e-300;
     return {std::max(none, std::sqrt(area / walls)), std::max(none, area),
             std::max(none, reflected * reflected / std::max(none, area)), std::max(none, flux), min_benefit};
@@ -301,7 +301,7 @@ class FaceCutter {
 }  // namespace
 
 std::size_t default_texture_parts(std::size_t faces) {
-    constexpr std::size_t in_any_scene = 500, faces_per_part = 4;  // derived from the time of solves: see scenes.md
+    constexpr std::size_t in_any_scene = 500, faces_per_part = 4;  // derived from solve times, see formats/scenes.md
     return in_any_scene + faces / faces_per_part;
 }
 

@@ -153,7 +153,7 @@ class PatchFinder {
             out_.tiles.push_back(std::move(tile));
         }
         // Pieces of an outline that intersects itself overlap; those of a bent one have a little more area.
-        constexpr double bent = 0.02;  // derived from angles of up to ten degrees between the triangles
+        constexpr double bent = 0.02;  // relative difference; derived from triangles that meet at up to ten degrees
         if (std::abs(sum - area) > bent * area) out_.tiles.resize(before);
     }
 
