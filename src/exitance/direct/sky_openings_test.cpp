@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "exitance/base/random.hpp"
 #include "exitance/error/area_samples.hpp"
 #include "exitance/scene/locator.hpp"
 #include "exitance/scene/sky/sun_position.hpp"
+#include "exitance/transport/direct_projection.hpp"
 #include "exitance/transport/stage.hpp"
 
 namespace exitance {
@@ -203,6 +205,20 @@ TEST(RayLight, LightThroughAWindowIsUnbiasedAndItsVarianceIsKnown) {
         EXPECT_LT(variance / count, 0.02 * 0.02) << trial;
         EXPECT_LT(rays / count, 1500) << trial;  // unaimed: the most that are allowed, 8192
     }
+}
+
+TEST(DirectProjection, UsesRaysBetweenManySurfacesBelowASky) {
+    // Fewer elements than the projection counts as many.
+    const Rooms rooms{.count = 1, .boxes = 80, .left = 0.5, .right = 3.5, .sill = 0.5, .top = 2.5, .light = overcast()};
+    const Scene scene = rooms.make();
+    const Stage stage(scene);
+    const DirectProjection direct =
+        project_direct_light(stage, {.mesh = {.edge = 4, .grading_levels = 0}, .tolerance = 0.3}, StopRequest());
+    const std::vector<ElementId> leaves = direct.tree.leaves();
+    EXPECT_LT(leaves.size(), 2000u);
+    const auto by_rays =
+        std::count_if(leaves.begin(), leaves.end(), [&](ElementId e) { return direct.fit[e].noise_squared > 0; });
+    EXPECT_GT(4 * static_cast<std::size_t>(by_rays), leaves.size());
 }
 
 }  // namespace

@@ -70,7 +70,9 @@ struct Certifier::Content {
     Field<ElementId, std::uint8_t> narrow;  ///< Marks the narrow leaves of the delivered function.
     PathTracer paths;
     DirectCheck check;
-    CheckPlan plan;  ///< How hits are checked; chosen before the first measurement.
+    /// How the hits of rays from each room are checked; chosen before the first measurement. One if the scene is one
+    /// room.
+    std::vector<CheckPlan> plans;
 
     Content(const Stage& stage_, const GlobalLight& light_, const ElementFunction& indirect_, const ReflectedLight& b_,
             const CertificateOptions& options_)
@@ -95,6 +97,7 @@ struct Certifier::Content {
         return options.light_in.empty() ? mean_reflected : options.light_in[room] * mean_reflected;
     }
     void plan_checks(std::span<const WeightedSample> places);
+    CheckPlan plan_checks_from(std::size_t room, std::span<const WeightedSample> places) const;
     void measure_residuals();
     void tell_p99(Certificate& out);
     void look_at_bodies(Certificate& out);
@@ -109,9 +112,10 @@ struct Certifier::Content {
     std::vector<PointError> body_points;  ///< Points of the bodies that were measured at further points.
 };
 
-/// Chooses the parameters for checking hits, from a pilot at some of the places of the first `look`.
-void Certifier::Content::plan_checks(std::span<const WeightedSample> places) {
-    constexpr std::size_t pilots = 64;
+/// Chooses the parameters for checking hits of rays from a room, from a pilot at some of its places.
+CheckPlan Certifier::Content::plan_checks_from(std::size_t room, std::span<const WeightedSample> places) const {
+    constexpr std::size_t pilots_in_all = 64, min_pilots = 16;  // places of a pilot
+    const std::size_t pilots = std::max(min_pilots, pilots_in_all / plans.size());
     std::vector<PilotPlace> at;
     const std::size_t step = std::max<std::size_t>(1, places.size() / pilots);
     for (std::size_t k = step / 2; k < places.size(); k += step) {
@@ -123,10 +127,21 @@ void Certifier::Content::plan_checks(std::span<const WeightedSample> places) {
     }
     // Noise as large as the requested error is acceptable, since that of hundreds of points is averaged. Sums have no
     // other noise.
-    const double resolved = (options.summed ? 0.5 : 1) * options.error * mean_reflected;
+    const double light_there = mean_reflected * (options.allowed_in.empty() ? 1 : options.allowed_in[room]);
+    const double resolved = (options.summed ? 0.5 : 1) * options.error * light_there;
     const unsigned rays = options.summed ? ResidualSampler::rays_beside_sums : certificate_rays(0);
-    plan = plan_check(check, stage, b, at, hash(options.seed, 3),
+    return plan_check(check, stage, b, at, room == 0 ? hash(options.seed, 3) : hash(options.seed, 3, room),
                       {.tolerated = rays * resolved * resolved, .gather_is_noisy = !options.summed});
+}
+
+/// Chooses the parameters for checking hits, room by room. Windows of a dim room show bright surroundings, whose errors
+/// are large beside the light of the room.
+void Certifier::Content::plan_checks(std::span<const WeightedSample> places) {
+    plans.resize(std::max<std::size_t>(1, stage.rooms.count()));
+    std::vector<std::vector<WeightedSample>> of_room(plans.size());
+    for (const WeightedSample& at : places)
+        of_room[stage.rooms.count() > 0 ? stage.rooms.of(indirect.tree, at.place.element) : 0].push_back(at);
+    for (std::size_t room = 0; room < plans.size(); ++room) plans[room] = plan_checks_from(room, of_room[room]);
 }
 
 /// Measures the residual at further stratified points, twice at each.
@@ -140,7 +155,7 @@ void Certifier::Content::measure_residuals() {
     const ResidualSampler sampler = this->sampler();
     if (looks == 0) plan_checks(places);
     const bool may_stop = looks > 0;
-    if (sampler.measure(places, plan, seed, std::span(samples).subspan(before), may_stop ? options.stop : nullptr))
+    if (sampler.measure(places, plans, seed, std::span(samples).subspan(before), may_stop ? options.stop : nullptr))
         ++looks;
     else
         samples.resize(before);
@@ -304,7 +319,8 @@ void Certifier::Content::tell_p99(Certificate& out) {
                     for (std::uint64_t half = 0; half < 2; ++half) {
                         const std::uint64_t key =
                             hash(options.seed, static_cast<std::uint64_t>(Stream::certificate), which[k], factor, half);
-                        error[k][half] = late[s.leaf] + sampler.by_rays(s, plan, rays_at(which[k]), key, workspace);
+                        error[k][half] =
+                            late[s.leaf] + sampler.by_rays(s, plans[s.room], rays_at(which[k]), key, workspace);
                     }
                 }
             },

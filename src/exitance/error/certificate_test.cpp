@@ -72,11 +72,8 @@ struct PlantedError {
         return out;
     }
 
-    /// Returns the errors of the rooms, in descending order of area.
-    std::vector<RoomError> rooms(std::uint64_t seed) const {
-        const ElementLocator locator(delivered.tree, scene.regions().size());
-        const PointwiseLight b(
-            [&](RegionId region, const Point& y) { return Spectrum(reflected(locator, region, y)); });
+    /// Returns the light of every room over the mean light.
+    std::vector<double> light_by_room() const {
         std::vector<double> light_in(stage.rooms.count());
         const double mean_light = light.mean_reflected(stage.area);
         for (std::size_t i = 0; i < light.reflected.size(); ++i) {
@@ -84,6 +81,15 @@ struct PlantedError {
             const std::size_t room = stage.rooms.of(light.tree, e);
             light_in[room] += light.tree.area(e) * mean(light.reflected[i]) / (stage.rooms.area(room) * mean_light);
         }
+        return light_in;
+    }
+
+    /// Returns the errors of the rooms, in descending order of area.
+    std::vector<RoomError> rooms(std::uint64_t seed) const {
+        const ElementLocator locator(delivered.tree, scene.regions().size());
+        const PointwiseLight b(
+            [&](RegionId region, const Point& y) { return Spectrum(reflected(locator, region, y)); });
+        const std::vector<double> light_in = light_by_room();
         Certifier certifier(
             stage, light, delivered, b,
             {.error = 0.02, .seed = seed, .keeps_flux = true, .light_in = light_in, .allowed_in = light_in});
@@ -367,6 +373,32 @@ TEST(Certificate, DoesNotAddNoiseOfABrightRoomToADarkOne) {
         // The noise of the bright room is a few percent of its light, and several times the light of the dark room.
         EXPECT_LT(rooms[1].error, 0.05);
     }
+}
+
+TEST(Certificate, FindsAnErrorOfTheProjectionInADarkRoom) {
+    // As in WrongProjection, but only in the dark room.
+    constexpr double factor = 1.2, truth = (factor - 1) / 2;
+    const PlantedError planted([](const Point& p) { return p.x < 4 ? 0 : factor - 1; }, 0.25,
+                               bright_and_dark_furnace());
+    ASSERT_EQ(planted.stage.rooms.count(), 2u);
+    const ElementLocator locator(planted.delivered.tree, planted.scene.regions().size());
+    const auto told = [&](RegionId region, const Point& y) { return planted.emitted(region) * (y.x < 4 ? 1 : factor); };
+    const PointwiseLight projected([&](RegionId region, const Point& y) { return Spectrum(told(region, y)); });
+    const PointwiseLight b([&](RegionId region, const Point& y) {
+        return Spectrum(planted.rho * (told(region, y) + mean(planted.delivered.at(locator.find(region, y)))));
+    });
+    const std::vector<double> light_in = planted.light_by_room();
+    constexpr int seeds = 8;
+    double square = 0;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        CertificateOptions options{.error = 0.02, .seed = seed, .light_in = light_in, .allowed_in = light_in};
+        options.projected = {&projected, Spectrum(1.0)};
+        Certifier certifier(planted.stage, planted.light, planted.delivered, b, options);
+        certifier.look();
+        square += std::pow(certifier.rooms()[1].error / truth - 1, 2) / seeds;
+    }
+    // Checks as rare as the light of the bright room allows would have several times as much noise.
+    EXPECT_LT(std::sqrt(square), 0.1);
 }
 
 /// Two separate furnaces, the second with 1/64 of the first one's area, and a constant error only in the second.

@@ -22,6 +22,8 @@ struct CheckPlan {
     bool is_exact = false;  ///< True: E_dir is evaluated as at points of a solution; false: by one step of a path.
     /// A hit is checked with probability `share` + `per_misfit` times the misfit there (m^2/W), at most 1; `share` > 0.
     double share = 1, per_misfit = 0;
+    /// Absolute error that E_dir may have besides the relative one if it is evaluated as at points, W/m^2.
+    double absolute_error = 0;
     /// Predicted variances of one ray's terms in rho E, mean over bands, (W/m^2)^2: of the check, and of the gather.
     double variance = 0, gather_variance = 0;
     double work = 0;  ///< Predicted work of the checks per ray of the gather, in rays.
@@ -36,7 +38,8 @@ struct CheckPlan {
 /// with n the number of rays and q(y) the probability that y is checked. The projection serves as a control variate:
 /// the corrected gather is unbiased for any projection. E_dir is estimated in one of two ways: by one step of a path (1
 /// to 3 rays), with equal probability at all hits; or as at points of a solution (exactly, or by rays to half of
-/// the solution's error), with a probability that grows with the misfit measured by the projection.
+/// the solution's error, in dim places to the noise of the gather), with a probability that grows with the misfit
+/// measured by the projection.
 class DirectCheck {
   public:
     /// `accuracy`: accuracy of exact light in scenes with many emitters. All other arguments must outlive the check.
@@ -62,7 +65,9 @@ class DirectCheck {
     };
     /// Returns the difference, with E_dir evaluated as a solution does at points. The work of closed forms grows with
     /// the blockers cut from the emitters; directed radiance makes them quadratures, some twenty times as expensive.
-    Difference exact_difference(const HitPoint& hit, const Spectrum& projected, PlaceLight::Workspace& room) const;
+    /// `absolute_error`: see CheckPlan.
+    Difference exact_difference(const HitPoint& hit, const Spectrum& projected, double absolute_error,
+                                PlaceLight::Workspace& room) const;
     /// Returns an unbiased sample of the difference, by one step of a path.
     Spectrum sampled_difference(const HitPoint& hit, const Spectrum& projected, RandomStream& random) const;
 
@@ -83,7 +88,7 @@ class DirectCheck {
 /// A place of the pilot, which predicts variances.
 struct PilotPlace {
     SurfacePoint at;
-    double weight;    ///< Weight in the mean over all places.
+    double weight;    ///< Weight in the mean over the pilot's places; only ratios count.
     double rays = 1;  ///< Number of rays that places like this one receive; only ratios count.
 };
 
@@ -99,8 +104,8 @@ struct OtherNoise {
 /// Chooses the parameters of the checks from a pilot of a few rays at each place, which are not used otherwise. The
 /// probability of a check minimizes the product of variance and work: it is sqrt(V / k) for checks with work k and
 /// variance V, both relative to those of one ray of the gather. Of the two ways to evaluate E_dir, the one with the
-/// smaller product is used; exact light also at up to twice the variance and work. The probability is
-/// never 0. O(places).
+/// smaller product is used; exact light also at up to twice the variance and work. If that takes more than the gather,
+/// exact light may be less accurate in dim places. The probability is never 0. O(places).
 CheckPlan plan_check(const DirectCheck& check, const Stage& stage, const ReflectedLight& b,
                      std::span<const PilotPlace> places, std::uint64_t seed, const OtherNoise& other);
 

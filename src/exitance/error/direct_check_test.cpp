@@ -41,7 +41,7 @@ TEST(CheckPlan, WorkCountsRaysNotWeights) {
     const DoubtedFloor room;
     PlaceLight::Workspace workspace;
     const HitPoint hit{DoubtedFloor::floor, {0.4, 0.3, 0}};
-    const double work = room.check.exact_difference(hit, Spectrum(), workspace).work;
+    const double work = room.check.exact_difference(hit, Spectrum(), 0, workspace).work;
     // The form factor between opposite faces of a cube. Each of these hits is checked, since its misfit is large.
     constexpr double share_of_hits = 0.1998;
     // With 256 places of 8 rays, the share of hits has a standard error of at most sqrt(0.2 x 0.8 / 2048), 4.4%.
@@ -53,6 +53,22 @@ TEST(CheckPlan, WorkCountsRaysNotWeights) {
         const double expected = rays / (1 + rays) * share_of_hits * work;
         EXPECT_NEAR(plan.work, expected, tolerance * expected) << rays;
     }
+}
+
+// A certificate passes the weights of a few of its places, whose sum is far below 1.
+TEST(CheckPlan, DoesNotDependOnTheSumOfWeights) {
+    const DoubtedFloor room;
+    const std::vector<PilotPlace> places = room.places(1, 0.5);
+    std::vector<PilotPlace> few_of_many = places;
+    for (PilotPlace& place : few_of_many) place.weight /= 64;
+    const auto plan_at = [&](std::span<const PilotPlace> at) {
+        return plan_check(room.check, room.stage, room.direct, at, 5, {.tolerated = 1e-3});
+    };
+    const CheckPlan all = plan_at(places), few = plan_at(few_of_many);
+    EXPECT_EQ(few.is_exact, all.is_exact);
+    EXPECT_DOUBLE_EQ(few.per_misfit, all.per_misfit);
+    EXPECT_NEAR(few.variance, all.variance, 1e-12 * all.variance);
+    EXPECT_NEAR(few.gather_variance, all.gather_variance, 1e-12 * all.gather_variance);
 }
 
 }  // namespace

@@ -135,8 +135,8 @@ void ResidualSampler::cast_rays(std::uint64_t seed, std::size_t k, const CheckPl
     sample.rays = 2 * rays;
 }
 
-bool ResidualSampler::measure(std::span<const WeightedSample> places, const CheckPlan& plan, std::uint64_t seed,
-                              std::span<ResidualSample> samples, const StopRequest* stop) const {
+bool ResidualSampler::measure(std::span<const WeightedSample> places, std::span<const CheckPlan> plans,
+                              std::uint64_t seed, std::span<ResidualSample> samples, const StopRequest* stop) const {
     shared_ranges(
         places.size(), 8,
         [&](std::size_t begin, std::size_t end) {
@@ -144,6 +144,7 @@ bool ResidualSampler::measure(std::span<const WeightedSample> places, const Chec
             for (std::size_t k = begin; k < end && !(stop && stop->requested()); ++k) {
                 locate(places[k], samples[k], w);
                 samples[k].is_measured = true;
+                const CheckPlan& plan = plans[samples[k].room];
                 if (options_.summed)
                     sum_elements(seed, k, plan, samples[k], w);
                 else

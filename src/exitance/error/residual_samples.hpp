@@ -53,10 +53,10 @@ class ResidualSampler {
                     const DirectCheck& check, const CertificateOptions& options, double constant,
                     const ElementLocator& coarse, const LeafNumbering& numbering);
 
-    /// Measures the residual twice at each place; `samples` has one entry per place. `plan` determines how the direct
-    /// light at hits is checked. Returns false if a stop was requested before all places were measured. O(places x
-    /// rays), parallel.
-    bool measure(std::span<const WeightedSample> places, const CheckPlan& plan, std::uint64_t seed,
+    /// Measures the residual twice at each place; `samples` has one entry per place. `plans` determines how the direct
+    /// light at hits of rays from each room is checked. Returns false if a stop was requested before all places were
+    /// measured. O(places x rays), parallel.
+    bool measure(std::span<const WeightedSample> places, std::span<const CheckPlan> plans, std::uint64_t seed,
                  std::span<ResidualSample> samples, const StopRequest* stop = nullptr) const;
 
     /// Sets the position of a sample and the light delivered there.

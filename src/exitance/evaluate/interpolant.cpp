@@ -44,7 +44,7 @@ class Interpolation {
                         if (is_renewed(e) && stop.requested()) continue;
                         fitted_[e] = round > 0 && stop.requested()
                                          ? Fit(inherited_fit(out_.tree, e, fitted_[out_.tree.parent(e)].as_direct()))
-                                         : Fit(fit(e, room));
+                                         : fit(e, room);
                     }
                 },
                 [&](std::size_t i) -> Fit& { return fitted_[active[i]]; },
@@ -73,6 +73,10 @@ class Interpolation {
         double misfit_squared = 0;
         std::array<float, 2> misfit_along = {};
         float noise_squared = 0;  ///< Part of `misfit_squared`.
+        /// True if rays found no light on an element of a scene with several rooms. Its noise is then the light of
+        /// features that they may have missed, which neither smaller elements nor more rays reduce notably: dark rooms
+        /// consist of such elements. It is no reason for refinement; the measured error contains such features.
+        bool is_dark = false;
 
         Fit() = default;
         explicit Fit(const DirectFit& fit)
@@ -82,6 +86,8 @@ class Interpolation {
             for (std::size_t i = 0; i < corners.size(); ++i)
                 for (std::size_t k = 0; k < bands; ++k) corners[i][k] = static_cast<float>(fit.corners[i][k]);
         }
+        /// Mean square of the error that refinement can reduce, (W/m^2)^2.
+        double reducible_squared() const { return misfit_squared - (is_dark ? static_cast<double>(noise_squared) : 0); }
         DirectFit as_direct() const {
             DirectFit out;
             out.misfit_squared = misfit_squared, out.noise_squared = static_cast<double>(noise_squared);
@@ -92,7 +98,7 @@ class Interpolation {
     };
 
     /// Fits direct light, as projected or, on new leaves, computed again, plus indirect light.
-    DirectFit fit(ElementId e, DirectFitRoom& room) const {
+    Fit fit(ElementId e, DirectFitRoom& room) const {
         const Patch& patch = out_.tree.patch(e);
         const RegionId region = out_.tree.region(e);
         const double counts = options_.light_in.empty() ? 1 : relative_weight(e);
@@ -100,6 +106,7 @@ class Interpolation {
             e.value < direct_.tree.size() && !is_renewed(e)
                 ? direct_.fit[e]
                 : fit_direct_light(stage_, out_.tree, e, options_.tolerance * options_.tolerance / counts, room);
+        const bool is_dark = !options_.light_in.empty() && !(max(out.mean) > 0);
         for (Spectrum& corner : out.corners) corner *= direct_weight_;
         out.mean *= direct_weight_;
         const double of_direct = max(direct_weight_ * direct_weight_);
@@ -120,7 +127,9 @@ class Interpolation {
         out.misfit_squared *= counts, out.noise_squared *= counts;
         const std::array<double, 2> along = misfit_along(out_.tree, e, rule, value, Degree::straight);
         for (std::size_t k = 0; k < 2; ++k) out.misfit_along[k] = counts * (of_direct * out.misfit_along[k] + along[k]);
-        return out;
+        Fit found(out);
+        found.is_dark = is_dark;
+        return found;
     }
 
     /// Returns the continuous function nearest to all fits, and adds its distance from them to their misfits.
@@ -181,14 +190,14 @@ class Interpolation {
 
     double measured_error(const ElementFunction& continuous) const {
         std::vector<InterpolatedLeaf> leaves;
-        for (ElementId e : out_.tree.leaves()) leaves.push_back({e, fitted_[e].misfit_squared});
+        for (ElementId e : out_.tree.leaves()) leaves.push_back({e, fitted_[e].reducible_squared()});
         return interpolant_error(stage_, continuous, leaves, {indirect_, direct_weight_}, options_.seed);
     }
 
-    /// RMS error by the fits' own misfits.
+    /// RMS error by the fits' own misfits, as far as refinement can reduce it.
     double error() const {
         double sum = 0;
-        for (ElementId e : out_.tree.leaves()) sum += out_.tree.area(e) * fitted_[e].misfit_squared;
+        for (ElementId e : out_.tree.leaves()) sum += out_.tree.area(e) * fitted_[e].reducible_squared();
         return std::sqrt(sum / stage_.area);
     }
 
@@ -210,7 +219,7 @@ class Interpolation {
         const double allowed = options_.tolerance * options_.tolerance * stage_.area;
         const double share =
             allowed / static_cast<double>(leaves.size()) * std::min(1.0, 2 * options_.tolerance / error);
-        const auto error_of = [&](ElementId e) { return out_.tree.area(e) * fitted_[e].misfit_squared; };
+        const auto error_of = [&](ElementId e) { return out_.tree.area(e) * fitted_[e].reducible_squared(); };
         std::vector<ElementId> rough;
         for (ElementId e : leaves)
             if (error_of(e) > share) rough.push_back(e);

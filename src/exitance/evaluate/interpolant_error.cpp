@@ -56,6 +56,14 @@ std::size_t count_of_places(std::size_t leaves) {
     return std::clamp(leaves / leaves_a_place, min_places, max_places);
 }
 
+/// Returns the RMS error that the fits expect, W/m^2.
+double expected_error(const ElementTree& tree, std::span<const InterpolatedLeaf> leaves) {
+    double area = 0, square = 0;
+    for (const InterpolatedLeaf& leaf : leaves)
+        area += tree.area(leaf.element), square += tree.area(leaf.element) * leaf.expected;
+    return std::sqrt(square / area);
+}
+
 /// Returns the mean of the values, but at least its standard error: an error that the noise of rays may hide.
 double mean_or_uncertainty(const std::vector<double>& values) {
     const auto count = static_cast<double>(values.size());
@@ -76,6 +84,10 @@ double interpolant_error(const Stage& stage, const ElementFunction& interpolant,
     const bool is_black = !reflects(stage.scene);
     const ScrambledSobol random(hash(seed, static_cast<std::uint64_t>(Stream::certificate), 2));
     std::vector<double> square(count_of_places(leaves.size()));
+    // Light of dark places need not be more accurate than the error that is measured.
+    LightAccuracy accuracy = point_accuracy(1);
+    constexpr double resolved = 0.2;  // share of the error, derived from point_accuracy()
+    accuracy.absolute = resolved * expected_error(tree, leaves);
     shared_ranges(
         square.size(), 8,
         [&](std::size_t begin, std::size_t end) {
@@ -89,7 +101,7 @@ double interpolant_error(const Stage& stage, const ElementFunction& interpolant,
                 const Vec2 uv = tree.uniform(e, random(i, 1), random(i, 2));
                 const Point x = tree.patch(e).at(uv);
                 if (stage.occluders.is_covered(x, n, region)) continue;
-                const PlaceLight::Estimate direct = stage.place_light.at(x, n, region, point_accuracy(1), workspace);
+                const PlaceLight::Estimate direct = stage.place_light.at(x, n, region, accuracy, workspace);
                 const Spectrum exact =
                     light.direct_weight * direct.irradiance + light.indirect.at(locator.find(region, x));
                 const Spectrum counts = is_black ? Spectrum(1.0) : stage.scene.material(region).reflectance;

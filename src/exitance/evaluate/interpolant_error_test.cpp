@@ -4,8 +4,11 @@
 
 #include <cmath>
 
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/error/area_samples.hpp"
+#include "exitance/evaluate/interpolant.hpp"
 #include "exitance/scene/locator.hpp"
+#include "exitance/transport/light_rooms.hpp"
 #include "support/built_scene.hpp"
 #include "support/solved.hpp"
 
@@ -85,6 +88,67 @@ TEST(InterpolantError, FindsLightThatAFitAtItsPlacesDoesNotSee) {
     const double error = interpolant_error(stage, interpolant, leaves, {exact, Spectrum()}, 1);
     const double right = 0.5 * std::sqrt(0.5 / 6);  // the error is rho 1 W/m^2 on half of one of the six faces
     EXPECT_NEAR(error, right, 0.1 * right);         // 1024 stratified places, a sixth of them on that face
+}
+
+/// A room with a small window below an overcast sky, and a closed room beside it, whose faces have x > 10.
+Scene lit_and_closed_room() {
+    SceneDescription d;
+    d.materials = {{"grey", Spectrum(0.5), {}}};
+    d.groups = {"all"};
+    const auto face = [&](const std::vector<Point>& corners) {
+        SceneDescription::Face f;
+        for (const Point& p : corners)
+            f.corners.push_back(static_cast<std::uint32_t>(d.points.size())), d.points.push_back(p);
+        d.faces.push_back(f);
+    };
+    for (const double x : {0.0, 12.0}) {
+        const double end = x + 4;
+        face({{x, 0, 0}, {end, 0, 0}, {end, 4, 0}, {x, 4, 0}});
+        face({{x, 0, 3}, {x, 4, 3}, {end, 4, 3}, {end, 0, 3}});
+        face({{x, 4, 0}, {end, 4, 0}, {end, 4, 3}, {x, 4, 3}});
+        face({{x, 0, 0}, {x, 4, 0}, {x, 4, 3}, {x, 0, 3}});
+        face({{end, 0, 0}, {end, 0, 3}, {end, 4, 3}, {end, 4, 0}});
+        const double left = x + 1.8, right = x + 2.2;
+        face({{x, 0, 0}, {x, 0, 3}, {left, 0, 3}, {left, 0, 0}});
+        face({{right, 0, 0}, {right, 0, 3}, {end, 0, 3}, {end, 0, 0}});
+        face({{left, 0, 0}, {left, 0, 1.5}, {right, 0, 1.5}, {right, 0, 0}});
+        face({{left, 0, 2}, {left, 0, 3}, {right, 0, 3}, {right, 0, 2}});
+        if (x > 0) face({{left, 0, 1.5}, {left, 0, 2}, {right, 0, 2}, {right, 0, 1.5}});
+    }
+    SkyModel sky = overcast_sky();
+    EXPECT_TRUE(sky.normalize());
+    d.distant.domes = {{sky, Spectrum(100.0)}};
+    return std::move(*make_scene(std::move(d)).scene);
+}
+
+TEST(Interpolant, DoesNotEvaluateLightAgainWhereRaysFoundNone) {
+    const Scene scene = lit_and_closed_room();
+    Stage stage(scene);
+    stage.rooms = find_light_rooms(stage, 1, StopRequest());
+    ASSERT_EQ(stage.rooms.count(), 2u);
+    DirectProjection direct =
+        project_direct_light(stage, {.mesh = {.edge = 2, .grading_levels = 0}, .tolerance = 0.3}, StopRequest());
+    ElementFunction none;
+    none.tree = direct.tree, none.first_value.resize(direct.tree.size(), 0);
+    const auto is_closed = [](const ElementTree& tree, ElementId e) { return tree.patch(e).corner(0).x > 10; };
+    std::vector<double> light_in(2, 1);
+    // Elements of the closed room have noise, and values that no evaluation would give.
+    for (ElementId e : direct.tree.leaves()) {
+        none.first_value[e] = static_cast<std::uint32_t>(none.values.size());
+        for (int i = 0; i < direct.tree.patch(e).corner_count(); ++i) none.add_value(Spectrum());
+        if (!is_closed(direct.tree, e)) continue;
+        ASSERT_EQ(max(direct.fit[e].mean), 0);
+        light_in[stage.rooms.of(direct.tree, e)] = calibrated::dark_room;
+        direct.fit[e].misfit_squared = direct.fit[e].noise_squared = 1;
+        direct.fit[e].corners.fill(Spectrum(7));
+    }
+    InterpolantReport report;
+    const InterpolantOptions options{.tolerance = 0.1, .light_in = light_in};
+    const ElementFunction found = make_interpolant(stage, direct, none, Spectrum(), options, report, StopRequest());
+    for (ElementId e : found.tree.leaves()) {
+        if (!is_closed(found.tree, e)) continue;
+        EXPECT_NEAR(found.at({e, found.tree.centre(e)})[0], 7, 1e-3);
+    }
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ class Projector {
         is_crowd_ = stage_.rooms.count() == 0 && ErrorShare::is_crowd(active.size(), stage_.pieces.size());
         // In scenes of many elements, or if exact light is expensive, the limit on errors is needed before the first
         // fits.
-        if (active.size() > few_elements || sees_sky_through_panes())
+        if (active.size() > few_elements || has_open_sky())
             share_ = share_of(stage_.scene.has_light_apart()
                                   ? estimated_flux_apart(stage_, out_.tree, active, stop_)
                                   : estimated_flux(stage_, out_.tree, active, options_.seed, stop_));
@@ -166,13 +166,14 @@ class Projector {
     // The fits of the first mesh then determine the error share of an element.
     static constexpr std::size_t few_elements = 2000, few_emitters = 8;
 
-    /// True if exact light may need integrals over the sky for every part of it behind a pane.
-    bool sees_sky_through_panes() const {
+    /// True if exact light may need integrals over many parts of the sky: those behind each pane, and those between
+    /// other surfaces.
+    bool has_open_sky() const {
         const auto is_open_sky = [](const DirectLight::Emitter& emitter) {
             return emitter.sky == DirectLight::Emitter::Sky::open;
         };
         const std::vector<DirectLight::Emitter>& emitters = stage_.direct.emitters();
-        return !stage_.scene.panes().empty() && std::any_of(emitters.begin(), emitters.end(), is_open_sky);
+        return std::any_of(emitters.begin(), emitters.end(), is_open_sky);
     }
 
     /// True if a cut through the tree of emitters is cheaper than all of them.
