@@ -1,5 +1,7 @@
 #include "exitance/base/words.hpp"
 
+#include <fmt/format.h>
+
 namespace exitance {
 namespace {
 
@@ -69,6 +71,17 @@ std::string_view without(std::string_view letters, std::string_view text) {
     return text.substr(first, text.find_last_not_of(letters) - first + 1);
 }
 
+bool is_utf8(std::string_view text) {
+    for (std::size_t i = 0; i < text.size();) {
+        const auto byte = static_cast<unsigned char>(text[i++]);
+        std::size_t more = byte < 0x80 ? 0 : byte >= 0xc2 && byte < 0xe0 ? 1 : byte >= 0xe0 && byte < 0xf0 ? 2 : 3;
+        if (byte >= 0xf5 || (byte >= 0x80 && byte < 0xc2)) return false;
+        for (; more > 0; --more, ++i)
+            if (i == text.size() || (static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 std::string_view without_blanks(std::string_view text) {
@@ -86,6 +99,22 @@ std::string filled_in(std::string text, const std::vector<std::pair<std::string,
             text.replace(at, mark.size(), value);
     }
     return text;
+}
+
+std::string json_text(std::string_view text) {
+    const bool utf8 = is_utf8(text);
+    std::string out(1, '"');
+    for (char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\')
+            out += '\\', out += c;
+        else if (byte < 0x20 || (byte >= 0x80 && !utf8))  // text that is not UTF-8 is read as Latin-1
+            out += fmt::format("\\u{:04x}", static_cast<unsigned>(byte));
+        else
+            out += c;
+    }
+    out += '"';
+    return out;
 }
 
 }  // namespace exitance

@@ -17,6 +17,8 @@ std::string shell_text(const std::vector<std::string>& words);
 std::string_view without_blanks(std::string_view text);
 /// Returns `text` without blanks as above and double quotes at both ends.
 std::string_view without_quotes(std::string_view text);
+/// Returns a text as a JSON string, with quotation marks. Text that is not UTF-8 is read as Latin-1.
+std::string json_text(std::string_view text);
 /// Replaces "{name}" in `text` for all names.
 std::string filled_in(std::string text, const std::vector<std::pair<std::string, std::string>>& values);
 

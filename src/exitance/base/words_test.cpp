@@ -18,4 +18,9 @@ TEST(Words, ShellTextIsReadBackAsTheSameWords) {
     EXPECT_EQ(shell_text({"a=1,2", "it's"}), "a=1,2 'it'\\''s'");
 }
 
+TEST(Words, JsonTextHasNoControlCharactersAndReadsOtherBytesAsLatin1) {
+    EXPECT_EQ(json_text("caf\xe9 \"1\"\n"), "\"caf\\u00e9 \\\"1\\\"\\u000a\"");
+    EXPECT_EQ(json_text("caf\xc3\xa9"), "\"caf\xc3\xa9\"");
+}
+
 }  // namespace exitance

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "exitance/direct/sampled_light.hpp"
 #include "exitance/form_factors/directed_form_factor.hpp"
 #include "exitance/transport/direct_projection.hpp"
 #include "support/test_scenes.hpp"
@@ -123,13 +122,13 @@ TEST(DirectedLight, IsThatOfTheUnblockedPart) {
 TEST(DirectedLight, SamplingByRaysIsUnbiased) {
     const Scene scene = make_directed(lamp_room(1), batwing());
     const Stage stage(scene);
-    SampledLight sampled(stage.direct, stage.tracer, 1);
     const ElementTree tree = stage.make_elements({0.25, 0});
     DirectFitRoom room;
     double exact = 0, found = 0;
     for (ElementId e : tree.leaves()) {
         exact += tree.area(e) * mean(fit_direct_light(stage, tree, e, 0, room).mean);
-        found += tree.area(e) * mean(sampled(tree, e, Spectrum(1.0), HUGE_VAL, 256).weak);
+        const RayLight& rays = stage.place_light.rays();
+        found += tree.area(e) * mean(rays.on_element(tree, e, Spectrum(1.0), HUGE_VAL, 256, room.place).irradiance);
     }
     EXPECT_NEAR(found / exact, 1, 0.015);
 }

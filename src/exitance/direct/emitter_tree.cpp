@@ -41,7 +41,7 @@ EmitterTree::Node EmitterTree::make_node(std::uint32_t first, std::uint32_t last
     out.first = first, out.last = last;
     Spectrum light;
     for (const Source& s : sources) {
-        out.power += s.power, out.power_squares += s.power * s.power;
+        out.power += s.power;
         light += s.area * direct_->emitters()[s.name.emitter].exitance;
         out.centre += s.power * centroid(occluders.corners(s.name.piece));
         out.normal += s.power * plane_of(s).n;
@@ -180,15 +180,6 @@ void EmitterTree::cut(const Receiver& at, double relative, double absolute, Cut&
         for (const Term& term : out.terms) open(term, at, most, out.next);
         out.terms.swap(out.next);
     }
-}
-
-double EmitterTree::effective_sources(const Cut& cut) const {
-    double squares = 0;
-    for (const Term& term : cut.terms) {
-        const Node& node = nodes_[term.node];
-        squares += term.light * term.light * node.power_squares / (node.power * node.power);
-    }
-    return squares > 0 ? cut.light * cut.light / squares : 0;
 }
 
 }  // namespace exitance

@@ -37,7 +37,6 @@ class EmitterTree {
         Normal axis;                  ///< Axis of a cone that contains all normals.
         double cosine = 1, sine = 0;  ///< Cosine and sine of this cone's half angle.
         double power = 0;             ///< Mean over bands, W.
-        double power_squares = 0;     ///< Sum of the squared powers of the sources, W^2.
         Spectrum colour;              ///< Power per band, relative to the mean over bands.
         std::uint32_t first = 0, last = 0;  ///< Range of the node's sources.
         std::uint32_t left = 0, right = 0;  ///< Children; 0 for a single source.
@@ -66,10 +65,6 @@ class EmitterTree {
     /// until there are about `most_terms` clusters. About 100 ns per term.
     void cut(const Receiver& at, double relative, double absolute, Cut& out) const;
     static constexpr std::size_t most_terms = 4096;
-
-    /// Returns the number of sources of equal light that would cause the same sampling noise as the sources of a cut:
-    /// (sum L)^2 / sum L^2.
-    double effective_sources(const Cut& cut) const;
 
   private:
     Node make_node(std::uint32_t first, std::uint32_t last) const;

@@ -159,11 +159,10 @@ class Builder {
     void keep_strongest(std::span<std::optional<ReceiverCurves>> receivers) const {
         if (options_.lines.kind != ShadowLines::Kind::strongest) return;
         const auto is_contact = [](const FlatCurve& c) { return c.cause == CurveCause::contact; };
-        const auto effect = [](const FlatCurve& c) { return c.gain * std::hypot(c.b.x - c.a.x, c.b.y - c.a.y); };
         std::vector<double> effects;
         for (const auto& receiver : receivers)
             for (const FlatCurve& c : receiver->curves)
-                if (!is_contact(c)) effects.push_back(effect(c));
+                if (!is_contact(c)) effects.push_back(c.effect());
         if (effects.size() <= options_.lines.count) return;
         std::sort(effects.begin(), effects.end(), std::greater<>());
         // The first ones of several curves with the same effect are kept.
@@ -172,8 +171,8 @@ class Builder {
         std::size_t equal = options_.lines.count - static_cast<std::size_t>(above);
         for (auto& receiver : receivers)
             receiver->left_out += std::erase_if(receiver->curves, [&](const FlatCurve& c) {
-                if (is_contact(c) || effect(c) > least) return false;
-                if (effect(c) < least || equal == 0) return true;
+                if (is_contact(c) || c.effect() > least) return false;
+                if (c.effect() < least || equal == 0) return true;
                 return --equal, false;
             });
     }

@@ -104,9 +104,7 @@ ReceiverCurves CurveFinder::find(RegionId number) const {
     ArrangedCurves arranged = arranged_curves(std::move(out.curves), out.loops, nearness * stage_->scene.size());
     out.curves = std::move(arranged.curves), out.loops = std::move(arranged.loops);
     if (out.curves.size() > options_.most_curves) {
-        const auto effect = [](const FlatCurve& c) {
-            return c.order == CurveOrder::d0 ? HUGE_VAL : c.gain * std::hypot(c.b.x - c.a.x, c.b.y - c.a.y);
-        };
+        const auto effect = [](const FlatCurve& c) { return c.order == CurveOrder::d0 ? HUGE_VAL : c.effect(); };
         std::stable_sort(out.curves.begin(), out.curves.end(),
                          [&](const FlatCurve& a, const FlatCurve& b) { return effect(a) > effect(b); });
         out.left_out += out.curves.size() - options_.most_curves;

@@ -1,5 +1,10 @@
 #include "exitance/transport/direct_fit.hpp"
 
+#include <algorithm>
+#include <numeric>
+
+#include "exitance/base/parallel.hpp"
+#include "exitance/base/random.hpp"
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/basis/misfit_along.hpp"
 
@@ -93,15 +98,16 @@ void add_missed_light(const DirectLight& direct, const ElementTree& tree, Elemen
     fit.misfit_squared = std::max(fit.misfit_squared, squared(error) / static_cast<double>(bands));
 }
 
-DirectFit fit_all_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
+DirectFit fit_all_light(const FittedLight& light, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
                         DirectFitRoom& room) {
+    const Scene& scene = light.stage.scene;
     const RegionId region = tree.region(e);
-    const double w = mean(light_weight(stage.scene.material(region)));
+    const double w = mean(light_weight(scene.material(region)));
     const std::vector<Point> places = places_of(tree, e), outline = tree.outline(e);
-    stage.place_light.at_places({outline, stage.scene.regions()[region].plane.n, region, places},
-                                accuracy_on(w, allowed), room.place, room.found);
-    DirectFit out = fit_estimates(stage, tree, e, room.found);
-    if (tree.area(e) >= allowed.minor_area) add_missed_light(stage.direct, tree, e, room.small, out);
+    light.places.at_places({outline, scene.regions()[region].plane.n, region, places}, accuracy_on(w, allowed),
+                           room.place, room.found);
+    DirectFit out = fit_estimates(light.stage, tree, e, room.found);
+    if (tree.area(e) >= allowed.minor_area) add_missed_light(light.direct, tree, e, room.small, out);
     return out;
 }
 
@@ -142,39 +148,71 @@ Spectrum light_weight(const Material& material) {
     return w;
 }
 
-DirectFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
-                           unsigned rays, SampledLight& sampled, DirectFitRoom& room) {
+DirectFit fit_strong_light(const FittedLight& light, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
+                           unsigned rays, DirectFitRoom& room) {
+    const Scene& scene = light.stage.scene;
     const RegionId region = tree.region(e);
-    // Each source is evaluated, if only approximately. Above this number of sources even that is expensive.
-    constexpr std::size_t max_examined = 10000;
-    const std::size_t sources = stage.place_light.rays().emitters().sources().size();
-    if (!stage.scene.behind(region).is_none() || sources > max_examined)
-        return fit_all_light(stage, tree, e, allowed, room);
-    const Spectrum weight = light_weight(stage.scene.material(region));
-    const SampledLight::Estimate& of = sampled(tree, e, weight, allowed.squared, rays);
+    if (!scene.behind(region).is_none()) return fit_all_light(light, tree, e, allowed, room);
+    const Spectrum weight = light_weight(scene.material(region));
+    const RayLight::ElementEstimate weak =
+        light.places.rays().on_element(tree, e, weight, allowed.squared, rays, room.place);
     const std::vector<Point> places = places_of(tree, e), outline = tree.outline(e);
-    const PlaceLight::Polygon on{outline, stage.scene.regions()[region].plane.n, region, places};
+    const PlaceLight::Polygon on{outline, scene.regions()[region].plane.n, region, places};
     const LightAccuracy accuracy = accuracy_on(mean(weight), allowed);
-    if (!stage.place_light.exact_at_places(on, &of.strong, accuracy, room.place, room.found)) {
-        stage.place_light.at_places(on, accuracy, room.place, room.found);
-        return fit_estimates(stage, tree, e, room.found);
+    if (!light.places.exact_at_places(on, &weak.strong, accuracy, room.place, room.found)) {
+        light.places.at_places(on, accuracy, room.place, room.found);
+        return fit_estimates(light.stage, tree, e, room.found);
     }
-    DirectFit out = fit_estimates(stage, tree, e, room.found);
-    for (Spectrum& corner : out.corners) corner += of.weak;
-    out.mean += of.weak;
-    // The error bound of weak sources does not trigger a split; it is added to the error of elements that stay whole.
-    out.misfit_squared = std::max(out.misfit_squared, of.misfit_squared);
+    DirectFit out = fit_estimates(light.stage, tree, e, room.found);
+    for (Spectrum& corner : out.corners) corner += weak.irradiance;
+    out.mean += weak.irradiance;
+    // The misfit of weak sources does not trigger a split; it is the error of elements that stay whole. Nor does the
+    // noise of their rays, which smaller elements would not reduce.
+    const double noise = weak.variance * squared(weight) / static_cast<double>(bands);
+    out.misfit_squared = std::max(out.misfit_squared, weak.misfit_squared);
+    out.noise_squared = std::min(out.misfit_squared, out.noise_squared + noise);
     return out;
 }
 
-DirectFit fit_by_rays(const Stage& stage, const ElementTree& tree, ElementId e, SampledLight& sampled) {
-    constexpr double no_limit = 1e300;
-    const Spectrum w = light_weight(stage.scene.material(tree.region(e)));
-    const SampledLight::Estimate& of = sampled(tree, e, w, no_limit, rays_an_element);
-    const auto& emitters = stage.direct.emitters();
-    const bool all_outside = !emitters.empty() && stage.direct.is_distant(0);  // emitters of the sky come last
-    const Spectrum parallel = all_outside ? of.weak : Spectrum();
-    return {{of.weak, of.weak, of.weak, of.weak}, of.weak, parallel, of.misfit_squared, {}};
+namespace {
+
+/// Light at a random place of an element by few rays. `number`: of the place.
+PlaceLight::Estimate rough_light(const FittedLight& light, const ElementTree& tree, ElementId e, std::uint64_t number,
+                                 DirectFitRoom& room) {
+    constexpr LightAccuracy rough{.relative = 0.5, .most_rays = rays_an_element};
+    const RegionId region = tree.region(e);
+    const Patch& patch = tree.patch(e);
+    const ScrambledSobol random(hash(RayLight::key_of(patch.at(tree.centre(e)), region), number));
+    const Point x = patch.at(tree.uniform(e, random(0, 0), random(0, 1)));
+    return light.places.by_rays(x, light.stage.scene.regions()[region].plane.n, region, rough, room.place);
+}
+
+}  // namespace
+
+DirectFit fit_by_rays(const FittedLight& light, const ElementTree& tree, ElementId e, DirectFitRoom& room) {
+    const PlaceLight::Estimate found = rough_light(light, tree, e, 0, room);
+    const Spectrum& E = found.irradiance;
+    const Spectrum error = light_weight(light.stage.scene.material(tree.region(e))) * E;
+    return {{E, E, E, E}, E, found.parallel, RayLight::typical_variance * squared(error) / static_cast<double>(bands)};
+}
+
+double mean_weighted_light(const FittedLight& light, const ElementTree& tree, std::span<const ElementId> leaves,
+                           const StopRequest& stop) {
+    constexpr std::size_t samples = 2000;
+    std::vector<double> area_before{0};
+    for (ElementId e : leaves) area_before.push_back(area_before.back() + tree.area(e));
+    std::vector<double> found(samples);
+    parallel_ranges(samples, 16, [&](std::size_t first, std::size_t last) {
+        DirectFitRoom room;
+        for (std::size_t i = first; i < last && !stop.requested(); ++i) {
+            const double wanted = (static_cast<double>(i) + 0.5) / samples * area_before.back();
+            const auto after = std::upper_bound(area_before.begin() + 1, area_before.end() - 1, wanted);
+            const ElementId e = leaves[static_cast<std::size_t>(after - area_before.begin()) - 1];
+            const Spectrum w = light_weight(light.stage.scene.material(tree.region(e)));
+            found[i] = mean(w * rough_light(light, tree, e, i, room).irradiance);
+        }
+    });
+    return stop.requested() ? 0 : std::accumulate(found.begin(), found.end(), 0.0) / samples;
 }
 
 }  // namespace exitance

@@ -1,9 +1,18 @@
 #pragma once
 
-#include "exitance/direct/sampled_light.hpp"
 #include "exitance/transport/direct_projection.hpp"
 
 namespace exitance {
+
+/// Direct light that is fitted on elements of a stage: of all its emitters, or of some of them.
+struct FittedLight {
+    FittedLight(const Stage& s) : FittedLight(s, s.direct, s.place_light) {}
+    FittedLight(const Stage& s, const DirectLight& d, const PlaceLight& p) : stage(s), direct(d), places(p) {}
+
+    const Stage& stage;
+    const DirectLight& direct;
+    const PlaceLight& places;
+};
 
 /// Limits on the noise that a fit may keep, if light is estimated by rays (`PlaceLight`).
 struct NoiseAllowed {
@@ -18,15 +27,20 @@ struct NoiseAllowed {
 constexpr unsigned rays_an_element = 16;
 
 /// Like `fit_direct_light`, with limits on noise.
-DirectFit fit_all_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
+DirectFit fit_all_light(const FittedLight& light, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
                         DirectFitRoom& room);
 
 /// Like `fit_all_light`, for scenes of many elements: sources that contribute little to this element are only sampled,
-/// by `rays` rays together.
-DirectFit fit_strong_light(const Stage& stage, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
-                           unsigned rays, SampledLight& sampled, DirectFitRoom& room);
+/// by `rays` rays together. Sky, sun and punctual lights are left out.
+DirectFit fit_strong_light(const FittedLight& light, const ElementTree& tree, ElementId e, const NoiseAllowed& allowed,
+                           unsigned rays, DirectFitRoom& room);
 
-/// Returns a constant fit from rays alone, for work that is stopped early.
-DirectFit fit_by_rays(const Stage& stage, const ElementTree& tree, ElementId e, SampledLight& sampled);
+/// Returns a constant fit from a few rays at a random place, for work that is stopped early.
+DirectFit fit_by_rays(const FittedLight& light, const ElementTree& tree, ElementId e, DirectFitRoom& room);
+
+/// Estimates the mean of w E_dir over leaves, W/m^2, w the light_weight(), by a few rays at each of some thousand
+/// places. Returns 0 on a request to stop.
+double mean_weighted_light(const FittedLight& light, const ElementTree& tree, std::span<const ElementId> leaves,
+                           const StopRequest& stop);
 
 }  // namespace exitance

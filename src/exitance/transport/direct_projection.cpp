@@ -23,60 +23,6 @@ double weighted_flux(const Stage& stage, const ElementTree& tree, std::span<cons
     return flux;
 }
 
-/// Estimate of weighted_flux() by rays, from 2000 samples at equal steps of the leaves' cumulative area.
-double estimated_flux(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,
-                      std::uint64_t seed, const StopRequest& stop) {
-    constexpr double samples = 2000;
-    struct Sample {
-        ElementId e;
-        double share, flux = 0;
-    };
-    std::vector<Sample> at;
-    double area = 0, next = 0.5 * stage.area / samples;
-    for (ElementId e : leaves) {
-        area += tree.area(e);
-        if (area <= next) continue;
-        const double steps = std::ceil((area - next) * samples / stage.area);
-        next += steps * stage.area / samples;
-        at.push_back({e, steps / samples});
-    }
-    parallel_ranges(at.size(), 8, [&](std::size_t first, std::size_t last) {
-        SampledLight sampled(stage.direct, stage.tracer, seed);
-        for (std::size_t i = first; i < last && !stop.requested(); ++i) {
-            const Spectrum w = light_weight(stage.scene.material(tree.region(at[i].e)));
-            at[i].flux = at[i].share * mean(w * sampled(tree, at[i].e, w, HUGE_VAL, rays_an_element).weak);
-        }
-    });
-    double flux = 0;
-    for (const Sample& sample : at) flux += sample.flux;
-    return stop.requested() ? 0 : flux * stage.area;
-}
-
-/// Estimate of weighted_flux() for scenes with a sky, beams or other light without emitting polygons. Fits some of the
-/// leaves; sources with many blockers are sampled by rays.
-double estimated_flux_apart(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves,
-                            const StopRequest& stop) {
-    constexpr std::size_t samples = 512;
-    constexpr double no_limit = 1e300;
-    struct Sample {
-        double flux = 0, area = 0;
-    };
-    const std::size_t step = std::max<std::size_t>(1, leaves.size() / samples), from = step / 2;
-    std::vector<Sample> found((leaves.size() - from + step - 1) / step);
-    parallel_ranges(found.size(), 4, [&](std::size_t first, std::size_t last) {
-        DirectFitRoom room;
-        for (std::size_t i = first; i < last && !stop.requested(); ++i) {
-            const ElementId e = leaves[from + i * step];
-            const Spectrum w = light_weight(stage.scene.material(tree.region(e)));
-            const double area = tree.area(e);
-            found[i] = {area * mean(w * fit_direct_light(stage, tree, e, no_limit, room).mean), area};
-        }
-    });
-    double flux = 0, area = 0;
-    for (const Sample& sample : found) flux += sample.flux, area += sample.area;
-    return area > 0 ? flux * stage.area / area : 0;
-}
-
 /// Mean of w E_dir of each room, W/m^2, but at least a hundredth of the scene's; of all surfaces if the scene is one
 /// room.
 std::vector<double> light_by_room(const Stage& stage, const DirectProjection& light,
@@ -141,13 +87,12 @@ class Projector {
         // In scenes of many elements, or if exact light is expensive, the limit on errors is needed before the first
         // fits.
         if (active.size() > few_elements || has_open_sky())
-            share_ = share_of(stage_.scene.has_light_apart()
-                                  ? estimated_flux_apart(stage_, out_.tree, active, stop_)
-                                  : estimated_flux(stage_, out_.tree, active, options_.seed, stop_));
+            share_ = share_of(mean_weighted_light(stage_, out_.tree, active, stop_));
         for (int depth = 0; !active.empty(); ++depth) {
             fit_all(active, depth);
             if (options_.may_give_up && stop_.requested()) return {};
-            if (depth == 0 && !many_) share_ = share_of(weighted_flux(stage_, out_.tree, active, out_.fit));
+            if (depth == 0 && !many_)
+                share_ = share_of(weighted_flux(stage_, out_.tree, active, out_.fit) / stage_.area);
             if (depth == 0) share_in_ = shares_by_room(stage_, out_, active, options_.tolerance);
             if (depth == 0 && options_.bodies && !stop_.requested())
                 needs_.emplace(stage_, *options_.bodies, out_, options_.body_tolerance,
@@ -191,9 +136,9 @@ class Projector {
                (emitting < max_emitting_share * stage_.area || has_many_sources()) && !stage_.scene.has_light_apart();
     }
 
-    /// Squared error that an element of mean area may have, by the total flux, (W/m^2)^2 m^2.
-    double share_of(double flux) const {
-        const double allowed = options_.tolerance * flux / stage_.area;
+    /// Squared error that an element of mean area may have, by the mean of w E_dir, (W/m^2)^2 m^2.
+    double share_of(double mean_light) const {
+        const double allowed = options_.tolerance * mean_light;
         return allowed * allowed * mean_area_;
     }
 
@@ -214,17 +159,17 @@ class Projector {
 
     /// Number of rays to weak sources. The estimated flux is most accurate if rays are spread evenly over all area.
     unsigned rays_of(ElementId e) const {
+        constexpr double most_rays = 1024;
         const double rays = rays_an_element * out_.tree.area(e) / mean_area_;
-        return static_cast<unsigned>(
-            std::clamp(rays, static_cast<double>(rays_an_element), static_cast<double>(SampledLight::most_rays)));
+        return static_cast<unsigned>(std::clamp(rays, static_cast<double>(rays_an_element), most_rays));
     }
 
-    DirectFit fit(ElementId e, int depth, SampledLight& sampled, DirectFitRoom& room) const {
+    DirectFit fit(ElementId e, int depth, DirectFitRoom& room) const {
         if (stop_.requested() && depth > 0) return inherited_fit(out_.tree, e, out_.fit[out_.tree.parent(e)]);
         if (stop_.requested() && stop_.seconds_overdue() < time_for_rays)
-            return fit_by_rays(stage_, out_.tree, e, sampled);
+            return fit_by_rays(stage_, out_.tree, e, room);
         if (stop_.requested()) return {};  // dark: even rays would take too long
-        if (many_) return fit_strong_light(stage_, out_.tree, e, noise_on(e), rays_of(e), sampled, room);
+        if (many_) return fit_strong_light(stage_, out_.tree, e, noise_on(e), rays_of(e), room);
         return fit_all_light(stage_, out_.tree, e, noise_on(e), room);
     }
 
@@ -235,8 +180,7 @@ class Projector {
             [&](std::size_t begin, std::size_t end) {
                 if (options_.may_give_up && stop_.requested()) return;
                 DirectFitRoom room;
-                SampledLight sampled(stage_.direct, stage_.tracer, options_.seed);
-                for (std::size_t i = begin; i < end; ++i) found_[i] = fit(active[i], depth, sampled, room);
+                for (std::size_t i = begin; i < end; ++i) found_[i] = fit(active[i], depth, room);
             },
             [&](std::size_t i) -> DirectFit& { return found_[i]; },
             {"direct light", [&](std::size_t i) { return out_.tree.region(active[i]).value; }});

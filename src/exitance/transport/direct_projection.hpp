@@ -25,7 +25,6 @@ struct DirectProjectionOptions {
     const BodyViews* bodies = nullptr;
     /// Error by one element, for every body, relative to the light that the body reflects.
     std::span<const double> body_tolerance = {};
-    std::uint64_t seed = 1;  ///< Seed of the rays from small elements in scenes of many elements.
 };
 
 /// Exact direct irradiance on one element, and its least-squares polynomial.

@@ -278,27 +278,14 @@ void ClutteredExchange::look(Cell& cell, const std::vector<SourcePart>& sources)
     judge(cell);
 }
 
-/// Halves the cell with the largest error across its longest edge, and for a quadrilateral also the opposite edge.
+/// Halves the cell with the largest error.
 void ClutteredExchange::halve_worst() {
     std::pop_heap(heap_.begin(), heap_.end());
     const Cell cell = std::move(heap_.back());
     heap_.pop_back();
-    std::size_t longest = 0;
-    double most = 0;
-    for (std::size_t i = 0; i < cell.count; ++i) {
-        const Vec2 e = cell.corner[(i + 1) % cell.count] - cell.corner[i];
-        if (dot(e, e) > most) most = dot(e, e), longest = i;
-    }
-    const auto at = [&](std::size_t i) { return cell.corner[(longest + i) % cell.count]; };
     const double ratio = turned_ ? 0.45 : 0.5;
-    const Vec2 p = at(0) + ratio * (at(1) - at(0));
-    Cell one{{}, cell.count, 0, 0, {}}, two = one;
-    if (cell.count == 3) {
-        one.corner = {p, at(1), at(2)}, two.corner = {p, at(2), at(0)};
-    } else {
-        const Vec2 q = at(3) + ratio * (at(2) - at(3));
-        one.corner = {p, at(1), at(2), q}, two.corner = {p, q, at(3), at(0)};
-    }
+    const auto corners = halves_of(cell.corners(), ratio);
+    Cell one{corners[0], cell.count, 0, 0, {}}, two{corners[1], cell.count, 0, 0, {}};
     look(one, cell.sources), look(two, cell.sources);
     total_ += one.integral + two.integral - cell.integral;
     squared_error_ += one.error * one.error + two.error * two.error - cell.error * cell.error;

@@ -100,27 +100,26 @@ void OccludedExchange::look_from_middles() {
         if (task.cell.glance.black == 0) task.cell.middle = factors_[k++];
 }
 
-/// Halves a cell across the longest edge, and for a quadrilateral also the opposite edge.
-void OccludedExchange::halve(const Task& task) {
-    const Cell& cell = task.cell;
+std::array<std::array<Vec2, 4>, 2> halves_of(std::span<const Vec2> corners, double ratio) {
     std::size_t longest = 0;
     double most = 0;
-    for (std::size_t i = 0; i < cell.count; ++i) {
-        const Vec2 e = cell.corner[(i + 1) % cell.count] - cell.corner[i];
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Vec2 e = corners[(i + 1) % corners.size()] - corners[i];
         if (dot(e, e) > most) most = dot(e, e), longest = i;
     }
-    const auto at = [&](std::size_t i) { return cell.corner[(longest + i) % cell.count]; };
-    const Vec2 p = 0.5 * (at(0) + at(1));
-    Task one{{}, 0, 0.5 * task.allowed, 0, {}, task.depth + 1}, two = one;
-    if (cell.count == 3) {
-        one.cell.add(p), one.cell.add(at(1)), one.cell.add(at(2));
-        two.cell.add(p), two.cell.add(at(2)), two.cell.add(at(0));
-    } else {
-        const Vec2 q = 0.5 * (at(2) + at(3));
-        one.cell.add(p), one.cell.add(at(1)), one.cell.add(at(2)), one.cell.add(q);
-        two.cell.add(p), two.cell.add(q), two.cell.add(at(3)), two.cell.add(at(0));
+    const auto at = [&](std::size_t i) { return corners[(longest + i) % corners.size()]; };
+    const Vec2 p = at(0) + ratio * (at(1) - at(0));
+    if (corners.size() == 3) return {{{p, at(1), at(2)}, {p, at(2), at(0)}}};
+    const Vec2 q = at(3) + ratio * (at(2) - at(3));
+    return {{{p, at(1), at(2), q}, {p, q, at(3), at(0)}}};
+}
+
+void OccludedExchange::halve(const Task& task) {
+    for (const std::array<Vec2, 4>& corners : halves_of(task.cell.corners())) {
+        Task half{{}, 0, 0.5 * task.allowed, 0, {}, task.depth + 1};
+        half.cell.count = task.cell.count, half.cell.corner = corners;
+        halves_.push_back(half);
     }
-    halves_.push_back(one), halves_.push_back(two);
 }
 
 /// Lower bound on the distance of a cell from the source polygon itself; bounding boxes of slanting faces extend far

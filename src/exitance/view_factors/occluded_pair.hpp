@@ -12,6 +12,10 @@
 
 namespace exitance {
 
+/// Cuts a convex polygon of three or four corners across its longest edge, at a ratio of its length, and a
+/// quadrilateral also across the opposite edge. Both parts have as many corners as the polygon.
+std::array<std::array<Vec2, 4>, 2> halves_of(std::span<const Vec2> corners, double ratio = 0.5);
+
 /// Squared distance from a point x to the segment from a to b, m^2.
 inline double squared_distance(const Point& x, const Point& a, const Point& b) {
     const Vec3 e = b - a, d = x - a;

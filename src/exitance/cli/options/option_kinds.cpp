@@ -51,12 +51,6 @@ std::vector<double> read_numbers(const std::string& option, std::string words) {
     return numbers;
 }
 
-bool read_switch(const char* option, const std::string& word) {
-    if (word != "on" && word != "off")
-        throw CLI::ValidationError(option, fmt::format("must be on or off, not '{}'", word));
-    return word == "on";
-}
-
 void declare_common(CLI::App& app, CommonArguments& arguments) {
     app.add_flag("-q,--quiet", arguments.quiet, "Write only errors to the error stream")->group("Run");
     app.add_flag("-v,--verbose", arguments.verbose, "Write more details to the error stream")->group("Run");

@@ -27,8 +27,6 @@ double read_number(const std::string& option, const std::string& word);
 std::size_t read_bytes(const std::string& option, const std::string& word);
 /// Numbers separated by commas or blanks.
 std::vector<double> read_numbers(const std::string& option, std::string words);
-/// True for "on", false for "off"; throws for other words.
-bool read_switch(const char* option, const std::string& word);
 
 std::vector<std::string> names_of(const auto& table) {
     std::vector<std::string> names;
@@ -78,15 +76,6 @@ CLI::Option* add_count(CLI::App& app, const std::string& name, Target& target, l
         target = static_cast<std::size_t>(value);
     };
     return app.add_option_function<std::string>(name, read, help)->type_name("N");
-}
-
-/// Declares an option with the values on and off, stored as bool or std::optional<bool>.
-template <class Switch>
-CLI::Option* add_switch(CLI::App& app, const std::string& name, Switch& value, const std::string& help) {
-    return app
-        .add_option_function<std::string>(
-            name, [name, &value](const std::string& w) { value = read_switch(name.c_str(), w); }, help)
-        ->type_name("on|off");
 }
 
 // The functions below declare options that several verbs have.

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
+#include "exitance/base/words.hpp"
 #include "exitance/cli/verbs.hpp"
-#include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/photometry/glare_table.hpp"

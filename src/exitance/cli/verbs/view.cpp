@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "exitance/base/parallel.hpp"
+#include "exitance/base/words.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/light_unit.hpp"
 #include "exitance/cli/solve/settle_options.hpp"
@@ -13,7 +14,6 @@
 #include "exitance/cli/view/view_requests.hpp"
 #include "exitance/cli/view/view_share.hpp"
 #include "exitance/cli/view/view_solve.hpp"
-#include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"

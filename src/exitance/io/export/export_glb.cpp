@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "exitance/base/version.hpp"
+#include "exitance/base/words.hpp"
 #include "exitance/io/export/conforming_mesh.hpp"
 #include "exitance/io/export/export_formats.hpp"
 #include "exitance/io/export/glb_container.hpp"

@@ -7,7 +7,6 @@
 #include "exitance/error/area_samples.hpp"
 #include "exitance/io/export/conforming_mesh.hpp"
 #include "exitance/io/export/export.hpp"
-#include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/scene_file.hpp"
 #include "exitance/transport/stage.hpp"
@@ -145,11 +144,6 @@ TEST(ExportGlb, IsReadBackWithTheSameSurfacesAndDirectLight) {
         light += mean(a), difference += std::abs(mean(a - b));
     }
     EXPECT_LT(difference, 1e-5 * light);  // coordinates in single precision have errors of 1e-7 of the room's size
-}
-
-TEST(ExportGlb, NamesThatAreNotUtf8AreReadAsLatin1) {
-    EXPECT_EQ(json_text("caf\xe9 \"1\"\n"), "\"caf\\u00e9 \\\"1\\\"\\u000a\"");
-    EXPECT_EQ(json_text("caf\xc3\xa9"), "\"caf\xc3\xa9\"");
 }
 
 TEST(ConformingMesh, HasNoCornerOnAnEdgeOfItsRegion) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/base/words.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
 
 namespace exitance {
@@ -56,34 +57,7 @@ std::string camera_json(const SceneCamera& camera, double size) {
         name, aspect, 2 * std::atan(across / aspect), 1e-4 * size);
 }
 
-bool is_utf8(const std::string& text) {
-    for (std::size_t i = 0; i < text.size();) {
-        const auto byte = static_cast<unsigned char>(text[i++]);
-        std::size_t more = byte < 0x80 ? 0 : byte >= 0xc2 && byte < 0xe0 ? 1 : byte >= 0xe0 && byte < 0xf0 ? 2 : 3;
-        if (byte >= 0xf5 || (byte >= 0x80 && byte < 0xc2)) return false;
-        for (; more > 0; --more, ++i)
-            if (i == text.size() || (static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return false;
-    }
-    return true;
-}
-
 }  // namespace
-
-std::string json_text(const std::string& text) {
-    const bool utf8 = is_utf8(text);
-    std::string out(1, '"');
-    for (char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (c == '"' || c == '\\')
-            out += '\\', out += c;
-        else if (byte < 0x20 || (byte >= 0x80 && !utf8))  // text that is not UTF-8 is read as Latin-1
-            out += fmt::format("\\u{:04x}", static_cast<unsigned>(byte));
-        else
-            out += c;
-    }
-    out += '"';
-    return out;
-}
 
 GlbNodes make_light_and_camera_nodes(const Scene& scene) {
     GlbNodes out;

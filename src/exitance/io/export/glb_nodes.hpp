@@ -6,9 +6,6 @@
 
 namespace exitance {
 
-/// Returns a text as a JSON string, with quotation marks.
-std::string json_text(const std::string& text);
-
 /// The lights and cameras of a scene as parts of a glTF document (JSON lists without brackets): KHR_lights_punctual,
 /// cameras, and one node for each of these, Y up.
 struct GlbNodes {

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "exitance/base/version.hpp"
+#include "exitance/base/words.hpp"
 #include "exitance/io/export/directional_files.hpp"
-#include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/pictures/png.hpp"
 #include "exitance/scene/photometric_units.hpp"

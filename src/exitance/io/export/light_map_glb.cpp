@@ -7,6 +7,7 @@
 
 #include "exitance/base/triangulation.hpp"
 #include "exitance/base/version.hpp"
+#include "exitance/base/words.hpp"
 #include "exitance/io/export/glb_container.hpp"
 #include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/export/light_map_files.hpp"

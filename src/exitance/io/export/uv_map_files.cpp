@@ -7,8 +7,8 @@
 
 #include "exitance/base/random.hpp"
 #include "exitance/base/version.hpp"
+#include "exitance/base/words.hpp"
 #include "exitance/io/export/directional_files.hpp"
-#include "exitance/io/export/glb_nodes.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/scenes/obj/obj_writer.hpp"

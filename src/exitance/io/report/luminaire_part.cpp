@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "exitance/io/export/glb_nodes.hpp"
+#include "exitance/base/words.hpp"
 #include "exitance/io/photometry/polar_diagram.hpp"
 #include "exitance/io/report/luminaire_schedule.hpp"
 #include "exitance/io/report/report_figures.hpp"

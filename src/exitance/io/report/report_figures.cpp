@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "exitance/base/version.hpp"
-#include "exitance/io/export/glb_nodes.hpp"
+#include "exitance/base/words.hpp"
 #include "exitance/io/files/base64.hpp"
 #include "exitance/io/pictures/tone_map.hpp"
 #include "exitance/io/report/requirements.hpp"

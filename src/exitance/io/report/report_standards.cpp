@@ -3,7 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "exitance/io/export/glb_nodes.hpp"
+#include "exitance/base/words.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/report/isolux_plan.hpp"
 #include "exitance/io/report/requirements.hpp"

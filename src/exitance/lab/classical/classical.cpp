@@ -16,8 +16,7 @@ ElementTree constant_mesh(const Stage& stage, const SolveOptions& options, const
                           const StopRequest& stop) {
     const MeshSize size = knobs.solve_mesh;
     if (options.classical.mesh == MeshKind::uniform) return make_mesh(stage.pieces, stage.concave, {.edge = size.edge});
-    return project_direct_light(stage, {.mesh = size, .tolerance = knobs.direct_tolerance, .seed = options.seed}, stop)
-        .tree;
+    return project_direct_light(stage, {.mesh = size, .tolerance = knobs.direct_tolerance}, stop).tree;
 }
 
 std::vector<Spectrum> mean_direct_light(const MethodInput& input, const ElementTree& tree,

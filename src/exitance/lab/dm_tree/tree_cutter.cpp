@@ -40,8 +40,7 @@ ReceiverTriangles by_tree(const ReceiverCurves& receiver, const TreeCut& cut, do
     for (const FlatCurve& c : receiver.curves) curves.push_back(&c);
     if (cut.penumbra_first)
         std::stable_sort(curves.begin(), curves.end(), [](const FlatCurve* p, const FlatCurve* q) {
-            const auto length = [](const FlatCurve* c) { return std::hypot(c->b.x - c->a.x, c->b.y - c->a.y); };
-            return std::pair(p->order, -length(p)) < std::pair(q->order, -length(q));
+            return std::pair(p->order, -p->length()) < std::pair(q->order, -q->length());
         });
     std::vector<std::uint8_t> labels;
     for (const FlatCurve* c : curves) {

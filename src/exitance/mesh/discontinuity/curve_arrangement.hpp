@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -13,9 +14,12 @@ struct FlatCurve {
     CurveOrder order = CurveOrder::d1;
     CurveCause cause = CurveCause::contact;
     RegionId source;
-    /// Upper bound of the change of light across it, W/m^2. If there are too many curves, those with the largest gain
-    /// are kept.
+    /// Upper bound of the change of light across it, W/m^2.
     double gain = 0;
+
+    double length() const { return std::hypot(b.x - a.x, b.y - a.y); }  ///< m
+    /// Returns the gain times the length, W/m: of too many curves, those with the largest effect are kept.
+    double effect() const { return gain * length(); }
 };
 
 /// Prepares curves for cutting. Lines nearer than `tolerance` become one. Of overlapping segments the strongest is

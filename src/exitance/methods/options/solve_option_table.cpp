@@ -11,8 +11,6 @@
 namespace exitance {
 namespace {
 
-using option_values::json_text;
-
 std::string key_of(const OptionRow& row) {
     std::string key = row.name.substr(2);
     std::replace(key.begin(), key.end(), '-', '_');

@@ -40,13 +40,4 @@ std::string not_a_number(const std::string& word) {
     return "'" + word + "' is not a number";
 }
 
-std::string json_text(std::string_view text) {
-    std::string out = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') out += '\\';
-        out += c;
-    }
-    return out + '"';
-}
-
 }  // namespace exitance::option_values

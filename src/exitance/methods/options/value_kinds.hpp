@@ -5,6 +5,7 @@
 #include <string>
 #include <type_traits>
 
+#include "exitance/base/words.hpp"
 #include "exitance/methods/options/option_row.hpp"
 
 namespace exitance::option_values {
@@ -46,8 +47,6 @@ std::optional<std::size_t> bytes_in(std::string word);
 std::string text_of(double value);
 /// Message of an error.
 std::string not_a_number(const std::string& word);
-/// Text in quotation marks, escaped for JSON.
-std::string json_text(std::string_view text);
 
 template <class T>
 const T* set_value(const T& value, const T& initial) {

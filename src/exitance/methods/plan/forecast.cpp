@@ -216,12 +216,10 @@ Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& asked) {
     MeshSize mesh = plan.knobs.solve_mesh;
     if (patches && !options.mesh_size)
         mesh = {calibrated::patch_edge * mesh.edge, std::max(0, mesh.grading_levels - 1)};
-    const DirectProjection direct = project_direct_light(stage,
-                                                         {.mesh = mesh,
-                                                          .tolerance = (patches ? 2 : 1) * plan.knobs.direct_tolerance,
-                                                          .least_area = options.min_area,
-                                                          .seed = options.seed},
-                                                         never);
+    const DirectProjection direct = project_direct_light(
+        stage,
+        {.mesh = mesh, .tolerance = (patches ? 2 : 1) * plan.knobs.direct_tolerance, .least_area = options.min_area},
+        never);
 
     Forecast out{.method = name_in(method_names, plan.options.method),
                  .surfaces = scene.surfaces().size(),

@@ -77,8 +77,8 @@ double links_work(const Stage& stage, const Counts& counts) {
 double pilot_spread(const Stage& stage, const SolveOptions& options) {
     const Knobs coarse = knobs_for_error(calibrated::hurried_error, stage.lit_pieces(), options);
     const StopRequest never;
-    const DirectProjection direct = project_direct_light(
-        stage, {.mesh = coarse.solve_mesh, .tolerance = coarse.direct_tolerance, .seed = options.seed}, never);
+    const DirectProjection direct =
+        project_direct_light(stage, {.mesh = coarse.solve_mesh, .tolerance = coarse.direct_tolerance}, never);
     const std::vector<ProbePoint> points = points_uniform_in_area(stage.scene, way_pilot_points, options.seed);
     const Locator locator(stage.scene);
     const ElementLocator elements(direct.tree, stage.scene.regions().size());

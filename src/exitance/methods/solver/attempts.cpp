@@ -205,8 +205,7 @@ void Solver::project_direct() {
                                                    .least_area = options_.min_area,
                                                    .may_give_up = direct_.tree.size() > 0,
                                                    .bodies = views ? &*views : nullptr,
-                                                   .body_tolerance = tolerance_of,
-                                                   .seed = options_.seed},
+                                                   .body_tolerance = tolerance_of},
                                                   stop_);
     if (fresh.tree.size() > 0) {
         const Spectrum scale = keep_emitted_flux(fresh, stage_, options_.seed);

@@ -12,7 +12,6 @@ Scene alone(const Scene& scene, const EmitterGroup& group);
 /// clusters or rays are cheaper. `tolerance`: permitted RMS error of rho E_dir by these, relative to its mean. Some
 /// fits stay dark after a request to stop. O(elements x points x visible emitters).
 std::vector<DirectFit> fit_direct_of(const Scene& lit, const Stage& stage, const ElementTree& tree,
-                                     std::span<const ElementId> elements, double tolerance, std::uint64_t seed,
-                                     const StopRequest& stop);
+                                     std::span<const ElementId> elements, double tolerance, const StopRequest& stop);
 
 }  // namespace exitance

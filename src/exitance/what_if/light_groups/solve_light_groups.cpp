@@ -117,8 +117,8 @@ class GroupSolver {
     void find_light(LightGroup& group) {
         const TransportLayout& layout = out_.layout;
         const Scene lit = alone(solution_.scene, group.emitters);
-        direct_.push_back(fit_direct_of(lit, stage_, solution_.interpolant.tree, layout.sources,
-                                        knobs_.direct_tolerance, options_.seed, stop_));
+        direct_.push_back(
+            fit_direct_of(lit, stage_, solution_.interpolant.tree, layout.sources, knobs_.direct_tolerance, stop_));
         const std::vector<DirectFit>& direct = direct_.back();
         std::vector<Spectrum> indirect(value_count(solution_.indirect));
         if (reflects()) {
