@@ -376,7 +376,7 @@ TEST(Certificate, DoesNotAddNoiseOfABrightRoomToADarkOne) {
 }
 
 TEST(Certificate, FindsAnErrorOfTheProjectionInADarkRoom) {
-    // As in WrongProjection, but only in the dark room.
+    // The projection is wrong as in WrongProjection, but only in the dark room.
     constexpr double factor = 1.2, truth = (factor - 1) / 2;
     const PlantedError planted([](const Point& p) { return p.x < 4 ? 0 : factor - 1; }, 0.25,
                                bright_and_dark_furnace());
