@@ -76,8 +76,13 @@ bool is_utf8(std::string_view text) {
         const auto byte = static_cast<unsigned char>(text[i++]);
         std::size_t more = byte < 0x80 ? 0 : byte >= 0xc2 && byte < 0xe0 ? 1 : byte >= 0xe0 && byte < 0xf0 ? 2 : 3;
         if (byte >= 0xf5 || (byte >= 0x80 && byte < 0xc2)) return false;
-        for (; more > 0; --more, ++i)
-            if (i == text.size() || (static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return false;
+        // The second byte excludes longer forms of short codes, surrogates, and codes above the last one [RFC 3629].
+        unsigned least = byte == 0xe0 ? 0xa0 : byte == 0xf0 ? 0x90 : 0x80;
+        unsigned most = byte == 0xed ? 0x9f : byte == 0xf4 ? 0x8f : 0xbf;
+        for (; more > 0; --more, ++i, least = 0x80, most = 0xbf)
+            if (i == text.size() || static_cast<unsigned char>(text[i]) < least ||
+                static_cast<unsigned char>(text[i]) > most)
+                return false;
     }
     return true;
 }

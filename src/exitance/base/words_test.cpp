@@ -21,6 +21,11 @@ TEST(Words, ShellTextIsReadBackAsTheSameWords) {
 TEST(Words, JsonTextHasNoControlCharactersAndReadsOtherBytesAsLatin1) {
     EXPECT_EQ(json_text("caf\xe9 \"1\"\n"), "\"caf\\u00e9 \\\"1\\\"\\u000a\"");
     EXPECT_EQ(json_text("caf\xc3\xa9"), "\"caf\xc3\xa9\"");
+    // A surrogate, a longer form of a short code, and a code above the last one are not UTF-8.
+    EXPECT_EQ(json_text("\xed\xa0\x80"), "\"\\u00ed\\u00a0\\u0080\"");
+    EXPECT_EQ(json_text("\xe0\x80\x80"), "\"\\u00e0\\u0080\\u0080\"");
+    EXPECT_EQ(json_text("\xf4\x90\x80\x80"), "\"\\u00f4\\u0090\\u0080\\u0080\"");
+    EXPECT_EQ(json_text("\xf0\x9f\x92\xa1"), "\"\xf0\x9f\x92\xa1\"");
 }
 
 }  // namespace exitance

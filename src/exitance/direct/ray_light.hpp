@@ -68,9 +68,9 @@ class RayLight {
     /// Separates the emitters that contribute little to an element from the others, and estimates their light by `rays`
     /// rays from the element to the tree of emitters. For buildings, in which hundreds of emitters shine through doors
     /// on thousands of small objects. As many emitters count as weak as cause a misfit of at most `allowed` if their
-    /// light is treated as constant, weighted by `weight`. The mean over many elements is the exact light. Sky, sun and
-    /// punctual lights are left out, and the region must not transmit light. About 100 ns per term of the cut through
-    /// the tree, plus the rays.
+    /// light is treated as constant, weighted by `weight`. The mean over many elements is the exact light, except for
+    /// sources that do not face an element's centre. Sky, sun and punctual lights are left out, and the region must not
+    /// transmit light. About 100 ns per term of the cut through the tree, or per source if any is directed, plus rays.
     ElementEstimate on_element(const ElementTree& tree, ElementId e, const Spectrum& weight, double allowed,
                                std::uint32_t rays, Workspace& room) const;
 
@@ -192,7 +192,7 @@ class RayLight::Workspace {
     std::vector<double> chance_before_;  ///< Prefix sums of the chances of the terms of `others`.
     /// Term of the cut, as it shines on an element. Sorted by weakness.
     struct ElementTerm {
-        double in_sight = 0;  ///< Visible light: all of it if a ray arrived, W/m^2, unbiased over many elements.
+        double in_sight = 0;  ///< Visible light: all of it if a ray arrived, W/m^2.
         double astray = 0;    ///< Light that may vary over the element, W/m^2.
         std::uint32_t term = 0;
         double light = 0;  ///< Unoccluded light, W/m^2.

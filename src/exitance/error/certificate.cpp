@@ -114,8 +114,9 @@ struct Certifier::Content {
 
 /// Chooses the parameters for checking hits of rays from a room, from a pilot at some of its places.
 CheckPlan Certifier::Content::plan_checks_from(std::size_t room, std::span<const WeightedSample> places) const {
-    constexpr std::size_t pilots_in_all = 64, min_pilots = 16;  // places of a pilot
-    const std::size_t pilots = std::max(min_pilots, pilots_in_all / plans.size());
+    // Places of a pilot: 64 of all rooms together, but at least 16 of each, or 8 if there are many.
+    const std::size_t rooms = plans.size(), few = std::clamp<std::size_t>(256 / rooms, 8, 16);
+    const std::size_t pilots = std::max(few, 64 / rooms);
     std::vector<PilotPlace> at;
     const std::size_t step = std::max<std::size_t>(1, places.size() / pilots);
     for (std::size_t k = step / 2; k < places.size(); k += step) {

@@ -38,7 +38,7 @@ struct CheckPlan {
 /// with n the number of rays and q(y) the probability that y is checked. The projection serves as a control variate:
 /// the corrected gather is unbiased for any projection. E_dir is estimated in one of two ways: by one step of a path (1
 /// to 3 rays), with equal probability at all hits; or as at points of a solution (exactly, or by rays to half of
-/// the solution's error, in dim places to the noise of the gather), with a probability that grows with the misfit
+/// the solution's error, in dim places to a tenth of the gather's noise), with a probability that grows with the misfit
 /// measured by the projection.
 class DirectCheck {
   public:

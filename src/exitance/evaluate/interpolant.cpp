@@ -87,7 +87,9 @@ class Interpolation {
                 for (std::size_t k = 0; k < bands; ++k) corners[i][k] = static_cast<float>(fit.corners[i][k]);
         }
         /// Mean square of the error that refinement can reduce, (W/m^2)^2.
-        double reducible_squared() const { return misfit_squared - (is_dark ? static_cast<double>(noise_squared) : 0); }
+        double reducible_squared() const {
+            return std::max(0.0, misfit_squared - (is_dark ? static_cast<double>(noise_squared) : 0));
+        }
         DirectFit as_direct() const {
             DirectFit out;
             out.misfit_squared = misfit_squared, out.noise_squared = static_cast<double>(noise_squared);
@@ -190,7 +192,10 @@ class Interpolation {
 
     double measured_error(const ElementFunction& continuous) const {
         std::vector<InterpolatedLeaf> leaves;
-        for (ElementId e : out_.tree.leaves()) leaves.push_back({e, fitted_[e].reducible_squared()});
+        for (ElementId e : out_.tree.leaves()) {
+            const double weight = options_.light_in.empty() ? 1 : relative_weight(e);
+            leaves.push_back({e, fitted_[e].reducible_squared() / weight});
+        }
         return interpolant_error(stage_, continuous, leaves, {indirect_, direct_weight_}, options_.seed);
     }
 

@@ -159,18 +159,14 @@ DirectFit fit_strong_light(const FittedLight& light, const ElementTree& tree, El
     const std::vector<Point> places = places_of(tree, e), outline = tree.outline(e);
     const PlaceLight::Polygon on{outline, scene.regions()[region].plane.n, region, places};
     const LightAccuracy accuracy = accuracy_on(mean(weight), allowed);
-    if (!light.places.exact_at_places(on, &weak.strong, accuracy, room.place, room.found)) {
-        light.places.at_places(on, accuracy, room.place, room.found);
-        return fit_estimates(light.stage, tree, e, room.found);
-    }
+    if (!light.places.exact_at_places(on, &weak.strong, accuracy, room.place, room.found))
+        return fit_all_light(light, tree, e, allowed, room);
     DirectFit out = fit_estimates(light.stage, tree, e, room.found);
     for (Spectrum& corner : out.corners) corner += weak.irradiance;
     out.mean += weak.irradiance;
-    // The misfit of weak sources does not trigger a split; it is the error of elements that stay whole. Nor does the
-    // noise of their rays, which smaller elements would not reduce.
-    const double noise = weak.variance * squared(weight) / static_cast<double>(bands);
+    // The misfit of weak sources does not trigger a split; it is the error of elements that stay whole. The noise of
+    // their rays, which smaller elements would not reduce, is left out.
     out.misfit_squared = std::max(out.misfit_squared, weak.misfit_squared);
-    out.noise_squared = std::min(out.misfit_squared, out.noise_squared + noise);
     return out;
 }
 
@@ -199,6 +195,7 @@ DirectFit fit_by_rays(const FittedLight& light, const ElementTree& tree, Element
 double mean_weighted_light(const FittedLight& light, const ElementTree& tree, std::span<const ElementId> leaves,
                            const StopRequest& stop) {
     constexpr std::size_t samples = 2000;
+    if (leaves.empty()) return 0;
     std::vector<double> area_before{0};
     for (ElementId e : leaves) area_before.push_back(area_before.back() + tree.area(e));
     std::vector<double> found(samples);

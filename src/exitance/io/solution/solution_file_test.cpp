@@ -134,6 +134,14 @@ TEST_F(SolutionFiles, OfOlderFormatsAreRead) {
         ASSERT_EQ(old->scene.surfaces().size(), 14u);  // two boxes, a floor and a lamp
         EXPECT_EQ(old->discontinuity.empty(), format == "1");
         EXPECT_GT(old->statistics.relative_error_estimate.value_or(0), 0);
+        // The values that HDF5's own tools show in the files.
+        const Point corner = old->scene.outline(SurfaceId(1))[1], loop = old->scene.regions()[RegionId(0)].loops[0][3];
+        EXPECT_LT(norm(corner - Point{0.73677476, 0.80926041, 0.3}), 1e-7);
+        EXPECT_LT(norm(loop - Point{-2.5, 2.5, 0}), 1e-12);
+        double mean_value = 0;
+        for (const auto& value : old->indirect.values)
+            mean_value += value[0] / static_cast<double>(old->indirect.values.size());
+        EXPECT_NEAR(mean_value, format == "1" ? 0.04112564 : 0.04079096, 1e-7);
         ASSERT_TRUE(write_solution(path("new.h5"), *old));
         const Result<Solution> renewed = load_solution(path("new.h5"));
         ASSERT_TRUE(renewed) << renewed.error().message;

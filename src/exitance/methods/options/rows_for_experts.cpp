@@ -289,7 +289,8 @@ std::vector<OptionRow> rows_of_running() {
          .value = count(at(&O::seed), 0),
          .does = "Seed of all random numbers",
          .initial = "1",
-         .when = "Other seeds show how much of an error is noise",
+         .when = "Other seeds show how much of an error is noise, but for rays of direct light, which follow from "
+                 "the place alone",
          .group = group::method},
         {.name = "--schedule",
          .value = choice(schedule_names, at(&O::schedule)),
@@ -301,7 +302,7 @@ std::vector<OptionRow> rows_of_running() {
          .value = on_off(at(&R::vtkhdf)),
          .does = "Also store the mesh that export writes in the group /VTKHDF of the solution, for ParaView",
          .initial = "on",
-         .when = "off makes the file about a third smaller",
+         .when = "off makes the file about half as large",
          .group = group::method,
          .section = "-"},
         {.name = "--trace",
