@@ -13,7 +13,8 @@ namespace {
 /// True unless the emitter's front and the receiver's upper side certainly do not face each other. Cheap and
 /// conservative.
 bool may_see(const Receiver& at, const DirectLight::Emitter& emitter, double rounding) {
-    return emitter.plane.signed_distance(at.x) > 0 && dot(at.n, emitter.centre - at.x) > -emitter.radius - rounding;
+    return emitter.plane.signed_distance(at.x) > rounding &&
+           dot(at.n, emitter.centre - at.x) > -emitter.radius - rounding;
 }
 
 /// True if nothing in the scene is above a receiver's plane, so that nothing occludes the sky.
@@ -207,6 +208,9 @@ void DirectLight::look_at(const SourceName& source, std::span<const Point> recei
                           Workspace& scratch, const WorthCounting& worth) const {
     const auto& [e, piece] = source;
     const Emitter& emitter = emitters_[e];
+    if (std::all_of(receiver.begin(), receiver.end(),
+                    [&](const Point& x) { return occluders_->lie_in_one_plane(x, light.n, piece); }))
+        return;
     if (occluders_->has_nothing_inside() && !is_distant(e)) {
         if (face_each_other({light.n, dot(light.n, receiver[0])}, receiver, emitter.plane, occluders_->corners(piece)))
             add_open(source, receiver[0], light, scratch);

@@ -105,8 +105,11 @@ std::uint32_t EmitterTree::middle_of(const Node& node) {
 double EmitterTree::exact(const Node& leaf, const Receiver& at) const {
     const Source& source = sources_[leaf.first];
     const DirectLight::Emitter& emitter = direct_->emitters()[source.name.emitter];
-    if (source.region == at.own || emitter.plane.signed_distance(at.x) <= 0) return 0;
-    return point_to_polygon(at.x, at.n, direct_->occluders().corners(source.name.piece)) * mean(emitter.exitance);
+    const Occluders& occluders = direct_->occluders();
+    if (source.region == at.own || emitter.plane.signed_distance(at.x) <= occluders.rounding() ||
+        occluders.lie_in_one_plane(at.x, at.n, source.name.piece))
+        return 0;
+    return point_to_polygon(at.x, at.n, occluders.corners(source.name.piece)) * mean(emitter.exitance);
 }
 
 /// From far away a cluster is treated as one source at its centre, with its mean normal m:

@@ -17,7 +17,8 @@ double LightChoice::light_of(const EmitterTree::Node& node, const Point& x, cons
     double squared_size = node.radius * node.radius;
     if (node.is_leaf()) {
         const EmitterTree::Source& source = tree_.sources()[node.first];
-        if (!(direct_->emitters()[source.name.emitter].plane.signed_distance(x) > 0)) return 0;
+        const double height = direct_->emitters()[source.name.emitter].plane.signed_distance(x);
+        if (!(height > direct_->occluders().rounding())) return 0;
         squared_size = source.area;
     }
     const Vec3 w = node.centre - x;

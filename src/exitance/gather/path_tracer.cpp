@@ -133,8 +133,10 @@ Spectrum PathTracer::shadow_ray(const Vertex& y, RandomStream& random) const {
     const double r2 = squared_norm(w), r = std::sqrt(r2);
     const double at_y = dot(y.n, w) / r, at_light = -dot(light.plane.n, w) / r;
     if (at_y <= 0 || at_light <= 0 || source.region == y.region) return {};
-    const std::optional<Vertex> seen = vertex_of(trace(y, w, Mirrored::lost), y, w);
-    if (!seen || seen->region != source.region) return {};
+    // The first hit of a ray would not do: rays are traced in single precision and may pass the rim of a small light.
+    bool blocked = false;
+    stage_.tracer.occluded(std::span(&y.x, 1), std::span(&target, 1), y.region, source.region, std::span(&blocked, 1));
+    if (blocked) return {};
     const double density = density_of(chance, source.area, r2, at_light);
     return light.exitance * (light.radiance.towards(y.x, target) * at_y / pi / density * balance(density, at_y / pi));
 }

@@ -4,10 +4,12 @@
 
 #include "exitance/base/error_share.hpp"
 #include "exitance/base/parallel.hpp"
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/mesh/adaptive.hpp"
 #include "exitance/processes/distributed.hpp"
 #include "exitance/transport/body_views.hpp"
 #include "exitance/transport/direct_fit.hpp"
+#include "exitance/transport/narrow_places.hpp"
 
 namespace exitance {
 namespace {
@@ -89,6 +91,7 @@ class Projector {
         if (active.size() > few_elements || has_open_sky())
             share_ = share_of(mean_weighted_light(stage_, out_.tree, active, stop_));
         for (int depth = 0; !active.empty(); ++depth) {
+            find_smoothing(active);
             fit_all(active, depth);
             if (options_.may_give_up && stop_.requested()) return {};
             if (depth == 0 && !many_)
@@ -143,9 +146,21 @@ class Projector {
     }
 
     double allowed_on(ElementId e) const {  // (W/m^2)^2 m^2
-        if (share_in_.empty()) return share_;
+        if (share_in_.empty()) return smoothing_[e] * share_;
         const double relative = stage_.rooms.importance(out_.tree, e) / stage_.rooms.weight(out_.tree, e);
-        return share_in_[stage_.rooms.of(out_.tree, e)] / relative;
+        return smoothing_[e] * share_in_[stage_.rooms.of(out_.tree, e)] / relative;
+    }
+
+    /// Distance smooths the light that elements reflect, so that their error may be several times the requested one
+    /// (`calibrated::direct_tolerance`). Where it arrives unsmoothed, it may not. In crowds, errors are judged
+    /// together, and most elements are smaller than the distances between them.
+    void find_smoothing(const std::vector<ElementId>& active) {
+        smoothing_.resize(out_.tree.size(), 1);
+        if (is_crowd_) return;
+        const double smoothed = 1 / (calibrated::direct_tolerance * calibrated::direct_tolerance);
+        const std::vector<float> unsmoothed = unsmoothed_shares(stage_, out_.tree, active);
+        for (std::size_t i = 0; i < active.size(); ++i)
+            smoothing_[active[i]] = static_cast<float>(smoothed / (smoothed + (1 - smoothed) * unsmoothed[i]));
     }
 
     NoiseAllowed noise_on(ElementId e) const {
@@ -220,6 +235,8 @@ class Projector {
     bool many_ = false, is_crowd_ = false;
     double share_ = 0;              ///< Squared error that an element may have if the scene is one room, (W/m^2)^2 m^2.
     std::vector<double> share_in_;  ///< Like `share_`, for each room; used if there are several.
+    Field<ElementId, float>
+        smoothing_;  ///< Factor on the squared error of an element, since its light is not smoothed.
     std::vector<DirectFit> found_;
 };
 

@@ -1,8 +1,10 @@
 #include "exitance/transport/narrow_places.hpp"
 
 #include <array>
+#include <cmath>
 
 #include "exitance/base/random.hpp"
+#include "exitance/form_factors/met_directions.hpp"
 #include "exitance/processes/distributed.hpp"
 #include "exitance/transport/direct_projection.hpp"
 
@@ -49,6 +51,52 @@ Field<ElementId, std::uint8_t> find_narrow_leaves(const Stage& stage, const Elem
                     out[leaves[i]] = is_narrow_leaf(stage, tree, leaves[i]) ? 1 : 0;
         },
         [&](std::size_t i) -> std::uint8_t& { return out[leaves[i]]; }, {"narrow places"});
+    return out;
+}
+
+namespace {
+
+/// Squared contrast that a wave of length `h` keeps between planes at the distance `d`.
+double kept_squared(double d, double h) {
+    constexpr double faded = 1;  // times h; derived from x K1(x) at this distance, 0.006
+    if (d > faded * h) return 0;
+    const double x = 2 * pi * d / h;
+    if (!(x > 0)) return 1;
+    const double kept = x * std::cyl_bessel_k(1, x);
+    return kept * kept;
+}
+
+double unsmoothed_share(const Stage& stage, const ElementTree& tree, ElementId e) {
+    constexpr std::uint32_t rays = 8;
+    const RegionId region = tree.region(e);
+    const Normal& n = stage.scene.regions()[region].plane.n;
+    const ScrambledSobol random(hash(static_cast<std::uint64_t>(Stream::mesh), e.value));
+    std::array<Point, rays> x;
+    std::array<Vec3, rays> direction;
+    std::array<RayHit, rays> hits;
+    for (std::uint32_t k = 0; k < rays; ++k) {
+        x[k] = tree.patch(e).at(tree.uniform(e, random(k, 0), random(k, 1)));
+        direction[k] = met_direction(stage.scene, region, n, random(k, 2), random(k, 3));
+    }
+    stage.tracer.nearest(x, direction, region, hits);
+    const double width = std::sqrt(tree.area(e));
+    double sum = 0;
+    for (const RayHit& hit : hits)
+        if (!hit.surface.is_none() && hit.front) sum += kept_squared(hit.distance, width);
+    return sum / rays;
+}
+
+}  // namespace
+
+std::vector<float> unsmoothed_shares(const Stage& stage, const ElementTree& tree, std::span<const ElementId> leaves) {
+    std::vector<float> out(leaves.size());
+    shared_ranges(
+        leaves.size(), 256,
+        [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                out[i] = static_cast<float>(unsmoothed_share(stage, tree, leaves[i]));
+        },
+        [&](std::size_t i) -> float& { return out[i]; }, {"narrow places"});
     return out;
 }
 

@@ -167,6 +167,14 @@ bool Occluders::is_back_of(RegionId a, RegionId b) const {
     return norm(p.lo - q.lo) <= tolerance && norm(p.hi - q.hi) <= tolerance;
 }
 
+bool Occluders::lie_in_one_plane(const Point& x, const Normal& n, PieceId p) const {
+    const ConvexPiece& piece = pieces_[p];
+    const auto is_low = [&](const Point& corner) { return std::abs(dot(n, corner - x)) <= piece.thickness; };
+    const std::span<const Point> of_piece = corners(p);
+    return std::abs(piece.plane.signed_distance(x)) <= piece.thickness &&
+           std::all_of(of_piece.begin(), of_piece.end(), is_low);
+}
+
 double Occluders::lift(RegionId r) const {
     return stack_height(scene_->regions()[r].level, pieces_[*of_region_[r].begin()].thickness);
 }

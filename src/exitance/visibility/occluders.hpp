@@ -94,6 +94,9 @@ class Occluders {
     /// Returns whether all pieces have all of the scene on one side, so that nothing blocks anything.
     bool has_nothing_inside() const { return outer_.pieces.size() == pieces_.size(); }
 
+    /// True if a receiver at x, with the normal n, and a piece lie in one plane (ConvexPiece::thickness), such as the
+    /// two sides of a sheet. Neither sees the other, although rounding in files may put either before the other.
+    bool lie_in_one_plane(const Point& x, const Normal& n, PieceId p) const;
     /// Distance within which two points count as equal, metres: a few roundings of the coordinates.
     double rounding() const { return rounding_; }
 

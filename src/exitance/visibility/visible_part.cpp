@@ -55,6 +55,7 @@ void look_at_source(const Occluders& occluders, const Receiver& at, PieceId sour
     const ConvexPiece& piece = occluders.pieces()[source];
     const std::span<const Point> corners = occluders.corners(source);
     if (dot(piece.plane.n, at.x - corners[0]) <= occluders.rounding()) return;
+    if (occluders.lie_in_one_plane(at.x, at.n, source)) return;
     const bool is_far = occluders.is_distant(source) && !occluders.is_window(source);
     const Point& from = is_far ? occluders.middle() : at.x;
     for (const Point& p : corners) scratch.source.push_back(p - from);

@@ -130,9 +130,11 @@ void add_luminaire(const Photometry& photometry, const PlacedLuminaire& luminair
 void add_luminaires(const std::vector<PlacedLuminaire>& luminaires, std::optional<bool> photometric,
                     SceneDescription& scene, std::vector<Finding>& findings) {
     if (luminaires.empty()) return;
-    const bool shines =
-        std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& m) { return m.emits(); }) ||
-        !scene.lights.empty();
+    // Files may define emitting materials that no face has.
+    const bool shines = !scene.lights.empty() ||
+                        std::any_of(scene.faces.begin(), scene.faces.end(), [&](const SceneDescription::Face& face) {
+                            return scene.materials[face.material].emits();
+                        });
     const bool in_lumens = photometric.value_or(scene.photometric || !shines);
     if (!in_lumens && !photometric)
         findings.push_back(
