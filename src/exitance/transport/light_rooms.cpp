@@ -410,7 +410,8 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     auto locator = std::make_shared<const ElementLocator>(tree, stage.scene.regions().size());
     const LeafNumbering numbering(tree);
     const bool has_sky = !stage.scene.distant().domes.empty();
-    const double fewer = fewer_rays_in_crowd(numbering.leaves.size());
+    const std::size_t leaves = numbering.leaves.size();
+    const double fewer = ErrorShare::is_crowd(leaves, pieces.size()) ? fewer_rays_in_crowd(leaves) : 1;
     RayBudget rays{.average = fewer * mean_rays,
                    .least = static_cast<unsigned>(fewer * least_rays),
                    .most = most_room_rays,
