@@ -5,6 +5,12 @@
 
 namespace exitance {
 
+double fewer_rays_in_crowd(std::size_t elements) {
+    constexpr double least = 0.25;  // derived from the fewest rays of a row, 4
+    const double most = static_cast<double>(ErrorShare::most_even), count = static_cast<double>(elements);
+    return count > most ? std::max(least, std::sqrt(most / count)) : 1;
+}
+
 double share_of_crowd(std::vector<double> errors, double bound) {
     if (errors.empty()) return bound;
     std::sort(errors.begin(), errors.end());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -18,7 +19,19 @@ struct ErrorShare {
     static bool is_crowd(std::size_t elements, std::size_t polygons) {
         return elements > most_even && 2 * polygons > elements;
     }
+
+    /// Area below which an element of a crowd does not matter on its own, in the unit of `area`, that of all: between
+    /// the mean area and `far_from_mean` times that, but no more than 1 / `most_even` of all area.
+    static double small_area(double area, std::size_t elements) {
+        constexpr double far_from_mean = 8;  // derived from meshes of even triangles: all are below it
+        const double mean = area / static_cast<double>(elements);
+        return std::clamp(far_from_mean * mean, mean, std::max(mean, area / static_cast<double>(most_even)));
+    }
 };
+
+/// Returns the factor on the rays of an element whose noise counts only in sums over many elements: 1 up to
+/// `ErrorShare::most_even` elements, above it less, but at least a quarter.
+double fewer_rays_in_crowd(std::size_t elements);
 
 /// Returns the largest share s with  sum min(error_i, s) <= bound / 2,  clamped to between bound / (number of errors)
 /// and bound / `least_count`. Elements with a larger error are to be split; the other half of the bound is for the

@@ -13,7 +13,7 @@ namespace exitance {
 namespace {
 
 /// A similarity: turned about an axis, scaled, then moved.
-struct Placement {
+struct PlacedScene {
     double angle = 0, scale = 1;
     Vec3 move{};
 
@@ -24,7 +24,7 @@ struct Placement {
     Point operator()(const Point& p) const { return move + scale * turned(p); }
 };
 
-const std::vector<Placement> placements{{}, {0.7, 1, {1000, -500, 30}}, {2, 1e-3, {}}, {-1, 1e3, {10, 0, 0}}};
+const std::vector<PlacedScene> placements{{}, {0.7, 1, {1000, -500, 30}}, {2, 1e-3, {}}, {-1, 1e3, {10, 0, 0}}};
 
 constexpr double sun_irradiance = 700, sun_half_angle = 0.266 * pi / 180;
 
@@ -40,7 +40,7 @@ struct Description {
     void add(std::vector<Point> face, double exitance = 0) {
         faces.push_back(std::move(face)), exitances.push_back(exitance);
     }
-    Scene placed(const Placement& place) const {
+    Scene placed(const PlacedScene& place) const {
         SceneDescription d;
         d.file = "small.obj", d.groups = {"all"};
         for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -102,7 +102,7 @@ TEST(SmallSources, AHoleLetsItsAreaOfSunlightThrough) {
     // Parallel light moves the outline of a horizontal hole without change. The polygon in place of the sun's disc and
     // the disc's cosines differ from parallel light by the square of its half angle, 2e-5.
     const double expected = sun_irradiance * d.sun.z * 0.06 / 100;
-    for (const Placement& place : placements)
+    for (const PlacedScene& place : placements)
         EXPECT_NEAR(mean_on_first_face(d.placed(place)), expected, 1e-4 * expected) << place.scale;
 }
 
@@ -123,7 +123,7 @@ TEST(SmallSources, ABarTakesItsAreaOfSunlightAway) {
     d.add(rectangle(-2, 0.3, 2, 0.31, 0.5));
     d.sun = sky_direction(50, 130);
     const double expected = sun_irradiance * d.sun.z * (1 - 0.04 / 100);
-    for (const Placement& place : placements)
+    for (const PlacedScene& place : placements)
         EXPECT_NEAR(mean_on_first_face(d.placed(place)), expected, 1e-4 * expected) << place.scale;
 }
 
@@ -132,7 +132,7 @@ TEST(SmallSources, ALampWithoutExtentShinesThroughAHole) {
     d.intensity = 100, d.lamp = {1.1, 1.15, 3};
     // Solid angle of the hole, as seen from 1 m above its middle.
     const double a = 0.1, b = 0.15, omega = 4 * std::atan(a * b / std::sqrt(1 + a * a + b * b));
-    for (const Placement& place : placements)
+    for (const PlacedScene& place : placements)
         EXPECT_NEAR(mean_on_first_face(d.placed(place)), 100 * omega / (100 * place.scale * place.scale),
                     1e-3 * omega / (place.scale * place.scale))
             << place.scale;
@@ -165,7 +165,7 @@ TEST(SmallSources, ALampNearAWallLightsASpot) {
     });
     EXPECT_NEAR(flux, 4, 0.01);  // nearly all of the lamp's light
     // Error of the rule for light near a source: 1%.
-    for (const Placement& place : placements)
+    for (const PlacedScene& place : placements)
         EXPECT_NEAR(mean_on_first_face(d.placed(place)), flux / 12, 0.01 * flux / 12) << place.scale;
 }
 

@@ -6,14 +6,17 @@
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/error/mean_residuals.hpp"
 #include "exitance/processes/distributed.hpp"
+#include "exitance/transport/crowd_rays.hpp"
 
 namespace exitance {
 namespace {
 
 /// Returns the form factors between the leaves of the mesh of `light`, from random rays.
 RayRows rows_by_rays(const Stage& stage, const GlobalLight& light, const ElementLocator& coarse, std::uint64_t seed) {
-    return {stage, light.tree,          light.numbering,   coarse, {.average = 16, .least = 8, .most = 64},
-            seed,  Dealing::by_element, RowsHeld::by_owner};
+    constexpr double mean_rays = 16, least_rays = 8;
+    const double fewer = fewer_rays_in_crowd(stage, light.tree, light.numbering, light.reflected);
+    const RayBudget rays{.average = fewer * mean_rays, .least = static_cast<unsigned>(fewer * least_rays), .most = 64};
+    return {stage, light.tree, light.numbering, coarse, rays, seed, Dealing::by_element, RowsHeld::by_owner};
 }
 
 /// Returns the room of every leaf of the mesh of `light`; empty if the scene is one room.

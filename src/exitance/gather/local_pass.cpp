@@ -394,6 +394,8 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
     if (!resumed && known) report.rays += follow_rough_places(b, demand);
     if (!resumed && depth == change) rays_before = rays_of(active);
     if (!resumed && known && depth == 0) active = to_gather_again(std::move(active), demand);
+    if (!resumed && is_crowd_ && depth == 0 && demand.elements.empty())
+        active = gather_together(active, b, demand, report, progress, stop);
     // With very many elements, the allowed misfit of each follows from the misfits of all in the first round.
     const auto may_cut = [&](int at) { return at < demand.max_depth && !(is_crowd_ && at == 0); };
     for (; !active.empty(); ++depth) {

@@ -122,6 +122,13 @@ class LocalPass {
     SampledElement fitted(ElementId e, const std::vector<WeightedPlace>& places, bool curved,
                           Workspace& workspace) const;
     bool is_hidden(ElementId e, const Point& x, const Gathered& gathered) const;
+    bool is_minor(ElementId e, const ReflectedLight& b) const;
+    /// Gathers the small elements among `active` with a mean, and a slope where it exceeds its noise, by rays that
+    /// start all over them and are traced together for neighbours. Returns the other elements, and those that turn out
+    /// to need places: their light varies, or they are hidden in part.
+    std::vector<ElementId> gather_together(const std::vector<ElementId>& active, const ReflectedLight& b,
+                                           const LocalPassDemand& demand, LocalPassReport& report, Progress& progress,
+                                           const StopRequest& stop);
     void look_between(ElementId e, SampledElement& sampled, const ReflectedLight& b, const LocalPassDemand& demand,
                       Workspace& workspace) const;
     bool is_suspect(ElementId e) const;

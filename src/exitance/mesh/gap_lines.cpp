@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "exitance/base/error_share.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/polygon.hpp"
 
@@ -53,8 +54,14 @@ struct Opposite {
 /// Finds the gaps at the border of one region.
 class GapFinder {
   public:
-    GapFinder(const Scene& scene, const Bvh& faces, double touching, RegionId own)
-        : scene_(scene), faces_(faces), touching_(touching), own_(own), plane_(scene.regions()[own].plane) {
+    /// `is_minor`: only what is opposite the middles of the border's edges counts.
+    GapFinder(const Scene& scene, const Bvh& faces, double touching, RegionId own, bool is_minor)
+        : scene_(scene),
+          faces_(faces),
+          touching_(touching),
+          own_(own),
+          is_minor_(is_minor),
+          plane_(scene.regions()[own].plane) {
         Box box;
         for (const std::vector<Point>& loop : region(own).loops)
             for (const Point& corner : loop) box.add(corner);
@@ -72,7 +79,8 @@ class GapFinder {
 
     void find_at(const Mouth& mouth) {
         opposite_.clear();
-        for (const double along : positions_along) look_from(mouth, along);
+        for (const double along : positions_along)
+            if (!is_minor_ || along == middle) look_from(mouth, along);
         if (opposite_.empty()) return;
         const double own_width = width_at(mouth, region(own_));
         for (const Opposite& other : opposite_) {
@@ -129,6 +137,7 @@ class GapFinder {
     const Bvh& faces_;
     double touching_, highest_ = 0;
     RegionId own_;
+    bool is_minor_;
     const Plane& plane_;
     std::vector<Opposite> opposite_;  ///< Faces opposite the current mouth of a gap.
     std::vector<GapLine> out_;
@@ -137,9 +146,15 @@ class GapFinder {
 }  // namespace
 
 std::vector<GapLine> find_gap_lines(const Scene& scene, const Bvh& faces, double touching) {
-    std::vector<std::vector<GapLine>> found(scene.regions().size());
-    parallel_for(found.size(), 64,
-                 [&](std::size_t r) { found[r] = GapFinder(scene, faces, touching, RegionId(r)).run(); });
+    double area = 0;
+    for (const Region& region : scene.regions()) area += region.area;
+    const std::size_t count = scene.regions().size();
+    const double small = count > ErrorShare::most_even ? ErrorShare::small_area(area, count) : 0;
+    std::vector<std::vector<GapLine>> found(count);
+    parallel_for(count, 64, [&](std::size_t r) {
+        const bool is_minor = scene.regions()[RegionId(r)].area < small;
+        found[r] = GapFinder(scene, faces, touching, RegionId(r), is_minor).run();
+    });
     std::vector<GapLine> out;
     for (const std::vector<GapLine>& lines : found) out.insert(out.end(), lines.begin(), lines.end());
     return out;

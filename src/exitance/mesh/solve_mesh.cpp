@@ -1,6 +1,7 @@
 #include "exitance/mesh/solve_mesh.hpp"
 
 #include "exitance/base/bvh.hpp"
+#include "exitance/base/error_share.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/mesh/adaptive.hpp"
 
@@ -182,8 +183,13 @@ std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::
         }
         return rise;
     };
+    double area = 0;
+    for (const Piece& piece : pieces) area += piece.patch.area();
+    // Small pieces among thousands are narrower than the strips along concave borders, and stay whole.
+    const double small = pieces.size() > ErrorShare::most_even ? ErrorShare::small_area(area, pieces.size()) : 0;
     std::vector<ConcaveBorders> out(pieces.size());
     parallel_for(pieces.size(), 64, [&](std::size_t k) {
+        if (pieces[k].patch.area() < small) return;
         for (int border = 0; border < pieces[k].patch.corner_count(); ++border)
             out[k].push_back(rise_beside(pieces[k], border));
     });

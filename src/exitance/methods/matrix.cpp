@@ -4,6 +4,7 @@
 #include "exitance/methods/constant_elements.hpp"
 #include "exitance/methods/hierarchical/galerkin.hpp"
 #include "exitance/methods/methods.hpp"
+#include "exitance/transport/crowd_rays.hpp"
 #include "exitance/transport/hemicube_rows.hpp"
 #include "exitance/transport/linear_rows.hpp"
 #include "exitance/transport/passed_light.hpp"
@@ -36,6 +37,16 @@ void solve_linear(const MethodInput& input, GlobalLight& light) {
     }
     light.work.rays = light.work.links = H.rays();
     light.work.link_memory_bytes = H.memory_bytes();
+}
+
+/// Rays of the rows of constant elements.
+RayBudget rays_of_rows(const MethodInput& input, const GlobalLight& light) {
+    std::vector<Spectrum> reflected = leaf_reflectances(input.stage.scene, light.tree, light.numbering);
+    for (std::size_t i = 0; i < reflected.size(); ++i) reflected[i] *= light.direct[i];
+    RayBudget out = input.knobs.solve_rays;
+    const double fewer = fewer_rays_in_crowd(input.stage, light.tree, light.numbering, reflected);
+    out.average *= fewer, out.least = static_cast<unsigned>(fewer * out.least);
+    return out;
 }
 
 /// Default resolution of a hemicube: about 200 times as many rays as a row has with random directions.
@@ -76,7 +87,7 @@ GlobalLight solve_matrix(const MethodInput& input) {
         solve_linear(input, light);
     } else if (options.form_factors.value_or(FormFactorKind::ray_cast) == FormFactorKind::ray_cast) {
         const ElementLocator locator(light.tree, stage.scene.regions().size());
-        const RayRows F(stage, light.tree, light.numbering, locator, knobs.solve_rays, options.seed,
+        const RayRows F(stage, light.tree, light.numbering, locator, rays_of_rows(input, light), options.seed,
                         Dealing::by_element, RowsHeld::by_owner);
         if (options.bounces < 0) light.kept = kept_light(F, stage.scene);
         relax_constant_elements(input, F, light);

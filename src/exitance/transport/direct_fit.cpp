@@ -58,15 +58,6 @@ std::vector<Point> places_of(const ElementTree& tree, ElementId e) {
     return out;
 }
 
-/// Accuracy of light at a node of an element's rule. Noise that is allotted by light has the squared error
-/// e^2 (1 + E / mean E) / 2: its root is at most this linear function, which is equal at E = 0 and at the mean.
-LightAccuracy accuracy_on(double w, const NoiseAllowed& allowed) {
-    const double e = std::sqrt(allowed.squared) / w;
-    if (!(allowed.mean_light > 0)) return {0, e};
-    const double at_dark = std::sqrt(0.5);
-    return {(1 - at_dark) * e / (allowed.mean_light / w), at_dark * e};
-}
-
 DirectFit fit_estimates(const Stage& stage, const ElementTree& tree, ElementId e,
                         std::span<const PlaceLight::Estimate> at) {
     double noise = 0;
@@ -82,6 +73,13 @@ DirectFit fit_estimates(const Stage& stage, const ElementTree& tree, ElementId e
 }
 
 }  // namespace
+
+LightAccuracy accuracy_on(double w, const NoiseAllowed& allowed) {
+    const double e = std::sqrt(allowed.squared) / w;
+    if (!(allowed.mean_light > 0)) return {0, e};
+    const double at_dark = std::sqrt(0.5);
+    return {(1 - at_dark) * e / (allowed.mean_light / w), at_dark * e};
+}
 
 void add_missed_light(const DirectLight& direct, const ElementTree& tree, ElementId e, SmallSources::Workspace& room,
                       DirectFit& fit) {

@@ -23,6 +23,11 @@ struct NoiseAllowed {
     double minor_area = 0;
 };
 
+/// Accuracy of light at a node of an element's rule, or of its mean; `w`: mean of its light_weight(). Noise that is
+/// allotted by light has the squared error e^2 (1 + E / mean E) / 2: its root is at most this linear function, which is
+/// equal at E = 0 and at the mean.
+LightAccuracy accuracy_on(double w, const NoiseAllowed& allowed);
+
 /// Rays of an element to weak sources. Elements larger than the mean get more.
 constexpr unsigned rays_an_element = 16;
 

@@ -9,6 +9,7 @@
 #include "exitance/processes/distributed.hpp"
 #include "exitance/transport/body_views.hpp"
 #include "exitance/transport/direct_fit.hpp"
+#include "exitance/transport/fit_together.hpp"
 #include "exitance/transport/narrow_places.hpp"
 
 namespace exitance {
@@ -188,7 +189,11 @@ class Projector {
         return fit_all_light(stage_, out_.tree, e, noise_on(e), room);
     }
 
-    void fit_all(const std::vector<ElementId>& active, int depth) {
+    void fit_all(std::vector<ElementId> active, int depth) {
+        if (depth == 0 && is_crowd_ && !many_ && !stop_.requested() && may_fit_together(stage_))
+            active = fit_together(
+                stage_, out_.tree, active, stage_.area / ErrorShare::least_count,
+                [&](ElementId e) { return noise_on(e); }, out_.fit, stop_);
         found_.assign(active.size(), {});
         shared_ranges_of(
             std::span(found_), active.size(), 8,

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "exitance/base/disjoint_sets.hpp"
+#include "exitance/base/error_share.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
 #include "exitance/form_factors/hemisphere.hpp"
@@ -28,8 +29,8 @@ constexpr double thinnest =        ///< Distance of opposite walls over the root
     0.03;
 constexpr std::size_t fewest_walls = 4;  ///< Minimum number of walls of a room.
 constexpr std::size_t most_rooms = 64;
-constexpr unsigned least_rays =  ///< Minimum per leaf; a leaf of mean area has 24. Enough if all is rooms.
-    16;
+constexpr double mean_rays = 24;     ///< Rays of a leaf of mean area.
+constexpr unsigned least_rays = 16;  ///< Minimum per leaf. Enough if all is rooms.
 constexpr unsigned most_room_rays =  ///< Maximum per leaf: outdoors a room may have only a few leaves.
     256;
 constexpr std::size_t rays_outdoors = 1 << 18;  ///< Rays of all leaves together, outdoors.
@@ -409,7 +410,12 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     auto locator = std::make_shared<const ElementLocator>(tree, stage.scene.regions().size());
     const LeafNumbering numbering(tree);
     const bool has_sky = !stage.scene.distant().domes.empty();
-    RayBudget rays{.average = 24, .least = least_rays, .most = most_room_rays, .front_alone = true};
+    const std::size_t leaves = numbering.leaves.size();
+    const double fewer = ErrorShare::is_crowd(leaves, pieces.size()) ? fewer_rays_in_crowd(leaves) : 1;
+    RayBudget rays{.average = fewer * mean_rays,
+                   .least = static_cast<unsigned>(fewer * least_rays),
+                   .most = most_room_rays,
+                   .front_alone = true};
     if (has_sky)
         while (rays.least < most_room_rays && 2 * rays.least * numbering.leaves.size() <= rays_outdoors)
             rays.least *= 2;

@@ -46,8 +46,8 @@ ElementTree Stage::make_elements(MeshSize size, const StopRequest* stop) const {
     std::erase_if(leaves, [&](ElementId e) { return is_left_out(tree.region(e)); });
     // Among thousands of leaves or slats that intersect each other none matters on its own: small ones stay whole.
     if (ErrorShare::is_crowd(leaves.size(), pieces.size())) {
-        const double mean_area = area / static_cast<double>(leaves.size());
-        std::erase_if(leaves, [&](ElementId e) { return tree.area(e) < mean_area; });
+        const double small = ErrorShare::small_area(area, leaves.size());
+        std::erase_if(leaves, [&](ElementId e) { return tree.area(e) < small; });
     }
     cut_along_contacts(tree, leaves, contacts, stop);
     if (rooms.count() > 0) cut_to_rooms(tree, rooms, size.edge);

@@ -16,14 +16,14 @@
 #include "exitance/scene/opposed_faces.hpp"
 #include "exitance/scene/other_side.hpp"
 #include "exitance/visibility/glass/ray_fates.hpp"
+#include "exitance/visibility/ray_lift.hpp"
 #include "exitance/visibility/rays.hpp"
 
 namespace exitance {
 namespace {
 
 constexpr std::size_t width = 16;  ///< Rays per packet; Embree splits it on machines with narrower vectors.
-constexpr double lift = 0x1p-20;   ///< Share of the scene's size: 16 roundings of a coordinate in single precision.
-constexpr double stack_step = lift / 2;
+constexpr double lift = ray_lift_share, stack_step = lift / 2;  ///< Shares of the scene's size.
 constexpr int retries = 8;  ///< Maximum number of restarts past a ray's own region; one is rarely needed.
 
 /// Owns a reference-counted Embree object and releases it.
