@@ -140,15 +140,21 @@ std::size_t best_cut(const Cuts& cuts) {
 /// Moves leaves that exchange no light with the largest connected part of their side, but with the other side, to the
 /// latter. The two faces of a gap beside a lamp hit each other and the lit room, so that counts of rays leave both on
 /// the wrong side.
-void move_cut_off_leaves(const Flow& flow, const LeafNumbers& all, std::uint16_t part,
+/// sky_is_large  side of the sky, which connects the leaves of that side; empty without a sky
+void move_cut_off_leaves(const Flow& flow, const LeafNumbers& all, std::uint16_t part, std::optional<bool> sky_is_large,
                          std::vector<std::uint8_t>& is_large) {
+    constexpr std::uint32_t none = 0xffffffffu;
     DisjointSets sets(flow.area.size());
+    std::uint32_t under_sky = none;
     for (std::uint32_t i : all)
-        for (std::uint32_t j : flow.rows.hits(i))
+        for (std::uint32_t j : flow.rows.hits(i)) {
             if (j != RayRows::missed && flow.part[j] == part && is_large[j] == is_large[i]) sets.unite(i, j);
+            if (j != RayRows::missed || !sky_is_large || *sky_is_large != (is_large[i] != 0)) continue;
+            if (under_sky != none) sets.unite(i, under_sky);
+            under_sky = i;
+        }
     std::vector<double> area(flow.area.size());
     for (std::uint32_t i : all) area[sets.root(i)] += flow.area[i];
-    constexpr std::uint32_t none = 0xffffffffu;
     std::array<std::uint32_t, 2> largest = {none, none};
     for (std::uint32_t i : all) {
         std::uint32_t& of_side = largest[is_large[i]];
@@ -191,7 +197,7 @@ std::optional<OpeningBetween> by_what_is_seen(const Flow& flow, OpeningBetween s
         }
         if (std::exchange(is_large, next) == next) break;
     }
-    move_cut_off_leaves(flow, all, part, is_large);
+    move_cut_off_leaves(flow, all, part, sky == 0 ? std::nullopt : std::optional(sky > 0), is_large);
     OpeningBetween out;
     double small = 0, large = 0;  // m^2
     for (std::uint32_t i : all) {

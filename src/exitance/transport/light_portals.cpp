@@ -201,8 +201,8 @@ PortalCell PortalFinder::surrounded(std::size_t room, std::size_t other, const C
         if (i > 1 && out.area <= grows * before.area) break;
         const Vec2 u = crossing.in_plane(out.u), v = crossing.in_plane(out.v);
         const Vec2 corner = crossing.in_plane(out.corner - crossing.at) - around * u - around * v;
-        const OpenPoints found = open_points(room, other, crossing, {corner, (1 + 2 * around) * u, (1 + 2 * around) * v},
-                                             lines, hash(key, i));
+        const OpenPoints found = open_points(room, other, crossing,
+                                             {corner, (1 + 2 * around) * u, (1 + 2 * around) * v}, lines, hash(key, i));
         open.points.insert(open.points.end(), found.points.begin(), found.points.end());
         open.directions.insert(open.directions.end(), found.directions.begin(), found.directions.end());
     }
@@ -247,10 +247,10 @@ PortalCell PortalFinder::opening(std::size_t room, const Way& way) const {
     if (!(best.area > 0)) return best;
     // A plane that is a little in front of the wall, or oblique to it, is crossed beside the opening, too.
     crossing = straightened(room, way.into, crossing, best, open);
-    OpenPoints again = open_points(room, way.into, crossing,
-                                   {crossing.in_plane(best.corner - crossing.at), crossing.in_plane(best.u),
-                                    crossing.in_plane(best.v)},
-                                   512, hash(key, 8));
+    OpenPoints again = open_points(
+        room, way.into, crossing,
+        {crossing.in_plane(best.corner - crossing.at), crossing.in_plane(best.u), crossing.in_plane(best.v)}, 512,
+        hash(key, 8));
     if (const PortalCell cell = surrounded(room, way.into, crossing, again, hash(key, 9)); cell.area > 0) best = cell;
     return best;
 }

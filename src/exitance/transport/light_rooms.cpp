@@ -366,10 +366,10 @@ struct LeavesBetween {
     std::vector<std::uint32_t> group;
 };
 
-/// Finds the leaves of whose rays more than a tenth end in another room, and those that see mostly near things, and among
-/// them another room or other such leaves. The latter belong to one group if they hit each other.
+/// Finds the leaves of whose rays more than a tenth end in another room, and those that see mostly near things, and
+/// among them another room or other such leaves. The latter belong to one group if they hit each other.
 LeavesBetween leaves_between(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering,
-                                        std::span<const std::size_t> room_of, std::size_t rooms) {
+                             std::span<const std::size_t> room_of, std::size_t rooms) {
     constexpr double firm = 0.1;   // share of rays into other rooms, up to which a leaf may be within its room
     constexpr double near = 0.25;  // length of a ray over the mean in its room, below which it meets a near thing
     const std::size_t n = room_of.size();
@@ -381,8 +381,7 @@ LeavesBetween leaves_between(const RayRows& rows, const ElementTree& tree, const
         const ElementId e = numbering.leaves[i];
         double met = 0, sum = 0;
         for (const std::uint32_t j : rows.hits(i))
-            if (j != RayRows::missed)
-                ++met, other[i] += room_of[j] != room_of[i] ? 1 : 0, sum += length_to(i, j);
+            if (j != RayRows::missed) ++met, other[i] += room_of[j] != room_of[i] ? 1 : 0, sum += length_to(i, j);
         if (met == 0) continue;
         other[i] /= met;
         length[room_of[i]] += tree.area(e) * sum / met, area[room_of[i]] += tree.area(e);
@@ -416,15 +415,15 @@ LeavesBetween leaves_between(const RayRows& rows, const ElementTree& tree, const
     return out;
 }
 
-/// Assigns leaves between rooms to the brightest one that they see, all leaves of a group to one. Most of their rays hit
-/// one another, so that they may have been put with either room. In a dim room they would hold much of the light, and would have to be as
-/// accurate as the rest of it.
-/// light     mean light of every room, W/m^2
-/// returns   the room of every leaf
+/// Assigns leaves between rooms to the brightest one that they see if it is far brighter than their own, all leaves of
+/// a group to one room. Most of their rays hit one another, so that they may have been put with either room. In a dim
+/// room they would hold much of the light, and would have to be as accurate as the rest of it. light     mean light of
+/// every room, W/m^2 Returns the room of every leaf.
 std::vector<std::size_t> given_to_brighter(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering,
                                            std::span<const double> light, std::span<const std::size_t> room_of) {
-    constexpr double seen = 0.25;  // share of the rays that reach a room, from which on a leaf may belong to it
-    constexpr int passes = 32;     // derived from leaves that hit one another with nine tenths of their rays
+    constexpr double seen = 0.25;   // share of the rays that reach a room, from which on a leaf may belong to it
+    constexpr double brighter = 4;  // ratio of the light of rooms, from which on errors in one are large in the other
+    constexpr int passes = 32;      // derived from leaves that hit one another with nine tenths of their rays
     constexpr std::size_t within = ~std::size_t{0};
     const std::size_t rooms = light.size();
     std::vector<std::size_t> out(room_of.begin(), room_of.end());
@@ -462,7 +461,26 @@ std::vector<std::size_t> given_to_brighter(const RayRows& rows, const ElementTre
         const std::vector<double>& of_group = sums[group[k]];
         const double all = std::accumulate(of_group.begin(), of_group.end(), 0.0);
         for (std::size_t r = 0; r < rooms; ++r)
-            if (of_group[r] >= seen * all && light[r] > light[out[between[k]]]) out[between[k]] = r;
+            if (of_group[r] >= seen * all && light[r] > brighter * light[room_of[between[k]]] &&
+                light[r] > light[out[between[k]]])
+                out[between[k]] = r;
+    }
+    return out;
+}
+
+/// For every leaf, the weighted area of the leaves of darker rooms that receive its light, in proportion to its share
+/// of their light, m^2: an error in the light of the sides of a narrow door is nearly as large, relatively, in the dim
+/// room behind it. light   mean light of every room, W/m^2 weight  factor on the areas of every room
+std::vector<double> lit_in_darker_rooms(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering,
+                                        std::span<const double> light, std::span<const double> weight,
+                                        std::span<const std::size_t> room_of) {
+    std::vector<double> out(room_of.size());
+    for (std::size_t i = 0; i < room_of.size(); ++i) {
+        const double own = light[room_of[i]];
+        const auto hits = rows.hits(i);
+        const double each = weight[room_of[i]] * tree.area(numbering.leaves[i]) / static_cast<double>(hits.size());
+        for (const std::uint32_t j : hits)
+            if (j != RayRows::missed && light[room_of[j]] > own && own > 0) out[j] += each * light[room_of[j]] / own;
     }
     return out;
 }
@@ -564,6 +582,12 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
         light = coarse_light(stage, out, tree, numbering, rows);
     }
     out.weigh(tree, numbering, rows);
+    std::vector<double> weight;
+    for (const double area : out.areas_) weight.push_back(out.mean_area_ / area);
+    for (std::size_t i = 0; i < room_of.size(); ++i) room_of[i] = out.room_of_[numbering.leaves[i]];
+    const std::vector<double> lit = lit_in_darker_rooms(rows, tree, numbering, light, weight, room_of);
+    for (std::size_t i = 0; i < lit.size(); ++i)
+        out.importance_[numbering.leaves[i]] += static_cast<float>(lit[i] / tree.area(numbering.leaves[i]));
     out.portals_ = find_light_portals(stage, out, tree, numbering, light, seed, stop);
     return out;
 }
