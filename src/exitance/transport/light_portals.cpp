@@ -46,14 +46,36 @@ class PortalFinder {
 
   private:
     static constexpr std::size_t none = ~std::size_t{0};
+    /// A plane near an opening: a point and a frame whose normal leads to the other room.
+    struct Crossing {
+        Point at;
+        Frame frame;
+
+        Vec2 in_plane(const Vec3& d) const { return {dot(d, frame.u), dot(d, frame.v)}; }
+        Point in_space(const Vec2& q) const { return at + q.x * frame.u + q.y * frame.v; }
+    };
+    /// Points corner + s u + t v with s and t in [0, 1), in the coordinates of a plane.
+    struct SearchedRectangle {
+        Vec2 corner, u, v;
+    };
+    /// Points of a plane through which lines lead from one room into the other, and the directions of the lines.
+    struct OpenPoints {
+        std::vector<Vec2> points;
+        std::vector<Vec3> directions;
+    };
     /// Writes the room at the hit of each ray from a point of free space; `none` if it hits no front.
     void look(const Point& from, std::span<const Vec3> directions, std::vector<std::size_t>& met) const;
     Point middle(std::size_t room, const Way& way) const;
     Normal normal(std::size_t room, const Way& way, const Point& at) const;
-    /// Casts lines through a rectangle about `at` in the plane of `frame`, from (lo) to (hi). Returns the coordinates
-    /// of those points whose line ends in one room on one side and in the other room on the other.
-    std::vector<Vec2> open_points(std::size_t room, std::size_t other, const Point& at, const Frame& frame, Vec2 lo,
-                                  Vec2 hi, std::uint64_t key) const;
+    /// Casts `lines` lines through a rectangle in the plane of `crossing`. Finds those that end in one room on one side
+    /// and in the other room on the other.
+    OpenPoints open_points(std::size_t room, std::size_t other, const Crossing& crossing, const SearchedRectangle& in,
+                           unsigned lines, std::uint64_t key) const;
+    OpenPoints first_points(std::size_t room, std::size_t other, const Crossing& crossing, std::uint64_t key) const;
+    PortalCell surrounded(std::size_t room, std::size_t other, const Crossing& crossing, OpenPoints& open,
+                          std::uint64_t key) const;
+    Crossing straightened(std::size_t room, std::size_t other, const Crossing& crossing, const PortalCell& cell,
+                          const OpenPoints& open) const;
 
     const Stage& stage_;
     const LightRooms& rooms_;
@@ -102,8 +124,8 @@ void PortalFinder::look(const Point& from, std::span<const Vec3> directions, std
 
 /// Point of the ray from which equally much is visible of both rooms.
 Point PortalFinder::middle(std::size_t room, const Way& way) const {
-    constexpr int halvings = 16;
-    const std::vector<Vec3> directions = directions_all_around(64);
+    constexpr int halvings = 12;
+    const std::vector<Vec3> directions = directions_all_around(256);
     std::vector<std::size_t> met;
     double lo = 0, hi = 1;
     for (int i = 0; i < halvings; ++i) {
@@ -118,7 +140,7 @@ Point PortalFinder::middle(std::size_t room, const Way& way) const {
 /// Normal of the opening, from `room` to the other room: the mean of the directions in which each is visible, with
 /// opposite signs.
 Normal PortalFinder::normal(std::size_t room, const Way& way, const Point& at) const {
-    const std::vector<Vec3> directions = directions_all_around(256);
+    const std::vector<Vec3> directions = directions_all_around(1024);
     std::vector<std::size_t> met;
     look(at, directions, met);
     Vec3 sum;
@@ -130,45 +152,107 @@ Normal PortalFinder::normal(std::size_t room, const Way& way, const Point& at) c
     return normalized(tells ? sum : way.to - way.from);
 }
 
-std::vector<Vec2> PortalFinder::open_points(std::size_t room, std::size_t other, const Point& at, const Frame& frame,
-                                            Vec2 lo, Vec2 hi, std::uint64_t key) const {
-    constexpr unsigned lines = 256;
+PortalFinder::OpenPoints PortalFinder::open_points(std::size_t room, std::size_t other, const Crossing& crossing,
+                                                   const SearchedRectangle& in, unsigned lines,
+                                                   std::uint64_t key) const {
     const ScrambledSobol points(key);
-    std::vector<Vec2> out;
+    OpenPoints out;
     std::vector<std::size_t> met;
     for (unsigned k = 0; k < lines; ++k) {
-        const Vec2 q{lo.x + points(k, 2) * (hi.x - lo.x), lo.y + points(k, 3) * (hi.y - lo.y)};
-        const Vec3 w = cosine_direction(frame, points(k, 0), points(k, 1));
-        look(at + q.x * frame.u + q.y * frame.v, std::array{w, -w}, met);
-        if (met[0] == other && met[1] == room) out.push_back(q);
+        const Vec2 q = in.corner + points(k, 2) * in.u + points(k, 3) * in.v;
+        const Vec3 w = cosine_direction(crossing.frame, points(k, 0), points(k, 1));
+        look(crossing.in_space(q), std::array{w, -w}, met);
+        if (met[0] == other && met[1] == room) out.points.push_back(q), out.directions.push_back(w);
     }
     return out;
 }
 
-PortalCell PortalFinder::opening(std::size_t room, const Way& way) const {
-    constexpr std::size_t min_points = 8;  // number of points from which a rectangle can be found
-    const Point at = middle(room, way);
-    const Frame frame(normal(room, way, at));
-    // Doubles the search square until the half of it that surrounds all points found so far contains no more.
-    const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::visibility), room, way.into);
-    std::vector<Vec2> open;
+/// Doubles a search square until the half of it that surrounds all points found so far contains no more.
+PortalFinder::OpenPoints PortalFinder::first_points(std::size_t room, std::size_t other, const Crossing& crossing,
+                                                    std::uint64_t key) const {
+    constexpr unsigned lines = 256;
+    OpenPoints out;
     double reach = 0;
     for (double half = 0x1p-14 * largest_; half < largest_; half *= 2) {
-        const std::vector<Vec2> found = open_points(room, way.into, at, frame, {-half, -half}, {half, half}, key);
+        OpenPoints found =
+            open_points(room, other, crossing, {{-half, -half}, {2 * half, 0}, {0, 2 * half}}, lines, key);
         double farthest = 0;
-        for (const Vec2& p : found) farthest = std::max({farthest, std::abs(p.x), std::abs(p.y)});
+        for (const Vec2& p : found.points) farthest = std::max({farthest, std::abs(p.x), std::abs(p.y)});
         if (reach > 0 && farthest <= 0.5 * half) break;
-        if (farthest > reach) open = found, reach = farthest;
+        if (farthest > reach) out = std::move(found), reach = farthest;
     }
-    if (open.empty()) return {};
-    for (int i = 0; i < 2; ++i) {  // refine the estimate with denser points
-        const double wide = 1.2 * reach;
-        open = open_points(room, way.into, at, frame, {-wide, -wide}, {wide, wide}, hash(key, i));
-        if (open.size() < min_points) return {};
-        reach = 0;
-        for (const Vec2& p : open) reach = std::max({reach, std::abs(p.x), std::abs(p.y)});
+    return out;
+}
+
+/// Returns the rectangle around an opening, of which some points are known. Few lines through a square meet a slit.
+/// Further lines pass through the rectangle that surrounds the points found and through its neighbourhood, until this
+/// contains no more: the rays that find an uncovered part of the opening by chance would be most of the noise.
+PortalCell PortalFinder::surrounded(std::size_t room, std::size_t other, const Crossing& crossing, OpenPoints& open,
+                                    std::uint64_t key) const {
+    constexpr unsigned lines = 512;
+    constexpr int most_searches = 8;
+    constexpr std::size_t min_points = 8;  // number of points from which a rectangle can be found
+    constexpr double around = 0.25;        // neighbourhood on each side, as a share of the rectangle's size
+    constexpr double grows = 1.02;         // factor on the area, derived from the margin that the lines leave
+    if (open.points.empty()) return {};
+    PortalCell out;
+    for (int i = 0; i < most_searches; ++i) {
+        const PortalCell before = std::exchange(out, rectangle_around(crossing.at, crossing.frame, open.points));
+        if (i > 1 && out.area <= grows * before.area) break;
+        const Vec2 u = crossing.in_plane(out.u), v = crossing.in_plane(out.v);
+        const Vec2 corner = crossing.in_plane(out.corner - crossing.at) - around * u - around * v;
+        const OpenPoints found = open_points(room, other, crossing,
+                                             {corner, (1 + 2 * around) * u, (1 + 2 * around) * v}, lines, hash(key, i));
+        open.points.insert(open.points.end(), found.points.begin(), found.points.end());
+        open.directions.insert(open.directions.end(), found.directions.begin(), found.directions.end());
     }
-    return rectangle_around(at, frame, open);
+    return open.points.size() < min_points ? PortalCell() : out;
+}
+
+/// Turns the plane of a long opening such that it contains the middles of lines at both ends.
+PortalFinder::Crossing PortalFinder::straightened(std::size_t room, std::size_t other, const Crossing& crossing,
+                                                  const PortalCell& cell, const OpenPoints& open) const {
+    const Vec3 along = squared_norm(cell.u) > squared_norm(cell.v) ? cell.u : cell.v;
+    const Vec2 on_plane = crossing.in_plane(normalized(along));
+    const auto position = [&](std::size_t k) { return open.points[k].x * on_plane.x + open.points[k].y * on_plane.y; };
+    std::size_t first = 0, last = 0;
+    for (std::size_t k = 0; k < open.points.size(); ++k) {
+        if (position(k) < position(first)) first = k;
+        if (position(k) > position(last)) last = k;
+    }
+    const auto middle_at = [&](std::size_t k) {
+        // The line goes as far to each side as the opening is long, or to the first surface.
+        const Point p = crossing.in_space(open.points[k]);
+        const Vec3& w = open.directions[k];
+        std::array<RayHit, 2> hits;
+        stage_.tracer.nearest(std::array{w, -w}, p, RegionId(), hits);
+        const auto reach = [&](const RayHit& hit) { return std::min(norm(along), hit.distance); };
+        return middle(room, {p - reach(hits[1]) * w, p + reach(hits[0]) * w, other});
+    };
+    const Point a = middle_at(first), b = middle_at(last);
+    const Vec3 u = normalized(b - a);
+    // Both middles are within the opening unless something stands in it.
+    constexpr double least_cosine = 0.9;  // of the angle by which the plane turns
+    const Vec3 n = crossing.frame.n - dot(crossing.frame.n, u) * u;
+    if (!(norm(n) > least_cosine) || !(std::abs(dot(u, normalized(along))) > least_cosine)) return crossing;
+    return {a + 0.5 * (b - a), Frame(normalized(n))};
+}
+
+PortalCell PortalFinder::opening(std::size_t room, const Way& way) const {
+    const Point at = middle(room, way);
+    Crossing crossing{at, Frame(normal(room, way, at))};
+    const std::uint64_t key = hash(seed_, static_cast<std::uint64_t>(Stream::visibility), room, way.into);
+    OpenPoints open = first_points(room, way.into, crossing, key);
+    PortalCell best = surrounded(room, way.into, crossing, open, key);
+    if (!(best.area > 0)) return best;
+    // A plane that is a little in front of the wall, or oblique to it, is crossed beside the opening, too.
+    crossing = straightened(room, way.into, crossing, best, open);
+    OpenPoints again = open_points(
+        room, way.into, crossing,
+        {crossing.in_plane(best.corner - crossing.at), crossing.in_plane(best.u), crossing.in_plane(best.v)}, 512,
+        hash(key, 8));
+    if (const PortalCell cell = surrounded(room, way.into, crossing, again, hash(key, 9)); cell.area > 0) best = cell;
+    return best;
 }
 
 /// Irradiance of the coarse elements from all sources, including those without emitting polygons: the mean over some

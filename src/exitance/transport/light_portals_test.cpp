@@ -77,6 +77,40 @@ TEST(LightPortals, AHoleIsFoundAndAimedAtFromTheDarkSide) {
     }
 }
 
+TEST(LightPortals, ANarrowDoorIsCoveredWholeAndItsSidesBelongToTheLitRoom) {
+    for (const char* door : {"0.05", "0.1", "0.2"}) {
+        const double width = std::atof(door), height = 2.1, bright = 2, dim = 6;
+        const Scene scene = built_scene("door", {{"width", door}});
+        Stage stage(scene);
+        stage.rooms = find_light_rooms(stage, 1, StopRequest());
+        ASSERT_EQ(stage.rooms.count(), 2u);
+        ASSERT_NE(stage.rooms.portals(), nullptr) << door;
+        std::vector<std::size_t> dim_rooms;
+        for (const Piece& piece : stage.pieces) {
+            const Point at = piece.patch.centre();
+            if (at.x > dim) dim_rooms.push_back(stage.rooms.at(piece.region, at));
+        }
+        ASSERT_FALSE(dim_rooms.empty());
+        const std::size_t dim_room = dim_rooms.front();
+        for (const std::size_t room : dim_rooms) EXPECT_EQ(room, dim_room);
+        for (const Piece& piece : stage.pieces) {
+            const Point at = piece.patch.centre();
+            const bool is_in_door = at.x > 2 * bright && at.x < 2 * bright + 0.12 && at.z < height;
+            EXPECT_NE(is_in_door && stage.rooms.at(piece.region, at) == dim_room, true) << door;
+        }
+        double area = 0, low = height, high = 0;
+        for (const PortalCell& cell : stage.rooms.portals()->of_room(dim_room)) {
+            area += cell.area;
+            low = std::min({low, cell.corner.z, (cell.corner + cell.u + cell.v).z});
+            high = std::max({high, cell.corner.z, (cell.corner + cell.u + cell.v).z});
+        }
+        EXPECT_GT(area, width * height) << door;
+        EXPECT_LT(area, 1.5 * width * height) << door;
+        EXPECT_LT(low, 0.01 * height) << door;
+        EXPECT_GT(high, 0.99 * height) << door;
+    }
+}
+
 TEST(RayRows, FindAHoleByAimedRays) {
     constexpr double hole = 0.1;
     const Scene scene = built_scene("keyhole", {{"hole", "0.1"}});

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "exitance/base/progress.hpp"
@@ -46,6 +47,8 @@ class LightRooms {
     const LightPortals* portals() const { return portals_.get(); }
 
   private:
+    void set(std::span<const std::size_t> room_of, std::size_t rooms, const ElementTree& tree,
+             const LeafNumbering& numbering);
     void weigh(const ElementTree& tree, const LeafNumbering& numbering, const RayRows& rows);
 
     friend LightRooms find_light_rooms(const Stage&, std::uint64_t, const StopRequest&);

@@ -35,14 +35,23 @@ PortalCell rectangle_around(const Point& at, const Frame& frame, std::span<const
         double area() const { return (hi.x - lo.x) * (hi.y - lo.y); }
     };
     Rectangle best{{0, 0}, {HUGE_VAL, HUGE_VAL}, 0};
-    for (int i = 0; i < angles; ++i) {
-        Rectangle r{{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}, 0.5 * pi * i / angles};
+    const auto try_angle = [&](double angle) {
+        Rectangle r{{HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL}, angle};
         for (const Vec2& p : points) {
             const Vec2 q = turned(p, r.angle);
             r.lo = {std::min(r.lo.x, q.x), std::min(r.lo.y, q.y)},
             r.hi = {std::max(r.hi.x, q.x), std::max(r.hi.y, q.y)};
         }
         if (r.area() < best.area()) best = r;
+    };
+    for (int i = 0; i < angles; ++i) try_angle(0.5 * pi * i / angles);
+    // A slit is covered without waste only at its own angle.
+    constexpr int halvings = 6;
+    double step = 0.5 * pi / angles;
+    for (int i = 0; i < halvings; ++i) {
+        step *= 0.5;
+        const double angle = best.angle;
+        try_angle(angle - step), try_angle(angle + step);
     }
     const Vec2 more = wider * (best.hi - best.lo);
     best.lo = best.lo - more, best.hi = best.hi + more;

@@ -19,8 +19,8 @@ struct PortalCell {
 /// Returns directions that are spread evenly over the sphere, always the same ones for a number of them.
 std::vector<Vec3> directions_all_around(unsigned count);
 
-/// Returns the smallest rectangle around some points, among 48 orientations. It is enlarged by 3% per side, about the
-/// margin that 64 random points leave.
+/// Returns the smallest rectangle around some points, among 48 orientations and those near the best of them. It is
+/// enlarged by 3% per side, about the margin that 64 random points leave.
 /// at, frame  a point and the frame of a plane, in which the points have coordinates
 PortalCell rectangle_around(const Point& at, const Frame& frame, std::span<const Vec2> points);
 
