@@ -418,8 +418,9 @@ LeavesBetween leaves_between(const RayRows& rows, const ElementTree& tree, const
 
 /// Assigns leaves between rooms to the brightest one that they see if it is far brighter than their own, all leaves of
 /// a group to one room. Most of their rays hit one another, so that they may have been put with either room. In a dim
-/// room they would hold much of the light, and would have to be as accurate as the rest of it. light     mean light of
-/// every room, W/m^2 Returns the room of every leaf.
+/// room they would hold much of the light, and would have to be as accurate as the rest of it.
+/// light     mean light of every room, W/m^2
+/// Returns the room of every leaf.
 std::vector<std::size_t> given_to_brighter(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering,
                                            std::span<const double> light, std::span<const std::size_t> room_of) {
     constexpr double seen = 0.25;   // share of the rays that reach a room, from which on a leaf may belong to it
@@ -471,7 +472,9 @@ std::vector<std::size_t> given_to_brighter(const RayRows& rows, const ElementTre
 
 /// For every leaf, the weighted area of the leaves of darker rooms that receive its light, in proportion to its share
 /// of their light, m^2: an error in the light of the sides of a narrow door is nearly as large, relatively, in the dim
-/// room behind it. light   mean light of every room, W/m^2 weight  factor on the areas of every room
+/// room behind it.
+/// light   mean light of every room, W/m^2
+/// weight  factor on the areas of every room
 std::vector<double> lit_in_darker_rooms(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering,
                                         std::span<const double> light, std::span<const double> weight,
                                         std::span<const std::size_t> room_of) {

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "exitance/base/memory.hpp"
 #include "exitance/base/parallel.hpp"
@@ -32,6 +33,9 @@ constexpr std::uint32_t max_repeats = 4;
 /// repeat takes at most about 16 times as many. If a row misses 1 by more than that, chance is not the only cause, and
 /// more rays would not help.
 constexpr double least_factor = 0.25;
+/// Rows that miss 1 by at least this share of their last defect, on the same side, are not repeated again. Derived from
+/// least_factor: had chance caused the defect, about a quarter of it would be left.
+constexpr double persistent_share = 0.5;
 
 class RowRun {
   public:
@@ -47,6 +51,7 @@ class RowRun {
         }
         rows_.resize(out.size()), shares_.assign(out.size(), first_share), is_pooled_.assign(out.size(), 0);
         finished_.assign(out.size(), 0);
+        missing_.assign(out.size(), 0);
         resumed_ = resumed_rows(store_);
         std::vector<std::size_t> faces(out.size());
         std::iota(faces.begin(), faces.end(), 0);
@@ -55,7 +60,9 @@ class RowRun {
             progress_.phase("combine rows");
             const std::vector<double> limits = combine_rows(rows_, combine, out);
             faces = round < max_repeats ? faces_above(out, limits) : std::vector<std::size_t>();
-            if (faces.empty()) return out;
+            if (!faces.empty()) continue;
+            add_missing(out);
+            return out;
         }
         store_raw_rows(rows_, finished_, combine, out);
         out.is_settled = false;  // even if all rows have been computed once
@@ -65,18 +72,33 @@ class RowRun {
   private:
     /// Rows whose combined limit, without dropped entries, is above R, or that miss 1 by more than R with the sky and
     /// backs of faces: rare events of a distribution with a long tail, which the variance of the row's own samples does
-    /// not show. Sets the share of R that they may use next.
+    /// not show. Rows whose defect is no event of chance are left. Sets the share of R that the rows may use next.
     std::vector<std::size_t> faces_above(const SparseFactors& out, const std::vector<double>& limits) {
         std::vector<std::size_t> faces;
         for (std::size_t i = 0; i < out.size(); ++i) {
-            const double missing = 1 - out.row_sums[i] - out.dropped[i] - out.sky[i] - out.back[i];
+            const double missing = missing_from(out, i), before = std::exchange(missing_[i], missing);
             const double error = std::max(limits[i] - out.dropped[i], std::abs(missing));
             if (error <= options_.error) continue;
+            const bool is_persistent = std::abs(before) > options_.error && missing / before > persistent_share;
+            if (is_persistent && limits[i] - out.dropped[i] <= options_.error) continue;
             is_pooled_[i] = std::abs(missing) <= options_.error;
             shares_[i] *= std::max(least_factor, repeated_share * options_.error / error);
             faces.push_back(i);
         }
         return faces;
+    }
+
+    /// Difference between 1 and the sum of a row with the sky and backs of faces.
+    static double missing_from(const SparseFactors& out, std::size_t i) {
+        return 1 - out.row_sums[i] - out.dropped[i] - out.sky[i] - out.back[i];
+    }
+
+    /// Reports the defects of rows that could not be closed as their errors.
+    void add_missing(SparseFactors& out) const {
+        for (std::size_t i = 0; i < out.size(); ++i) {
+            const double missing = std::abs(missing_from(out, i));
+            if (missing > options_.error) out.row_errors[i] = std::max(out.row_errors[i], missing + out.dropped[i]);
+        }
     }
 
     /// Restores the rows of a round that an earlier run kept; returns the remaining faces.
@@ -157,7 +179,8 @@ class RowRun {
     /// One for each range of a step: their counters of all faces would take longer to set up than a row.
     std::array<std::unique_ptr<RowEstimator>, rows_a_step / rows_a_range> estimators_;
     std::vector<RawRow> rows_, resumed_;
-    std::vector<double> shares_;  ///< Share of R that each row may use on its own.
+    std::vector<double> shares_;   ///< Share of R that each row may use on its own.
+    std::vector<double> missing_;  ///< missing_from() of each row after the last round.
     /// 1 for each row that gets further samples in the next round; 0 if all of them are new, because the row misses 1.
     std::vector<std::uint8_t> is_pooled_;
     std::vector<std::uint8_t> finished_;

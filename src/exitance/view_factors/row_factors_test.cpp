@@ -7,6 +7,7 @@
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/base/random.hpp"
+#include "exitance/form_factors/pair_form_factor.hpp"
 #include "exitance/view_factors/row_check.hpp"
 #include "exitance/view_factors/view_factors.hpp"
 
@@ -278,6 +279,38 @@ TEST(RowFactors, MovingAndScalingTheSceneChangesOnlyNoise) {
     const SparseFactors a = factors_of(scene_of(near), {.error = R}), b = factors_of(scene_of(far), {.error = R});
     for (std::size_t i = 0; i < a.size(); ++i)
         for (std::size_t j = 0; j < a.size(); ++j) EXPECT_NEAR(entry(a, i, j), entry(b, i, j), 3 * R) << i << ' ' << j;
+}
+
+/// A square touches a larger face along one of its edges. Rays from near that edge must not start behind the other
+/// face.
+TEST(RowFactors, FacesThatTouchAlongAnEdgeHaveExactFactors) {
+    struct Place {
+        Point apex;
+        double scale;
+    };
+    for (const double degrees : {1.0, 7.6, 30.0, 60.0, 120.0})
+        for (const Vec3& up : {Vec3{0, 0, 1}, Vec3{0.3, -0.5, 0.7}})
+            for (const auto& [apex, scale] : {Place{{0, 0, 0}, 1}, Place{{1000, 0, 30}, 1}, Place{{0.1, 0.2, 0.3}, 1e3},
+                                              Place{{0.1, 0.2, 0.3}, 1e-3}}) {
+                const Frame frame(normalized(up));
+                const auto at = [&](double x, double y, double z) { return apex + scale * frame.to_world(x, y, z); };
+                const double c = std::cos(degrees * pi / 180), s = std::sin(degrees * pi / 180);
+                const Outline square = {at(0, 0, 0), at(0.1, 0, 0), at(0.1, 0.1, 0), at(0, 0.1, 0)},
+                              large = {at(-5, 6 * c, 6 * s), at(5, 6 * c, 6 * s), at(5, 0, 0), at(-5, 0, 0)};
+                const Scene scene = scene_of({square, large});
+                const double R = 3e-4, F = pair_form_factor(square, large);
+                const SparseFactors table = factors_of(scene, {.error = R});
+                EXPECT_EQ(table.unclosed, 0U);
+                EXPECT_NEAR(entry(table, 0, 1), F, R) << degrees;
+                EXPECT_NEAR(entry(table, 1, 0), F * table.areas[0] / table.areas[1], R) << degrees;
+                for (std::size_t i = 0; i < 2; ++i) {
+                    EXPECT_LE(table.row_errors[i], R);
+                    EXPECT_EQ(table.back[i], 0);
+                    EXPECT_NEAR(table.row_sums[i] + table.sky[i], 1, R) << degrees;
+                }
+                const RowCheck check = check_rows_by_rays(scene, table, {.rows = 2, .error = R}, StopRequest());
+                EXPECT_EQ(check.wrong, 0U) << degrees;
+            }
 }
 
 }  // namespace

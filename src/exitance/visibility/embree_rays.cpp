@@ -16,6 +16,7 @@
 #include "exitance/scene/opposed_faces.hpp"
 #include "exitance/scene/other_side.hpp"
 #include "exitance/visibility/glass/ray_fates.hpp"
+#include "exitance/visibility/narrow_gaps.hpp"
 #include "exitance/visibility/ray_lift.hpp"
 #include "exitance/visibility/rays.hpp"
 
@@ -24,7 +25,11 @@ namespace {
 
 constexpr std::size_t width = 16;  ///< Rays per packet; Embree splits it on machines with narrower vectors.
 constexpr double lift = ray_lift_share, stack_step = lift / 2;  ///< Shares of the scene's size.
-constexpr int retries = 8;  ///< Maximum number of restarts past a ray's own region; one is rarely needed.
+/// Height up to which faces above a region are found, as a share of the height at which its rays start: the start and a
+/// face must not be the same in single precision, which has an error of a sixteenth of `lift`.
+constexpr double gap_reach = 1.25;   // derived from 1 + 1 / 16, with a margin
+constexpr double end_margin = 1e-6;  ///< Part of a segment at its end where nothing blocks; derived from `lift`.
+constexpr int retries = 8;           ///< Maximum number of restarts past a ray's own region; one is rarely needed.
 
 /// Owns a reference-counted Embree object and releases it.
 template <class Handle, void (*release)(Handle)>
@@ -168,6 +173,7 @@ struct RayTracer::Content {
     /// The surface on the other side of a sheet; empty if there are no sheets.
     Field<SurfaceId, SurfaceId> other_side;
     OpposedFaces opposed;  ///< Tables for sheets whose two sides have different outlines.
+    NarrowGaps gaps;       ///< Places where rays must start lower, because another face is close above.
     Glass glass;
 
     explicit Content(const Scene& s)
@@ -180,6 +186,7 @@ struct RayTracer::Content {
           faces(s.surfaces().size()),
           other_side(other_sides_of_surfaces(s)),
           opposed(s, other_side, lift_off),
+          gaps(s, reach_of_regions(s, lift_off)),
           glass{RayFates(s.panes())} {
         Triangles all;
         auto& [corners, triangles] = all;
@@ -204,6 +211,13 @@ struct RayTracer::Content {
         // The order of triangles in a leaf, and so which of two equally near ones is hit, depends on the number of
         // build threads. A single thread always builds the same tree.
         run_alone([&] { rtcJoinCommitScene(rtc); });
+    }
+
+    static Field<RegionId, double> reach_of_regions(const Scene& s, double lift_off) {
+        Field<RegionId, double> reach;
+        for (const Region& region : s.regions())
+            reach.add(gap_reach * (lift_off + stack_step * s.size() * region.level));
+        return reach;
     }
 
     void attach(const Triangles& all, Glass* filter) {
@@ -281,6 +295,45 @@ struct RayTracer::Content {
         if (facing.is_none()) return true;
         hit.surface = facing, hit.region = faces[facing].region, hit.front = true;
         return hit.region != own || own.is_none();
+    }
+
+    /// Height of a face that is so close above a point that a ray from there must start below it, metres; infinite if
+    /// there is none.
+    double gap_height(const Point& x, RegionId own) const { return gaps.has(own) ? gaps.height(x, own) : HUGE_VAL; }
+
+    /// Finds the first hit of a ray that starts at a point below a close face. Double precision decides whether it
+    /// meets that face, and single precision whether it meets another one before.
+    void trace_in_gap(const Point& origin, const Vec3& direction, RegionId own, double height, RayHit& hit) const {
+        const NarrowGaps::Met met = gaps.first(origin, direction, own);
+        const Point start = origin + (0.5 * height) * scene->regions()[own].plane.n;
+        float past = 0;
+        RayHit other;
+        for (int attempt = 0; attempt < retries; ++attempt) {
+            alignas(64) RTCRayHit16 packet;
+            alignas(64) std::array<int, width> valid{};
+            valid[0] = -1;
+            set_ray(packet.ray, 0, local(start), local_direction(direction), past, HUGE_VALF);
+            packet.hit.geomID[0] = RTC_INVALID_GEOMETRY_ID;
+            trace_nearest(valid, rtc, packet);
+            const bool is_other = read(packet, 0, origin, direction, own, other);
+            if (is_other && (packet.hit.geomID[0] != 0 || !gaps.decides(origin, own, other.surface))) break;
+            other = RayHit();
+            past = std::nextafter(packet.ray.tfar[0] * (1 + 0x1p-20f), HUGE_VALF);
+            if (past > met.distance) break;
+        }
+        hit = other;
+        if (met.surface.is_none() || other.distance < met.distance) return;
+        hit = RayHit();
+        hit.surface = met.surface, hit.region = faces[met.surface].region;
+        hit.distance = met.distance, hit.front = met.front;
+    }
+
+    /// True if anything is between a point below a close face and another point, which is lifted off `other`.
+    bool is_blocked_in_gap(const SurfacePoint& x, double height, const SurfacePoint& other) const {
+        RayHit hit;
+        trace_in_gap(x.at, other.at + offset(other.region) - x.at, x.region, height, hit);
+        const bool at_end = !other.region.is_none() && hit.region == other.region;
+        return !at_end && hit.distance < 1 - end_margin;
     }
 
     bool is_mirrored(const RTCRayHit16& packet, std::size_t lane) const {
@@ -366,6 +419,7 @@ std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const V
     valid.fill(-1);
     // Write data that all packets share only once: Embree changes only the far end and the hit.
     const Float3 start = shared ? content_->local(origins[0] + lifted) : Float3();
+    const double shared_height = shared ? content_->gap_height(origins[0], own) : HUGE_VAL;
     for (std::size_t i = 0; i < width; ++i) set_ray(packet.ray, i, start, {}, 0, HUGE_VALF);
     for (std::size_t first = 0; first < directions.size(); first += width) {
         const std::size_t count = std::min(width, directions.size() - first);
@@ -390,8 +444,13 @@ std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const V
             const Point& origin = origins[shared ? 0 : first + i];
             const Vec3& direction = directions[first + i];
             const RegionId side = side_of(direction);
-            if (!content_->read(packet, i, origin, direction, side, hits[first + i]))
+            const double height = shared && side == own ? shared_height : content_->gap_height(origin, side);
+            if (height < HUGE_VAL) {
+                content_->trace_in_gap(origin, direction, side, height, hits[first + i]);
+                packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;  // excludes the ray from follow_mirrored()
+            } else if (!content_->read(packet, i, origin, direction, side, hits[first + i])) {
                 content_->retry(origin, direction, side, packet.ray.tfar[i], hits[first + i]);
+            }
         }
         if (mirrored == Mirrored::followed && !content_->glass.pane_of.empty())
             content_->follow_mirrored(
@@ -406,7 +465,7 @@ std::size_t RayTracer::nearest(std::span<const Vec3> directions, const Point& or
     return nearest(std::span(&origin, 1), directions, own, hits, mirrored);
 }
 
-/// ends(i): both ends of ray i, lifted off their surfaces.
+/// ends(i): both ends of ray i.
 template <class Ends>
 std::size_t RayTracer::Content::occluded(std::span<bool> blocked, const Ends& ends) const {
     alignas(64) RTCRay16 packet;
@@ -415,11 +474,19 @@ std::size_t RayTracer::Content::occluded(std::span<bool> blocked, const Ends& en
         const std::size_t count = std::min(width, blocked.size() - first);
         valid.fill(0), std::fill_n(valid.begin(), count, -1);
         for (std::size_t i = 0; i < count; ++i) {
-            const auto [a, b] = ends(first + i);
+            const auto [from, to] = ends(first + i);
+            const Point a = from.at + offset(from.region), b = to.at + offset(to.region);
             set_ray(packet, i, local(a), local_direction(b - a), 0, 1);
         }
         trace_occluded(valid, rtc, packet);
-        for (std::size_t i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            blocked[first + i] = packet.tfar[i] < 0;
+            const auto [from, to] = ends(first + i);
+            if (const double height = gap_height(from.at, from.region); height < HUGE_VAL)
+                blocked[first + i] = is_blocked_in_gap(from, height, to);
+            else if (const double height = gap_height(to.at, to.region); height < HUGE_VAL)
+                blocked[first + i] = is_blocked_in_gap(to, height, from);
+        }
     }
     return blocked.size();
 }
@@ -427,16 +494,15 @@ std::size_t RayTracer::Content::occluded(std::span<bool> blocked, const Ends& en
 std::size_t RayTracer::occluded(std::span<const Point> from, std::span<const Point> to, RegionId receiver,
                                 RegionId source, std::span<bool> blocked) const {
     EXI_CHECK(from.size() == to.size() && blocked.size() == to.size());
-    const Vec3 near = content_->offset(receiver), far = content_->offset(source);
-    return content_->occluded(blocked, [&](std::size_t i) { return std::pair{from[i] + near, to[i] + far}; });
+    return content_->occluded(blocked, [&](std::size_t i) {
+        return std::pair{SurfacePoint{from[i], receiver}, SurfacePoint{to[i], source}};
+    });
 }
 
 std::size_t RayTracer::occluded(std::span<const SurfacePoint> from, std::span<const SurfacePoint> to,
                                 std::span<bool> blocked) const {
     EXI_CHECK(from.size() == to.size() && blocked.size() == to.size());
-    return content_->occluded(blocked, [&](std::size_t i) {
-        return std::pair{from[i].at + content_->offset(from[i].region), to[i].at + content_->offset(to[i].region)};
-    });
+    return content_->occluded(blocked, [&](std::size_t i) { return std::pair{from[i], to[i]}; });
 }
 
 RayEnds RayTracer::ray_ends(std::span<const Point> points, RegionId region) const {
@@ -444,7 +510,9 @@ RayEnds RayTracer::ray_ends(std::span<const Point> points, RegionId region) cons
     const Vec3 lifted = content_->offset(region);
     RayEnds ends;
     for (std::size_t k = 0; k < RayEnds::size; ++k) {
-        const Float3 p = content_->local(points[k] + lifted);
+        const double height = content_->gap_height(points[k], region);
+        const Float3 p = content_->local(
+            points[k] + (height < HUGE_VAL ? (0.5 * height) * content_->scene->regions()[region].plane.n : lifted));
         ends.x[k] = p.x, ends.y[k] = p.y, ends.z[k] = p.z;
     }
     return ends;

@@ -7,6 +7,7 @@
 #include "exitance/base/polygon.hpp"
 #include "exitance/base/triangulation.hpp"
 #include "exitance/scene/other_side.hpp"
+#include "exitance/visibility/narrow_gaps.hpp"
 
 namespace exitance {
 namespace {
@@ -23,6 +24,17 @@ Box box_of(std::span<const Point> corners) {
     Box box;
     for (const Point& p : corners) box.add(p);
     return box;
+}
+
+/// True if a piece and a region of the given plane are stacked, unlike the two sides of a sharp wedge.
+bool is_stacked_on(const Occluders& occluders, PieceId p, const Plane& plane, RegionId own) {
+    const ConvexPiece& piece = occluders.pieces()[p];
+    const double thickness = 2 * piece.thickness;  // allows for stack_height() of both
+    if (is_within(occluders.corners(p), plane, thickness)) return true;
+    if (own.is_none()) return false;
+    const IdRange<PieceId> own_pieces = occluders.pieces(own);
+    return std::all_of(own_pieces.begin(), own_pieces.end(),
+                       [&](PieceId q) { return is_within(occluders.corners(q), piece.plane, thickness); });
 }
 
 }  // namespace
@@ -192,7 +204,7 @@ bool Occluders::is_covered(const Point& place, const Normal& n, RegionId own) co
         const double height = dot(corners(p)[0] - x, piece.plane.n) * facing;  // height of the piece above x, metres
         if (std::abs(height) > piece.thickness || std::abs(facing) < 0.999) return false;
         if (facing > 0 && height <= rounding_) return false;
-        if (!contains(corners(p), piece.plane.n, x)) return false;
+        if (!contains(corners(p), piece.plane.n, x) || !is_stacked_on(*this, p, {n, dot(n, x)}, own)) return false;
         return facing > 0 || own.is_none() || !is_back_of(own, piece.region);
     };
     for (const Tree* tree : {&trees_[0], &trees_[1], &outer_})
