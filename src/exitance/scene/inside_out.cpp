@@ -127,9 +127,9 @@ void BodyFinder::measure(Space& space) const {
         const std::vector<Point>& outline = in_.outlines[side.face];
         const double cone = dot(outline[0] - middle, area_vector(outline)) / 3;
         space.volume += side.is_front ? -cone : cone;
-        all += std::abs(cone);
+        all += norm(outline[0] - middle) * norm(area_vector(outline)) / 3;
     }
-    constexpr double rounding = 1e-6;  // relative to the sum of the cones: the two sides of a sheet enclose no volume
+    constexpr double rounding = 1e-6;  // relative to the largest cones: the two sides of a sheet enclose no volume
     if (std::abs(space.volume) <= rounding * all) space.volume = 0;
 }
 

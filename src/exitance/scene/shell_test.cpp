@@ -61,6 +61,22 @@ TEST(Shell, ASheetWithTwoSidesIsNeitherOpenNorTurned) {
     EXPECT_TRUE(shell.turned.empty());
 }
 
+TEST(Shell, ATurnedSheetEnclosesNothing) {
+    // The corners are rounded to twelve digits, so that the volume between the sides is not exactly zero.
+    const std::vector<Point> sheet = {{2.02685798172, 2.74722807088, 1.70721546634},
+                                      {2.81059814707, 2.73432169667, 1.54726303994},
+                                      {2.82404315086, 1.9449983134, 1.67683089278},
+                                      {2.0403029855, 1.95790468761, 1.83678331918}};
+    for (std::size_t first = 0; first < 4; ++first) {
+        std::vector<Point> front = sheet;
+        std::rotate(front.begin(), front.begin() + static_cast<std::ptrdiff_t>(first), front.end());
+        const std::vector<test::Face> room = test::closed_box({0, 0, 0}, {4, 4, 3});
+        std::vector<test::Face> faces(room);
+        faces.push_back({front, 10}), faces.push_back({{sheet.rbegin(), sheet.rend()}});
+        EXPECT_TRUE(inspect_shell(test::make(faces)).inside_out.empty()) << first;
+    }
+}
+
 /// The faces of a box with their fronts inside, like a room, or outside.
 std::vector<test::Face> box(const Point& lo, const Point& hi, bool inwards,
                             const std::vector<test::Face>& others = {}) {
