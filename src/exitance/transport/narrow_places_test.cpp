@@ -62,8 +62,13 @@ double exact_share(const Scene& scene, const std::string& material) {
     return of_group / all;
 }
 
-/// Mean over a mesh of elements `edge` metres wide, by area.
-double unsmoothed(const Scene& scene, double edge) {
+struct Unsmoothed {
+    double share;  ///< Mean over all elements, by area.
+    double width;  ///< Of an element, metres.
+};
+
+/// On a mesh of elements about `edge` metres wide.
+Unsmoothed unsmoothed(const Scene& scene, double edge) {
     const Stage stage(scene);
     const ElementTree tree = stage.make_elements({.edge = edge, .grading_levels = 0});
     const std::vector<ElementId> leaves = tree.leaves();
@@ -71,17 +76,17 @@ double unsmoothed(const Scene& scene, double edge) {
     double sum = 0, area = 0;
     for (std::size_t i = 0; i < leaves.size(); ++i)
         sum += tree.area(leaves[i]) * shares[i], area += tree.area(leaves[i]);
-    return sum / area;
+    return {sum / area, std::sqrt(tree.area(leaves[0]))};
 }
 
 TEST(UnsmoothedShares, FollowTheDistanceBetweenTwoPlates) {
     // Between plates 50 times as wide as their elements, a cosine-weighted ray meets the other plate at d / sqrt(u), u
     // uniform: the integral of (x K1(x))^2, x = 2 pi d / (h sqrt(u)).
     for (const double d : {0.001, 0.02, 0.05, 0.2}) {
-        constexpr double h = 0.1;
         const std::vector<Point> low = {{0, 0, 0}, {5, 0, 0}, {5, 5, 0}, {0, 5, 0}};
         std::vector<Point> high(low.rbegin(), low.rend());
         for (Point& p : high) p.z = d;
+        const auto [share, h] = unsmoothed(test::make({{low}, {high, 1}}), 0.1);
         double expected = 0;
         constexpr int steps = 10000;
         for (int i = 0; i < steps; ++i) {
@@ -89,12 +94,12 @@ TEST(UnsmoothedShares, FollowTheDistanceBetweenTwoPlates) {
             expected += std::pow(x * std::cyl_bessel_k(1, x), 2) / steps;
         }
         // 5,000 elements with 8 rays each, whose values are at most 1, and rays that leave at the border
-        EXPECT_NEAR(unsmoothed(test::make({{low}, {high, 1}}), h), expected, 0.01 + 0.03 * expected) << d;
+        EXPECT_NEAR(share, expected, 0.01 + 0.03 * expected) << d;
     }
 }
 
 TEST(UnsmoothedShares, AreSmallInARoom) {
-    EXPECT_LT(unsmoothed(box_scene(4, 5, 3, 0.5, 1), 0.25), 0.02);
+    EXPECT_LT(unsmoothed(box_scene(4, 5, 3, 0.5, 1), 0.25).share, 0.02);
 }
 
 TEST(NarrowPlaces, HoldMuchOfTheLightOfABlindAndNoneOfARoom) {
