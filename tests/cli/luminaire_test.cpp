@@ -156,8 +156,8 @@ TEST(ProgramLuminaire, EmittingMaterialsWithoutFacesDoNotChangeTheUnit) {
     const std::string table = "file,x,y,z\nd.ies,0,0,2\n", points = "1,0.5,0,0,0,1\n";
     const std::vector<double> plain = lux_below(folder, table, points);
     write_text(folder / "floor.mtl", "newmtl grey\nKd 0 0 0\nnewmtl lamp\nKe 1 1 1\n");
-    const Finished solved = run_program({"solve", folder / "floor.obj", "--luminaires", folder / "l.csv", "-o",
-                                         folder / "s.h5", "--progress", "none"});
+    const Finished solved = run_program(
+        {"solve", folder / "floor.obj", "--luminaires", folder / "l.csv", "-o", folder / "s.h5", "--progress", "none"});
     EXPECT_EQ(solved.status, 0);
     EXPECT_EQ(solved.err.find("in watts"), std::string::npos) << solved.err;
     const Finished probed =

@@ -64,7 +64,7 @@ double exact_share(const Scene& scene, const std::string& material) {
 
 struct Unsmoothed {
     double share;  ///< Mean over all elements, by area.
-    double width;  ///< Of an element, metres.
+    double width;  ///< Width of an element, metres.
 };
 
 /// On a mesh of elements about `edge` metres wide.

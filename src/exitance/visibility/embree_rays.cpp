@@ -478,6 +478,8 @@ std::size_t RayTracer::Content::occluded(std::span<bool> blocked, const Ends& en
             const Point a = from.at + offset(from.region), b = to.at + offset(to.region);
             set_ray(packet, i, local(a), local_direction(b - a), 0, 1);
         }
+        // Builds of Embree with assertions look at lanes that are not valid, too.
+        for (std::size_t i = count; i < width; ++i) set_ray(packet, i, {}, {}, 0, 1);
         trace_occluded(valid, rtc, packet);
         for (std::size_t i = 0; i < count; ++i) {
             blocked[first + i] = packet.tfar[i] < 0;
