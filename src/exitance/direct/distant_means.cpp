@@ -53,7 +53,7 @@ Spectrum DistantMeans::Part::share() const {
 /// Variance of the light, from the spread of eighths of the rays, each of which is stratified, and from the light of
 /// features that no ray may have met.
 double DistantMeans::Part::variance() const {
-    constexpr double half = 0.5;  // of the light of one ray, which a feature may have
+    constexpr double half = 0.5;  // share of the light of one ray that a feature between the rays may have
     const double L = mean(open), missed = half * L / rays;
     double all = 0, arrived = 0, squares = 0;
     for (const Sums& s : eighth) all += mean(s.all), arrived += mean(s.arrived);
@@ -129,8 +129,7 @@ void DistantMeans::trace(Workspace& room) const {
 }
 
 /// Makes the parts of all elements, with their first rays.
-void DistantMeans::find_parts(const ElementTree& tree, std::span<const ElementId> elements,
-                              std::span<const LightAccuracy>, Workspace& room) const {
+void DistantMeans::find_parts(const ElementTree& tree, std::span<const ElementId> elements, Workspace& room) const {
     room.parts_.clear();
     for (std::uint32_t i = 0; i < elements.size(); ++i) {
         const ElementId e = elements[i];
@@ -163,7 +162,7 @@ void DistantMeans::find(const ElementTree& tree, std::span<const ElementId> elem
     constexpr double fewest_seen = 0.1;  // share of the sky; derived from the share that one of the first rays has
     // Nearly hidden light needs no better accuracy than light of this share of the unoccluded light, as in RayLight.
     constexpr double min_share = 0.05;  // derived from RayLight::min_share
-    find_parts(tree, elements, accuracy, room);
+    find_parts(tree, elements, room);
     std::vector<std::uint8_t> is_open(elements.size(), 1);  // 1 while an element may need more rays
     for (bool grows = true; grows;) {
         trace(room);

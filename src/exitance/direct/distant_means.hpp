@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -46,9 +47,7 @@ class DistantMeans {
         SeenPolygon seen;
     };
     struct Part;
-    class RayMaker;
-    void find_parts(const ElementTree& tree, std::span<const ElementId> elements,
-                    std::span<const LightAccuracy> accuracy, Workspace& room) const;
+    void find_parts(const ElementTree& tree, std::span<const ElementId> elements, Workspace& room) const;
     void add_rays(const ElementTree& tree, Part& part, std::uint32_t number, Workspace& room) const;
     void trace(Workspace& room) const;
 

@@ -122,7 +122,7 @@ class LocalPass {
     SampledElement fitted(ElementId e, const std::vector<WeightedPlace>& places, bool curved,
                           Workspace& workspace) const;
     bool is_hidden(ElementId e, const Point& x, const Gathered& gathered) const;
-    bool is_minor(ElementId e, const ReflectedLight& b) const;
+    bool is_minor(ElementId e, double small_area, const ReflectedLight& b) const;
     /// Gathers the small elements among `active` with a mean, and a slope where it exceeds its noise, by rays that
     /// start all over them and are traced together for neighbours. Returns the other elements, and those that turn out
     /// to need places: their light varies, or they are hidden in part.

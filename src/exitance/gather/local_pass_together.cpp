@@ -113,7 +113,7 @@ class RaysTogether {
             const RayHit& hit = hits_[k];
             if (hit.surface.is_none()) continue;
             if (!hit.front) {
-                look_around(rays_[order[k]].element, sorted_starts_[k]);
+                look_around(rays_[order[k]].element, starts_[order[k]]);
                 continue;
             }
             fronts_.push_back({hit.region, place_of(stage_.scene, hit, sorted_starts_[k].at, sorted_directions_[k])});
@@ -138,7 +138,7 @@ class RaysTogether {
         }
     }
 
-    /// Examines the start of a ray that met a back: the first few of every element.
+    /// Examines the start of a ray that met a back, until one of the element is known to be hidden.
     void look_around(std::uint32_t element, const SurfacePoint& start) {
         std::uint8_t& hidden = hidden_[element];
         if (hidden != 0) return;
@@ -166,8 +166,8 @@ Spectrum squares(const Spectrum& s) {
     return s * s;
 }
 
-/// Polynomial of the gathered terms. Those that are not constant are shrunk according to their noise, as in
-/// fit_gathered(): on small elements they are hardly more than noise. `slope_squared`: mean square of the slope.
+/// Polynomial of the gathered terms. Those that are not constant are shrunk according to their noise: on
+/// small elements they are hardly more than noise. `slope_squared`: mean square of the slope.
 SampledElement as_sampled(const PooledGather& of, const Spectrum& rho, double gain, double& slope_squared) {
     SampledElement out;
     const Gathered mean_of = of.term(0);
@@ -179,7 +179,8 @@ SampledElement as_sampled(const PooledGather& of, const Spectrum& rho, double ga
         term[k] = of.term(k);
         slopes += mean(squares(rho * term[k].irradiance)), noise += mean(rho * rho * term[k].quarters);
     }
-    slope_squared = std::max(0.0, slopes - 2.3 * noise);  // derived from five degrees of freedom
+    slope_squared =
+        std::max(0.0, slopes - 3 * noise);  // derived from two slopes: noise exceeds it once in twenty times
     const double kept = slopes > noise ? 1 - noise / slopes : 0, lost = 1 - kept;
     out.noise_squared += kept * kept * noise + lost * lost * std::max(0.0, slopes - noise);
     out.light = std::sqrt(mean(squares(rho * mean_of.irradiance)) + kept * kept * slopes);
@@ -197,11 +198,9 @@ SampledElement as_sampled(const PooledGather& of, const Spectrum& rho, double ga
 
 /// True if an element of a crowd may be gathered together with others: it is small and whole, rays are not aimed from
 /// there, and the light of its two sides is not mixed.
-bool LocalPass::is_minor(ElementId e, const ReflectedLight& b) const {
+bool LocalPass::is_minor(ElementId e, double small_area, const ReflectedLight& b) const {
     const RegionId region = tree_.region(e);
-    if (stage_.area < static_cast<double>(ErrorShare::least_count) * tree_.area(e) || tree_.is_cell(e) ||
-        !stage_.scene.behind(region).is_none())
-        return false;
+    if (tree_.area(e) > small_area || tree_.is_cell(e) || !stage_.scene.behind(region).is_none()) return false;
     const Normal& n = stage_.scene.regions()[region].plane.n;
     const Point x = tree_.patch(e).at(tree_.centre(e));
     if (const BrightPlaces* bright = b.bright_places())
@@ -213,7 +212,8 @@ std::vector<ElementId> LocalPass::gather_together(const std::vector<ElementId>& 
                                                   const LocalPassDemand& demand, LocalPassReport& report,
                                                   Progress& progress, const StopRequest& stop) {
     std::vector<ElementId> small, rest;
-    for (const ElementId e : active) (is_minor(e, b) ? small : rest).push_back(e);
+    const double small_area = ErrorShare::small_area(stage_.area, active.size());
+    for (const ElementId e : active) (is_minor(e, small_area, b) ? small : rest).push_back(e);
     if (small.size() < elements_together) return active;
     sort_by_place(tree_, small);
     sampled_.resize(tree_.size());

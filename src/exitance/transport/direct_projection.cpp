@@ -192,7 +192,7 @@ class Projector {
     void fit_all(std::vector<ElementId> active, int depth) {
         if (depth == 0 && is_crowd_ && !many_ && !stop_.requested() && may_fit_together(stage_))
             active = fit_together(
-                stage_, out_.tree, active, stage_.area / ErrorShare::least_count,
+                stage_, out_.tree, active, ErrorShare::small_area(stage_.area, active.size()),
                 [&](ElementId e) { return noise_on(e); }, out_.fit, stop_);
         found_.assign(active.size(), {});
         shared_ranges_of(
@@ -240,8 +240,8 @@ class Projector {
     bool many_ = false, is_crowd_ = false;
     double share_ = 0;              ///< Squared error that an element may have if the scene is one room, (W/m^2)^2 m^2.
     std::vector<double> share_in_;  ///< Like `share_`, for each room; used if there are several.
-    Field<ElementId, float>
-        smoothing_;  ///< Factor on the squared error of an element, since its light is not smoothed.
+    /// Factor on the squared error that an element may have: 1 if distance smooths the light that it reflects.
+    Field<ElementId, float> smoothing_;
     std::vector<DirectFit> found_;
 };
 

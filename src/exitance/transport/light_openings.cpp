@@ -1,12 +1,10 @@
 #include "exitance/transport/light_openings.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <utility>
 
-#include "exitance/base/disjoint_sets.hpp"
 #include "exitance/base/parallel.hpp"
 
 namespace exitance {
@@ -137,43 +135,6 @@ std::size_t best_cut(const Cuts& cuts) {
     return best;
 }
 
-/// Moves leaves that exchange no light with the largest connected part of their side, but with the other side, to the
-/// latter. The two faces of a gap beside a lamp hit each other and the lit room, so that counts of rays leave both on
-/// the wrong side.
-/// sky_is_large  side of the sky, which connects the leaves of that side; empty without a sky
-void move_cut_off_leaves(const Flow& flow, const LeafNumbers& all, std::uint16_t part, std::optional<bool> sky_is_large,
-                         std::vector<std::uint8_t>& is_large) {
-    constexpr std::uint32_t none = 0xffffffffu;
-    DisjointSets sets(flow.area.size());
-    std::uint32_t under_sky = none;
-    for (std::uint32_t i : all)
-        for (std::uint32_t j : flow.rows.hits(i)) {
-            if (j != RayRows::missed && flow.part[j] == part && is_large[j] == is_large[i]) sets.unite(i, j);
-            if (j != RayRows::missed || !sky_is_large || *sky_is_large != (is_large[i] != 0)) continue;
-            if (under_sky != none) sets.unite(i, under_sky);
-            under_sky = i;
-        }
-    std::vector<double> area(flow.area.size());
-    for (std::uint32_t i : all) area[sets.root(i)] += flow.area[i];
-    std::array<std::uint32_t, 2> largest = {none, none};
-    for (std::uint32_t i : all) {
-        std::uint32_t& of_side = largest[is_large[i]];
-        if (sets.root(i) == i && (of_side == none || area[i] > area[of_side])) of_side = i;
-    }
-    const auto is_cut_off = [&](std::uint32_t i) { return sets.root(i) != largest[is_large[i]]; };
-    std::vector<std::uint8_t> sees_other(flow.area.size(), 0);
-    for (std::uint32_t i : all)
-        for (std::uint32_t j : flow.rows.hits(i)) {
-            if (j == RayRows::missed || flow.part[j] != part || is_large[j] == is_large[i]) continue;
-            if (is_cut_off(i)) sees_other[sets.root(i)] = 1;
-            if (is_cut_off(j)) sees_other[sets.root(j)] = 1;
-        }
-    std::vector<std::uint32_t> moved;
-    for (std::uint32_t i : all)
-        if (sees_other[sets.root(i)]) moved.push_back(i);
-    for (std::uint32_t i : moved) is_large[i] ^= 1;
-}
-
 /// Moves each leaf to the side that most of its rays hit. An order from few rays puts some leaves on the wrong side of
 /// a cut, where they would be judged by the light of the other room. The sky belongs to the side that sends more light
 /// to it. Returns nullopt if a side has no leaves left.
@@ -197,7 +158,6 @@ std::optional<OpeningBetween> by_what_is_seen(const Flow& flow, OpeningBetween s
         }
         if (std::exchange(is_large, next) == next) break;
     }
-    move_cut_off_leaves(flow, all, part, sky == 0 ? std::nullopt : std::optional(sky > 0), is_large);
     OpeningBetween out;
     double small = 0, large = 0;  // m^2
     for (std::uint32_t i : all) {

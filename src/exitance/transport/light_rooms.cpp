@@ -367,8 +367,9 @@ struct LeavesBetween {
     std::vector<std::uint32_t> group;
 };
 
-/// Finds the leaves of whose rays more than a tenth end in another room, and those that see mostly near things, and
-/// among them another room or other such leaves. The latter belong to one group if they hit each other.
+/// Finds the leaves of whose rays more than a tenth end in another room; those that see mostly near things, and among
+/// them another room; and those of the latter kind that leaves found so far hit. Leaves that see mostly near things
+/// belong to one group if one hits the other.
 LeavesBetween leaves_between(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering,
                              std::span<const std::size_t> room_of, std::size_t rooms) {
     constexpr double firm = 0.1;   // share of rays into other rooms, up to which a leaf may be within its room
@@ -459,14 +460,22 @@ std::vector<std::size_t> given_to_brighter(const RayRows& rows, const ElementTre
         for (std::size_t r = 0; r < rooms; ++r)
             of_group[r] += tree.area(numbering.leaves[between[k]]) * share[k * rooms + r];
     }
+    std::vector<double> area(rooms), moved(rooms);  // m^2
+    for (std::size_t i = 0; i < out.size(); ++i) area[room_of[i]] += tree.area(numbering.leaves[i]);
     for (std::size_t k = 0; k < between.size(); ++k) {
         const std::vector<double>& of_group = sums[group[k]];
+        const std::size_t i = between[k];
         const double all = std::accumulate(of_group.begin(), of_group.end(), 0.0);
         for (std::size_t r = 0; r < rooms; ++r)
-            if (of_group[r] >= seen * all && light[r] > brighter * light[room_of[between[k]]] &&
-                light[r] > light[out[between[k]]])
-                out[between[k]] = r;
+            if (of_group[r] >= seen * all && light[r] > brighter * light[room_of[i]] && light[r] > light[out[i]])
+                out[i] = r;
+        if (out[i] != room_of[i]) moved[room_of[i]] += tree.area(numbering.leaves[i]);
     }
+    // A room that would lose most of its area is a gap, such as one behind furniture, whose mouth holds nearly all of
+    // its light. What is left would be nearly dark, and its error relative to its light large.
+    constexpr double most_moved = 0.5;
+    for (const std::size_t i : between)
+        if (moved[room_of[i]] > most_moved * area[room_of[i]]) out[i] = room_of[i];
     return out;
 }
 

@@ -127,15 +127,15 @@ void add_luminaire(const Photometry& photometry, const PlacedLuminaire& luminair
     one.add(luminaire);
 }
 
+bool emits_light(const SceneDescription& scene) {
+    const auto emits = [&](const SceneDescription::Face& face) { return scene.materials[face.material].emits(); };
+    return !scene.lights.empty() || std::any_of(scene.faces.begin(), scene.faces.end(), emits);
+}
+
 void add_luminaires(const std::vector<PlacedLuminaire>& luminaires, std::optional<bool> photometric,
                     SceneDescription& scene, std::vector<Finding>& findings) {
     if (luminaires.empty()) return;
-    // Files may define emitting materials that no face has.
-    const bool shines = !scene.lights.empty() ||
-                        std::any_of(scene.faces.begin(), scene.faces.end(), [&](const SceneDescription::Face& face) {
-                            return scene.materials[face.material].emits();
-                        });
-    const bool in_lumens = photometric.value_or(scene.photometric || !shines);
+    const bool in_lumens = photometric.value_or(scene.photometric || !emits_light(scene));
     if (!in_lumens && !photometric)
         findings.push_back(
             {Finding::Kind::warning, scene.file, 0,

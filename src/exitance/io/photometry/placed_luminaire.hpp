@@ -36,6 +36,9 @@ struct Photometry;
 /// Adds a luminaire with `photometry` in place of its file, in the scene's unit of light.
 void add_luminaire(const Photometry& photometry, const PlacedLuminaire& luminaire, SceneDescription& scene);
 
+/// True if a face or a light without extent emits light. Files may define emitting materials that no face has.
+bool emits_light(const SceneDescription& scene);
+
 /// Adds luminaires to a scene, with their openings as emitting faces. Each becomes a group "GROUP #3" or "luminaire
 /// #3". They are added last, so that they are on top of coplanar faces: an opening may be in the plane of a ceiling.
 /// photometric  true if the scene's light is in lumens; empty: true unless something already emits in watts. In a scene

@@ -252,10 +252,7 @@ void give_sky(const ChosenSky& sky, ReadScene& read) {
     const bool photometric = sky.photometric.value_or(description.photometric);
     description.distant = photometric ? sky.in_lumens : sky.in_watts;
     if (!photometric || description.photometric) return;
-    const bool shines = std::any_of(description.materials.begin(), description.materials.end(),
-                                    [](const Material& m) { return m.emits(); }) ||
-                        !description.lights.empty();
-    if (shines)
+    if (emits_light(description))
         read.findings.push_back({Finding::Kind::warning, description.file, 0,
                                  "the sky is in lumens: the scene's own light is taken as lumens, too",
                                  "leave out efficacy_direct and efficacy_diffuse to have both in watts"});
