@@ -209,7 +209,7 @@ void DirectLight::look_at(const SourceName& source, std::span<const Point> recei
     const auto& [e, piece] = source;
     const Emitter& emitter = emitters_[e];
     if (std::all_of(receiver.begin(), receiver.end(),
-                    [&](const Point& x) { return occluders_->lie_in_one_plane(x, light.n, piece); }))
+                    [&](const Point& x) { return occluders_->lie_in_one_plane(x, light.n, source.piece); }))
         return;
     if (occluders_->has_nothing_inside() && !is_distant(e)) {
         if (face_each_other({light.n, dot(light.n, receiver[0])}, receiver, emitter.plane, occluders_->corners(piece)))

@@ -290,10 +290,12 @@ TEST(RowFactors, FacesThatTouchAlongAnEdgeHaveExactFactors) {
     };
     for (const double degrees : {1.0, 7.6, 30.0, 60.0, 120.0})
         for (const Vec3& up : {Vec3{0, 0, 1}, Vec3{0.3, -0.5, 0.7}})
-            for (const auto& [apex, scale] : {Place{{0, 0, 0}, 1}, Place{{1000, 0, 30}, 1}, Place{{0.1, 0.2, 0.3}, 1e3},
-                                              Place{{0.1, 0.2, 0.3}, 1e-3}}) {
+            for (const Place& place : {Place{{0, 0, 0}, 1}, Place{{1000, 0, 30}, 1}, Place{{0.1, 0.2, 0.3}, 1e3},
+                                       Place{{0.1, 0.2, 0.3}, 1e-3}}) {
                 const Frame frame(normalized(up));
-                const auto at = [&](double x, double y, double z) { return apex + scale * frame.to_world(x, y, z); };
+                const auto at = [&](double x, double y, double z) {
+                    return place.apex + place.scale * frame.to_world(x, y, z);
+                };
                 const double c = std::cos(degrees * pi / 180), s = std::sin(degrees * pi / 180);
                 const Outline square = {at(0, 0, 0), at(0.1, 0, 0), at(0.1, 0.1, 0), at(0, 0.1, 0)},
                               large = {at(-5, 6 * c, 6 * s), at(5, 6 * c, 6 * s), at(5, 0, 0), at(-5, 0, 0)};
