@@ -31,17 +31,11 @@ bool DistantMeans::suits(const DirectLight& direct) {
 }
 
 DistantMeans::DistantMeans(const DirectLight& direct, const RayTracer& tracer)
-    : direct_(&direct), tracer_(&tracer), sky_(direct.scene().distant()), reach_(2 * direct.scene().size()) {
-    for (std::uint32_t e = 0; e < direct.emitters().size(); ++e) {
-        const DirectLight::Emitter& emitter = direct.emitters()[e];
-        if (!direct.looks_far(e) || emitter.sky != DirectLight::Emitter::Sky::none) continue;
-        const PieceId piece = *emitter.pieces.begin();
-        const std::span<const Point> corners = direct.occluders().corners(piece);
-        suns_.push_back(
-            {{e, piece},
-             SeenPolygon(corners, emitter.plane.n, norm(area_vector(corners)), direct.occluders().middle())});
-    }
-}
+    : direct_(&direct),
+      tracer_(&tracer),
+      sky_(kept_domes(direct)),
+      suns_(distant_discs(direct)),
+      reach_(2 * direct.scene().size()) {}
 
 Spectrum DistantMeans::Part::share() const {
     Spectrum all, arrived, out;
@@ -135,7 +129,7 @@ void DistantMeans::find_parts(const ElementTree& tree, std::span<const ElementId
         const ElementId e = elements[i];
         const RegionId region = tree.region(e);
         const Normal& n = direct_->scene().regions()[region].plane.n;
-        const auto add = [&](const Sun* sun, const Spectrum& open, std::uint32_t rays) {
+        const auto add = [&](const DistantDisc* sun, const Spectrum& open, std::uint32_t rays) {
             if (!(max(open) > 0)) return;
             room.parts_.push_back({.element = e, .index = i, .sun = sun, .open = open, .wanted = rays});
             add_rays(tree, room.parts_.back(), static_cast<std::uint32_t>(room.parts_.size()) - 1, room);
@@ -145,7 +139,7 @@ void DistantMeans::find_parts(const ElementTree& tree, std::span<const ElementId
             if (room.aim_.weight[0] > 0) add(nullptr, room.aim_.open, first_rays_to_sky);
         }
         const Receiver at = direct_->receiver(tree.patch(e).at(tree.centre(e)), n, region);
-        for (const Sun& sun : suns_) {
+        for (const DistantDisc& sun : suns_) {
             const DirectLight::Emitter& emitter = direct_->emitters()[sun.name.emitter];
             if (!direct_->shines_on(emitter, region)) continue;
             add(&sun,
@@ -160,8 +154,6 @@ void DistantMeans::find(const ElementTree& tree, std::span<const ElementId> elem
                         std::span<const LightAccuracy> accuracy, Workspace& room, std::span<Mean> out) const {
     constexpr double rounding = 1e-9;    // of sums of weights; derived from double precision
     constexpr double fewest_seen = 0.1;  // share of the sky; derived from the share that one of the first rays has
-    // Nearly hidden light needs no better accuracy than light of this share of the unoccluded light, as in RayLight.
-    constexpr double min_share = 0.05;  // derived from RayLight::min_share
     find_parts(tree, elements, room);
     std::vector<std::uint8_t> is_open(elements.size(), 1);  // 1 while an element may need more rays
     for (bool grows = true; grows;) {
@@ -184,7 +176,8 @@ void DistantMeans::find(const ElementTree& tree, std::span<const ElementId> elem
             }
             out[i] = mean_of;
             if (is_divided) continue;
-            const double least = std::max(mean(mean_of.irradiance) - std::sqrt(mean_of.variance), min_share * open);
+            const double least =
+                std::max(mean(mean_of.irradiance) - std::sqrt(mean_of.variance), RayLight::min_share * open);
             const double allowed = accuracy[i].allowed(least);
             out[i].is_found = true;
             if (mean_of.variance <= allowed * allowed) continue;

@@ -6,9 +6,9 @@
 
 #include "exitance/base/direction_order.hpp"
 #include "exitance/direct/direct_light.hpp"
+#include "exitance/direct/distant_sources.hpp"
 #include "exitance/direct/light_accuracy.hpp"
 #include "exitance/direct/sky_tree.hpp"
-#include "exitance/direct/source_point.hpp"
 #include "exitance/mesh/element_tree.hpp"
 #include "exitance/visibility/rays.hpp"
 
@@ -42,10 +42,6 @@ class DistantMeans {
               Workspace& room, std::span<Mean> out) const;
 
   private:
-    struct Sun {
-        DirectLight::SourceName name;
-        SeenPolygon seen;
-    };
     struct Part;
     void find_parts(const ElementTree& tree, std::span<const ElementId> elements, Workspace& room) const;
     void add_rays(const ElementTree& tree, Part& part, std::uint32_t number, Workspace& room) const;
@@ -54,18 +50,18 @@ class DistantMeans {
     const DirectLight* direct_;
     const RayTracer* tracer_;
     SkyTree sky_;
-    std::vector<Sun> suns_;
+    std::vector<DistantDisc> suns_;
     double reach_ = 0;  ///< Length of rays, beyond all surfaces, m.
 };
 
 /// Light of a sky or a sun on an element.
 struct DistantMeans::Part {
     ElementId element;
-    std::uint32_t index = 0;   ///< Position of the element in the call.
-    const Sun* sun = nullptr;  ///< Null: the sky.
-    Spectrum open;             ///< Light without occlusion, W/m^2.
-    std::uint32_t rays = 0;    ///< Rays cast so far, a power of two.
-    std::uint32_t wanted = 0;  ///< Rays to have after the next step.
+    std::uint32_t index = 0;           ///< Position of the element in the call.
+    const DistantDisc* sun = nullptr;  ///< Null: the sky.
+    Spectrum open;                     ///< Light without occlusion, W/m^2.
+    std::uint32_t rays = 0;            ///< Rays cast so far, a power of two.
+    std::uint32_t wanted = 0;          ///< Rays to have after the next step.
     /// Sums over eighths of the rays: of their weights, and of the weights of those that arrive.
     struct Sums {
         Spectrum all, arrived;

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "exitance/mesh/pieces.hpp"
 #include "exitance/scene/sky/perez_sky.hpp"
 #include "exitance/scene/sky/sun_position.hpp"
@@ -10,52 +13,101 @@
 namespace exitance {
 namespace {
 
-/// Small squares at several heights below a sky.
-Scene squares_under_sky() {
+constexpr int along = 20;  ///< Squares along each side.
+
+/// 400 squares of 0.1 m, side by side, whose height is given by height(i, k), and a board above them if `has_board`.
+template <class Height>
+SceneDescription squares(bool has_board, const Height& height) {
     SceneDescription d;
     d.materials = {{"grey", Spectrum(0.5), {}}};
     d.groups = {"squares"};
-    for (int i = 0; i < 20; ++i)
-        for (int k = 0; k < 20; ++k) {
-            const auto first = static_cast<std::uint32_t>(d.points.size());
-            const Point o{0.12 * i, 0.12 * k, 0.05 * ((7 * i + 3 * k) % 5)};
-            for (const Vec3& more : {Vec3{}, Vec3{0.1, 0, 0}, Vec3{0.1, 0.1, 0}, Vec3{0, 0.1, 0}})
-                d.points.push_back(o + more);
-            d.faces.push_back({{first, first + 1, first + 2, first + 3}});
-        }
-    d.distant.domes = {{perez_sky({100, 300, 80}, sky_direction(40, 10)), Spectrum(100.0)}};
-    CheckedScene checked = make_scene(std::move(d));
-    EXI_CHECK(static_cast<bool>(checked.scene));
-    return std::move(*checked.scene);
+    const auto add = [&](const Point& o, double side) {
+        const auto first = static_cast<std::uint32_t>(d.points.size());
+        for (const Vec3& more : {Vec3{}, Vec3{side, 0, 0}, Vec3{side, side, 0}, Vec3{0, side, 0}})
+            d.points.push_back(o + more);
+        d.faces.push_back({{first, first + 1, first + 2, first + 3}});
+    };
+    for (int i = 0; i < along; ++i)
+        for (int k = 0; k < along; ++k) add({0.12 * i, 0.12 * k, height(i, k)}, 0.1);
+    if (has_board) add({0.5, 0.5, 1}, 1);
+    return d;
 }
 
-TEST(DistantMeans, AreThoseOfExactLight) {
-    const Scene scene = squares_under_sky();
+/// Means of the elements, and values of exact light at 4 x 4 places of each.
+struct Compared {
+    std::vector<DistantMeans::Mean> found;
+    std::vector<std::vector<double>> exact;
+};
+
+Compared compare(SceneDescription d, const LightAccuracy& accuracy) {
+    CheckedScene checked = make_scene(std::move(d));
+    EXI_CHECK(static_cast<bool>(checked.scene));
+    const Scene& scene = *checked.scene;
     const Occluders occluders(scene);
     const RayTracer tracer(scene);
     const DirectLight direct(scene, occluders);
-    ASSERT_TRUE(DistantMeans::suits(direct));
+    EXPECT_TRUE(DistantMeans::suits(direct));
     ElementTree tree;
     for (const Piece& piece : cut_into_pieces(scene)) tree.add_root(piece.region, piece.patch);
     const std::vector<ElementId> elements = tree.leaves();
-    ASSERT_GT(elements.size(), 100u);
-    const std::vector<LightAccuracy> accuracy(elements.size(), LightAccuracy{.relative = 0.05, .absolute = 1});
-    std::vector<DistantMeans::Mean> found(elements.size());
+    Compared out{std::vector<DistantMeans::Mean>(elements.size()), {}};
     DistantMeans::Workspace room;
-    DistantMeans(direct, tracer).find(tree, elements, accuracy, room, found);
+    DistantMeans(direct, tracer)
+        .find(tree, elements, std::vector<LightAccuracy>(elements.size(), accuracy), room, out.found);
     DirectLight::Workspace scratch;
-    double squares = 0, allowed = 0, difference = 0, all = 0;
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-        if (!found[i].is_found) continue;
-        const RegionId region = tree.region(elements[i]);
-        const double exact =
-            mean(direct.irradiance(tree.patch(elements[i]).centre(), scene.regions()[region].plane.n, region, scratch));
-        const double error = mean(found[i].irradiance) - exact;
-        squares += error * error, difference += error, all += exact, allowed += std::pow(0.05 * exact + 1, 2);
+    for (const ElementId e : elements) {
+        std::vector<double>& values = out.exact.emplace_back();
+        const RegionId region = tree.region(e);
+        for (int i = 0; i < 4; ++i)
+            for (int k = 0; k < 4; ++k)
+                values.push_back(mean(direct.irradiance(tree.patch(e).at({(i + 0.5) / 4, (k + 0.5) / 4}),
+                                                        scene.regions()[region].plane.n, region, scratch)));
     }
-    // The light also varies over a square, so that its centre differs from the mean.
-    EXPECT_LT(squares, 4 * allowed);
-    EXPECT_LT(std::abs(difference), 0.02 * all);
+    return out;
+}
+
+double mean_of(const std::vector<double>& values) {
+    double sum = 0;
+    for (const double v : values) sum += v;
+    return sum / static_cast<double>(values.size());
+}
+
+TEST(DistantMeans, AreThoseOfExactLightOfASky) {
+    constexpr LightAccuracy accuracy{.relative = 0.05, .absolute = 1};
+    SceneDescription d = squares(false, [](int i, int k) { return 0.05 * ((7 * i + 3 * k) % 5); });
+    d.distant.domes = {{perez_sky({100, 300, 80}, sky_direction(40, 10)), Spectrum(100.0)}};
+    const Compared all = compare(std::move(d), accuracy);
+    ASSERT_EQ(all.found.size(), 400u);
+    double squares = 0, allowed = 0, difference = 0;
+    for (std::size_t i = 0; i < all.found.size(); ++i) {
+        ASSERT_TRUE(all.found[i].is_found);
+        const double exact = mean_of(all.exact[i]), error = mean(all.found[i].irradiance) - exact;
+        const double limit = accuracy.allowed(exact);
+        squares += error * error, allowed += limit * limit, difference += error;
+    }
+    // Variances are at most the squared limit; four standard deviations of a sum of 400 squares are 28% of it.
+    EXPECT_LT(squares, 1.28 * allowed);
+    EXPECT_LT(std::abs(difference), 4 * std::sqrt(allowed));
+}
+
+TEST(DistantMeans, AreNotFoundWhereAShadowOfTheSunEnds) {
+    SceneDescription d = squares(true, [](int, int) { return 0.0; });
+    d.distant.discs.push_back({sky_direction(60, 200), 0.0047, Spectrum(500.0)});
+    const Compared all = compare(std::move(d), {.relative = 0.05, .absolute = 1});
+    int whole = 0, divided = 0;
+    for (std::size_t i = 0; i < all.found.size(); ++i) {
+        const auto [least, most] = std::minmax_element(all.exact[i].begin(), all.exact[i].end());
+        if (*most - *least < 1e-6 * *most || *most == 0) {  // all lit, or all in the shadow
+            // The border may cross a part of the square that none of the places is in.
+            whole += all.found[i].is_found;
+            if (all.found[i].is_found) EXPECT_NEAR(mean(all.found[i].irradiance), *most, 1e-6 * *most) << i;
+        } else {
+            divided += 1;
+            EXPECT_FALSE(all.found[i].is_found) << i;
+        }
+    }
+    EXPECT_GT(divided, 20);  // the border of 4 m crosses some 35 squares
+    EXPECT_GT(whole, 300);
 }
 
 }  // namespace

@@ -12,29 +12,6 @@ namespace {
 
 constexpr std::uint32_t fastest_growth = 16;  ///< Limit per round, since a variance from few rays is uncertain.
 
-std::size_t facet_count(const DistantLight::Dome& dome) {
-    DistantLight alone;
-    alone.domes.push_back(dome);
-    return distant_facets(alone).size();
-}
-
-/// The domes of the scene whose facets are among the emitters.
-DistantLight kept_domes(const DirectLight& direct) {
-    DistantLight out;
-    std::vector<std::uint32_t> dome_of;  // dome of each facet, in the order of distant_facets()
-    const std::vector<DistantLight::Dome>& domes = direct.occluders().scene().distant().domes;
-    for (std::uint32_t i = 0; i < domes.size(); ++i) dome_of.resize(dome_of.size() + facet_count(domes[i]), i);
-    std::vector<std::uint8_t> is_kept(domes.size(), 0);
-    for (const DirectLight::Emitter& emitter : direct.emitters()) {
-        if (emitter.sky != DirectLight::Emitter::Sky::open) continue;
-        const PieceId piece = *emitter.pieces.begin();
-        is_kept[dome_of[piece.value - direct.occluders().distant_pieces().front().value]] = 1;
-    }
-    for (std::size_t i = 0; i < domes.size(); ++i)
-        if (is_kept[i]) out.domes.push_back(domes[i]);
-    return out;
-}
-
 bool is_grey(const Spectrum& s) {
     return std::all_of(s.value.begin(), s.value.end(), [&](double v) { return v == s[0]; });
 }
@@ -69,16 +46,8 @@ RayLight::RayLight(const DirectLight& direct, const RayTracer& tracer)
       tracer_(&tracer),
       tree_(direct),
       sky_(kept_domes(direct)),
+      discs_(distant_discs(direct)),
       size_(direct.occluders().scene().size()) {
-    for (std::uint32_t e = 0; e < direct.emitters().size(); ++e) {
-        const DirectLight::Emitter& emitter = direct.emitters()[e];
-        if (!direct.looks_far(e) || emitter.sky != DirectLight::Emitter::Sky::none) continue;
-        const PieceId piece = *emitter.pieces.begin();
-        const std::span<const Point> corners = direct.occluders().corners(piece);
-        discs_.push_back(
-            {{e, piece},
-             SeenPolygon(corners, emitter.plane.n, norm(area_vector(corners)), direct.occluders().middle())});
-    }
     for (const Pane& pane : direct.occluders().scene().panes()) is_coloured_ |= !is_grey(pane.transmissivity);
 }
 

@@ -6,11 +6,11 @@
 #include <mutex>
 #include <vector>
 
+#include "exitance/direct/distant_sources.hpp"
 #include "exitance/direct/emitter_tree.hpp"
 #include "exitance/direct/light_accuracy.hpp"
 #include "exitance/direct/sky_openings.hpp"
 #include "exitance/direct/sky_tree.hpp"
-#include "exitance/direct/source_point.hpp"
 #include "exitance/mesh/element_tree.hpp"
 #include "exitance/visibility/portal_aim.hpp"
 #include "exitance/visibility/rays.hpp"
@@ -36,6 +36,9 @@ namespace exitance {
 /// punctual lights is exact.
 class RayLight {
   public:
+    /// Nearly hidden light needs no better accuracy than light of this share of the unoccluded light.
+    static constexpr double min_share = 0.05;
+
     /// Both arguments must outlive this object.
     RayLight(const DirectLight& direct, const RayTracer& tracer);
 
@@ -112,8 +115,6 @@ class RayLight {
     /// features smaller than the light of one ray, as a share of that light.
     static constexpr double half_hidden = 0.5;
     static constexpr std::uint32_t least_pilot = 16, most_pilot = 64;
-    /// Nearly hidden light needs no better accuracy than light of this share of the unoccluded light.
-    static constexpr double min_share = 0.05;
     /// Rounds a number of rays up to a power of two between `least` and `most`.
     static std::uint32_t power_of_two(double rays, std::uint32_t least, std::uint32_t most);
 
@@ -121,12 +122,7 @@ class RayLight {
     const RayTracer* tracer_;
     EmitterTree tree_;
     SkyTree sky_;
-    /// A disc of the sun, as seen from every place.
-    struct Disc {
-        DirectLight::SourceName name;
-        SeenPolygon seen;
-    };
-    std::vector<Disc> discs_;
+    std::vector<DistantDisc> discs_;   ///< Every place sees them alike.
     mutable std::once_flag searched_;  ///< Guards `openings_`, which is made at the first call of openings().
     mutable std::unique_ptr<const SkyOpenings> openings_;
     double size_ = 0;           ///< m

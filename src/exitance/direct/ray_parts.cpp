@@ -67,7 +67,7 @@ std::uint64_t RayLight::Part::sequence() const {
 const SkyOpenings& RayLight::openings() const {
     std::call_once(searched_, [this] {
         std::vector<SkyOpenings::Sun> suns;
-        for (const Disc& disc : discs_) suns.push_back({&disc.seen, direct_->occluders().middle()});
+        for (const DistantDisc& disc : discs_) suns.push_back({&disc.seen, direct_->occluders().middle()});
         openings_ = std::make_unique<const SkyOpenings>(direct_->occluders(), *tracer_, sky_, suns);
     });
     return *openings_;
@@ -98,7 +98,7 @@ void RayLight::add_discs(const Receiver& at, Workspace& room) const {
     if (discs_.empty()) return;
     if (room.disc_light_.empty() || !(room.disc_normal_ == at.n)) {
         room.disc_normal_ = at.n, room.disc_light_.clear();
-        for (const Disc& disc : discs_) room.disc_light_.push_back(open_light(at, disc.name, room));
+        for (const DistantDisc& disc : discs_) room.disc_light_.push_back(open_light(at, disc.name, room));
     }
     for (std::size_t i = 0; i < discs_.size(); ++i)
         if (max(room.disc_light_[i]) > 0)

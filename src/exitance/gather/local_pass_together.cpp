@@ -11,7 +11,6 @@
 #include "exitance/mesh/spatial_order.hpp"
 #include "exitance/processes/distributed.hpp"
 #include "exitance/transport/open_points.hpp"
-#include "exitance/visibility/ray_lift.hpp"
 
 namespace exitance {
 namespace {
@@ -106,14 +105,15 @@ class RaysTogether {
         sorted_starts_.clear(), sorted_directions_.clear();
         for (const std::uint32_t i : order)
             sorted_starts_.push_back(starts_[i]), sorted_directions_.push_back(directions_[i]);
-        trace_from_any_region();
+        hits_.resize(sorted_starts_.size());
+        stage_.tracer.nearest(sorted_starts_, sorted_directions_, hits_, Mirrored::followed);
         fronts_.clear(), share_.clear();
         hidden_.assign(rays_.empty() ? 0 : rays_.back().element + 1, 0);
         for (std::size_t k = 0; k < order.size(); ++k) {
             const RayHit& hit = hits_[k];
             if (hit.surface.is_none()) continue;
             if (!hit.front) {
-                look_around(rays_[order[k]].element, starts_[order[k]]);
+                look_around(rays_[order[k]].element, sorted_starts_[k]);
                 continue;
             }
             fronts_.push_back({hit.region, place_of(stage_.scene, hit, sorted_starts_[k].at, sorted_directions_[k])});
@@ -121,21 +121,6 @@ class RaysTogether {
         }
         values_.resize(fronts_.size());
         b_.read(fronts_, values_);
-    }
-
-    /// Finds the first hits. The tracer takes rays of one region at a time, so they are lifted off their regions here.
-    void trace_from_any_region() {
-        hits_.resize(sorted_starts_.size()), lifted_.clear();
-        for (const auto& [x, region] : sorted_starts_) lifted_.push_back(x + ray_lift(stage_.scene, region));
-        stage_.tracer.nearest(lifted_, sorted_directions_, RegionId(), hits_, Mirrored::followed);
-        for (std::size_t k = 0; k < hits_.size(); ++k) {
-            const auto& [x, region] = sorted_starts_[k];
-            if (hits_[k].surface.is_none() || hits_[k].region != region)
-                sorted_starts_[k].at = lifted_[k];  // from where the hit's distance is measured
-            else
-                stage_.tracer.nearest(std::span(&sorted_directions_[k], 1), x, region, std::span(&hits_[k], 1),
-                                      Mirrored::followed);
-        }
     }
 
     /// Examines the start of a ray that met a back, until one of the element is known to be hidden.
@@ -153,7 +138,6 @@ class RaysTogether {
     std::vector<Vec3> directions_, sorted_directions_;
     std::array<std::vector<double>, 4> coordinates_;
     DirectionOrder order_;
-    std::vector<Point> lifted_;
     std::vector<RayHit> hits_;
     std::vector<HitPoint> fronts_;
     std::vector<std::uint32_t> share_;  ///< Entry of `rays_` for each front.

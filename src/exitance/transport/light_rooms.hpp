@@ -38,7 +38,7 @@ class LightRooms {
     /// of this one. The weighted areas sum to the total area. 1 if the whole scene is one room.
     double weight(const ElementTree& tree, ElementId e) const;
     /// Like weight(), plus the weight that the element's light has in the other rooms that it illuminates: the ground
-    /// outside a window counts by the room behind the window.
+    /// outside a window counts by the room behind the window. It counts more if that room is darker.
     double importance(const ElementTree& tree, ElementId e) const;
     /// Smallest importance() of the elements of a piece.
     double importance_of_piece(std::size_t piece) const { return count() > 0 ? piece_importance_[piece] : 1; }
@@ -49,7 +49,8 @@ class LightRooms {
   private:
     void set(std::span<const std::size_t> room_of, std::size_t rooms, const ElementTree& tree,
              const LeafNumbering& numbering);
-    void weigh(const ElementTree& tree, const LeafNumbering& numbering, const RayRows& rows);
+    void weigh(const ElementTree& tree, const LeafNumbering& numbering, const RayRows& rows,
+               std::span<const double> light);
 
     friend LightRooms find_light_rooms(const Stage&, std::uint64_t, const StopRequest&);
     std::vector<double> areas_;

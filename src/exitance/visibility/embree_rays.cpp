@@ -17,14 +17,14 @@
 #include "exitance/scene/other_side.hpp"
 #include "exitance/visibility/glass/ray_fates.hpp"
 #include "exitance/visibility/narrow_gaps.hpp"
-#include "exitance/visibility/ray_lift.hpp"
 #include "exitance/visibility/rays.hpp"
 
 namespace exitance {
 namespace {
 
 constexpr std::size_t width = 16;  ///< Rays per packet; Embree splits it on machines with narrower vectors.
-constexpr double lift = ray_lift_share, stack_step = lift / 2;  ///< Shares of the scene's size.
+constexpr double lift = 0x1p-20;   ///< Share of the scene's size: 16 roundings of a coordinate in single precision.
+constexpr double stack_step = lift / 2;
 /// Height up to which faces above a region are found, as a share of the height at which its rays start: the start and a
 /// face must not be the same in single precision, which has an error of a sixteenth of `lift`.
 constexpr double gap_reach = 1.25;   // derived from 1 + 1 / 16, with a margin
@@ -330,9 +330,12 @@ struct RayTracer::Content {
 
     /// True if anything is between a point below a close face and another point, which is lifted off `other`.
     bool is_blocked_in_gap(const SurfacePoint& x, double height, const SurfacePoint& other) const {
+        const double above_other = gap_height(other.at, other.region);
+        const Vec3 lifted = above_other < HUGE_VAL ? (0.5 * above_other) * scene->regions()[other.region].plane.n
+                                                   : offset(other.region);
         RayHit hit;
-        trace_in_gap(x.at, other.at + offset(other.region) - x.at, x.region, height, hit);
-        const bool at_end = !other.region.is_none() && hit.region == other.region;
+        trace_in_gap(x.at, other.at + lifted - x.at, x.region, height, hit);
+        const bool at_end = hit.front && !other.region.is_none() && hit.region == other.region;
         return !at_end && hit.distance < 1 - end_margin;
     }
 
@@ -375,6 +378,9 @@ struct RayTracer::Content {
         }
     }
 
+    template <class Start>
+    void nearest(std::span<const Vec3> directions, const Start& start, bool same, std::span<RayHit> hits,
+                 Mirrored mirrored) const;
     template <class Ends>
     std::size_t occluded(std::span<bool> blocked, const Ends& ends) const;
 
@@ -404,59 +410,69 @@ std::size_t RayTracer::triangle_count() const {
     return content_->surface_of.size();
 }
 
-std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const Vec3> directions, RegionId own,
-                               std::span<RayHit> hits, Mirrored mirrored) const {
-    EXI_CHECK(origins.size() == directions.size() || origins.size() == 1);
+/// start(i): where ray i starts, with the region that it is lifted off; `same` if that is the same for all rays.
+template <class Start>
+void RayTracer::Content::nearest(std::span<const Vec3> directions, const Start& start, bool same,
+                                 std::span<RayHit> hits, Mirrored mirrored) const {
     EXI_CHECK(hits.size() == directions.size());
-    const bool shared = origins.size() == 1;
-    const Vec3 lifted = content_->offset(own);
-    const RegionId behind = content_->scene->behind(own);
-    const auto side_of = [&](const Vec3& direction) {
-        return !behind.is_none() && dot(direction, content_->scene->regions()[own].plane.n) < 0 ? behind : own;
-    };
+    if (directions.empty()) return;
+    const auto lifted = [&](const SurfacePoint& s) { return local(s.at + offset(s.region)); };
     alignas(64) RTCRayHit16 packet;
     alignas(64) std::array<int, width> valid;
     valid.fill(-1);
     // Write data that all packets share only once: Embree changes only the far end and the hit.
-    const Float3 start = shared ? content_->local(origins[0] + lifted) : Float3();
-    const double shared_height = shared ? content_->gap_height(origins[0], own) : HUGE_VAL;
-    for (std::size_t i = 0; i < width; ++i) set_ray(packet.ray, i, start, {}, 0, HUGE_VALF);
+    const SurfacePoint shared = start(0);
+    const double shared_height = gap_height(shared.at, shared.region);
+    for (std::size_t i = 0; i < width; ++i) set_ray(packet.ray, i, lifted(shared), {}, 0, HUGE_VALF);
     for (std::size_t first = 0; first < directions.size(); first += width) {
         const std::size_t count = std::min(width, directions.size() - first);
         std::fill(valid.begin() + static_cast<std::ptrdiff_t>(count), valid.end(), 0);
         for (std::size_t i = 0; i < count; ++i) {
-            const Float3 direction = content_->local_direction(directions[first + i]);
+            const Float3 direction = local_direction(directions[first + i]);
             packet.ray.dir_x[i] = direction.x, packet.ray.dir_y[i] = direction.y, packet.ray.dir_z[i] = direction.z;
             packet.ray.tfar[i] = HUGE_VALF;
             packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
         }
-        for (std::size_t i = 0; i < count && !shared; ++i) {
-            const Float3 origin = content_->local(origins[first + i] + lifted);
-            packet.ray.org_x[i] = origin.x, packet.ray.org_y[i] = origin.y, packet.ray.org_z[i] = origin.z;
-        }
-        for (std::size_t i = 0; i < count && !behind.is_none(); ++i) {
-            const Point& origin = origins[shared ? 0 : first + i];
-            const Float3 at = content_->local(origin + content_->offset(side_of(directions[first + i])));
+        for (std::size_t i = 0; i < count && !same; ++i) {
+            const Float3 at = lifted(start(first + i));
             packet.ray.org_x[i] = at.x, packet.ray.org_y[i] = at.y, packet.ray.org_z[i] = at.z;
         }
-        trace_nearest(valid, content_->rtc, packet);
+        trace_nearest(valid, rtc, packet);
         for (std::size_t i = 0; i < count; ++i) {
-            const Point& origin = origins[shared ? 0 : first + i];
+            const auto [origin, region] = start(first + i);
             const Vec3& direction = directions[first + i];
-            const RegionId side = side_of(direction);
-            const double height = shared && side == own ? shared_height : content_->gap_height(origin, side);
+            const double height = same ? shared_height : gap_height(origin, region);
             if (height < HUGE_VAL) {
-                content_->trace_in_gap(origin, direction, side, height, hits[first + i]);
+                trace_in_gap(origin, direction, region, height, hits[first + i]);
                 packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;  // excludes the ray from follow_mirrored()
-            } else if (!content_->read(packet, i, origin, direction, side, hits[first + i])) {
-                content_->retry(origin, direction, side, packet.ray.tfar[i], hits[first + i]);
+            } else if (!read(packet, i, origin, direction, region, hits[first + i])) {
+                retry(origin, direction, region, packet.ray.tfar[i], hits[first + i]);
             }
         }
-        if (mirrored == Mirrored::followed && !content_->glass.pane_of.empty())
-            content_->follow_mirrored(
-                packet, count, [&](std::size_t i) { return origins[shared ? 0 : first + i]; }, &directions[first],
-                &hits[first]);
+        if (mirrored == Mirrored::followed && !glass.pane_of.empty())
+            follow_mirrored(
+                packet, count, [&](std::size_t i) { return start(first + i).at; }, &directions[first], &hits[first]);
     }
+}
+
+std::size_t RayTracer::nearest(std::span<const Point> origins, std::span<const Vec3> directions, RegionId own,
+                               std::span<RayHit> hits, Mirrored mirrored) const {
+    EXI_CHECK(origins.size() == directions.size() || origins.size() == 1);
+    const bool shared = origins.size() == 1;
+    const RegionId behind = content_->scene->behind(own);
+    const auto side_of = [&](const Vec3& direction) {
+        return !behind.is_none() && dot(direction, content_->scene->regions()[own].plane.n) < 0 ? behind : own;
+    };
+    const auto start = [&](std::size_t i) { return SurfacePoint{origins[shared ? 0 : i], side_of(directions[i])}; };
+    content_->nearest(directions, start, shared && behind.is_none(), hits, mirrored);
+    return directions.size();
+}
+
+std::size_t RayTracer::nearest(std::span<const SurfacePoint> origins, std::span<const Vec3> directions,
+                               std::span<RayHit> hits, Mirrored mirrored) const {
+    EXI_CHECK(origins.size() == directions.size());
+    content_->nearest(
+        directions, [&](std::size_t i) { return origins[i]; }, false, hits, mirrored);
     return directions.size();
 }
 

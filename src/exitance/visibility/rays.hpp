@@ -54,8 +54,10 @@ struct alignas(64) RayEnds {
 
 /// Traces rays through a scene in packets, in single precision with coordinates relative to the scene's middle. Rays
 /// that start on a region are lifted off its plane by 2^-20 of the scene's size, so that the region and its coplanar
-/// neighbours never block them. The hit surface is found in single precision: within about 1e-7 of the scene's size
-/// from an edge it may be the neighbour. The distance is that to the plane of the found surface, in double precision.
+/// neighbours never block them; below faces that are closer (`NarrowGaps`), they start lower, and double precision
+/// decides whether they meet those faces. Otherwise the hit surface is found in single precision: within about 1e-7 of
+/// the scene's size from an edge it may be the neighbour. The distance is that to the plane of the found surface, in
+/// double precision. Rays from below such close faces end at panes that mirror them.
 /// Thread-safe. Hits do not depend on the number of threads.
 class RayTracer {
   public:
@@ -75,6 +77,10 @@ class RayTracer {
     /// Like the above, with a separate origin on `own` for each ray; all three spans have the same size.
     std::size_t nearest(std::span<const Point> origins, std::span<const Vec3> directions, RegionId own,
                         std::span<RayHit> hits, Mirrored mirrored = Mirrored::lost) const;
+
+    /// Like the above, from points of any regions. From a diffusing pane, rays start on the side of the given region.
+    std::size_t nearest(std::span<const SurfacePoint> origins, std::span<const Vec3> directions, std::span<RayHit> hits,
+                        Mirrored mirrored = Mirrored::lost) const;
 
     /// Tests for occlusion: blocked[i] is set to whether anything is between from[i] on region `receiver` and to[i] on
     /// region `source` (either may be none). Both regions must face each other there. All three spans have the same
