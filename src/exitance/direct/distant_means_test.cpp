@@ -107,7 +107,7 @@ TEST(DistantMeans, AreNotFoundWhereAShadowOfTheSunEnds) {
             EXPECT_FALSE(all.found[i].is_found) << i;
         }
     }
-    EXPECT_GT(divided, 20);  // the border of 4 m crosses some 35 squares
+    EXPECT_GE(divided, 16);  // each side of the shadow crosses 8 squares; two of the four may run between squares
     EXPECT_GT(whole, 300);
 }
 
