@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "exitance/base/random.hpp"
+#include "exitance/form_factors/hemisphere.hpp"
 
 namespace exitance {
 
