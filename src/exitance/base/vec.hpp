@@ -55,6 +55,12 @@ constexpr double squared_norm(const Vec3& a) {
 inline double norm(const Vec3& a) {
     return std::sqrt(dot(a, a));
 }
+/// Returns the unit vector with third coordinate z, turned by `turn` times 2 pi about the third axis. With z uniform in
+/// [-1, 1] and `turn` uniform in [0, 1), directions are uniform.
+inline Vec3 direction_at(double z, double turn) {
+    const double r = std::sqrt(std::max(0.0, 1 - z * z)), angle = 2 * pi * turn;
+    return {r * std::cos(angle), r * std::sin(angle), z};
+}
 inline Vec3 normalized(const Vec3& a) {
     return a / norm(a);
 }

@@ -23,11 +23,6 @@ std::span<const PlanarNode> cell_rule(const DistantLight& light) {
     return square_rule(has_picture(light) ? 4 : 2);
 }
 
-Vec3 direction_at(double z, double turn) {
-    const double r = std::sqrt(std::max(0.0, 1 - z * z)), angle = 2 * pi * turn;
-    return {r * std::cos(angle), r * std::sin(angle), z};
-}
-
 }  // namespace
 
 /// Measures a cell. priority: how much its flux varies within it.

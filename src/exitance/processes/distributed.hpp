@@ -53,7 +53,7 @@ class StopTogether {
 bool stops_within_loop(const StopRequest& agreed);
 
 /// Seconds until the deadline, by the clock of the first process; `agreed` as in StopTogether. Collective.
-double seconds_left(const StopRequest& agreed);
+double common_seconds_left(const StopRequest& agreed);
 
 namespace detail {
 void send_from_first(void* data, std::size_t size, const char* what);

@@ -29,7 +29,7 @@ bool stops_within_loop(const StopRequest& agreed) {
     return agreed.requested();
 }
 
-double seconds_left(const StopRequest& agreed) {
+double common_seconds_left(const StopRequest& agreed) {
     return agreed.seconds_left();
 }
 

@@ -50,7 +50,7 @@ TEST(Distributed, ASingleProcessAgreesWithItself) {
     StopRequest asked, agreed;
     const StopTogether together(asked, agreed);
     asked.set_deadline(StopRequest::Clock::now());
-    EXPECT_LE(seconds_left(processes() > 1 ? agreed : asked), 0);
+    EXPECT_LE(common_seconds_left(processes() > 1 ? agreed : asked), 0);
 }
 
 TEST(Distributed, ASingleProcessSharesNoMemory) {

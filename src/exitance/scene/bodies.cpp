@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "exitance/base/disjoint_sets.hpp"
+#include "exitance/base/morton.hpp"
 #include "exitance/scene/joining/weld.hpp"
 
 namespace exitance {
@@ -152,18 +153,6 @@ DisjointSets separate_sides(const Scene& scene, const SceneBodies& joined) {
         SurfaceId& start = first[b][side > 0 ? 0 : 1];
         if (start.is_none()) start = s;
         out.unite(start.value, s.value);
-    }
-    return out;
-}
-
-/// Returns the position of a point on a Morton curve through a box, 20 bits per axis.
-std::uint64_t morton(const Point& p, const Box& box) {
-    std::uint64_t out = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double extent = box.hi[axis] - box.lo[axis];
-        const double at = extent > 0 ? std::clamp((p[axis] - box.lo[axis]) / extent, 0.0, 1.0) : 0;
-        const auto cell = static_cast<std::uint64_t>(at * 0xfffff);
-        for (unsigned bit = 0; bit < 20; ++bit) out |= (cell >> bit & 1) << (3 * bit + axis);
     }
     return out;
 }

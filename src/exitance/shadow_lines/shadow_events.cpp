@@ -222,7 +222,7 @@ void ShadowEventFinder::add_edge_over_corner(const Point& q0, const Point& q1, s
 
 void ShadowEventFinder::set(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
                             std::span<const std::uint32_t> among) {
-    frame_ = &receiver, source_ = &source, own_ = own, lo_ = lo, hi_ = hi, among_ = among;
+    frame_ = &receiver, source_ = &source, own_ = own, lo_ = lo, hi_ = hi;
     least_ = 4 * edges_->tolerance();
     corners_.clear(), edges_at_.clear();
     for (const std::uint32_t e : among) {

@@ -134,7 +134,6 @@ class ShadowEventFinder {
     const BlockerEdges* edges_;
     const PlaneFrame* frame_ = nullptr;
     const EventSource* source_ = nullptr;
-    std::span<const std::uint32_t> among_;
     RegionId own_;
     Vec2 lo_, hi_;
     double least_ = 0;  ///< Metres: points nearer to a plane than this are in it.

@@ -18,10 +18,7 @@ Vec2 turned(Vec2 p, double angle) {
 std::vector<Vec3> directions_all_around(unsigned count) {
     const ScrambledSobol points(count);
     std::vector<Vec3> out;
-    for (unsigned k = 0; k < count; ++k) {
-        const double z = 1 - 2 * points(k, 0), r = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * pi * points(k, 1);
-        out.push_back({r * std::cos(phi), r * std::sin(phi), z});
-    }
+    for (unsigned k = 0; k < count; ++k) out.push_back(direction_at(1 - 2 * points(k, 0), points(k, 1)));
     return out;
 }
 

@@ -3,15 +3,11 @@
 namespace exitance {
 namespace {
 
-constexpr std::array<std::pair<FactorFormat, std::string_view>, 7> factor_format_names{{
-    {FactorFormat::csv, "csv"},
-    {FactorFormat::vf, "vf"},
-    {FactorFormat::mtx, "mtx"},
-    {FactorFormat::hdf5, "h5"},
-    {FactorFormat::energyplus, "energyplus"},
-    {FactorFormat::openfoam, "openfoam"},
-    {FactorFormat::pairs, "pairs"},
-}};
+constexpr auto factor_format_names = [] {
+    std::array<std::pair<FactorFormat, std::string_view>, factor_formats.size()> out;
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = {factor_formats[i].format, factor_formats[i].name};
+    return out;
+}();
 
 constexpr std::array<std::pair<ReferenceFormat, std::string_view>, 5> reference_format_names{{
     {ReferenceFormat::man, "man"},

@@ -14,6 +14,14 @@ Error usage(const char* option, const std::string& what, const std::string& hint
     return {ErrorCode::usage, what, option, hint};
 }
 
+/// Names of the formats for which `is_meant` is true.
+std::string names_of_formats(bool (*is_meant)(const FactorFormatTraits&)) {
+    std::vector<std::string_view> names;
+    for (const FactorFormatTraits& traits : factor_formats)
+        if (is_meant(traits)) names.push_back(traits.name);
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
 /// Adds script F and Gebhart's factors of all rows. Rows that do not add up to 1 see surroundings at 0 K.
 Result<void> add_exchange_factors(const ViewFactorArguments& arguments, const SparseFactors& table,
                                   FactorFileOptions& options, const StopRequest& stop) {
@@ -47,12 +55,12 @@ Result<void> check_output_options(const ViewFactorArguments& arguments) {
     if (arguments.output.empty() && (!arguments.nodes.empty() || arguments.with_sky))
         return usage(arguments.with_sky ? "--sky" : "--nodes", "applies to the matrix of --output only",
                      "add -o FILE, or leave it out");
-    const bool takes_sky = format == FactorFormat::csv || format == FactorFormat::mtx || format == FactorFormat::pairs;
     if (arguments.with_sky && format == FactorFormat::hdf5)
         return usage("--sky", "is not needed for .h5: it always has the shares of the sky and of backs",
                      "leave it out");
-    if (arguments.with_sky && !takes_sky)
-        return usage("--sky", "the output's format has no columns for the sky", "use --format csv, mtx or pairs");
+    if (arguments.with_sky && !traits_of(format).takes_sky)
+        return usage("--sky", "the output's format has no columns for the sky",
+                     "formats that have them: " + names_of_formats([](const auto& f) { return f.takes_sky; }));
     if (arguments.with_sky && arguments.tolerance)
         return usage("--sky", "cannot be combined with --tolerance, which does not compute the sky", "use --error");
     if (!arguments.zone.empty() && format != FactorFormat::energyplus)

@@ -27,7 +27,7 @@
 namespace exitance {
 namespace {
 
-constexpr double default_error = 1e-3;
+constexpr double default_row_error = 1e-3;
 constexpr std::size_t default_checked_rows = 4, default_checked_entries = 100, default_rays_an_entry = 1u << 14;
 
 /// Rays per checked row. The noise of the squared error of a row is 2 sqrt(sum F^2) / n. With n = 0.2 / R^2 and sum F^2
@@ -138,7 +138,7 @@ void show_geometry_findings(const CheckedScene& checked, Terminal& terminal) {
 
 /// Options for computing the rows. For an operator they are more accurate, since merging their entries adds an error.
 RowFactorOptions table_options(const ViewFactorArguments& arguments) {
-    const double error = arguments.error.value_or(default_error);
+    const double error = arguments.error.value_or(default_row_error);
     RowFactorOptions options{.error = error, .smallest = arguments.smallest, .seed = arguments.seed};
     if (!arguments.operator_file.empty()) options = operator_table_options(error, arguments.smallest, arguments.seed);
     options.memory_limit_bytes = arguments.limits.memory_limit.value_or(SIZE_MAX);
@@ -197,7 +197,7 @@ class ViewFactorRun {
     }
 
   private:
-    double error() const { return arguments_.error.value_or(default_error); }
+    double error() const { return arguments_.error.value_or(default_row_error); }
 
     /// Opens OUTPUT.rows, in the first process, for finished rows, unless the output exists and is not a regular file.
     Result<void> open_work_file() {
@@ -342,11 +342,10 @@ Result<void> check_outputs(const ViewFactorArguments& arguments) {
         for (const char* of_scenes : {".mtl", ".obj", ".gltf", ".glb", ".rad", ".stl", ".ply", ".vs3", ".hbjson"})
             if (ending(output) == of_scenes)
                 return Error{ErrorCode::usage, "has the ending of a scene's files", output,
-                             "view factors are written as .csv, .vf, .idf, .mtx or .h5"};
+                             "view factors are written as " + endings_of_factor_files()};
     }
     if (const Result<void> fit = check_output_options(arguments); !fit) return fit;
-    const bool is_folder = format_of(arguments) == FactorFormat::openfoam;
-    if (!arguments.output.empty() && !is_folder)
+    if (!arguments.output.empty() && !traits_of(format_of(arguments)).is_folder)
         if (const auto file = AtomicFile::create(arguments.output); !file) return file.error();
     if (!arguments.operator_file.empty())
         if (const auto file = AtomicFile::create(arguments.operator_file); !file) return file.error();

@@ -1,5 +1,6 @@
 #include "exitance/io/files/child_process.hpp"
 
+#include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -10,6 +11,7 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <sstream>
 
@@ -120,6 +122,26 @@ ProgramRun run_program(const std::vector<std::string>& words, const std::string&
     run.processor_seconds = child.processor_seconds(), run.peak_bytes = child.peak_bytes();
     run.out = content(out.get()), run.err = content(err.get());
     return run;
+}
+
+Result<void> run_into_file(const std::string& path,
+                           const std::function<std::vector<std::string>(const std::string& part)>& words_for,
+                           double most_seconds, const StopRequest& stop, const std::string& on_failure,
+                           const std::string& hint) {
+    namespace fs = std::filesystem;
+    const fs::path target = fs::absolute(path);
+    const fs::path part =
+        target.parent_path() / fmt::format(".{}.part{}", target.stem().string(), target.extension().string());
+    const ProgramRun run = run_program(words_for(part.string()), "", most_seconds, stop);
+    std::error_code failed;
+    if (run.status == 0 && fs::exists(part)) {
+        fs::rename(part, target, failed);
+        if (!failed) return {};
+    }
+    fs::remove(part, failed);
+    const std::string said = run.err.substr(0, run.err.find('\n'));
+    return Error{ErrorCode::cannot_write,
+                 fmt::format("{}: {:.200}", on_failure, said.empty() ? "it said nothing" : said), path, hint};
 }
 
 }  // namespace exitance

@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -61,5 +62,14 @@ struct ProgramRun {
 /// seconds later SIGKILL. `input` is the path of a file for its standard input; empty: no input.
 ProgramRun run_program(const std::vector<std::string>& words, const std::string& folder, double most_seconds,
                        const StopRequest& stop, const std::string& input = "");
+
+/// Runs a program that writes the file `path`, which appears whole or not at all.
+/// words_for     the program and its arguments, for the path of a part file in the same folder
+/// on_failure    begin of the message if the program fails: "ffmpeg made no video"
+/// Errors: ErrorCode::cannot_write, with the first line that the program said, and `hint`.
+Result<void> run_into_file(const std::string& path,
+                           const std::function<std::vector<std::string>(const std::string& part)>& words_for,
+                           double most_seconds, const StopRequest& stop, const std::string& on_failure,
+                           const std::string& hint);
 
 }  // namespace exitance

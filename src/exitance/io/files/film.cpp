@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 #include <limits>
 #include <vector>
 
@@ -25,36 +24,28 @@ Result<void> find_film_program(const std::string& path) {
 }
 
 Result<void> write_film(const std::string& folder, double rate, const std::string& path) {
-    namespace fs = std::filesystem;
-    const fs::path target = fs::absolute(path);
-    const fs::path part =
-        target.parent_path() / fmt::format(".{}.part{}", target.stem().string(), target.extension().string());
-    // Most players require even sizes and 4:2:0 chroma subsampling. A GIF needs a palette.
-    std::vector<std::string> words{"ffmpeg",
-                                   "-nostdin",
-                                   "-y",
-                                   "-loglevel",
-                                   "error",
-                                   "-framerate",
-                                   fmt::format("{:g}", rate),
-                                   "-i",
-                                   folder + "/frame.%04d.png",
-                                   "-vf"};
-    const std::string even = "pad=ceil(iw/2)*2:ceil(ih/2)*2";
-    if (ending(path) == ".gif")
-        words.push_back(even + ",split[a][b];[a]palettegen[p];[b][p]paletteuse");
-    else
-        words.insert(words.end(), {even, "-pix_fmt", "yuv420p"});
-    words.push_back(part.string());
-    const ProgramRun run = run_program(words, "", std::numeric_limits<double>::infinity(), StopRequest());
-    std::error_code failed;
-    if (run.status == 0) fs::rename(part, target, failed);
-    if (run.status == 0 && !failed) return {};
-    fs::remove(part, failed);
-    std::string said = run.err.substr(0, run.err.find('\n'));
-    return Error{ErrorCode::cannot_write,
-                 fmt::format("ffmpeg made no video: {:.200}", said.empty() ? "it said nothing" : said), path,
-                 "numbered pictures, -o walk.png, need no ffmpeg"};
+    const auto words_for = [&](const std::string& part) {
+        std::vector<std::string> words{"ffmpeg",
+                                       "-nostdin",
+                                       "-y",
+                                       "-loglevel",
+                                       "error",
+                                       "-framerate",
+                                       fmt::format("{:g}", rate),
+                                       "-i",
+                                       folder + "/frame.%04d.png",
+                                       "-vf"};
+        // Most players require even sizes and 4:2:0 chroma subsampling. A GIF needs a palette.
+        const std::string even = "pad=ceil(iw/2)*2:ceil(ih/2)*2";
+        if (ending(path) == ".gif")
+            words.push_back(even + ",split[a][b];[a]palettegen[p];[b][p]paletteuse");
+        else
+            words.insert(words.end(), {even, "-pix_fmt", "yuv420p"});
+        words.push_back(part);
+        return words;
+    };
+    return run_into_file(path, words_for, std::numeric_limits<double>::infinity(), StopRequest(),
+                         "ffmpeg made no video", "numbered pictures, -o walk.png, need no ffmpeg");
 }
 
 }  // namespace exitance

@@ -2,11 +2,29 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <vector>
+
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/photometry/luminaire_body.hpp"
 
 namespace exitance {
 namespace {
+
+struct Format {
+    std::string_view ending;
+    Result<Photometry> (*read)(std::string_view text, const std::string& path);
+};
+constexpr std::array formats{Format{".ies", read_ies}, Format{".ldt", read_eulumdat}};
+
+/// Returns the format that a path's ending names; null for other endings.
+const Format* format_of(const std::string& path) {
+    const std::string end = ending(path);
+    const auto found = std::find_if(formats.begin(), formats.end(), [&](const Format& f) { return f.ending == end; });
+    return found == formats.end() ? nullptr : &*found;
+}
 
 /// Warns of missing extents that are replaced by defaults.
 void warn_of_missing_extent(Photometry& p) {
@@ -23,17 +41,20 @@ void warn_of_missing_extent(Photometry& p) {
 }  // namespace
 
 bool names_photometry(const std::string& path) {
-    const std::string end = ending(path);
-    return end == ".ies" || end == ".ldt";
+    return format_of(path) != nullptr;
 }
 
 Result<Photometry> load_photometry(const std::string& path) {
-    if (!names_photometry(path))
+    const Format* const format = format_of(path);
+    if (!format) {
+        std::vector<std::string_view> known;
+        for (const Format& f : formats) known.push_back(f.ending);
         return Error{ErrorCode::bad_input, "is not a known kind of photometric file", path,
-                     "known endings: .ies, .ldt"};
+                     fmt::format("known endings: {}", fmt::join(known, ", "))};
+    }
     const Result<std::string> text = read_whole_file(path);
     if (!text) return Error{text.error().code, text.error().message, path, text.error().hint};
-    Result<Photometry> out = ending(path) == ".ies" ? read_ies(*text, path) : read_eulumdat(*text, path);
+    Result<Photometry> out = format->read(*text, path);
     constexpr double accepted = 1.02;
     if (out && out->lamp_lumens && out->flux() > accepted * *out->lamp_lumens)
         tell(*out, Finding::Kind::warning, 0,

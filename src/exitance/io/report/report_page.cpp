@@ -285,7 +285,9 @@ std::string energy_part(const EnergyBalance& energy, const LightUnit& own) {
 std::string method_part(const ReportContent& content) {
     const SolveStatistics& s = content.solution->statistics;
     std::string rows = fact("Method", escaped(s.basis.empty() ? s.method : s.method + ", " + s.basis + " basis"));
-    rows += fact("Reached", s.converged ? "yes" : "no" + (s.stopped_by.empty() ? "" : ", stopped by " + s.stopped_by));
+    rows += fact("Reached", s.converged
+                                ? "yes"
+                                : "no" + (s.is_stopped() ? fmt::format(", stopped by {}", name_of(s.stopped_by)) : ""));
     rows += fact("Elements", fmt::format("{}, {} of them leaves", s.elements, s.leaf_elements));
     rows += fact("Transport", fmt::format("{} links, {} form factors, {} rays", s.links, s.form_factors, s.rays));
     rows += fact("Solution", fmt::format("{} iterations, residual {:.2g}", s.iterations, s.residual));

@@ -29,25 +29,16 @@ Result<void> find_page_printer(const std::string& path) {
 }
 
 Result<void> print_page(const std::string& page, const std::string& path, const StopRequest& stop) {
-    namespace fs = std::filesystem;
     constexpr double most_seconds = 120;  // printing a page takes a few seconds; the limit ends a browser that hangs
-    const fs::path target = fs::absolute(path),
-                   part = target.parent_path() / fmt::format(".{}.part.pdf", target.stem().string());
-    std::vector<std::string> words{page_printer(), "--headless", "--disable-gpu", "--no-pdf-header-footer",
-                                   "--print-to-pdf=" + part.string()};
-    if (geteuid() == 0) words.push_back("--no-sandbox");  // Chromium has none for root
-    words.push_back("file://" + fs::absolute(page).string());
-    const ProgramRun run = run_program(words, "", most_seconds, stop);
-    std::error_code failed;
-    if (run.status == 0 && fs::exists(part)) {
-        fs::rename(part, target, failed);
-        if (!failed) return {};
-    }
-    fs::remove(part, failed);
-    const std::string said = run.err.substr(0, run.err.find('\n'));
-    return Error{ErrorCode::cannot_write,
-                 fmt::format("the browser printed no PDF: {:.200}", said.empty() ? "it said nothing" : said), path,
-                 "the page itself is written; print it from a browser"};
+    const auto words_for = [&](const std::string& part) {
+        std::vector<std::string> words{page_printer(), "--headless", "--disable-gpu", "--no-pdf-header-footer",
+                                       "--print-to-pdf=" + part};
+        if (geteuid() == 0) words.push_back("--no-sandbox");  // Chromium has none for root
+        words.push_back("file://" + std::filesystem::absolute(page).string());
+        return words;
+    };
+    return run_into_file(path, words_for, most_seconds, stop, "the browser printed no PDF",
+                         "the page itself is written; print it from a browser");
 }
 
 }  // namespace exitance

@@ -68,6 +68,9 @@ void write_figure(Hdf5Writer& file, const std::string& group, const char* name, 
 void write_figure(Hdf5Writer& file, const std::string& group, const char* name, const std::string& value) {
     file.set_attribute(group, name, std::string_view(value));
 }
+void write_figure(Hdf5Writer& file, const std::string& group, const char* name, StopReason value) {
+    file.set_attribute(group, name, name_of(value));
+}
 void write_figure(Hdf5Writer& file, const std::string& group, const char* name, double value) {
     file.set_attribute(group, name, value);
 }
@@ -81,6 +84,9 @@ void read_figure(Hdf5Reader& file, const std::string& group, const char* name, s
 }
 void read_figure(Hdf5Reader& file, const std::string& group, const char* name, std::string& value) {
     value = file.text_attribute(group, name).value_or(value);
+}
+void read_figure(Hdf5Reader& file, const std::string& group, const char* name, StopReason& value) {
+    value = stop_reason_of(file.text_attribute(group, name).value_or(""));
 }
 void read_figure(Hdf5Reader& file, const std::string& group, const char* name, double& value) {
     value = file.number_attribute(group, name).value_or(value);

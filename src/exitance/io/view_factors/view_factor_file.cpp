@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "exitance/base/check.hpp"
 #include "exitance/io/files/atomic_file.hpp"
 #include "exitance/io/files/whole_file.hpp"
 #include "exitance/io/solution/hdf5_file.hpp"
@@ -194,12 +195,25 @@ Result<SparseFactors> read_view_factors(Hdf5Reader& file, const std::string& pat
     return table;
 }
 
+const FactorFormatTraits& traits_of(FactorFormat format) {
+    const auto found = std::find_if(factor_formats.begin(), factor_formats.end(),
+                                    [&](const FactorFormatTraits& traits) { return traits.format == format; });
+    EXI_CHECK(found != factor_formats.end());
+    return *found;
+}
+
+std::string endings_of_factor_files() {
+    std::string out;
+    for (const FactorFormatTraits& traits : factor_formats)
+        if (!traits.ending.empty()) out.append(out.empty() ? "" : ", ").append(traits.ending);
+    return out;
+}
+
 FactorFormat factor_format_of(const std::string& path) {
     const std::string end = ending(path);
-    if (end == ".h5") return FactorFormat::hdf5;
-    if (end == ".vf") return FactorFormat::vf;
-    if (end == ".mtx") return FactorFormat::mtx;
-    return end == ".idf" ? FactorFormat::energyplus : FactorFormat::csv;
+    for (const FactorFormatTraits& traits : factor_formats)
+        if (!end.empty() && traits.ending == end) return traits.format;
+    return FactorFormat::csv;
 }
 
 Result<void> write_view_factors(const std::string& path, const SparseFactors& table, const StopRequest& stop,

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "exitance/base/progress.hpp"
@@ -23,7 +25,30 @@ enum class FactorFormat {
     pairs,       ///< CSV with a line `from_id,to_id,F` per entry.
 };
 
-/// Returns the format that a path's ending selects: .h5, .vf, .mtx, .idf (EnergyPlus), otherwise CSV.
+/// What the program has to know of a format.
+struct FactorFormatTraits {
+    FactorFormat format;
+    std::string_view name;    ///< Name in options.
+    std::string_view ending;  ///< Ending of files that selects the format; empty: none does.
+    bool takes_sky;           ///< True if columns for the sky and for backs can be added.
+    bool is_folder = false;   ///< True if the output is a folder of files.
+};
+
+inline constexpr std::array<FactorFormatTraits, 7> factor_formats{{
+    {FactorFormat::csv, "csv", ".csv", true},
+    {FactorFormat::vf, "vf", ".vf", false},
+    {FactorFormat::mtx, "mtx", ".mtx", true},
+    {FactorFormat::hdf5, "h5", ".h5", false},  // always has the sky
+    {FactorFormat::energyplus, "energyplus", ".idf", false},
+    {FactorFormat::openfoam, "openfoam", "", false, true},
+    {FactorFormat::pairs, "pairs", "", true},
+}};
+
+const FactorFormatTraits& traits_of(FactorFormat format);
+/// Endings of the formats' files, for messages: ".csv, .vf, ...".
+std::string endings_of_factor_files();
+
+/// Returns the format that a path's ending selects; CSV for unknown endings.
 FactorFormat factor_format_of(const std::string& path);
 
 struct FactorFileOptions {

@@ -8,7 +8,6 @@ DmTree::DmTree(std::span<const Vec2> outline, double tolerance) : tolerance_(tol
     Node leaf;
     leaf.face = 0;
     nodes_.push_back(leaf);
-    border_edges_ = outline.size();
 }
 
 void DmTree::insert(const Vec2& from, const Vec2& to, std::uint32_t curve) {

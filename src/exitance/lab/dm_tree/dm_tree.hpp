@@ -42,7 +42,6 @@ class DmTree {
     double tolerance_;
     WingedEdgeMesh mesh_;
     std::vector<Node> nodes_;
-    std::size_t border_edges_;
 };
 
 inline constexpr std::array<std::pair<TriangulationScheme, const char*>, 4> triangulation_names{{

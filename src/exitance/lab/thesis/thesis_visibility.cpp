@@ -226,8 +226,8 @@ void rays(const char* name, const Scene& scene, CsvText& out) {
     for (std::size_t i = 0; i < count; ++i) {
         origins[i] =
             scene.box().lo + Vec3{random.uniform() * size.x, random.uniform() * size.y, random.uniform() * size.z};
-        const double z = 2 * random.uniform() - 1, turn = 2 * pi * random.uniform(), r = std::sqrt(1 - z * z);
-        directions[i] = {r * std::cos(turn), r * std::sin(turn), z};
+        const double z = 2 * random.uniform() - 1;
+        directions[i] = direction_at(z, random.uniform());
     }
     std::vector<RayHit> expected(count);
     begin = cpu_seconds();

@@ -107,8 +107,7 @@ class Prober {
         std::vector<double> a(rays_), b(rays_);
         points.fill(0, 0, a), points.fill(0, 1, b);
         for (std::size_t k = 0; k < rays_; ++k) {
-            const double z = 1 - 2 * a[k], r = std::sqrt(std::max(0.0, 1 - z * z)), angle = 2 * pi * b[k];
-            directions_[k] = {r * std::cos(angle), r * std::sin(angle), z};
+            directions_[k] = direction_at(1 - 2 * a[k], b[k]);
             Y_[k] = harmonics_at(directions_[k]);
         }
         light_.stage().tracer.nearest(directions_, x, RegionId(), hits_, Mirrored::followed);
