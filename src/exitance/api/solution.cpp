@@ -64,7 +64,7 @@ bool Solution::converged() const {
 }
 
 std::string Solution::stopped_by() const {
-    return data_->solution.statistics.stopped_by;
+    return std::string(name_of(data_->solution.statistics.stopped_by));
 }
 
 Energy Solution::energy() const {

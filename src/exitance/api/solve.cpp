@@ -95,7 +95,8 @@ Result<Solution> solve_request(const SceneData& scene, const SolveRequest& reque
         groups = std::move(*kept);
     }
     SolveStatistics& statistics = solved->statistics;
-    if (statistics.stopped_by == "interrupt" && !run.stop().interrupted()) statistics.stopped_by = "time limit";
+    if (statistics.stopped_by == StopReason::interrupt && !run.stop().interrupted())
+        statistics.stopped_by = StopReason::time_limit;
     record_run(request, scene, watch, *solved);
     auto data = std::make_shared<SolutionData>();
     data->solution = std::move(*solved), data->groups = std::move(groups);

@@ -5,20 +5,20 @@
 
 namespace exitance {
 
-CommonStop::CommonStop(Terminal& terminal, StopRequest& asked)
+CommonStop::CommonStop(Terminal& terminal, StopRequest& asked, MemoryLimit memory)
     : terminal_(terminal), asked_(asked), together_(asked, agreed_) {
-    terminal.limits().watch_memory_of_several();
+    if (memory == MemoryLimit::watched) terminal.limits().watch_memory_of_several();
 }
 
 std::optional<ExitCode> CommonStop::signal() const {
     return signal_of_any(terminal_.limits().signal());
 }
 
-std::string CommonStop::reason() const {
-    const bool is_own = asked_.requested();
-    const Error own{ErrorCode::limit, terminal_.limits().reason(), "", ""};
-    const Result<void> all = result_of_all(is_own ? Result<void>(own) : Result<void>());
-    return all ? own.message : all.error().message;
+StopReason CommonStop::reason() const {
+    const StopReason own = terminal_.limits().reason();
+    const Error stopped{ErrorCode::limit, std::string(name_of(own)), "", ""};
+    const Result<void> all = result_of_all(asked_.requested() ? Result<void>(stopped) : Result<void>());
+    return all ? own : stop_reason_of(all.error().message);
 }
 
 ExitCode CommonStop::fail(const std::string& message) const {

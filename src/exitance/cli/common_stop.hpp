@@ -14,8 +14,13 @@ namespace exitance {
 /// object may exist at a time.
 class CommonStop {
   public:
+    /// How the memory limit is kept with several processes.
+    enum class MemoryLimit {
+        watched,  ///< The work is stopped when it exceeds the limit.
+        fitted,   ///< The work fits itself into the limit.
+    };
     /// `asked`: the request of the terminal's limits, from RunLimits::keep(), or from stop() without a result to keep.
-    CommonStop(Terminal& terminal, StopRequest& asked);
+    CommonStop(Terminal& terminal, StopRequest& asked, MemoryLimit memory = MemoryLimit::watched);
 
     /// Returns the request that long work must check.
     const StopRequest& request() const { return processes() > 1 ? agreed_ : asked_; }
@@ -25,7 +30,7 @@ class CommonStop {
     /// The signal that any process has received, as the exit status for it; none if there was no signal. Collective.
     std::optional<ExitCode> signal() const;
     /// The reason of the stop, as RunLimits::reason(). Collective.
-    std::string reason() const;
+    StopReason reason() const;
     /// Exit status of a run that was stopped and has written a result: that of the signal, else 4. Collective.
     ExitCode stopped_code() const { return signal().value_or(ExitCode::demand_not_reached); }
     /// Reports that a run was stopped without a result, unless by a signal; `message` ends its sentence. Returns the

@@ -64,8 +64,10 @@ double RunLimits::seconds_left() const {
     return std::chrono::duration<double>(end_ - grace - Clock::now()).count();
 }
 
-std::string RunLimits::reason() const {
-    return over_memory_ ? "memory limit" : stop_.interrupted() ? "interrupt" : "time limit";
+StopReason RunLimits::reason() const {
+    return over_memory_          ? StopReason::memory_limit
+           : stop_.interrupted() ? StopReason::interrupt
+                                 : StopReason::time_limit;
 }
 
 Error RunLimits::error(const std::string& message) const {

@@ -12,6 +12,7 @@
 #include "exitance/base/result.hpp"
 #include "exitance/cli/exit_code.hpp"
 #include "exitance/cli/signals.hpp"
+#include "exitance/solution/solution.hpp"
 
 namespace exitance {
 
@@ -50,8 +51,8 @@ class RunLimits {
     double seconds_left() const;
     /// The signal received since keep(); empty if none was.
     std::optional<ExitCode> signal() const { return signals_ ? signals_->received() : std::nullopt; }
-    /// The reason why stop() was requested: "interrupt", "memory limit" or "time limit".
-    std::string reason() const;
+    /// The reason why stop() was requested: an interrupt or a limit.
+    StopReason reason() const;
     /// The error of a run that a limit stopped without a result. `message` ends its sentence.
     Error error(const std::string& message) const;
     /// Exit status of a run that was stopped and has written a result: that of the signal, else 4.

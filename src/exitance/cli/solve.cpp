@@ -7,6 +7,7 @@
 
 #include "exitance/base/memory.hpp"
 #include "exitance/base/parallel.hpp"
+#include "exitance/cli/common_stop.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/processes.hpp"
 #include "exitance/cli/solve/settle_options.hpp"
@@ -238,7 +239,7 @@ ExitCode fail_without_estimate(const Error& error, const std::optional<Checkpoin
     return signal ? *signal : failure;
 }
 
-void tell(const SolveArguments& arguments, const Solution& solution, Terminal& terminal) {
+void print_result(const SolveArguments& arguments, const Solution& solution, Terminal& terminal) {
     if (arguments.json) {
         terminal.print(statistics_json(solution));
     } else if (!arguments.quiet) {
@@ -268,20 +269,18 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     if (const Result<void> sane = check_scene(arguments, *checked.scene); !sane) return terminal.fail(sane.error());
     if (arguments.photometric) checked.scene->declare_photometric(*arguments.photometric);
 
-    StopRequest& asked = limits.stop();
-    StopRequest agreed;
-    const StopTogether together(asked, agreed);
-    const StopRequest& stop = processes() > 1 ? agreed : asked;
+    CommonStop common(terminal, limits.stop(), CommonStop::MemoryLimit::fitted);
+    const StopRequest& stop = common.request();
     if (arguments.limits.time_limit)
-        asked.set_deadline(seconds_from_now(time_to_solve(arguments, limits, read_seconds)));
+        common.set_deadline(seconds_from_now(time_to_solve(arguments, limits, read_seconds)));
     std::optional<CheckpointFile> checkpoint;
     if (const Result<void> opened = open_checkpoint(arguments, *checked.scene, terminal, checkpoint); !opened)
         return terminal.fail(opened.error());
     KeptFromFirstPhase progress(limits, tracing.progress());
     Result<Solution> solution = find_light(arguments, std::move(*checked.scene), checkpoint, progress, stop);
     limits.keep();
-    const bool stopped = stop.requested() || (solution && solution->statistics.stopped_by == "time limit");
-    const std::optional<ExitCode> signal = signal_of_any(limits.signal());
+    const bool stopped = stop.requested() || (solution && solution->statistics.stopped_by == StopReason::time_limit);
+    const std::optional<ExitCode> signal = common.signal();
     if (!solution && signal) return *signal;
     if (!solution) return terminal.fail(solution.error());
 
@@ -297,13 +296,13 @@ ExitCode run(const SolveArguments& given, Terminal& terminal) {
     record_run(*solution, arguments, checked.findings, read_seconds, run_time);
     SolveStatistics& statistics = solution->statistics;
     // The solver records any stop request as an interrupt; `limits` has the reason.
-    if (statistics.stopped_by == "interrupt" && !signal) statistics.stopped_by = limits.reason();
+    if (statistics.stopped_by == StopReason::interrupt && !signal) statistics.stopped_by = common.reason();
     if (const Result<void> saved = save(arguments, *solution, *groups, tracing, stop, run_time); !saved)
         return terminal.fail(saved.error());
     terminal.progress().finish();
     close_checkpoint(checkpoint, stopped, terminal);
     if (const Result<void> written = tracing.write(); !written) return terminal.fail(written.error());
-    tell(arguments, *solution, terminal);
+    print_result(arguments, *solution, terminal);
     return signal ? *signal : as_first(code_of(statistics, limits));
 }
 

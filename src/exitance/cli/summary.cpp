@@ -45,9 +45,9 @@ std::string bound_line(const SolveStatistics& s) {
 std::string reached_line(const Solution& solution) {
     const SolveStatistics& s = solution.statistics;
     const bool is_requested = solution.options.find("\"error\":null") == std::string::npos;
-    if (s.stopped_by.empty() && !is_requested) return "no error was requested";
+    if (!s.is_stopped() && !is_requested) return "no error was requested";
     if (s.converged) return is_requested ? "yes" : "no error was requested";
-    std::string why = s.stopped_by.empty() ? "" : fmt::format(", stopped by {}", s.stopped_by);
+    std::string why = s.is_stopped() ? fmt::format(", stopped by {}", name_of(s.stopped_by)) : "";
     // The whole may be accurate enough while a room is not.
     const double whole = s.relative_error_estimate.value_or(0), room = s.relative_error_estimate_worst_room.value_or(0);
     if (s.rooms.size() > 1 && room > whole) why += fmt::format("; {} in the worst room", percent(room));
@@ -80,8 +80,8 @@ std::string summary(const Solution& solution) {
     line("error", s.relative_error_estimate
                       ? fmt::format("{} estimated (RMS of radiosity), {} in the exported mesh",
                                     percent(*s.relative_error_estimate), known(s.relative_error_estimate_interpolant))
-                  : s.stopped_by.empty() ? "not estimated"
-                                         : "not known: the run was stopped before its first estimate");
+                  : s.is_stopped() ? "not known: the run was stopped before its first estimate"
+                                   : "not estimated");
     if (s.relative_error_estimate && s.relative_error_bound) line("bound", bound_line(s));
     if (s.bodies.size() > 1 && s.relative_error_estimate_worst_body)
         line("bodies", fmt::format("{} error in the worst of {}", percent(*s.relative_error_estimate_worst_body),

@@ -37,12 +37,12 @@ double BodyMeasure::suspected() const {
 
 namespace {
 
-/// Returns the leaves of every body on sides that are not excluded; none for bodies that do not reflect.
+/// Returns the leaves of every body on other than unlit sides; none for bodies that do not reflect.
 std::vector<std::vector<ElementId>> leaves_of_bodies(const BodyCheck& c) {
     std::vector<std::vector<ElementId>> out(c.bodies.all.size());
     for (ElementId e : c.indirect.tree.leaves()) {
         const RegionId region = c.indirect.tree.region(e);
-        if (!c.stage.is_left_out(region) && max(c.stage.scene.material(region).reflectance) > 0)
+        if (!c.stage.is_unlit(region) && max(c.stage.scene.material(region).reflectance) > 0)
             out[c.bodies.of(c.stage.scene, region)].push_back(e);
     }
     return out;
@@ -71,7 +71,7 @@ class BodySurvey {
           is_unknown_(check.bodies.all.size(), false) {}
 
     void look_at_all();
-    void look_closely();
+    void measure_further();
     std::vector<BodyError> errors() const;
     std::vector<PointError> close_points() const { return close_points_; }
     std::size_t rays_left() const { return left_; }
@@ -274,7 +274,7 @@ bool BodySurvey::look_closely_at(std::uint32_t body) {
 
 /// Measures bodies at further points, in descending order of the error that they may have, until the others can neither
 /// be the worst nor exceed the limit of a body's error.
-void BodySurvey::look_closely() {
+void BodySurvey::measure_further() {
     double largest = 0;  // largest error that is known
     for (;;) {
         std::optional<std::uint32_t> worst;
@@ -320,7 +320,7 @@ MeasuredBodies measure_bodies(const BodyCheck& check, const std::function<double
                               double error, std::size_t max_rays) {
     BodySurvey survey(check, light_of_room, error, max_rays);
     survey.look_at_all();
-    survey.look_closely();
+    survey.measure_further();
     return {survey.errors(), survey.close_points(), max_rays - survey.rays_left(), survey.hidden()};
 }
 

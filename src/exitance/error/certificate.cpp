@@ -38,7 +38,7 @@ struct SampleSums {
     void add(const ResidualSample& s, double sample_weight, std::size_t k) {
         weight += sample_weight;
         squared[k % batches] += sample_weight * batches * s.squared;
-        if (!s.tells_local) return;
+        if (!s.is_divided) return;
         divided_weight += sample_weight;
         local += sample_weight * mean(s.local1 * s.local2);
         method += sample_weight * mean((s.r1 - s.local1) * (s.r2 - s.local2));
@@ -64,8 +64,8 @@ struct Certifier::Content {
     const ElementLocator& coarse;
     CoarseResponse response;
     std::size_t looks = 0;
-    std::vector<ResidualSample> samples;  ///< Samples of all calls of `look`.
-    /// Smooth part of the error after the last `look`, by leaf number of the coarse mesh.
+    std::vector<ResidualSample> samples;  ///< Samples of all calls of `measure`.
+    /// Smooth part of the error after the last `measure`, by leaf number of the coarse mesh.
     std::vector<Spectrum> late;
     Field<ElementId, std::uint8_t> narrow;  ///< Marks the narrow leaves of the delivered function.
     PathTracer paths;
@@ -99,9 +99,9 @@ struct Certifier::Content {
     void plan_checks(std::span<const WeightedSample> places);
     CheckPlan plan_checks_from(std::size_t room, std::span<const WeightedSample> places) const;
     void measure_residuals();
-    void tell_p99(Certificate& out);
-    void look_at_bodies(Certificate& out);
-    void check_late(Certificate& out);
+    void measure_p99(Certificate& out);
+    void measure_each_body(Certificate& out);
+    void check_by_paths(Certificate& out);
     double true_mean(double mean_error) const;
     bool is_rough(const ResidualSample& s, double weight, const SampleSums& all, double light) const;
     RoughPlace rough_place(const ResidualSample& s) const;
@@ -207,7 +207,7 @@ double Certifier::Content::true_mean(double mean_error) const {
 /// True if the local pass's error at one point, with this weight, is a notable part of the whole allowed error and of
 /// the mean square of all points in `all`. `light`: to which the error is relative, W/m^2.
 bool Certifier::Content::is_rough(const ResidualSample& s, double weight, const SampleSums& all, double light) const {
-    if (!s.tells_local || !(all.divided_weight > 0)) return false;
+    if (!s.is_divided || !(all.divided_weight > 0)) return false;
     // Derived from the initial number of points: forty times the share that each point has if the error is uniform.
     constexpr double notable = 1.0 / 32;
     const double allowed = options.error * light, share = weight / all.divided_weight;
@@ -218,7 +218,7 @@ RoughPlace Certifier::Content::rough_place(const ResidualSample& s) const {
     return {s.region, indirect.tree.patch(s.place.element).at(s.place.uv)};
 }
 
-/// Computes the certificate from the samples of all calls of `look`.
+/// Computes the certificate from the samples of all calls of `measure`.
 Certificate Certifier::Content::judge() {
     Certificate out{.constant = response.constant(),
                     .mean_reflected = mean_reflected,
@@ -258,7 +258,7 @@ Certificate Certifier::Content::judge() {
 }
 
 /// Measures the error of every body at points on it. A single body has the error of the scene.
-void Certifier::Content::look_at_bodies(Certificate& out) {
+void Certifier::Content::measure_each_body(Certificate& out) {
     if (!options.bodies || !options.places.empty()) return;
     if (options.bodies->all.size() == 1) {
         const SceneBody& body = options.bodies->all[0];
@@ -277,7 +277,7 @@ void Certifier::Content::look_at_bodies(Certificate& out) {
 
 /// Adds the error that arrives by further reflections and that the coarse response misses, if traced paths find it
 /// significant.
-void Certifier::Content::check_late(Certificate& out) {
+void Certifier::Content::check_by_paths(Certificate& out) {
     if (options.bounces >= 0 || options.summed || !options.places.empty()) return;
     const LatePaths by_paths(stage, indirect, b, check, options.direct_in_elements);
     const LateMisfit misfit = by_paths.misfit(samples, late, options.seed, options.check_rays / 2);
@@ -288,7 +288,7 @@ void Certifier::Content::check_late(Certificate& out) {
     if (stage.rooms.count() == 0) out.worst_room = rooms[0].error = out.estimate;
 }
 
-void Certifier::Content::tell_p99(Certificate& out) {
+void Certifier::Content::measure_p99(Certificate& out) {
     constexpr double share = 0.01;  // share of the points above the 99th percentile, given by its name
     constexpr unsigned max_rays = 1 << 14;
     std::vector<WeightedError> points;
@@ -363,24 +363,26 @@ std::vector<FaceError> Certifier::surface_errors() const {
     return exitance::surface_errors(points, of_rooms);
 }
 
-Certificate Certifier::look() {
+Certificate Certifier::measure() {
     if (content_->mean_reflected <= 0) return {};
     content_->measure_residuals();
     return content_->judge();
 }
 
-void Certifier::look_at_bodies(Certificate& certificate) {
-    if (content_->samples.empty()) return;
-    content_->check_late(certificate);  // must come first: it corrects the estimate of the whole scene
-    content_->look_at_bodies(certificate);
+void Certifier::check_by_paths(Certificate& certificate) {
+    if (!content_->samples.empty()) content_->check_by_paths(certificate);
+}
+
+void Certifier::measure_each_body(Certificate& certificate) {
+    if (!content_->samples.empty()) content_->measure_each_body(certificate);
 }
 
 const std::vector<BodyError>& Certifier::bodies() const {
     return content_->bodies;
 }
 
-void Certifier::tell_p99(Certificate& certificate) {
-    if (!content_->samples.empty()) content_->tell_p99(certificate);
+void Certifier::measure_p99(Certificate& certificate) {
+    if (!content_->samples.empty()) content_->measure_p99(certificate);
 }
 
 }  // namespace exitance

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -26,7 +27,7 @@ struct SummedLight {
 struct CertificateOptions {
     double error = 1;  ///< Relative error that must be resolved; determines the number of rays.
     std::uint64_t seed = 1;
-    std::size_t points = points_for(0);  ///< Number of points that each call of `look` adds.
+    std::size_t points = points_for(0);  ///< Number of points that each call of `measure` adds.
     /// True if the scene is closed and absorbs as much of the delivered light as it emits. The mean error is then
     /// known.
     bool keeps_flux = false;
@@ -59,7 +60,7 @@ struct CertificateOptions {
     std::size_t check_rays = 1 << 16;
     /// Bodies whose errors are reported; null: none.
     const SceneBodies* bodies = nullptr;
-    /// Ends further measurements when it is requested. The first `look` is always completed. Null: no stop.
+    /// Ends further measurements when it is requested. The first `measure` is always completed. Null: no stop.
     const StopRequest* stop = nullptr;
     bool is_stopped() const { return stop && stop->requested(); }
 };
@@ -69,7 +70,7 @@ struct Certificate {
     double estimate = 0;     ///< Relative RMS error of B (the residual, propagated by a coarse solve).
     double uncertainty = 0;  ///< Standard error of `estimate`; large if a few points have most of the error.
     double bound = 0;        ///< Upper bound of the relative RMS error, at 95% confidence.
-    /// Relative error that 99% of the area does not exceed; empty until `tell_p99` is called.
+    /// Relative error that 99% of the area does not exceed; empty until `measure_p99` is called.
     std::optional<double> p99 = {};
     double residual = 0;  ///< Relative RMS of the residual r.
     /// Parts of the residual where `largest` is, relative RMS; 0 if the gathered light is unknown. `local`: delivered
@@ -88,8 +89,12 @@ struct Certificate {
     /// relative, W/m^2.
     std::optional<std::size_t> largest_room = {};
     double largest_light = 0;
-    std::optional<double> worst_body = {};  ///< Largest error of a body; set by `look_at_bodies`.
-    HiddenErrors hidden = {};               ///< Bodies whose error remained unknown; set by `look_at_bodies`.
+    std::optional<double> worst_body = {};  ///< Largest error of a body; set by `measure_each_body`.
+    HiddenErrors hidden = {};               ///< Bodies whose error remained unknown; set by `measure_each_body`.
+    /// Adds an error that is independent of what was measured, relative to the mean reflected light, in quadrature.
+    void add_independent_error(double error) {
+        for (double* known : {&estimate, &bound, &worst_room}) *known = std::hypot(*known, error);
+    }
     /// Returns the larger of the errors of the whole scene and of the worst room.
     double largest() const { return std::max(estimate, worst_room); }
     double largest_uncertainty() const { return estimate < worst_room ? room_uncertainty : uncertainty; }
@@ -105,7 +110,7 @@ struct Certificate {
 /// against the true direct light (`DirectCheck`), so that r does not depend on the quality of the projection.
 ///
 /// The error is e = (I - rho H)^-1 r. Its rough part is r itself; its smooth part is the response of a coarse solve to
-/// the mean residuals of the regions. Paths check that response (`look_at_bodies`). The bound is the product of the
+/// the mean residuals of the regions. Paths check that response (`check_by_paths`). The bound is the product of the
 /// norm of (I - rho H)^-1, estimated as sqrt(C_1 C_inf) from two coarse solves with unit light, and Student's upper
 /// confidence limit of ||r||. If light is summed over elements, the residual is summed too; only the check of the
 /// projected light is then noisy.
@@ -120,23 +125,27 @@ class Certifier {
 
     /// Measures the residual at `options.points` more points, and returns the estimate from all points so far. Its
     /// `rays` counts those of all calls. If a stop is requested during a further call, its points are dropped.
-    Certificate look();
+    Certificate measure();
 
-    /// Sets `p99` of the result of the last `look`, and adds the rays cast to its `rays`. The points with the largest
-    /// apparent errors are measured again, since these are mostly noise; after a stop, they keep that noise.
-    void tell_p99(Certificate& certificate);
+    /// Sets `p99` of the result of the last `measure`, and adds the rays cast to its `rays`. The points with the
+    /// largest apparent errors are measured again, since these are mostly noise; after a stop, they keep that noise.
+    void measure_p99(Certificate& certificate);
 
-    /// Measures the error of every body at additional points on it (`measure_bodies`) and sets `worst_body`. Paths
-    /// check the smooth part of the error at some of the points of `look`; what it lacks is added to the estimate. Adds
-    /// the rays cast to `rays`. After a stop, the remaining bodies get no error.
-    void look_at_bodies(Certificate& certificate);
+    /// Checks the smooth part of the error by paths at some of the points of `measure`; what it lacks is added to the
+    /// estimate. Adds the rays cast to `rays`.
+    void check_by_paths(Certificate& certificate);
 
-    /// Returns the error of every body, in descending order of area; empty before `look_at_bodies`.
+    /// Measures the error of every body at additional points on it (`measure_bodies`) and sets `worst_body`. A single
+    /// body has the error of the scene, so check_by_paths() comes first. Adds the rays cast to `rays`. After a stop,
+    /// the remaining bodies get no error.
+    void measure_each_body(Certificate& certificate);
+
+    /// Returns the error of every body, in descending order of area; empty before `measure_each_body`.
     const std::vector<BodyError>& bodies() const;
 
-    /// Returns the error of every room after the last `look`, in descending order of area.
+    /// Returns the error of every room after the last `measure`, in descending order of area.
     const std::vector<RoomError>& rooms() const;
-    /// Returns the error of every face after the last `look`; empty if there was no light to measure. O(points +
+    /// Returns the error of every face after the last `measure`; empty if there was no light to measure. O(points +
     /// faces).
     std::vector<FaceError> surface_errors() const;
 

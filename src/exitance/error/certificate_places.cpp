@@ -53,7 +53,7 @@ std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementT
         error += own[i].counted * own[i].error;
         in_gaps += narrow[leaves[i]] ? own[i].counted : 0;
     }
-    constexpr int excluded_divisor = 10;  // density of points on excluded sides, as a divisor
+    constexpr double unlit_density = 0.1;  // density of points on unlit sides, relative to others; given by few points
     const double mean_error = error / area;
     const double share = calibrated::narrow_points;
     const double of_narrow = in_gaps > 0 ? share / (1 - share) * area / in_gaps : 0;
@@ -61,14 +61,14 @@ std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementT
     std::vector<double> density(leaves.size());
     parallel_for(leaves.size(), 1024, [&](std::size_t i) {
         const ElementId e = leaves[i];
-        const double reduction = stage.is_left_out(tree.region(e)) ? 1.0 / excluded_divisor : 1;
+        const double reduction = stage.is_unlit(tree.region(e)) ? unlit_density : 1;
         const double expected = mean_error > 0 ? 0.5 + 0.5 * own[i].error / mean_error : 1.0;
         density[i] = reduction * stage.rooms.weight(tree, e) * (expected + (narrow[e] ? of_narrow : 0));
     });
     const auto weight_of = [&](std::size_t i) { return tree.area(leaves[i]) * density[i]; };
     double total = 0;
     for (std::size_t i = 0; i < leaves.size(); ++i) total += weight_of(i);
-    const double share_of_all = total / stage.area;  // 1 if no leaf is excluded or narrow
+    const double share_of_all = total / stage.area;  // 1 if no leaf is unlit or narrow
     const ScrambledSobol points(hash(seed, static_cast<std::uint64_t>(Stream::certificate)));
     std::vector<WeightedSample> out;
     for_strata(points, count, leaves.size(), total, weight_of, [&](std::uint32_t k, std::size_t leaf) {

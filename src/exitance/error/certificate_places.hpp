@@ -12,7 +12,7 @@ struct WeightedSample {
 
 /// Returns `options.points` places at which to measure the residual: one in each stratum of a running sum over the
 /// leaves of `tree`. Half of the sum is area; the other half is area times the square of the expected error. Narrow
-/// leaves (`find_narrow_leaves`) get an additional share of the points. Excluded sides get a few points, so that any
+/// leaves (`find_narrow_leaves`) get an additional share of the points. Unlit sides get a few points, so that any
 /// light there is detected.
 std::vector<WeightedSample> stratified_places(const Stage& stage, const ElementTree& tree,
                                               const Field<ElementId, std::uint8_t>& narrow,

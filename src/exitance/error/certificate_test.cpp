@@ -49,7 +49,7 @@ struct PlantedError {
         return rho * (emitted(region) + mean(delivered.at(locator.find(region, y))));
     }
 
-    /// Returns the certificate after this many calls of `look`.
+    /// Returns the certificate after this many calls of `measure`.
     Certificate certificate(std::uint64_t seed, int looks = 1, std::size_t points = 1280,
                             bool keeps_flux = false) const {
         const ElementLocator locator(delivered.tree, scene.regions().size());
@@ -57,8 +57,8 @@ struct PlantedError {
             [&](RegionId region, const Point& y) { return Spectrum(reflected(locator, region, y)); });
         Certifier certifier(stage, light, delivered, b,
                             {.error = 0.02, .seed = seed, .points = points, .keeps_flux = keeps_flux});
-        for (int look = 1; look < looks; ++look) certifier.look();
-        return certifier.look();
+        for (int look = 1; look < looks; ++look) certifier.measure();
+        return certifier.measure();
     }
 
     /// Returns a certificate that includes the 99th percentile.
@@ -67,8 +67,8 @@ struct PlantedError {
         const PointwiseLight b(
             [&](RegionId region, const Point& y) { return Spectrum(reflected(locator, region, y)); });
         Certifier certifier(stage, light, delivered, b, {.error = 0.02, .seed = seed, .points = 1280});
-        Certificate out = certifier.look();
-        certifier.tell_p99(out);
+        Certificate out = certifier.measure();
+        certifier.measure_p99(out);
         return out;
     }
 
@@ -93,7 +93,7 @@ struct PlantedError {
         Certifier certifier(
             stage, light, delivered, b,
             {.error = 0.02, .seed = seed, .keeps_flux = true, .light_in = light_in, .allowed_in = light_in});
-        certifier.look();
+        certifier.measure();
         return certifier.rooms();
     }
 
@@ -104,7 +104,7 @@ struct PlantedError {
             for (float& v : value) v = static_cast<float>(rho * (1 + static_cast<double>(v)));
         const SummedLight summed{{ElementGather(stage, reflected)}, {}, 1e-3};
         const PointwiseLight unread([](RegionId, const Point&) { return Spectrum(); });
-        return Certifier(stage, light, delivered, unread, {.error = 0.02, .seed = seed, .summed = &summed}).look();
+        return Certifier(stage, light, delivered, unread, {.error = 0.02, .seed = seed, .summed = &summed}).measure();
     }
 
     /// Returns the relative RMS of the planted error of B.
@@ -150,14 +150,14 @@ TEST(Certificate, EndsFurtherMeasurementsAtAStop) {
     Certifier certifier(planted.stage, planted.light, planted.delivered, b,
                         {.error = 0.02, .bodies = &bodies, .stop = &stop});
     stop.interrupt();
-    const Certificate first = certifier.look();
+    const Certificate first = certifier.measure();
     EXPECT_EQ(first.points, 1280u);  // the first measurement is completed even after a stop request
     EXPECT_NEAR(first.residual, planted.error(rough), 0.2 * planted.error(rough));
-    Certificate second = certifier.look();
+    Certificate second = certifier.measure();
     EXPECT_EQ(second.points, 1280u);
     EXPECT_EQ(second.estimate, first.estimate);
     const std::size_t rays = second.rays;
-    certifier.tell_p99(second);
+    certifier.measure_p99(second);
     // The noise of few rays makes the percentile larger than the planted error, which is the same size everywhere.
     ASSERT_TRUE(second.p99);
     EXPECT_GT(*second.p99, first.residual);
@@ -199,7 +199,7 @@ struct WrongProjection {
     double estimate(std::uint64_t seed, const ProjectedDirect& told, const SummedLight* summed = nullptr) const {
         CertificateOptions options{.error = 0.02, .seed = seed};
         options.projected = told, options.summed = summed;
-        return Certifier(furnace.stage, furnace.light, furnace.delivered, b, options).look().estimate;
+        return Certifier(furnace.stage, furnace.light, furnace.delivered, b, options).measure().estimate;
     }
 };
 
@@ -394,7 +394,7 @@ TEST(Certificate, FindsAnErrorOfTheProjectionInADarkRoom) {
         CertificateOptions options{.error = 0.02, .seed = seed, .light_in = light_in, .allowed_in = light_in};
         options.projected = {&projected, Spectrum(1.0)};
         Certifier certifier(planted.stage, planted.light, planted.delivered, b, options);
-        certifier.look();
+        certifier.measure();
         square += std::pow(certifier.rooms()[1].error / truth - 1, 2) / seeds;
     }
     // Checks as rare as the light of the bright room allows would have several times as much noise.
@@ -429,8 +429,8 @@ TEST(Certificate, MeasuresSmallBodiesAtAdditionalPoints) {
         CertificateOptions options{.error = 0.02, .seed = seed};
         options.bodies = &bodies, options.projected = {&direct};
         Certifier certifier(planted.stage, planted.light, planted.delivered, b, options);
-        Certificate found = certifier.look();
-        certifier.look_at_bodies(found);
+        Certificate found = certifier.measure();
+        certifier.check_by_paths(found), certifier.measure_each_body(found);
         ASSERT_EQ(certifier.bodies().size(), 2u);
         EXPECT_GE(certifier.bodies()[1].points, 8u);
         ASSERT_TRUE(found.worst_body);
@@ -483,8 +483,8 @@ TEST(Certificate, LooksCloselyAtEveryBodyThatMayExceedTheLimit) {
         CertificateOptions options{.error = 0.02, .seed = seed, .check_rays = count << 15};
         options.bodies = &bodies, options.projected = {&direct};
         Certifier certifier(planted.stage, planted.light, planted.delivered, b, options);
-        Certificate found = certifier.look();
-        certifier.look_at_bodies(found);
+        Certificate found = certifier.measure();
+        certifier.check_by_paths(found), certifier.measure_each_body(found);
         // Eight points do not suffice to say that a body exceeds the limit.
         std::size_t close = 0;
         for (const BodyError& body : certifier.bodies()) {
@@ -520,8 +520,8 @@ TEST(Certificate, MeansOfBodiesCountBrightStripsByTheirArea) {
         options.bodies = &bodies;
         options.light_in = {1, 1}, options.allowed_in = {1, 1};
         Certifier certifier(planted.stage, planted.light, planted.delivered, b, options);
-        Certificate found = certifier.look();
-        certifier.look_at_bodies(found);
+        Certificate found = certifier.measure();
+        certifier.check_by_paths(found), certifier.measure_each_body(found);
         ASSERT_EQ(certifier.bodies().size(), 2u);
         // Thousands of places know the mean to about a percent; eight would miss it by a third and more.
         for (std::size_t i = 0; i < 2; ++i)

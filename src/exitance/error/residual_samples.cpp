@@ -34,7 +34,7 @@ double factor_for_many_reflections(double constant) {
 
 }  // namespace
 
-double rays_to_tell(double error, std::size_t points) {
+double rays_to_resolve(double error, std::size_t points) {
     return calibrated::certificate_noise / (error * error * std::sqrt(static_cast<double>(points)));
 }
 
@@ -59,7 +59,7 @@ unsigned ResidualSampler::rays_at(ElementId leaf) const {
     if (options_.leaves)
         return certificate_rays(calibrated::certificate_ray_share *
                                 LocalPassReport::known(*options_.leaves, indirect_.tree, leaf).rays);
-    return certificate_rays(often_ * rays_to_tell(options_.error, options_.points));
+    return certificate_rays(often_ * rays_to_resolve(options_.error, options_.points));
 }
 
 Point ResidualSampler::point(const ResidualSample& sample) const {
@@ -107,7 +107,7 @@ void ResidualSampler::sum_elements(std::uint64_t seed, std::size_t k, const Chec
     sample.r1 = sample.r2 = residual(options_.summed->delivered);
     if (!options_.summed->gathered.empty() && k % samples_per_local_sum == 0) {
         sample.local1 = sample.local2 = residual(options_.summed->gathered);
-        sample.tells_local = true;
+        sample.is_divided = true;
     }
     if (sample.is_covered || !check_.has_projection()) return;
     for (std::uint64_t which = 1; which <= 2; ++which) {
@@ -123,7 +123,7 @@ void ResidualSampler::cast_rays(std::uint64_t seed, std::size_t k, const CheckPl
                                 Workspace& w) const {
     const Spectrum& reflectance = stage_.scene.material(sample.region).reflectance;
     const unsigned rays = rays_at(sample.place.element);
-    sample.tells_local = options_.gathered != nullptr;
+    sample.is_divided = options_.gathered != nullptr;
     if (sample.is_covered) return;
     for (std::uint64_t which = 1; which <= 2; ++which) {
         const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::certificate), k, which);

@@ -18,8 +18,8 @@ struct ResidualSample {
     double weight = 0;
     Spectrum r1, r2;          ///< Two estimates of the residual, W/m^2.
     double squared = 0;       ///< Estimated square of the error, mean over bands, (W/m^2)^2.
-    Spectrum local1, local2;  ///< The parts of r1 and r2 that the local pass causes, if `tells_local`.
-    bool tells_local = false;
+    Spectrum local1, local2;  ///< The parts of r1 and r2 that the local pass causes, if `is_divided`.
+    bool is_divided = false;
     Spectrum delivered;      ///< Delivered irradiance without direct light, W/m^2.
     double reflected = 0;    ///< Reflected radiosity with the projected direct light, mean over bands, W/m^2.
     std::uint32_t leaf = 0;  ///< Leaf number in the coarse mesh.
@@ -32,7 +32,7 @@ struct ResidualSample {
 /// the mean product is therefore a given share of the squared error for
 ///
 ///     n = `certificate_noise` / (error^2 sqrt(points)).
-double rays_to_tell(double error, std::size_t points);
+double rays_to_resolve(double error, std::size_t points);
 
 /// Rounds a number of rays up to a power of two, within the limits for a certificate.
 unsigned certificate_rays(double wanted);

@@ -81,7 +81,7 @@ void add_texture_error(Solution& solution, std::span<const Spectrum> deviation, 
     add(s.relative_error_estimate, error), add(s.relative_error_bound, error);
     add(s.relative_error_estimate_interpolant, error), add(s.relative_error_estimate_worst_room, error);
     s.error_p99.reset();  // unknown if reflectance varies within faces
-    if (s.rooms.size() == 1) s.rooms[0].error = std::hypot(s.rooms[0].error, error);
+    for (RoomError& room : s.rooms) room.error = std::hypot(room.error, error);
     const double reflected = mean_reflected(solution.scene, light);
     for (std::size_t f = 0; f < s.surface_errors.size(); ++f) {
         const SurfaceId id(f);

@@ -91,11 +91,11 @@ TEST(UnlitSides, AreFoundOnSheetsOnly) {
 TEST(UnlitSides, DoNotCountInTheAreaAndAreNotMeshed) {
     const Scene scene = test::make(room_with_box(false));
     Stage stage(scene);
-    stage.leave_out(find_unlit_sides(stage, 1, StopRequest()));
+    stage.set_unlit_sides(find_unlit_sides(stage, 1, StopRequest()));
     EXPECT_NEAR(stage.area, 24 + 5 * 0.16 + 0.04, 1e-9);  // room, box and lamp, m^2; coordinates have few digits
     const ElementTree tree = stage.make_elements({0.1, 2});
     std::size_t whole = 0;
-    for (ElementId leaf : tree.leaves()) whole += stage.is_left_out(tree.region(leaf)) ? 1 : 0;
+    for (ElementId leaf : tree.leaves()) whole += stage.is_unlit(tree.region(leaf)) ? 1 : 0;
     EXPECT_EQ(whole, 11u);
     EXPECT_GT(tree.leaves().size(), 2400u);  // the room's faces become squares of 0.1 m
 }

@@ -163,7 +163,7 @@ BrightPlaces find_bright_places(const Stage& stage, const ElementTree& tree, con
     for (std::size_t i = 0; i < leaves.size(); ++i) {
         RoomLight& room = rooms[room_of[i]];
         const double usual = room.flux / room.area, value = values[i].mean;
-        if (!(usual > 0) || values[i].largest < bright * usual || stage.is_left_out(tree.region(leaves[i]))) continue;
+        if (!(usual > 0) || values[i].largest < bright * usual || stage.is_unlit(tree.region(leaves[i]))) continue;
         light[leaves[i]] = value / usual;
         room.bright[tree.region(leaves[i])].push_back(leaves[i]);
         room.bright_square += tree.area(leaves[i]) * value * value;

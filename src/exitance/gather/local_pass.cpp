@@ -25,7 +25,7 @@ LocalPass::LocalPass(const Stage& stage, MeshSize mesh, std::uint64_t seed)
     if (is_crowd_) {
         std::vector<double> areas;
         for (ElementId e : leaves)
-            if (!stage.is_left_out(tree_.region(e))) areas.push_back(stage.counted_area(tree_, e));
+            if (!stage.is_unlit(tree_.region(e))) areas.push_back(stage.counted_area(tree_, e));
         noise_area_ = std::max(mean_area_, even_noise_area(areas));
     }
     share_on_node(tree_);
@@ -37,7 +37,7 @@ double LocalPass::light_near(ElementId e, const LocalPassDemand& demand) const {
 }
 
 /// Factor on the noise allowed in the room of an element.
-double LocalPass::quiet_in(ElementId e, const LocalPassDemand& demand) const {
+double LocalPass::noise_factor_in(ElementId e, const LocalPassDemand& demand) const {
     return demand.noise_in.empty() ? 1 : demand.noise_in[stage_.rooms.of(tree_, e)];
 }
 
@@ -91,7 +91,7 @@ double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const
     const double near = light_near(e, demand), usual_light = far_lighter * near * demand.light;
     const double brightness_factor = usual_light > 0 ? std::sqrt(std::max(1.0, sampled.light / usual_light)) : 1;
     const double of_all =
-        demand.noise * quiet_in(e, demand) * near * effort_factor * brightness_factor *
+        demand.noise * noise_factor_in(e, demand) * near * effort_factor * brightness_factor *
         std::pow(noise_area_ / stage_.counted_area(tree_, e), 0.25);  // derived from the same minimization as above
     const double allowed = std::min(of_all, noise_for_body(e, demand));
     return allowed > 0 ? std::sqrt(sampled.noise_squared) / allowed : 0;
@@ -178,9 +178,9 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
                             : parent.is_none()         ? 0
                                                        : sampled_[parent].place_rays / 2;
     // if true, the element's area has no weight, and it gets the minimum number of rays
-    const bool unlit = stage_.is_left_out(tree_.region(e));
+    const bool unlit = stage_.is_unlit(tree_.region(e));
     // Rays of a place follow from the noise allowed to the power of -4/3 (`knobs_for_error`).
-    const double allowance = std::pow(quiet_in(e, demand), 4.0 / 3);
+    const double allowance = std::pow(noise_factor_in(e, demand), 4.0 / 3);
     // With very many elements each has so small a share of the light that its noise alone determines its rays.
     constexpr unsigned least_rays = 4;
     const unsigned first = is_crowd_ ? least_rays
@@ -196,7 +196,7 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
         if (may_cut && is_too_rough(e, out, demand)) return out;
         if (noise_excess(e, out, demand) <= calibrated::tolerated_noise || 2 * rays > demand.rays.most) {
             if (may_cut && demand.elements.empty())
-                is_suspect(e) ? look_closely(e, out, b, demand, w) : look_between(e, out, b, demand, w);
+                is_suspect(e) ? check_strips(e, out, b, demand, w) : check_between_nodes(e, out, b, demand, w);
             return out;
         }
     }
@@ -226,8 +226,8 @@ SampledElement LocalPass::changed(ElementId e, const LocalPassDemand& demand, Wo
 /// Checks the polynomial between the nodes. Light in a slit between two boards, or at the mouth of a gap, varies over
 /// less than the distance of the nodes. The polynomial is compared with a few rays at random places; if the difference
 /// exceeds their noise, it counts as misfit.
-void LocalPass::look_between(ElementId e, SampledElement& sampled, const ReflectedLight& b,
-                             const LocalPassDemand& demand, Workspace& w) const {
+void LocalPass::check_between_nodes(ElementId e, SampledElement& sampled, const ReflectedLight& b,
+                                    const LocalPassDemand& demand, Workspace& w) const {
     constexpr unsigned share = 8;  // the check takes about 1 / share of the rays that the element took before
     constexpr unsigned least_places = 4, most_places = 32;
     unsigned rays = 16, count = std::min(most_places, sampled.rays / (share * rays));
@@ -285,7 +285,7 @@ std::vector<ElementId> LocalPass::split_where_needed(const std::vector<ElementId
 }
 
 /// Sets the errors of the whole and of every room.
-void LocalPass::tell_parts(LocalPassReport& report) const {
+void LocalPass::record_parts(LocalPassReport& report) const {
     struct Sum {
         double area = 0, noise = 0, interpolation = 0;
 
@@ -301,7 +301,7 @@ void LocalPass::tell_parts(LocalPassReport& report) const {
     Sum whole;
     std::vector<Sum> rooms(stage_.rooms.count());
     for (ElementId e : tree_.leaves()) {
-        if (stage_.is_left_out(tree_.region(e))) continue;
+        if (stage_.is_unlit(tree_.region(e))) continue;
         whole.add(tree_.area(e), sampled_[e]);
         if (!rooms.empty()) rooms[stage_.rooms.of(tree_, e)].add(tree_.area(e), sampled_[e]);
     }
@@ -326,7 +326,7 @@ ElementFunction LocalPass::finished(const LocalPassDemand& demand, LocalPassRepo
     // Polynomials that are made continuous overshoot next to steep falls. Irradiance is not negative.
     for (std::array<float, bands>& value : out.values)
         for (float& v : value) v = std::max(0.0f, v);
-    tell_parts(report);
+    record_parts(report);
     return out;
 }
 

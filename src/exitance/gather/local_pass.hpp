@@ -129,15 +129,15 @@ class LocalPass {
     std::vector<ElementId> gather_together(const std::vector<ElementId>& active, const ReflectedLight& b,
                                            const LocalPassDemand& demand, LocalPassReport& report, Progress& progress,
                                            const StopRequest& stop);
-    void look_between(ElementId e, SampledElement& sampled, const ReflectedLight& b, const LocalPassDemand& demand,
-                      Workspace& workspace) const;
+    void check_between_nodes(ElementId e, SampledElement& sampled, const ReflectedLight& b,
+                             const LocalPassDemand& demand, Workspace& workspace) const;
     bool is_suspect(ElementId e) const;
-    void look_closely(ElementId e, SampledElement& sampled, const ReflectedLight& b, const LocalPassDemand& demand,
+    void check_strips(ElementId e, SampledElement& sampled, const ReflectedLight& b, const LocalPassDemand& demand,
                       Workspace& workspace) const;
     std::vector<ElementId> beside(ElementId e, const ElementLocator& locator) const;
     std::size_t follow_rough_places(const ReflectedLight& b, const LocalPassDemand& demand);
     double light_near(ElementId e, const LocalPassDemand& demand) const;
-    double quiet_in(ElementId e, const LocalPassDemand& demand) const;
+    double noise_factor_in(ElementId e, const LocalPassDemand& demand) const;
     std::uint32_t body_of(ElementId e, const LocalPassDemand& demand) const;
     void divide_among_bodies(const LocalPassDemand& demand);
     double noise_for_body(ElementId e, const LocalPassDemand& demand) const;
@@ -145,7 +145,7 @@ class LocalPass {
     double allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const;
     double noise_excess(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
     double tolerated_misfit_squared(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
-    void tell_parts(LocalPassReport& report) const;
+    void record_parts(LocalPassReport& report) const;
     bool is_too_rough(ElementId e, const SampledElement& sampled, const LocalPassDemand& demand) const;
     double share_in_crowd(const LocalPassDemand& demand) const;
     std::vector<ElementId> split_where_needed(const std::vector<ElementId>& candidates, const LocalPassDemand& demand);

@@ -47,7 +47,7 @@ bool LocalPass::is_suspect(ElementId e) const {
 
 /// Measures the misfit of an element's polynomial at many places, and sets it if it is larger than the misfit at the
 /// nodes of the fit.
-void LocalPass::look_closely(ElementId e, SampledElement& sampled, const ReflectedLight& b,
+void LocalPass::check_strips(ElementId e, SampledElement& sampled, const ReflectedLight& b,
                              const LocalPassDemand& demand, Workspace& w) const {
     // Derived from a feature that covers a twentieth of the element: some place meets it in 24 of 25 times, and its
     // misfit exceeds the noise.
@@ -118,7 +118,7 @@ std::size_t LocalPass::follow_rough_places(const ReflectedLight& b, const LocalP
                 Workspace workspace;
                 for (std::size_t i = begin; i < end; ++i) {
                     found[i] = sampled_[now[i]];
-                    look_closely(now[i], found[i], b, demand, workspace);
+                    check_strips(now[i], found[i], b, demand, workspace);
                 }
             },
             [&](std::size_t i) -> SampledElement& { return found[i]; }, {"gather"});

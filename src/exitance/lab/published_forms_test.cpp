@@ -77,7 +77,7 @@ TEST(PublishedForm, AnExceededMemoryLimitEndsRefinement) {
     const Result<Solution> limited = solve(options);
     ASSERT_TRUE(limited);
     EXPECT_LT(limited->statistics.links, whole->statistics.links);
-    EXPECT_EQ(limited->statistics.stopped_by, "memory limit");
+    EXPECT_EQ(limited->statistics.stopped_by, StopReason::memory_limit);
     EXPECT_FALSE(limited->statistics.converged);
     EXPECT_GT(limited->statistics.energy.absorbed, 0) << "the light found so far is delivered";
 }
@@ -106,7 +106,7 @@ TEST(PublishedForm, AStopDeliversTheLightSoFar) {
         stop.interrupt();
         const Result<Solution> stopped = solve_scene(built_scene("tube", {{"rho", "0.7"}}), options, progress, stop);
         ASSERT_TRUE(stopped);
-        EXPECT_EQ(stopped->statistics.stopped_by, "interrupt");
+        EXPECT_EQ(stopped->statistics.stopped_by, StopReason::interrupt);
         EXPECT_FALSE(stopped->statistics.converged);
         EXPECT_FALSE(stopped->statistics.relative_error_estimate);
         EXPECT_GT(stopped->interpolant.tree.size(), 0u);

@@ -16,8 +16,8 @@ RegionId region_of(const Scene& scene, const Locator& faces, const ImportantPoin
 
 }  // namespace
 
-std::vector<Spectrum> looked_at(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
-                                const std::vector<ImportantPoint>& points, std::uint64_t seed) {
+std::vector<Spectrum> importance_at(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
+                                    const std::vector<ImportantPoint>& points, std::uint64_t seed) {
     const Locator faces(stage.scene);
     const ElementLocator elements(tree, stage.scene.regions().size());
     std::vector<Spectrum> out(numbering.leaves.size());

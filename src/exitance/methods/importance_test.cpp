@@ -52,11 +52,11 @@ TEST(Importance, IsAtSurfacePointsAndAtRayHitsOfFreePoints) {
     const LeafNumbering numbering(tree);
     std::vector<ImportantPoint> points = on_the_first_floor;
     double sum = 0;
-    const std::vector<Spectrum> w = looked_at(stage, tree, numbering, points, 1);
+    const std::vector<Spectrum> w = importance_at(stage, tree, numbering, points, 1);
     for (std::size_t i = 0; i < w.size(); ++i) sum += w[i][0] * tree.area(numbering.leaves[i]);
     EXPECT_NEAR(sum, stage.area, 1e-9 * stage.area) << "mean 1";
 
-    const std::vector<Spectrum> free = looked_at(stage, tree, numbering, {{{4, 1, 1.5}, {0, 0, -1}}}, 1);
+    const std::vector<Spectrum> free = importance_at(stage, tree, numbering, {{{4, 1, 1.5}, {0, 0, -1}}}, 1);
     sum = 0;
     for (std::size_t i = 0; i < free.size(); ++i) {
         const ElementId e = numbering.leaves[i];

@@ -75,14 +75,15 @@ HierarchyBasis galerkin_basis(BasisKind basis) {
 /// With `--basis linear`, rows are cast from nodes and a ray evaluates the polynomial of the element that it hits
 /// [Atkinson00]. With `--basis galerkin1` to `3`, blocks of the Galerkin matrix are integrated pair by pair [Zatz93].
 GlobalLight solve_matrix(const MethodInput& input) {
-    const auto& [stage, options, knobs, direct, progress, stop, safe_points, may_give_up, aim, snapshots] = input;
+    const Stage& stage = input.stage;
+    const SolveOptions& options = input.options;
     if (options.bounces < 0 && options.basis && is_galerkin(*options.basis))
         return solve_galerkin(input, galerkin_basis(*options.basis));
-    GlobalLight light{.tree = direct.tree, .numbering = LeafNumbering(direct.tree)};
-    light.direct = leaf_means(direct, light.numbering);
+    GlobalLight light{.tree = input.direct.tree, .numbering = LeafNumbering(input.direct.tree)};
+    light.direct = leaf_means(input.direct, light.numbering);
     light.on_projection = true;
 
-    progress.phase("link");
+    input.progress.phase("link");
     if (options.basis == BasisKind::linear && options.bounces < 0) {
         solve_linear(input, light);
     } else if (options.form_factors.value_or(FormFactorKind::ray_cast) == FormFactorKind::ray_cast) {
@@ -103,7 +104,7 @@ GlobalLight solve_matrix(const MethodInput& input) {
         const PatchLevel patches(light.tree, light.numbering, 1);
         const auto samples = options.visibility_samples.value_or(default_visibility_samples);
         const PatchTransfer transfer(stage, light.tree, static_cast<unsigned>(samples), options.seed);
-        const DenseTransport F(transfer, light.numbering, patches, progress, stop);
+        const DenseTransport F(transfer, light.numbering, patches, input.progress, input.stop);
         const PassedLight passed(stage.scene, light.tree, light.numbering.leaves);
         relax_constant_elements(input, PassingTransport(F, passed), light);
         light.work.rays = transfer.rays();

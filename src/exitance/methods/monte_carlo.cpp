@@ -87,20 +87,21 @@ class Shooter {
 /// one. The number of rays is proportional to the power left; the arriving light is an unbiased estimate. Independent
 /// runs are averaged; their spread yields the standard error. O(rays), no form factors, memory of the elements only.
 GlobalLight solve_monte_carlo(const MethodInput& input) {
-    const auto& [stage, options, knobs, direct_light, progress, stop, safe_points, may_give_up, aim, snapshots] = input;
-    ElementTree tree = direct_light.tree;
+    const Stage& stage = input.stage;
+    const Knobs& knobs = input.knobs;
+    ElementTree tree = input.direct.tree;
     LeafNumbering numbering(tree);
     const std::size_t n = numbering.leaves.size();
     const std::vector<Spectrum> rho = leaf_reflectances(stage.scene, tree, numbering);
-    std::vector<Spectrum> direct = leaf_means(direct_light, numbering);
+    std::vector<Spectrum> direct = leaf_means(input.direct, numbering);
 
-    progress.phase("shoot");
-    Shooter shooter(stage, tree, numbering, options.seed);
+    input.progress.phase("shoot");
+    Shooter shooter(stage, tree, numbering, input.options.seed);
     constexpr int runs = 8;
     std::vector<Spectrum> indirect(n), square(n);
     std::size_t sweeps = 0;
     double left_over = 0;
-    for (int run = 0; run < runs && !stop.requested(); ++run) {
+    for (int run = 0; run < runs && !input.stop.requested(); ++run) {
         std::vector<Spectrum> power(n), flux(n);
         for (std::size_t i = 0; i < n; ++i) power[i] = tree.area(numbering.leaves[i]) * (rho[i] * direct[i]);
         double first_power = 0, left = 0;
@@ -123,7 +124,7 @@ GlobalLight solve_monte_carlo(const MethodInput& input) {
             indirect[i] += E / runs;
             square[i] += E * E / runs;
         }
-        progress.advance((run + 1.0) / runs);
+        input.progress.advance((run + 1.0) / runs);
     }
     std::vector<Spectrum> reflected(n), standard_error(n);
     for (std::size_t i = 0; i < n; ++i) {

@@ -21,7 +21,7 @@ void warn_of_useless_light(SolveStatistics& statistics) {
     constexpr double rough = 0.32;  // relative error; derived from pictures, in which the scene is just recognizable
     const double error = statistics.relative_error_estimate.value_or(0);
     const bool is_useless = error >= 1;
-    if (error < rough || (!is_useless && statistics.stopped_by == "divergence")) return;
+    if (error < rough || (!is_useless && statistics.stopped_by == StopReason::divergence)) return;
     if (is_useless) statistics.converged = false;
     statistics.warnings.push_back(
         fmt::format("the estimated error is {:.0f}% of the light: the result is {}; refine the settings, or request an "
@@ -31,10 +31,10 @@ void warn_of_useless_light(SolveStatistics& statistics) {
 
 std::optional<Error> error_of_missing_estimate(const SolveStatistics& statistics, const SolveOptions& options,
                                                const std::string& where) {
-    if (statistics.relative_error_estimate || statistics.stopped_by.empty() || !has_estimate(options)) return {};
+    if (statistics.relative_error_estimate || !statistics.is_stopped() || !has_estimate(options)) return {};
     return Error{ErrorCode::limit,
                  fmt::format("the {} ended the run before the first estimate of the error; nothing is written",
-                             statistics.stopped_by),
+                             name_of(statistics.stopped_by)),
                  where, "allow more time or memory, or request a larger --error"};
 }
 

@@ -5,10 +5,10 @@
 namespace exitance {
 namespace {
 
-SolveStatistics judged(double error, const char* stopped_by = "") {
+SolveStatistics judged(double error, StopReason stopped_by = StopReason::none) {
     SolveStatistics statistics;
     statistics.relative_error_estimate = error, statistics.stopped_by = stopped_by;
-    statistics.converged = statistics.stopped_by.empty();
+    statistics.converged = !statistics.is_stopped();
     warn_of_useless_light(statistics);
     return statistics;
 }
@@ -27,7 +27,7 @@ TEST(RunReport, ResultsWithAnErrorAsLargeAsTheLightHaveNotConverged) {
     EXPECT_NE(useless.warnings[0].find("not usable"), std::string::npos);
     EXPECT_FALSE(useless.converged);
     // Divergence has a warning of its own.
-    EXPECT_TRUE(judged(0.6, "divergence").warnings.empty());
+    EXPECT_TRUE(judged(0.6, StopReason::divergence).warnings.empty());
 }
 
 }  // namespace

@@ -301,7 +301,7 @@ TEST(SolveScene, AnInterruptedSolveStillHasAResult) {
     const Result<Solution> solution = solve_scene(scene, {.error = 0.02}, progress, stop);
     ASSERT_TRUE(solution);
     EXPECT_FALSE(solution->statistics.converged);
-    EXPECT_EQ(solution->statistics.stopped_by, "interrupt");
+    EXPECT_EQ(solution->statistics.stopped_by, StopReason::interrupt);
     EXPECT_FALSE(solution->statistics.relative_error_estimate);  // the error is unknown, not 0
     EXPECT_FALSE(solution->statistics.converged);
     for (const auto& value : solution->interpolant.values)
@@ -316,7 +316,7 @@ TEST(SolveScene, WithoutADiscontinuityMeshPlainElementsAreDelivered) {
     const Result<Solution> solution =
         solve_scene(scene, {.method = Method::discontinuity, .bounces = 0, .error = 0.02}, progress, stop);
     ASSERT_TRUE(solution);
-    EXPECT_EQ(solution->statistics.stopped_by, "interrupt");
+    EXPECT_EQ(solution->statistics.stopped_by, StopReason::interrupt);
     EXPECT_TRUE(solution->discontinuity.empty());
     EXPECT_GE(solution->interpolant.tree.roots().size(), scene.regions().size());
 }
@@ -382,7 +382,7 @@ TEST(SolveScene, AnInterruptedAttemptDeliversTheResultOfThePreviousOne) {
         InterruptsSecondAttempt progress(stop, round);
         Result<Solution> solution = solve_scene(scene, options, progress, stop);
         ASSERT_TRUE(solution);
-        ASSERT_EQ(solution->statistics.stopped_by, "interrupt") << "too few attempts or rounds for this test";
+        ASSERT_EQ(solution->statistics.stopped_by, StopReason::interrupt) << "too few attempts or rounds for this test";
         found.push_back(std::move(*solution));
     }
     EXPECT_GT(found[0].statistics.links, 0);

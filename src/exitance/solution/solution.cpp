@@ -1,6 +1,24 @@
 #include "exitance/solution/solution.hpp"
 
+#include <algorithm>
+
 namespace exitance {
+namespace {
+
+constexpr std::array<std::string_view, 7> stop_reason_names{"",           "interrupt",  "time limit", "memory limit",
+                                                            "iterations", "divergence", "unit limit"};
+
+}  // namespace
+
+std::string_view name_of(StopReason reason) {
+    return stop_reason_names[static_cast<std::size_t>(reason)];
+}
+
+StopReason stop_reason_of(std::string_view name) {
+    const auto found = std::find(stop_reason_names.begin(), stop_reason_names.end(), name);
+    return found == stop_reason_names.end() ? StopReason::none
+                                            : static_cast<StopReason>(found - stop_reason_names.begin());
+}
 
 void ElementFunction::add_value(const Spectrum& value) {
     std::array<float, bands> v;

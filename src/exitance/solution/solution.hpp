@@ -1,9 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "exitance/base/run_seconds.hpp"
@@ -75,6 +77,21 @@ struct DiscontinuityCounts {
     double mean_radius_ratio = 0;
 };
 
+/// Why a solve ended before it reached what was requested.
+enum class StopReason : std::uint8_t {
+    none,  ///< It was not stopped.
+    interrupt,
+    time_limit,
+    memory_limit,
+    iterations,  ///< All attempts, or iterations of a published form, were used.
+    divergence,  ///< Light grew from iteration to iteration.
+    unit_limit,  ///< Growing cells had all the units that were requested.
+};
+/// Returns the name in files and messages, such as "time limit"; empty for none.
+std::string_view name_of(StopReason reason);
+/// Returns the reason of a name; none for unknown names.
+StopReason stop_reason_of(std::string_view name);
+
 /// Resources and results of a solve: the keys of `solve --json` and `stats --json`, in their order.
 struct SolveStatistics {
     std::string method, basis, schedule;
@@ -108,7 +125,9 @@ struct SolveStatistics {
     std::vector<std::string> warnings;
     std::optional<DiscontinuityCounts> discontinuity;
     std::map<std::string, double> figures;  ///< Further results of parts of the solver, by JSON key.
-    std::string stopped_by;  ///< "time limit", "memory limit", "iterations", "interrupt"; empty: not stopped.
+    StopReason stopped_by = StopReason::none;
+
+    bool is_stopped() const { return stopped_by != StopReason::none; }
 };
 
 /// Links of a hierarchy and the elements that they connect.

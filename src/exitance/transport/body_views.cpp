@@ -35,7 +35,7 @@ std::vector<BodyPieces> pieces_by_body(const Stage& stage, const SceneBodies& bo
     std::vector<BodyPieces> out(bodies.all.size());
     for (std::uint32_t p = 0; p < stage.pieces.size(); ++p) {
         const RegionId region = stage.pieces[p].region;
-        if (stage.is_left_out(region) || !(max(stage.scene.material(region).reflectance) > 0)) continue;
+        if (stage.is_unlit(region) || !(max(stage.scene.material(region).reflectance) > 0)) continue;
         BodyPieces& of = out[bodies.of(stage.scene, region)];
         of.area_up_to.push_back((of.pieces.empty() ? 0 : of.area_up_to.back()) + stage.pieces[p].patch.area());
         of.pieces.push_back(p);
@@ -95,7 +95,7 @@ std::vector<double> own_light(const Stage& stage, const BodyViews& views, const 
     std::vector<double> flux(views.bodies().all.size()), area(flux.size());
     for (ElementId e : light.tree.leaves()) {
         const RegionId region = light.tree.region(e);
-        if (stage.is_left_out(region)) continue;
+        if (stage.is_unlit(region)) continue;
         const std::uint32_t body = views.bodies().of(stage.scene, region);
         area[body] += light.tree.area(e);
         flux[body] += light.tree.area(e) * mean(stage.scene.material(region).reflectance * light.fit[e].mean);

@@ -104,7 +104,7 @@ std::vector<Way> PortalFinder::ways(std::size_t room, unsigned most, const StopR
             const Vec3 w = cosine_direction(Frame(stage_.scene.regions()[region].plane.n), points(i, 0), points(i, 1));
             RayHit hit;
             stage_.tracer.nearest(std::span(&w, 1), x, region, std::span(&hit, 1));
-            if (hit.surface.is_none() || !hit.front || stage_.is_left_out(hit.region)) continue;
+            if (hit.surface.is_none() || !hit.front || stage_.is_unlit(hit.region)) continue;
             const Point y = x + hit.distance * w;
             const std::size_t into = rooms_.at(hit.region, y);
             if (into < room) out.push_back({x, y, into});
@@ -118,7 +118,7 @@ void PortalFinder::look(const Point& from, std::span<const Vec3> directions, std
     stage_.tracer.nearest(directions, from, RegionId(), hits);
     met.assign(directions.size(), none);
     for (std::size_t k = 0; k < directions.size(); ++k)
-        if (!hits[k].surface.is_none() && hits[k].front && !stage_.is_left_out(hits[k].region))
+        if (!hits[k].surface.is_none() && hits[k].front && !stage_.is_unlit(hits[k].region))
             met[k] = rooms_.at(hits[k].region, from + hits[k].distance * directions[k]);
 }
 

@@ -47,7 +47,7 @@ Field<ElementId, std::uint8_t> find_narrow_leaves(const Stage& stage, const Elem
         leaves.size(), 256,
         [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                if (!stage.is_left_out(tree.region(leaves[i])))
+                if (!stage.is_unlit(tree.region(leaves[i])))
                     out[leaves[i]] = is_narrow_leaf(stage, tree, leaves[i]) ? 1 : 0;
         },
         [&](std::size_t i) -> std::uint8_t& { return out[leaves[i]]; }, {"narrow places"});

@@ -1,6 +1,7 @@
 #include "exitance/transport/stage.hpp"
 
 #include "exitance/base/error_share.hpp"
+#include "exitance/calibration/numbers.hpp"
 #include "exitance/mesh/adaptive.hpp"
 
 namespace exitance {
@@ -43,7 +44,7 @@ ElementTree Stage::make_elements(MeshSize size, const StopRequest* stop) const {
         finer.push_back(finer_by(rooms.importance_of_piece(k)));
     ElementTree tree = make_mesh(pieces, concave, size, unlit, finer);
     std::vector<ElementId> leaves = tree.leaves();
-    std::erase_if(leaves, [&](ElementId e) { return is_left_out(tree.region(e)); });
+    std::erase_if(leaves, [&](ElementId e) { return is_unlit(tree.region(e)); });
     // Among thousands of leaves or slats that intersect each other none matters on its own: small ones stay whole.
     if (ErrorShare::is_crowd(leaves.size(), pieces.size())) {
         const double small = ErrorShare::small_area(area, leaves.size());
@@ -52,6 +53,13 @@ ElementTree Stage::make_elements(MeshSize size, const StopRequest* stop) const {
     cut_along_contacts(tree, leaves, contacts, stop);
     if (rooms.count() > 0) cut_to_rooms(tree, rooms, size.edge);
     return tree;
+}
+
+double Stage::expected_reflections() const {
+    double reflected = 0;
+    for (const Piece& piece : pieces)
+        if (!is_unlit(piece.region)) reflected += piece.patch.area() * mean(scene.material(piece.region).reflectance);
+    return std::min(calibrated::largest_reflection_count, 1 / (1 - reflected / area));
 }
 
 }  // namespace exitance

@@ -26,7 +26,7 @@ struct Stage {
           occluders(s),
           direct(s, occluders),
           place_light(direct, tracer) {
-        leave_out({});
+        set_unlit_sides({});
     }
     Stage(const Stage&) = delete;
     Stage& operator=(const Stage&) = delete;
@@ -39,21 +39,21 @@ struct Stage {
     Occluders occluders;
     DirectLight direct;
     PlaceLight place_light;  ///< Direct light at places, exact or by rays.
-    /// Excludes sides of sheets that no light reaches: they do not count in `area` and are not meshed in advance. Light
+    /// Sets the sides of sheets that no light reaches: they do not count in `area` and are not meshed in advance. Light
     /// that does reach them is handled as on any other side.
-    void leave_out(Field<RegionId, std::uint8_t> sides) {
+    void set_unlit_sides(Field<RegionId, std::uint8_t> sides) {
         unlit = std::move(sides);
         area = 0;
         for (const Piece& piece : pieces)
-            if (!is_left_out(piece.region)) area += piece.patch.area();
+            if (!is_unlit(piece.region)) area += piece.patch.area();
     }
-    bool is_left_out(RegionId region) const { return unlit.size() > 0 && unlit[region]; }
+    bool is_unlit(RegionId region) const { return unlit.size() > 0 && unlit[region]; }
 
-    /// Pieces that are not excluded.
+    /// Pieces on other than unlit sides.
     std::vector<Piece> lit_pieces() const {
         std::vector<Piece> out;
         std::copy_if(pieces.begin(), pieces.end(), std::back_inserter(out),
-                     [&](const Piece& piece) { return !is_left_out(piece.region); });
+                     [&](const Piece& piece) { return !is_unlit(piece.region); });
         return out;
     }
 
@@ -61,8 +61,8 @@ struct Stage {
     /// that are smaller than others. On a stop request the mesh is valid but not everywhere split.
     ElementTree make_elements(MeshSize size, const StopRequest* stop = nullptr) const;
 
-    double area = 0;                      ///< Area of all surfaces that are not excluded, m^2.
-    Field<RegionId, std::uint8_t> unlit;  ///< 1 for regions that are excluded; empty: none is.
+    double area = 0;                      ///< Area of all surfaces but unlit sides, m^2.
+    Field<RegionId, std::uint8_t> unlit;  ///< 1 for unlit sides; empty: there is none.
     LightRooms rooms;                     ///< Rooms by which errors are judged.
 
     /// Area of an element as weighted in error measures, m^2.
@@ -74,6 +74,10 @@ struct Stage {
     double important_area(const ElementTree& tree, ElementId e) const {
         return rooms.count() > 0 ? tree.area(e) * rooms.importance(tree, e) : tree.area(e);
     }
+
+    /// Mean number of times that light is reflected: 1 / (1 - mean reflectance), at most
+    /// `calibrated::largest_reflection_count`. An error that every reflection repeats grows by this factor.
+    double expected_reflections() const;
 
     /// True if something emits and something reflects. Otherwise all light is direct.
     bool has_indirect_light() const {

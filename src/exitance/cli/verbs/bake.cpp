@@ -50,7 +50,7 @@ Result<std::vector<std::string>> bake_groups(const Solution& whole, const LightG
 ExitCode end_of_groups(const LightGroups& groups, const std::vector<std::string>& names, const CommonStop& stop,
                        Terminal& terminal) {
     if (names.size() == groups.groups.size()) return ExitCode::done;
-    terminal.note(fmt::format("stopped by the {}: {} of {} light groups have maps of their own", stop.reason(),
+    terminal.note(fmt::format("stopped by the {}: {} of {} light groups have maps of their own", name_of(stop.reason()),
                               names.size(), groups.groups.size()));
     return stop.stopped_code();
 }

@@ -108,7 +108,8 @@ ExitCode run(const ExperimentArguments& arguments, Terminal& terminal) {
     show(*report, arguments.quiet, terminal);
     if (limits.signal()) return *limits.signal();
     if (!stop.requested()) return ExitCode::done;
-    terminal.note(fmt::format("stopped by the {}: the same command continues from the finished runs", limits.reason()));
+    terminal.note(
+        fmt::format("stopped by the {}: the same command continues from the finished runs", name_of(limits.reason())));
     return ExitCode::demand_not_reached;
 }
 

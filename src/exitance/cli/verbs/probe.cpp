@@ -161,7 +161,8 @@ ExitCode run(const ProbeArguments& arguments, Terminal& terminal) {
     if (const Result<void> written = files.commit(); !written) return terminal.fail(written.error());
     borders.tell(terminal);
     if (rows->are_all) return ExitCode::done;
-    terminal.note(fmt::format("stopped by the {}: the first {} points are finished", stop.reason(), rows->count));
+    terminal.note(
+        fmt::format("stopped by the {}: the first {} points are finished", name_of(stop.reason()), rows->count));
     return stop.stopped_code();
 }
 

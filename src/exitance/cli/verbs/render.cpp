@@ -180,14 +180,14 @@ void keep_time_to_write(const RenderArguments& arguments, const RunLimits& limit
 }
 
 /// Note about a picture that is coarser than requested because of a stop.
-std::string describe_stop(const TimedPicture& taken, const RenderArguments& arguments, const std::string& reason) {
+std::string describe_stop(const TimedPicture& taken, const RenderArguments& arguments, StopReason why) {
     if (taken.samples > 0)
-        return fmt::format("stopped by the {}: the picture has {} of {} samples per pixel", reason, taken.samples,
+        return fmt::format("stopped by the {}: the picture has {} of {} samples per pixel", name_of(why), taken.samples,
                            arguments.samples);
     return fmt::format(
         "stopped by the {}: there was no time for one sample per pixel, so the picture consists of squares of at most "
         "{} x {} pixels",
-        reason, taken.block, taken.block);
+        name_of(why), taken.block, taken.block);
 }
 
 /// The irradiance that pictures show in place of the full solution. Empty if they show the solution.
@@ -242,7 +242,7 @@ ExitCode render_path(const RenderArguments& arguments, const std::vector<Camera>
     if (done == cameras.size()) return ExitCode::done;
     if (done == 0) return stop.fail("no picture was finished");
     terminal.note(
-        fmt::format("stopped by the {}: {} of {} pictures are finished", stop.reason(), done, cameras.size()));
+        fmt::format("stopped by the {}: {} of {} pictures are finished", name_of(stop.reason()), done, cameras.size()));
     return stop.stopped_code();
 }
 

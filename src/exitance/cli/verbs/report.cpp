@@ -235,8 +235,8 @@ ExitCode write(const ReportArguments& arguments, const ReportContent& content, T
     if (written && !arguments.pdf.empty()) written = print_page(arguments.output, arguments.pdf, stop);
     if (!written) return terminal.fail(written.error());
     if (!is_stopped) return ExitCode::done;
-    terminal.note(
-        fmt::format("stopped by the {}, without {}", terminal.limits().reason(), fmt::join(content.unfinished, ", ")));
+    terminal.note(fmt::format("stopped by the {}, without {}", name_of(terminal.limits().reason()),
+                              fmt::join(content.unfinished, ", ")));
     return terminal.limits().stopped_code();
 }
 

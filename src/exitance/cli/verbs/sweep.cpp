@@ -116,7 +116,7 @@ ExitCode run_variants(const SweepPlan& plan, const SweepArguments& arguments, Te
         terminal.note(fmt::format("{} of {} variants done; {} steps run, {} reused", report->done, report->variants,
                                   report->steps_run, report->steps_reused));
     if (stop.requested() && report->done + report->failures.size() < report->variants) {
-        terminal.note(fmt::format("stopped by the {}: the same command continues", limits.reason()));
+        terminal.note(fmt::format("stopped by the {}: the same command continues", name_of(limits.reason())));
         return limits.stopped_code();
     }
     if (report->failures.empty()) return ExitCode::done;

@@ -60,11 +60,11 @@ std::string ViewSolve::describe_end(const SolveStatistics& statistics) const {
     const std::string error = statistics.relative_error_estimate
                                   ? fmt::format("estimated error {:.2g}%", 100 * *statistics.relative_error_estimate)
                                   : "the error is not known";
-    const std::string why = statistics.stopped_by == "interrupt" ? limits_.reason() : statistics.stopped_by;
-    const std::string end = statistics.converged  ? "reached"
-                            : why == "interrupt"  ? "stopped"
-                            : why == "iterations" ? "not reached"
-                                                  : "stopped by the " + why;
+    const StopReason why = statistics.stopped_by == StopReason::interrupt ? limits_.reason() : statistics.stopped_by;
+    const std::string end = statistics.converged            ? "reached"
+                            : why == StopReason::interrupt  ? "stopped"
+                            : why == StopReason::iterations ? "not reached"
+                                                            : fmt::format("stopped by the {}", name_of(why));
     return fmt::format("{}: {}, {:.2g}% requested", end, error, 100 * arguments_.error);
 }
 

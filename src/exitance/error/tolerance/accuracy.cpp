@@ -141,9 +141,9 @@ Knobs knobs_for_sums(const Knobs& knobs, double error, const std::vector<Piece>&
         const Knobs fine = knobs_for_fine_sums(straight, error, pieces);
         out = t < 1 ? between(out, fine, t) : fine;
     }
-    // Refining the delivered light (`refined_light`) iterates the equation for all reflections, so it cannot be used
+    // Correcting sums (`corrected_sums`) iterates the equation for all reflections, so it cannot be used
     // for a limited number of them. For large errors, and where all settings are fine (t = 1), it is not needed.
-    out.refined = options.bounces < 0 && t < 1 && error < c::refined_below;
+    out.corrects_sums = options.bounces < 0 && t < 1 && error < c::refined_below;
     apply_user_knobs(out, options);
     return out;
 }
@@ -201,8 +201,8 @@ Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, 
     return out;
 }
 
-Tightened refined(const Knobs& knobs, const ErrorParts& parts, double left, double limit, double target,
-                  const SolveOptions& options) {
+Tightened tightened_for_step(const Knobs& knobs, const ErrorParts& parts, double left, double limit, double target,
+                             const SolveOptions& options) {
     Tightened out{.knobs = knobs, .method = true, .left = left};
     const double method = left * parts.method, local = std::hypot(parts.noise, parts.interpolation);
     // Further steps follow until the method's part is at most half of the target.

@@ -26,7 +26,7 @@ struct Knobs {
     bool gather_curved = false;            ///< Fit polynomials of second degree in the gather.
     double gather_relative_tolerance = 0;  ///< Error of interpolation of summed light, relative to the local light.
     double gather_element_share = 0;       ///< Allowed error of one element in the sum, relative to the local light.
-    bool refined = false;                  ///< Refine the summed light and sum once more (`refined_light`).
+    bool corrects_sums = false;            ///< Correct the summed light, and sum once more (`corrected_sums`).
 };
 
 /// Returns the settings for a relative error and the pieces of a scene. Rules of thumb, verified afterwards by the
@@ -59,7 +59,7 @@ Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, 
 /// Returns settings for an attempt that only adds a refinement step to the method's solution, which multiplies the
 /// method's part of the error by `left`. If the total is then within `limit`, the gathered light is kept as well,
 /// except for its change; else the local pass is tightened as for `target`.
-Tightened refined(const Knobs& knobs, const ErrorParts& parts, double left, double limit, double target,
-                  const SolveOptions& options);
+Tightened tightened_for_step(const Knobs& knobs, const ErrorParts& parts, double left, double limit, double target,
+                             const SolveOptions& options);
 
 }  // namespace exitance

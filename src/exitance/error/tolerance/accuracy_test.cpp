@@ -81,12 +81,12 @@ TEST(Tightened, AlwaysTightensSomething) {
 
 TEST(Refined, KeepsTheLocalPassIfAStepIsEnough) {
     const ErrorParts parts{.method = 0.03, .noise = 0.01, .interpolation = 0.005};
-    const Tightened enough = refined(knobs, parts, 0.3, 0.02, 0.014, {});
+    const Tightened enough = tightened_for_step(knobs, parts, 0.3, 0.02, 0.014, {});
     EXPECT_EQ(enough.knobs.gather_noise, knobs.gather_noise);
     EXPECT_EQ(enough.knobs.gather_tolerance, knobs.gather_tolerance);
     EXPECT_EQ(enough.knobs.solve_mesh.edge, knobs.solve_mesh.edge);
     EXPECT_EQ(enough.work, 1);
-    const Tightened too_little = refined(knobs, {.method = 0.03, .noise = 0.02}, 0.3, 0.02, 0.014, {});
+    const Tightened too_little = tightened_for_step(knobs, {.method = 0.03, .noise = 0.02}, 0.3, 0.02, 0.014, {});
     EXPECT_LT(too_little.knobs.gather_noise, knobs.gather_noise);
     EXPECT_EQ(too_little.knobs.gather_tolerance, knobs.gather_tolerance);
     EXPECT_EQ(too_little.knobs.solve_rays.average, knobs.solve_rays.average);

@@ -94,7 +94,7 @@ TEST(GrowingCellsMethod, FewClassicCellsSettleOnSeventeenSurfaces) {
     // The light grew with every reflection while cells lay between parallel surfaces.
     const Solution solution = solve_cells(built_scene("cornell"), CellsKind::classic, 64);
     EXPECT_TRUE(solution.statistics.converged);
-    EXPECT_EQ(solution.statistics.stopped_by, "");
+    EXPECT_EQ(solution.statistics.stopped_by, StopReason::none);
     EXPECT_LT(*solution.statistics.relative_error_estimate, 0.75);
 }
 
@@ -106,7 +106,7 @@ TEST(GrowingCellsMethod, ALimitOfUnitsEndsAttemptsThatCannotHelp) {
     const Result<Solution> solution = solve_scene(built_scene("gcr2"), options, progress, stop);
     ASSERT_TRUE(solution);
     EXPECT_FALSE(solution->statistics.converged);
-    EXPECT_EQ(solution->statistics.stopped_by, "unit limit");
+    EXPECT_EQ(solution->statistics.stopped_by, StopReason::unit_limit);
     EXPECT_GT(*solution->statistics.relative_error_estimate, 0.05);
     // Nine attempts would each have four times the elements of the one before.
     EXPECT_LT(solution->statistics.leaf_elements, 1'000'000u);

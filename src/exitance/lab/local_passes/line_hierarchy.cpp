@@ -359,7 +359,7 @@ bool LineHierarchy::solve(Progress& progress, const StopRequest& stop) {
     for (auto& f : found) receivers_.push_back(std::move(*f));
     roots_.resize(regions);
     for (const Piece& piece : stage_.pieces) {
-        if (stage_.is_left_out(piece.region)) continue;
+        if (stage_.is_unlit(piece.region)) continue;
         const ReceiverCurves& receiver = receivers_[piece.region.value];
         roots_[piece.region.value].push_back(
             tree_.add_root(piece.region, flat_outline(piece.patch, receiver.frame), receiver.curves));

@@ -23,7 +23,7 @@ class Truth {
         std::vector<const Piece*> pieces;
         double total = 0, passed = 0;
         for (const Piece& piece : stage.pieces)
-            if (max(scene_.material(piece.region).reflectance) > 0 && !stage.is_left_out(piece.region))
+            if (max(scene_.material(piece.region).reflectance) > 0 && !stage.is_unlit(piece.region))
                 pieces.push_back(&piece), total += piece.patch.area();
         const ScrambledSobol sobol(hash(options.seed, static_cast<std::uint64_t>(Stream::reference)));
         std::size_t p = 0;

@@ -132,7 +132,7 @@ TEST(LocalPasses, DeliverTheExportedFunction) {
     stop.interrupt();
     const Result<Solution> cut_short = solve_scene(scene, options, progress, stop);
     ASSERT_TRUE(cut_short);
-    EXPECT_EQ(cut_short->statistics.stopped_by, "interrupt");
+    EXPECT_EQ(cut_short->statistics.stopped_by, StopReason::interrupt);
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ void measure_cell_growth(const std::string& name, const Scene& scene, const std:
             out.results.set("rays", std::to_string(light.kernel.size()));
             out.results.set("error", field(solution->statistics.relative_error_estimate.value_or(NAN)));
             out.results.set("seconds", field(watch.seconds()));
-            out.results.set("stopped_by", solution->statistics.stopped_by);
+            out.results.set("stopped_by", std::string(name_of(solution->statistics.stopped_by)));
             if (kind != CellsKind::classic) continue;
             const std::string drawing = fmt::format("{}, {} units", name, count);
             add_outlines(scene, drawing, out.growth);

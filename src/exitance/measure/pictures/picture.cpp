@@ -297,7 +297,7 @@ std::vector<Pass> passes_to(int samples) {
 /// Equal in all processes. Collective.
 std::size_t next_pass(std::span<const Pass> passes, std::size_t last, PictureSize whole, double seconds,
                       const StopRequest& stop) {
-    const double left = seconds_left(stop);
+    const double left = common_seconds_left(stop);
     const auto all_threads = processes() * static_cast<std::size_t>(as_first(threads()));
     const auto seconds_on = [&](const Pass& pass, std::size_t at_once) {
         return static_cast<double>(pass.size(whole).pixels()) * pass.samples / static_cast<double>(at_once);

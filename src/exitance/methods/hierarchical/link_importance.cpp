@@ -7,7 +7,7 @@ namespace exitance {
 Field<ElementId, double> find_link_importance(Hierarchy& h) {
     const ElementTree& tree = h.light.tree;
     const std::vector<Spectrum> points =
-        looked_at(h.input.stage, tree, h.light.numbering, h.input.options.importance, h.input.options.seed);
+        importance_at(h.input.stage, tree, h.light.numbering, h.input.options.importance, h.input.options.seed);
     const std::vector<ElementId>& leaves = h.light.numbering.leaves;
     NodalField w(h.sites);
     const NodalField source = h.pulled([&](ElementId leaf) {

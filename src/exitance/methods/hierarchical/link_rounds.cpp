@@ -62,9 +62,7 @@ std::size_t most_links(const Hierarchy& h) {
 double systematic_weight(const Hierarchy& h) {
     if (!h.light.delivers()) return 1;
     constexpr double within_a_sum = 2;
-    double reflected = 0;
-    for (ElementId e : h.light.tree.roots()) reflected += h.light.tree.area(e) * mean(h.material(e).reflectance);
-    return within_a_sum * std::min(calibrated::largest_reflection_count, 1 / (1 - reflected / h.input.stage.area));
+    return within_a_sum * h.input.stage.expected_reflections();
 }
 
 /// The rounds of one solve.

@@ -39,13 +39,9 @@ void reflect_again(const RayRows& rows, const Scene& scene, GlobalLight& light) 
 /// Permitted error of one of `count` links, W/m^2 m. Errors from evaluating a whole element are equal for neighbours,
 /// and every reflection multiplies them.
 double allowed_error(const MethodInput& input, const GlobalLight& light, std::size_t count) {
-    double reflected = 0;
-    for (ElementId e : light.tree.roots())
-        reflected += light.tree.area(e) * mean(input.stage.scene.material(light.tree.region(e)).reflectance);
-    constexpr double share = 0.5, max_reflections = 10;
-    const double reflections = std::min(max_reflections, 1 / (1 - reflected / input.stage.area));
-    return share * input.knobs.link_error * light.mean_reflected(input.stage.area) / reflections *
-           std::sqrt(input.stage.area / static_cast<double>(count));
+    constexpr double share = 0.5;
+    return share * input.knobs.link_error * light.mean_reflected(input.stage.area) /
+           input.stage.expected_reflections() * std::sqrt(input.stage.area / static_cast<double>(count));
 }
 
 }  // namespace

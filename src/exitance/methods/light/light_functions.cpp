@@ -285,7 +285,7 @@ std::vector<double> light_of_bodies(const Stage& stage, const GlobalLight& light
     for (std::size_t i = 0; i < light.reflected.size(); ++i) {
         const ElementId e = light.numbering.leaves[i];
         const RegionId region = light.tree.region(e);
-        if (stage.is_left_out(region)) continue;
+        if (stage.is_unlit(region)) continue;
         const std::uint32_t body = bodies.of(stage.scene, region);
         area[body] += light.tree.area(e), flux[body] += light.tree.area(e) * mean(light.reflected[i]);
         const double of_room = mean_light * (light_in.empty() ? 1 : light_in[stage.rooms.of(light.tree, e)]);

@@ -6,7 +6,7 @@
 namespace exitance {
 
 /// Light for the gather of another attempt: one step of iterative refinement, for light gathered by rays
-/// (`refined_light` does the same for sums). From b gathered before and E = H b delivered,
+/// (`corrected_sums` does the same for sums). From b gathered before and E = H b delivered,
 ///
 ///     b' = b1 + ((I - rho F)^-1 - I) P (b1 - b),    b1 = rho (E_dir + E)
 ///

@@ -77,7 +77,7 @@ double seconds_each(std::size_t count, const Work& work) {
     return watch.seconds() / static_cast<double>(count);
 }
 
-Pilot look(const Stage& stage, const Plan& plan, const DirectProjection& direct) {
+Pilot run_pilot(const Stage& stage, const Plan& plan, const DirectProjection& direct) {
     const std::vector<ProbePoint> points = points_uniform_in_area(stage.scene, pilot_points, plan.options.seed);
     const Locator locator(stage.scene);
     const ElementLocator elements(direct.tree, stage.scene.regions().size());
@@ -225,7 +225,7 @@ Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& asked) {
                  .surfaces = scene.surfaces().size(),
                  .regions = scene.regions().size(),
                  .emitters = scene.emitters().size() + scene.lights().size()};
-    const Pilot pilot = look(stage, plan, direct);
+    const Pilot pilot = run_pilot(stage, plan, direct);
     if (is_published) return of_published(stage, plan, pilot, direct, std::move(out));
     const double projected = static_cast<double>(direct.tree.leaves().size());
     const double solved = patches ? cut_patches(stage, plan, direct, pilot.mean_light) : projected;

@@ -38,7 +38,7 @@ void fit_links(Plan& plan, const Stage& stage) {
 
 void survey(Stage& stage, const SolveOptions& options, const StopRequest& stop) {
     // Published forms solve on all sides, and use rooms only if errors are judged by room.
-    if (form_of(options) == Form::standard) stage.leave_out(find_unlit_sides(stage, options.seed, stop));
+    if (form_of(options) == Form::standard) stage.set_unlit_sides(find_unlit_sides(stage, options.seed, stop));
     if (has_estimate(options)) stage.rooms = find_light_rooms(stage, options.seed, stop);
 }
 
@@ -73,8 +73,8 @@ Plan make_plan(const Stage& stage, const SolveOptions& asked, double first_error
     plan.sums = choice.forecast.takes_sums();
     plan.knobs.links_deliver = !plan.sums || choice.forecast.takes_links();
     plan.knobs = first_knobs(plan, stage, error);
-    plan.may_refine_delivered = asked.method == Method::automatic && method == Method::matrix && !plan.options.basis &&
-                                plan.options.bounces < 0 && !plan.sums && !plan.options.form_factors;
+    plan.may_step_on_delivered = asked.method == Method::automatic && method == Method::matrix && !plan.options.basis &&
+                                 plan.options.bounces < 0 && !plan.sums && !plan.options.form_factors;
     return plan;
 }
 

@@ -18,7 +18,7 @@ struct Plan {
     bool sums = false;                      ///< True if light is summed over elements instead of sampled by rays.
     /// True if another attempt may refine the delivered light (`next_light`) if the method's part of the error is too
     /// large.
-    bool may_refine_delivered = false;
+    bool may_step_on_delivered = false;
 };
 
 /// Finds the unlit sides and the rooms of the stage, on which a plan depends.

@@ -57,16 +57,13 @@ double gather_by_rays(const Counts& counts, const Knobs& knobs) {
 double gather_by_sums(const Stage& stage, const Counts& counts, const Knobs& knobs) {
     constexpr double places = 9;
     const double terms = 2 * static_cast<double>(stage.pieces.size()) + terms_beside_pieces;
-    return (knobs.refined ? 2 : 1) * counts.gathered * places * terms / terms_a_ray;
+    return (knobs.corrects_sums ? 2 : 1) * counts.gathered * places * terms / terms_a_ray;
 }
 
 /// Returns the work of links, in rays. Every reflection repeats the error of a link, so that the number of links grows
 /// with the number of reflections. Source: link_rounds.
 double links_work(const Stage& stage, const Counts& counts) {
-    double reflected = 0;
-    for (const Piece& piece : stage.lit_pieces())
-        reflected += piece.patch.area() * mean(stage.scene.material(piece.region).reflectance);
-    const double reflections = std::min(calibrated::largest_reflection_count, 1 / (1 - reflected / stage.area));
+    const double reflections = stage.expected_reflections();
     const double pairs = static_cast<double>(stage.pieces.size()) * static_cast<double>(stage.pieces.size());
     return counts.light() + calibrated::link_form_factor_rays *
                                 (pair_form_factors * pairs + element_form_factors * reflections * counts.elements);

@@ -9,7 +9,7 @@
 #include "exitance/base/memory.hpp"
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/evaluate/energy.hpp"
-#include "exitance/methods/light/refined_light.hpp"
+#include "exitance/methods/light/corrected_sums.hpp"
 #include "exitance/methods/light/smoothing.hpp"
 #include "exitance/methods/methods.hpp"
 #include "exitance/methods/plan/attempt_forecast.hpp"
@@ -35,25 +35,25 @@ void Solver::solve_indirect_light() {
         const bool is_lowered = show_ && options_.error_demand() && lower_error();
         const std::optional<double> demand = options_.error_demand();
         if (!demand || has_reached(*demand)) {
-            if (has_diverged(light_->report)) return stop_early("divergence");
+            if (has_diverged(light_->report)) return stop_early(StopReason::divergence);
             if (demand && refines_bodies(*demand, watch.seconds())) continue;
-            if (statistics().stopped_by.empty() || demand)
-                statistics().converged = true, statistics().stopped_by.clear();
+            if (!statistics().is_stopped() || demand)
+                statistics().converged = true, statistics().stopped_by = StopReason::none;
             return;
         }
-        if (light_->limited_by_memory) stop_early("memory limit");
-        if (statistics().stopped_by == "memory limit") return;
+        if (light_->limited_by_memory) stop_early(StopReason::memory_limit);
+        if (statistics().stopped_by == StopReason::memory_limit) return;
         // Growing cells deliver the light of their units. With as many units as before, another attempt would only
         // refine elements on which that light does not depend.
         const bool has_all_units = options_.method == Method::growing_cells && options_.max_units;
-        if (has_all_units && (!gathers() || light_->holds_direct())) return stop_early("unit limit");
-        if (attempt_ == attempt_limit()) return stop_early("iterations");
+        if (has_all_units && (!gathers() || light_->holds_direct())) return stop_early(StopReason::unit_limit);
+        if (attempt_ == attempt_limit()) return stop_early(StopReason::iterations);
         if (show_) show_light();
         std::optional<NextAttempt> next = next_in_time(*demand, watch.seconds());
         // Far from the target error, a new plan for it is faster than refinement steps, each of which leaves about half
         // of the error.
         if (is_lowered) next = NextAttempt{.finer = {.knobs = first_knobs(plan_, stage_, *demand), .method = true}};
-        if (!next) return stop_early("time limit");
+        if (!next) return stop_early(StopReason::time_limit);
         if (!next->forecast.empty()) progress_.note(next->forecast);
         progress_.note(fmt::format("estimated error {:.2f}% > {:.2f}%: {}", 100 * certificate_.largest(), 100 * *demand,
                                    next->is_step        ? "refining the delivered elements"
@@ -61,11 +61,11 @@ void Solver::solve_indirect_light() {
                                                         : "refining the gather; the method's light is kept"));
         keep_noise_of_accurate_rooms(calibrated::attempt_aim * *demand,
                                      next->finer.knobs.gather_noise / knobs_.gather_noise);
-        knobs_ = next->finer.knobs, takes_step_ = next->is_step;
-        if (next->finer.method && !takes_step_) light_.reset(), next_ = {}, steps_.not_local = 0;
+        knobs_ = next->finer.knobs, starts_with_step_ = next->is_step;
+        if (next->finer.method && !starts_with_step_) light_.reset(), next_ = {}, steps_.not_local = 0;
         if (options_.memory_limit_bytes) {
             const Result<bool> fits = fit_into_memory(knobs_, stage_, options_);
-            if (!fits || !*fits) return stop_early("memory limit");
+            if (!fits || !*fits) return stop_early(StopReason::memory_limit);
         }
     }
 }
@@ -81,17 +81,17 @@ bool Solver::refines_bodies(double demand, double last_seconds) {
     const bool helps = worst_body_before_ == 0 || worst - limit < 0.5 * (worst_body_before_ - limit);
     if (!holds_bodies() || !gathers() || sums_ || !is_above || !helps || body_attempts_ == most_for_bodies ||
         attempt_ == attempt_limit() || (options_.error && *options_.error > requested_error_) ||
-        as_first(last_seconds) > seconds_left(stop_))
+        as_first(last_seconds) > common_seconds_left(stop_))
         return false;
     ++body_attempts_, worst_body_before_ = worst;
     // A refinement step keeps sufficiently accurate results. Next to near surfaces, it replaces the method's elements
     // by the delivered ones, which are finer there. Errors of the direct light that bodies see need a new solve.
-    takes_step_ = body_attempts_ == 1 && plan_.may_refine_delivered && light_->on_projection;
+    starts_with_step_ = body_attempts_ == 1 && plan_.may_step_on_delivered && light_->on_projection;
     tighten_bodies(limit);
-    if (!takes_step_) light_.reset(), next_ = {}, steps_.not_local = 0;
+    if (!starts_with_step_) light_.reset(), next_ = {}, steps_.not_local = 0;
     progress_.note(fmt::format("estimated error {:.2f}% of the worst body > {:.2f}%: {}", 100 * worst, 100 * limit,
-                               takes_step_ ? "refining the delivered elements"
-                                           : "solving again with finer elements where such bodies see them"));
+                               starts_with_step_ ? "refining the delivered elements"
+                                                 : "solving again with finer elements where such bodies see them"));
     return true;
 }
 
@@ -100,7 +100,7 @@ void Solver::tighten_bodies(double limit) {
     for (const BodyError& body : statistics().bodies) {
         if (!body.error || *body.error <= limit) continue;
         BodyShares& shares = body_shares_[bodies().body[body.first]];
-        (takes_step_ ? shares.gathered : shares.seen) *= aim * limit / *body.error;
+        (starts_with_step_ ? shares.gathered : shares.seen) *= aim * limit / *body.error;
     }
 }
 
@@ -132,7 +132,7 @@ void Solver::show_light() {
 
 std::optional<Solver::NextAttempt> Solver::next_in_time(double demand, double last_seconds) const {
     // An attempt that cannot finish in time would be discarded. All processes use the first one's clock.
-    const double most_work = seconds_left(stop_) / as_first(last_seconds);
+    const double most_work = common_seconds_left(stop_) / as_first(last_seconds);
     for (const double aim : attempt_aims(demand, certificate_.largest())) {
         NextAttempt next = next_attempt(aim);
         if (next.finer.work <= most_work) return next;
@@ -147,7 +147,7 @@ Solver::NextAttempt Solver::next_attempt(double demand) const {
     const ErrorParts parts = error_parts();
     NextAttempt out{.finer = tightened(knobs_, parts, target, options_)};
     const Tightened& finer = out.finer;
-    if (!finer.method || !plan_.may_refine_delivered || !gathers() || !light_->on_projection) return out;
+    if (!finer.method || !plan_.may_step_on_delivered || !gathers() || !light_->on_projection) return out;
     // A refinement step leaves about a third of the error at first, more if light is reflected often. The first step
     // measures it.
     const double left = steps_.not_local > 0 ? not_local(parts) / steps_.not_local : 0.5;
@@ -162,7 +162,8 @@ Solver::NextAttempt Solver::next_attempt(double demand) const {
     out.forecast =
         fmt::format("another attempt: about {:.3g} rays by refining the delivered elements, {:.3g} by finer elements",
                     forecast.step_rays, forecast.finer_rays);
-    if (out.is_step) out.finer = refined(knobs_, parts, left, margin(certificate_.points) * demand, target, options_);
+    if (out.is_step)
+        out.finer = tightened_for_step(knobs_, parts, left, margin(certificate_.points) * demand, target, options_);
     return out;
 }
 
@@ -236,7 +237,7 @@ void Solver::attempt() {
         fresh_ = !light_;
         if (fresh_) project_direct();
         if (fresh_ && !has_memory()) return;
-        if (takes_step_) take_step();
+        if (starts_with_step_) take_two_grid_step();
         if (stop_.requested()) return;  // no earlier attempt has light: return direct light only
         reach(Step::solve);
     }
@@ -256,20 +257,20 @@ void Solver::attempt() {
     if (b.stands_alone() && !sums_) found = {};
     release_freed_memory();
     if (step_ == Step::gather) {
-        refined_.clear();
+        corrected_.clear();
         const bool whole = deliver(parts_to_sum(found.parts), b, fresh_);
         if (!whole) return;
         next_.rest.clear();  // this light has been gathered
         steps_.gather_rays = std::max(steps_.gather_rays, gathered_.rays);
-        reach(Step::refine);
+        reach(Step::correct_sums);
     }
-    if (step_ == Step::refine && refines()) {
-        if (refined_.empty()) refined_ = refine();
-        const bool whole = deliver(parts_to_sum(refined_), b, true);
+    if (step_ == Step::correct_sums && corrects_sums()) {
+        if (corrected_.empty()) corrected_ = corrected_sums();
+        const bool whole = deliver(parts_to_sum(corrected_), b, true);
         if (!whole) return;
     }
     reach(Step::certify);
-    const std::vector<ElementGather> elements = refines() ? parts_to_sum(refined_) : parts_to_sum(found.parts);
+    const std::vector<ElementGather> elements = corrects_sums() ? parts_to_sum(corrected_) : parts_to_sum(found.parts);
     progress_.phase("certify");
     CertificateOptions look{.error = options_.error_target(),
                             .seed = certificate_seed(),
@@ -281,7 +282,7 @@ void Solver::attempt() {
     reach(Step::decide);
 }
 
-void Solver::take_step() {
+void Solver::take_two_grid_step() {
     progress_.phase("solve");
     if (next_.parts.empty()) next_.parts.push_back(gathered_light(stage_.scene, direct_, *light_, share_));
     // The delivered light is scaled such that the flux of the converged solution is conserved. A refinement step would
@@ -293,14 +294,14 @@ void Solver::take_step() {
     for (const auto* const functions : {&next_.parts, &next_.rest})
         for (const ElementFunction& f : *functions) share_on_node(std::span(f.values));
     steps_.not_local = not_local(error_parts());
-    takes_step_ = false;
+    starts_with_step_ = false;
     ++statistics().refinement_steps;
 }
 
 /// Chooses linear elements if much of the light is in gaps. There, elements receive light from few others, which are
 /// near. The gather does not smooth the error of constant elements, and every reflection repeats it.
 void Solver::choose_basis() {
-    if (!plan_.may_refine_delivered) return;
+    if (!plan_.may_step_on_delivered) return;
     const double in_gaps = share_of_light_in_gaps(stage_, direct_);
     progress_.note(fmt::format("{:.1f}% of the light is in gaps", 100 * in_gaps));
     // The basis is linear if at least 1 / `gap_divisor` of the light is in gaps (under chairs: 1/12; between 60 slats:
@@ -335,9 +336,9 @@ std::vector<ElementGather> Solver::parts_to_sum(std::span<const ElementFunction>
     return out;
 }
 
-std::vector<ElementFunction> Solver::refine() const {
-    return refined_light(stage_, *light_, solution_.indirect, direct_, share_, knobs_.solve_rays,
-                         knobs_.gather_element_share, options_.seed);
+std::vector<ElementFunction> Solver::corrected_sums() const {
+    return exitance::corrected_sums(stage_, *light_, solution_.indirect, direct_, share_, knobs_.solve_rays,
+                                    knobs_.gather_element_share, options_.seed);
 }
 
 bool Solver::deliver(std::span<const ElementGather> elements, const ReadNextLight& b, bool fresh) {
@@ -350,8 +351,8 @@ bool Solver::deliver(std::span<const ElementGather> elements, const ReadNextLigh
     if (stop_.requested()) {
         // Keeps the last complete local pass in place of an interrupted one. Without one, an interrupted pass is still
         // better than the method's solution.
-        if (step_ != Step::refine && has_light()) return false;
-        if (step_ != Step::refine) {
+        if (step_ != Step::correct_sums && has_light()) return false;
+        if (step_ != Step::correct_sums) {
             if (gathers() && !gathered_.interrupted)
                 adopt(std::move(indirect), kept);
             else
@@ -387,7 +388,7 @@ void Solver::adopt_method_light() {
 Spectrum Solver::unscaled_indirect(const Spectrum& kept) const {
     if (!gathers()) return unscaled_.direct * light_->report.unscaled;
     // The result of a refinement step depends little on the light that it starts from.
-    const bool refined = step_ == Step::refine || !next_.parts.empty();
+    const bool refined = step_ == Step::correct_sums || !next_.parts.empty();
     const Spectrum returned = refined ? Spectrum(1.0) : light_->report.unscaled;
     return unscaled_sent(stage_.scene, *light_, unscaled_.direct, returned, share_) * inverse(kept);
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "exitance/calibration/numbers.hpp"
-#include "exitance/error/clustering_error.hpp"
+#include "exitance/error/direct_light_noise.hpp"
 #include "exitance/error/further_looks.hpp"
 #include "exitance/evaluate/energy.hpp"
 #include "exitance/methods/importance.hpp"
@@ -59,7 +59,7 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
         options.summed = &summed;
     }
     Certifier certifier(stage_, *light_, solution_.indirect, delivered, options);
-    certificate_ = certifier.look();
+    certificate_ = certifier.measure();
     // The number of further points is chosen once. Points that are added until an estimate is small enough would make
     // it too small.
     const auto more = [&] {
@@ -67,11 +67,18 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
                              margin(certificate_.points) * *demand, *demand);
     };
     for (std::size_t left = demand ? more() : 0; left > 0 && !stop_.requested(); --left)
-        certificate_ = certifier.look();
-    add_clustering_error();
-    if (!demand || may_be_last(*demand)) certifier.look_at_bodies(certificate_), certifier.tell_p99(certificate_);
+        certificate_ = certifier.measure();
+    const double noise = direct_light_noise_share();
+    certificate_.add_independent_error(noise);
+    if (!demand || may_be_last(*demand)) {
+        certifier.check_by_paths(certificate_);
+        certifier.measure_each_body(certificate_);
+        certifier.measure_p99(certificate_);
+    }
     record_certificate(certificate_, *light_, solution_.indirect, statistics());
     statistics().rooms = certifier.rooms(), statistics().surface_errors = certifier.surface_errors();
+    for (RoomError& room : statistics().rooms)
+        room.error = statistics().rooms.size() == 1 ? certificate_.worst_room : std::hypot(room.error, noise);
     statistics().bodies = certifier.bodies();
     if (certificate_.points == 0 && !stop_.requested()) record_darkness();
     progress_.note(describe(certificate_, *light_, solution_.indirect, gathered_));
@@ -79,7 +86,7 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
 
 void Solver::record_darkness() {
     const double reflected = mean_direct_light(stage_, direct_).reflected;
-    if (!(reflected > 0)) return tell_exact();
+    if (!(reflected > 0)) return record_zero_error();
     refusal_ = Error{ErrorCode::limit,
                      fmt::format("method {} found no light, but direct light makes surfaces reflect {:.3g} {} in the "
                                  "mean; nothing is written",
@@ -92,21 +99,16 @@ bool Solver::may_be_last(double demand) const {
     // only an intermediate solution was requested
     if (options_.error && *options_.error > requested_error_) return false;
     return has_reached(demand) || attempt_ == attempt_limit() || options_.memory_limit_bytes ||
-           seconds_left(stop_) < HUGE_VAL;
+           common_seconds_left(stop_) < HUGE_VAL;
 }
 
-void Solver::add_clustering_error() {
-    if (certificate_.points == 0 || light_->holds_direct()) return;
-    const double more =
-        clustering_error(stage_, direct_, point_accuracy(certificate_.estimate)) / certificate_.mean_reflected;
-    if (!(more > 0)) return;
-    certificate_.estimate = std::hypot(certificate_.estimate, more);
-    certificate_.bound = std::hypot(certificate_.bound, more);
-    certificate_.worst_room = std::hypot(certificate_.worst_room, more);
+double Solver::direct_light_noise_share() const {
+    if (certificate_.points == 0 || light_->holds_direct()) return 0;
+    return direct_light_noise(stage_, direct_, point_accuracy(certificate_.estimate)) / certificate_.mean_reflected;
 }
 
-void Solver::tell_clustering_error() {
-    const double error = clustering_error(stage_, direct_, point_accuracy(1));
+void Solver::record_noise_of_direct_light_alone() {
+    const double error = direct_light_noise(stage_, direct_, point_accuracy(1));
     if (error > 0)
         statistics().relative_error_estimate = statistics().relative_error_bound =
             error / mean_direct_light(stage_, direct_).of_errors();
@@ -139,8 +141,8 @@ void Solver::warn_of_bodies() {
     const Scene& scene = stage_.scene;
     const Surface& face = scene.surfaces()[worst->first];
     const Point at = centroid(scene.outline(worst->first));
-    const bool lacked_time = statistics().stopped_by == "time limit" || stop_.requested();
-    const bool lacked_memory = statistics().stopped_by == "memory limit";
+    const bool lacked_time = statistics().stopped_by == StopReason::time_limit || stop_.requested();
+    const bool lacked_memory = statistics().stopped_by == StopReason::memory_limit;
     const char* const advice = lacked_time     ? "the solve was stopped: more time corrects it"
                                : lacked_memory ? "the solve was stopped: more memory corrects it"
                                                : "a smaller --error corrects it";

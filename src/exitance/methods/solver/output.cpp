@@ -22,7 +22,7 @@ bool Solver::make_discontinuity() {
     reach(Step::output);
     // With a time limit, coarse elements are computed first, so that there is a result when time runs out.
     const bool has_none = direct_.tree.size() == 0;
-    if (has_none && std::isfinite(stop_.seconds_left())) {
+    if (has_none && std::isfinite(common_seconds_left(stop_))) {
         project_coarsely();
         progress_.phase("discontinuities");
     }
@@ -31,7 +31,7 @@ bool Solver::make_discontinuity() {
         add_discontinuity_mesh(stage_, options_, solution_, stop_, checkpoints_ ? &points : nullptr);
     statistics().seconds[RunPart::mesh] += report.mesh_seconds;
     statistics().seconds[RunPart::direct] += report.direct_seconds;
-    if (report.interrupted) stop_early(stop_.interrupted() ? "interrupt" : "time limit");
+    if (report.interrupted) stop_early(stop_.interrupted() ? StopReason::interrupt : StopReason::time_limit);
     const bool follows_shadows = !solution_.discontinuity.empty();
     if (follows_shadows) warn_of_lines();
     // The reported mesh must not depend on whether there was a time limit.

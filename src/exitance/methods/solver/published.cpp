@@ -64,7 +64,7 @@ void Solver::solve_published() {
     for (;; ++attempt_, reach(Step::project)) {
         const Stopwatch watch;
         attempt_published();
-        if (refusal_ || !has_estimate(options_) || !statistics().stopped_by.empty()) return;
+        if (refusal_ || !has_estimate(options_) || statistics().is_stopped()) return;
         certify_published();
         if (stop_.requested()) return stop_as_requested();
         statistics().converged = !demand || certificate_.largest() <= *demand;
@@ -97,8 +97,8 @@ void Solver::attempt_published() {
 bool Solver::aim_lower(double demand, double last_seconds) {
     // About four times as many links and nodes are needed to halve the error.
     constexpr double cost_of_finer = 4, min_factor = 0.5;
-    if (attempt_ == attempt_limit()) return stop_early("iterations"), false;
-    if (stop_.seconds_left() < cost_of_finer * last_seconds) return stop_early("time limit"), false;
+    if (attempt_ == attempt_limit()) return stop_early(StopReason::iterations), false;
+    if (common_seconds_left(stop_) < cost_of_finer * last_seconds) return stop_early(StopReason::time_limit), false;
     aim_ *= std::max(min_factor, calibrated::part_aim * demand / certificate_.largest());
     progress_.note(fmt::format("estimated error {:.2f}% > {:.2f}%: solving again for {:.2f}%",
                                100 * certificate_.largest(), 100 * demand, 100 * aim_));
@@ -113,13 +113,13 @@ std::optional<double> Solver::published_demand() const {
 
 void Solver::record_end() {
     const SolveReport& report = light_->report;
-    if (light_->limited_by_memory) stop_early("memory limit");
+    if (light_->limited_by_memory) stop_early(StopReason::memory_limit);
     if (report.interrupted)
         stop_as_requested();
     else if (has_diverged(report))
-        stop_early("divergence");
-    else if (!report.converged && !options_.max_iterations && statistics().stopped_by.empty())
-        stop_early("iterations");
+        stop_early(StopReason::divergence);
+    else if (!report.converged && !options_.max_iterations && !statistics().is_stopped())
+        stop_early(StopReason::iterations);
 }
 
 void Solver::take_published(const GlobalLight& light, Solution& solution) const {

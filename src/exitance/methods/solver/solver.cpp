@@ -30,7 +30,7 @@ Solver::Solver(Scene scene, const SolveOptions& asked, Progress& progress, const
     release_freed_memory();
     // Before a near deadline, a coarse solution is computed first, so that there is a result when time runs out. With
     // checkpoints, another run may continue; its result must not depend on the time limit of this run.
-    const bool hurries = seconds_left(stop) < calibrated::near_deadline && !checkpoints_;
+    const bool hurries = common_seconds_left(stop) < calibrated::near_deadline && !checkpoints_;
     constexpr double first_shown_error = 0.32;  // given by the error at which a scene is recognizable
     plan_ = make_plan(stage_, asked, show ? first_shown_error : hurries ? calibrated::hurried_error : 0);
     requested_error_ = options_.error_target();
@@ -60,7 +60,7 @@ Result<Solution> Solver::run() {
         solve_direct_light();
     }
     if (refusal_ && !has_light()) return *refusal_;
-    if (refusal_) stop_early("memory limit");
+    if (refusal_) stop_early(StopReason::memory_limit);
     if (light_ && has_diverged(light_->report)) warn(divergence_warning);
     if (light_ && !light_->kept_links.empty())
         solution_.links = {constant_on_leaves(*light_), std::move(light_->kept_links)};
@@ -78,7 +78,7 @@ Result<void> Solver::fit_memory() {
     if (!options_.memory_limit_bytes || is_published()) return {};  // published forms stop refining at the limit
     const Result<bool> fits = fit_into_memory(knobs_, stage_, options_);
     if (!fits) return fits.error();
-    if (!*fits) stop_early("memory limit");
+    if (!*fits) stop_early(StopReason::memory_limit);
     return {};
 }
 
@@ -86,8 +86,8 @@ void Solver::solve_direct_light() {
     if (!makes_discontinuity_mesh() || solution_.scene.has_light_from_outside()) project_direct();
     statistics().elements = direct_.tree.size();
     statistics().leaf_elements = direct_.tree.leaves().size();
-    tell_exact();
-    tell_clustering_error();
+    record_zero_error();
+    record_noise_of_direct_light_alone();
 }
 
 void Solver::record_plan() {
@@ -105,7 +105,7 @@ void Solver::record_plan() {
 
 template <class Archive>
 void Solver::archive_state(Archive& a, std::string& phase) {
-    a(attempt_, step_, fresh_, share_, knobs_, direct_, unscaled_, light_, refined_, gathered_, certificate_, phase,
+    a(attempt_, step_, fresh_, share_, knobs_, direct_, unscaled_, light_, corrected_, gathered_, certificate_, phase,
       steps_, aim_);
     next_.archive_state(a);
     a(body_attempts_, worst_body_before_, body_shares_, light_in_, allowed_in_, noise_in_, solution_.indirect,
@@ -155,7 +155,7 @@ void Solver::warn(std::string message) {
     statistics().warnings.push_back(std::move(message));
 }
 
-void Solver::tell_exact() {
+void Solver::record_zero_error() {
     statistics().relative_error_estimate = statistics().relative_error_bound = 0;
     statistics().relative_error_estimate_worst_room = 0;
     statistics().relative_error_estimate_worst_body = 0;
@@ -163,7 +163,7 @@ void Solver::tell_exact() {
     statistics().rooms = {{stage_.area, 0, 0}};
 }
 
-void Solver::stop_early(const char* why) {
+void Solver::stop_early(StopReason why) {
     statistics().stopped_by = why;
     statistics().converged = false;
 }

@@ -26,7 +26,7 @@ class Solver {
 
   private:
     /// Next step of an attempt.
-    enum class Step : std::uint8_t { project, solve, gather, refine, certify, decide, output };
+    enum class Step : std::uint8_t { project, solve, gather, correct_sums, certify, decide, output };
 
     /// Coarsens the settings until the predicted memory is within the limit. An error if even the coarsest ones exceed
     /// it.
@@ -48,13 +48,13 @@ class Solver {
     SafePoints safe_points();
     void warn(std::string message);
     /// Records an error of zero: nothing reflects, and direct light is exact.
-    void tell_exact();
+    void record_zero_error();
     /// Records an error of zero if no surface reflects direct light. Otherwise the method has lost the light, and
     /// `refusal_` is set.
     void record_darkness();
-    void stop_early(const char* why);
+    void stop_early(StopReason why);
     /// Records that a stop was requested, as an interrupt or a time limit.
-    void stop_as_requested() { stop_early(stop_.interrupted() ? "interrupt" : "time limit"); }
+    void stop_as_requested() { stop_early(stop_.interrupted() ? StopReason::interrupt : StopReason::time_limit); }
 
     static constexpr int most_attempts = 9, most_published_attempts = 4;
     int attempt_limit() const { return is_published() ? most_published_attempts : most_attempts + shown_; }
@@ -103,7 +103,7 @@ class Solver {
     /// Lets rooms that are accurate enough keep their noise when settings for the others are tightened. `step`: factor
     /// on the allowed noise.
     void keep_noise_of_accurate_rooms(double target, double step);
-    void take_step();
+    void take_two_grid_step();
     /// Returns true if an attempt has delivered light with an error estimate.
     bool has_light() const { return certificate_.points > 0; }
     /// True if a stop was requested and an earlier attempt has a result to keep.
@@ -146,15 +146,15 @@ class Solver {
     LocalPassDemand gather_demand(double scale) const;
     /// Returns functions as element gathers; empty if light is sampled by rays.
     std::vector<ElementGather> parts_to_sum(std::span<const ElementFunction> functions) const;
-    /// Returns the light to gather after one refinement step on the delivered light, in parts (`refined_light`).
-    std::vector<ElementFunction> refine() const;
+    /// Returns the light to gather after one refinement step on the delivered light, in parts (`corrected_sums`).
+    std::vector<ElementFunction> corrected_sums() const;
     Spectrum direct_share() const;
     /// True if the method's light is gathered; false if its elements are delivered.
     bool gathers() const { return light_->delivery == MethodDelivery::gathered && !options_.smoothing; }
     /// True if the light on every body must be accurate, not only that on all surfaces together.
     bool holds_bodies() const { return options_.error_demand() && options_.importance.empty(); }
     const SceneBodies& bodies();
-    bool refines() const { return gathers() && sums_ && knobs_.refined; }
+    bool corrects_sums() const { return gathers() && sums_ && knobs_.corrects_sums; }
     /// True if the amount of arriving light is known: because the method conserves light or the scene is closed.
     bool keeps_flux() const;
     /// Returns the unscaled share (`UnscaledShare::indirect`) of `solution_.indirect`, which was scaled by `kept` after
@@ -173,10 +173,11 @@ class Solver {
     bool has_reached(double demand) const { return certificate_.largest() <= margin(certificate_.points) * demand; }
     /// True if this attempt is the last one, or may become the last one due to a limit.
     bool may_be_last(double demand) const;
-    /// Adds the error of clusters of emitters to the estimate. Without clusters, direct light is exact.
-    void add_clustering_error();
-    /// Like `add_clustering_error`, for solutions without indirect light.
-    void tell_clustering_error();
+    /// Noise of direct light that rays evaluate at points, relative to the mean reflected light; 0 if all of it is
+    /// exact.
+    double direct_light_noise_share() const;
+    /// Records the noise of direct light as the error of a solution without indirect light.
+    void record_noise_of_direct_light_alone();
     /// Warns of the worst body if its error is more than three times the requested one.
     void warn_of_bodies();
     void warn_of_hidden_errors();
@@ -214,9 +215,9 @@ class Solver {
     std::optional<GlobalLight> light_;  ///< Solution of the method; empty: the method must solve (again).
     std::optional<LocalPass> local_pass_;
     /// Parts of the refined light, which is gathered last if light is summed.
-    std::vector<ElementFunction> refined_;
-    NextLight next_;           ///< Light to gather after a refinement step; has no parts in other attempts.
-    bool takes_step_ = false;  ///< True if this attempt starts with a refinement step.
+    std::vector<ElementFunction> corrected_;
+    NextLight next_;                 ///< Light to gather after a refinement step; has no parts in other attempts.
+    bool starts_with_step_ = false;  ///< True if this attempt starts with a refinement step.
     /// Data for forecasting another refinement step.
     struct {
         double not_local = 0;         ///< `not_local` before the last refinement step; 0: there was none.

@@ -92,7 +92,7 @@ std::vector<Residual> stratified(const Stage& stage, const ElementTree& tree, st
     std::vector<ElementId> leaves;
     double area = 0;
     for (const ElementId e : tree.leaves())
-        if (!stage.is_left_out(tree.region(e))) leaves.push_back(e), area += tree.area(e);
+        if (!stage.is_unlit(tree.region(e))) leaves.push_back(e), area += tree.area(e);
     const ScrambledSobol random(hash(seed, static_cast<std::uint64_t>(Stream::certificate), std::uint64_t(0x6c67)));
     std::vector<Residual> out(leaves.empty() ? 0 : points);
     double before = 0;
@@ -198,7 +198,7 @@ void estimate_group_errors(const Stage& stage, const Solution& solution,
     std::vector<Spectrum> rho;
     for (const MaterialId m : groups.layout.material) rho.push_back(groups.reflectance[m.value]);
     // Start with the number of rays of a certificate; then use as many as the noisiest group needs, up to a limit.
-    unsigned rays = certificate_rays(rays_to_tell(error, points));
+    unsigned rays = certificate_rays(rays_to_resolve(error, points));
     constexpr double max_increase = 8;
     std::vector<BatchMean> squares;
     for (int look = 0; look < 2; ++look) {

@@ -1,4 +1,4 @@
-#include "exitance/error/clustering_error.hpp"
+#include "exitance/error/direct_light_noise.hpp"
 
 #include <cmath>
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace exitance {
 
-double clustering_error(const Stage& stage, const DirectProjection& direct, const LightAccuracy& accuracy) {
+double direct_light_noise(const Stage& stage, const DirectProjection& direct, const LightAccuracy& accuracy) {
     constexpr double samples = 256;
     struct Sample {
         ElementId e;

@@ -1,4 +1,4 @@
-#include "exitance/methods/light/refined_light.hpp"
+#include "exitance/methods/light/corrected_sums.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ TEST(RefinedLight, CorrectsGatheredLightInAFurnace) {
     }
     constexpr double share = 1e-4;
     const std::vector<ElementFunction> parts =
-        refined_light(stage, light, gathered, direct, Spectrum(), {.average = 64}, share, 1);
+        corrected_sums(stage, light, gathered, direct, Spectrum(), {.average = 64}, share, 1);
     for (ElementId e : direct.tree.leaves()) {
         double b = 0;
         for (const ElementFunction& part : parts) b += part.at({e, direct.tree.centre(e)})[0];

@@ -1,4 +1,4 @@
-#include "exitance/methods/light/refined_light.hpp"
+#include "exitance/methods/light/corrected_sums.hpp"
 
 #include "exitance/base/parallel.hpp"
 #include "exitance/basis/element_rule.hpp"
@@ -42,9 +42,9 @@ std::vector<Spectrum> mean_residual(const Stage& stage, const GlobalLight& light
 
 }  // namespace
 
-std::vector<ElementFunction> refined_light(const Stage& stage, const GlobalLight& light,
-                                           const ElementFunction& indirect, const DirectProjection& direct,
-                                           const Spectrum& c, RayBudget rays, double share, std::uint64_t seed) {
+std::vector<ElementFunction> corrected_sums(const Stage& stage, const GlobalLight& light,
+                                            const ElementFunction& indirect, const DirectProjection& direct,
+                                            const Spectrum& c, RayBudget rays, double share, std::uint64_t seed) {
     std::vector<ElementFunction> out = delivered_functions(stage.scene, indirect, direct, Spectrum(1.0) - c, c);
     const std::vector<Spectrum> r = mean_residual(stage, light, indirect, out, share);
     const std::size_t regions = stage.scene.regions().size();

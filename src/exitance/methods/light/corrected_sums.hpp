@@ -16,8 +16,8 @@ namespace exitance {
 /// this step, constant elements spread light evenly and thus transport it too far along a tube. Every reflection
 /// multiplies that error, and no gather corrects it. `share`: permitted error of one element in a sum. Source:
 /// [Atkinson97], part "two-grid iteration". O(leaves x elements of a sum).
-std::vector<ElementFunction> refined_light(const Stage& stage, const GlobalLight& light,
-                                           const ElementFunction& indirect, const DirectProjection& direct,
-                                           const Spectrum& c, RayBudget rays, double share, std::uint64_t seed);
+std::vector<ElementFunction> corrected_sums(const Stage& stage, const GlobalLight& light,
+                                            const ElementFunction& indirect, const DirectProjection& direct,
+                                            const Spectrum& c, RayBudget rays, double share, std::uint64_t seed);
 
 }  // namespace exitance
