@@ -13,6 +13,8 @@ namespace exitance {
 DirectCheck::DirectCheck(const Stage& stage, const PathTracer& paths, const ProjectedDirect& projected,
                          const LightAccuracy& accuracy)
     : stage_(&stage), paths_(&paths), projected_(projected), accuracy_(accuracy) {
+    // Assumed work of an emitter's unoccluded light at a point, in rays. A diffuse emitter has a closed form, a
+    // directed one needs a quadrature, which is some twenty times as expensive. Not measured by a command.
     constexpr double diffuse = 5, directed = 100;
     for (const DirectLight::Emitter& emitter : stage.direct.emitters())
         closed_form_work_ += emitter.radiance.is_directed() ? directed : diffuse;

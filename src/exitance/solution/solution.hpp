@@ -108,7 +108,8 @@ struct SolveStatistics {
     std::vector<std::string> warnings;
     std::optional<DiscontinuityCounts> discontinuity;
     std::map<std::string, double> figures;  ///< Further results of parts of the solver, by JSON key.
-    std::string stopped_by;  ///< "time limit", "memory limit", "iterations", "interrupt"; empty: not stopped.
+    /// "time limit", "memory limit", "unit limit", "iterations", "divergence" or "interrupt"; empty: not stopped.
+    std::string stopped_by;
 };
 
 /// Links of a hierarchy and the elements that they connect.

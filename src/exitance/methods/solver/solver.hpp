@@ -173,9 +173,10 @@ class Solver {
     bool has_reached(double demand) const { return certificate_.largest() <= margin(certificate_.points) * demand; }
     /// True if this attempt is the last one, or may become the last one due to a limit.
     bool may_be_last(double demand) const;
-    /// Adds the error of clusters of emitters to the estimate. Without clusters, direct light is exact.
+    /// Adds the error that the noise of rays causes in direct light at points to the estimate. Without such rays,
+    /// direct light is exact.
     void add_clustering_error();
-    /// Like `add_clustering_error`, for solutions without indirect light.
+    /// Reports the error of direct light alone, by the noise of rays, for solutions without indirect light.
     void tell_clustering_error();
     /// Warns of the worst body if its error is more than three times the requested one.
     void warn_of_bodies();
