@@ -62,7 +62,8 @@ struct DistantMeans::Part {
     Spectrum open;                     ///< Light without occlusion, W/m^2.
     std::uint32_t rays = 0;            ///< Rays cast so far, a power of two.
     std::uint32_t wanted = 0;          ///< Rays to have after the next step.
-    /// Sums over eighths of the rays: of their weights, and of the weights of those that arrive.
+    /// Sums of the weights of all rays, and of the rays that arrive. One entry per eighth of the rays; the spread of
+    /// the eighths gives the variance.
     struct Sums {
         Spectrum all, arrived;
     };

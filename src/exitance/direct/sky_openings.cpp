@@ -23,7 +23,7 @@ constexpr int few_rays = 4;               ///< Maximum number of escaping rays o
 constexpr std::size_t ways_of_place = 2;  ///< Maximum number of escaping rays of a place that are followed.
 /// Limits on the openings that are found, and on the cells into which they are divided.
 constexpr std::size_t most_openings = 128, most_cells = 512;
-constexpr std::size_t most_attempts = 512;    ///< Escaping rays that are followed in the whole scene, at most.
+constexpr std::size_t most_attempts = 512;    ///< Maximum number of escaping rays that are followed in the whole scene.
 constexpr unsigned directions_of_point = 64;  ///< Directions that measure how much of the sky a point sees.
 /// The rim of an opening is looked for at this number of azimuths, each in this number of steps from its middle to the
 /// horizon. Bisections then refine the position of the rim, and that of the opening along a ray.

@@ -18,8 +18,10 @@ class FloorCells {
     /// A part of the floor that walls or the floor's outline enclose.
     struct Part {
         std::size_t cells = 0;
-        double area = 0;    ///< m^2
-        double height = 0;  ///< Free height that a quarter of the cells exceed, metres; up to `top` without a ceiling.
+        double area = 0;  ///< m^2
+        /// Free height above the floor that a quarter of the cells exceed, metres. Below the open sky it reaches to
+        /// `top`.
+        double height = 0;
         bool is_inside_body = false;  ///< True if the back of a face is above more than half of the cells.
         bool has_ceiling = false;     ///< True if something is above at least half of the cells.
     };

@@ -67,7 +67,7 @@ void count(const char* what, std::size_t bytes) {
 /// succession at first, then at intervals of a twentieth of the time waited so far, so that the added delay is small.
 void wait_for(MPI_Request& request) {
     constexpr int eager = 200;
-    constexpr double share = 0.05, longest = 5000;  // microseconds
+    constexpr double share = 0.05, longest = 5000;  // share of the time waited; microseconds: the longest interval
     const Stopwatch watch;
     int done = 0;
     for (int looks = 0; !done; ++looks) {

@@ -14,7 +14,7 @@ namespace {
 
 /// Closure defects within this many standard deviations are noise: one row in 2,000 exceeds it by chance.
 constexpr double max_noise_deviations = 3.5;
-constexpr int max_sweeps = 200;         ///< Sweeps of the relaxation that distributes closure defects, at most.
+constexpr int max_sweeps = 200;         ///< Maximum number of sweeps of the relaxation of closure defects.
 constexpr double settled_share = 1e-6;  ///< Remaining share of the largest defect at which the relaxation stops.
 
 /// An exchange area A_i F_ij, m^2, and its variance.

@@ -99,7 +99,7 @@ struct DaylightCriteria {
 
 /// Direct sunlight above which an hour is sunny, lx, and sunny hours above which a sensor counts in ASE.
 constexpr double sunny_illuminance = 1000, max_sunny_hours = 250;
-/// DA from which on a sensor counts in sDA.
+/// Least DA (daylight autonomy) of a sensor that counts in sDA (spatial daylight autonomy).
 constexpr double required_autonomy = 0.5;
 
 /// Annual metrics of standards at a sensor; shares are of the occupied hours.
