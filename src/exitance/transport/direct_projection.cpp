@@ -132,7 +132,7 @@ class Projector {
     }
 
     bool are_many(std::size_t elements) const {
-        constexpr double max_emitting_share = 0.25;  // share of all area
+        constexpr double max_emitting_share = 0.25;  // area of emitters above which they are no small sources
         double emitting = 0;
         for (const DirectLight::Emitter& emitter : stage_.direct.emitters())
             if (!emitter.region.is_none()) emitting += stage_.scene.regions()[emitter.region].area;
