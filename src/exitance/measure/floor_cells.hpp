@@ -8,9 +8,9 @@
 
 namespace exitance {
 
-/// Square cells over a floor, grouped into parts that walls separate. A wall is whatever blocks the way between two
-/// cells at all heights from above a door up to the ceiling. Hence furniture and partitions that end below the ceiling
-/// do not separate parts, nor do beams and lamps; the wall above a door does.
+/// Square cells over a floor, grouped into parts that walls separate. A wall is geometry that blocks the way between
+/// two cells at all heights from above a door up to the ceiling. Hence furniture and partitions that end below the
+/// ceiling do not separate parts, nor do beams and lamps; the wall above a door does.
 class FloorCells {
   public:
     static constexpr std::uint32_t none = ~0u;

@@ -129,8 +129,8 @@ std::vector<std::size_t> given_to_brighter(const RayRows& rows, const ElementTre
                 out[i] = r;
         if (out[i] != room_of[i]) moved[room_of[i]] += tree.area(numbering.leaves[i]);
     }
-    // A room that would lose most of its area is a gap, such as one behind furniture, whose mouth holds nearly all of
-    // its light. What is left would be nearly dark, and its error relative to its light large.
+    // A room that would lose most of its area keeps it. Such a room is a gap, for example behind furniture, and nearly
+    // all of its light is at its mouth. Without the mouth, the rest would be nearly dark, and its relative error large.
     constexpr double most_moved = 0.5;
     for (const std::size_t i : between)
         if (moved[room_of[i]] > most_moved * area[room_of[i]]) out[i] = room_of[i];

@@ -85,7 +85,7 @@ void make_region(const Occluders& occluders, const Receiver& at, PieceId source,
     for (const Vec3& inward : scratch.source_pyramid) scratch.region.add(above(inward, -slack));
 }
 
-/// How much of the source an occluder's pyramid hides.
+/// Part of the source that an occluder's pyramid hides.
 enum class Hides { nothing, some, everything };
 Hides compare(std::span<const Vec3> source, std::span<const Vec3> planes) {
     bool everything = true;
