@@ -71,9 +71,11 @@ class RowRun {
     }
 
   private:
-    /// Rows whose combined limit, without dropped entries, is above R, or that miss 1 by more than R with the sky and
-    /// backs of faces: rare events of a distribution with a long tail, which the variance of the row's own samples does
-    /// not show. Rows whose defect is no event of chance are left. Sets the share of R that the rows may use next.
+    /// Returns the rows to compute again. These are rows whose limit after combination, without dropped entries,
+    /// exceeds R, and rows whose sum, with the sky and backs of faces, differs from 1 by more than R. Such sums occur
+    /// if samples have rare large values, which the variance of a row's own samples does not show. Rows with a
+    /// difference that more rays did not reduce are left out, since it has other causes than chance. Sets the
+    /// tolerances of the rows.
     std::vector<std::size_t> faces_above(const SparseFactors& out, const std::vector<double>& limits) {
         std::vector<std::size_t> faces;
         for (std::size_t i = 0; i < out.size(); ++i) {

@@ -107,8 +107,8 @@ struct DaylightMetrics {
     double daylight_factor = 0;  ///< Daylight factor under the traditional overcast sky, per cent.
     double autonomy = 0;         ///< DA: share of the hours with the target illuminance.
     double continuous = 0;       ///< Continuous DA: mean of the shares of the target that each hour reaches.
-    /// Hours at full power that electric light takes which the sensor dims: power p + (1 - p) max(0, 1 - E / target) in
-    /// every occupied hour, with p = DaylightCriteria::dimmed_power.
+    /// Energy of electric light that the sensor dims, in hours at full power. Its power in every occupied hour is
+    /// p + (1 - p) max(0, 1 - E / target), with p = DaylightCriteria::dimmed_power.
     double electric_hours = 0;
     std::array<double, 4> useful{};  ///< UDI: below the first limit, between the limits, above the last.
     double sunny_hours = 0;          ///< Hours with more than 1000 lx of direct sunlight.
