@@ -16,7 +16,7 @@ namespace exitance {
 
 /// Mean direct light of small elements below an open sky and suns, by rays that start all over the elements. The rays
 /// of many elements are traced together, sorted by direction: if the elements are neighbours, rays of a packet are
-/// alike. For meshes of thousands of small faces, on which the light varies less than its noise.
+/// alike. This is for meshes of thousands of small faces, on each of which the light varies less than its noise.
 ///
 /// The light of the sky, and of each sun, is its unoccluded light times the share of its rays that arrive, each ray
 /// weighted by radiance times cosine over density (SkyTree, SeenPolygon). Each has rays of its own; they are doubled

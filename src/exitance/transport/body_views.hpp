@@ -73,11 +73,14 @@ class BodyNeeds {
     std::vector<ElementTree::Place> at_;  ///< Place of every hit.
     std::vector<double> allowed_;         ///< Allowed error of each body, W/m^2; infinite for bodies without light.
     std::vector<double> room_light_;      ///< Light of each body's room, W/m^2.
-    /// Allowed errors of an element, W/m^2: RMS, and in the ninth of it that a body sees most of.
+    /// Allowed errors of an element.
     struct Limits {
+        /// RMS over the element, W/m^2.
         double everywhere = std::numeric_limits<double>::infinity();
+        /// Error in one of the nine cells of the element, the one that has the largest share of a body's view, W/m^2.
         double in_a_cell = std::numeric_limits<double>::infinity();
-        /// The latter for indirect light at near places, over the mean light of the body's room.
+        /// Like in_a_cell, but only for views from nearer than the element's width, and divided by the mean light of
+        /// the body's room.
         double in_a_near_cell = std::numeric_limits<double>::infinity();
     };
     struct ElementLimits {
