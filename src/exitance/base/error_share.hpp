@@ -8,9 +8,9 @@
 namespace exitance {
 
 /// Divides a bound on the sum of squared errors among elements, for scenes in which most elements are whole small
-/// polygons: leaves, slats, thin triangles. An even share, bound / elements, falls with their number, although each of
-/// them has almost no error, and would refine the walls around them without end. Here the unused part of the small
-/// elements' shares goes to the others.
+/// polygons: leaves, slats, thin triangles. If every element got bound / elements, the shares would be small because
+/// there are many elements, although most of these have almost no error. The walls around them would then be refined
+/// without end. Here the unused part of the small elements' shares goes to the others.
 struct ErrorShare {
     /// Up to `most_even` elements, shares are even. Above it, no element gets more than 1 / `least_count` of the bound.
     static constexpr std::size_t most_even = 4000, least_count = 1000;
@@ -20,8 +20,8 @@ struct ErrorShare {
         return elements > most_even && 2 * polygons > elements;
     }
 
-    /// Area below which an element of a crowd does not matter on its own, in the unit of `area`, that of all: between
-    /// the mean area and `far_from_mean` times that, but no more than 1 / `most_even` of all area.
+    /// Area below which a single element of a crowd hardly contributes to the error. It is `far_from_mean` times the
+    /// mean area, but no more than 1 / `most_even` of the area of all elements, `area`, and at least the mean area.
     static double small_area(double area, std::size_t elements) {
         constexpr double far_from_mean = 8;  // derived from meshes of even triangles: all are below it
         const double mean = area / static_cast<double>(elements);

@@ -2,11 +2,12 @@
 
 namespace exitance {
 
-/// All numbers that affect a solve and come from measurements, not from mathematics or a standard. `numbers.inc` is the
-/// table of their meanings, units and trade-offs. Only `TriedNumber` changes their values. Reading one costs as much as
-/// loading a constant from memory.
+/// Numbers that affect a solve and follow neither from mathematics nor from a standard. They were chosen by trial.
+/// `numbers.inc` is the table of their units and effects, and of the sensitivity of solves to those for which it has
+/// been measured; the other rows say "not measured". Only `TriedNumber` changes their values. Reading one costs as much
+/// as loading a constant from memory.
 namespace calibrated {
-#define EXITANCE_NUMBER(name, value, unit, trades, range, command) \
+#define EXITANCE_NUMBER(name, value, unit, effect, range, command) \
     namespace stored {                                             \
     inline constinit double name = value;                          \
     }                                                              \

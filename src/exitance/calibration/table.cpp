@@ -7,8 +7,8 @@ namespace exitance {
 namespace {
 
 constexpr std::array table{
-#define EXITANCE_NUMBER(name, value, unit, trades, range, command) \
-    CalibratedNumber{#name, &calibrated::stored::name, unit, trades, range, command},
+#define EXITANCE_NUMBER(name, value, unit, effect, range, command) \
+    CalibratedNumber{#name, &calibrated::stored::name, unit, effect, range, command},
 #include "exitance/calibration/numbers.inc"
 #undef EXITANCE_NUMBER
 };

@@ -12,7 +12,7 @@ struct CalibratedNumber {
     std::string_view name;
     double* stored;  ///< The value that solves read.
     std::string_view unit;
-    std::string_view trades;   ///< The trade-off: what improves and what worsens as the number grows.
+    std::string_view effect;   ///< Names what the number sets, and what improves and worsens if it is larger.
     std::string_view range;    ///< Range of factors on the number over which results hardly change; or "not measured".
     std::string_view command;  ///< Command that measured the range; empty if it was not measured.
 };

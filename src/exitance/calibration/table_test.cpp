@@ -12,7 +12,7 @@ TEST(CalibrationTable, RowsAreCompleteAndUnique) {
     for (const CalibratedNumber& n : calibration_table()) {
         EXPECT_TRUE(names.insert(n.name).second) << n.name;
         EXPECT_GT(*n.stored, 0) << n.name;
-        EXPECT_FALSE(n.unit.empty() || n.trades.empty() || n.range.empty()) << n.name;
+        EXPECT_FALSE(n.unit.empty() || n.effect.empty() || n.range.empty()) << n.name;
         EXPECT_EQ(n.range == "not measured", n.command.empty()) << n.name;
     }
 }

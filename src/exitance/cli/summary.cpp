@@ -11,7 +11,7 @@ namespace exitance {
 namespace {
 
 std::string seconds_line(const RunSeconds& seconds) {
-    constexpr double least = 0.0005;  // derived from the three digits of the numbers: shorter parts would be zeros
+    constexpr double least = 0.0005;  // Parts that take less time than this are left out, s.
     std::string parts;
     RunSeconds::for_parts([&](RunPart part) {
         if (part == RunPart::total || seconds[part] < least) return;

@@ -30,12 +30,12 @@ class Beams {
 
     bool empty() const { return lights_->empty(); }
 
-    /// Returns the irradiance at a point, W/m^2. Adds the part of parallel light to `parallel`, if given. O(log pieces)
-    /// per light.
+    /// Returns the irradiance at a point, W/m^2. If `parallel` is given, adds to it the part of this irradiance that is
+    /// due to parallel light. O(log pieces) per light.
     Spectrum irradiance(const Receiver& at, Spectrum* parallel = nullptr) const;
 
-    /// Appends the lights that may illuminate a convex polygon (metres, counter-clockwise about n) of region `own` to
-    /// `out`, and the pieces that reach between to `candidates`. Omits lights that one piece hides from the whole
+    /// Appends to `out` the lights that may illuminate a convex polygon (metres, counter-clockwise about n) of region
+    /// `own`, and to `candidates` the pieces that may block them. Omits lights that a single piece hides from the whole
     /// polygon.
     void prepare(std::span<const Point> receiver, const Normal& n, RegionId own, std::vector<Beam>& out,
                  std::vector<PieceId>& candidates) const;
@@ -44,7 +44,7 @@ class Beams {
                  std::span<const PieceId> whole_candidates, std::vector<Beam>& out,
                  std::vector<PieceId>& candidates) const;
 
-    /// Returns the irradiance at a point of a prepared polygon, as irradiance() above.
+    /// Like irradiance() above, for a point of a prepared polygon: tests only the polygon's `beams` and `candidates`.
     Spectrum irradiance(const Receiver& at, std::span<const Beam> beams, std::span<const PieceId> candidates,
                         Spectrum* parallel = nullptr) const;
 

@@ -82,8 +82,8 @@ class DirectLight {
         PieceId piece;
     };
 
-    /// Returns the maximum number of blocker candidates of a source. A source above it is marked `is_crowded`;
-    /// irradiance() must not be called while the list has one. Empty: no limit.
+    /// Returns the maximum number of blocker candidates of a source. A source with more is marked `is_crowded`, and
+    /// irradiance() must not be called for a list of sources that contains it. Empty: no limit.
     using WorthCounting = std::function<std::size_t(const SourceName&)>;
 
     /// Finds the sources of a convex polygon of region `own` (metres, counter-clockwise about n). Fills `light`, whose

@@ -16,7 +16,7 @@ namespace exitance {
 
 /// Mean direct light of small elements below an open sky and suns, by rays that start all over the elements. The rays
 /// of many elements are traced together, sorted by direction: if the elements are neighbours, rays of a packet are
-/// alike. For meshes of thousands of small faces, on which the light varies less than its noise.
+/// alike. This is for meshes of thousands of small faces, on each of which the light varies less than its noise.
 ///
 /// The light of the sky, and of each sun, is its unoccluded light times the share of its rays that arrive, each ray
 /// weighted by radiance times cosine over density (SkyTree, SeenPolygon). Each has rays of its own; they are doubled
@@ -62,7 +62,8 @@ struct DistantMeans::Part {
     Spectrum open;                     ///< Light without occlusion, W/m^2.
     std::uint32_t rays = 0;            ///< Rays cast so far, a power of two.
     std::uint32_t wanted = 0;          ///< Rays to have after the next step.
-    /// Sums over eighths of the rays: of their weights, and of the weights of those that arrive.
+    /// Sums of the weights of all rays, and of the rays that arrive. One entry per eighth of the rays; the spread of
+    /// the eighths gives the variance.
     struct Sums {
         Spectrum all, arrived;
     };

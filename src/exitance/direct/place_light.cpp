@@ -101,7 +101,7 @@ PlaceLight::Estimate PlaceLight::at(const Point& x, const Normal& n, RegionId ow
     return out;
 }
 
-/// Work of the last call of exact_within(), at most `limit`.
+/// Returns the work that the last call of exact_within() took, in rays, at most `limit`.
 double PlaceLight::work_of(const Workspace& room, double limit) const {
     return std::min(limit, most_work_ <= limit ? most_work_ : room.exact.work);
 }
@@ -112,8 +112,9 @@ std::optional<Spectrum> PlaceLight::exact_within(const Point& x, const Normal& n
                               : direct_->irradiance_within(x, n, own, work, room.exact);
 }
 
-/// Returns how many rays a place needs, estimated from about `work` of these rays, and adds those to `tried`.
-/// Stratified rays have a variance of n^(-3/2).
+/// Returns the number of rays that a point needs for the required accuracy; 0 if the trial rays reach it. Estimates the
+/// number from the variance of about `work` trial rays, whose number is added to `tried`: the variance of n stratified
+/// rays is proportional to n^(-3/2).
 double PlaceLight::rays_needed_at(const Point& x, const Normal& n, RegionId own, double work,
                                   const LightAccuracy& accuracy, Workspace& room, double& tried) const {
     LightAccuracy first = accuracy;

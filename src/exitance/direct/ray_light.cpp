@@ -107,7 +107,7 @@ double RayLight::light_through_openings(const Workspace& room) const {
 
 double RayLight::forecast(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,
                           Workspace& room) const {
-    constexpr double work_of_place = 20;  // work of choosing the parts, in rays (measured)
+    constexpr double work_of_place = 20;  // time to choose the parts, in times of a ray; measured by hand
     double open = find_parts(direct_->receiver(x, n, own), accuracy, room);
     if (std::any_of(room.parts_.begin(), room.parts_.end(),
                     [](const Part& part) { return part.kind == Part::Kind::openings; }))

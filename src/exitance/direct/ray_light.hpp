@@ -111,8 +111,9 @@ class RayLight {
     void find_terms(const Receiver& at, double radius, Workspace& room) const;
     void find_terms_in_sight(const Start& start, Workspace& room) const;
 
-    /// Standard deviation of one ray to a half-hidden source, relative to its unoccluded light. Also the uncertainty of
-    /// features smaller than the light of one ray, as a share of that light.
+    /// Standard deviation of the light that one ray finds from a half-hidden source, relative to the source's
+    /// unoccluded light. Features that carry less light than one ray may be missed by all rays; this share of one ray's
+    /// light is their assumed standard deviation.
     static constexpr double half_hidden = 0.5;
     static constexpr std::uint32_t least_pilot = 16, most_pilot = 64;
     /// Rounds a number of rays up to a power of two between `least` and `most`.
@@ -122,7 +123,7 @@ class RayLight {
     const RayTracer* tracer_;
     EmitterTree tree_;
     SkyTree sky_;
-    std::vector<DistantDisc> discs_;   ///< Every place sees them alike.
+    std::vector<DistantDisc> discs_;   ///< Suns; they appear in the same direction from every point.
     mutable std::once_flag searched_;  ///< Guards `openings_`, which is made at the first call of openings().
     mutable std::unique_ptr<const SkyOpenings> openings_;
     double size_ = 0;           ///< m

@@ -13,23 +13,31 @@
 namespace exitance {
 namespace {
 
+// The sizes of the search below are compromises between its time and the smallest openings that it finds. They were
+// chosen by trial and not measured by a command.
+
+/// Places from which the sky is looked for: in the first test whether a search is worthwhile, and in the search.
 constexpr std::size_t first_places = 512, most_places = 8192;
 constexpr std::uint32_t rays_of_place = 64;  ///< Number of rays per place to the sky; as many go to all suns together.
 constexpr int few_rays = 4;               ///< Maximum number of escaping rays of a place that sees little of the sky.
 constexpr std::size_t ways_of_place = 2;  ///< Maximum number of escaping rays of a place that are followed.
+/// Limits on the openings that are found, and on the cells into which they are divided.
 constexpr std::size_t most_openings = 128, most_cells = 512;
-constexpr std::size_t most_attempts = 512;  ///< Escaping rays that are followed in the whole scene, at most.
-constexpr unsigned directions_of_point = 64, azimuths = 48, steps_of_azimuth = 24, halvings = 16;
+constexpr std::size_t most_attempts = 512;    ///< Maximum number of escaping rays that are followed in the whole scene.
+constexpr unsigned directions_of_point = 64;  ///< Directions that measure how much of the sky a point sees.
+/// The rim of an opening is looked for at this number of azimuths, each in this number of steps from its middle to the
+/// horizon. Bisections then refine the position of the rim, and that of the opening along a ray.
+constexpr unsigned azimuths = 48, steps_of_azimuth = 24, halvings = 16;
 
-/// Share of directions that lead to the sky, from which on a point is at an opening. Derived from the plane of a window
-/// above a ground, where it is a quarter; half of that marks a point just indoors.
+/// A point at which at least this share of all directions leads to the sky is at an opening. In the plane of a window
+/// above a ground the share is a quarter. Half of that marks a point just indoors.
 constexpr double seen_at_opening = 1.0 / 8;
 
-/// Ratio of distances: rim points farther than this multiple of the distance of the near ones belong to objects
-/// outdoors, such as the horizon.
+/// Points of a rim that are farther away than this multiple of the distance of the nearest quarter of them belong to
+/// objects outdoors, such as the horizon.
 constexpr double farthest_rim = 4;
 
-/// If at most this share of places sees no sky, openings are not searched.
+/// Openings are searched only if more than this share of the first places sees no sky.
 constexpr double few_dark_places = 1.0 / 64;
 
 struct SearchPlace {
@@ -218,8 +226,9 @@ std::vector<Vec3> SkySearch::rim(const Point& from, const Frame& frame, const Is
     return found;
 }
 
-/// The plane and extent of an opening, from some points of its rim; with area 0 if these points do not determine it.
-/// farthest  distance of rim points that count, by that of a quarter of them
+/// Returns the rectangle of an opening, from points of its rim relative to `from`; one of area 0 if these points do not
+/// determine it.
+/// farthest  points at more than this multiple of the distance of the nearest quarter are ignored
 PortalCell rectangle_of_rim(const Point& from, const Vec3& outwards, std::vector<Vec3> rim, double farthest) {
     constexpr std::size_t fewest = 12;  // points from which a rectangle can be found
     constexpr double edge_on = 1e-3;    // cosine

@@ -17,7 +17,11 @@ Misfit misfit(const BisectionMesh& mesh, std::uint32_t triangle, std::span<const
         square += part * squared(weight * error) / static_cast<double>(bands);
         out.largest = std::max(out.largest, std::abs(mean(weight * error)));
     };
-    // Derived from the integral over a triangle of the squared basis function of one test node, per area.
+    // Mean squares, over a triangle, of the polynomials that vanish at the six nodes of the quadratic interpolant and
+    // are 1 at a test node. Derived from the mean of a^i b^j c^k over a triangle, 2 i! j! k! / (i + j + k + 2)!, for
+    // barycentric coordinates a, b, c. On an edge, the cubic 32/3 a b (a - b) is 1 at one test node and -1 at the
+    // other; its mean square is 128/945 = 0.1354, half of which counts for each of the two. At the inner node, the
+    // bubble is 27 a b c times 32/27; 729/2520 = 0.2893, and 0.2893 (32/27)^2 = 128/315.
     constexpr double of_edge = 0.1354 / 2, of_bubble = 0.2893 * (32.0 / 27) * (32.0 / 27);
     for (std::size_t i = 0; i < 3; ++i) {
         const Spectrum &a = values[t.corner[i]], &b = values[t.corner[(i + 1) % 3]], &m = values[t.middle[i]];

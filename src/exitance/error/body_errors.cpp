@@ -248,15 +248,16 @@ bool BodySurvey::measure_closely(std::uint32_t body, const CheckPlan& of_body, u
 /// Measures a body at further points. Returns false if the rays do not suffice.
 bool BodySurvey::look_closely_at(std::uint32_t body) {
     const std::uint64_t name = hash(c_.seed, static_cast<std::uint64_t>(Stream::certificate), 2, body);
-    // The noise of each gather may be as large as the apparent error, but not above the limit of a body's error, at
-    // which users are warned: among many bodies, the noisiest ones seem worst.
+    // The noise of each gather may be as large as the apparent error, but not larger than the limit at which users are
+    // warned. Otherwise, among many bodies, those with the largest noise would seem to have the largest errors.
     const BodyMeasure before = measured_[body];
     const double requested = std::pow(error_ * before.reference(), 2);
     const double limit = max_body_errors * max_body_errors * requested;
     const CheckPlan of_body = plan(pilots(body, 16, name), name, std::sqrt(requested));
     const double noise = std::clamp(before.mean_square(), requested, limit);
-    // Noise takes more rays a point rather than more points: the standard error falls in proportion to the rays. Rare
-    // large differences take more than the pilot predicts; they may take a part of the remaining ones.
+    // More rays per point reduce the noise faster than more points do: the standard error falls in proportion to the
+    // rays. If there are rare large differences, more rays are needed than the pilot predicts. One body may then take a
+    // sixteenth of the remaining rays.
     constexpr unsigned more_rays = 4, largest_part = 16;
     unsigned rays = certificate_rays((of_body.gather_variance + of_body.variance) / noise);
     bool is_sufficient = measure_closely(body, of_body, rays);

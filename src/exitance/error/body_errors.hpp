@@ -66,6 +66,14 @@ struct BodyCheck {
     bool is_stopped() const { return stop && stop->requested(); }
 };
 
+/// Result of measure_bodies().
+struct MeasuredBodies {
+    std::vector<BodyError> errors;   ///< Errors of the bodies, in descending order of area.
+    std::vector<PointError> points;  ///< Points of the second stage, relative to the room's light.
+    std::size_t rays = 0;            ///< Number of rays cast.
+    HiddenErrors hidden = {};        ///< Bodies that the rays did not suffice for.
+};
+
 /// Measures the error of every body that reflects. First, each body gets eight points, with enough rays for the
 /// standard error of a mean square to be that of 1.5 times the requested error, or as many as half of `max_rays` allow.
 /// Three times the requested error, at which users are warned, is then four standard errors above zero. Afterwards,
@@ -79,12 +87,6 @@ struct BodyCheck {
 /// error          requested relative error
 /// max_rays       limit on all rays
 /// Returns the errors, the additional points and the number of rays.
-struct MeasuredBodies {
-    std::vector<BodyError> errors;   ///< Errors of the bodies, in descending order of area.
-    std::vector<PointError> points;  ///< Points of the second stage, relative to the room's light.
-    std::size_t rays = 0;            ///< Number of rays cast.
-    HiddenErrors hidden = {};        ///< Bodies that the rays did not suffice for.
-};
 MeasuredBodies measure_bodies(const BodyCheck& check, const std::function<double(std::size_t)>& light_of_room,
                               double error, std::size_t max_rays);
 

@@ -32,7 +32,7 @@ struct SampleSums {
     std::array<double, batches> squared{};  ///< Squared errors, by batch.
     /// Sums over the samples whose residual is divided into the parts of the local pass and of the method.
     double divided_weight = 0, local = 0, method = 0;
-    double rough = 0;  ///< The part of `local` at rough places.
+    double rough = 0;  ///< The part of `local` at places where the light varies too much for the elements (RoughPlace).
 
     /// Adds sample number `k`.
     void add(const ResidualSample& s, double sample_weight, std::size_t k) {

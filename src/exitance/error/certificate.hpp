@@ -85,8 +85,8 @@ struct Certificate {
     std::size_t points = 0, rays = 0;
     double worst_room = 0;        ///< Largest estimate of a room; `estimate` if the scene is one room.
     double room_uncertainty = 0;  ///< Standard error of `worst_room`.
-    /// The room whose estimate is `largest`; empty: that of the whole is. `largest_light`: light to which it is
-    /// relative, W/m^2.
+    /// The room whose error is largest(); empty if that is the error of the whole scene. `largest_light`: light to
+    /// which the largest error is relative, W/m^2.
     std::optional<std::size_t> largest_room = {};
     double largest_light = 0;
     std::optional<double> worst_body = {};  ///< Largest error of a body; set by `measure_each_body`.

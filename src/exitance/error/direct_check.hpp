@@ -47,7 +47,7 @@ class DirectCheck {
                 const LightAccuracy& accuracy);
 
     struct Workspace {
-        PlaceLight::Workspace clustered;
+        PlaceLight::Workspace clustered;  ///< For direct light at hits, exact or by rays.
         std::vector<HitPoint> hits;
         std::vector<double> counts;  ///< Rays per hit, divided by the probability of its check.
         std::vector<Spectrum> projected;

@@ -43,7 +43,7 @@ class ResidualSampler {
     struct Workspace {
         GatherWorkspace rays;
         ElementGather::Workspace sums;
-        PlaceLight::Workspace clustered;
+        PlaceLight::Workspace clustered;  ///< For direct light at points, exact or by rays.
         DirectCheck::Workspace check;
     };
 
@@ -84,7 +84,9 @@ class ResidualSampler {
     const ReflectedLight& b_;
     const DirectCheck& check_;
     const CertificateOptions& options_;
-    double often_;  ///< Factor on the number of rays; above 1 if light is reflected often.
+    /// Factor on the number of rays. It is above 1 if light is reflected so often that a small mean residual causes a
+    /// large error.
+    double often_;
     const ElementLocator& coarse_;
     const LeafNumbering& numbering_;
 };

@@ -92,7 +92,8 @@ void add_texture_error(Solution& solution, std::span<const Spectrum> deviation, 
     add_to_bodies(solution.scene, light, deviation, s);
     s.figures["relative_error_textures"] = error;
     const bool missed = demand && *s.relative_error_estimate > *demand;
-    // Share of the estimate above which a warning is shown, given by the digits that people read.
+    // Share of the estimate above which a warning is shown. Given by judgement, not measured: a smaller part of an
+    // error hardly changes what a reader concludes.
     constexpr double reported_share = 0.1;
     if (missed || error > reported_share * before)
         s.warnings.push_back(

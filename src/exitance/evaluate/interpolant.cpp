@@ -158,7 +158,8 @@ class Interpolation {
                 for (std::size_t i = begin; i < end; ++i) {
                     const ElementId e(i);
                     if (!apart.tree.is_leaf(e)) continue;
-                    // Two fits with noise differ by that noise from their mean, so subtract it.
+                    // The step that was made continuous contains the noise of both fits. It is no misfit, so subtract
+                    // it.
                     const double step = squared_step(apart, out, e) - static_cast<double>(fitted_[e].noise_squared);
                     fitted_[e].misfit_squared += std::max(0.0, step);
                 }

@@ -11,7 +11,8 @@
 namespace exitance {
 namespace {
 
-/// Places, one in each stratum of a running sum over the leaves.
+/// Chooses leaves for the places at which the error is measured: with a density that grows with the expected error, by
+/// positions in the running sum of area times density over the leaves.
 class Places {
   public:
     Places(const ElementTree& tree, std::span<const InterpolatedLeaf> leaves) : leaves_(leaves) {
@@ -29,7 +30,7 @@ class Places {
 
     struct Chosen {
         ElementId element;
-        double weight;  ///< Share of the place in the mean over all leaves, times the number of places.
+        double weight;  ///< Weight of a place there in a mean over the area; 1 in the mean over all places.
     };
     /// The leaf at `share` of the running sum, in [0, 1).
     Chosen at(double share) const {

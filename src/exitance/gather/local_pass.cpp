@@ -149,7 +149,7 @@ unsigned LocalPass::gather_at(ElementId e, const std::vector<WeightedPlace>& pla
     return rays * (count + (more ? count / 2 : 0));
 }
 
-/// True if a place is covered by another surface or inside a body, where no light arrives that anybody could see.
+/// True if a place is covered by another surface or inside a body, so that its light is never visible.
 bool LocalPass::is_hidden(ElementId e, const Point& x, const Gathered& gathered) const {
     const RegionId region = tree_.region(e);
     return gathered.irradiance == Spectrum() && !is_in_open(stage_, x, stage_.scene.regions()[region].plane.n, region);
@@ -167,9 +167,9 @@ SampledElement LocalPass::fitted(ElementId e, const std::vector<WeightedPlace>& 
                         spread_.gain());
 }
 
-/// Samples an element: starts with the number of rays that its area suggests or that it or its parent took before, and
-/// repeats with one and a half times as many, twice as many and so on until the noise is small enough. An element that
-/// must be split is left noisy, since its pieces will be gathered.
+/// Samples an element. The first number of rays follows from its area, or is the number that it or its parent took
+/// before. It is then raised to 1.5, 2, 3, 4 times and so on, until the noise is small enough. An element that must be
+/// split is left noisy, since its pieces will be gathered.
 SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const LocalPassDemand& demand, bool may_cut,
                                  Workspace& w) const {
     const std::vector<WeightedPlace> places = element_rule(tree_, e, rule_order(demand.curved));
@@ -181,7 +181,8 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
     const bool unlit = stage_.is_unlit(tree_.region(e));
     // Rays of a place follow from the noise allowed to the power of -4/3 (`knobs_for_error`).
     const double allowance = std::pow(noise_factor_in(e, demand), 4.0 / 3);
-    // With very many elements each has so small a share of the light that its noise alone determines its rays.
+    // In a crowd every element starts with few rays. More follow only where its noise requires them, since the area of
+    // an element says little about its share of the light.
     constexpr unsigned least_rays = 4;
     const unsigned first = is_crowd_ ? least_rays
                            : unlit   ? std::bit_ceil(demand.rays.least)
@@ -232,7 +233,8 @@ void LocalPass::check_between_nodes(ElementId e, SampledElement& sampled, const 
     constexpr unsigned least_places = 4, most_places = 32;
     unsigned rays = 16, count = std::min(most_places, sampled.rays / (share * rays));
     if (is_narrow_leaf(stage_, tree_, e)) {
-        // Enough places to meet a mouth that is a sixth of the element in 19 of 20 times.
+        // With 16 places, one is at the mouth of a gap with a probability of 19/20 if the mouth is a sixth of the
+        // element.
         constexpr unsigned places_before_gaps = 16, rays_before_gaps = 64;
         count = std::max(count, places_before_gaps), rays = rays_before_gaps;
     }
@@ -330,8 +332,8 @@ ElementFunction LocalPass::finished(const LocalPassDemand& demand, LocalPassRepo
     return out;
 }
 
-/// Returns the leaves that are unknown or too noisy, and the parts of other leaves that had to be split: with little
-/// noise, only the parts must be gathered.
+/// Returns the leaves that must be gathered: those that are unknown or too noisy. Other leaves with too large a misfit
+/// are split, and their parts are returned.
 std::vector<ElementId> LocalPass::to_gather_again(std::vector<ElementId> leaves, const LocalPassDemand& demand) {
     const auto good = [&](ElementId e) {
         return sampled_[e].place_rays > 0 && noise_excess(e, sampled_[e], demand) <= calibrated::kept_noise;

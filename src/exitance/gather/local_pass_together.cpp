@@ -123,7 +123,8 @@ class RaysTogether {
         b_.read(fronts_, values_);
     }
 
-    /// Examines the start of a ray that met a back, until one of the element is known to be hidden.
+    /// Tests whether the start of a ray that hit a back is hidden. Does nothing if a hidden start of the element was
+    /// found before.
     void look_around(std::uint32_t element, const SurfacePoint& start) {
         std::uint8_t& hidden = hidden_[element];
         if (hidden != 0) return;

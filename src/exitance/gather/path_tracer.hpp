@@ -19,7 +19,7 @@ namespace exitance {
 /// stage must outlive the tracer.
 class PathTracer {
   public:
-    /// A point that a path has reached.
+    /// A point of a path, on a surface.
     struct Vertex {
         Point x;
         Normal n;
@@ -34,18 +34,19 @@ class PathTracer {
 
     explicit PathTracer(const Stage& stage);
 
-    /// Returns one unbiased sample of the irradiance at `probe` that was reflected at least once, W/m^2. a, b in [0, 1)
-    /// choose its first direction.
+    /// Returns one unbiased sample of the irradiance at `probe` by light that surfaces have reflected, W/m^2. a, b in
+    /// [0, 1) choose the direction of the path's first ray.
     Spectrum path(const Vertex& probe, double a, double b, RandomStream& random) const;
 
-    /// Returns the vertex that a ray of density cos / pi from `from` reaches; none if it meets no front. Follows panes
-    /// that mirror. a, b in [0, 1) choose its direction.
+    /// Casts a ray from `from` and returns the vertex where it hits a front; none if it hits nothing or a back. Panes
+    /// may mirror the ray. a, b in [0, 1) choose its direction, with density cos / pi around the normal.
     std::optional<Vertex> first(const Vertex& from, double a, double b) const;
 
-    /// Takes a step from `y`, from either side of a diffusing pane in proportion to the light that leaves `y` by it.
+    /// Takes a step from `y`. On a diffusing pane, it starts from one of the two sides, chosen in proportion to the
+    /// share of the light leaving `y` that arrived on that side.
     Step step(const Vertex& y, RandomStream& random) const;
 
-    /// Approximate number of rays of a step, without those to lights without extent and mirror images.
+    /// Approximate number of rays per step. Rays to lights without extent and to mirror images are not counted.
     double rays_per_step() const;
 
   private:

@@ -49,8 +49,8 @@ bool LocalPass::is_suspect(ElementId e) const {
 /// nodes of the fit.
 void LocalPass::check_strips(ElementId e, SampledElement& sampled, const ReflectedLight& b,
                              const LocalPassDemand& demand, Workspace& w) const {
-    // Derived from a feature that covers a twentieth of the element: some place meets it in 24 of 25 times, and its
-    // misfit exceeds the noise.
+    // Derived from a feature that covers a twentieth of the element: at least one place is on it with a probability of
+    // 24/25, and its misfit exceeds the noise.
     constexpr unsigned places = 64, rays = 64;
     const RegionId region = tree_.region(e);
     const Normal& n = stage_.scene.regions()[region].plane.n;
@@ -71,7 +71,7 @@ void LocalPass::check_strips(ElementId e, SampledElement& sampled, const Reflect
     }
     sampled.rays += rays * places;
     const double allowed = allowed_misfit(e, sampled.light, demand);
-    // The noise of so many places is known to a quarter, so that twice its expected value is not noise.
+    // The mean noise of 64 places varies by a quarter, so that a misfit above twice its expected value is no noise.
     if (!(misfit > allowed * allowed + 2 * noise)) return;
     // The misfit includes the polynomial's own noise, as in `fit_gathered`.
     // 2.3: derived from five degrees of freedom, as in tolerated_misfit_squared().

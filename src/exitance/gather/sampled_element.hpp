@@ -19,14 +19,17 @@ struct SampledElement {
     double noise_in_misfit = 0;  ///< Expected part of misfit_squared that is due to noise.
     /// Parts of `misfit_squared` that vary along one coordinate only, see misfit_along().
     std::array<double, 2> misfit_along = {};
-    double quarters = 0, halves = 0;  ///< Means over the places of rho^2 `Gathered::quarters`, `halves`, (W/m^2)^2.
-    unsigned rays = 0;                ///< Rays in total.
-    unsigned place_rays = 0;          ///< Rays per place; 0: not gathered yet.
+    /// Means over the places of rho^2 times the two estimates of variance, `Gathered::quarters` and `Gathered::halves`,
+    /// (W/m^2)^2.
+    double quarters = 0, halves = 0;
+    unsigned rays = 0;        ///< Rays in total.
+    unsigned place_rays = 0;  ///< Rays per place; 0: not gathered yet.
 };
 
-/// Gives places that cannot be seen the light that the polynomial through the other places has there, so that a fit
-/// follows what can be seen: below the leg of a table a seat is dark, and its light next to the leg is not. Their noise
-/// is the mean of the others. Does nothing if no place can be seen.
+/// Extrapolates light to places that are hidden: each gets the value there of the polynomial that fits the visible
+/// places, so that hidden places do not influence the fit. Otherwise the darkness of a floor below the leg of a table
+/// would darken the floor next to the leg. The noise of hidden places is set to the mean noise of the others. Does
+/// nothing if all places are hidden.
 ///
 /// hidden  for every place, whether it is covered or inside a body
 void continue_below(const ElementTree& tree, ElementId e, const std::vector<WeightedPlace>& places,

@@ -227,7 +227,7 @@ class ReceivedLight {
     float rest_[3]{};
     Lanes sum_[bands]{}, rest_lanes_[bands]{};
     float rest_sum_[bands]{};
-    NodalValues total_{};  ///< Sums that are complete; put_by() adds to them.
+    NodalValues total_{};  ///< Sums over sources that are complete, to which put_by() adds.
 };
 
 /// Light of constant elements, padded to whole registers.

@@ -18,8 +18,8 @@ namespace exitance {
 /// recomputed whenever light is transported; only data that are expensive to compute are stored.
 struct Link {
     ElementId receiver, source;
-    /// Bit k n + l: node l of the source is visible from node k of the receiver. The last bit marks a constant link:
-    /// order 1 whatever the basis, from the mean of the source to the whole receiver.
+    /// Bit k n + l: node l of the source is visible from node k of the receiver. The last bit marks a constant link,
+    /// which is of order 1 for every basis: it carries the mean of the source to the whole receiver.
     std::array<std::uint32_t, 3> visible{};
     /// Constant links: form factor times visible share. Other links: index of the link's block (Links::blocks_) or, for
     /// far links, the scale of the kernel with the sign bit set.

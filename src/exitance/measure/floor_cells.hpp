@@ -8,9 +8,9 @@
 
 namespace exitance {
 
-/// Square cells over a floor, grouped into parts that walls separate. A wall is whatever blocks the way between two
-/// cells at all heights from above a door up to the ceiling. Hence furniture and partitions that end below the ceiling
-/// do not separate parts, nor do beams and lamps; the wall above a door does.
+/// Square cells over a floor, grouped into parts that walls separate. A wall is geometry that blocks the way between
+/// two cells at all heights from above a door up to the ceiling. Hence furniture and partitions that end below the
+/// ceiling do not separate parts, nor do beams and lamps; the wall above a door does.
 class FloorCells {
   public:
     static constexpr std::uint32_t none = ~0u;
@@ -18,8 +18,10 @@ class FloorCells {
     /// A part of the floor that walls or the floor's outline enclose.
     struct Part {
         std::size_t cells = 0;
-        double area = 0;    ///< m^2
-        double height = 0;  ///< Free height that a quarter of the cells exceed, metres; up to `top` without a ceiling.
+        double area = 0;  ///< m^2
+        /// Free height above the floor that a quarter of the cells exceed, metres. Below the open sky it reaches to
+        /// `top`.
+        double height = 0;
         bool is_inside_body = false;  ///< True if the back of a face is above more than half of the cells.
         bool has_ceiling = false;     ///< True if something is above at least half of the cells.
     };

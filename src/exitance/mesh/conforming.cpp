@@ -83,8 +83,8 @@ void PlaneNodes::find_vertices(std::span<const ElementId> leaves, std::span<cons
     }
     constexpr double rounding = 1e-9;  // share of the surface's size and of its distance from the origin
     tolerance_ = rounding * (norm(box.hi - box.lo) + std::max(norm(box.hi - Point{}), norm(box.lo - Point{})));
-    // All corners around the end of a line share a node, so a discontinuity needs a vertex in the middle of the line,
-    // too.
+    // At the ends of a line, the corners of both sides share a node. So that a function can be discontinuous across the
+    // line, it gets a vertex in its middle, too.
     const Patch& patch = tree_.patch(leaves.front());
     for (const ContactLines::Line& line : jumps)
         for (const Point& place : {line.a, line.b, 0.5 * (line.a + line.b)}) {

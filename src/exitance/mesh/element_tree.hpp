@@ -141,12 +141,13 @@ class ElementTree {
     Vec2 uniform(ElementId e, double s, double t) const;
     std::vector<ElementId> leaves() const;  ///< Returns all leaves, in the order of their ids.
 
-    /// Finds the leaf below `e` that contains the point (u, v) of `e`, and the coordinates there, clamped to the leaf.
-    /// O(depth).
+    /// A point of an element, by the element's own coordinates.
     struct Place {
         ElementId element;
         Vec2 uv;
     };
+    /// Finds the leaf below `e` that contains the point (u, v) of `e`. Returns it with the point's coordinates on the
+    /// leaf, which are clamped to its domain. O(depth).
     Place leaf_at(ElementId e, Vec2 uv) const;
 
     std::size_t memory_bytes() const;

@@ -54,7 +54,7 @@ struct Opposite {
 /// Finds the gaps at the border of one region.
 class GapFinder {
   public:
-    /// `is_minor`: only what is opposite the middles of the border's edges counts.
+    /// `is_minor`: true to search the opposite side at the middles of the border's edges only.
     GapFinder(const Scene& scene, const Bvh& faces, double touching, RegionId own, bool is_minor)
         : scene_(scene),
           faces_(faces),

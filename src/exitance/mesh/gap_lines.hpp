@@ -15,10 +15,11 @@ struct GapLine {
     RegionId region;  ///< Region of the surface.
 };
 
-/// Finds gaps, which open at the borders of regions that face each other at a small distance. Light that enters decays
-/// with the distance from the mouth, on the scale of the gap's height. Each strip is twice as wide as the one before:
-/// one height, two, and four. Strips end when almost no light is left, or when the next one would not fit before the
-/// middle of the gap, beyond which light enters from the other side, too.
+/// Finds the narrow gaps between regions that face each other at a small distance, and the lines that divide both sides
+/// of each gap into strips. Light that enters through the mouth of a gap, the border of a region, decays with the
+/// distance from the mouth. The scale of this decay is the gap's height, the distance between its sides. The widths of
+/// the strips are therefore one, two and four heights. There are fewer strips if they would pass the middle of the gap,
+/// since beyond it, light from the opposite mouth dominates.
 ///
 /// faces        a tree over the boxes of the scene's surfaces, by index
 /// touching     metres; smaller distances are contacts, not gaps

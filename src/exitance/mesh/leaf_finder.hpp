@@ -60,8 +60,8 @@ class LeafFinder {
         std::uint32_t part_of(Vec2 uv) const { return part[dot(normal, uv) >= offset ? 1 : 0]; }
     };
     struct Leaf {
-        Vec2 origin, du,
-            dv;  ///< Coordinates in the leaf: u = du . (uv - origin), v = dv . (uv - origin), uv those of the root.
+        /// For coordinates uv in the root, those in the leaf are du . (uv - origin) and dv . (uv - origin).
+        Vec2 origin, du, dv;
         ElementId id;
         Patch::Shape shape;
     };

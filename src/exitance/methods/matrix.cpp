@@ -53,7 +53,7 @@ RayBudget rays_of_rows(const MethodInput& input, const GlobalLight& light) {
 unsigned hemicube_cells(const MethodInput& input) {
     const double asked = input.options.hemicube_cells ? static_cast<double>(*input.options.hemicube_cells)
                                                       : 8 * std::sqrt(input.knobs.solve_rays.average);
-    // upper limit derived from the memory of a row
+    // The limit of 2 x 512 cells per edge is derived from the memory of a row.
     return 2 * static_cast<unsigned>(std::clamp(std::ceil(asked / 2), 1.0, 512.0));
 }
 

@@ -25,7 +25,7 @@ void end_job(const char* why) {
 
 void wait_for(MPI_Request& request) {
     constexpr int eager = 200;
-    constexpr double share = 0.05, longest = 5000;  // microseconds
+    constexpr double share = 0.05, longest = 5000;  // share of the time waited; microseconds: the longest interval
     const Stopwatch watch;
     int done = 0;
     for (int looks = 0; !done; ++looks) {

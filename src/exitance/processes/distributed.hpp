@@ -216,10 +216,10 @@ std::span<char> open_in_common(std::span<char> array);
 void close_in_common(std::span<char> pages);
 /// Counts bytes in common memory as if they had been sent.
 void count_as_sent(std::size_t bytes, const char* what);
-/// Number of values that this process has fetched and of messages that carried them, as in Traffic: counted by the
-/// receiver.
+/// Values that this process has fetched from others, and the messages that carried them.
 struct Fetched {
-    std::size_t messages = 0, values = 0, messages_of_twice = 0, values_of_twice = 0;
+    std::size_t messages = 0, values = 0;
+    std::size_t messages_of_twice = 0, values_of_twice = 0;  ///< Predicted for twice as many processes, see Traffic.
 };
 void count_fetched(const Fetched& fetched, std::size_t bytes_each);
 /// `share_on_node` for bytes.

@@ -28,7 +28,7 @@ class FaceParts {
     std::vector<SurfaceId> find(const Locator& locator, const std::array<Point, 3>& corner, const Normal& n) const {
         const SurfaceId middle = locator.find((corner[0] + corner[1] + corner[2]) / 3, n);
         if (!middle.is_none()) return of(middle);
-        constexpr int steps = 16;  // derived from the usual size of parts, most of which are larger
+        constexpr int steps = 16;  // derived from the size of parts: most are wider than a sixteenth of the face
         for (int i = 1; i < steps && !parts_.empty(); ++i)
             for (int j = 1; i + j < steps; ++j) {
                 const double a = i / double(steps), b = j / double(steps);

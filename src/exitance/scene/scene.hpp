@@ -46,7 +46,7 @@ struct Material {
 /// error.
 constexpr double mended_reflectance = 0.95, whitest_reflectance = 1.001;
 
-/// Replaces the reflectance of bands that would reflect all light. Returns true if there was one.
+/// Replaces reflectances of bands by `mended_reflectance` as described above. Returns true if there was one to replace.
 bool mend_reflectance(Spectrum& reflectance);
 
 /// Converts emitted radiance L_e (W/(m^2 sr)) to exitance M = pi L_e (W/m^2). The only place with this conversion.

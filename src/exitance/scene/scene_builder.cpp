@@ -295,10 +295,11 @@ void SceneBuilder::stack_overlaps(Scene& scene) {
         find(Finding::Kind::warning, in_.faces[origin_[overlap.second.value]], Mark::Kind::covering,
              fmt::format("face covers {:.3g} m^2 of {}, in the same plane: the later one is on top", overlap.area,
                          name_of(in_.faces[origin_[overlap.first.value]])),
-             "cut the one from the other, or move it a little off", "faces that cover an earlier one");
+             "cut one face out of the other, or move it away from the plane of the other",
+             "faces that cover an earlier one");
     if (overlaps.gave_up)
         find(Finding::Kind::warning, 0, "so many faces lie over one another in one plane that not all were compared",
-             "leave out all but those that light is to meet");
+             "keep only the faces that light can reach");
     for (bool changed = true; std::exchange(changed, false);)
         for (const Overlap& overlap : overlaps.pairs) {
             const std::uint8_t under = scene.regions_[scene.surfaces_[overlap.first].region].level;

@@ -215,7 +215,7 @@ std::vector<Finding> findings_of(const Shell& shell, const Scene& scene) {
                          "their backs",
                          turned.second == 1 ? "a face" : fmt::format("{} faces", turned.second), scene.groups()[group],
                          turned.second == 1 ? "looks" : "look", turned.second == 1 ? "its" : "their"),
-             "turn the order of corners round"});
+             "reverse the order of corners"});
     for (const InsideOut& body : shell.inside_out) {
         const Surface& first = scene.surfaces()[SurfaceId(body.faces[0])];
         Finding& finding = out.emplace_back(finding_of(body, scene.groups()[first.group], Finding::Kind::warning));

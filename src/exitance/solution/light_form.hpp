@@ -34,7 +34,7 @@ class LightForm {
     /// Triangle `i` with its values multiplied by `weight`.
     virtual QuadraticTriangle triangle(const Scene& scene, std::size_t i, const Spectrum& weight) const;
 
-    /// All of it as bytes, which the `unpack` of its kind reads on the same machine.
+    /// Returns the whole representation as bytes, which the `unpack` of its kind reads on a machine of the same type.
     virtual std::string packed() const = 0;
 };
 

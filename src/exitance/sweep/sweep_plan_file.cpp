@@ -105,7 +105,7 @@ void read_step(TomlKeys& keys, SweepPlan& plan) {
     keys.take("name", step.name);
     if (step.name.empty() || step.name.find('/') != std::string::npos)
         keys.fail(keys.table(), fmt::format("'{}' cannot be the name of a step", step.name),
-                  "files with the output of steps have their names, so choose a name without '/'");
+                  "the output of a step is stored in a file of its name: choose a name without '/'");
     if (const toml::node* const node = keys.find("accept")) {
         std::vector<int> accepted;
         keys.take("accept", accepted);

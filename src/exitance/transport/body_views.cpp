@@ -145,8 +145,9 @@ void BodyNeeds::follow(const ElementTree& tree) {
 
 namespace {
 
-/// Unbiased estimate of the square of a form factor times reflectances, from the rays of a body that hit a cell: pairs
-/// of different rays. A single ray shows nothing of a cell's size; its own square would demand elements without end.
+/// Unbiased estimate of the square of a form factor times reflectances, from the rays of a body that hit a cell: the
+/// sum over pairs of different rays. The squares of single rays are left out: a single ray carries no information about
+/// the size of a cell, and elements would be split without end.
 class SquaredWeight {
   public:
     void add(double weight) { sum_ += weight, squares_ += weight * weight; }

@@ -49,10 +49,10 @@ class BodyViews {
 /// of its area, which counts where the body sees most of it.
 class BodyNeeds {
   public:
-    /// `fit`: direct light on the leaves of `tree`. `tolerance`: for every body, the allowed error by one element,
-    /// relative to the light that the body reflects (once-reflected and direct), but at least a tenth of the mean light
-    /// of its room.
-    /// `light_of_room`: mean of w E_dir per room, or of all surfaces if the scene is one room, W/m^2.
+    /// `light`: projected direct light, with the tree of its elements. `tolerance`: per body, the error that one
+    /// element may cause, relative to the light that the body reflects: direct light and light that was reflected once
+    /// before. If that light is less than a tenth of the mean light of the body's room, a tenth of that mean replaces
+    /// it. `light_of_room`: mean of w E_dir per room; one value, for all surfaces, if the scene is one room; W/m^2.
     BodyNeeds(const Stage& stage, const BodyViews& views, const DirectProjection& light,
               std::span<const double> tolerance, std::span<const double> light_of_room);
 
@@ -60,7 +60,7 @@ class BodyNeeds {
     double allowed_squared(ElementId e) const;
     /// True if a feature of the light between the nodes of a leaf's fit could make the light of a body too inaccurate.
     bool hides_too_much(ElementId e, const DirectFit& fit, const Spectrum& weight) const;
-    /// Finds the leaves of `tree` that the rays hit, after some leaves were split.
+    /// Updates the leaves of `tree` that the bodies' rays hit. To be called after leaves were split.
     void follow(const ElementTree& tree);
 
   private:
@@ -73,11 +73,14 @@ class BodyNeeds {
     std::vector<ElementTree::Place> at_;  ///< Place of every hit.
     std::vector<double> allowed_;         ///< Allowed error of each body, W/m^2; infinite for bodies without light.
     std::vector<double> room_light_;      ///< Light of each body's room, W/m^2.
-    /// Allowed errors of an element, W/m^2: RMS, and in the ninth of it that a body sees most of.
+    /// Allowed errors of an element.
     struct Limits {
+        /// RMS over the element, W/m^2.
         double everywhere = std::numeric_limits<double>::infinity();
+        /// Error in one of the nine cells of the element, the one that has the largest share of a body's view, W/m^2.
         double in_a_cell = std::numeric_limits<double>::infinity();
-        /// The latter for indirect light at near places, over the mean light of the body's room.
+        /// Like in_a_cell, but only for views from nearer than the element's width, and divided by the mean light of
+        /// the body's room.
         double in_a_near_cell = std::numeric_limits<double>::infinity();
     };
     struct ElementLimits {

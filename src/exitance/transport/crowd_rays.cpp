@@ -8,7 +8,9 @@ namespace exitance {
 
 double fewer_rays_in_crowd(const Stage& stage, const ElementTree& tree, const LeafNumbering& numbering,
                            std::span<const Spectrum> reflected) {
-    constexpr double even = 4;  // mean square over squared mean; derived from surfaces of which a quarter is lit
+    // Mean square of light over its squared mean, below which light counts as even. Derived from surfaces of which a
+    // quarter is lit.
+    constexpr double even = 4;
     const std::size_t leaves = numbering.leaves.size();
     if (!ErrorShare::is_crowd(leaves, stage.pieces.size())) return 1;
     double area = 0, sum = 0, squares = 0;

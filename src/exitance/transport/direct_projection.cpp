@@ -61,13 +61,13 @@ std::vector<double> shares_by_room(const Stage& stage, const DirectProjection& l
     return out;
 }
 
-/// Squared error of an element that smaller elements would remove, (W/m^2)^2 m^2, if noise is left out.
+/// Returns the part of an element's squared error that splitting would reduce, without noise, (W/m^2)^2 m^2.
 double error_of_shape(const DirectProjection& light, ElementId e) {
     return light.tree.area(e) * std::max(0.0, light.fit[e].misfit_squared - light.fit[e].noise_squared);
 }
 
-/// Smallest squared error for which a leaf is split, if most elements are whole polygons (`share_of_crowd`). `bound`:
-/// on the sum of the leaves' squared errors. (W/m^2)^2 m^2
+/// Returns the smallest squared error for which a leaf is split if most elements are whole polygons, see
+/// share_of_crowd(). `bound`: bound on the sum of the leaves' squared errors, (W/m^2)^2 m^2.
 double share_in_crowd(const DirectProjection& light, double bound) {
     std::vector<double> errors;
     for (ElementId e : light.tree.leaves()) errors.push_back(error_of_shape(light, e));
@@ -132,7 +132,7 @@ class Projector {
     }
 
     bool are_many(std::size_t elements) const {
-        constexpr double max_emitting_share = 0.25;  // share of all area
+        constexpr double max_emitting_share = 0.25;  // area of emitters above which they are no small sources
         double emitting = 0;
         for (const DirectLight::Emitter& emitter : stage_.direct.emitters())
             if (!emitter.region.is_none()) emitting += stage_.scene.regions()[emitter.region].area;

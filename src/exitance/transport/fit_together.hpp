@@ -11,11 +11,10 @@ namespace exitance {
 bool may_fit_together(const Stage& stage);
 
 /// Fits direct light on small elements of a crowd by rays that start all over them, with a constant each: their light
-/// varies less than its noise unless the border of a sun's shadow crosses them. Elements that share their neighbourhood
-/// are done together, which makes packets of similar rays. Writes `fit` of the elements that are done, and returns the
-/// others in the given order: larger ones, those that a sun lights in part, and sides of panes. Collective.
-/// minor_area  elements smaller than this may be done, m^2
-/// noise_on    noise that an element may have
+/// varies less than its noise unless the border of a sun's shadow crosses them. Neighbouring elements are processed
+/// together, so that rays of a packet are similar. Writes `fit` of the elements that were fitted, and returns the
+/// others in the given order: larger ones, those that a sun lights in part, and sides of panes. Collective. minor_area
+/// limit on the area of elements that are fitted, m^2 noise_on    noise that an element may have
 std::vector<ElementId> fit_together(const Stage& stage, const ElementTree& tree, const std::vector<ElementId>& elements,
                                     double minor_area, const std::function<NoiseAllowed(ElementId)>& noise_on,
                                     Field<ElementId, DirectFit>& fit, const StopRequest& stop);

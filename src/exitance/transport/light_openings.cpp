@@ -10,12 +10,13 @@
 namespace exitance {
 namespace {
 
-constexpr double max_opening = 0.1;              ///< Opening as a share of the smaller side's walls, at most.
-constexpr double max_ratio_to_neighbours = 0.5;  ///< Opening by that of the neighbouring cuts, at most.
+constexpr double max_opening = 0.1;  ///< Largest area of an opening, as a share of the smaller side's walls.
+/// Largest area of an opening relative to the openings that the neighbouring cuts would have.
+constexpr double max_ratio_to_neighbours = 0.5;
 constexpr double neighbour_distance =  ///< Distance of the neighbouring cuts, as a share of the smaller side's walls.
     0.2;
-/// Number of reflections; each keeps half of the previous values. A third of the difference across an opening of a
-/// twentieth is left.
+/// Number of iterations; each averages the previous values with those after a reflection. If an opening is a twentieth
+/// of the walls, a third of the difference between its two sides is left after them.
 constexpr int steps = 60;
 
 /// Flux that a leaf of exitance 1 W/m^2 sends to the sky, W.

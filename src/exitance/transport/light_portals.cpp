@@ -15,10 +15,10 @@ namespace {
 
 constexpr unsigned most_portal_rays = 1 << 18;  ///< Rays that search for openings, in total.
 constexpr unsigned ray_batch = 1 << 10;         ///< Rays of a room that are cast in succession.
-constexpr std::size_t enough_ways =  ///< Rays through a room's openings at which the search stops: more find no others.
-    64;
+/// The search stops after this number of rays through a room's openings, since more rays rarely find other openings.
+constexpr std::size_t enough_ways = 64;
 constexpr std::size_t most_openings = 8;  ///< Maximum number of openings between two rooms.
-constexpr std::size_t most_cells = 16;    ///< Parallelograms at which rays of one room are aimed, at most.
+constexpr std::size_t most_cells = 16;    ///< Maximum number of parallelograms at which rays of one room are aimed.
 
 /// A ray from one room into another.
 struct Way {
@@ -184,9 +184,10 @@ PortalFinder::OpenPoints PortalFinder::first_points(std::size_t room, std::size_
     return out;
 }
 
-/// Returns the rectangle around an opening, of which some points are known. Few lines through a square meet a slit.
-/// Further lines pass through the rectangle that surrounds the points found and through its neighbourhood, until this
-/// contains no more: the rays that find an uncovered part of the opening by chance would be most of the noise.
+/// Returns a rectangle that covers an opening, given some points in the opening. These may miss parts of it, since few
+/// random lines through a square pass through a slit. The opening is therefore searched by further lines, through the
+/// rectangle that surrounds the points found so far and through its neighbourhood, until the rectangle no longer grows.
+/// If a part of the opening were not covered, the rays that find it by chance would cause most of the noise.
 PortalCell PortalFinder::surrounded(std::size_t room, std::size_t other, const Crossing& crossing, OpenPoints& open,
                                     std::uint64_t key) const {
     constexpr unsigned lines = 512;
@@ -222,7 +223,7 @@ PortalFinder::Crossing PortalFinder::straightened(std::size_t room, std::size_t 
         if (position(k) > position(last)) last = k;
     }
     const auto middle_at = [&](std::size_t k) {
-        // The line goes as far to each side as the opening is long, or to the first surface.
+        // The line extends from the point to both sides by the length of the opening, or to the first surface.
         const Point p = crossing.in_space(open.points[k]);
         const Vec3& w = open.directions[k];
         std::array<RayHit, 2> hits;
@@ -232,8 +233,8 @@ PortalFinder::Crossing PortalFinder::straightened(std::size_t room, std::size_t 
     };
     const Point a = middle_at(first), b = middle_at(last);
     const Vec3 u = normalized(b - a);
-    // Both middles are within the opening unless something stands in it.
-    constexpr double least_cosine = 0.9;  // of the angle by which the plane turns
+    // Both middles are within the opening unless an object is in it. The plane then turns; limit its angle.
+    constexpr double least_cosine = 0.9;
     const Vec3 n = crossing.frame.n - dot(crossing.frame.n, u) * u;
     if (!(norm(n) > least_cosine) || !(std::abs(dot(u, normalized(along))) > least_cosine)) return crossing;
     return {a + 0.5 * (b - a), Frame(normalized(n))};

@@ -31,7 +31,8 @@ std::vector<double> coarse_light(const Stage& stage, const LightRooms& rooms, co
 
 /// Finds openings between rooms and covers them with parallelograms. For a ray from one room into another, the point
 /// where equally much is seen of both rooms is taken as a point of the opening; lines through its neighbourhood that
-/// end in both rooms give the size. An opening need not be covered completely, since unaimed rays hit the rest.
+/// end in both rooms give the size. If a part of an opening is not covered, unaimed
+/// rays hit it, so that the expected light stays the same; but these rays then cause most of the noise.
 /// `light`: from coarse_light(). Returns null if aiming at openings does not reduce the noise. Deterministic on any
 /// number of threads. Casts at most 2^18 rays, and some thousands per opening.
 std::shared_ptr<const LightPortals> find_light_portals(const Stage& stage, const LightRooms& rooms,

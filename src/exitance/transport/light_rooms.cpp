@@ -19,23 +19,27 @@
 namespace exitance {
 namespace {
 
-constexpr double least_share = 0.05;  ///< Area of a room as a share of all area but ground and sky, at least.
-constexpr double least_detail =       ///< Minimum size of a small room below the sky, as a share of all elements.
-    0.001;
-/// Share of an element's rays that reach the sky, above which it is outdoors. Under an open sky that is half of the
-/// rays of a facade, and most of those of a ground.
+// The numbers below define what counts as a room of its own, and how much work finding rooms may take. They were chosen
+// by trial and not measured by a command.
+
+/// A part of the scene is a room if it has at least this share of all area, or of the area that is not outdoors.
+constexpr double least_share = 0.05;
+/// A smaller part can be a room, below a sky or above a large ground, if it has at least this share of all elements.
+constexpr double least_detail = 0.001;
+/// An element is outdoors if at least this share of its rays reaches the sky. Under an open sky, half of the rays of a
+/// facade reach it, and most of those of a ground.
 constexpr double outdoors = 0.25;
-constexpr double far_larger = 20;  ///< Minimum extent of ground and sky relative to all other geometry.
-constexpr double flattest = 0.1;   ///< Smallest over largest extent of a room; anything flatter is a gap.
-constexpr double thinnest =        ///< Distance of opposite walls over the root of their area; thinner is a gap.
-    0.03;
-constexpr std::size_t fewest_walls = 4;  ///< Minimum number of walls of a room.
-constexpr std::size_t most_rooms = 64;
-constexpr double mean_rays = 24;     ///< Rays of a leaf of mean area.
-constexpr unsigned least_rays = 16;  ///< Minimum per leaf. Enough if all is rooms.
-constexpr unsigned most_room_rays =  ///< Maximum per leaf: outdoors a room may have only a few leaves.
-    256;
-constexpr std::size_t rays_outdoors = 1 << 18;  ///< Rays of all leaves together, outdoors.
+/// If the scene is at least this many times as large as its rooms, most of its area is ground and sky. Rooms are then
+/// not compared with that area.
+constexpr double far_larger = 20;
+constexpr double flattest = 0.1;                ///< Smallest over largest extent of a room. A flatter part is a gap.
+constexpr double thinnest = 0.03;               ///< Volume of a room over area^(3/2). A part with less volume is a gap.
+constexpr std::size_t fewest_walls = 4;         ///< Minimum number of walls of a room.
+constexpr std::size_t most_rooms = 64;          ///< Maximum number of rooms. Further parts stay joined to others.
+constexpr double mean_rays = 24;                ///< Rays of an element of mean area.
+constexpr unsigned least_rays = 16;             ///< Minimum per element; sufficient if no part is outdoors.
+constexpr unsigned most_room_rays = 256;        ///< Maximum per element. Outdoors, a room may have few elements.
+constexpr std::size_t rays_outdoors = 1 << 18;  ///< Maximum of rays of all elements together, if there is a sky.
 
 /// Starting values that differ between rooms: by position along a line, by distance from the centre, and a small random
 /// part.

@@ -60,7 +60,8 @@ class RayRows final : public TransportOperator {
         EXI_ASSERT(!dealt_.is_spread());
         return places(i);
     }
-    /// Writes the same for any row that this process stores.
+    /// Writes the leaf numbers of row i to `out`, as hits(i) returns them. Requires only that this process stores row
+    /// i.
     void leaves_met(std::size_t i, std::vector<std::uint32_t>& out) const;
 
     /// Weights of the rays of row i; empty if all are 1.

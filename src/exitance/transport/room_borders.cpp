@@ -19,13 +19,17 @@ struct LeavesBetween {
     std::vector<std::uint32_t> group;
 };
 
-/// Finds the leaves of whose rays more than a tenth end in another room; those that see mostly near things, and among
-/// them another room; and those of the latter kind that leaves found so far hit. Leaves that see mostly near things
-/// belong to one group if one hits the other.
+/// Finds the leaves at borders between rooms, which are of three kinds:
+/// - leaves of whose rays more than a tenth end in another room;
+/// - leaves most of whose rays end at near things, and at least one in another room;
+/// - leaves most of whose rays end at near things, and which a leaf found so far hits.
+/// Two leaves most of whose rays end at near things belong to one group if one hits the other.
 LeavesBetween leaves_between(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering,
                              std::span<const std::size_t> room_of, std::size_t rooms) {
-    constexpr double firm = 0.1;   // share of rays into other rooms, up to which a leaf may be within its room
-    constexpr double near = 0.25;  // length of a ray over the mean in its room, below which it meets a near thing
+    // A leaf is at a border if a larger share of its rays ends in other rooms.
+    constexpr double firm = 0.1;
+    // A ray ends at a near thing if it is shorter than this share of the mean length of rays in its room.
+    constexpr double near = 0.25;
     const std::size_t n = room_of.size();
     std::vector<double> other(n), length(rooms), area(rooms);
     const auto length_to = [&](std::size_t i, std::uint32_t j) {
@@ -73,9 +77,12 @@ LeavesBetween leaves_between(const RayRows& rows, const ElementTree& tree, const
 
 std::vector<std::size_t> given_to_brighter(const RayRows& rows, const ElementTree& tree, const LeafNumbering& numbering,
                                            std::span<const double> light, std::span<const std::size_t> room_of) {
-    constexpr double seen = 0.25;   // share of the rays that reach a room, from which on a leaf may belong to it
-    constexpr double brighter = 4;  // ratio of the light of rooms, from which on errors in one are large in the other
-    constexpr int passes = 32;      // derived from leaves that hit one another with nine tenths of their rays
+    // A leaf may be given to another room if at least this share of its rays reaches that room.
+    constexpr double seen = 0.25;
+    // Rooms are treated as different only if one is this many times as bright as the other. Errors of the bright room's
+    // light are then large in the dark one.
+    constexpr double brighter = 4;
+    constexpr int passes = 32;  // derived from leaves that hit one another with nine tenths of their rays
     constexpr std::size_t within = ~std::size_t{0};
     const std::size_t rooms = light.size();
     std::vector<std::size_t> out(room_of.begin(), room_of.end());
@@ -122,8 +129,8 @@ std::vector<std::size_t> given_to_brighter(const RayRows& rows, const ElementTre
                 out[i] = r;
         if (out[i] != room_of[i]) moved[room_of[i]] += tree.area(numbering.leaves[i]);
     }
-    // A room that would lose most of its area is a gap, such as one behind furniture, whose mouth holds nearly all of
-    // its light. What is left would be nearly dark, and its error relative to its light large.
+    // A room that would lose most of its area keeps it. Such a room is a gap, for example behind furniture, and nearly
+    // all of its light is at its mouth. Without the mouth, the rest would be nearly dark, and its relative error large.
     constexpr double most_moved = 0.5;
     for (const std::size_t i : between)
         if (moved[room_of[i]] > most_moved * area[room_of[i]]) out[i] = room_of[i];

@@ -7,8 +7,8 @@
 namespace exitance {
 namespace {
 
-/// Factor by which element edges are reduced if areas count `weight` times: a room then has as many elements as if it
-/// were alone.
+/// Returns the divisor of element edges for a room whose areas have this weight. The room then has as many elements as
+/// it would have if it were the only one.
 double finer_by(double weight) {
     return std::sqrt(std::max(1.0, weight));
 }

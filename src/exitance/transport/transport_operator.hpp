@@ -17,7 +17,7 @@ class TransportOperator {
     virtual std::size_t size() const = 0;
     /// irradiance[i] = sum_j F_ij radiosity[j], both W/m^2, both of size() entries; they must not overlap.
     virtual void gather(std::span<const Spectrum> radiosity, std::span<Spectrum> irradiance) const = 0;
-    /// irradiance[receiver] alone.
+    /// Returns irradiance[receiver] of gather(), without computing the others.
     virtual Spectrum gather_at(std::size_t receiver, std::span<const Spectrum> radiosity) const = 0;
     virtual std::size_t memory_bytes() const = 0;
 

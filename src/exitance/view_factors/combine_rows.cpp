@@ -14,7 +14,7 @@ namespace {
 
 /// Closure defects within this many standard deviations are noise: one row in 2,000 exceeds it by chance.
 constexpr double max_noise_deviations = 3.5;
-constexpr int max_sweeps = 200;         ///< Sweeps of the relaxation that distributes closure defects, at most.
+constexpr int max_sweeps = 200;         ///< Maximum number of sweeps of the relaxation of closure defects.
 constexpr double settled_share = 1e-6;  ///< Remaining share of the largest defect at which the relaxation stops.
 
 /// An exchange area A_i F_ij, m^2, and its variance.
@@ -78,7 +78,8 @@ class Combination {
                 ++unexplained;
                 continue;
             }
-            // A sky that no ray reached is the only reason for a sum that the entries' own variance does not explain.
+            // If the variance of the entries does not explain the defect, the only other cause is a sky that no ray
+            // reached.
             if (row.sky == 0 && d > max_noise_deviations * std::sqrt(entries) + areas_[i] * row.bound)
                 unseen_[i] = unseen_variance(row);
             const double variance = entries + squared_area * (row.sky_variance + row.back_variance + unseen_[i]);
@@ -109,8 +110,9 @@ class Combination {
     void release(std::size_t i) { exchanges_[i] = {}; }
 
   private:
-    /// Variance of the share of a sky that no ray reached. Where nine hits are expected, none is met in one of 8,000
-    /// rows; nine are 3.5 standard deviations of this variance.
+    /// Returns the variance assumed for the share of a sky that no ray of a row reached. If nine rays are expected to
+    /// reach it, none does in one of 8,000 rows. The variance is chosen such that nine hits are 3.5 standard
+    /// deviations.
     static double unseen_variance(const RawRow& row) {
         constexpr double square_of_hits = 6.6;  // derived from (9 / 3.5)^2
         return row.cast_rays > 0 ? square_of_hits / std::pow(static_cast<double>(row.cast_rays), 2) : 0;
@@ -119,7 +121,7 @@ class Combination {
         return std::clamp(share + areas_[i] * variance * multiplier_[i], 0.0, 1.0);
     }
 
-    /// Adds an entry of 0 to every row for each row that has an entry for it, although it has none for them.
+    /// Makes the entries symmetric: if row j has an entry for i, but row i has none for j, row i gets an entry of 0.
     void add_absent() {
         std::vector<std::vector<RowEntry>> absent(rows_.size());
         for (std::uint32_t i = 0; i < rows_.size(); ++i)

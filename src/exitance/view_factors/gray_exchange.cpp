@@ -114,7 +114,8 @@ class GraySystem {
     std::vector<double> diagonal_;
 };
 
-/// True if every surface exchanges heat, over any number of others, with one of given temperature or the surroundings.
+/// True if the balance determines all temperatures: every surface exchanges heat, directly or by way of other surfaces,
+/// with a surface of given temperature or with the surroundings.
 bool is_determined(const GraySystem& system, std::span<const ThermalSurface> surfaces, bool has_surroundings) {
     std::vector<double> reached(system.size());
     for (std::size_t i = 0; i < system.size(); ++i)

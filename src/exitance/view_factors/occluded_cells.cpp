@@ -7,8 +7,9 @@
 namespace exitance {
 namespace {
 
+/// Limits on the critical lines by which a part of a receiver is cut, and on the resulting parts.
 constexpr std::size_t max_lines = 24, max_cell_parts = 200;
-constexpr int max_cell_halvings = 6;  ///< Halvings of a receiver with more lines, at most.
+constexpr int max_cell_halvings = 6;  ///< A receiver with more lines is halved up to this number of times.
 
 }  // namespace
 

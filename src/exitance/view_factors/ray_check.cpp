@@ -17,8 +17,9 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t batches = 64;  ///< the mean of this many is approximately normal
-/// Standard errors by which no correct entry is off: one in ten million is, with 64 batches. Of 3,200 entries of four
-/// scenes, checked with the default number of rays, none was off by more than 4.1 (`viewfactors --seed 1` to 8).
+/// An entry that differs from its estimate by more than this number of standard errors is wrong. With 64 batches,
+/// chance alone causes such a difference for one correct entry in ten million. The largest difference of 3,200 entries
+/// of four scenes, checked with the default number of rays, was 4.1 (`viewfactors --seed 1` to 8).
 constexpr double max_deviations = 6;
 constexpr double near_sizes = 0.2;  ///< Distance over the larger face's size; the kernel of nearer pairs is unbounded.
 

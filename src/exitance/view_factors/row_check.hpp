@@ -47,10 +47,10 @@ struct RowCheck {
     std::vector<CheckedRow> rows;
     std::size_t rays = 0;         ///< Rays of all rows together.
     std::size_t wrong = 0;        ///< Number of rows whose squared error exceeds R^2 by more than `beyond_noise`.
-    std::size_t wrong_sums = 0;   ///< Number of rows where the sum over the row or a group exceeds R by as much.
+    std::size_t wrong_sums = 0;   ///< Like `wrong`, for the error of a sum over the row or a group.
     double error = 0;             ///< Root mean squared error of the rows; 0 if noise makes the mean negative.
     double sum_error = 0;         ///< Largest difference of a sum over a row or group, including the noise of the rays.
-    double detectable_error = 0;  ///< Every larger error of a row would have been found; maximum over the rows.
+    double detectable_error = 0;  ///< Least error that would have been found in every row.
     double detectable_sum = 0;    ///< Like detectable_error, for the error of a sum over a row or group.
     bool is_complete = true;      ///< False if a stop was requested before the last row.
     static constexpr double beyond_noise = 3.5;

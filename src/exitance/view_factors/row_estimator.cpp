@@ -45,7 +45,8 @@ std::pair<std::size_t, std::size_t> batches_of(double n, std::size_t fewest, std
     return {std::max(fewest, batches), rays};
 }
 
-/// Number of cast rays that reach a variance, if `share` of the row is left to them.
+/// Returns the number of rays to cast if they estimate a `share` of the row and may cause half of `variance`, the
+/// allowed variance of the row.
 double cast_rays_for(double share, double variance) {
     return std::pow(share / (0.5 * variance), 1 / cast_rate);
 }

@@ -23,10 +23,11 @@ namespace {
 constexpr std::size_t rows_a_step = 64;  ///< Rows of a process between progress reports and checks of memory.
 constexpr std::size_t rows_a_range = 4;  ///< Rows that one thread computes without interruption.
 
-/// Share of R that rows use in the first pass, as the expected error after combination.
+/// Tolerance of rows in the first pass, relative to R, the requested error. It applies to the error that is expected
+/// after rows were combined with their reciprocal ones.
 constexpr double first_share = 1;
-/// Rows above R after the second pass are recomputed at most `max_repeats` times, each time with this share of the
-/// error that would suffice if all variance were their own.
+/// Rows whose error exceeds R after the second pass are recomputed at most `max_repeats` times. Each time, the
+/// tolerance is this share of the one that would suffice if a row's own rays caused all of its variance.
 constexpr double repeated_share = 0.75;
 constexpr std::uint32_t max_repeats = 4;
 /// Lower limit of the factor on a row's tolerance, derived from errors that fall with the root of the number of rays: a
@@ -70,9 +71,11 @@ class RowRun {
     }
 
   private:
-    /// Rows whose combined limit, without dropped entries, is above R, or that miss 1 by more than R with the sky and
-    /// backs of faces: rare events of a distribution with a long tail, which the variance of the row's own samples does
-    /// not show. Rows whose defect is no event of chance are left. Sets the share of R that the rows may use next.
+    /// Returns the rows to compute again. These are rows whose limit after combination, without dropped entries,
+    /// exceeds R, and rows whose sum, with the sky and backs of faces, differs from 1 by more than R. Such sums occur
+    /// if samples have rare large values, which the variance of a row's own samples does not show. Rows with a
+    /// difference that more rays did not reduce are left out, since it has other causes than chance. Sets the
+    /// tolerances of the rows.
     std::vector<std::size_t> faces_above(const SparseFactors& out, const std::vector<double>& limits) {
         std::vector<std::size_t> faces;
         for (std::size_t i = 0; i < out.size(); ++i) {

@@ -23,7 +23,8 @@ constexpr std::size_t patient_evaluations = 500'000;
 constexpr double min_crowding_ratio = 8;  ///< Ratio of crowding() above which the less crowded face is the receiver.
 constexpr double max_area_ratio = 16;     ///< Ratio of areas above which the smaller face is the receiver.
 constexpr double max_area_ratio_cluttered = 2;  ///< Like max_area_ratio, if there are more than few_blockers blockers.
-/// Contour sums of faces of very different sizes cancel: with a tenth of the tolerance one was wrong by 0.6%.
+/// Tolerance of contour sums for single entries. The terms of the sums cancel if the sizes of two faces are very
+/// different: with a tenth of the entry's tolerance, one entry was wrong by 0.6%.
 constexpr double entry_contour_share = 1e-4;
 
 /// Limit on the cells into which critical lines may cut a receiver. Cells cost the same at any tolerance; without lines

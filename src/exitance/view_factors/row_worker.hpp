@@ -69,7 +69,7 @@ class RowWorker {
     /// Limit on the evaluations of a pair with many blockers.
     static constexpr std::size_t usual_evaluations = 20'000;
     std::size_t most_evaluations_ = usual_evaluations;
-    bool is_alone_ = false;      ///< True while entry() computes a single entry, which is known to matter.
+    bool is_alone_ = false;      ///< True while entry() computes a single entry.
     bool is_cluttered_ = false;  ///< True if many blockers may hide parts of the current pair.
 };
 

@@ -64,14 +64,16 @@ float without_less_than(float c, float limit) {
 // Embree replaces components of directions of less than 1e-18 by that number with a positive sign, and then tests the
 // packet as if the sign were the ray's own: other rays of the packet pass through walls. Zero is safe.
 
-/// Converts a point. The limit is derived from 1e-18: coordinates of at least 1e-9 differ by 0 or by more than that.
+/// Converts a point, with coordinates below 1e-9 replaced by 0. Others then differ by 0 or by more than 1e-18, so that
+/// directions between points are safe, too.
 Float3 to_safe_point(const Vec3& v) {
     constexpr float smallest = 1e-9F;
     const Float3 p = to_float(v);
     return {without_less_than(p.x, smallest), without_less_than(p.y, smallest), without_less_than(p.z, smallest)};
 }
 
-/// Converts a direction. The limits are derived from 1e-18, and from the rounding of the largest component, 6e-8.
+/// Converts a direction, with components that are too small replaced by 0. `smallest` is derived from Embree's 1e-18,
+/// and `negligible` is far below the rounding of the largest component, 6e-8 of it.
 Float3 to_safe_direction(const Vec3& v) {
     constexpr float smallest = 2e-18F, negligible = 1e-12F;
     const Float3 d = to_float(v);
@@ -494,7 +496,7 @@ std::size_t RayTracer::Content::occluded(std::span<bool> blocked, const Ends& en
             const Point a = from.at + offset(from.region), b = to.at + offset(to.region);
             set_ray(packet, i, local(a), local_direction(b - a), 0, 1);
         }
-        // Builds of Embree with assertions look at lanes that are not valid, too.
+        // Builds of Embree with assertions also check the rays of lanes that are not valid.
         for (std::size_t i = count; i < width; ++i) set_ray(packet, i, {}, {}, 0, 1);
         trace_occluded(valid, rtc, packet);
         for (std::size_t i = 0; i < count; ++i) {

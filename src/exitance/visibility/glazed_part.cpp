@@ -144,7 +144,8 @@ class GlazedSum {
         bool is_even = true;
         for (std::size_t b = 0; b < bands; ++b) is_even = is_even && most[b] - least[b] <= max_variation * most[b];
         if (is_even || depth == max_depth) {
-            // Weights as for a triangle, for which this mean is exact for quadratic functions.
+            // Mean of the transmission, weighted by the kernel: each of the n corners counts once, the middle 3 n
+            // times. On a triangle, these weights (1 : 1 : 1 : 9) integrate quadratic functions exactly.
             const double share = 3 * static_cast<double>(corners.size()) * kernel(middle);
             if (!(of_corners + share > 0)) return {};
             return form_factor(corners) * ((T + share * at_middle) / (of_corners + share));

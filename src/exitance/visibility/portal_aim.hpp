@@ -18,7 +18,7 @@ namespace exitance {
 /// parallelograms cover the openings incompletely or are occluded.
 class PortalAim {
   public:
-    /// Number of parallelograms at which rays of a place are aimed at most.
+    /// Maximum number of parallelograms at which rays of a place are aimed.
     static constexpr std::size_t most_targets = 32;
 
     /// Returns the share of rays of density cos / pi about n that lead to a parallelogram; 0 if it is behind x, or too

@@ -69,7 +69,7 @@ class VisibleFromMany {
     void look_otherwise(std::span<const Vec2> points, std::span<double> F, std::span<Seen> seen);
 
     PlaneFrame frame_{{}, {0, 0, 1}};
-    std::vector<double> receiver_u_, receiver_v_;  ///< Its corners.
+    std::vector<double> receiver_u_, receiver_v_;  ///< Coordinates of the receiver's corners in `frame_`.
     std::span<const Point> source_;
     std::span<const ConvexBlocker* const> blockers_;
     double reach_ = 0;     ///< Upper bound of the distance between any two points involved, metres.

@@ -75,7 +75,8 @@ constexpr int all_lanes = 255;
 using Real = double __attribute__((vector_size(64)));
 using Vec = lanes_of::VecOf<Real>;
 
-/// One bit per lane: GCC 12 splits vectors of eight comparisons.
+/// A mask with one bit per lane. The kernels of four lanes use vectors of comparison results instead, but GCC 12 would
+/// split a vector of eight in two.
 struct Mask {
     __mmask8 lanes;
 };

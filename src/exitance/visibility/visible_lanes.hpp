@@ -36,8 +36,8 @@ struct SightTables {
         double none = 0, tie = 0;  ///< m^3: heights below `none` count as zero; below `tie`, two edges may coincide.
         Outline outline = Outline::always;
         std::uint32_t left = 0, right = 0;  ///< Indices into `faces`.
-        /// First index into `heights`: of the source's corners over this line, then of a and of b over each edge of the
-        /// source (two entries per edge).
+        /// Index into `heights` of the first height for this line. First come the heights of the source's corners over
+        /// the line, then, for each edge of the source, those of the line's ends a and b over that edge.
         std::uint32_t over = 0;
         std::uint32_t cuts = 0;    ///< Bit mask of corners of the source that may be outside.
         std::uint32_t cut_by = 0;  ///< Bit mask of edges of the source that may have part of the line outside.

@@ -85,7 +85,7 @@ void make_region(const Occluders& occluders, const Receiver& at, PieceId source,
     for (const Vec3& inward : scratch.source_pyramid) scratch.region.add(above(inward, -slack));
 }
 
-/// How much of the source an occluder's pyramid hides.
+/// Part of the source that an occluder's pyramid hides.
 enum class Hides { nothing, some, everything };
 Hides compare(std::span<const Vec3> source, std::span<const Vec3> planes) {
     bool everything = true;
@@ -202,8 +202,8 @@ double whole_form_factor(const Occluders& occluders, PieceId source, const Norma
     return known;
 }
 
-/// Returns the form factor `f` to what is left of the source, or 0 if that is no more than rounding leaves between two
-/// shadows that meet.
+/// Returns `f`, the form factor to the visible part of the source; 0 if that part is so small that it may be a sliver
+/// which rounding leaves between two adjacent shadows.
 double without_rounding(double f, const Normal& n, std::span<const Vec3> source) {
     constexpr double certain = 1e-9;         // derived from rounding: larger factors never come from it
     constexpr double rounded_share = 1e-12;  // derived from double precision: four digits more than its rounding

@@ -109,7 +109,7 @@ class VisibleSource {
     std::vector<Plane> faces_;
     double size_ = 0;
     Vec3 x_;    ///< The point from which the source is seen.
-    Normal n_;  ///< Its normal.
+    Normal n_;  ///< Normal of the receiver at x_.
     Polygon whole_;
     std::vector<Line> lines_;
     std::vector<Pyramid> pyramids_;

@@ -12,7 +12,7 @@ class ToleranceLaw {
     explicit ToleranceLaw(double exponent) : exponent_(exponent) {}
 
     /// Returns the factor by which to multiply the tolerance after a round with this error; 1 if the error is allowed.
-    /// The estimate ignores the first round, whose light lacks reflections.
+    /// The estimate of the power ignores the first round, since its light lacks reflections.
     double factor(double error, double allowed);
 
     template <class Archive>

@@ -11,8 +11,8 @@ namespace exitance {
 enum class ViewerLayer : std::uint8_t {
     exported,  ///< The elements that `export` writes, with all light.
     method,    ///< The method's elements, with reflected light.
-    raw,       ///< The method's elements without post-processing.
-               ///< They have reflected light in the method's basis, and direct light at their centres.
+    raw,       ///< The method's elements without post-processing: reflected light in the method's basis, and direct
+               ///< light at their centres.
 };
 
 /// Limit on the leaves per part of a layer, so that a page can draw the first part before it has the last.

@@ -251,7 +251,7 @@ Result<void> IesReader::make_type_c(const std::vector<double>& vertical, Planes 
         repair(fmt::format("the only horizontal angle is {:g}: all planes are assumed to be equal", first));
     if (last > 180 && last < 360)
         if (!(first == 90 && last == 270))
-            repair(fmt::format("horizontal angles end at {:g}: the circle is closed with those of 0", last));
+            repair(fmt::format("horizontal angles end at {:g}: the values of angle 0 are taken for 360", last));
     if (last == 360 && planes.rows.front() != planes.rows.back())
         tell(out_, Finding::Kind::warning, text_.line_number(), "intensities at 360 degrees are not those at 0");
     set_table(out_, vertical, completed(planes));

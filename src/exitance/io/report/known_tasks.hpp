@@ -2,7 +2,7 @@
 
 namespace exitance {
 
-/// Tasks that the program knows (TOML): requirements of EN 12464-1, in words of this project. Every number is in at
+/// Built-in tasks (TOML): requirements of EN 12464-1, in words of this project. Every number is in at
 /// least two of the public sources that the comments name; numbers that were found in fewer are left out, even where
 /// the standard has one. U_0 of walls and ceilings is 0.10 throughout and not listed.
 constexpr const char* known_tasks = R"toml(

@@ -22,7 +22,7 @@ enum class Faults : std::uint8_t {
 struct ChosenSky {
     DistantLight in_watts, in_lumens;
     bool light_groups = false;               ///< Gives the emitters of each group materials of their own.
-    std::optional<bool> photometric = {};    ///< Which of the two to use; empty: the scene's unit.
+    std::optional<bool> photometric = {};    ///< True: `in_lumens` is used; empty: the one in the scene's unit.
     std::vector<std::string> warnings = {};  ///< Sentences about the weather file, if there is one.
 };
 

@@ -44,7 +44,7 @@ std::optional<std::string> find_nonsense(const SixNodeMesh& mesh, std::size_t re
             if (!std::isfinite(v)) return "holds a value that is not finite";
     for (const auto& triangle : mesh.nodes)
         for (const std::uint32_t n : triangle)
-            if (n >= mesh.points.size()) return "leads to a node that is not there";
+            if (n >= mesh.points.size()) return "leads to a node that does not exist";
     for (const auto* slopes : {&mesh.gradients, &mesh.slopes})
         for (const Slopes& three : *slopes)
             for (const SixNodeMesh::Slope& slope : three)
@@ -52,9 +52,9 @@ std::optional<std::string> find_nonsense(const SixNodeMesh& mesh, std::size_t re
                     if (!std::isfinite(v)) return "holds a slope that is not finite";
     for (const auto& triangle : mesh.gradient_of)
         for (const std::uint32_t g : triangle)
-            if (g >= mesh.gradients.size()) return "leads to a gradient that is not there";
+            if (g >= mesh.gradients.size()) return "leads to a gradient that does not exist";
     for (const RegionId r : mesh.region)
-        if (r.value >= region_count) return "names a region that is not there";
+        if (r.value >= region_count) return "names a region that does not exist";
     for (const DiscontinuityCurve& c : mesh.curves)
         if (c.region.value >= region_count || (!c.source.is_none() && c.source.value >= region_count) ||
             !is_finite(c.a) || !is_finite(c.b))

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t none = ElementId::none_value;
 
-/// Stands in `root_corner` for a root whose corners are not those of its region's border.
+/// Value in `root_corner` of a root that has corners which are not on its region's border.
 constexpr std::uint8_t not_on_border = 255;
 
 /// Returns the corners of the border loops of a region, one loop after the other. A root of a triangulated surface has

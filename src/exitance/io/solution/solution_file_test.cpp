@@ -280,7 +280,7 @@ TEST_F(SolutionFiles, HoldADiscontinuityMeshAndRejectAnInvalidOne) {
     ASSERT_TRUE(in) << in.error().message;
     read_discontinuity(*in, "mesh", 2);
     ASSERT_TRUE(in->failed());
-    EXPECT_TRUE(in->error().message.ends_with("leads to a gradient that is not there")) << in->error().message;
+    EXPECT_TRUE(in->error().message.ends_with("leads to a gradient that does not exist")) << in->error().message;
 }
 
 TEST_F(SolutionFiles, DoNotHoldElementsThatFollowFromTheDiscontinuityMesh) {

@@ -13,8 +13,8 @@ namespace exitance {
 bool are_same_bits(const Vec3& a, const Vec3& b);
 
 /// Numbers the different points of a mesh, so that a file holds the coordinates of a point once, although each face
-/// around it has it as a corner. Points are the same if all bits of their coordinates are: what is read is what was
-/// written. Numbers follow the order in which points are added.
+/// around it has it as a corner. Points are the same if all bits of their coordinates are, so that a file restores
+/// the mesh bit for bit. Numbers follow the order in which points are added.
 class VertexTable {
   public:
     /// Returns the number of a point, which is a new one if the point was not added before.

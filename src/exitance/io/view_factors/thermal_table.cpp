@@ -67,7 +67,7 @@ Result<std::array<double, 4>> read_row(const LineReader& lines, std::string_view
                                    "the column surface holds numbers from 1, 0 for all, or names of rows");
             value = static_cast<double>(named - names.begin() + 1);
         }
-        // Empty cells are unknown values, which are NaN within the table; the word "nan" of a file does not.
+        // Empty cells are unknown values, stored as NaN. A cell with the word "nan" is an error.
         if (!value || std::isnan(*value)) return lines.error(fmt::format("'{}' is not a number", shown(fields[k])), "");
         row[columns[k]] = *value;
     }

@@ -45,7 +45,7 @@ class Shooting {
     std::vector<Spectrum> reflectance_, direct_, irradiance_;  ///< Per receiver.
     std::size_t leaf_count_ = 0;
     CornerSteps steps_;  ///< Steps of receivers, if they are refined.
-    double change_ = 0;  ///< Bound on the change of light on any receiver since the last look at the steps, W/m^2.
+    double change_ = 0;  ///< Bound on the change of light on any receiver since the steps were last evaluated, W/m^2.
     std::vector<Spectrum> at_vertex_;
     std::size_t shots_ = 0;
     double first_power_ = 0;

@@ -28,9 +28,10 @@ class CornerSteps {
     void remove(std::size_t element);
 
     /// Returns the watched elements with a difference of more than `limit` in any band between two corners, in the
-    /// order of their numbers. `change`: no band of any value has changed by more since the last call. An element is
-    /// looked at only if it is new, if one beside it is new or removed, or if the sum of the changes since its last
-    /// look might have made its difference too large. O(elements), with a comparison for most of them.
+    /// order of their numbers. `change`: no band of any value has changed by more since the last call. The values of
+    /// an element are evaluated only if it is new, if a neighbour is new or was removed, or if the sum of the changes
+    /// since their last evaluation might make its difference too large. O(elements), with a comparison for most of
+    /// them.
     std::vector<std::size_t> steeper_than(double limit, double change, const ValueOf& value);
 
   private:
@@ -44,7 +45,7 @@ class CornerSteps {
         std::array<std::uint32_t, 4> vertices{};
         std::uint8_t corners = 0;  ///< Number of corners; 0 if the element was removed.
         bool is_watched = true;
-        double next_look = 0;  ///< Sum of changes at which the element is looked at again.
+        double next_look = 0;  ///< Sum of changes at which the element is evaluated again.
     };
     /// Smallest and largest values at the corners of an element, in the band in which they differ most.
     struct Range {

@@ -16,10 +16,11 @@ constexpr std::size_t samples_per_weight = 40;  ///< Samples per weight in the l
 constexpr std::size_t max_tries = 64;           ///< Attempts to draw a pair of points that face each other, per pair.
 /// Weight, in fits over all pairs, of samples drawn near units with a large resource.
 constexpr double resampled_weight = 0.3;
-/// Share of the mean number of samples won, below which a unit is idle. Units between surfaces win almost none.
+/// A unit is idle if it wins less than this share of the mean number of samples per unit. Units between surfaces win
+/// almost none.
 constexpr double idle_share = 0.01;
 constexpr std::size_t thinnings = 4;  ///< Searches for idle units while a network doubles in size.
-/// Growth ends after this many insertions without a net gain (or as many as there are units, if more).
+/// Growth ends after this number of insertions without a net gain, or after the number of units if that is larger.
 constexpr std::size_t max_vain_insertions = 64;
 constexpr double sure_share = 1e-3;      ///< Share of differing samples up to which a visibility is sure.
 constexpr double map_width_share = 0.6;  ///< Width of a linear map's unit, relative to its edges: maps extrapolate.

@@ -149,7 +149,7 @@ void read_layers(Hdf5Reader& file, const std::string& group, Solution& solution)
     LightLayers out;
     for (const std::uint32_t r : sources) {
         out.sources.emplace_back(r);
-        if (!out.sources.back().is_none() && r >= region_count) return wrong("comes from a region that is not there");
+        if (!out.sources.back().is_none() && r >= region_count) return wrong("comes from a region that does not exist");
     }
     SheetReaders readers(flat);
     for (std::size_t s = 0; s < sheets; ++s) {

@@ -281,13 +281,13 @@ std::optional<std::string> find_nonsense(const LightLayer::Contents& c) {
         return std::any_of(ids.begin(), ids.end(), [&](std::uint32_t i) { return i >= c.half_vertices.size(); });
     };
     for (const auto& t : c.narrow)
-        if (leads_astray({t[0], t[1], t[2]})) return "leads to a corner that is not there";
+        if (leads_astray({t[0], t[1], t[2]})) return "leads to a corner that does not exist";
     for (const auto& t : c.wide)
-        if (leads_astray(t)) return "leads to a corner that is not there";
+        if (leads_astray(t)) return "leads to a corner that does not exist";
     if (c.form == LightLayer::Form::halves && count != c.half_edges.size()) return "has not one value an edge";
     for (const auto& t : c.faces)
         for (std::size_t k = 0; k < 3; ++k)
-            if (t[k] >= c.vertices.size() || t[3 + k] >= c.edges.size()) return "leads to a corner that is not there";
+            if (t[k] >= c.vertices.size() || t[3 + k] >= c.edges.size()) return "leads to a corner that does not exist";
     return {};
 }
 

@@ -53,7 +53,7 @@ bool fits(const StudySolve& run, const ChosenSolution& of) {
            (of.setting.empty() || of.setting == run.setting) && (std::isnan(of.value) || of.value == run.value);
 }
 
-/// True if the study has a picture of this run, or a line through it.
+/// True if the study shows a picture of this run, or draws a line through its light.
 bool is_shown(const StudySolve& run) {
     const Study& study = run.study;
     return std::any_of(study.pictures.begin(), study.pictures.end(), [&](const auto& p) { return fits(run, p.of); }) ||

@@ -24,7 +24,8 @@ struct OpenTransfer {
     bool near = false;
     /// True if the rows must be stored with the link; otherwise the kernel is recomputed when it is applied.
     bool has_block = false;
-    double kernel_scale = 1;  ///< Scale of the recomputed kernel, if the rows are integrated ones.
+    /// Factor on the recomputed kernel that makes its mean equal to that of the integrated rows; 1 if there are none.
+    double kernel_scale = 1;
 
     double largest_light(std::size_t nodes) const;
 };

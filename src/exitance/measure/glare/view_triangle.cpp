@@ -19,7 +19,8 @@ Vec3 halfway(const Vec3& a, const Vec3& b) {
     return (lb * a + la * b) / (la + lb);
 }
 
-/// Halves the longest edge until the triangle is small enough. A sliver needs few cuts, unlike by quarters.
+/// Halves the longest edge until the triangle is small enough. Slivers give fewer parts than they would if all edges
+/// were halved.
 void cut(const ViewTriangle& t, double max_extent, int depth, std::vector<ViewTriangle>& out) {
     constexpr int max_depth = 24;
     std::size_t longest = 0;

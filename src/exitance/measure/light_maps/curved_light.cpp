@@ -9,11 +9,11 @@
 namespace exitance {
 namespace {
 
-/// Rays of a node. Derived from the n^(-3/4) of stratified rays: 0.5% of what a uniform surround would give.
+/// Rays of a node. Derived from the error n^(-3/4) of stratified rays: 0.5% of the light of a uniform surround.
 constexpr unsigned node_rays = 512;
 constexpr int max_steps = 256;
-/// Rays of direct light at a place, at most. Derived from those of a pixel of a flat texel
-/// (measure/pictures/tile_cells.cpp)
+/// Maximum number of rays of direct light at a place. Derived from the number for a pixel of a flat texel
+/// (measure/pictures/tile_cells.cpp).
 constexpr unsigned most_rays = 1024;
 constexpr double alike = 0.01;  ///< Relative difference of light that counts as linear; derived from TileLight::alike.
 

@@ -10,7 +10,7 @@
 
 namespace exitance {
 
-/// Distance of the nodes at which CurvedLight gathers reflected light, at most, in texels. Derived from the solve's
+/// Largest distance of the nodes at which CurvedLight gathers reflected light, in texels. Derived from the solve's
 /// elements: reflected light varies slowly, and a node costs as much as some ten texels.
 constexpr int node_texels = 8;
 

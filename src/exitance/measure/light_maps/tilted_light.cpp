@@ -8,7 +8,8 @@
 namespace exitance {
 namespace {
 
-/// Rays of a node and normal. Derived from the n^(-3/4) of stratified rays: 0.8% of what a uniform surround would give.
+/// Rays per node and normal. Derived from the error n^(-3/4) of stratified rays: 0.8% of the light of a uniform
+/// surround.
 constexpr unsigned tilted_rays = 256;
 
 /// Returns the position of a node along a side of a chart, in texels.

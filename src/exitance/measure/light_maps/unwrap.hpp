@@ -24,7 +24,7 @@ struct Unwrapped {
     double filled = 0;          ///< Share of the map that faces cover, without padding.
     double smallest_scale = 1;  ///< Least ratio of a face's area in the map to that of a face parallel to it.
     /// The linear map of every region, in the order of ids. The first region of a chart has the chart's rectangle
-    /// (`room`); those of the others are empty.
+    /// (`room`); the rectangles of its other regions are empty.
     std::vector<Chart> regions;
 
     /// Projection of a chart to the map, texels.

@@ -31,7 +31,7 @@ struct DiscontinuityCurve {
     RegionId source;
 };
 
-/// How much of the primary sources all points of a face see: everything, parts, or nothing.
+/// Part of the primary sources that all points of a face see: everything, parts, or nothing.
 enum class ShadowClass : std::uint8_t { lit, penumbra, umbra };
 
 /// Irradiance as one quadratic polynomial per triangle, given by its values at six nodes: corners 0, 1, 2, then the

@@ -29,7 +29,8 @@ ElementFunction gathered_light(const Scene& scene, const DirectProjection& direc
 /// by up to 3e-3 of all light for elements of a 5% error. Returns the scale.
 Spectrum keep_emitted_flux(DirectProjection& direct, const Stage& stage, std::uint64_t seed);
 
-/// True if all light that the method's elements reflect arrives.
+/// True if all light that the method's elements reflect arrives at fronts of surfaces, as tested by rays in proportion
+/// to the reflected power.
 bool keeps_reflected_light(const Stage& stage, const GlobalLight& light, std::uint64_t seed);
 
 /// Scales gathered indirect light E in each band so that it equals the part of E and of direct light that arrives:

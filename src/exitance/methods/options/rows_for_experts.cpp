@@ -289,8 +289,8 @@ std::vector<OptionRow> rows_of_running() {
          .value = count(at(&O::seed), 0),
          .does = "Seed of all random numbers",
          .initial = "1",
-         .when = "Other seeds show how much of an error is noise, but for rays of direct light, which follow from "
-                 "the place alone",
+         .when = "Other seeds show how much of an error is noise; rays of direct light at points do not depend on "
+                 "the seed",
          .group = group::method},
         {.name = "--schedule",
          .value = choice(schedule_names, at(&O::schedule)),
@@ -341,8 +341,8 @@ std::vector<OptionRow> rows_of_visibility() {
         {.name = "--form-factors",
          .value =
              either(form_factor_names, at(&O::form_factors), shooting_receiver_names, at(&ClassicalOptions::receivers)),
-         .does =
-             "How form factors are computed; vertex and middle are receivers of shots and select the published form",
+         .does = "How form factors are computed; vertex and middle, points at which elements receive shots, select the "
+                 "published form",
          .initial = "depends on the method",
          .group = group::visibility,
          .support = {{standard({matrix}), "analytic|hemicube", has_constant_elements, with_constant},
@@ -400,7 +400,7 @@ std::vector<OptionRow> rows_of_shadows() {
          .section = "discontinuity"},
         {.name = "--dm-quality",
          .value = choice(mesh_quality_names, at(&DiscontinuityChoice::quality)),
-         .does = "Shape of triangles: as bisection leaves it, or with points added until angles exceed 20.7 degrees",
+         .does = "Shape of triangles: delaunay adds points until all angles exceed 20.7 degrees, rivara only bisects",
          .initial = "rivara",
          .group = group::shadows,
          .support = {{discontinuities}},

@@ -156,7 +156,7 @@ std::vector<OptionRow> rows_of_scene_and_limits() {
         {.name = "--quantity",
          .value = choice(quantity_kinds, at(&R::photometric)),
          .does = "Unit of the scene's emission: watts or lumens",
-         .initial = "as the file says: photometric for glTF files with lights",
+         .initial = "given by the file: photometric for glTF files with lights",
          .group = group::scene,
          .section = "-"},
         {.name = "--memory-limit",

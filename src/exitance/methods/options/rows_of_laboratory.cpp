@@ -203,8 +203,10 @@ std::vector<OptionRow> rows_of_structures() {
          .support = {{standard({growing_cells})}}},
         {.name = "--local-pass",
          .value = choice(local_pass_names, at(&O::local_pass)),
-         .does = "Light at the nodes of a discontinuity mesh: a of the leaves, b with new form factors, c with new "
-                 "visibility, d with primary sources recomputed, e with exact direct light",
+         .does =
+             "Light at the nodes of a discontinuity mesh: a, that of the linked elements; b, by the links, with form "
+             "factors at the node; c, also with visibility there; d, with visibility of primary sources only; e, with "
+             "exact direct light",
          .initial = "e",
          .group = group::structures,
          .support = {{standard({discontinuity}), "e"}, {local_passes, "a|b|c|d"}}},

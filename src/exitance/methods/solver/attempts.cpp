@@ -286,8 +286,8 @@ void Solver::take_two_grid_step() {
     progress_.phase("solve");
     if (next_.parts.empty()) next_.parts.push_back(gathered_light(stage_.scene, direct_, *light_, share_));
     // The delivered light is scaled such that the flux of the converged solution is conserved. A refinement step would
-    // apply that correction twice. Its input is therefore scaled to the power that arrives of the light that was
-    // gathered, so that only the rays' noise is corrected.
+    // apply that correction twice. Its input is therefore scaled to the arriving power of the light from
+    // which it was gathered, so that only the noise of rays is corrected.
     ElementFunction gathered = solution_.indirect;
     if (mean(steps_.sent) > 0) scale(gathered, conserving_scale(steps_.sent, power(gathered)));
     next_ = next_light(stage_, *light_, gathered, direct_, share_, std::move(next_), knobs_.solve_rays, options_.seed);

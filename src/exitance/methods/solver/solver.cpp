@@ -31,7 +31,8 @@ Solver::Solver(Scene scene, const SolveOptions& asked, Progress& progress, const
     // Before a near deadline, a coarse solution is computed first, so that there is a result when time runs out. With
     // checkpoints, another run may continue; its result must not depend on the time limit of this run.
     const bool hurries = common_seconds_left(stop) < calibrated::near_deadline && !checkpoints_;
-    constexpr double first_shown_error = 0.32;  // given by the error at which a scene is recognizable
+    // Error of the first solution that a viewer shows. Given by judgement, not measured: a scene is recognizable in it.
+    constexpr double first_shown_error = 0.32;
     plan_ = make_plan(stage_, asked, show ? first_shown_error : hurries ? calibrated::hurried_error : 0);
     requested_error_ = options_.error_target();
     if (show && options_.error_demand() && !is_published())

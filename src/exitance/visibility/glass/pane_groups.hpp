@@ -27,7 +27,7 @@ class PaneGroups {
 
     std::size_t count() const { return count_; }
     bool has_all_light() const { return has_all_light_; }
-    /// Returns the group of a pane as a mask; 0 if it belongs to none.
+    /// Returns the mask of the group to which a pane belongs; 0 if it belongs to none. 1 for all_light().
     Mask mask_of(std::size_t pane) const {
         if (has_all_light_) return 1;
         return group_of_pane_[pane] < 0 ? 0 : Mask{1} << static_cast<unsigned>(group_of_pane_[pane]);

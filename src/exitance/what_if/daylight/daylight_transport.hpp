@@ -33,7 +33,8 @@ struct RayCounts {
     struct Through {
         std::vector<End> leaves, patches;
     };
-    /// One per group of panes, then those of any group, then those of two groups or more; empty without groups.
+    /// One entry per group of panes, for rays that crossed panes of that group. Then two more entries: for rays that
+    /// crossed panes of any group, and of at least two groups. Empty without groups.
     std::vector<Through> through = {};
 };
 

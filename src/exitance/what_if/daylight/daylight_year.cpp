@@ -19,8 +19,8 @@ std::vector<double> luminances(const SkyModel& sky, const SkyPatches& patches, d
     return out;
 }
 
-/// Distributes the sun's light to the four nearest patches as luminances, weighted by inverse distance; for reflected
-/// light, the difference is negligible.
+/// Returns the four patches nearest to the sun, and the luminances that replace the sun's light there, weighted by
+/// inverse distance. This is accurate enough for light that is reflected at least once.
 std::vector<std::pair<std::size_t, double>> sun_in_patches(const Normal& sun, const SkyPatches& patches,
                                                            double normal) {
     constexpr std::size_t count = 4;

@@ -99,7 +99,7 @@ struct DaylightCriteria {
 
 /// Direct sunlight above which an hour is sunny, lx, and sunny hours above which a sensor counts in ASE.
 constexpr double sunny_illuminance = 1000, max_sunny_hours = 250;
-/// DA from which on a sensor counts in sDA.
+/// Least DA (daylight autonomy) of a sensor that counts in sDA (spatial daylight autonomy).
 constexpr double required_autonomy = 0.5;
 
 /// Annual metrics of standards at a sensor; shares are of the occupied hours.
@@ -107,8 +107,8 @@ struct DaylightMetrics {
     double daylight_factor = 0;  ///< Daylight factor under the traditional overcast sky, per cent.
     double autonomy = 0;         ///< DA: share of the hours with the target illuminance.
     double continuous = 0;       ///< Continuous DA: mean of the shares of the target that each hour reaches.
-    /// Hours at full power that electric light takes which the sensor dims: power p + (1 - p) max(0, 1 - E / target) in
-    /// every occupied hour, with p = DaylightCriteria::dimmed_power.
+    /// Energy of electric light that the sensor dims, in hours at full power. Its power in every occupied hour is
+    /// p + (1 - p) max(0, 1 - E / target), with p = DaylightCriteria::dimmed_power.
     double electric_hours = 0;
     std::array<double, 4> useful{};  ///< UDI: below the first limit, between the limits, above the last.
     double sunny_hours = 0;          ///< Hours with more than 1000 lx of direct sunlight.

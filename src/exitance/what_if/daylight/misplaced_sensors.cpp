@@ -100,7 +100,7 @@ std::vector<std::string> warnings_of(const MisplacedSensors& misplaced, std::spa
                         which.size(), sensors.size(), which.size() == 1 ? one : several, which.front(), x.x, x.y, x.z));
     };
     tell(misplaced.outdoors, "lies outdoors, below the open sky, but counts as the others",
-         "lie outdoors, below the open sky, but count as the others");
+         "lie outdoors, below the open sky, but count like the others");
     tell(misplaced.behind, "sees mostly backs of faces, as below a floor or inside of a body",
          "see mostly backs of faces, as below a floor or inside of a body");
     return out;

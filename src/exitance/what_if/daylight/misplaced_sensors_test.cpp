@@ -50,7 +50,7 @@ TEST(MisplacedSensors, AreOutdoorsOrBehindFaces) {
     ASSERT_EQ(warnings.size(), 2u);
     EXPECT_EQ(
         warnings[0],
-        "2 of 6 sensors lie outdoors, below the open sky, but count as the others; the first is sensor 2 (counted "
+        "2 of 6 sensors lie outdoors, below the open sky, but count like the others; the first is sensor 2 (counted "
         "from 0) at -3, 1.5, 0.8");
     EXPECT_EQ(warnings[1],
               "1 of 6 sensors sees mostly backs of faces, as below a floor or inside of a body; the first is sensor 3 "

@@ -55,16 +55,17 @@ struct DaylightBlock {
     std::vector<VariantResult> variants;  ///< Sensor by sensor, one per variant of the states.
 };
 
-/// Evaluates the hours of a year at sensors. Direct sunlight uses exact visibility; its reflections are those of the
-/// patches around the sun.
+/// Evaluates the hours of a year at sensors. Direct sunlight uses exact visibility; reflected sunlight is computed as
+/// if it came from the patches around the sun.
 class SensorYears {
   public:
     /// `day`: the day on which SensorResults::sunlight is computed; without it that result is 0. `setting` must outlive
     /// this object.
     SensorYears(const DaylightSetting& setting, const DaylightBias& bias, const std::optional<SunDay>& day);
 
-    /// Evaluates sensors at `places` with their rows of the daylight matrix. `first`: number of the first. Every
-    /// replicate gives every result anew, since all hours share the noise of a sensor's coefficients. O(replicates x
+    /// Evaluates sensors at `places` with their rows of the daylight matrix. `first`: number of the first. All
+    /// results are computed once per replicate, which gives their noise: the hours share the noise of a sensor's
+    /// coefficients, so that it cannot be found from the hours. O(replicates x
     /// sensors x hours x patches): 1 ms per sensor with 146 patches.
     /// `parts`: the rows of the parts of HourlyStates, if the setting has states. The number of sunny hours is then
     /// that of the first states, as ASE requires; all other results of hours are those of the states.

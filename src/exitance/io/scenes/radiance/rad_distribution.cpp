@@ -166,7 +166,8 @@ Result<RadDistribution> read_data(const RadPattern& pattern, const std::string& 
     if (words.size() < 4)
         return bad(fmt::format("it has {} words: function, data, calculation and angles", words.size()));
     if (!words[2].ends_with("source.cal"))
-        return bad(fmt::format("its functions are in '{}'", shown(words[2])), "those of source.cal are known");
+        return bad(fmt::format("its functions are in '{}'", shown(words[2])),
+                   "only the functions of source.cal are supported");
     RadDistribution out;
     std::size_t angles = 0;
     while (3 + angles < words.size() && !words[3 + angles].starts_with("-")) {

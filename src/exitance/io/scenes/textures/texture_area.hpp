@@ -65,7 +65,8 @@ class TextureArea {
   private:
     struct Level {
         std::size_t width = 0, height = 0;
-        double across = 0, down = 0;     ///< Size of the picture, pixels: the last column and row may be cut off.
+        /// Size of the picture in pixels of this level. The last column and row may be covered in part.
+        double across = 0, down = 0;
         std::vector<std::uint16_t> rgb;  ///< Colours, linear; 65535 is 1.
         Colour at(std::size_t x, std::size_t y) const {
             const std::uint16_t* c = rgb.data() + 3 * (y * width + x);

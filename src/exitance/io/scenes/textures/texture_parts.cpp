@@ -235,7 +235,8 @@ class FaceCutter {
         out.parts[tile.owner].push_back(std::move(part));
     }
 
-    /// Chooses the parts that stay: those with the fewest holes, until they have the area that is no hole.
+    /// Chooses the parts that remain when the others become holes: those with the smallest share of holes, until their
+    /// area equals the area outside of holes.
     static std::vector<std::uint8_t> staying_parts(const std::vector<TexturePart>& parts,
                                                    const std::vector<std::uint8_t>& is_cut, double& misplaced) {
         std::vector<std::size_t> left, open = {0};

@@ -152,7 +152,8 @@ class PatchFinder {
             sum += tile.area;
             out_.tiles.push_back(std::move(tile));
         }
-        // Pieces of an outline that intersects itself overlap; those of a bent one have a little more area.
+        // Pieces of an outline that intersects itself overlap, so that the sum of their areas is too large. If the
+        // outline is not planar, the sum is only a little larger, which is acceptable.
         constexpr double bent = 0.02;  // relative difference; derived from triangles that meet at up to ten degrees
         if (std::abs(sum - area) > bent * area) out_.tiles.resize(before);
     }
