@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "run_program.hpp"
 
@@ -53,6 +54,31 @@ TEST_F(ProgramMix, DimsLampsAndWritesACompleteSolution) {
     const Finished back = run_program({"mix", path("d.h5"), "left=1", "right=1", "-o", path("b.h5")});
     ASSERT_EQ(back.status, 0) << back.err;
     EXPECT_NEAR(light("b.h5")[0], light("s.h5")[0], 1e-4 * light("s.h5")[0]);
+}
+
+TEST_F(ProgramMix, KnowsTheEnergyOfLightFromTheSky) {
+    // The box without its ceiling, so that the sky shines in and light escapes.
+    std::string open(two_lamps);
+    open.erase(open.find("f 5 8 7 6\n"), 10);
+    std::ofstream(path("o.obj")) << open;
+    ASSERT_EQ(run_program({"solve", path("o.obj"), "--sky", "overcast,dhi=50", "--light-groups", "--error", "0.05",
+                           "-o", path("o.h5")})
+                  .status,
+              0);
+    const auto energy = [&](const std::string& name, const std::string& key) {
+        const std::string json = run_program({"stats", path(name), "--json"}).out;
+        return nlohmann::json::parse(json)["energy"][key].get<double>();
+    };
+    const Finished same = run_program({"mix", path("o.h5"), "left=1", "-o", path("o1.h5")});
+    ASSERT_EQ(same.status, 0) << same.err;
+    // The exported mesh has up to three times the requested error, and the sky's share is estimated to 1%.
+    for (const char* const key : {"emitted", "absorbed", "escaped"})
+        EXPECT_NEAR(energy("o1.h5", key), energy("o.h5", key), 0.05 * energy("o.h5", "emitted")) << key;
+    ASSERT_EQ(run_program({"mix", path("o.h5"), "left=0", "right=0", "-o", path("o0.h5")}).status, 0);
+    const double rest = energy("o0.h5", "emitted");
+    EXPECT_GT(rest, 0);
+    EXPECT_LT(rest, energy("o.h5", "emitted"));
+    EXPECT_NEAR(energy("o0.h5", "absorbed") + energy("o0.h5", "escaped"), rest, 0.05 * rest);
 }
 
 TEST_F(ProgramMix, RepaintsBandsThatHadNoReflectedLight) {

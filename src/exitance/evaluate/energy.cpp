@@ -142,6 +142,34 @@ void for_arriving(const Solution& solution, const DirectProjection& direct, cons
     for (ElementId e : tree.leaves()) visit(tree.area(e), solution.indirect.at({e, tree.centre(e)}), of(tree, e));
 }
 
+/// Power of the light from outside (sky, sun, parallel light) that reaches the surfaces of a tree, W or lm. Estimated
+/// at places at equal steps of the area, since elements may be of any size.
+double arriving_from_outside(const Stage& stage, const ElementTree& tree, const LightUnit& total) {
+    if (!stage.scene.has_light_from_outside()) return 0;
+    constexpr std::size_t places = 1 << 13;  // a border of shadow then changes the sum by about 1 / 2^13
+    constexpr LightAccuracy accuracy{.relative = 0.1};
+    const std::vector<ElementId> leaves = tree.leaves();
+    std::vector<double> area_up_to;
+    double area = 0;
+    for (const ElementId e : leaves) area_up_to.push_back(area += tree.area(e));
+    const ScrambledSobol points(hash(static_cast<std::uint64_t>(Stream::shooting), places));
+    std::vector<double> arriving(places);
+    parallel_ranges(places, 16, [&](std::size_t begin, std::size_t end) {
+        PlaceLight::Workspace workspace;
+        for (std::size_t k = begin; k < end; ++k) {
+            const double at = (static_cast<double>(k) + 0.5) / places * area;
+            const auto i = std::lower_bound(area_up_to.begin(), area_up_to.end(), at) - area_up_to.begin();
+            const ElementId e = leaves[std::min(static_cast<std::size_t>(i), leaves.size() - 1)];
+            const auto index = static_cast<std::uint32_t>(k);
+            const Point x = tree.patch(e).at(tree.uniform(e, points(index, 0), points(index, 1)));
+            const RegionId own = tree.region(e);
+            const Normal& n = stage.scene.regions()[own].plane.n;
+            arriving[k] = total(stage.place_light.at(x, n, own, accuracy, workspace).parallel);
+        }
+    });
+    return area / places * std::accumulate(arriving.begin(), arriving.end(), 0.0);
+}
+
 }  // namespace
 
 EnergyBalance energy_balance(const Solution& solution, const DirectProjection& direct, const Stage& stage) {
@@ -194,6 +222,7 @@ EnergyBalance energy_of_interpolant(const Solution& solution, const Stage& stage
     for (const Region& region : scene.regions())
         out.emitted += region.area * total(scene.materials()[region.material].exitance);
     for (const PunctualLight& light : scene.lights()) out.emitted += total(light.power());
+    out.emitted += arriving_from_outside(stage, tree, total);
     const auto arriving = [&](ElementId e) { return solution.interpolant.at({e, tree.centre(e)}); };
     for (const ElementId e : tree.leaves())
         out.absorbed +=

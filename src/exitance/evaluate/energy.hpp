@@ -15,7 +15,8 @@ EnergyBalance energy_balance(const Solution& solution, const DirectProjection& d
 /// Like the above, for solutions without a projection: the emitted flux is taken from the pieces.
 EnergyBalance energy_balance(const Solution& solution, const Stage& stage);
 
-/// Energy balance of the exported interpolant, which contains all light. For scenes without light from outside.
+/// Energy balance of the exported interpolant, which contains all light. The light of sky and sun that arrives is
+/// estimated at some thousands of places, to about 1%.
 EnergyBalance energy_of_interpolant(const Solution& solution, const Stage& stage);
 
 /// Means over all surfaces and bands, W/m^2.

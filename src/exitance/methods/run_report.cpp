@@ -32,6 +32,9 @@ void warn_of_useless_light(SolveStatistics& statistics) {
 std::optional<Error> error_of_missing_estimate(const SolveStatistics& statistics, const SolveOptions& options,
                                                const std::string& where) {
     if (statistics.relative_error_estimate || !statistics.is_stopped() || !has_estimate(options)) return {};
+    if (statistics.stopped_by == StopReason::interrupt)
+        return Error{ErrorCode::limit, "the run was stopped before the first estimate of the error; nothing is written",
+                     where, "run it again"};
     return Error{ErrorCode::limit,
                  fmt::format("the {} ended the run before the first estimate of the error; nothing is written",
                              name_of(statistics.stopped_by)),

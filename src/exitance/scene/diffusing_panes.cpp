@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <set>
 
 #include "exitance/scene/other_side.hpp"
@@ -15,7 +17,14 @@ void SceneBuilder::add_other_sides() {
         return face.material < in_.materials.size() && in_.materials[face.material].is_diffusing_pane();
     };
     if (std::none_of(in_.faces.begin(), in_.faces.end(), passes)) return;
-    const auto from_smallest = [](std::vector<std::uint32_t> corners) {
+    // Corners of the two sides are often points of their own, at the same place.
+    std::map<std::array<double, 3>, std::uint32_t> first_at;
+    const auto from_smallest = [&](std::vector<std::uint32_t> corners) {
+        for (std::uint32_t& c : corners) {
+            if (c >= in_.points.size()) continue;  // reported later
+            const Point& p = in_.points[c];
+            c = first_at.try_emplace({p.x, p.y, p.z}, c).first->second;
+        }
         if (!corners.empty())
             std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
         return corners;

@@ -233,7 +233,15 @@ Result<SweepReport> run_sweep(const SweepPlan& plan, const std::vector<std::size
     lock.unlock();
     threads.clear();
     if (variants.size() == plan.variants.size()) remove_extra_variants(plan);
-    return queue.report();
+    Result<SweepReport> report = queue.report();
+    if (!report || !stop.requested()) return report;
+    // Variants that were not looked at before the stop may have been done by another run.
+    const Result<std::vector<VariantState>> states = sweep_states(plan);
+    if (!states) return states.error();
+    report->done = static_cast<std::size_t>(std::count_if(variants.begin(), variants.end(), [&](std::size_t i) {
+        return (*states)[i].kind == VariantState::Kind::done;
+    }));
+    return report;
 }
 
 Result<void> update_variant_folders(const SweepPlan& plan, const std::vector<VariantState>& states) {

@@ -159,7 +159,7 @@ class Projector {
         smoothing_.resize(out_.tree.size(), 1);
         if (is_crowd_) return;
         const double smoothed = 1 / (calibrated::direct_tolerance * calibrated::direct_tolerance);
-        const std::vector<float> unsmoothed = unsmoothed_shares(stage_, out_.tree, active);
+        const std::vector<float> unsmoothed = unsmoothed_shares(stage_, out_.tree, active, stop_);
         for (std::size_t i = 0; i < active.size(); ++i)
             smoothing_[active[i]] = static_cast<float>(smoothed / (smoothed + (1 - smoothed) * unsmoothed[i]));
     }

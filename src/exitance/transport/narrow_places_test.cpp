@@ -72,7 +72,7 @@ Unsmoothed unsmoothed(const Scene& scene, double edge) {
     const Stage stage(scene);
     const ElementTree tree = stage.make_elements({.edge = edge, .grading_levels = 0});
     const std::vector<ElementId> leaves = tree.leaves();
-    const std::vector<float> shares = unsmoothed_shares(stage, tree, leaves);
+    const std::vector<float> shares = unsmoothed_shares(stage, tree, leaves, StopRequest());
     double sum = 0, area = 0;
     for (std::size_t i = 0; i < leaves.size(); ++i)
         sum += tree.area(leaves[i]) * shares[i], area += tree.area(leaves[i]);

@@ -195,6 +195,7 @@ struct DaylightArguments : CommonArguments {
 struct CheckArguments : CommonArguments {
     SceneArguments scene;
     std::string picture;
+    int threads = 0;
 };
 
 struct GenerateArguments : CommonArguments {

@@ -73,9 +73,13 @@ void declare_json(CLI::App& app, CommonArguments& arguments) {
     app.add_flag("--json", arguments.json, "Print facts as JSON to standard output")->group("Run");
 }
 
-void declare_work(CLI::App& app, CommonArguments& arguments, int& threads) {
+void declare_threads(CLI::App& app, int& threads) {
     add_count(app, "--threads", threads, 1, "Number of threads; the result does not depend on it. Default all cores")
         ->group("Run");
+}
+
+void declare_work(CLI::App& app, CommonArguments& arguments, int& threads) {
+    declare_threads(app, threads);
     declare_progress(app, arguments);
 }
 

@@ -89,6 +89,8 @@ void declare_limits(CLI::App& app, LimitArguments& limits, const std::string& at
 void declare_json(CLI::App& app, CommonArguments& arguments);
 /// --progress
 void declare_progress(CLI::App& app, CommonArguments& arguments);
+/// --threads
+void declare_threads(CLI::App& app, int& threads);
 /// --threads and --progress
 void declare_work(CLI::App& app, CommonArguments& arguments, int& threads);
 /// Reads a size such as "640x400", pixels.

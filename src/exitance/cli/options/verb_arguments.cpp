@@ -192,6 +192,7 @@ void declare(CLI::App& app, CheckArguments& arguments) {
     declare_scene(app, arguments.scene);
     app.add_option("--picture", arguments.picture, "Picture of the scene with the findings marked (.png)")
         ->type_name("FILE");
+    declare_threads(app, arguments.threads);
     declare_json(app, arguments);
 }
 
@@ -300,7 +301,8 @@ void declare(CLI::App& app, ViewFactorArguments& arguments) {
                "Format of the output. Default: given by the file's ending; csv for unknown endings. pairs: a line "
                "from_id,to_id,F per entry");
     app.add_flag("--sky", arguments.with_sky,
-                 "Add columns for the sky and for backs of faces to csv, mtx and pairs; .h5 always has them");
+                 "Add columns for the sky and for backs of faces to csv, mtx and pairs; .h5 always has them. Not with "
+                 "--tolerance");
     app.add_option("--nodes", arguments.nodes,
                    "Make one row per node: per group, per material, or per node in a table (.csv) with the columns "
                    "face,node. "

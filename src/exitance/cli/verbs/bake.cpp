@@ -164,8 +164,10 @@ ExitCode bake_into_uvs(const BakeArguments& arguments, const Solution& solution,
         terminal.note(fmt::format("{} charts cover {:.0f}% of the map, at {:.4g} texels per metre",
                                   target->unwrapped->charts, 100 * target->unwrapped->filled,
                                   target->unwrapped->density));
-    terminal.note(fmt::format("{} texels on surfaces in {} of {}, in {} {} ({}); {:.1f} s", maps->texels, set.name,
-                              set.file, maps->maps.size(), maps->maps.size() == 1 ? "map" : "maps",
+    const std::string coordinates =
+        target->unwrapped ? "charts made by bake" : fmt::format("{} of {}", set.name, set.file);
+    terminal.note(fmt::format("{} texels on surfaces in {}, in {} {} ({}); {:.1f} s", maps->texels, coordinates,
+                              maps->maps.size(), maps->maps.size() == 1 ? "map" : "maps",
                               sizes_of(maps->maps, [](const UvLightMap& map) { return map.light.size; }),
                               watch.seconds()));
     return end_of_groups(groups, *names, common, terminal);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "exitance/base/parallel.hpp"
 #include "exitance/cli/json_output.hpp"
 #include "exitance/cli/verbs.hpp"
 #include "exitance/io/files/whole_file.hpp"
@@ -60,6 +61,7 @@ ExitCode run(const CheckArguments& arguments, Terminal& terminal) {
     if (!arguments.picture.empty() && ending(arguments.picture) != ".png")
         return terminal.fail(
             {ErrorCode::usage, "the picture is written as .png", arguments.picture, "name it something.png"});
+    set_threads(arguments.threads);
     LoadedScene checked = load_scene(arguments.scene.files, arguments.scene.load);
     Shell shell;
     if (checked.scene) {

@@ -208,7 +208,7 @@ Image draw_charts(const UvSet& set, const UvLightMaps& light, std::size_t m) {
 std::vector<std::string> chart_warnings(const UvSet& set, const UvLightMaps& light) {
     std::vector<std::string> out;
     constexpr std::size_t max_names = 5;
-    const auto list = [&](std::size_t UvObject::*count, const std::string& what) {
+    const auto list = [&](std::size_t UvObject::*count, const std::string& one, const std::string& several) {
         std::string names;
         std::size_t objects = 0, sum = 0;
         for (const UvObject& object : light.layout.objects) {
@@ -218,16 +218,20 @@ std::vector<std::string> chart_warnings(const UvSet& set, const UvLightMaps& lig
                 names += fmt::format("{}'{}' ({})", objects > 1 ? ", " : "", object.name, object.*count);
         }
         if (objects > max_names) names += fmt::format(" and {} more objects", objects - max_names);
-        if (sum > 0) out.push_back(fmt::format("{} {}: {}", sum, what, names));
+        if (sum > 0) out.push_back(fmt::format("{} {}: {}", sum, sum == 1 ? one : several, names));
     };
     list(&UvObject::overlapping,
+         "triangle overlaps others of its object in the map, where both get the mean of their light (--uv unwrap makes "
+         "coordinates that do not overlap)",
          "triangles overlap others of their object in the map, where both get the mean of their light (--uv unwrap "
-         "makes "
-         "coordinates that do not overlap)");
-    list(&UvObject::outside, "triangles are partly outside of the map, and have no texels there");
-    list(&UvObject::moved_charts, "charts were moved into the map by whole numbers, as repeated textures are read");
-    list(&UvObject::mirrored, "triangles are mirrored in the map");
-    list(&UvObject::collapsed, "triangles have no area in the map, and no texels");
+         "makes coordinates that do not overlap)");
+    list(&UvObject::outside, "triangle is partly outside of the map, and has no texels there",
+         "triangles are partly outside of the map, and have no texels there");
+    list(&UvObject::moved_charts, "chart was moved into the map by whole numbers, as repeated textures are read",
+         "charts were moved into the map by whole numbers, as repeated textures are read");
+    list(&UvObject::mirrored, "triangle is mirrored in the map", "triangles are mirrored in the map");
+    list(&UvObject::collapsed, "triangle has no area in the map, and no texels",
+         "triangles have no area in the map, and no texels");
     std::size_t shared = 0, close = 0;
     for (const UvLightMap& map : light.maps) shared += map.shared_texels, close += map.close_texels;
     if (shared > 0) out.push_back(fmt::format("{} texels are shared by several charts, whose light they mix", shared));

@@ -72,7 +72,7 @@ TEST_F(ProbeFiles, ReportTheLineOfAnError) {
         {"d.csv", header + "1,1e999,3,0,0,1\n", "d.csv:3", "column y holds \"1e999\", not a finite number"},
         {"e.csv", header + "1,2,3,0,0,0\n", "e.csv:3", "the normal has no direction"},
         {"f.csv", "x,y,z,nx,ny\n", "f.csv:1", "the header has no column nz"},
-        {"g.csv", "", "g.csv:0", "holds no points"},
+        {"g.csv", "", "g.csv", "holds no points"},
         {"h.csv", "1,2,3,0,0,1\n", "h.csv:1", "the header has no column x"},
         {"s.csv", "x;y;z;nx;ny;nz\n1,5;2;3;0;0;1\n", "s.csv:1", "the header has no column x"},
         {"i.pts", "1 2 3 0 0 1\n1 2 3 0 0\n", "i.pts:2", "the line does not begin with six numbers"},

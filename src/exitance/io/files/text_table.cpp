@@ -79,7 +79,8 @@ Error LineReader::read_error() const {
 }
 
 Error LineReader::error(std::string message, std::string hint) const {
-    return {ErrorCode::bad_input, std::move(message), name_ + ":" + std::to_string(line_), std::move(hint)};
+    const std::string where = line_ > 0 ? name_ + ":" + std::to_string(line_) : name_;
+    return {ErrorCode::bad_input, std::move(message), where, std::move(hint)};
 }
 
 /// Reads more bytes after those not yet used; false at the end of the file.

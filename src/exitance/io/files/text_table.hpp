@@ -27,7 +27,7 @@ class LineReader {
 
     bool failed() const { return error_ != 0; }
     Error read_error() const;  ///< Error of reading the file; only valid if failed().
-    Error error(std::string message, std::string hint = {}) const;  ///< Error (bad_input) at the current line.
+    Error error(std::string message, std::string hint = {}) const;  ///< Error (bad_input) at the current line, if any.
     int line() const { return line_; }                              ///< Number of the line returned last, from 1.
 
   private:

@@ -119,11 +119,14 @@ void Solver::warn_of_hidden_errors() {
     if (hidden.bodies == 0) return;
     const Scene& scene = stage_.scene;
     const Point at = centroid(scene.outline(hidden.first));
+    const bool is_stopped = statistics().is_stopped() || stop_.requested();
     warn(
         fmt::format("the light of '{}' (near {:.4g}, {:.4g}, {:.4g}) may be wrong by up to {:.3g}%{}: measuring the "
-                    "errors of all bodies would take too many rays; a smaller --error makes more of them known",
+                    "errors of all bodies would take too many rays; {}",
                     scene.groups()[scene.surfaces()[hidden.first].group], at.x, at.y, at.z, 100 * hidden.at_most,
-                    hidden.bodies > 1 ? fmt::format(", and that of {} more by less", hidden.bodies - 1) : ""));
+                    hidden.bodies > 1 ? fmt::format(", and that of {} more by less", hidden.bodies - 1) : "",
+                    is_stopped ? "the solve was stopped: with more time or memory, more of them are known"
+                               : "a smaller --error makes more of them known"));
 }
 
 void Solver::warn_of_bodies() {

@@ -40,7 +40,6 @@ Result<LightGroups> keep_light_groups(Solution& solution, const SolveOptions& op
 }
 
 EnergyBalance energy_after_change(const Solution& solution) {
-    if (solution.scene.has_light_from_outside()) return {};
     Stage stage(solution.scene);
     stage.rooms = find_light_rooms(stage, 1, StopRequest());
     return energy_of_interpolant(solution, stage);

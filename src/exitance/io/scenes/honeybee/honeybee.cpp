@@ -35,6 +35,13 @@ class HoneybeeScene {
   private:
     void add(const HoneybeeSheet& sheet) {
         if (sheet.modifier == "void" || sheet.modifier == "Void") return;
+        if (!materials_.has(sheet.modifier)) {
+            findings_.error({path_, 0},
+                            fmt::format("the model has no modifier '{}', which '{}' names", shown(sheet.modifier),
+                                        shown(sheet.name)),
+                            "add it to the radiance modifiers of the model");
+            return;
+        }
         RadPrimitive surface;
         surface.modifier = sheet.modifier, surface.name = sheet.name;
         const RadMeaning* meaning = materials_.meaning_of(surface, path_);

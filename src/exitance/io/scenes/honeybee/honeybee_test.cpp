@@ -154,6 +154,20 @@ TEST(Honeybee, MaterialsComeFromTheObjectItsRoomTheModelOrTheGenericSet) {
     EXPECT_EQ(material_of(scene.description, "floor").reflectance[0], 0.2);  // generic
 }
 
+TEST(Honeybee, DiffusingSheetsHaveTwoSidesWithoutARepair) {
+    const std::string trans =
+        "{'type': 'Trans', 'identifier': 'opal', 'r_reflectance': 0.8, 'g_reflectance': 0.8, 'b_reflectance': 0.8, "
+        "'specularity': 0, 'roughness': 0, 'transmitted_diff': 0.6, 'transmitted_spec': 0}";
+    ReadScene read_scene = read(
+        model("'orphaned_apertures': [" + sheet("o", "[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 1, 0]", own("opal")) + "]",
+              trans));
+    EXPECT_TRUE(read_scene.findings.empty());
+    const CheckedScene checked = make_scene(std::move(read_scene.description));
+    ASSERT_TRUE(checked.scene);
+    EXPECT_EQ(checked.scene->surfaces().size(), 2u);
+    for (const Finding& finding : checked.findings) EXPECT_NE(finding.kind, Finding::Kind::repair) << finding.message;
+}
+
 TEST(Honeybee, ShadesAndMeshesHaveTwoSidesAndTheUnitOfTheModelCounts) {
     const ReadScene scene =
         read(model("'orphaned_shades': [" + sheet("s", wall, own("generic_context_0.20")) +
@@ -255,7 +269,7 @@ TEST(Honeybee, FaultsAreNamed) {
     EXPECT_EQ(message(model("'orphaned_shades': [" + sheet("s", "[0, 0, 0], [1, 0, 0]", "'x': 0") + "]")),
               "'s' has an outline of fewer than three corners");
     EXPECT_EQ(message(model("'orphaned_shades': [" + sheet("s", wall, own("nothing")) + "]")),
-              "material 'nothing' is not defined before 's'");
+              "the model has no modifier 'nothing', which 's' names");
     EXPECT_EQ(message(model("'rooms': []", "{'type': 'BSDF', 'identifier': 'blind', 'bsdf_data': '<xml/>'}")),
               "material 'blind' is a table of scattered light (BSDF), which is not read");
 }

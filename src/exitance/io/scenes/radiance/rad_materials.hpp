@@ -34,6 +34,7 @@ class RadMaterials {
     /// Adds a primitive that is not a surface.
     void take(RadPrimitive p, const std::string& file, const Affine& to_world);
 
+    bool has(const std::string& name) const { return meanings_.count(name) > 0; }
     /// Meaning of a surface's modifier; null, with an error, if it is not a material.
     const RadMeaning* meaning_of(const RadPrimitive& surface, const std::string& file);
 

@@ -77,8 +77,7 @@ void RadScene::take_surface(const RadPrimitive& p, const RadCall& call) {
             face.material = *material;
         }
         d.faces.push_back(face);
-        // Reflecting surfaces have two sides, but the inside of a closed body cannot be seen.
-        if (meaning->kind != RadMeaning::Kind::reflects || shape->is_closed) continue;
+        if (meaning->kind != RadMeaning::Kind::reflects) continue;  // reflecting surfaces have two sides
         std::reverse(face.corners.begin(), face.corners.end());
         d.faces.push_back(std::move(face));
     }

@@ -13,7 +13,7 @@ bool is_rad_shape(const std::string& type);
 struct RadShape {
     Facets facets;
     bool inwards = false;    ///< True if the fronts are on the inside.
-    bool is_closed = false;  ///< True if the backs cannot be seen from anywhere.
+    bool is_closed = false;  ///< True if the surface encloses a volume.
 };
 
 /// Converts a surface to polygons. Empty, with an error among the findings, if its numbers do not define a shape.

@@ -82,6 +82,8 @@ TEST_F(RadianceFiles, OnlyTheDiffusePartIsReadAndTheRestIsNotedOnce) {
 
 TEST_F(RadianceFiles, RoundShapesHaveTheRightArea) {
     EXPECT_NEAR(area(scene("lamp sphere s 0 0 4 1 2 3 0.5\n")), pi, 1e-9);
+    for (const char* const kind : {"sphere", "bubble"})  // both sides reflect
+        EXPECT_NEAR(area(scene(std::string("grey ") + kind + " s 0 0 4 1 2 3 0.5\n")), 2 * pi, 1e-9) << kind;
     EXPECT_NEAR(area(scene("lamp cylinder s 0 0 7 0 0 0 1 1 1 0.5\n")), pi * std::sqrt(3.0), 1e-9);
     EXPECT_NEAR(area(scene("lamp ring s 0 0 8 0 0 0 1 1 1 0.5 1\n")), 0.75 * pi, 1e-9);
     for (const double height : {0.01, 1.0, 10.0}) {

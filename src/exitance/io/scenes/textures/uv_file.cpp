@@ -218,6 +218,9 @@ class ObjUvs {
 }  // namespace
 
 Result<UvSet> load_uv_set(const Scene& scene, const std::string& path, const std::string& name) {
+    if (scene.file().empty())
+        return Error{ErrorCode::usage, "a scene made from arrays has no texture coordinates", "--uv",
+                     "use unwrap, which makes charts"};
     if (path.empty())
         return Error{ErrorCode::cannot_read, "is missing, and texture coordinates are read from it", scene.file(),
                      "put it in the folder of the solution file"};
