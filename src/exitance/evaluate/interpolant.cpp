@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "exitance/base/error_share.hpp"
 #include "exitance/base/parallel.hpp"
 #include "exitance/basis/element_fit.hpp"
 #include "exitance/basis/misfit_along.hpp"
@@ -35,6 +36,7 @@ class Interpolation {
         for (int round = 0;; ++round) {
             fitted_.resize(out_.tree.size());
             locator_.emplace(indirect_.tree, stage_.scene.regions().size());
+            find_even_noise();
             shared_ranges_of(
                 fitted_.span(), active.size(), 8,
                 [&](std::size_t begin, std::size_t end) {
@@ -67,6 +69,10 @@ class Interpolation {
     }
 
   private:
+    /// Largest factor on the squared noise of small leaves. Derived from a noise of at most twice the tolerance, which
+    /// neighbours average out where their light is continuous.
+    static constexpr double most_noise = 4;
+
     /// The parts of a fit that are stored, in single precision.
     struct Fit {
         std::array<std::array<float, bands>, 4> corners;
@@ -99,15 +105,26 @@ class Interpolation {
         }
     };
 
+    /// Allowed mean square of the rays' noise on a leaf, in the unit of the squared tolerance. Small leaves, such as
+    /// those along shadow edges, matter little to the whole, and most rays are theirs.
+    double noise_on(ElementId e) const {
+        const double of_area = std::sqrt(even_noise_area_ / out_.tree.area(e));
+        return options_.tolerance * options_.tolerance * std::clamp(of_area, 1.0, most_noise);
+    }
+    void find_even_noise() {
+        std::vector<double> areas;
+        for (ElementId e : out_.tree.leaves()) areas.push_back(out_.tree.area(e));
+        even_noise_area_ = even_noise_area(areas);
+    }
+
     /// Fits direct light, as projected or, on new leaves, computed again, plus indirect light.
     Fit fit(ElementId e, DirectFitRoom& room) const {
         const Patch& patch = out_.tree.patch(e);
         const RegionId region = out_.tree.region(e);
         const double counts = options_.light_in.empty() ? 1 : relative_weight(e);
-        DirectFit out =
-            e.value < direct_.tree.size() && !is_renewed(e)
-                ? direct_.fit[e]
-                : fit_direct_light(stage_, out_.tree, e, options_.tolerance * options_.tolerance / counts, room);
+        DirectFit out = e.value < direct_.tree.size() && !is_renewed(e)
+                            ? direct_.fit[e]
+                            : fit_direct_light(stage_, out_.tree, e, noise_on(e) / counts, room);
         const bool is_dark = !options_.light_in.empty() && !(max(out.mean) > 0);
         for (Spectrum& corner : out.corners) corner *= direct_weight_;
         out.mean *= direct_weight_;
@@ -210,11 +227,11 @@ class Interpolation {
     /// True if the direct light of a leaf of the direct projection is computed again, with less noise.
     bool is_renewed(ElementId e) const { return e.value < renewed_.size() && renewed_[e.value]; }
 
-    /// True if a leaf's error is mostly noise of rays in its projected direct light, as in dark rooms: the projection
-    /// allows it relative to the light of the whole. Parts of the leaf would have it as well.
+    /// True if a leaf's error is mostly noise of rays in its projected direct light: below a sky, or in dark rooms,
+    /// since the projection allows it relative to the light of the whole. Parts of the leaf would have it as well.
     bool is_noisy(ElementId e) const {
         const Fit& fit = fitted_[e];
-        return !options_.light_in.empty() && e.value < direct_.tree.size() && !is_renewed(e) &&
+        return e.value < direct_.tree.size() && !is_renewed(e) &&
                static_cast<double>(fit.noise_squared) > 0.5 * fit.misfit_squared;
     }
 
@@ -260,6 +277,7 @@ class Interpolation {
     /// Locates elements of the indirect light; set only while leaves are fitted.
     std::optional<ElementLocator> locator_;
     std::size_t max_elements_ = 0;
+    double even_noise_area_ = 0;  ///< Area of leaves that have the noise of the tolerance, m^2.
     ElementFunction out_;
     Field<ElementId, Fit> fitted_;
     std::vector<std::uint8_t> renewed_;  ///< 1 for elements of the direct projection to renew; empty: none.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "exitance/base/random.hpp"
 #include "exitance/form_factors/point_to_polygon.hpp"
@@ -58,12 +59,12 @@ std::vector<Vec3> opening(double width, double depth, const Point& middle, const
 }
 
 /// Reference for directed_form_factor: sums the kernel at the centres of many small cells.
-double by_cells(const Normal& n, const std::vector<Vec3>& corners, const RelativeRadiance& p, int cells) {
-    const Vec3 u = (corners[3] - corners[0]) / cells, v = (corners[1] - corners[0]) / cells;
+double by_cells(const Normal& n, const std::vector<Vec3>& corners, const RelativeRadiance& p, int along, int across) {
+    const Vec3 u = (corners[3] - corners[0]) / along, v = (corners[1] - corners[0]) / across;
     const double area = norm(cross(u, v));
     double sum = 0;
-    for (int i = 0; i < cells; ++i)
-        for (int k = 0; k < cells; ++k) {
+    for (int i = 0; i < along; ++i)
+        for (int k = 0; k < across; ++k) {
             const Vec3 r = corners[0] + (i + 0.5) * u + (k + 0.5) * v;
             const double above = dot(n, r), before = -dot(p.normal(), r), r2 = squared_norm(r);
             if (above > 0 && before > 0) sum += p(-normalized(r)) * above * before / (pi * r2 * r2) * area;
@@ -166,11 +167,44 @@ TEST(DirectedFormFactor, OfANearOpeningIsRightToATenthOfAPercent) {
             const Normal n = normalized(Vec3{random.uniform() - 0.5, random.uniform() - 0.5, 1});
             const auto corners = opening(1.2, 0.6, {0, 0, 2.5}, x);
             if (std::ranges::any_of(corners, [&](const Vec3& r) { return dot(n, r) <= 0; })) continue;
-            const double fine = by_cells(n, corners, lamp.radiance(), 400);
+            const double fine = by_cells(n, corners, lamp.radiance(), 400, 400);
             const double F = contour_sum(n, corners);
             EXPECT_NEAR(directed_form_factor(n, corners, lamp.radiance()), fine, 1e-3 * std::max(fine, 0.02 * F))
                 << i << ' ' << x.x << ' ' << x.y << ' ' << x.z;
         }
+    }
+}
+
+TEST(DirectedFormFactor, OfALongOpeningIsRightToATenthOfAPercent) {
+    const Normal up{0, 0, 1}, to_the_side{1, 0, 0};
+    for (const EmissionProfile& profile : {batwing(), power_of_cosine(1, 5), power_of_cosine(30, 5)}) {
+        const Lamp lamp(profile);
+        // From far below, from a wall that the opening reaches, and from places near its end, close to its plane.
+        for (const auto& [x, n, length] :
+             {std::tuple(Point{3, 0.3, 0}, up, 6.0), std::tuple(Point{0, 0.2, 2}, to_the_side, 6.0),
+              std::tuple(Point{0, 0.02, 2.49}, to_the_side, 0.2),
+              std::tuple(Point{0, 0.002, 2.498}, to_the_side, 0.2)}) {
+            const auto corners = opening(length, 0.01, {length / 2, 0, 2.5}, x);
+            const bool is_near = length < 1;
+            const double fine = by_cells(n, corners, lamp.radiance(), is_near ? 4000 : 20000, is_near ? 200 : 10);
+            const double F = contour_sum(n, corners);
+            EXPECT_NEAR(directed_form_factor(n, corners, lamp.radiance()), fine, 1e-3 * std::max(fine, 0.02 * F))
+                << x.x << ' ' << x.y << ' ' << x.z;
+        }
+    }
+}
+
+TEST(DirectedFormFactor, OfATableThatJumpsAtItsPoleIsRightToATenthOfAPercent) {
+    EmissionProfile p;
+    p.body = EmissionProfile::Body::flat;
+    p.axes[0] = {EmissionProfile::Angle::phi4, 0, {0, 90}};
+    p.axes[1] = {EmissionProfile::Angle::theta, 0, {0, 90}};
+    p.values = {1000, 0, 600, 0};
+    const Lamp lamp(p);
+    for (const Point x : {Point{0.1, 0.2, 0}, Point{0.1, 0.2, 2.4}}) {
+        const auto corners = opening(1.2, 0.6, {0, 0, 2.5}, x);
+        const double fine = by_cells({0, 0, 1}, corners, lamp.radiance(), 1000, 1000);
+        EXPECT_NEAR(directed_form_factor({0, 0, 1}, corners, lamp.radiance()), fine, 1e-3 * fine) << x.z;
     }
 }
 

@@ -8,10 +8,10 @@ namespace {
 
 using Angle = EmissionProfile::Angle;
 
-/// Reflects an angle into the range 0 to m.
+/// Reflects an angle from 0 to 360 degrees into the range 0 to m. Subtracts, since std::fmod takes longer.
 double folded(double angle, double m) {
-    const double rest = std::fmod(angle, 2 * m);
-    return rest <= m ? rest : 2 * m - rest;
+    while (angle >= 2 * m) angle -= 2 * m;
+    return angle <= m ? angle : 2 * m - angle;
 }
 
 double angle_of(Angle kind, const Vec3& d) {
