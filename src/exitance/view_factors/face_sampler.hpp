@@ -40,10 +40,4 @@ class FaceSampler {
     Box box_;
 };
 
-/// Maps the unit square to directions about frame.n, with density cos / pi.
-inline Vec3 cosine_direction(const Frame& frame, double u, double v) {
-    const double r = std::sqrt(u), phi = 2 * pi * v;
-    return (r * std::cos(phi)) * frame.u + (r * std::sin(phi)) * frame.v + std::sqrt(std::max(1e-12, 1 - u)) * frame.n;
-}
-
 }  // namespace exitance

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "exitance/base/random.hpp"
+#include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/processes/distributed.hpp"
 #include "exitance/view_factors/face_sampler.hpp"
 #include "exitance/visibility/rays.hpp"
