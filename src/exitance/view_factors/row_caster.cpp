@@ -17,6 +17,7 @@ RowCaster::RowCaster(const RowScene& scene, const StopRequest& stop)
       hits_(scene.faces.size()),
       squares_(scene.faces.size()) {
     for (auto& column : coordinates_) column.resize(block);
+    for (auto& column : sorted_) column.resize(block);
     origins_.reserve(block), directions_.reserve(block), found_.resize(block);
 }
 
@@ -80,10 +81,13 @@ void RowCaster::cast_batch(std::size_t face, bool under_others, std::uint64_t se
             points.fill(static_cast<std::uint32_t>(first), d, std::span(coordinates_[d]).first(count));
         origins_.clear(), directions_.clear();
         sort_by_direction(count);
-        for (const std::uint16_t k : order_) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::uint16_t k = order_[i];
             origins_.push_back(sampler(coordinates_[0][k], coordinates_[1][k]));
-            directions_.push_back(cosine_direction(frame, coordinates_[2][k], coordinates_[3][k]));
+            sorted_[0][i] = coordinates_[2][k], sorted_[1][i] = coordinates_[3][k];
         }
+        directions_.resize(count);
+        cosine_directions(frame, std::span(sorted_[0]).first(count), std::span(sorted_[1]).first(count), directions_);
         trace(face, under_others);
     }
 }

@@ -57,6 +57,7 @@ class RowCaster {
     std::vector<double> coordinates_[4];
     /// Indices of the points of a block, in the order in which their rays are traced.
     std::vector<std::uint16_t> order_;
+    std::vector<double> sorted_[2];  ///< The coordinates of the directions in that order.
     std::vector<Point> origins_;
     std::vector<Vec3> directions_;
     std::vector<RayHit> found_;

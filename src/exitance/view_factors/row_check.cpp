@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/form_factors/hemisphere.hpp"
 #include "exitance/processes/distributed.hpp"
 
 namespace exitance {

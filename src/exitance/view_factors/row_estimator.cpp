@@ -27,6 +27,9 @@ constexpr double cast_rate = 1.25, pair_rate = 1.25;
 
 constexpr double near_kernel_sizes =  ///< Distance over the larger face's size; kernels of nearer pairs vary too much.
     0.5;
+/// Width of an overlap of two faces, as a share of the width of the lower one, that hides a negligible part of it;
+/// derived from half of the share of a face below others that NarrowGaps leaves out.
+constexpr double negligible_overlap = 1e-4;
 constexpr double contour_share = 1e-4;  ///< Share of the error: tolerance of the contour integral.
 constexpr double integrated_share =     ///< Share of the error for integrated entries, with cancellation in sums.
     1e-2;
@@ -49,6 +52,23 @@ std::pair<std::size_t, std::size_t> batches_of(double n, std::size_t fewest, std
 /// allowed variance of the row.
 double cast_rays_for(double share, double variance) {
     return std::pow(share / (0.5 * variance), 1 / cast_rate);
+}
+
+/// True if a line parallel to an edge of face a separates two nearly coplanar faces, up to an overlap of `margin`,
+/// metres. The boxes of neighbours that are not parallel to the axes overlap. At most 16 edges are tried.
+bool are_apart(const ViewFace& a, const ViewFace& b, double margin) {
+    constexpr std::size_t max_edges = 16;
+    for (std::size_t i = 0; i < std::min(a.outline.size(), max_edges); ++i) {
+        const Vec3 edge = a.outline[(i + 1) % a.outline.size()] - a.outline[i];
+        const double length = norm(edge);
+        if (!(length > 0)) continue;
+        const Normal inwards = (1 / length) * cross(a.plane.n, edge);
+        double border = HUGE_VAL, farthest = -HUGE_VAL;
+        for (const Point& p : a.outline) border = std::min(border, dot(inwards, p));
+        for (const Point& p : b.outline) farthest = std::max(farthest, dot(inwards, p));
+        if (farthest <= border + margin) return true;
+    }
+    return false;
 }
 
 /// Number of further samples, in units of those taken, after which the pooled estimates have `ratio` times the
@@ -118,7 +138,9 @@ bool RowEstimator::may_be_under(std::size_t face, std::size_t other) const {
     for (std::size_t k = 0; k < 3; ++k)
         if (a.box.lo[k] > b.box.hi[k] + reach || b.box.lo[k] > a.box.hi[k] + reach) return false;
     const double height = a.plane.signed_distance(b.outline[0]);
-    return std::abs(height) < reach && (dot(a.plane.n, b.plane.n) < 0 || height > scene_.slack);
+    if (std::abs(height) > reach || (dot(a.plane.n, b.plane.n) > 0 && height <= scene_.slack)) return false;
+    const double margin = negligible_overlap * std::min(a.area / std::max(a.diameter, 1e-300), scene_.scene.size());
+    return !are_apart(a, b, margin) && !are_apart(b, a, margin);
 }
 
 /// Finds the faces that may be visible from the face, with approximate unoccluded view factors, in descending order.

@@ -281,6 +281,29 @@ TEST(RowFactors, MovingAndScalingTheSceneChangesOnlyNoise) {
         for (std::size_t j = 0; j < a.size(); ++j) EXPECT_NEAR(entry(a, i, j), entry(b, i, j), 3 * R) << i << ' ' << j;
 }
 
+/// Two beams that lie on each other, with the rounding of nine digits 100 m from the origin: the faces of the contact
+/// are some 1e-8 m apart, not parallel, and must not see each other.
+TEST(RowFactors, BeamsThatTouchDoNotSeeEachOtherHoweverTheyAreRotated) {
+    std::vector<Outline> boxes;
+    add_box(boxes, {0, 1.5, 2.475}, {4.8, 0.1, 0.15}, 0, false);
+    add_box(boxes, {0, 0, 2.6}, {0.04, 4, 0.1}, 0, false);
+    const Frame frame(normalized(Vec3{0.3, -0.5, 0.7}));
+    RandomStream random(1, Stream::rows);
+    for (Outline& outline : boxes)
+        for (Point& p : outline) {
+            p = Point{61, -53, 59} + frame.to_world(p.x, p.y, p.z);
+            for (std::size_t k = 0; k < 3; ++k) p[k] += 1e-7 * (random.uniform() - 0.5);
+        }
+    const SparseFactors table = factors_of(scene_of(boxes), {.error = 1e-3});
+    EXPECT_EQ(table.unclosed, 0U);
+    for (std::size_t i = 0; i < table.size(); ++i) EXPECT_LE(table.row_errors[i], 1e-3) << i;
+    const std::size_t top = 5, bottom = 10;  // of the lower and of the upper beam
+    EXPECT_EQ(entry(table, top, bottom), 0);
+    EXPECT_EQ(entry(table, bottom, top), 0);
+    EXPECT_NEAR(table.back[top], 0.04 / 4.8, 2e-3);
+    EXPECT_NEAR(table.back[bottom], 0.1 / 4, 2e-3);
+}
+
 /// A square touches a larger face along one of its edges. Rays from near that edge must not start behind the other
 /// face.
 TEST(RowFactors, FacesThatTouchAlongAnEdgeHaveExactFactors) {
@@ -307,7 +330,7 @@ TEST(RowFactors, FacesThatTouchAlongAnEdgeHaveExactFactors) {
                 EXPECT_NEAR(entry(table, 1, 0), F * table.areas[0] / table.areas[1], R) << degrees;
                 for (std::size_t i = 0; i < 2; ++i) {
                     EXPECT_LE(table.row_errors[i], R);
-                    EXPECT_EQ(table.back[i], 0);
+                    EXPECT_LE(table.back[i], 2e-4) << degrees;  // NarrowGaps leaves out gaps below that share
                     EXPECT_NEAR(table.row_sums[i] + table.sky[i], 1, R) << degrees;
                 }
                 const RowCheck check = check_rows_by_rays(scene, table, {.rows = 2, .error = R}, StopRequest());

@@ -1,11 +1,17 @@
 #include "exitance/view_factors/view_face.hpp"
 
+#include <algorithm>
+
 #include "exitance/base/triangulation.hpp"
+#include "exitance/visibility/narrow_gaps.hpp"
 
 namespace exitance {
 namespace {
 
 constexpr std::size_t most_corners = 12;  ///< Limit on the corners of a convex piece.
+/// Limits on the distance of stacked faces, as shares of the scene's size and of a face's box, and on the cosine of
+/// their normals; derived from ConvexPiece::thickness and Occluders::is_covered().
+constexpr double stacked_share = 2e-6, stacked_share_of_face = 2e-3, stacked_cosine = -0.999;
 
 ViewFace make_face(const Scene& scene, SurfaceId s) {
     const Surface& surface = scene.surfaces()[s];
@@ -13,6 +19,7 @@ ViewFace make_face(const Scene& scene, SurfaceId s) {
         scene.outline(s), {surface.normal, dot(surface.normal, scene.outline(s)[0])}, surface.area, {}, {}, 0, false};
     for (const Point& p : face.outline) face.box.add(p);
     face.diameter = face.box.diagonal();
+    face.thickness = std::min(stacked_share * scene.size(), stacked_share_of_face * face.diameter);
     for (const auto& piece : convex_pieces(face.outline, surface.normal))
         for (std::size_t first = 1; first + 1 < piece.size(); first += most_corners - 2) {
             std::vector<Point>& part = face.pieces.emplace_back();
@@ -22,6 +29,13 @@ ViewFace make_face(const Scene& scene, SurfaceId s) {
         }
     face.is_quad = face.pieces.size() == 1 && face.outline.size() <= 4;
     return face;
+}
+
+/// True if the faces are opposed and lie in one plane, up to rounding in files.
+bool are_stacked(const ViewFace& a, const ViewFace& b) {
+    if (dot(a.plane.n, b.plane.n) > stacked_cosine) return false;
+    const double thickness = std::min(a.thickness, b.thickness);
+    return is_within(b.outline, a.plane, thickness) || is_within(a.outline, b.plane, thickness);
 }
 
 }  // namespace
@@ -34,6 +48,7 @@ std::vector<ViewFace> make_view_faces(const Scene& scene) {
 }
 
 bool face_each_other(const ViewFace& a, const ViewFace& b, double slack, bool& cut) {
+    if (are_stacked(a, b)) return false;
     bool any = false, all = true;
     for (const Point& p : b.outline) {
         const double d = a.plane.signed_distance(p);

@@ -18,6 +18,7 @@
 #include "exitance/visibility/glass/ray_fates.hpp"
 #include "exitance/visibility/narrow_gaps.hpp"
 #include "exitance/visibility/rays.hpp"
+#include "exitance/visibility/tracing_frame.hpp"
 
 namespace exitance {
 namespace {
@@ -165,8 +166,9 @@ struct Triangles {
 
 struct RayTracer::Content {
     const Scene* scene;
-    Point centre;  ///< Origin of Embree's coordinates.
-    double scale;  ///< Power of two by which they are scaled, so that a scene of any size is about 1 wide.
+    Point centre;        ///< Origin of Embree's coordinates.
+    double scale;        ///< Power of two by which they are scaled, so that a scene of any size is about 1 wide.
+    TracingFrame frame;  ///< Rotation to them.
     double lift_off;
     Owned<RTCDevice, rtcReleaseDevice> device;
     Owned<RTCScene, rtcReleaseScene> rtc;
@@ -182,6 +184,7 @@ struct RayTracer::Content {
         : scene(&s),
           centre(s.box().centre()),
           scale(std::exp2(-std::ilogb(s.size()))),
+          frame(find_tracing_frame(s)),
           lift_off(lift * s.size()),
           device(rtcNewDevice(nullptr)),
           rtc(rtcNewScene(device)),
@@ -189,7 +192,7 @@ struct RayTracer::Content {
           other_side(other_sides_of_surfaces(s)),
           opposed(s, other_side, lift_off),
           gaps(s, reach_of_regions(s, lift_off)),
-          glass{RayFates(s.panes())} {
+          glass{RayFates(s.panes(), frame)} {
         Triangles all;
         auto& [corners, triangles] = all;
         for (SurfaceId id : s.surfaces().ids()) {
@@ -255,8 +258,8 @@ struct RayTracer::Content {
         attach(all, &glass);
     }
 
-    Float3 local(const Point& p) const { return to_safe_point(scale * (p - centre)); }
-    Float3 local_direction(const Vec3& d) const { return to_safe_direction(scale * d); }
+    Float3 local(const Point& p) const { return to_safe_point(frame(scale * (p - centre))); }
+    Float3 local_direction(const Vec3& d) const { return to_safe_direction(frame(scale * d)); }
     Vec3 offset(RegionId region) const {
         if (region.is_none()) return Vec3();
         const Region& own = scene->regions()[region];

@@ -59,6 +59,7 @@ class GapFinder {
         const Plane plane = plane_of(scene_, s);
         Box below = boxes_[s.value];
         below.lo = below.lo - Vec3{reach, reach, reach}, below.hi = below.hi + Vec3{reach, reach, reach};
+        find_borders(scene_.outline(s), plane.n, reach);
         region_.clear();
         region_.add({plane.n, plane.offset + rounding_});
         region_.add({-1 * plane.n, -plane.offset - reach});
@@ -67,6 +68,7 @@ class GapFinder {
             axis[k] = 1;
             region_.add({axis, below.lo[k]}), region_.add({-1 * axis, -below.hi[k]});
         }
+        for (const Plane& border : borders_) region_.add(border);
         found_.clear();
         double area = 0;  // of the points below close faces, m^2
         faces_.visit_region(region_, [&](std::uint32_t other) {
@@ -78,15 +80,32 @@ class GapFinder {
             for (std::size_t k = 0; k < 3; ++k)
                 box.lo[k] = std::max(box.lo[k], below.lo[k]), box.hi[k] = std::min(box.hi[k], below.hi[k]);
             found_.push_back({b, box});
-            area += std::abs(dot(area_vector(slice_), plane.n)) *
-                    std::min(1.0, boxes_[s.value].diagonal() / outline_box(slice_).diagonal());
+            area += std::abs(dot(area_vector(slice_), plane.n));
         });
         if (area < negligible_share * scene_.surfaces()[s].area) return;
         for (const auto& [b, box] : found_) add(b, box);
     }
 
-    /// True if the face is partly between the heights of `rounding` and `reach` above the plane, and is not stacked on
-    /// it. Sets `box` to a box of that part and of the points below it.
+    /// Sets borders_: planes perpendicular to an outline, parallel to its edges and at most `margin` outside of it. A
+    /// convex outline of few corners is all that is within them. The box of a face that is not parallel to the axes is
+    /// much larger than the face.
+    void find_borders(std::span<const Point> outline, const Normal& n, double margin) {
+        borders_.clear();
+        const std::size_t step = (outline.size() + max_borders - 1) / max_borders;
+        for (std::size_t i = 0; i < outline.size(); i += step) {
+            const Vec3 inwards = cross(n, outline[i + 1 == outline.size() ? 0 : i + 1] - outline[i]);
+            const double length = norm(inwards);
+            if (!(length > 0)) continue;
+            Plane border{(1 / length) * inwards, std::numeric_limits<double>::infinity()};
+            for (const Point& p : outline) border.offset = std::min(border.offset, dot(border.n, p));
+            border.offset -= margin;
+            borders_.push_back(border);
+        }
+    }
+
+    /// True if the face is partly between the heights of `rounding` and `reach` above the plane and above the points
+    /// within the borders, and is not stacked on the plane. Sets `slice_` to that part, and `box` to a box of it and of
+    /// the points below it.
     bool crosses(SurfaceId s, const Plane& plane, SurfaceId b, double reach, Box& box) {
         const std::span<const Point> outline = scene_.outline(b);
         double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -101,6 +120,11 @@ class GapFinder {
             return false;
         clip(outline, {plane.n, plane.offset}, above_);
         clip(above_, {-1 * plane.n, -plane.offset - reach}, slice_);
+        for (const Plane& border : borders_) {
+            if (slice_.empty()) return false;
+            std::swap(above_, slice_);
+            clip(above_, border, slice_);
+        }
         if (slice_.empty()) return false;
         for (const Point& p : slice_) box.add(p), box.add(p - plane.signed_distance(p) * plane.n);
         return true;
@@ -110,7 +134,9 @@ class GapFinder {
     const std::vector<Box>& boxes_;
     const Bvh& faces_;
     double rounding_;
+    static constexpr std::size_t max_borders = 8;  ///< With the slab and the box, all fit into a ConvexRegion.
     ConvexRegion region_;
+    std::vector<Plane> borders_;
     std::vector<Point> above_, slice_;
     std::vector<std::pair<SurfaceId, Box>> found_;
 };

@@ -85,6 +85,28 @@ TEST(NarrowGaps, RoomsOfRightAnglesHaveNone) {
     for (RegionId r : scene.regions().ids()) EXPECT_FALSE(gaps.has(r));
 }
 
+// The plane of a long, tilted sheet crosses the walls, far from the sheet, but within its box if the room is rotated.
+TEST(NarrowGaps, SheetsInRoomsHaveNoneHoweverTheRoomIsRotated) {
+    std::vector<test::Face> faces = test::closed_box({0, 0, 0}, {12, 6, 5});
+    for (int sheet = 0; sheet < 20; ++sheet) {
+        const Point a{0.1, 0.5 + 0.25 * sheet, 1.5}, b = a + Vec3{0, 0.1, 0.04};
+        const Vec3 along{11.8, 0, 0};
+        faces.push_back({{a, b, b + along, a + along}});
+        faces.push_back({{a, a + along, b + along, b}});
+    }
+    for (const Normal& up : {Normal{0, 0, 1}, normalized(Vec3{0.3, -0.5, 0.7})}) {
+        std::vector<test::Face> rotated = faces;
+        const Frame frame(up);
+        for (test::Face& face : rotated)
+            for (Point& p : face.corners) p = Point{61, -53, 59} + frame.to_world(p.x, p.y, p.z);
+        const Scene scene = test::make(rotated);
+        Field<RegionId, double> reach;
+        for (std::size_t r = 0; r < scene.regions().size(); ++r) reach.add(2.5e-5);
+        const NarrowGaps gaps(scene, reach);
+        for (RegionId r : scene.regions().ids()) EXPECT_FALSE(gaps.has(r));
+    }
+}
+
 TEST(NarrowGaps, HeightIsThatOfTheFaceAbove) {
     const Wedge wedge = make_wedge(0.1, {0, 0, 1}, {}, 1);
     Field<RegionId, double> reach;

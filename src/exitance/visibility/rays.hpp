@@ -46,7 +46,7 @@ struct SurfacePoint {
 };
 
 /// Sixteen ray end points, already lifted off their surfaces, in the tracer's coordinates: relative to the middle of
-/// the scene's box, metres times the power of two that makes the scene about 1 wide.
+/// the scene's box, metres times the power of two that makes the scene about 1 wide, rotated (TracingFrame).
 struct alignas(64) RayEnds {
     static constexpr std::size_t size = 16;
     float x[size], y[size], z[size];

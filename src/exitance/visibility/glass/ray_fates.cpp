@@ -8,11 +8,11 @@
 
 namespace exitance {
 
-RayFates::RayFates(const std::vector<Pane>& panes) {
+RayFates::RayFates(const std::vector<Pane>& panes, const TracingFrame& frame) {
     shares_.reserve(panes.size());
     for (const Pane& pane : panes) {
         Shares& s = shares_.emplace_back();
-        s.n = pane.n;
+        s.n = frame(pane.n);
         for (std::size_t k = 0; k <= steps; ++k) {
             const double cosine = static_cast<double>(k) / steps;
             s.through[k] = static_cast<float>(mean(pane.transmission(cosine)));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "exitance/scene/pane.hpp"
+#include "exitance/visibility/tracing_frame.hpp"
 
 namespace exitance {
 
@@ -16,7 +17,8 @@ enum class RayFate { passes, is_mirrored, is_absorbed };
 /// ray and the pane.
 class RayFates {
   public:
-    explicit RayFates(const std::vector<Pane>& panes);
+    /// frame  rotation to the coordinates that rays are traced in
+    explicit RayFates(const std::vector<Pane>& panes, const TracingFrame& frame = {});
 
     /// origin, direction  in the coordinates that rays are traced in; the direction may have any length
     /// pane  index of the pane
