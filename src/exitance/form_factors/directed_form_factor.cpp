@@ -93,7 +93,7 @@ class DirectedIntegral {
 
     struct Chord {
         Vec3 along;       ///< Between the two directions that are farthest apart.
-        double area = 0;  ///< Of the triangles between the first direction and the others.
+        double area = 0;  ///< Sum over the triangles between the first direction and the others.
     };
     static Chord longest_chord(const Cone& cone) {
         Chord out;
