@@ -150,7 +150,8 @@ class DirectLight {
     Emitter emitter_of(PieceId piece, const Spectrum& exitance) const;
     /// True if light of this emitter may have to pass panes. A window's own pane is part of its emitter.
     bool is_glazed(const Emitter& emitter) const {
-        return !occluders_->scene().panes().empty() && emitter.sky != Emitter::Sky::window;
+        return emitter.sky == Emitter::Sky::window ? !occluders_->enclosure().others.empty()
+                                                   : !occluders_->scene().panes().empty();
     }
     Spectrum light_of(const Emitter& emitter, const Receiver& at, Workspace& scratch) const;
     Spectrum on_side(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;

@@ -177,7 +177,13 @@ void RayLight::continue_through_windows(Workspace& room) const {
     }
     const auto hidden = std::make_unique<bool[]>(room.onwards_.size());
     tracer_->occluded(room.onwards_from_, room.onwards_to_, std::span(hidden.get(), room.onwards_.size()));
-    for (std::size_t k = 0; k < room.onwards_.size(); ++k) room.blocked_[room.onwards_[k]] = hidden[k];
+    for (std::size_t k = 0; k < room.onwards_.size(); ++k) {
+        Workspace::Ray& ray = room.rays_[room.onwards_[k]];
+        room.blocked_[room.onwards_[k]] = hidden[k];
+        if (is_coloured_ && !hidden[k])
+            ray.weight *= colour_between(direct_->occluders().enclosure().others, room.onwards_from_[k].at,
+                                         room.onwards_to_[k].at);
+    }
 }
 
 /// Traces the batch and adds the arriving light to the blocks.
@@ -192,11 +198,8 @@ void RayLight::trace(Workspace& room) const {
     for (std::size_t i = 0; i < room.rays_.size(); ++i) {
         if (room.blocked_[i]) continue;
         Workspace::Ray& ray = room.rays_[i];
-        if (is_coloured_) {  // rays pass by the mean of the bands
-            const Spectrum T =
-                transmission_between(direct_->occluders().scene().panes(), room.from_[i].at, room.to_[i].at);
-            ray.weight *= T / mean(T);
-        }
+        if (is_coloured_)  // rays pass by the mean of the bands
+            ray.weight *= colour_between(direct_->occluders().scene().panes(), room.from_[i].at, room.to_[i].at);
         Part& part = room.parts_[ray.part];
         part.blocks[ray.block].arrived += ray.weight;
         if (ray.is_distant) part.distant += ray.weight;

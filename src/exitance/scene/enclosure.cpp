@@ -103,27 +103,34 @@ double volume_behind(const Borders& borders, const std::vector<FaceSide>& sides,
     return sum;
 }
 
-/// Which sides of a face bound a room behind panes: 1 front, 2 back, 3 both.
+/// Which sides of a face bound a room behind panes: 1 front, 2 back, 3 both. A pane that bounds rooms on one side is a
+/// window, unless a larger room surrounds it.
 using RoomSides = std::vector<std::uint8_t>;
 constexpr std::uint8_t in_front = 1, behind = 2;
 
-/// Finds the rooms behind panes. Returns false unless each pane has a bounded room on one side and unbounded space on
-/// the other. Panes are the faces from `first` on.
+/// Finds the rooms behind panes. Returns false if a pane bounds no room although a side of it cannot be told. Panes are
+/// the faces from `first` on.
 bool find_rooms(const Borders& borders, std::size_t first, RoomSides& rooms) {
     for (std::size_t f = first; f < rooms.size(); ++f) {
         const Point origin = borders.face(f).loops[0][0];
-        int count = rooms[f] != 0 ? 1 : 0;
+        bool is_certain = true;
         for (const bool is_front : {true, false}) {
             if (rooms[f] & (is_front ? in_front : behind)) continue;
             const auto sides = borders.sides_reached_from({static_cast<std::uint32_t>(f), is_front});
+            is_certain = is_certain && !sides.empty();
             if (sides.empty() || !(volume_behind(borders, sides, origin) < 0)) continue;
             for (const FaceSide& side : sides) rooms[side.face] |= side.is_front ? in_front : behind;
-            ++count;
         }
-        if (count != 1) return false;
+        if (rooms[f] == 0 && !is_certain) return false;
     }
-    return std::all_of(rooms.begin() + static_cast<std::ptrdiff_t>(first), rooms.end(),
-                       [](std::uint8_t sides) { return sides == in_front || sides == behind; });
+    return true;
+}
+
+/// True if the hull winds about the outer side of a window: the room behind it stands in another one.
+bool is_surrounded(const Pane& window, const Hull& hull, double slack) {
+    const Point middle = centroid(window.corners);
+    const auto is_in_room = [&](const Point& p) { return hull.winds_about(0.5 * (p + middle) - slack * window.n); };
+    return std::any_of(window.corners.begin(), window.corners.end(), is_in_room);
 }
 
 /// True if a straight path that leaves by one window may enter by the other: each has a part behind the other.
@@ -184,14 +191,6 @@ Enclosure find_enclosure(const Scene& scene) {
     RoomSides rooms(faces.size(), 0);
     const Borders borders(std::move(faces), tolerance);
     if (!find_rooms(borders, first, rooms)) return {};
-    Enclosure out;
-    for (std::size_t i = 0; i < scene.panes().size(); ++i) {
-        Pane window = scene.panes()[i];
-        if (rooms[first + i] == behind) std::reverse(window.corners.begin(), window.corners.end());
-        window.n = normalized(area_vector(window.corners));
-        out.windows.push_back(std::move(window));
-    }
-    if (any_face_each_other(out.windows, tolerance)) return {};
     Hull hull;
     for (std::size_t f = 0; f < rooms.size(); ++f)
         for (const Triangle& t : borders.face(f).triangles) {
@@ -199,6 +198,16 @@ Enclosure find_enclosure(const Scene& scene) {
             if (rooms[f] == behind) hull.add({t[0], t[2], t[1]});
         }
     hull.finish();
+    Enclosure out;
+    for (std::size_t i = 0; i < scene.panes().size(); ++i) {
+        Pane pane = scene.panes()[i];
+        const std::uint8_t sides = rooms[first + i];
+        if (sides == behind) std::reverse(pane.corners.begin(), pane.corners.end());
+        pane.n = normalized(area_vector(pane.corners));
+        const bool is_window = (sides == in_front || sides == behind) && !is_surrounded(pane, hull, 2 * tolerance);
+        (is_window ? out.windows : out.others).push_back(std::move(pane));
+    }
+    if (out.windows.empty() || any_face_each_other(out.windows, tolerance)) return {};
     out.is_within.resize(scene.regions().size());
     for (const RegionId r : scene.regions().ids()) out.is_within[r] = winds_about(scene, r, hull, 2 * tolerance);
     return out;

@@ -8,6 +8,7 @@
 #include "exitance/base/random.hpp"
 #include "exitance/scene/sky/sun_position.hpp"
 #include "exitance/transport/stage.hpp"
+#include "exitance/visibility/glazed_part.hpp"
 
 namespace exitance {
 namespace {
@@ -203,6 +204,100 @@ TEST(Enclosure, WindowsThatFaceEachOtherHaveNone) {
     EXPECT_EQ(held(room.scene()), 0u) << "a way may lead in again";
 }
 
+namespace {
+
+/// Adds a pane of clear glass that is darker in one band than in the others.
+void add_pane(Room& room, std::vector<Point> corners) {
+    Pane pane;
+    pane.corners = std::move(corners);
+    for (std::size_t b = 0; b < bands; ++b) pane.transmissivity[b] = 0.5 + 0.2 * static_cast<double>(b);
+    room.d.panes.push_back(pane);
+}
+
+/// Adds a second room of the same size at x > 4 without a window. The wall between has a pane of 1 x 1.5 m.
+void add_room_behind_a_pane(Room& room) {
+    room.d.faces.erase(room.d.faces.begin() + 4);  // the wall at x = 4
+    const std::size_t first = room.d.faces.size();
+    room.face({{4, 0, 0}, {4, 3, 0}, {4, 3, 0.5}, {4, 0, 0.5}});
+    room.face({{4, 0, 2}, {4, 3, 2}, {4, 3, 2.5}, {4, 0, 2.5}});
+    room.face({{4, 0, 0.5}, {4, 1, 0.5}, {4, 1, 2}, {4, 0, 2}});
+    room.face({{4, 2, 0.5}, {4, 3, 0.5}, {4, 3, 2}, {4, 2, 2}});
+    for (std::size_t i = first, end = room.d.faces.size(); i < end; ++i) {
+        SceneDescription::Face back = room.d.faces[i];
+        std::reverse(back.corners.begin(), back.corners.end());
+        room.d.faces.push_back(std::move(back));
+    }
+    room.face({{4, 0, 0}, {8, 0, 0}, {8, 3, 0}, {4, 3, 0}});
+    room.face({{4, 0, 2.5}, {4, 3, 2.5}, {8, 3, 2.5}, {8, 0, 2.5}});
+    room.face({{4, 0, 0}, {4, 0, 2.5}, {8, 0, 2.5}, {8, 0, 0}});
+    room.face({{4, 3, 0}, {8, 3, 0}, {8, 3, 2.5}, {4, 3, 2.5}});
+    room.face({{8, 0, 0}, {8, 0, 2.5}, {8, 3, 2.5}, {8, 3, 0}});
+    add_pane(room, {{4, 1, 0.5}, {4, 2, 0.5}, {4, 2, 2}, {4, 1, 2}});
+}
+
+/// Adds a box of glass over a block that stands free in the room.
+void add_glass_case(Room& room) {
+    const Point lo{1, 1, 0.5}, hi{2, 2, 1.5};
+    add_pane(room, {{lo.x, lo.y, lo.z}, {lo.x, hi.y, lo.z}, {hi.x, hi.y, lo.z}, {hi.x, lo.y, lo.z}});
+    add_pane(room, {{lo.x, lo.y, hi.z}, {hi.x, lo.y, hi.z}, {hi.x, hi.y, hi.z}, {lo.x, hi.y, hi.z}});
+    add_pane(room, {{lo.x, lo.y, lo.z}, {hi.x, lo.y, lo.z}, {hi.x, lo.y, hi.z}, {lo.x, lo.y, hi.z}});
+    add_pane(room, {{hi.x, hi.y, lo.z}, {lo.x, hi.y, lo.z}, {lo.x, hi.y, hi.z}, {hi.x, hi.y, hi.z}});
+    add_pane(room, {{lo.x, hi.y, lo.z}, {lo.x, lo.y, lo.z}, {lo.x, lo.y, hi.z}, {lo.x, hi.y, hi.z}});
+    add_pane(room, {{hi.x, lo.y, lo.z}, {hi.x, hi.y, lo.z}, {hi.x, hi.y, hi.z}, {hi.x, lo.y, hi.z}});
+    room.face({{1.2, 1.2, 0.7}, {1.8, 1.2, 0.7}, {1.8, 1.8, 0.7}, {1.2, 1.8, 0.7}});
+}
+
+/// A case of panes besides the window, and the number of them.
+struct MorePanes {
+    const char* name;
+    std::size_t others;
+    void (*add)(Room&);
+};
+const MorePanes more_panes[] = {
+    {"between two rooms", 1, add_room_behind_a_pane},
+    {"a table", 1,
+     [](Room& room) {
+         add_pane(room, {{1, 1, 0.7}, {3, 1, 0.7}, {3, 2, 0.7}, {1, 2, 0.7}});
+     }},
+    {"an oblique pane", 1,
+     [](Room& room) {
+         add_pane(room, {{0.5, 1, 0.2}, {3.5, 2, 0.2}, {3.5, 2.3, 2.2}, {0.5, 1.3, 2.2}});
+     }},
+    {"a second pane in front", 1,
+     [](Room& room) {
+         add_pane(room, {{1, 3.02, 1}, {3, 3.02, 1}, {3, 3.02, 2}, {1, 3.02, 2}});
+     }},
+    {"a railing outdoors", 1,
+     [](Room& room) {
+         add_pane(room, {{0, 4, 0}, {4, 4.8, 0}, {4, 4.8, 1.6}, {0, 4, 1.6}});
+     }},
+    {"a glass case", 6, add_glass_case},
+    {"two panes in a reveal", 1,
+     [](Room& room) {
+         room.reveals(3, 3.02);
+         add_pane(room, {{1, 3.02, 1}, {3, 3.02, 1}, {3, 3.02, 2}, {1, 3.02, 2}});
+     }},
+};
+
+}  // namespace
+
+TEST(Enclosure, OnlyPanesBetweenInsideAndOutsideAreWindows) {
+    for (const MorePanes& more : more_panes) {
+        SCOPED_TRACE(more.name);
+        Room room;
+        more.add(room);
+        const Enclosure enclosure = find_enclosure(room.scene());
+        ASSERT_EQ(enclosure.windows.size(), 1u);
+        EXPECT_NEAR(enclosure.windows[0].n.y, -1, 1e-12) << "inwards";
+        EXPECT_EQ(enclosure.others.size(), more.others);
+        EXPECT_EQ(held(room.scene()), room.scene().regions().size());
+    }
+    Room railed;
+    railed.d.panes.clear();
+    add_pane(railed, {{0, 4, 0}, {4, 4, 0}, {4, 4, 1.6}, {0, 4, 1.6}});
+    EXPECT_EQ(held(railed.scene()), 0u) << "without windows";
+}
+
 TEST(Enclosure, AFaceThatLeavesTheRoomIsNotInside) {
     Room room;
     room.face({{-1, 1, 0.7}, {2, 1, 0.7}, {2, 2, 0.7}, {-1, 2, 0.7}});
@@ -348,6 +443,60 @@ TEST(Enclosure, WhatStandsOutdoorsIsCutFromTheSky) {
                 }
             }
         }
+    }
+}
+
+/// Light at places of all regions, exactly, for whole polygons, and by rays, against a sum over 400 x 200 parts of the
+/// window. Its error comes from the parts on the border of a pane, as above.
+TEST(Enclosure, TheSkyThroughItsWindowPassesTheOtherPanes) {
+    for (const MorePanes& more : more_panes) {
+        SCOPED_TRACE(more.name);
+        Room room;
+        more.add(room);
+        const Scene scene = room.scene();
+        const Stage stage(scene);
+        const Enclosure& enclosure = stage.occluders.enclosure();
+        ASSERT_EQ(enclosure.windows.size(), 1u);
+        const Pane& window = enclosure.windows[0];
+        const double y_window = window.corners[0].y;
+        DirectLight::Workspace workspace;
+        PlaceLight::Workspace place;
+        ReceiverLight light;
+        Spectrum lit;
+        for (const RegionId own : scene.regions().ids()) {
+            if (!enclosure.holds(own)) continue;
+            const Region& region = scene.regions()[own];
+            const Normal& n = region.plane.n;
+            const Point x = 0.3 * (region.loops[0][0] - Point()) + 0.6 * (region.loops[0][1] - Point()) +
+                            0.1 * (region.loops[0][2] - Point()) + Point();
+            constexpr double too_near = 0.1;  // m, from 20 parts of the window: the sum is not accurate there
+            if (std::abs(x.y - y_window) < too_near && std::abs(n.y) < 0.5) continue;
+            constexpr int steps = 200;
+            RandomStream random(1, Stream::mesh);
+            Spectrum sum;
+            for (int i = 0; i < 2 * steps; ++i)
+                for (int k = 0; k < steps; ++k) {
+                    const double u = random.uniform(), v = random.uniform();
+                    const Vec3 r = Point{1 + (i + u) / steps, y_window, 1 + (k + v) / steps} - x, w = normalized(r);
+                    const double kernel = dot(n, w) * w.y / (pi * squared_norm(r) * steps * steps);
+                    if (!(kernel > 0) || is_hidden(scene, x, w)) continue;
+                    const Spectrum through =
+                        window.transmission(w.y) * transmission_between(enclosure.others, x, x + 2 * scene.size() * w);
+                    sum += kernel * (scene.distant().radiosity(w, false) * through);
+                }
+            const Spectrum E = stage.direct.irradiance(x, n, own, workspace);
+            stage.direct.prepare(region.loops[0], n, own, light, workspace);
+            const Spectrum prepared = stage.direct.irradiance(light, x, workspace);
+            const PlaceLight::Estimate by_rays = stage.place_light.rays().at(x, n, own, {.relative = 2e-3}, place);
+            const double error = 4 * std::sqrt(by_rays.variance);
+            for (std::size_t b = 0; b < bands; ++b) {
+                EXPECT_NEAR(E[b], sum[b], 2e-3 * sum[b] + 1e-3) << own.value << " " << b;
+                EXPECT_NEAR(prepared[b], E[b], 1e-9 + 1e-6 * E[b]) << own.value << " " << b;
+                EXPECT_NEAR(by_rays.irradiance[b], E[b], error + 3e-3 * E[b] + 1e-3) << own.value << " " << b;
+            }
+            lit += E;
+        }
+        EXPECT_GT(mean(lit), 1);
     }
 }
 

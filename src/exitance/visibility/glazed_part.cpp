@@ -33,15 +33,15 @@ std::vector<Vec3> cut_above(std::span<const Vec3> polygon, const Vec3& n, double
 }
 
 /// Planes (pointing inwards) through the receiver and the edges of the part of a pane between the receiver and the
-/// source; empty if no line of sight crosses the pane.
-std::vector<Vec3> pyramid_over(const Pane& pane, const Receiver& at, const Vec3& source_normal, double source_height,
-                               double rounding) {
+/// source, or of all of the pane if `source_plane` is null; empty if no line of sight crosses the pane.
+/// source_plane  plane of the source, relative to the receiver
+std::vector<Vec3> pyramid_over(const Pane& pane, const Receiver& at, const Plane* source_plane, double rounding) {
     const double facing = dot(pane.n, pane.corners[0] - at.x);
     if (std::abs(facing) <= rounding) return {};
     std::vector<Vec3> polygon;
     for (const Point& p : pane.corners) polygon.push_back(p - at.x);
     polygon = cut_above(polygon, at.n);
-    if (!polygon.empty()) polygon = cut_above(polygon, source_normal, source_height);
+    if (!polygon.empty() && source_plane) polygon = cut_above(polygon, source_plane->n, source_plane->offset);
     std::vector<Vec3> planes;
     for (std::size_t i = 0, m = polygon.size(); i < m; ++i) {
         const Vec3 &a = polygon[i], &b = polygon[i + 1 == m ? 0 : i + 1];
@@ -192,8 +192,21 @@ struct PaneInView {
 std::vector<PaneInView> panes_in_view(const Occluders& occluders, const Receiver& at, const Normal& n, double height) {
     std::vector<PaneInView> out;
     const double slack = occluders.rounding();
+    const Plane source_plane{n, height + slack};
     for (const Pane& pane : occluders.scene().panes())
-        if (std::vector<Vec3> pyramid = pyramid_over(pane, at, n, height + slack, slack); !pyramid.empty())
+        if (std::vector<Vec3> pyramid = pyramid_over(pane, at, &source_plane, slack); !pyramid.empty())
+            out.push_back({&pane, std::move(pyramid)});
+    return out;
+}
+
+/// The panes that light through a window has to pass on its way to a receiver, on either side of the window.
+std::vector<PaneInView> panes_besides(const Occluders& occluders, const Receiver& at, PieceId window) {
+    std::vector<PaneInView> out;
+    std::vector<Vec3> corners;
+    for (const Point& p : occluders.corners(window)) corners.push_back(p - at.x);
+    for (const Pane& pane : occluders.enclosure().others)
+        if (std::vector<Vec3> pyramid = pyramid_over(pane, at, nullptr, occluders.rounding());
+            !pyramid.empty() && position_of(corners, pyramid) != Position::outside)
             out.push_back({&pane, std::move(pyramid)});
     return out;
 }
@@ -227,16 +240,25 @@ Spectrum transmitted_form_factor(const Occluders& occluders, const Receiver& at,
 Spectrum glazed_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
                             std::optional<std::span<const PieceId>> candidates, VisibilityWorkspace& scratch,
                             const PartLight& light) {
+    // Every fragment is cut along the panes in view and integrated; the search tests every pane.
+    constexpr double work_of_fragment = 20, work_of_pane = 0.1;
+    const bool is_window = occluders.is_window(source);
+    std::vector<PaneInView> panes;
+    if (is_window) {
+        panes = panes_besides(occluders, at, source);
+        scratch.work += work_of_pane * static_cast<double>(occluders.enclosure().others.size());
+        if (panes.empty())
+            return Spectrum(candidates ? visible_form_factor(occluders, at, source, *candidates, scratch, light)
+                                       : visible_form_factor(occluders, at, source, scratch, light));
+    }
     Fragments fragments;
     visible_fragments(occluders, at, source, candidates, scratch, fragments);
     if (fragments.empty()) return {};
-    // Every fragment is cut along the panes in view and integrated; the search tests every pane.
-    constexpr double work_of_fragment = 20, work_of_pane = 0.1;
-    scratch.work += work_of_fragment * static_cast<double>(fragments.size()) +
-                    work_of_pane * static_cast<double>(occluders.scene().panes().size());
+    scratch.work += work_of_fragment * static_cast<double>(fragments.size());
+    if (!is_window) scratch.work += work_of_pane * static_cast<double>(occluders.scene().panes().size());
     if (scratch.gave_up()) return {};
     const Normal& n = occluders.pieces()[source].plane.n;
-    const std::vector<PaneInView> panes = panes_in_view(occluders, at, n, dot(n, fragments[0][0]));
+    if (!is_window) panes = panes_in_view(occluders, at, n, dot(n, fragments[0][0]));
     Spectrum out;
     for (const std::vector<Vec3>& fragment : fragments) out += through_panes(at, panes, fragment, light.radiance);
     return out;
@@ -254,14 +276,32 @@ bool crosses(const Pane& pane, const Point& x, const Point& y) {
     return !(left && right);
 }
 
-Spectrum transmission_between(std::span<const Pane> panes, const Point& x, const Point& y) {
-    Spectrum out(1.0);
+namespace {
+
+/// Calls visit(T) with the transmission of each pane between two points.
+template <class Visit>
+void visit_crossed(std::span<const Pane> panes, const Point& x, const Point& y, const Visit& visit) {
     const Vec3 d = y - x;
     for (const Pane& pane : panes)
         if (crosses(pane, x, y)) {
             const double here = dot(pane.n, x - pane.corners[0]), there = dot(pane.n, y - pane.corners[0]);
-            out *= pane.transmission(std::abs(here - there) / norm(d));
+            visit(pane.transmission(std::abs(here - there) / norm(d)));
         }
+}
+
+}  // namespace
+
+Spectrum transmission_between(std::span<const Pane> panes, const Point& x, const Point& y) {
+    Spectrum out(1.0);
+    visit_crossed(panes, x, y, [&](const Spectrum& T) { out *= T; });
+    return out;
+}
+
+Spectrum colour_between(std::span<const Pane> panes, const Point& x, const Point& y) {
+    Spectrum out(1.0);
+    visit_crossed(panes, x, y, [&](const Spectrum& T) {
+        if (const double passing = mean(T); passing > 0) out *= T / passing;
+    });
     return out;
 }
 

@@ -13,9 +13,9 @@ namespace exitance {
 ///
 ///     F = integral over the visible part of  T p dF,     T = product of the transmissions of all panes crossed.
 ///
-/// The visible part is cut along the outlines of the panes as seen from the receiver. Each part is subdivided until T
-/// varies by at most 4% in each band. Its mean T is that of the corners and the middle, weighted by p dF. Error: at
-/// most 1e-3.
+/// The own pane of a window (`Occluders::windows`) does not count; those behind it do. The visible part is cut along
+/// the outlines of the panes as seen from the receiver. Each part is subdivided until T varies by at most 4% in each
+/// band. Its mean T is that of the corners and the middle, weighted by p dF. Error: at most 1e-3.
 /// candidates  possible occluders, as for visible_form_factor(); none: all occluders
 Spectrum glazed_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,
                             std::optional<std::span<const PieceId>> candidates, VisibilityWorkspace& scratch,
@@ -26,6 +26,10 @@ bool crosses(const Pane& pane, const Point& x, const Point& y);
 
 /// Transmission of the panes between two points.
 Spectrum transmission_between(std::span<const Pane> panes, const Point& x, const Point& y);
+
+/// Factors on the bands of a ray between two points that passes every pane in proportion to the mean of the bands.
+/// The bands of such a ray are right in the mean: the product of T / mean(T) of the panes crossed.
+Spectrum colour_between(std::span<const Pane> panes, const Point& x, const Point& y);
 
 /// Like glazed_form_factor(), for a given visible convex polygon in the source's plane, relative to the receiver.
 Spectrum transmitted_form_factor(const Occluders& occluders, const Receiver& at, PieceId source,

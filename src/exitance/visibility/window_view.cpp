@@ -13,7 +13,13 @@ bool looks_out_on_faces(const Occluders& occluders, PieceId source) {
                          plane.n.z > 0 ? box.lo.z : box.hi.z};
     // Share of the scene's size, the tolerance for panes being in one plane with their neighbours.
     constexpr double in_plane = 1e-6;
-    return plane.signed_distance(farthest) < -in_plane * occluders.scene().size();
+    const auto is_beyond = [&](const Point& p) {
+        return plane.signed_distance(p) < -in_plane * occluders.scene().size();
+    };
+    const std::vector<Pane>& panes = occluders.enclosure().others;
+    return is_beyond(farthest) || std::any_of(panes.begin(), panes.end(), [&](const Pane& pane) {
+               return std::any_of(pane.corners.begin(), pane.corners.end(), is_beyond);
+           });
 }
 
 void WindowView::clip_by(const Plane& plane, std::vector<Point>& polygon) {

@@ -8,9 +8,9 @@
 
 namespace exitance {
 
-/// Returns whether a source is a window (Occluders::windows) with possible occluders outside: a ground, the outer part
-/// of a reveal, another house. The sky seen through it is then the part that no face on either side of the pane hides.
-/// Tested with the scene's box: may return true unnecessarily, which costs only time.
+/// Returns whether a source is a window (Occluders::windows) with possible occluders or panes outside: a ground, the
+/// outer part of a reveal, another house, a railing. The sky seen through it is then the part that no face on either
+/// side of the pane hides. Tested with the scene's box: may return true unnecessarily, which costs only time.
 bool looks_out_on_faces(const Occluders& occluders, PieceId source);
 
 /// Finds the occluders beyond a window for all points of a convex receiver. A line from the receiver through the window
