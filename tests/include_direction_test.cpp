@@ -47,7 +47,7 @@ const std::vector<Door> doors{
     {"OpenEXR", std::regex("OpenEXR/.*|Imf.*"), {"io/pictures/exr.cpp", "io/pictures/read_exr.cpp"}},
     {"CLI11", std::regex("CLI/.*"), {"cli/options/option_kinds.hpp"}},
     {"cpp-httplib", std::regex("httplib\\.h"), {"cli/view/view_server.cpp"}},
-    {"MPI", std::regex("mpi\\.h"), {"processes/distributed.cpp"}},
+    {"MPI", std::regex("mpi\\.h"), {"processes/team.hpp"}},
     {"PETSc", std::regex("petsc.*"), {"solve/petsc.cpp"}},
     {"nlohmann-json",
      std::regex("nlohmann/.*"),

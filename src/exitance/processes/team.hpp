@@ -9,7 +9,7 @@
 
 #include "exitance/processes/distributed.hpp"
 
-// What the parts of the communication by MPI share. Only they include this file.
+// State and calls of MPI that distributed.cpp and shared_pages.cpp have in common. No other file includes this one.
 
 namespace exitance {
 

@@ -126,8 +126,7 @@ ProgramRun run_program(const std::vector<std::string>& words, const std::string&
 
 Result<void> run_into_file(const std::string& path,
                            const std::function<std::vector<std::string>(const std::string& part)>& words_for,
-                           double most_seconds, const StopRequest& stop, const std::string& on_failure,
-                           const std::string& hint) {
+                           double most_seconds, const StopRequest& stop) {
     namespace fs = std::filesystem;
     const fs::path target = fs::absolute(path);
     const fs::path part =
@@ -139,9 +138,8 @@ Result<void> run_into_file(const std::string& path,
         if (!failed) return {};
     }
     fs::remove(part, failed);
-    const std::string said = run.err.substr(0, run.err.find('\n'));
-    return Error{ErrorCode::cannot_write,
-                 fmt::format("{}: {:.200}", on_failure, said.empty() ? "it said nothing" : said), path, hint};
+    std::string said = run.err.substr(0, run.err.find('\n'));
+    return Error{ErrorCode::cannot_write, said.empty() ? "it said nothing" : std::move(said), path, ""};
 }
 
 }  // namespace exitance

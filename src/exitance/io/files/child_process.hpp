@@ -63,13 +63,11 @@ struct ProgramRun {
 ProgramRun run_program(const std::vector<std::string>& words, const std::string& folder, double most_seconds,
                        const StopRequest& stop, const std::string& input = "");
 
-/// Runs a program that writes the file `path`, which appears whole or not at all.
-/// words_for     the program and its arguments, for the path of a part file in the same folder
-/// on_failure    begin of the message if the program fails: "ffmpeg made no video"
-/// Errors: ErrorCode::cannot_write, with the first line that the program said, and `hint`.
+/// Runs a program that writes the file `path`, which appears whole or not at all. On failure the message of the error
+/// is the first line that the program said.
+/// words_for  the program and its arguments, for the path of a part file in the same folder
 Result<void> run_into_file(const std::string& path,
                            const std::function<std::vector<std::string>(const std::string& part)>& words_for,
-                           double most_seconds, const StopRequest& stop, const std::string& on_failure,
-                           const std::string& hint);
+                           double most_seconds, const StopRequest& stop);
 
 }  // namespace exitance

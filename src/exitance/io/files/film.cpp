@@ -44,8 +44,10 @@ Result<void> write_film(const std::string& folder, double rate, const std::strin
         words.push_back(part);
         return words;
     };
-    return run_into_file(path, words_for, std::numeric_limits<double>::infinity(), StopRequest(),
-                         "ffmpeg made no video", "numbered pictures, -o walk.png, need no ffmpeg");
+    const Result<void> made = run_into_file(path, words_for, std::numeric_limits<double>::infinity(), StopRequest());
+    if (made) return {};
+    return Error{ErrorCode::cannot_write, fmt::format("ffmpeg made no video: {:.200}", made.error().message), path,
+                 "numbered pictures, -o walk.png, need no ffmpeg"};
 }
 
 }  // namespace exitance

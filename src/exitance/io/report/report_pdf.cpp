@@ -37,8 +37,10 @@ Result<void> print_page(const std::string& page, const std::string& path, const 
         words.push_back("file://" + std::filesystem::absolute(page).string());
         return words;
     };
-    return run_into_file(path, words_for, most_seconds, stop, "the browser printed no PDF",
-                         "the page itself is written; print it from a browser");
+    const Result<void> printed = run_into_file(path, words_for, most_seconds, stop);
+    if (printed) return {};
+    return Error{ErrorCode::cannot_write, fmt::format("the browser printed no PDF: {:.200}", printed.error().message),
+                 path, "the page itself is written; print it from a browser"};
 }
 
 }  // namespace exitance

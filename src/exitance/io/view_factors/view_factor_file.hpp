@@ -25,7 +25,7 @@ enum class FactorFormat {
     pairs,       ///< CSV with a line `from_id,to_id,F` per entry.
 };
 
-/// What the program has to know of a format.
+/// Properties of a format that options and messages depend on.
 struct FactorFormatTraits {
     FactorFormat format;
     std::string_view name;    ///< Name in options.
