@@ -67,7 +67,7 @@ TEST_F(Peers, RejectUnsupportedOptions) {
 
 TEST_F(Peers, PixelsOfPovRayAreRadiosity) {
     PeerScene scene;
-    scene.most_light = 2;
+    scene.max_light = 2;
     const Spectrum rho(0.5), emitted(0.25);
     scene.places = {{{}, rho, emitted}, {{}, {}, {}}};
     // Two uniform pixels, 1 and 1/4 of the maximum (exponents 128 + 1 and 128 - 1, mantissas of 128).

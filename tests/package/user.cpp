@@ -32,16 +32,16 @@ void expect(bool holds, const char* claim) {
 /// Counts the reports of a run, and requests a stop after `most` of them.
 class Counter : public Progress {
   public:
-    explicit Counter(StopRequest* stop = nullptr, int most = 0) : stop_(stop), most_(most) {}
+    explicit Counter(StopRequest* stop = nullptr, int most = 0) : stop_(stop), max_(most) {}
     void phase(std::string_view) override {
         ++phases;
-        if (stop_ && phases >= most_) stop_->request();
+        if (stop_ && phases >= max_) stop_->request();
     }
     int phases = 0;
 
   private:
     StopRequest* stop_;
-    int most_;
+    int max_;
 };
 
 void check_scene(const Scene& scene) {

@@ -36,8 +36,8 @@ Error stopped(std::string_view what) {
 
 void Run::limit_time(const std::optional<double>& seconds) {
     if (!seconds) return;
-    constexpr double most_seconds = 1e9;  ///< derived from the range of the clock, 2^63 ns
-    const std::chrono::duration<double> limit(std::min(*seconds, most_seconds));
+    constexpr double max_seconds = 1e9;  ///< derived from the range of the clock, 2^63 ns
+    const std::chrono::duration<double> limit(std::min(*seconds, max_seconds));
     stop_.set_deadline(exitance::StopRequest::Clock::now() +
                        std::chrono::duration_cast<exitance::StopRequest::Clock::duration>(limit));
 }

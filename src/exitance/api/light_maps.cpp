@@ -29,14 +29,14 @@ struct LightMapsData {
 
 namespace {
 
-constexpr int most_padding = 1024;
-constexpr int most_texels_along_a_side = 8192;
+constexpr int max_padding = 1024;
+constexpr int max_texels_along_a_side = 8192;
 
 std::optional<Error> find_wrong_option(const BakeOptions& options) {
     if (!(options.density >= 0) || !std::isfinite(options.density))
         return usage("must be above 0 texels per metre, or 0 for an automatic choice", "density");
-    if (options.padding < 1 || options.padding > most_padding) return usage("must be from 1 to 1024 texels", "padding");
-    const auto is_size = [](int n) { return n >= 0 && n <= most_texels_along_a_side; };
+    if (options.padding < 1 || options.padding > max_padding) return usage("must be from 1 to 1024 texels", "padding");
+    const auto is_size = [](int n) { return n >= 0 && n <= max_texels_along_a_side; };
     if (!is_size(options.width) || !is_size(options.height) || (options.width > 0) != (options.height > 0))
         return usage("must be from 1 to 8192 texels in both directions, or 0 for an automatic choice", "size");
     if (options.width > 0 && options.uv.empty())

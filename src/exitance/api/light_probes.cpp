@@ -18,9 +18,9 @@ Spectrum LightProbe::irradiance(const Vec3& normal) const {
 Result<std::vector<LightProbe>> light_probes(const Solution& solution, std::span<const Vec3> points,
                                              const LightProbeOptions& options, const Control& control) {
     return take_turn<std::vector<LightProbe>>(control, [&](Run& run) -> Result<std::vector<LightProbe>> {
-        constexpr int least_rays = 64, most_rays = 1 << 20;
+        constexpr int min_rays = 64, max_rays = 1 << 20;
         const int rays = options.rays;
-        if (rays < least_rays || rays > most_rays || (rays & (rays - 1)) != 0)
+        if (rays < min_rays || rays > max_rays || (rays & (rays - 1)) != 0)
             return usage("must be a power of two from 64 to 1048576", "rays");
         std::vector<Point> places;
         for (const Vec3& p : points) {

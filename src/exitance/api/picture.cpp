@@ -23,7 +23,7 @@ struct PictureData {
 
 namespace {
 
-constexpr int most_pixels_a_side = 16384, most_samples = 1 << 16;
+constexpr int max_pixels_a_side = 16384, max_samples = 1 << 16;
 
 static_assert(static_cast<int>(Projection::panorama) == static_cast<int>(exitance::Projection::panorama));
 
@@ -39,10 +39,10 @@ Camera api_camera(const exitance::Camera& c) {
 /// The error of options out of range; none if all are within.
 std::optional<Error> find_misuse(const PictureOptions& o) {
     for (const int side : {o.width, o.height})
-        if (side < 1 || side > most_pixels_a_side)
-            return usage(fmt::format("{} is not from 1 to {} pixels", side, most_pixels_a_side), "size");
-    if (o.samples < 1 || o.samples > most_samples)
-        return usage(fmt::format("{} is not from 1 to {} rays per pixel", o.samples, most_samples), "samples");
+        if (side < 1 || side > max_pixels_a_side)
+            return usage(fmt::format("{} is not from 1 to {} pixels", side, max_pixels_a_side), "size");
+    if (o.samples < 1 || o.samples > max_samples)
+        return usage(fmt::format("{} is not from 1 to {} rays per pixel", o.samples, max_samples), "samples");
     if (!o.camera) return std::nullopt;
     const Camera& c = *o.camera;
     const bool is_width = c.projection == Projection::orthographic;

@@ -7,7 +7,7 @@ namespace exitance {
 
 double fewer_rays_in_crowd(std::size_t elements) {
     constexpr double least = 0.25;  // derived from the fewest rays of a row, 4
-    const double most = static_cast<double>(ErrorShare::most_even), count = static_cast<double>(elements);
+    const double most = static_cast<double>(ErrorShare::max_even_count), count = static_cast<double>(elements);
     return count > most ? std::max(least, std::sqrt(most / count)) : 1;
 }
 
@@ -24,7 +24,7 @@ double share_of_crowd(std::vector<double> errors, double bound) {
         below += errors[i];
     }
     const double even = bound / static_cast<double>(errors.size());
-    return std::clamp(share, even, std::max(even, bound / static_cast<double>(ErrorShare::least_count)));
+    return std::clamp(share, even, std::max(even, bound / static_cast<double>(ErrorShare::min_count)));
 }
 
 double even_noise_area(std::span<const double> areas) {

@@ -12,29 +12,31 @@ namespace exitance {
 /// there are many elements, although most of these have almost no error. The walls around them would then be refined
 /// without end. Here the unused part of the small elements' shares goes to the others.
 struct ErrorShare {
-    /// Up to `most_even` elements, shares are even. Above it, no element gets more than 1 / `least_count` of the bound.
-    static constexpr std::size_t most_even = 4000, least_count = 1000;
+    /// Up to `max_even_count` elements, shares are even. Above it, no element gets more than 1 / `min_count` of the
+    /// bound.
+    static constexpr std::size_t max_even_count = 4000, min_count = 1000;
 
-    /// True if there are more than `most_even` elements and most of them are whole polygons.
+    /// True if there are more than `max_even_count` elements and most of them are whole polygons.
     static bool is_crowd(std::size_t elements, std::size_t polygons) {
-        return elements > most_even && 2 * polygons > elements;
+        return elements > max_even_count && 2 * polygons > elements;
     }
 
     /// Area below which a single element of a crowd hardly contributes to the error. It is `far_from_mean` times the
-    /// mean area, but no more than 1 / `most_even` of the area of all elements, `area`, and at least the mean area.
+    /// mean area, but no more than 1 / `max_even_count` of the area of all elements, `area`, and at least the mean
+    /// area.
     static double small_area(double area, std::size_t elements) {
         constexpr double far_from_mean = 8;  // derived from meshes of even triangles: all are below it
         const double mean = area / static_cast<double>(elements);
-        return std::clamp(far_from_mean * mean, mean, std::max(mean, area / static_cast<double>(most_even)));
+        return std::clamp(far_from_mean * mean, mean, std::max(mean, area / static_cast<double>(max_even_count)));
     }
 };
 
 /// Returns the factor on the rays of an element whose noise counts only in sums over many elements: 1 up to
-/// `ErrorShare::most_even` elements, above it less, but at least a quarter.
+/// `ErrorShare::max_even_count` elements, above it less, but at least a quarter.
 double fewer_rays_in_crowd(std::size_t elements);
 
 /// Returns the largest share s with  sum min(error_i, s) <= bound / 2,  clamped to between bound / (number of errors)
-/// and bound / `least_count`. Elements with a larger error are to be split; the other half of the bound is for the
+/// and bound / `min_count`. Elements with a larger error are to be split; the other half of the bound is for the
 /// error of their children. Errors must not be negative. O(n log n).
 double share_of_crowd(std::vector<double> errors, double bound);
 

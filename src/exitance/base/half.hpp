@@ -15,13 +15,13 @@ struct Half {
 constexpr Half to_half(float value) {
     const auto bits = std::bit_cast<std::uint32_t>(value);
     const std::uint32_t sign = bits >> 16 & 0x8000u, magnitude = bits & 0x7fffffffu;
-    constexpr std::uint32_t infinity = 0x7f800000u, least_normal = 113u << 23;  // 2^-14
+    constexpr std::uint32_t infinity = 0x7f800000u, min_normal = 113u << 23;  // 2^-14
     std::uint32_t half = 0;
     if (magnitude > infinity) {
         half = 0x7e00u;
     } else if (magnitude >= 143u << 23) {  // numbers of at least 2^16
         half = 0x7c00u;
-    } else if (magnitude >= least_normal) {
+    } else if (magnitude >= min_normal) {
         const std::uint32_t odd = magnitude >> 13 & 1u;
         half = (magnitude - (112u << 23) + 0xfffu + odd) >> 13;  // a carry may lead to the next exponent
     } else {

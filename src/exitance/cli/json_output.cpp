@@ -138,7 +138,7 @@ std::string view_factors_json(const ViewFactorFacts& facts) {
     Json json{
         {"surfaces", facts.surfaces}, {"rows_finished", facts.finished_rows},
         {"entries", facts.entries},   {"smallest", facts.smallest},
-        {"dropped", facts.dropped},   {"row_sum", {{"least", facts.least_row_sum}, {"most", facts.most_row_sum}}},
+        {"dropped", facts.dropped},   {"row_sum", {{"least", facts.min_row_sum}, {"most", facts.max_row_sum}}},
         {"seconds", facts.seconds},
     };
     if (facts.has_defects) json["reciprocity_defect"] = facts.reciprocity_defect;

@@ -58,7 +58,7 @@ struct ViewFactorFacts {
     bool has_defects = true;  ///< False after a stop: the defects, which need all rows, were not computed.
     double reciprocity_defect = 0;
     double closure_defect = 0;
-    double least_row_sum = HUGE_VAL, most_row_sum = 0;
+    double min_row_sum = HUGE_VAL, max_row_sum = 0;
     std::size_t entries = 0, finished_rows = 0;
     double error = 0, smallest = 0;     ///< Options --error and --smallest.
     std::optional<double> tolerance;    ///< Option --tolerance; replaces `error`.

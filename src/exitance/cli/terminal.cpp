@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_findings = 20;  ///< Limit on the findings that show() prints.
+constexpr std::size_t max_findings = 20;  ///< Limit on the findings that show() prints.
 
 }  // namespace
 
@@ -48,12 +48,12 @@ void Terminal::show(const std::vector<Finding>& findings) {
     std::size_t shown = 0;
     for (const Finding& finding : findings) {
         if (finding.kind == Finding::Kind::error) continue;
-        if (++shown > most_findings) continue;
+        if (++shown > max_findings) continue;
         fmt::print(stderr, "{}: {}: {}\n", finding.kind == Finding::Kind::repair ? "repair" : "warning",
                    place_of(finding), finding.message);
     }
-    if (shown > most_findings)
-        fmt::print(stderr, "warning: {} more findings; `exitance check` shows them all\n", shown - most_findings);
+    if (shown > max_findings)
+        fmt::print(stderr, "warning: {} more findings; `exitance check` shows them all\n", shown - max_findings);
 }
 
 ExitCode Terminal::fail(const CheckedScene& checked) {

@@ -150,12 +150,12 @@ Spectrum DirectLight::irradiance(const Point& x, const Normal& n, RegionId own, 
     return (1 - through) * front + through * on_side(x, -n, behind, scratch);
 }
 
-std::optional<Spectrum> DirectLight::irradiance_within(const Point& x, const Normal& n, RegionId own, double most_work,
+std::optional<Spectrum> DirectLight::irradiance_within(const Point& x, const Normal& n, RegionId own, double max_work,
                                                        Workspace& scratch) const {
-    scratch.work = 0, scratch.most_work = most_work;
+    scratch.work = 0, scratch.max_work = max_work;
     const Spectrum found = irradiance(x, n, own, scratch);
-    scratch.most_work = HUGE_VAL;
-    return scratch.work > most_work ? std::nullopt : std::optional(found);
+    scratch.max_work = HUGE_VAL;
+    return scratch.work > max_work ? std::nullopt : std::optional(found);
 }
 
 Spectrum DirectLight::on_side(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const {

@@ -72,8 +72,8 @@ class DirectLight {
     /// (1e-12 relative unless F is tiny); error 1e-3 for directed emitters. About 1-5 microseconds per visible emitter.
     Spectrum irradiance(const Point& x, const Normal& n, RegionId own, Workspace& scratch) const;
 
-    /// Like irradiance(), if that takes no more work than `most_work` (VisibilityWorkspace::work); else none.
-    std::optional<Spectrum> irradiance_within(const Point& x, const Normal& n, RegionId own, double most_work,
+    /// Like irradiance(), if that takes no more work than `max_work` (VisibilityWorkspace::work); else none.
+    std::optional<Spectrum> irradiance_within(const Point& x, const Normal& n, RegionId own, double max_work,
                                               Workspace& scratch) const;
 
     /// Identifies a convex piece of an emitter.

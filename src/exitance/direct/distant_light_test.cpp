@@ -137,7 +137,7 @@ TEST(DistantLight, GroundBesideAWallHasTheLightOfThePixelsThatItSees) {
     compare(stage.direct.irradiance({0, 0, 0}, {0, 0, 1}, first, exact), beside,
             5e-3);  // cells at the border of the wall are averages, too
     const PlaceLight::Estimate by_rays =
-        stage.place_light.by_rays({0, 0, 0}, {0, 0, 1}, first, {.relative = 2e-3, .most_rays = 1 << 16}, room);
+        stage.place_light.by_rays({0, 0, 0}, {0, 0, 1}, first, {.relative = 2e-3, .max_rays = 1 << 16}, room);
     compare(by_rays.irradiance, beside, 1e-2);
 }
 

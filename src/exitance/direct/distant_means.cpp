@@ -13,7 +13,7 @@ namespace exitance {
 namespace {
 
 constexpr std::uint32_t first_rays_to_sky = 8, first_rays_to_sun = 16;
-constexpr std::uint32_t most_rays = 1 << 10;  ///< Rays of a part: at a half-hidden source, an error of 0.3%.
+constexpr std::uint32_t max_rays = 1 << 10;  ///< Rays of a part: at a half-hidden source, an error of 0.3%.
 
 }  // namespace
 
@@ -152,8 +152,8 @@ void DistantMeans::find_parts(const ElementTree& tree, std::span<const ElementId
 
 void DistantMeans::find(const ElementTree& tree, std::span<const ElementId> elements,
                         std::span<const LightAccuracy> accuracy, Workspace& room, std::span<Mean> out) const {
-    constexpr double rounding = 1e-9;    // of sums of weights; derived from double precision
-    constexpr double fewest_seen = 0.1;  // share of the sky; derived from the share that one of the first rays has
+    constexpr double rounding = 1e-9;  // of sums of weights; derived from double precision
+    constexpr double min_seen = 0.1;   // share of the sky; derived from the share that one of the first rays has
     find_parts(tree, elements, room);
     std::vector<std::uint8_t> is_open(elements.size(), 1);  // 1 while an element may need more rays
     for (bool grows = true; grows;) {
@@ -172,7 +172,7 @@ void DistantMeans::find(const ElementTree& tree, std::span<const ElementId> elem
                 const Spectrum share = part.share();
                 mean_of.irradiance += part.open * share, mean_of.variance += part.variance();
                 open += mean(part.open);
-                is_divided |= part.sun ? max(share) > rounding && max(share) < 1 - rounding : max(share) < fewest_seen;
+                is_divided |= part.sun ? max(share) > rounding && max(share) < 1 - rounding : max(share) < min_seen;
             }
             out[i] = mean_of;
             if (is_divided) continue;
@@ -185,7 +185,7 @@ void DistantMeans::find(const ElementTree& tree, std::span<const ElementId> elem
             Part& worst = *std::max_element(parts.begin(), parts.end(), [](const Part& a, const Part& b) {
                 return a.variance() / a.rays < b.variance() / b.rays;
             });
-            if (worst.rays >= most_rays) continue;
+            if (worst.rays >= max_rays) continue;
             worst.wanted = 2 * worst.rays;
             if (!worst.sun) sky_.aim(direct_->scene().regions()[tree.region(worst.element)].plane.n, room.aim_);
             add_rays(tree, worst, static_cast<std::uint32_t>(&worst - room.parts_.data()), room);

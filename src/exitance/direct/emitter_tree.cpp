@@ -150,7 +150,7 @@ EmitterTree::Term EmitterTree::look_at(std::uint32_t number, const Receiver& at)
 void EmitterTree::open(const Term& term, const Receiver& at, double most, std::vector<Term>& out) const {
     if (term.light <= 0 && term.error <= 0) return;
     const Node& node = nodes_[term.node];
-    if (term.error <= most || out.size() >= most_terms) {
+    if (term.error <= most || out.size() >= max_terms) {
         out.push_back(term);
     } else if (node.is_leaf()) {
         const double light = exact(node, at);
@@ -177,7 +177,7 @@ void EmitterTree::cut(const Receiver& at, double relative, double absolute, Cut&
         }
         out.error = std::hypot(std::sqrt(squares), unknown);
         const double limit = std::max(relative * out.light, absolute);
-        if (out.error <= limit || out.terms.size() >= most_terms) break;
+        if (out.error <= limit || out.terms.size() >= max_terms) break;
         most /= 2;
         out.next.clear();
         for (const Term& term : out.terms) open(term, at, most, out.next);

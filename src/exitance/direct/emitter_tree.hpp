@@ -62,9 +62,9 @@ class EmitterTree {
         std::vector<Term> next;  ///< Temporary storage.
     };
     /// Splits the clusters with the largest errors until the total error is below max(relative * light, absolute), or
-    /// until there are about `most_terms` clusters. About 100 ns per term.
+    /// until there are about `max_terms` clusters. About 100 ns per term.
     void cut(const Receiver& at, double relative, double absolute, Cut& out) const;
-    static constexpr std::size_t most_terms = 4096;
+    static constexpr std::size_t max_terms = 4096;
 
   private:
     Node make_node(std::uint32_t first, std::uint32_t last) const;

@@ -7,8 +7,8 @@ namespace exitance {
 /// Allowed RMS error of light at a place: relative * E + absolute.
 struct LightAccuracy {
     double relative = 0;
-    double absolute = 0;           ///< Absolute error, W/m^2, mean over bands.
-    unsigned most_rays = 1 << 13;  ///< Maximum number of rays, which limits the cost of nearly hidden sources.
+    double absolute = 0;          ///< Absolute error, W/m^2, mean over bands.
+    unsigned max_rays = 1 << 13;  ///< Maximum number of rays, which limits the cost of nearly hidden sources.
 
     double allowed(double E) const { return relative * E + absolute; }
 };

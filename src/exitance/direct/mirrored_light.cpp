@@ -103,8 +103,8 @@ struct MirroredLight::Sums {
 MirroredLight::Estimate MirroredLight::at(const Receiver& place, double E, const LightAccuracy& accuracy,
                                           std::uint64_t key) const {
     if (pane_area_.empty()) return {};
-    constexpr std::size_t most_images = 64;
-    const Estimate images = this->images(place, most_images, hash(key, 1u));
+    constexpr std::size_t max_images = 64;
+    const Estimate images = this->images(place, max_images, hash(key, 1u));
     Panes panes(scene_.panes(), pane_area_, place);
     if (panes.empty()) return images;
     const ScrambledSobol for_sky(hash(key, 2u)), for_emitters(hash(key, 3u));
@@ -126,7 +126,7 @@ MirroredLight::Estimate MirroredLight::at(const Receiver& place, double E, const
         out.irradiance += (sky.total() + emitters.total()) / samples;
         out.parallel += sky.total() / samples;
         out.variance = sky.variance(samples) + emitters.variance(samples);
-        if ((!has_sky && emitters_.empty()) || 2 * last > accuracy.most_rays ||
+        if ((!has_sky && emitters_.empty()) || 2 * last > accuracy.max_rays ||
             out.variance <= std::pow(accuracy.allowed(E + mean(out.irradiance)), 2))
             return out;
     }

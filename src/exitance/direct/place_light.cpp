@@ -32,7 +32,7 @@ PlaceLight::PlaceLight(const DirectLight& direct, const RayTracer& tracer) : dir
         const double pieces = static_cast<double>(emitter.pieces.size());
         preparing_ += (work_of_shaft + (is_directed ? work_of_integral : 0)) * pieces;
         // This bound holds even if every piece blocks every source. Integrals over fragments have no such bound.
-        most_work_ += is_directed ? HUGE_VAL : pieces * static_cast<double>(direct.occluders().pieces().size());
+        max_work_ += is_directed ? HUGE_VAL : pieces * static_cast<double>(direct.occluders().pieces().size());
     }
     if (panes_may_mirror_light(direct.scene()))
         mirrored_ = std::make_unique<const MirroredLight>(direct.scene(), tracer);
@@ -76,9 +76,9 @@ PlaceLight::Estimate PlaceLight::at(const Point& x, const Normal& n, RegionId ow
     std::optional<Spectrum> exact;
     double tried = 0;
     if (accuracy.relative > 0 || accuracy.absolute > 0) {
-        const double of_one = RayLight::rays_for(std::max(accuracy.relative, RayLight::error_of(accuracy.most_rays)));
+        const double of_one = RayLight::rays_for(std::max(accuracy.relative, RayLight::error_of(accuracy.max_rays)));
         const double work =
-            most_work_ <= of_one || !(accuracy.absolute > 0) ? of_one : rays_.forecast(x, n, own, accuracy, room);
+            max_work_ <= of_one || !(accuracy.absolute > 0) ? of_one : rays_.forecast(x, n, own, accuracy, room);
         exact = exact_within(x, n, own, work, room), tried = work_of(room, work);
         if (!exact) {
             // In penumbrae more rays are needed than were forecast. The first rays show how many.
@@ -103,13 +103,13 @@ PlaceLight::Estimate PlaceLight::at(const Point& x, const Normal& n, RegionId ow
 
 /// Returns the work that the last call of exact_within() took, in rays, at most `limit`.
 double PlaceLight::work_of(const Workspace& room, double limit) const {
-    return std::min(limit, most_work_ <= limit ? most_work_ : room.exact.work);
+    return std::min(limit, max_work_ <= limit ? max_work_ : room.exact.work);
 }
 
 std::optional<Spectrum> PlaceLight::exact_within(const Point& x, const Normal& n, RegionId own, double work,
                                                  Workspace& room) const {
-    return most_work_ <= work ? direct_->irradiance(x, n, own, room.exact)
-                              : direct_->irradiance_within(x, n, own, work, room.exact);
+    return max_work_ <= work ? direct_->irradiance(x, n, own, room.exact)
+                             : direct_->irradiance_within(x, n, own, work, room.exact);
 }
 
 /// Returns the number of rays that a point needs for the required accuracy; 0 if the trial rays reach it. Estimates the
@@ -118,13 +118,13 @@ std::optional<Spectrum> PlaceLight::exact_within(const Point& x, const Normal& n
 double PlaceLight::rays_needed_at(const Point& x, const Normal& n, RegionId own, double work,
                                   const LightAccuracy& accuracy, Workspace& room, double& tried) const {
     LightAccuracy first = accuracy;
-    first.most_rays = std::min(accuracy.most_rays, std::bit_ceil(static_cast<unsigned>(std::max(1.0, work))));
+    first.max_rays = std::min(accuracy.max_rays, std::bit_ceil(static_cast<unsigned>(std::max(1.0, work))));
     const Estimate found = rays_.at(x, n, own, first, room);
     tried += static_cast<double>(found.rays);
     const double allowed = accuracy.allowed(mean(found.irradiance));
     if (found.variance <= allowed * allowed) return 0;
     const double rays = found.rays * std::pow(found.variance / (allowed * allowed), 2.0 / 3);
-    return std::min<double>(rays, accuracy.most_rays);
+    return std::min<double>(rays, accuracy.max_rays);
 }
 
 /// Work of exact light at one place of a prepared polygon.
@@ -192,7 +192,7 @@ void PlaceLight::at_places(const Polygon& on, const LightAccuracy& accuracy, Wor
     LightAccuracy limited = accuracy;
     if (std::any_of(direct_->emitters().begin(), direct_->emitters().end(),
                     [](const DirectLight::Emitter& emitter) { return emitter.radiance.is_picture(); }))
-        limited.most_rays = std::min(limited.most_rays, max_rays_to_picture);
+        limited.max_rays = std::min(limited.max_rays, max_rays_to_picture);
     // In penumbrae, and where little of the light arrives, more rays are needed than were forecast. The first rays show
     // how many.
     double tried = 0;

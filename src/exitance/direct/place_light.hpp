@@ -82,7 +82,7 @@ class PlaceLight {
     const DirectLight* direct_;
     RayLight rays_;
     double preparing_ = 0;                           ///< Work of preparing all sources for a polygon, in rays.
-    double most_work_ = 0;                           ///< Upper bound on the work of exact light at a place.
+    double max_work_ = 0;                            ///< Upper bound on the work of exact light at a place.
     std::unique_ptr<const MirroredLight> mirrored_;  ///< Light that panes mirror; null: they mirror nothing.
 };
 

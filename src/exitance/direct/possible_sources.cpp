@@ -16,7 +16,7 @@ constexpr std::size_t min_group_size = 8;    ///< Smaller groups of regions are 
 constexpr double large_region_share = 1e-5;  ///< Share of the total area; larger regions are tested individually.
 constexpr std::size_t min_job_count = 256;   ///< Number of groups to distribute to threads.
 
-double least_distance(const Box& a, const Box& b) {
+double min_distance(const Box& a, const Box& b) {
     double squared = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const double gap = std::max({0.0, a.lo[k] - b.hi[k], b.lo[k] - a.hi[k]});
@@ -186,7 +186,7 @@ class PossibleSources::Divider {
             const double rise = highest(source.corners, region.plane), fall = highest(corners, emitter.plane);
             if (!direct_.shines_on(emitter, r) || rise <= 0 || fall <= 0) continue;
             if (is_large && !stop_.requested() && is_hidden(corners, source, cover)) continue;
-            const double d = least_distance(box, source.box);
+            const double d = min_distance(box, source.box);
             const double F = d > 0 ? source.area / (pi * d * d) * std::min(1.0, rise / d) * std::min(1.0, fall / d) : 1;
             out.push_back({source.name, std::min(1.0, F) * mean(emitter.exitance)});
         }

@@ -70,14 +70,13 @@ RayLight::Estimate RayLight::on_side(const Point& x, const Normal& n, RegionId o
         const double least = std::max(mean(out.irradiance) - std::sqrt(out.variance), min_share * open);
         const double allowed = accuracy.allowed(least);
         const double limit = allowed * allowed;
-        if (out.variance <= limit || out.rays >= accuracy.most_rays) break;
+        if (out.variance <= limit || out.rays >= accuracy.max_rays) break;
         // The variance sum of c_i n_i^(-3/2) is reached with fewest rays by n_i in proportion to c_i^(2/5).
         grows = false;
         const double scale = std::pow(rates / limit, 2.0 / 3);
         for (Part& part : room.parts_) {
             const double wanted = scale * std::pow(variance(part) * std::pow(part.rays, 1.5), 0.4);
-            const std::uint32_t rays =
-                power_of_two(wanted, 1, std::min(fastest_growth * part.rays, accuracy.most_rays));
+            const std::uint32_t rays = power_of_two(wanted, 1, std::min(fastest_growth * part.rays, accuracy.max_rays));
             if (rays <= part.rays) continue;
             add_rays(start, part, rays, room);
             grows = true;
@@ -97,9 +96,9 @@ double RayLight::light_through_openings(const Workspace& room) const {
     for (const Part& part : room.parts_) {
         double share = 1;
         if (part.kind == Part::Kind::sky)
-            share = openings().hidden_sky(least_pilot);
+            share = openings().hidden_sky(min_pilot);
         else if (part.is_sun && !room.portals_.is_aimed_at(part.seen->at(0.5, 0.5) - part.from))
-            share = openings().hidden_sun(least_pilot);
+            share = openings().hidden_sun(min_pilot);
         sum += share * mean(part.open);
     }
     return sum;
@@ -113,7 +112,7 @@ double RayLight::forecast(const Point& x, const Normal& n, RegionId own, const L
                     [](const Part& part) { return part.kind == Part::Kind::openings; }))
         open = light_through_openings(room);
     const double rays = open > 0 ? rays_for(std::max(accuracy.allowed(open) / open, 1e-9)) : 0;
-    return work_of_place + std::clamp(rays, 1.0 * least_pilot, 1.0 * accuracy.most_rays);
+    return work_of_place + std::clamp(rays, 1.0 * min_pilot, 1.0 * accuracy.max_rays);
 }
 
 RayLight::Estimate RayLight::at(const Point& x, const Normal& n, RegionId own, const LightAccuracy& accuracy,

@@ -115,7 +115,7 @@ class RayLight {
     /// unoccluded light. Features that carry less light than one ray may be missed by all rays; this share of one ray's
     /// light is their assumed standard deviation.
     static constexpr double half_hidden = 0.5;
-    static constexpr std::uint32_t least_pilot = 16, most_pilot = 64;
+    static constexpr std::uint32_t min_pilot = 16, max_pilot = 64;
     /// Rounds a number of rays up to a power of two between `least` and `most`.
     static std::uint32_t power_of_two(double rays, std::uint32_t least, std::uint32_t most);
 

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::uint32_t least_rays_of_part = 4;
+constexpr std::uint32_t min_rays_of_part = 4;
 
 /// Share of the unoccluded light above which a source is sampled by rays of its own.
 constexpr double strong_share = 1.0 / 8;
@@ -174,9 +174,9 @@ double RayLight::find_parts(const Receiver& at, const LightAccuracy& accuracy, W
     for (const Part& part : room.parts_) open += mean(part.open);
     if (!(open > 0)) return 0;
     const double pilot =
-        std::clamp(0.5 * rays_for(std::max(accuracy.allowed(open) / open, 1e-9)), 1.0 * least_pilot, 1.0 * most_pilot);
+        std::clamp(0.5 * rays_for(std::max(accuracy.allowed(open) / open, 1e-9)), 1.0 * min_pilot, 1.0 * max_pilot);
     for (Part& part : room.parts_)
-        part.block = power_of_two(pilot * mean(part.open) / open, least_rays_of_part, most_pilot) / 4;
+        part.block = power_of_two(pilot * mean(part.open) / open, min_rays_of_part, max_pilot) / 4;
     return open;
 }
 

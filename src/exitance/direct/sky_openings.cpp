@@ -17,13 +17,13 @@ namespace {
 // chosen by trial and not measured by a command.
 
 /// Places from which the sky is looked for: in the first test whether a search is worthwhile, and in the search.
-constexpr std::size_t first_places = 512, most_places = 8192;
+constexpr std::size_t first_places = 512, max_places = 8192;
 constexpr std::uint32_t rays_of_place = 64;  ///< Number of rays per place to the sky; as many go to all suns together.
 constexpr int few_rays = 4;               ///< Maximum number of escaping rays of a place that sees little of the sky.
 constexpr std::size_t ways_of_place = 2;  ///< Maximum number of escaping rays of a place that are followed.
 /// Limits on the openings that are found, and on the cells into which they are divided.
-constexpr std::size_t most_openings = 128, most_cells = 512;
-constexpr std::size_t most_attempts = 512;    ///< Maximum number of escaping rays that are followed in the whole scene.
+constexpr std::size_t max_openings = 128, max_cells = 512;
+constexpr std::size_t max_attempts = 512;     ///< Maximum number of escaping rays that are followed in the whole scene.
 constexpr unsigned directions_of_point = 64;  ///< Directions that measure how much of the sky a point sees.
 /// The rim of an opening is looked for at this number of azimuths, each in this number of steps from its middle to the
 /// horizon. Bisections then refine the position of the rim, and that of the opening along a ray.
@@ -311,10 +311,10 @@ double SkyOpenings::choose(const Point& x, const Normal& n, std::vector<PortalCe
         if (share > 0) best.push_back({-share, i});
     }
     double left_out = 0;
-    if (best.size() > PortalAim::most_targets) {
-        std::nth_element(best.begin(), best.begin() + PortalAim::most_targets, best.end());
-        for (std::size_t k = PortalAim::most_targets; k < best.size(); ++k) left_out -= best[k].first;
-        best.resize(PortalAim::most_targets);
+    if (best.size() > PortalAim::max_targets) {
+        std::nth_element(best.begin(), best.begin() + PortalAim::max_targets, best.end());
+        for (std::size_t k = PortalAim::max_targets; k < best.size(); ++k) left_out -= best[k].first;
+        best.resize(PortalAim::max_targets);
     }
     std::sort(best.begin(), best.end());
     for (const auto& [share, i] : best) out.push_back(cells_[i]);
@@ -331,7 +331,7 @@ SkyOpenings::SkyOpenings(const Occluders& occluders, const RayTracer& tracer, co
     const auto dark = std::count_if(places.begin(), places.end(), [](const SearchPlace& p) { return p.sky == 0; });
     if (static_cast<double>(dark) <= few_dark_places * static_cast<double>(places.size())) return;
 
-    places = search.places(most_places);
+    places = search.places(max_places);
     std::vector<Escape> ways;
     for (SearchPlace& place : places) {
         search.cast_to_sky(place, rays_of_place);
@@ -342,13 +342,13 @@ SkyOpenings::SkyOpenings(const Occluders& occluders, const RayTracer& tracer, co
             ways.push_back({place.x, search.direction(place, static_cast<std::uint32_t>(std::countr_zero(left)))});
     }
     std::size_t attempts = 0, openings = 0;
-    while (!ways.empty() && attempts++ < most_attempts && openings < most_openings) {
+    while (!ways.empty() && attempts++ < max_attempts && openings < max_openings) {
         const Escape way = ways[hash(attempts) % ways.size()];
         const PortalCell found = search.opening(way);
         if (!(found.area > 0)) continue;
         ++openings;
         std::erase_if(ways, [&](const Escape& other) { return passes_near(other.from, other.direction, found); });
-        add_portal_cells(found, most_cells, cells_);
+        add_portal_cells(found, max_cells, cells_);
     }
 
     std::vector<std::uint64_t> to_sky, to_sun;

@@ -34,7 +34,7 @@ class SkyOpenings {
 
     /// Parallelograms that cover the openings, with normals that point outdoors.
     std::span<const PortalCell> cells() const { return cells_; }
-    /// Chooses the parallelograms at which rays from x should be aimed, at most PortalAim::most_targets. Returns the
+    /// Chooses the parallelograms at which rays from x should be aimed, at most PortalAim::max_targets. Returns the
     /// sum of the form factors of the others.
     double choose(const Point& x, const Normal& n, std::vector<PortalCell>& out) const;
 

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-constexpr double most_penumbra = 0.25;  ///< Width in extents of a polygon; derived from the three points of a rule.
+constexpr double max_penumbra = 0.25;  ///< Width in extents of a polygon; derived from the three points of a rule.
 /// In extents of a polygon: light from within this distance may peak between the polygon's quadrature points.
 constexpr double nearness = 2;
 
@@ -104,7 +104,7 @@ bool SmallSources::is_sharp(const ReceiverLight::Source& source, const Polygon& 
     const Occluders& occluders = direct_->occluders();
     const std::span<const Point> corners = occluders.corners(source.piece);
     const Point centre = centroid(corners), middle = centroid(on.outline);
-    const double width = 2 * distance_to_farthest(centre, corners), most = most_penumbra * extent_of(on.outline);
+    const double width = 2 * distance_to_farthest(centre, corners), most = max_penumbra * extent_of(on.outline);
     const bool is_far = direct_->looks_far(source.emitter);
     if (!is_far && width > most) return false;
     const double reach = distance_to_farthest(centre, on.outline);
@@ -133,7 +133,7 @@ bool SmallSources::may_be_missed(const ReceiverLight::Source& source, const Poly
 /// Finds the small sources, each with its possible blockers.
 void SmallSources::prepare(const Polygon& on, Workspace& room) const {
     const Occluders& occluders = direct_->occluders();
-    const double most = most_penumbra * extent_of(on.outline);
+    const double most = max_penumbra * extent_of(on.outline);
     room.named_.clear();
     for (std::uint32_t e = 0; e < direct_->emitters().size(); ++e) {
         const DirectLight::Emitter& emitter = direct_->emitters()[e];
@@ -147,7 +147,7 @@ void SmallSources::prepare(const Polygon& on, Workspace& room) const {
     }
     ReceiverLight& light = room.light_;
     direct_->prepare(on.outline, on.n, on.own, room.named_, light, room.exact_,
-                     [](const DirectLight::SourceName&) { return most_blockers; });
+                     [](const DirectLight::SourceName&) { return max_blockers; });
     std::erase_if(light.sources,
                   [&](const ReceiverLight::Source& source) { return !may_be_missed(source, on, light); });
     // Each source is evaluated separately.
@@ -160,7 +160,7 @@ void SmallSources::prepare(const Polygon& on, Workspace& room) const {
         const PunctualLight& lamp = direct_->scene().lights()[beam.light];
         const bool is_near =
             !lamp.is_directional() && norm(lamp.position - centroid(on.outline)) < nearness * extent_of(on.outline);
-        return (beam.count == 0 && !is_near) || beam.count > most_blockers;
+        return (beam.count == 0 && !is_near) || beam.count > max_blockers;
     });
 }
 
@@ -199,10 +199,10 @@ namespace {
 template <class Light>
 Spectrum integral(const Point& a, const Point& b, const Point& c, const Point* near, int levels, const Light& light) {
     // largest extent relative to the distance; derived from the rule's error, which is then below 1%
-    constexpr double most_extent = 0.5;
+    constexpr double max_extent = 0.5;
     const double squared = std::max({squared_norm(b - a), squared_norm(c - b), squared_norm(a - c)});
     const Point ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a), middle = (1.0 / 3) * (a + b + c);
-    if (near && levels > 0 && squared > most_extent * most_extent * squared_norm(middle - *near))
+    if (near && levels > 0 && squared > max_extent * max_extent * squared_norm(middle - *near))
         return integral(a, ab, ca, near, levels - 1, light) + integral(ab, b, bc, near, levels - 1, light) +
                integral(ca, bc, c, near, levels - 1, light) + integral(ab, bc, ca, near, levels - 1, light);
     // Sample inside the triangle, not on its edges: these may be the shadows of a pane's edges.
@@ -231,13 +231,13 @@ bool SmallSources::find_lit(const Centre& centre, const Polygon& on, std::span<c
 Spectrum SmallSources::mean_of(const Centre& centre, const Polygon& on, std::span<const PieceId> blockers,
                                Workspace& room) const {
     if (!find_lit(centre, on, blockers, room)) return {};
-    constexpr int most_levels = 8;
+    constexpr int max_levels = 8;
     Spectrum sum;
     for (std::size_t i = 0; i < room.lit_.size(); ++i) {
         room.lit_.corners(i, room.corners_);
         const auto corner = [&](std::size_t k) { return centre.at + room.corners_[k]; };
         for (std::size_t k = 2; k < room.corners_.size(); ++k)
-            sum += integral(corner(0), corner(k - 1), corner(k), centre.is_far ? nullptr : &centre.at, most_levels,
+            sum += integral(corner(0), corner(k - 1), corner(k), centre.is_far ? nullptr : &centre.at, max_levels,
                             [&](const Point& x) { return centre.light_at(x, on); });
     }
     return (1 / norm(area_vector(on.outline))) * sum;

@@ -41,14 +41,14 @@ class SmallSources {
 
     /// Returns the mean irradiance on the polygon by small sources, less that by the rule. Sources that cannot be
     /// missed, because the polygon sees them unoccluded from afar, are left out, and so are sources with more than
-    /// `most_blockers` possible blockers. About 10 us per source and polygon.
+    /// `max_blockers` possible blockers. About 10 us per source and polygon.
     Missed missed(const Polygon& on, Workspace& room) const;
 
     /// Returns, for each small source that lights the polygon, the centre of the largest lit fragment. `on` needs no
     /// rule.
     std::vector<Point> lit_places(const Polygon& on, Workspace& room) const;
 
-    static constexpr std::size_t most_blockers = 256;
+    static constexpr std::size_t max_blockers = 256;
 
   private:
     class Centre;

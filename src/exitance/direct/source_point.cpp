@@ -14,7 +14,7 @@ constexpr double max_distance_ratio = 1.5;
 /// Corners of a polygon whose triangles are sampled one by one. Those of other polygons are slivers from the first
 /// corner: s chooses the direction from there, and t the distance, so that near numbers belong to near points. With the
 /// 48 corners of the sun's disc, rays in its penumbra then have a third to a quarter of the variance.
-constexpr std::size_t most_in_triangles = 4;
+constexpr std::size_t max_in_triangles = 4;
 
 /// Squared distance of x to a convex polygon.
 double nearest_squared(std::span<const Point> corners, const Normal& n, const Point& x) {
@@ -115,7 +115,7 @@ Point SeenPolygon::uniform_in_area(double s, double t) const {
     const double of_triangle = area_before_[k] - area_before_[k - 1];
     const double share = of_triangle > 0 ? std::min((wanted - area_before_[k - 1]) / of_triangle, 1.0) : 0;
     const Vec3 a = corners_[k] - corners_[0], b = corners_[k + 1] - corners_[0];
-    if (corners_.size() > most_in_triangles) {
+    if (corners_.size() > max_in_triangles) {
         const double away = std::sqrt(t);
         return corners_[0] + away * ((1 - share) * a + share * b);
     }

@@ -139,14 +139,14 @@ class Builder {
                          .search = search_.get()};
         if (followed_.size() > 0) out.regions = &followed_;
         if (follows_all()) {
-            out.most_curves = out.most_edges = SIZE_MAX;
+            out.max_curves = out.max_edges = SIZE_MAX;
             return out;
         }
         const double T = options_.largest_error * largest_;
-        out.least_effect = (weak_ ? mesh_limits::least_kink_among_many : mesh_limits::least_kink) * T;
-        out.least_area = mesh_limits::unfindable_area * area_;
-        out.least_bend = (weak_ ? mesh_limits::least_bend_among_many : mesh_limits::least_bend) * T;
-        out.least_narrow_bend = weak_ ? HUGE_VAL : T;
+        out.min_effect = (weak_ ? mesh_limits::min_kink_among_many : mesh_limits::min_kink) * T;
+        out.min_area = mesh_limits::unfindable_area * area_;
+        out.min_bend = (weak_ ? mesh_limits::min_bend_among_many : mesh_limits::min_bend) * T;
+        out.min_narrow_bend = weak_ ? HUGE_VAL : T;
         return out;
     }
 

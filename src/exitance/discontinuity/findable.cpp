@@ -4,7 +4,7 @@
 
 namespace exitance {
 
-double least_findable(std::vector<double> areas, double unfindable) {
+double min_findable(std::vector<double> areas, double unfindable) {
     std::erase(areas, 0.0);
     std::sort(areas.begin(), areas.end());
     double sum = 0, least = 0;

@@ -20,9 +20,9 @@ constexpr double unfindable_area_among_many = 1e-3;
 /// bisected twice, G h/(64 w), is below T if G is below 160 T. In buildings, blockers have countless edges and every
 /// curve adds faces. These triangles are bisected because of their mean square error, even without curves, so weaker
 /// light gets no curves there.
-constexpr int least_bend = 5, least_kink_among_many = 160, least_bend_among_many = 300;  // see above
+constexpr int min_bend = 5, min_kink_among_many = 160, min_bend_among_many = 300;  // see above
 /// Least light that gets kink curves in other scenes, as a share of T: ten omitted sources cause an error of T at most.
-constexpr double least_kink = 0.1;  // derived from ten sources, each with a tenth of T
+constexpr double min_kink = 0.1;  // derived from ten sources, each with a tenth of T
 
 /// Light of all omitted sources together, as a share of the requested errors.
 constexpr double unseen_light = 0.02;  // derived from the error that omitting this light adds: at most 2%

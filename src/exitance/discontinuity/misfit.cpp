@@ -68,7 +68,7 @@ std::vector<std::uint32_t> coarse_triangles(const BisectionMesh& mesh, std::span
     std::vector<double> missing(misfits.size());
     for (std::uint32_t t = 0; t < misfits.size(); ++t)
         if (misfits[t].largest > limits.largest) missing[t] = mesh.area(t);
-    const double least = least_findable(missing, limits.unfindable_area);
+    const double least = min_findable(missing, limits.unfindable_area);
     std::vector<std::uint32_t> coarse;
     for (std::uint32_t t = 0; t < misfits.size(); ++t)
         if ((misfits[t].squared > share || missing[t] > least) && mesh.longest_edge(t) > limits.shortest_edge)

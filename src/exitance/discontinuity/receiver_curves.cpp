@@ -80,8 +80,7 @@ void CurveFinder::look_at_strong(RegionId number, ReceiverCurves& out, DirectLig
                             .radius = emitter.radius,
                             .weight = mean(light_weight(stage_->scene.material(number)) * emitter.exitance),
                             .area = stage_->scene.regions()[emitter.region].area};
-        if (region.area >= options_.least_area &&
-            greatest_effect(number, emitter, s.emitter, effect) >= options_.least_effect)
+        if (region.area >= options_.min_area && max_effect(number, emitter, s.emitter, effect) >= options_.min_effect)
             sources.push_back(s);
         else
             ++out.left_out;
@@ -96,19 +95,19 @@ ReceiverCurves CurveFinder::find(RegionId number) const {
     if (is_dark && options_.secondary.empty()) return out;
     add_contacts(number, out);
     const bool is_followed = !options_.regions || (*options_.regions)[number];
-    if (region.area >= options_.least_area && is_followed)
+    if (region.area >= options_.min_area && is_followed)
         add_events(number, out), add_secondary(number, out), add_curves_behind(number, out);
     else if (!out.light.is_unshadowed())
         out.left_out += out.light.sources.size();
     if (options_.stop && options_.stop->requested()) return out;
     ArrangedCurves arranged = arranged_curves(std::move(out.curves), out.loops, nearness * stage_->scene.size());
     out.curves = std::move(arranged.curves), out.loops = std::move(arranged.loops);
-    if (out.curves.size() > options_.most_curves) {
+    if (out.curves.size() > options_.max_curves) {
         const auto effect = [](const FlatCurve& c) { return c.order == CurveOrder::d0 ? HUGE_VAL : c.effect(); };
         std::stable_sort(out.curves.begin(), out.curves.end(),
                          [&](const FlatCurve& a, const FlatCurve& b) { return effect(a) > effect(b); });
-        out.left_out += out.curves.size() - options_.most_curves;
-        out.curves.resize(options_.most_curves);
+        out.left_out += out.curves.size() - options_.max_curves;
+        out.curves.resize(options_.max_curves);
     }
     return out;
 }
@@ -143,7 +142,7 @@ void CurveFinder::add_contacts_in_the_dark(RegionId region, ReceiverCurves& out)
 }
 
 /// Upper bound on a source's light anywhere on a region, W/m^2 of rho E: M A / (pi d^2), at most M.
-double CurveFinder::greatest_effect(RegionId region, const Effect& effect) const {
+double CurveFinder::max_effect(RegionId region, const Effect& effect) const {
     Box box;
     for (const auto& loop : stage_->scene.regions()[region].loops)
         for (const Point& p : loop) box.add(p);
@@ -158,9 +157,9 @@ double CurveFinder::greatest_effect(RegionId region, const Effect& effect) const
 }
 
 /// The bound for an emitter, which uses the bound of WeakLight as well, if there is one.
-double CurveFinder::greatest_effect(RegionId region, const DirectLight::Emitter& emitter, std::uint32_t number,
-                                    const Effect& effect) const {
-    const double by_distance = greatest_effect(region, effect);
+double CurveFinder::max_effect(RegionId region, const DirectLight::Emitter& emitter, std::uint32_t number,
+                               const Effect& effect) const {
+    const double by_distance = max_effect(region, effect);
     if (!options_.weak) return by_distance;
     const double M = mean(emitter.exitance);
     return std::min(by_distance, M > 0 ? effect.weight * options_.weak->bound(region, number) / M : 0);
@@ -202,8 +201,8 @@ void CurveFinder::add_events(RegionId region, ReceiverCurves& out) const {
                       .radius = emitter.radius,
                       .weight = mean(light_weight(stage_->scene.material(region)) * emitter.exitance),
                       .area = stage_->scene.regions()[emitter.region].area};
-        effect.gain = greatest_effect(region, emitter, number, effect);
-        if (effect.gain < options_.least_effect) {
+        effect.gain = max_effect(region, emitter, number, effect);
+        if (effect.gain < options_.min_effect) {
             ++out.left_out;
             continue;
         }
@@ -245,12 +244,12 @@ void CurveFinder::add_events(RegionId region, const EventSource& source, const E
     std::vector<double> gains;
     for (const std::uint32_t e : edges) {
         const double gain = effect_beyond(edges_->edges()[e], source, effect, out);
-        if (gain >= options_.least_effect) strong.push_back(e), gains.push_back(gain);
+        if (gain >= options_.min_effect) strong.push_back(e), gains.push_back(gain);
     }
     out.left_out += edges.size() - strong.size();
     const FlatBox box(out.loops);
     ShadowEventFinder finder(stage_->occluders, *edges_,
-                             {gains, options_.least_bend, options_.least_narrow_bend, options_.stop, lists});
+                             {gains, options_.min_bend, options_.min_narrow_bend, options_.stop, lists});
     std::vector<ShadowEvent> events;
     finder.find(out.frame, region, box.lo, box.hi, source, strong, events);
     out.wedges += finder.wedges, out.left_out += finder.too_weak, out.searched.plane_tests += finder.plane_tests;
@@ -262,7 +261,7 @@ void CurveFinder::add_events(RegionId region, const EventSource& source, const E
                               e.by_edge_of_source ? CurveCause::edge_vertex : CurveCause::vertex_edge, source.region,
                               e.gain});
     // Two edges that each hide half of the source leave a quarter of it together.
-    const double least = (options_.conics == ConicCurves::all ? 1 : 4) * options_.least_bend;
+    const double least = (options_.conics == ConicCurves::all ? 1 : 4) * options_.min_bend;
     if (source.is_point || effect.gain < least) return;
     std::erase_if(edges,
                   [&](std::uint32_t e) { return effect_beyond(edges_->edges()[e], source, effect, out) < least; });
@@ -274,7 +273,7 @@ void CurveFinder::add_events(RegionId region, const EventSource& source, const E
 void CurveFinder::add_non_emitter_events(RegionId region, const EventSource& source, double gain,
                                          const WedgeLists* lists, std::span<const std::uint32_t> edges,
                                          ReceiverCurves& out) const {
-    if (edges.size() > options_.most_edges) {
+    if (edges.size() > options_.max_edges) {
         ++out.left_out;
         return;
     }
@@ -321,8 +320,8 @@ void CurveFinder::add_secondary(RegionId region, ReceiverCurves& out) const {
                           .radius = radius,
                           .weight = mean(light_weight(stage_->scene.material(region)) * part.radiosity),
                           .area = part.area};
-            effect.gain = greatest_effect(region, effect);
-            if (effect.gain < options_.least_effect) {
+            effect.gain = max_effect(region, effect);
+            if (effect.gain < options_.min_effect) {
                 ++out.left_out;
                 continue;
             }

@@ -40,14 +40,14 @@ struct SecondarySource {
 enum class ConicCurves { none, at_umbras, all };
 
 struct CurveOptions {
-    double least_effect = 0;          ///< W/m^2 of rho E. Weaker sources get no curves.
-    double least_area = 0;            ///< Smaller regions get contact curves only, m^2.
-    std::size_t most_curves = 1'000;  ///< Limit on the curves of a region.
-    std::size_t most_edges = 400;     ///< With more blockers' edges, pairs are not searched for NEV and EEE events.
+    double min_effect = 0;           ///< W/m^2 of rho E. Weaker sources get no curves.
+    double min_area = 0;             ///< Smaller regions get contact curves only, m^2.
+    std::size_t max_curves = 1'000;  ///< Limit on the curves of a region.
+    std::size_t max_edges = 400;     ///< With more blockers' edges, pairs are not searched for NEV and EEE events.
     /// Regions that get curves; others get contact curves only. Null: all regions.
     const Field<RegionId, std::uint8_t>* regions = nullptr;
-    double least_bend = 0;                ///< W/m^2 of rho E: weaker sources get no D2 curves.
-    double least_narrow_bend = HUGE_VAL;  ///< W/m^2 of rho E: lower limit for long, narrow penumbras.
+    double min_bend = 0;                ///< W/m^2 of rho E: weaker sources get no D2 curves.
+    double min_narrow_bend = HUGE_VAL;  ///< W/m^2 of rho E: lower limit for long, narrow penumbras.
     ConicCurves conics = ConicCurves::at_umbras;
     std::vector<SecondarySource> secondary = {};
     const StopRequest* stop = nullptr;      ///< After a request to stop, the results are incomplete.
@@ -92,9 +92,9 @@ class CurveFinder {
     void add_non_emitter_events(RegionId region, const EventSource& source, double gain, const WedgeLists* lists,
                                 std::span<const std::uint32_t> edges, ReceiverCurves& out) const;
     void add_secondary(RegionId region, ReceiverCurves& out) const;
-    double greatest_effect(RegionId region, const DirectLight::Emitter& emitter, std::uint32_t number,
-                           const Effect& effect) const;
-    double greatest_effect(RegionId region, const Effect& effect) const;
+    double max_effect(RegionId region, const DirectLight::Emitter& emitter, std::uint32_t number,
+                      const Effect& effect) const;
+    double max_effect(RegionId region, const Effect& effect) const;
 
     const Stage* stage_;
     const BlockerEdges* edges_;

@@ -30,12 +30,12 @@ Scene box_on_floor(double depth) {
 /// How much a point sees of all sources in front of it.
 struct Sight {
     bool faces_any = false;
-    double least_share = 1, largest_share = 0;  ///< Smallest and largest visible share of a source's form factor.
+    double min_share = 1, largest_share = 0;  ///< Smallest and largest visible share of a source's form factor.
 
     ShadowClass shadow_class() const {
         constexpr double touching = 1e-6;  // derived from rounding, 1e-12 of the form factor, with a wide margin
         if (!faces_any || largest_share < touching) return ShadowClass::umbra;
-        return least_share > 1 - touching ? ShadowClass::lit : ShadowClass::penumbra;
+        return min_share > 1 - touching ? ShadowClass::lit : ShadowClass::penumbra;
     }
 };
 
@@ -53,7 +53,7 @@ Sight sight_of(const Stage& stage, const Point& x, RegionId region) {
             if (!(whole > 0)) continue;
             const double share = visible_form_factor(stage.occluders, at, piece, scratch) / whole;
             out.faces_any = true;
-            out.least_share = std::min(out.least_share, share), out.largest_share = std::max(out.largest_share, share);
+            out.min_share = std::min(out.min_share, share), out.largest_share = std::max(out.largest_share, share);
         }
     return out;
 }

@@ -35,7 +35,7 @@ WeakLight::WeakLight(const DirectLight& direct, const RayTracer& tracer, const A
             const ScrambledSobol at(hash(static_cast<std::uint64_t>(Stream::direct), piece.value));
             Emitting& source = sources_.emplace_back();
             source.name = {e, piece};
-            for (std::uint32_t i = 0; i < most_rays; ++i)
+            for (std::uint32_t i = 0; i < max_rays; ++i)
                 source.places.push_back(uniform_on(corners, area, at(i, 0), at(i, 1)));
         }
     }
@@ -47,11 +47,11 @@ void WeakLight::choose(RegionId r, std::span<const PossibleSources::Source> from
     const Scene& scene = direct_->occluders().scene();
     const double w = mean(light_weight(scene.material(r)));
     const double larger = std::sqrt(std::max(1.0, asked.area / scene.regions()[r].area));
-    const double noise = std::min(asked.noise * larger, std::max(asked.noise, asked.most_noise)) / w;
+    const double noise = std::min(asked.noise * larger, std::max(asked.noise, asked.max_noise)) / w;
     double sum = 0;
     std::size_t weak = 0;
     const bool is_exact = asked.exact && asked.exact->size() > 0 && (*asked.exact)[r];
-    const double max_bound_sum = is_exact ? -1 : 2 * noise * std::sqrt(static_cast<double>(most_rays));
+    const double max_bound_sum = is_exact ? -1 : 2 * noise * std::sqrt(static_cast<double>(max_rays));
     while (weak < from.size() && sum + from[weak].bound <= max_bound_sum) sum += from[weak++].bound;
     const double rays = noise > 0 ? sum * sum / (4 * noise * noise) : 0;
     OfRegion& out = regions_[r];
@@ -68,7 +68,7 @@ void WeakLight::choose(RegionId r, std::span<const PossibleSources::Source> from
         if (share < 1 && lot.uniform() >= share) continue;
         // Powers of two keep the Sobol points evenly distributed.
         const auto count = static_cast<std::uint32_t>(std::bit_ceil(static_cast<unsigned>(std::ceil(share))));
-        out.weak.push_back({number, std::min(count, most_rays), static_cast<float>(1 / std::min(1.0, share))});
+        out.weak.push_back({number, std::min(count, max_rays), static_cast<float>(1 / std::min(1.0, share))});
     }
     // Sort by emitter, the order that all other lists of sources have.
     std::vector<std::size_t> order(out.strong.size());

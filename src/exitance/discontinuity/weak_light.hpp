@@ -19,16 +19,16 @@ namespace exitance {
 ///
 /// A region's n rays are shared among its sources in proportion to their bounds U_s (PossibleSources), so that the RMS
 /// error at a point is at most (sum of U) / (2 sqrt(n)). A source with a share of less than one ray is selected at
-/// random. Sources count as weak, starting with the weakest, for as long as `most_rays` rays suffice.
+/// random. Sources count as weak, starting with the weakest, for as long as `max_rays` rays suffice.
 class WeakLight {
   public:
-    static constexpr unsigned most_rays = 128;
+    static constexpr unsigned max_rays = 128;
 
     struct Asked {
         double negligible = 0;  ///< Permitted irradiance of all omitted sources together, W/m^2.
         double noise = 0;       ///< Permitted RMS error of rays, W/m^2 of w E.
-        double most_noise = 0;  ///< Largest permitted RMS error on regions smaller than `area`, W/m^2 of w E.
-        /// Below this area (m^2) the permitted error grows with (area / region)^(1/2), up to `most_noise`.
+        double max_noise = 0;   ///< Largest permitted RMS error on regions smaller than `area`, W/m^2 of w E.
+        /// Below this area (m^2) the permitted error grows with (area / region)^(1/2), up to `max_noise`.
         double area = 0;
         /// Regions where all sources count as strong; null or empty: none.
         const Field<RegionId, std::uint8_t>* exact = nullptr;

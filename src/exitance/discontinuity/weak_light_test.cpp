@@ -14,7 +14,7 @@ TEST(WeakLight, RmsErrorIsWithinTheRequestedNoise) {
     const Stage stage(scene);
     ASSERT_TRUE(WeakLight::pays(stage.direct));
     const StopRequest stop;
-    const WeakLight::Asked asked{.negligible = 0.1, .noise = 1, .most_noise = 1, .area = 0};
+    const WeakLight::Asked asked{.negligible = 0.1, .noise = 1, .max_noise = 1, .area = 0};
     const WeakLight weak(stage.direct, stage.tracer, asked, stop);
     WeakLight::Workspace room;
     RandomStream random(5, Stream::mesh);

@@ -92,7 +92,7 @@ class BodySurvey {
     std::vector<ResidualSample> measure(std::span<const BodyPoint> points) const;
     std::vector<PointError> add(std::span<const BodyPoint> points);
     bool measure_closely(std::uint32_t body, const CheckPlan& of_body, unsigned rays);
-    bool look_closely_at(std::uint32_t body);
+    bool measure_at_more_points(std::uint32_t body);
 
     const BodyCheck& c_;
     const std::function<double(std::size_t)>& light_of_room_;
@@ -101,7 +101,7 @@ class BodySurvey {
     std::vector<std::vector<ElementId>> leaves_;
     std::vector<BodyMeasure> measured_;
     std::vector<PointError> close_points_;
-    std::vector<bool> is_known_;    ///< Bodies measured by `look_closely_at`.
+    std::vector<bool> is_known_;    ///< Bodies measured by `measure_at_more_points`.
     std::vector<bool> is_unknown_;  ///< Bodies whose error matters, but for which the allowed rays do not suffice.
 };
 
@@ -109,9 +109,9 @@ class BodySurvey {
 /// which takes no rays: at the few points of a measurement, a sunlit edge of a dark plate would count too much or not
 /// at all.
 std::vector<BodyMeasure> BodySurvey::unmeasured_bodies() const {
-    constexpr std::size_t places_in_all = 1 << 16, fewest_places = 64, most_places = 4096;
+    constexpr std::size_t places_in_all = 1 << 16, min_places = 64, max_places = 4096;
     const std::size_t count =
-        std::clamp(places_in_all / std::max<std::size_t>(1, leaves_.size()), fewest_places, most_places);
+        std::clamp(places_in_all / std::max<std::size_t>(1, leaves_.size()), min_places, max_places);
     std::vector<BodyMeasure> out(leaves_.size());
     shared_ranges(
         out.size(), 1,
@@ -246,7 +246,7 @@ bool BodySurvey::measure_closely(std::uint32_t body, const CheckPlan& of_body, u
 }
 
 /// Measures a body at further points. Returns false if the rays do not suffice.
-bool BodySurvey::look_closely_at(std::uint32_t body) {
+bool BodySurvey::measure_at_more_points(std::uint32_t body) {
     const std::uint64_t name = hash(c_.seed, static_cast<std::uint64_t>(Stream::certificate), 2, body);
     // The noise of each gather may be as large as the apparent error, but not larger than the limit at which users are
     // warned. Otherwise, among many bodies, those with the largest noise would seem to have the largest errors.
@@ -285,7 +285,7 @@ void BodySurvey::measure_further() {
                 worst = b;
         const double of_interest = std::clamp(largest, error_, max_body_errors * error_);
         if (!worst || measured_[*worst].suspected() <= of_interest) return;
-        is_known_[*worst] = look_closely_at(*worst);
+        is_known_[*worst] = measure_at_more_points(*worst);
         is_unknown_[*worst] = !is_known_[*worst];
         if (is_known_[*worst]) largest = std::max(largest, *measured_[*worst].error(error_));
     }

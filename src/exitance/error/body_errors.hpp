@@ -34,7 +34,7 @@ class BodyMeasure {
     double mean_reflected() const { return reflected_; }  ///< W/m^2
     /// Returns the radiosity to which the body's error is relative, W/m^2: the body's mean reflected radiosity, but at
     /// least a tenth of its room's.
-    double reference() const { return std::max(reflected_, least_body_light * light_); }
+    double reference() const { return std::max(reflected_, min_body_light * light_); }
     /// Returns the RMS error relative to `reference`, but at least the size that the standard error may hide. Empty
     /// below `min_points` points, and if noise hides the error: if the standard error of the mean square exceeds both
     /// half of it and the square of 1.5 times the error `requested`.

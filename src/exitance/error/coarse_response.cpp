@@ -13,9 +13,9 @@ namespace {
 
 /// Returns the form factors between the leaves of the mesh of `light`, from random rays.
 RayRows rows_by_rays(const Stage& stage, const GlobalLight& light, const ElementLocator& coarse, std::uint64_t seed) {
-    constexpr double mean_rays = 16, least_rays = 8;
+    constexpr double mean_rays = 16, min_rays = 8;
     const double fewer = fewer_rays_in_crowd(stage, light.tree, light.numbering, light.reflected);
-    const RayBudget rays{.average = fewer * mean_rays, .least = static_cast<unsigned>(fewer * least_rays), .most = 64};
+    const RayBudget rays{.average = fewer * mean_rays, .min = static_cast<unsigned>(fewer * min_rays), .max = 64};
     return {stage, light.tree, light.numbering, coarse, rays, seed, Dealing::by_element, RowsHeld::by_owner};
 }
 

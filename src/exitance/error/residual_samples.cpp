@@ -29,7 +29,7 @@ constexpr std::size_t samples_per_local_sum = 4;
 /// square requires.
 double factor_for_many_reflections(double constant) {
     // given by the power 4/3 above
-    return std::clamp(std::pow(constant / 4, 4.0 / 3), 1.0, calibrated::most_rays_often);
+    return std::clamp(std::pow(constant / 4, 4.0 / 3), 1.0, calibrated::max_ray_factor);
 }
 
 }  // namespace
@@ -39,8 +39,8 @@ double rays_to_resolve(double error, std::size_t points) {
 }
 
 unsigned certificate_rays(double wanted) {
-    const double most = calibrated::most_certificate_rays;
-    return std::bit_ceil(static_cast<unsigned>(std::clamp(wanted, calibrated::least_rays, most)));
+    const double most = calibrated::max_certificate_rays;
+    return std::bit_ceil(static_cast<unsigned>(std::clamp(wanted, calibrated::min_rays_per_sample, most)));
 }
 
 ResidualSampler::ResidualSampler(const Stage& stage, const ElementFunction& indirect, const ReflectedLight& b,
@@ -51,7 +51,7 @@ ResidualSampler::ResidualSampler(const Stage& stage, const ElementFunction& indi
       b_(b),
       check_(check),
       options_(options),
-      often_(factor_for_many_reflections(constant)),
+      ray_factor_(factor_for_many_reflections(constant)),
       coarse_(coarse),
       numbering_(numbering) {}
 
@@ -59,7 +59,7 @@ unsigned ResidualSampler::rays_at(ElementId leaf) const {
     if (options_.leaves)
         return certificate_rays(calibrated::certificate_ray_share *
                                 LocalPassReport::known(*options_.leaves, indirect_.tree, leaf).rays);
-    return certificate_rays(often_ * rays_to_resolve(options_.error, options_.points));
+    return certificate_rays(ray_factor_ * rays_to_resolve(options_.error, options_.points));
 }
 
 Point ResidualSampler::point(const ResidualSample& sample) const {

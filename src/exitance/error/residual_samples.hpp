@@ -86,7 +86,7 @@ class ResidualSampler {
     const CertificateOptions& options_;
     /// Factor on the number of rays. It is above 1 if light is reflected so often that a small mean residual causes a
     /// large error.
-    double often_;
+    double ray_factor_;
     const ElementLocator& coarse_;
     const LeafNumbering& numbering_;
 };

@@ -43,11 +43,11 @@ void add_to_bodies(const Scene& scene, const Field<SurfaceId, SurfaceLight>& lig
         squared[found.body[s]] +=
             scene.surfaces()[s].area *
             squared_error(scene.material(s), scene.surfaces()[s].material.value, light[s], deviation);
-    const double least_light = min_share * mean_reflected(scene, light);
+    const double min_light = min_share * mean_reflected(scene, light);
     for (BodyError& body : statistics.bodies) {
         const auto same = [&](const SceneBody& b) { return b.first == body.first; };
         const auto at = std::find_if(found.all.begin(), found.all.end(), same);
-        const double reference = std::max(body.mean, least_light);
+        const double reference = std::max(body.mean, min_light);
         if (!body.error || at == found.all.end() || !(reference > 0)) continue;
         const double error = std::sqrt(squared[static_cast<std::size_t>(at - found.all.begin())] / at->area);
         add(body.error, error / reference);

@@ -173,12 +173,12 @@ TEST(BorderLight, IsMeasuredFromInsideForTheLevelsOfAFace) {
         measure_surfaces(light, std::array{SurfaceId(0)}, 16, progress, StopRequest());
     double most = 0;
     for (const Light& there : found[0].light) most = std::max(most, there.irradiance[0]);
-    double most_inside = 0;
+    double max_inside = 0;
     std::vector<ProbePoint> points;
     for (int i = 1; i < 40; ++i)
         for (int k = 1; k < 30; ++k) points.push_back({{0.1 * i + 1e-3, 0.1 * k, 0}, {0, 0, 1}});
-    for (const Light& there : light.at(points)) most_inside = std::max(most_inside, there.irradiance[0]);
-    EXPECT_LT(most, 1.01 * most_inside);
+    for (const Light& there : light.at(points)) max_inside = std::max(max_inside, there.irradiance[0]);
+    EXPECT_LT(most, 1.01 * max_inside);
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ class Interpolation {
   private:
     /// Largest factor on the squared noise of small leaves. Derived from a noise of at most twice the tolerance, which
     /// neighbours average out where their light is continuous.
-    static constexpr double most_noise = 4;
+    static constexpr double max_noise = 4;
 
     /// The parts of a fit that are stored, in single precision.
     struct Fit {
@@ -109,7 +109,7 @@ class Interpolation {
     /// those along shadow edges, matter little to the whole, and most rays are theirs.
     double noise_on(ElementId e) const {
         const double of_area = std::sqrt(even_noise_area_ / out_.tree.area(e));
-        return options_.tolerance * options_.tolerance * std::clamp(of_area, 1.0, most_noise);
+        return options_.tolerance * options_.tolerance * std::clamp(of_area, 1.0, max_noise);
     }
     void find_even_noise() {
         std::vector<double> areas;
@@ -246,8 +246,8 @@ class Interpolation {
         std::vector<ElementId> rough;
         for (ElementId e : leaves)
             if (error_of(e) > share) rough.push_back(e);
-        constexpr std::size_t most_parts = 4;  // number of parts into which one leaf is split at most
-        const std::size_t room = (max_elements_ - std::min(max_elements_, out_.tree.size())) / most_parts + 1;
+        constexpr std::size_t max_parts = 4;  // number of parts into which one leaf is split at most
+        const std::size_t room = (max_elements_ - std::min(max_elements_, out_.tree.size())) / max_parts + 1;
         if (rough.size() > room) {
             std::stable_sort(rough.begin(), rough.end(),
                              [&](ElementId a, ElementId b) { return error_of(a) > error_of(b); });

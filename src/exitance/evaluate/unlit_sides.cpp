@@ -113,14 +113,14 @@ class LitPlaces {
 
     /// Places on a side, and the surfaces that a path from each of them meets.
     std::vector<Vertex> vertices_from(const Side& side) const {
-        constexpr unsigned most_reflections = 4;
+        constexpr unsigned max_reflections = 4;
         std::vector<Vertex> out;
         RandomStream random(seed_, Stream::visibility, side.region.value, 0);
         for (unsigned i = 0; i < places; ++i) {
             const double which = random.uniform(), u = random.uniform(), v = random.uniform();
             Vertex at{side.at(which, u, v), side.region};
             if (stage_.occluders.is_covered(at.x, normal_of(at.region), at.region)) continue;
-            for (unsigned k = 0; k <= most_reflections; ++k) {
+            for (unsigned k = 0; k <= max_reflections; ++k) {
                 out.push_back(at);
                 const double a = random.uniform(), b = random.uniform();
                 const Vec3 w = cosine_direction(Frame(normal_of(at.region)), a, b);
@@ -147,10 +147,10 @@ class LitPlaces {
         for (const std::vector<LitPlace>& of_region : found)
             lit_.insert(lit_.end(), of_region.begin(), of_region.end());
         for (const LitPlace& place : lit_) lit_regions_.insert(place.region);
-        constexpr std::size_t most_places = 64;
-        if (lit_.size() <= most_places) return;
-        for (std::size_t i = 0; i < most_places; ++i) lit_[i] = lit_[i * lit_.size() / most_places];
-        lit_.resize(most_places);
+        constexpr std::size_t max_places = 64;
+        if (lit_.size() <= max_places) return;
+        for (std::size_t i = 0; i < max_places; ++i) lit_[i] = lit_[i * lit_.size() / max_places];
+        lit_.resize(max_places);
     }
 
     std::vector<LitPlace> places_on(RegionId region) const {
@@ -187,13 +187,13 @@ class LitPlaces {
 /// the area by which errors are judged.
 void light_seen_sides(const Stage& stage, const std::vector<Side>& sides, std::uint64_t seed,
                       std::vector<std::uint8_t>& unlit) {
-    constexpr std::size_t most_sides = 4096;
+    constexpr std::size_t max_sides = 4096;
     std::vector<std::size_t> dark;
     for (std::size_t k = 0; k < sides.size(); ++k)
         if (unlit[k]) dark.push_back(k);
     std::stable_sort(dark.begin(), dark.end(),
                      [&](std::size_t a, std::size_t b) { return sides[a].area > sides[b].area; });
-    dark.resize(std::min(dark.size(), most_sides));
+    dark.resize(std::min(dark.size(), max_sides));
     if (dark.empty()) return;
     std::vector<const Side*> dark_sides;
     for (const std::size_t k : dark) dark_sides.push_back(&sides[k]);
@@ -213,7 +213,7 @@ Field<RegionId, std::uint8_t> find_unlit_sides(const Stage& stage, std::uint64_t
     const auto look = [&](std::size_t k) {
         if (stop.requested()) return;
         const double share = std::sqrt(sides[k].area / stage.area / static_cast<double>(sides.size()));
-        const double paths = std::clamp(all / places * share, 2.0, calibrated::most_sheet_paths);
+        const double paths = std::clamp(all / places * share, 2.0, calibrated::max_sheet_paths);
         unlit[k] = !is_lit(stage, tracer, sides[k], static_cast<unsigned>(paths), seed);
     };
     shared_ranges(

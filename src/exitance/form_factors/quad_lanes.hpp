@@ -40,7 +40,7 @@ EXITANCE_INLINE Real contour(const Direction& n, const VecOf<Real> (&r)[4]) {
     return sum * (1 / (2 * pi));
 }
 
-inline constexpr double most_squared_tangent = 0.17157287525380988;  // tan^2(pi/8)
+inline constexpr double max_squared_tangent = 0.17157287525380988;  // tan^2(pi/8)
 
 /// Contour sum for quads none of whose edges subtends more than 45 degrees. `squared_tangent` is set to the largest
 /// squared tangent of half an edge's angle; the result is valid only if it is less than the constant above (it may be
@@ -177,7 +177,7 @@ EXITANCE_INLINE int apply(const Direction& n, const Quads<Real>& quads, double s
         } else {
             Real squared_tangent;
             F = narrow_contour(n, quads.r, squared_tangent);
-            taken &= where_less(squared_tangent, Real{} + most_squared_tangent);
+            taken &= where_less(squared_tangent, Real{} + max_squared_tangent);
         }
     }
     F = min(max(F, Real{}), Real{} + 1);

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_cells = 12;  ///< Parallelograms of a room: every ray is compared with all of them.
+constexpr std::size_t max_cells = 12;  ///< Parallelograms of a room: every ray is compared with all of them.
 
 /// A leaf that is bright for its room, in the plane coordinates of its region.
 struct BrightLeaf {
@@ -101,7 +101,7 @@ PlacedCover cover_region(const Stage& stage, const ElementTree& tree, RegionId r
 
 /// Divides the cover with the largest waste until there are enough.
 std::vector<PortalCell> divide(std::vector<PlacedCover> covers) {
-    while (!covers.empty() && covers.size() < most_cells) {
+    while (!covers.empty() && covers.size() < max_cells) {
         const auto worst = std::max_element(covers.begin(), covers.end(), [](const auto& a, const auto& b) {
             return a.cover.waste() < b.cover.waste();
         });
@@ -181,7 +181,7 @@ BrightPlaces find_bright_places(const Stage& stage, const ElementTree& tree, con
         std::stable_sort(covers.begin(), covers.end(), [](const PlacedCover& a, const PlacedCover& c) {
             return a.cover.flux * a.cover.flux / a.cover.filled > c.cover.flux * c.cover.flux / c.cover.filled;
         });
-        if (covers.size() > most_cells) covers.resize(most_cells);
+        if (covers.size() > max_cells) covers.resize(max_cells);
         for (const PortalCell& cell : divide(std::move(covers))) out[r].push_back(cell);
     }
     return BrightPlaces(std::move(out));

@@ -113,7 +113,7 @@ void ElementGather::open_pieces(const Group& group, int uneven, int cuts, Worksp
 
 EXITANCE_INLINE Spectrum ElementGather::sum(const Point& x, const Normal& n, RegionId own, double share,
                                             Workspace& w) const {
-    constexpr int most_cuts = 12;  // maximum depth of splits of one leaf
+    constexpr int max_cuts = 12;  // maximum depth of splits of one leaf
     const four::Vec origin = {Real{} + x.x, Real{} + x.y, Real{} + x.z};
     const auto seen_from_x = [&](const Group& group) EXITANCE_INLINE_LAMBDA {
         return Quads<Real>{{lanes_at(group.corners[0]) - origin, lanes_at(group.corners[1]) - origin,
@@ -153,7 +153,7 @@ EXITANCE_INLINE Spectrum ElementGather::sum(const Point& x, const Normal& n, Reg
         const Quads<Real> quads = seen_from_x(group);
         const Real F = form_factors_of(number, quads);
         auto [uneven, leans] = missed_light(group, quads, F, allowed);
-        if (cuts == most_cuts) uneven = four::Mask{};
+        if (cuts == max_cuts) uneven = four::Mask{};
         const Real summed = uneven ? Real{} : F;
         for (std::size_t k = 0; k < bands; ++k) E[k] += summed * lanes_at(group.mean[k]);
         if (four::any(leans & ~uneven)) {

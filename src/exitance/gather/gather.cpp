@@ -91,7 +91,7 @@ void aim_others(std::span<const GatherPlace> places, std::span<const PortalCell>
 /// Returns `cells` or the parts, which are stored in `parts`.
 std::span<const PortalCell> cut_near_cells(std::span<const PortalCell> cells, const Point& x,
                                            std::vector<PortalCell>& parts) {
-    constexpr int most_cuts = 4;
+    constexpr int max_cuts = 4;
     const auto is_near = [&](const PortalCell& cell) {
         const double longest = std::max(squared_norm(cell.u), squared_norm(cell.v));
         return squared_norm(cell.corner + 0.5 * (cell.u + cell.v) - x) <= longest;
@@ -104,11 +104,11 @@ std::span<const PortalCell> cut_near_cells(std::span<const PortalCell> cells, co
     std::vector<Part> open;
     for (std::size_t i = 0; i < cells.size(); ++i) {
         open.assign(1, {cells[i], 0});
-        const std::size_t left = PortalAim::most_targets - std::min(PortalAim::most_targets, cells.size() - i - 1);
+        const std::size_t left = PortalAim::max_targets - std::min(PortalAim::max_targets, cells.size() - i - 1);
         while (!open.empty()) {
             Part part = open.back();
             open.pop_back();
-            if (part.cuts == most_cuts || parts.size() + open.size() + 2 > left || !is_near(part.cell)) {
+            if (part.cuts == max_cuts || parts.size() + open.size() + 2 > left || !is_near(part.cell)) {
                 parts.push_back(part.cell);
                 continue;
             }
@@ -128,11 +128,11 @@ std::span<const PortalCell> cut_near_cells(std::span<const PortalCell> cells, co
 /// ray.
 void cast_together(const Stage& stage, std::span<const GatherPlace> places, const Normal& n, RegionId own,
                    unsigned rays, unsigned first, const BrightPlaces* bright, GatherWorkspace& w) {
-    constexpr unsigned fewest_aimed = 4;
+    constexpr unsigned min_aimed = 4;
     std::span<const PortalCell> cells;
-    if (rays >= 2 * fewest_aimed && bright && !own.is_none())
+    if (rays >= 2 * min_aimed && bright && !own.is_none())
         cells = worth_aiming(stage, own, bright->of_room(stage.rooms.at(own, places[0].x)), places[0].x, n);
-    else if (rays >= 2 * fewest_aimed)
+    else if (rays >= 2 * min_aimed)
         cells = portals_worth_aiming(stage, own, places[0].x, n);
     std::vector<PortalCell> parts;
     cells = cut_near_cells(cells, places[0].x, parts);

@@ -103,7 +103,7 @@ double LocalPass::noise_excess(ElementId e, const SampledElement& sampled, const
 double LocalPass::allowed_misfit(ElementId e, double light, const LocalPassDemand& demand) const {
     const double counted = stage_.counted_area(tree_, e), near = light_near(e, demand);
     const double even = demand.tolerance * near * std::sqrt(mean_area_ / counted);
-    const double share = std::min(std::max(even, near * std::sqrt(least_share_ / counted)), misfit_for_body(e, demand));
+    const double share = std::min(std::max(even, near * std::sqrt(min_share_ / counted)), misfit_for_body(e, demand));
     if (demand.elements.empty() || demand.relative_tolerance == 0) return share;
     return std::min(share, std::max(demand.relative_tolerance * light, calibrated::minor_misfit * demand.tolerance));
 }
@@ -183,11 +183,11 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
     const double allowance = std::pow(noise_factor_in(e, demand), 4.0 / 3);
     // In a crowd every element starts with few rays. More follow only where its noise requires them, since the area of
     // an element says little about its share of the light.
-    constexpr unsigned least_rays = 4;
-    const unsigned first = is_crowd_ ? least_rays
-                           : unlit   ? std::bit_ceil(demand.rays.least)
+    constexpr unsigned min_rays = 4;
+    const unsigned first = is_crowd_ ? min_rays
+                           : unlit   ? std::bit_ceil(demand.rays.min)
                                      : demand.rays.rays(stage_.counted_area(tree_, e) / allowance, mean_area_);
-    unsigned rays = std::max({least_rays, first, before});
+    unsigned rays = std::max({min_rays, first, before});
     w.growing.assign(places.size(), {});
     for (bool more = false;; rays *= more ? 2 : 1, more = !more) {
         const unsigned cast = gather_at(e, places, b, rays, more, demand, w);
@@ -195,7 +195,7 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
         out.place_rays = rays;
         out.rays = cast;
         if (may_cut && is_too_rough(e, out, demand)) return out;
-        if (noise_excess(e, out, demand) <= calibrated::tolerated_noise || 2 * rays > demand.rays.most) {
+        if (noise_excess(e, out, demand) <= calibrated::tolerated_noise || 2 * rays > demand.rays.max) {
             if (may_cut && demand.elements.empty())
                 is_suspect(e) ? check_strips(e, out, b, demand, w) : check_between_nodes(e, out, b, demand, w);
             return out;
@@ -208,10 +208,10 @@ SampledElement LocalPass::sample(ElementId e, const ReflectedLight& b, const Loc
 SampledElement LocalPass::changed(ElementId e, const LocalPassDemand& demand, Workspace& w) const {
     const SampledElement& before = sampled_[e];
     if (noise_excess(e, before, demand) > calibrated::kept_noise) return before;
-    constexpr unsigned least_rays = 4, share = 8;  // initial share of the rays of a place: 1 / share
+    constexpr unsigned min_rays = 4, share = 8;  // initial share of the rays of a place: 1 / share
     const std::vector<WeightedPlace> places = element_rule(tree_, e, rule_order(before.curved));
     w.growing.assign(places.size(), {});
-    for (unsigned rays = std::max(least_rays, before.place_rays / share);; rays *= 2) {
+    for (unsigned rays = std::max(min_rays, before.place_rays / share);; rays *= 2) {
         const unsigned cast = gather_at(e, places, *demand.change, rays, false, demand, w);
         SampledElement out = fitted(e, places, before.curved, w);
         for (std::size_t k = 0; k < out.coefficient.size(); ++k)
@@ -230,15 +230,15 @@ SampledElement LocalPass::changed(ElementId e, const LocalPassDemand& demand, Wo
 void LocalPass::check_between_nodes(ElementId e, SampledElement& sampled, const ReflectedLight& b,
                                     const LocalPassDemand& demand, Workspace& w) const {
     constexpr unsigned share = 8;  // the check takes about 1 / share of the rays that the element took before
-    constexpr unsigned least_places = 4, most_places = 32;
-    unsigned rays = 16, count = std::min(most_places, sampled.rays / (share * rays));
+    constexpr unsigned min_places = 4, max_places = 32;
+    unsigned rays = 16, count = std::min(max_places, sampled.rays / (share * rays));
     if (is_narrow_leaf(stage_, tree_, e)) {
         // With 16 places, one is at the mouth of a gap with a probability of 19/20 if the mouth is a sixth of the
         // element.
         constexpr unsigned places_before_gaps = 16, rays_before_gaps = 64;
         count = std::max(count, places_before_gaps), rays = rays_before_gaps;
     }
-    if (count < least_places) return;  // too few places to estimate their noise
+    if (count < min_places) return;  // too few places to estimate their noise
     const RegionId region = tree_.region(e);
     const Normal& n = stage_.scene.regions()[region].plane.n;
     const Spectrum& rho = stage_.scene.material(region).reflectance;
@@ -341,7 +341,7 @@ std::vector<ElementId> LocalPass::to_gather_again(std::vector<ElementId> leaves,
     std::vector<ElementId> kept;
     std::copy_if(leaves.begin(), leaves.end(), std::back_inserter(kept), good);
     std::erase_if(leaves, good);
-    if (is_crowd_) least_share_ = share_in_crowd(demand);
+    if (is_crowd_) min_share_ = share_in_crowd(demand);
     for (ElementId child : split_where_needed(kept, demand)) leaves.push_back(child);
     return leaves;
 }
@@ -435,7 +435,7 @@ ElementFunction LocalPass::gather(const ReflectedLight& b, bool fresh, const Loc
         if (demand.elements.empty()) report.rays += rays_of(active) - std::exchange(rays_before, 0);
         if (stop.requested()) report.interrupted = !inherit();
         if (depth == demand.max_depth || stop.requested()) break;
-        if (depth != change && is_crowd_) least_share_ = share_in_crowd(demand);
+        if (depth != change && is_crowd_) min_share_ = share_in_crowd(demand);
         active = depth == change ? to_gather_again(std::move(active), demand) : split_where_needed(active, demand);
         divide_among_bodies(demand);
     }

@@ -86,7 +86,7 @@ class LocalPass {
     /// Archives mesh and gathers for checkpoints.
     template <class Archive>
     void archive_state(Archive& a) {
-        a(tree_, sampled_, mean_area_, noise_area_, mean_area_of_, is_crowd_, least_share_, spread_, suspect_);
+        a(tree_, sampled_, mean_area_, noise_area_, mean_area_of_, is_crowd_, min_share_, spread_, suspect_);
     }
 
   private:
@@ -165,7 +165,7 @@ class LocalPass {
     std::vector<double> mean_area_of_, noise_area_of_;
     bool is_crowd_ = false;  ///< True if most elements are whole polygons (`ErrorShare`).
     /// Squared misfit allowed on any element over the squared light of its room, m^2; 0 unless is_crowd_.
-    double least_share_ = 0;
+    double min_share_ = 0;
     Spread spread_;
     /// Elements that were examined for large errors at single points; their children are marked as well.
     Field<ElementId, std::uint8_t> suspect_;

@@ -221,7 +221,7 @@ std::vector<ElementId> LocalPass::gather_together(const std::vector<ElementId>& 
                 const double allowed = allowed_misfit(e, found.light, demand);
                 if (slope_squared > allowed * allowed) continue;
                 if (noise_excess(e, found, demand) <= calibrated::tolerated_noise ||
-                    2 * found.place_rays > demand.rays.most)
+                    2 * found.place_rays > demand.rays.max)
                     sampled_[e] = found;
                 else
                     further.push_back(open[i]);

@@ -148,7 +148,7 @@ std::vector<StraightLeaf> add_straight(ElementFunction& out, std::span<const Ele
                                        const std::function<const SampledElement&(ElementId)>& sampled,
                                        const std::function<Spectrum(ElementId)>& rho,
                                        const std::function<double(ElementId)>& tolerance) {
-    constexpr int most_cuts = 4;
+    constexpr int max_cuts = 4;
     std::vector<StraightLeaf> leaves, parts;
     for (ElementId e : fitted) parts.push_back({e, e});
     for (int cuts = 0; !parts.empty(); ++cuts) {
@@ -166,7 +166,7 @@ std::vector<StraightLeaf> add_straight(ElementFunction& out, std::span<const Ele
         for (std::size_t i = 0; i < parts.size(); ++i) {
             const auto [part, whole] = parts[i];
             const double allowed = tolerance(whole);
-            if (cuts < most_cuts && fit[i].rest_squared > allowed * allowed) {
+            if (cuts < max_cuts && fit[i].rest_squared > allowed * allowed) {
                 const Cut only = sufficient_cut(fit[i].rest_squared, fit[i].rest_along, allowed * allowed);
                 for (ElementId child : refine_element(out.tree, part, only)) smaller.push_back({child, whole});
                 continue;

@@ -26,7 +26,7 @@ struct Clustered : LitElements {
           near(tree, sites) {
         Progress silent;
         StopRequest never;
-        const LinkTolerance allowed{.error = tolerance, .interpolation = tolerance, .least_area = 1e-6};
+        const LinkTolerance allowed{.error = tolerance, .interpolation = tolerance, .min_area = 1e-6};
         near.refine(far.refine(b, allowed, never), b, {}, allowed, silent, never);
     }
 

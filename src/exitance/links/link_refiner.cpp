@@ -209,7 +209,7 @@ void LinkRefiner::judge(std::vector<LinkPair> pairs, const NodalField& b, const 
         // After a stop request, link the remaining pairs as they are.
         LinkTolerance any = now;
         any.error = HUGE_VAL;
-        limited_ |= links_.size() + pairs.size() > tolerance.most_links;
+        limited_ |= links_.size() + pairs.size() > tolerance.max_links;
         parallel_for(
             blocks.size(), 1,
             [&](std::size_t i) {
@@ -267,7 +267,7 @@ Field<ElementId, std::uint8_t> LinkRefiner::judge_receivers(Receivers& receivers
         const bool departs = tolerance.oracle == LinkOracle::transport &&
                              receivers.error[e] > tolerance.interpolation * tolerance.interpolation;
         if (!departs && gained[e] != cutting_ones) continue;
-        if (tree_.is_leaf(e) && tree_.area(e) <= 2 * tolerance.least_area) continue;
+        if (tree_.is_leaf(e) && tree_.area(e) <= 2 * tolerance.min_area) continue;
         too_much[e] = 1;
         receivers.light[e] = {};  // reset: it is summed again over the remaining links
         if (tree_.is_leaf(e)) leaves.push_back(e);

@@ -20,7 +20,7 @@ struct Refined : LitElements {
     void refine(double tolerance) {
         Progress silent;
         StopRequest never;
-        refiner.refine(b, {}, {.error = tolerance, .interpolation = tolerance, .least_area = 1e-6}, silent, never);
+        refiner.refine(b, {}, {.error = tolerance, .interpolation = tolerance, .min_area = 1e-6}, silent, never);
     }
     void scale_light(double factor) {
         for (ElementId e : tree.ids())
@@ -85,7 +85,7 @@ Difference on_first_polygon(const Scene& scene, HierarchyBasis kind, double tole
     Refined r(scene, kind, 0);
     Progress silent;
     StopRequest never;
-    r.refiner.refine(r.b, {}, {.error = tolerance, .interpolation = tolerance, .least_area = 1e-8}, silent, never);
+    r.refiner.refine(r.b, {}, {.error = tolerance, .interpolation = tolerance, .min_area = 1e-8}, silent, never);
     NodalField E(r.sites);
     r.refiner.make_links().gather(r.b, E);
     E.push();

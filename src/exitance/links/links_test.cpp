@@ -25,7 +25,7 @@ struct Linked : LitElements {
         Progress silent;
         StopRequest never;
         refiner.refine(b, {},
-                       {.error = tolerance, .interpolation = tolerance, .least_area = 1e-6, .corrected = constants},
+                       {.error = tolerance, .interpolation = tolerance, .min_area = 1e-6, .corrected = constants},
                        silent, never);
     }
 

@@ -18,7 +18,7 @@ struct Kept {
 struct Rows : Kept, LitElements {
     LeafNumbering numbering{tree};
     ElementLocator locator{tree, stage.scene.regions().size()};
-    RayRows rows{stage, tree, numbering, locator, {.average = 32, .least = 8, .most = 256}, 1, Dealing::by_piece};
+    RayRows rows{stage, tree, numbering, locator, {.average = 32, .min = 8, .max = 256}, 1, Dealing::by_piece};
 
     template <class Light>
     Rows(Scene given, const Light& light) : Kept{std::move(given)}, LitElements(scene, HierarchyBasis::haar, light) {}

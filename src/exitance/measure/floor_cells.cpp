@@ -13,7 +13,7 @@ namespace {
 constexpr double cell_width = 0.1;   ///< Metres; derived from the narrowest corridors, which are ten times as wide.
 constexpr double max_cells = 40000;  ///< Derived from half a second of ray casting.
 /// Minimum number of cells along the shorter side, derived from models at a tenth of their size.
-constexpr double fewest_across = 20;
+constexpr double min_across = 20;
 /// Position of the first centre, in cells: derived from the golden section, so that walls at round numbers do not pass
 /// through centres.
 constexpr double first_centre = 0.118;
@@ -22,7 +22,7 @@ constexpr double furniture_share =        ///< Share of the usual height; derive
     0.7;
 constexpr double door_height = 2.15;    ///< Metres, derived from doors of 2.0 to 2.1 m.
 constexpr double door_share = 0.78;     ///< Share of the height, derived from doors of 2.1 m below ceilings of 2.7 m.
-constexpr double least_lintel = 0.1;    ///< Share of the height, derived from doors of 2.1 m below ceilings of 2.35 m.
+constexpr double min_lintel = 0.1;      ///< Share of the height, derived from doors of 2.1 m below ceilings of 2.35 m.
 constexpr double below_ceiling = 0.98;  ///< Share of the height, derived from sheets just below a ceiling.
 /// Number of rays per pair of neighbouring cells, derived from beams that block only one of them.
 constexpr std::size_t heights = 4;
@@ -33,8 +33,8 @@ FloorCells::FloorCells(Floor floor, double top, const RayTracer& tracer)
     : floor_(std::move(floor)), tracer_(&tracer), frame_(rectangle_about(floor_)) {
     const double length = norm(frame_.u), breadth = norm(frame_.v);
     u_ = normalized(frame_.u), v_ = normalized(frame_.v);
-    width_ = std::max(std::min(cell_width, std::min(length, breadth) / fewest_across),
-                      std::sqrt(length * breadth / max_cells));
+    width_ =
+        std::max(std::min(cell_width, std::min(length, breadth) / min_across), std::sqrt(length * breadth / max_cells));
     columns_ = static_cast<std::size_t>(std::ceil(length / width_)) + 1;
     rows_ = static_cast<std::size_t>(std::ceil(breadth / width_)) + 1;
     part_.assign(columns_ * rows_, none);
@@ -87,7 +87,7 @@ void FloorCells::measure_heights(double top) {
 
 bool FloorCells::is_wall_between(const Point& p, const Point& q, double height) const {
     if (!(height > 0)) return false;
-    const double low = std::max(door_share * height, std::min(door_height, (1 - least_lintel) * height));
+    const double low = std::max(door_share * height, std::min(door_height, (1 - min_lintel) * height));
     std::array<Point, heights> from, to;
     std::array<bool, heights> blocked{};
     for (std::size_t k = 0; k < heights; ++k) {

@@ -10,12 +10,12 @@
 namespace exitance {
 namespace {
 
-constexpr double least_area = 1;           ///< m^2
-constexpr double least_floor_share = 0.1;  ///< Share of the largest floor's area; derived from models out of scale.
-constexpr double person = 1.9;             ///< Metres; derived from the height of people: lower spaces are not rooms.
-constexpr double cupboard_share = 0.75;    ///< Part of a room's height; derived from cupboards: below it is furniture.
-constexpr std::size_t most_floors = 256;   ///< Derived from a few seconds of ray casting.
-constexpr std::size_t most_rooms = 64;
+constexpr double min_area = 1;           ///< m^2
+constexpr double min_floor_share = 0.1;  ///< Share of the largest floor's area; derived from models out of scale.
+constexpr double person = 1.9;           ///< Metres; derived from the height of people: lower spaces are not rooms.
+constexpr double cupboard_share = 0.75;  ///< Part of a room's height; derived from cupboards: below it is furniture.
+constexpr std::size_t max_floors = 256;  ///< Derived from a few seconds of ray casting.
+constexpr std::size_t max_rooms = 64;
 
 /// Floors that are large enough for rooms, the largest first.
 std::vector<Floor> large_floors(const Scene& scene) {
@@ -24,9 +24,9 @@ std::vector<Floor> large_floors(const Scene& scene) {
         if (points_up(scene.regions()[id].plane.n)) shapes.push_back(floor_shape(scene.regions()[id], id));
     std::vector<Floor> floors = join_shapes(std::move(shapes));
     if (floors.empty()) return floors;
-    const double least = std::min(least_area, least_floor_share * floors[0].area);
+    const double least = std::min(min_area, min_floor_share * floors[0].area);
     std::erase_if(floors, [&](const Floor& f) { return f.area < least; });
-    if (floors.size() > most_floors) floors.resize(most_floors);
+    if (floors.size() > max_floors) floors.resize(max_floors);
     return floors;
 }
 
@@ -66,7 +66,7 @@ void FloorRooms::find_rooms(const Scene& scene) {
     double largest = 0;
     for (const FloorCells& storey : storeys_)
         for (const FloorCells::Part& part : storey.parts()) largest = std::max(largest, part.area);
-    const double least = std::min(least_area, least_floor_share * largest);
+    const double least = std::min(min_area, min_floor_share * largest);
     for (std::size_t s = 0; s < storeys_.size(); ++s)
         for (std::uint32_t k = 0; k < storeys_[s].parts().size(); ++k) {
             const FloorCells::Part& part = storeys_[s].parts()[k];
@@ -76,7 +76,7 @@ void FloorRooms::find_rooms(const Scene& scene) {
     leave_out_furniture();
     std::stable_sort(rooms_.begin(), rooms_.end(),
                      [](const FloorRoom& a, const FloorRoom& b) { return a.area > b.area; });
-    if (rooms_.size() > most_rooms) rooms_.resize(most_rooms);
+    if (rooms_.size() > max_rooms) rooms_.resize(max_rooms);
     for (FloorRoom& room : rooms_) room.rectangle = storeys_[room.storey].rectangle(room.part);
     name_rooms(scene);
 }

@@ -41,7 +41,7 @@ double en_12464_spacing(double length, double width) {
 }
 
 Result<GridLight> make_grid(const MeasuringPlane& plane) {
-    constexpr double most_points = 100000;
+    constexpr double max_points = 100000;
     const auto refuse = [](const std::string& message, const std::string& hint) {
         return Error{ErrorCode::usage, message, "--grid", hint};
     };
@@ -59,7 +59,7 @@ Result<GridLight> make_grid(const MeasuringPlane& plane) {
     constexpr double rounding = 1e-9;
     const double columns = std::max(1.0, std::ceil(inner_u / spacing - rounding));
     const double rows = std::max(1.0, std::ceil(inner_v / spacing - rounding));
-    if (!(columns * rows <= most_points))
+    if (!(columns * rows <= max_points))
         return refuse("the grid has more than 100000 points", "choose a larger spacing");
     grid.columns = static_cast<int>(columns), grid.rows = static_cast<int>(rows);
     grid.step_u = inner_u / columns, grid.step_v = inner_v / rows;

@@ -10,8 +10,8 @@
 namespace exitance {
 namespace {
 
-constexpr double least_plane_share = 0.1;  ///< Share of the largest area of named faces; smaller planes are not used.
-constexpr std::size_t most_planes = 32;
+constexpr double min_plane_share = 0.1;  ///< Share of the largest area of named faces; smaller planes are not used.
+constexpr std::size_t max_planes = 32;
 
 Error refuse(const std::string& message, const std::string& hint) {
     return {ErrorCode::usage, message, "--plane", hint};
@@ -21,10 +21,10 @@ Error refuse(const std::string& message, const std::string& hint) {
 std::vector<Floor> large_groups(std::vector<FloorShape> shapes) {
     std::vector<Floor> out = join_shapes(std::move(shapes));
     if (!out.empty()) {
-        const double least = least_plane_share * out[0].area;
+        const double least = min_plane_share * out[0].area;
         std::erase_if(out, [&](const Floor& f) { return f.area < least; });
     }
-    if (out.size() > most_planes) out.resize(most_planes);
+    if (out.size() > max_planes) out.resize(max_planes);
     return out;
 }
 

@@ -149,7 +149,7 @@ std::vector<GapLine> find_gap_lines(const Scene& scene, const Bvh& faces, double
     double area = 0;
     for (const Region& region : scene.regions()) area += region.area;
     const std::size_t count = scene.regions().size();
-    const double small = count > ErrorShare::most_even ? ErrorShare::small_area(area, count) : 0;
+    const double small = count > ErrorShare::max_even_count ? ErrorShare::small_area(area, count) : 0;
     std::vector<std::vector<GapLine>> found(count);
     parallel_for(count, 64, [&](std::size_t r) {
         const bool is_minor = scene.regions()[RegionId(r)].area < small;

@@ -231,8 +231,8 @@ LeafFinder::LeafFinder(const ElementTree& tree) {
         if (tree.is_leaf(e)) number[e] = count++;
     leaves_.resize(count);
     const std::span<const ElementId> roots = tree.roots();
-    constexpr std::size_t most_blocks = 256;
-    const std::size_t length = roots.size() / most_blocks + 1;
+    constexpr std::size_t max_blocks = 256;
+    const std::size_t length = roots.size() / max_blocks + 1;
     std::vector<Builder> blocks((roots.size() + length - 1) / length, Builder{tree, number, leaves_});
     parallel_for(blocks.size(), 1, [&](std::size_t b) {
         for (std::size_t i = b * length; i < std::min((b + 1) * length, roots.size()); ++i)

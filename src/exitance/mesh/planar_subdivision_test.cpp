@@ -30,7 +30,7 @@ double labelled_length(const LabelledTriangles& t, std::uint8_t label) {
 }
 
 /// Smallest angle, radians.
-double least_angle(const LabelledTriangles& t) {
+double min_angle(const LabelledTriangles& t) {
     double least = std::numbers::pi;
     for (const auto& c : t.corners)
         for (std::size_t k = 0; k < 3; ++k) {
@@ -44,8 +44,8 @@ TEST(RefinedTriangles, HaveNoSmallAnglesIfTheLinesHaveNone) {
     const std::vector<LabelledSegment> lines{{{0.1, 0.2}, {0.15, 0.6}, 2}, {{0.7, 0.3}, {0.5, 0.35}, 3}};
     const LabelledTriangles coarse = labelled_triangles(square, lines), fine = refined_triangles(coarse);
     constexpr double bound = 20.7 * std::numbers::pi / 180;
-    EXPECT_LT(least_angle(coarse), 0.8 * bound);
-    EXPECT_GE(least_angle(fine), 0.999 * bound);
+    EXPECT_LT(min_angle(coarse), 0.8 * bound);
+    EXPECT_GE(min_angle(fine), 0.999 * bound);
     EXPECT_LE(fine.corners.size(), 10 * coarse.corners.size());
 }
 

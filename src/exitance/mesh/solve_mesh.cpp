@@ -186,7 +186,7 @@ std::vector<ConcaveBorders> find_concave_borders(const Scene& scene, const std::
     double area = 0;
     for (const Piece& piece : pieces) area += piece.patch.area();
     // Small pieces among thousands are narrower than the strips along concave borders, and stay whole.
-    const double small = pieces.size() > ErrorShare::most_even ? ErrorShare::small_area(area, pieces.size()) : 0;
+    const double small = pieces.size() > ErrorShare::max_even_count ? ErrorShare::small_area(area, pieces.size()) : 0;
     std::vector<ConcaveBorders> out(pieces.size());
     parallel_for(pieces.size(), 64, [&](std::size_t k) {
         if (pieces[k].patch.area() < small) return;

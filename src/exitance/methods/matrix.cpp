@@ -45,7 +45,7 @@ RayBudget rays_of_rows(const MethodInput& input, const GlobalLight& light) {
     for (std::size_t i = 0; i < reflected.size(); ++i) reflected[i] *= light.direct[i];
     RayBudget out = input.knobs.solve_rays;
     const double fewer = fewer_rays_in_crowd(input.stage, light.tree, light.numbering, reflected);
-    out.average *= fewer, out.least = static_cast<unsigned>(fewer * out.least);
+    out.average *= fewer, out.min = static_cast<unsigned>(fewer * out.min);
     return out;
 }
 

@@ -36,7 +36,7 @@ GlobalLight solve_substructuring(const MethodInput& input) {
     for (std::size_t p = 0; p < setup.patches.size(); ++p)
         mean_light += setup.patch_area[p] * mean(setup.sent[p]) / input.stage.area;
     const double threshold = steep_step(input.options.error_target(), mean_light);
-    const double least_area = input.options.min_area.value_or(calibrated::least_patch_element * input.stage.area);
+    const double min_area = input.options.min_area.value_or(calibrated::min_patch_element * input.stage.area);
     for (int sweep = 0; sweep < patch_sweeps && !input.stop.requested(); ++sweep) {
         input.progress.phase("refine");
         const ElementLocator locator(setup.tree, input.stage.scene.regions().size());
@@ -44,7 +44,7 @@ GlobalLight solve_substructuring(const MethodInput& input) {
         std::vector<ElementId> steep;
         for (std::size_t i = 0; i < setup.numbering.leaves.size(); ++i) {
             const ElementId leaf = setup.numbering.leaves[i];
-            if (setup.area[i] > 2 * least_area && steepest_step(setup.tree, locator, leaf, light) > threshold)
+            if (setup.area[i] > 2 * min_area && steepest_step(setup.tree, locator, leaf, light) > threshold)
                 steep.push_back(leaf);
         }
         if (steep.empty()) break;

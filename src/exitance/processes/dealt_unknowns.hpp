@@ -13,8 +13,8 @@ namespace exitance {
 /// are at most 2^16 blocks, so that processes get even shares and a sum that exchanges one value per block transfers
 /// little.
 constexpr std::size_t dealt_block(std::size_t unknowns) {
-    constexpr std::size_t least = 16, most_blocks = 1 << 16;  // one double per block and band is then at most 2 MB
-    return std::bit_ceil(std::max(least, (unknowns + most_blocks - 1) / most_blocks));
+    constexpr std::size_t least = 16, max_blocks = 1 << 16;  // one double per block and band is then at most 2 MB
+    return std::bit_ceil(std::max(least, (unknowns + max_blocks - 1) / max_blocks));
 }
 
 /// Distribution of the unknowns of a linear system over the processes that solve it. In the first form, block b belongs

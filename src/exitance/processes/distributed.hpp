@@ -170,11 +170,11 @@ template <class Value>
 void exchange_values(std::size_t count, std::size_t grain, const Value& value, const char* what) {
     if (processes() == 1) return;
     detail::meet(count, what);
-    constexpr std::size_t most_bytes = std::size_t(32) << 20;  // maximum per round, summed over all processes
+    constexpr std::size_t max_bytes = std::size_t(32) << 20;  // maximum per round, summed over all processes
     const std::size_t blocks = (count + grain - 1) / grain;
     for (std::size_t block = 0, end = 0; block < blocks; block = end) {
         std::vector<std::size_t> first(processes() + 1);
-        for (std::size_t bytes = 0; end < blocks && bytes < most_bytes; ++end)
+        for (std::size_t bytes = 0; end < blocks && bytes < max_bytes; ++end)
             for (std::size_t i = end * grain; i < count && i < (end + 1) * grain; ++i) {
                 decltype(auto) held = value(i);
                 const std::size_t size = detail::bytes_of(held).size();

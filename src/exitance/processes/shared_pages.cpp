@@ -90,9 +90,9 @@ void map_pages(std::span<char> pages, int file, std::size_t place, int kind) {
 /// memory is used twice.
 void move_pages(std::span<char> pages, int file, int kind) {
     constexpr std::size_t min_step = std::size_t(1) << 23,
-                          most_parts = 64;  // the number of mappings is limited by the system
+                          max_parts = 64;  // the number of mappings is limited by the system
     const std::size_t page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE)),
-                      step = std::max(min_step, (pages.size() / most_parts / page + 1) * page);
+                      step = std::max(min_step, (pages.size() / max_parts / page + 1) * page);
     int rank = 0;
     MPI_Comm_rank(team.node, &rank);
     for (std::size_t first = 0; first < pages.size(); first += step) {

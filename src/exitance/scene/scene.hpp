@@ -81,13 +81,13 @@ struct Region {
     /// clockwise. Metres.
     std::vector<std::vector<Point>> loops;
     /// Number of regions of the same plane and orientation that are under parts of it. Of two overlapping faces, the
-    /// one later in the file is on top. At most `most_stacked`.
+    /// one later in the file is on top. At most `max_stacked`.
     std::uint8_t level = 0;
     /// Other side of a diffusing pane; none for other regions.
     RegionId behind = {};
 };
 
-constexpr std::uint8_t most_stacked = 7;
+constexpr std::uint8_t max_stacked = 7;
 
 /// A diagnostic about an input for the user, printed by `exitance check`.
 struct Finding {

@@ -304,7 +304,7 @@ void SceneBuilder::stack_overlaps(Scene& scene) {
         for (const Overlap& overlap : overlaps.pairs) {
             const std::uint8_t under = scene.regions_[scene.surfaces_[overlap.first].region].level;
             std::uint8_t& over = scene.regions_[scene.surfaces_[overlap.second].region].level;
-            if (over > under || under == most_stacked) continue;
+            if (over > under || under == max_stacked) continue;
             over = static_cast<std::uint8_t>(under + 1), changed = true;
         }
 }

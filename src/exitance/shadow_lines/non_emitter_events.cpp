@@ -47,9 +47,9 @@ void ShadowEventFinder::add_corner_before_edge(std::uint32_t corner, const Point
     const double size = norm(plane);
     if (!(size > edges_->tolerance() * norm(edge.b - edge.a))) return;  // the corner lies on the edge's line
     Wedge wedge{w, edge.a, edge.b - edge.a, 0, 1, beyond, true};
-    if (!limit(ha - least_, hb - ha, wedge.first, wedge.last)) return;
+    if (!limit(ha - min_, hb - ha, wedge.first, wedge.last)) return;
     const double da = source_->plane.signed_distance(edge.a), db = source_->plane.signed_distance(edge.b);
-    if (!limit(da - least_, db - da, wedge.first, wedge.last)) return;
+    if (!limit(da - min_, db - da, wedge.first, wedge.last)) return;
     if (!clip_to_source(wedge, plane / size) || !clip_to_box(wedge, height)) return;
     const Point middle = edge.a + 0.5 * (wedge.first + wedge.last) * wedge.along;
     if (!edges_->is_outline(edge, w) || !is_near_outline(corner, middle)) return;
@@ -67,7 +67,7 @@ void ShadowEventFinder::find_non_emitter(const PlaneFrame& receiver, RegionId ow
     if (bounds_.lists) lists_[0] = bounds_.lists->of_all;
     for (const auto& [number, w] : corners_) {
         if (is_stopped()) return;
-        if (frame_->height(w) <= least_ || source.plane.signed_distance(w) <= least_) continue;
+        if (frame_->height(w) <= min_ || source.plane.signed_distance(w) <= min_) continue;
         for (const std::uint32_t e : among) {
             const BlockerEdges::Edge& edge = edges_->edges()[e];
             if (edge.ends[0] == number || edge.ends[1] == number) continue;

@@ -88,8 +88,8 @@ bool ShadowEventFinder::blank(const Wedge& wedge, const Vec3& normal, PieceId nu
         return false;  // it touches the sight lines only in their own corner or edge
     Point c, d;
     if (!crossing(occluders_->corners(number), wedge.apex, normal, tolerance, c, d)) return false;
-    if (!cut(c, d, frame_->height(c), frame_->height(d), least_)) return false;
-    if (!source_->is_point && !cut(c, d, source_->plane.signed_distance(c), source_->plane.signed_distance(d), least_))
+    if (!cut(c, d, frame_->height(c), frame_->height(d), min_)) return false;
+    if (!source_->is_point && !cut(c, d, source_->plane.signed_distance(c), source_->plane.signed_distance(d), min_))
         return false;
     // p = apex + m (base - apex + t along), by two equations in the wedge's plane
     const Vec3 b = wedge.base - wedge.apex;
@@ -171,13 +171,13 @@ void ShadowEventFinder::add_corner_over_edge(const Point& s, const Vec3& before,
                                              const BlockerEdges::Edge& edge, double gain,
                                              std::vector<ShadowEvent>& events) {
     const double height = frame_->height(s);
-    if (height <= least_ || !edges_->is_outline(edge, s)) return;
+    if (height <= min_ || !edges_->is_outline(edge, s)) return;
     Wedge wedge{s, edge.a, edge.b - edge.a};
     const double ha = frame_->height(edge.a), hb = frame_->height(edge.b);
-    if (!limit(ha - (ha > least_ && hb > least_ ? 0 : least_), hb - ha, wedge.first, wedge.last)) return;
+    if (!limit(ha - (ha > min_ && hb > min_ ? 0 : min_), hb - ha, wedge.first, wedge.last)) return;
     if (!source_->is_point) {
         const double da = source_->plane.signed_distance(edge.a), db = source_->plane.signed_distance(edge.b);
-        if (!limit(da - least_, db - da, wedge.first, wedge.last)) return;
+        if (!limit(da - min_, db - da, wedge.first, wedge.last)) return;
     }
     if (!clip_to_box(wedge, height)) return;
     const Vec3 plane = cross(edge.a - s, edge.b - s);
@@ -197,7 +197,7 @@ void ShadowEventFinder::add_edge_over_corner(const Point& q0, const Point& q1, s
     const std::uint32_t corner = corners_[index].first;
     const Point w = corners_[index].second;
     const double height = frame_->height(w);
-    if (height <= least_ || source_->plane.signed_distance(w) <= least_) return;
+    if (height <= min_ || source_->plane.signed_distance(w) <= min_) return;
     const Vec3 plane = cross(q0 - w, q1 - w);
     const double size = norm(plane);
     if (!(size > 0)) return;
@@ -223,7 +223,7 @@ void ShadowEventFinder::add_edge_over_corner(const Point& q0, const Point& q1, s
 void ShadowEventFinder::set(const PlaneFrame& receiver, RegionId own, Vec2 lo, Vec2 hi, const EventSource& source,
                             std::span<const std::uint32_t> among) {
     frame_ = &receiver, source_ = &source, own_ = own, lo_ = lo, hi_ = hi;
-    least_ = 4 * edges_->tolerance();
+    min_ = 4 * edges_->tolerance();
     corners_.clear(), edges_at_.clear();
     for (const std::uint32_t e : among) {
         const BlockerEdges::Edge& edge = edges_->edges()[e];

@@ -37,10 +37,10 @@ struct WedgeLists {
 /// skipped.
 struct EventBounds {
     std::span<const double> gains = {};  ///< Per edge, in the order of `among`; empty: unbounded.
-    double least_bend = 0;               ///< Minimum gain of events that change only the curvature (D2).
-    /// Minimum gain of D2 events more than eight times as long as their penumbra is wide, if below `least_bend`:
+    double min_bend = 0;                 ///< Minimum gain of events that change only the curvature (D2).
+    /// Minimum gain of D2 events more than eight times as long as their penumbra is wide, if below `min_bend`:
     /// bisection would need more triangles for such events than cutting along the line.
-    double least_narrow_bend = HUGE_VAL;
+    double min_narrow_bend = HUGE_VAL;
     const StopRequest* stop = nullptr;  ///< Once a stop is requested, the result is incomplete.
     const WedgeLists* lists = nullptr;  ///< Occluders that wedges are clipped by; null: those that the box tree finds.
 };
@@ -112,15 +112,15 @@ class ShadowEventFinder {
         constexpr std::size_t wedges_a_look = 64;
         return bounds_.stop && ++asked_ % wedges_a_look == 0 && bounds_.stop->requested();
     }
-    /// Returns whether an event's gain is large enough: D2 events need `least_bend`, or `least_narrow_bend` if they
+    /// Returns whether an event's gain is large enough: D2 events need `min_bend`, or `min_narrow_bend` if they
     /// turn out to be long enough (is_long_enough).
     bool counts(const ShadowEvent& event) {
-        const bool weak = is_weak(event) && event.gain < bounds_.least_narrow_bend;
+        const bool weak = is_weak(event) && event.gain < bounds_.min_narrow_bend;
         too_weak += weak;
         return !weak;
     }
     bool is_weak(const ShadowEvent& event) const {
-        return !source_->is_point && !event.is_kink && !event.by_blockers_alone && event.gain < bounds_.least_bend;
+        return !source_->is_point && !event.is_kink && !event.by_blockers_alone && event.gain < bounds_.min_bend;
     }
     /// Returns whether an event is long enough to keep: any event that is not weak, or one more than eight times as
     /// long as its penumbra is wide.
@@ -136,7 +136,7 @@ class ShadowEventFinder {
     const EventSource* source_ = nullptr;
     RegionId own_;
     Vec2 lo_, hi_;
-    double least_ = 0;  ///< Metres: points nearer to a plane than this are in it.
+    double min_ = 0;  ///< Metres: points nearer to a plane than this are in it.
     std::vector<std::pair<double, double>> hidden_;
     EventBounds bounds_;
     std::array<std::span<const PieceId>, 2> lists_;  ///< Candidate lists for the current wedge.

@@ -76,8 +76,8 @@ ThreeEdgeEventFinder::Sight ThreeEdgeEventFinder::sight(double s, const Point& q
     const Point x = out.q + (hq / (hq - ht)) * (through - out.q);
     out.place = frame_->flat(x);
     const double hp = frame_->height(out.p), hr = frame_->height(out.r);
-    out.is_free = std::isfinite(out.place.x + out.place.y) && hp > least_ && hr > least_ && hp < hq && hr < hq &&
-                  source_->plane.signed_distance(out.p) > least_ && source_->plane.signed_distance(out.r) > least_ &&
+    out.is_free = std::isfinite(out.place.x + out.place.y) && hp > min_ && hr > min_ && hp < hq && hr < hq &&
+                  source_->plane.signed_distance(out.p) > min_ && source_->plane.signed_distance(out.r) > min_ &&
                   out.place.x >= lo_.x && out.place.x <= hi_.x && out.place.y >= lo_.y && out.place.y <= hi_.y &&
                   edges_->is_outline(e, out.q) && edges_->is_outline(f, out.q) && !is_hidden(out, x);
     return out;
@@ -188,7 +188,7 @@ void ThreeEdgeEventFinder::find(const PlaneFrame& receiver, RegionId own, Vec2 l
                                 std::span<const std::uint32_t> among, bool umbra_only, double sagitta,
                                 std::vector<ThreeEdgeEvent>& events) {
     frame_ = &receiver, source_ = &source, own_ = own, lo_ = lo, hi_ = hi;
-    umbra_only_ = umbra_only, sagitta_ = sagitta, least_ = 4 * edges_->tolerance();
+    umbra_only_ = umbra_only, sagitta_ = sagitta, min_ = 4 * edges_->tolerance();
     if (source.is_point) return;
     for (const auto& loop : source.loops)
         for (std::size_t i = 0; i < loop.size(); ++i) {

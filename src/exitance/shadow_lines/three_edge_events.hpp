@@ -68,7 +68,7 @@ class ThreeEdgeEventFinder {
     RegionId own_;
     Vec2 lo_, hi_;
     bool umbra_only_ = true;
-    double sagitta_ = 0, least_ = 0;
+    double sagitta_ = 0, min_ = 0;
 };
 
 /// Determinant of the three planes through x and each line; 0 if one line of sight from x meets all three lines. It is

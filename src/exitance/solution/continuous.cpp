@@ -51,7 +51,7 @@ class Projection {
     /// Solves by conjugate gradients with diagonal preconditioning, starting from the nodes' means. The condition of M
     /// depends neither on sizes nor on the number of elements [Wathen87], so that a dozen steps give single precision.
     std::vector<Spectrum> solve() const {
-        constexpr int most_steps = 60;
+        constexpr int max_steps = 60;
         // ratio of squared residuals at which to stop; derived from the rounding of single precision
         constexpr double precision = 1e-14;
         const std::size_t count = right_.size();
@@ -67,7 +67,7 @@ class Projection {
             rz += r[i] * p[i];
             start += right_[i] * by_diagonal(i, right_[i]);
         }
-        for (int step = 0; step < most_steps && max(quotient(rz, start)) > precision; ++step) {
+        for (int step = 0; step < max_steps && max(quotient(rz, start)) > precision; ++step) {
             multiply(p, Mp);
             Spectrum pMp;
             for (std::size_t i = 0; i < count; ++i) pMp += p[i] * Mp[i];

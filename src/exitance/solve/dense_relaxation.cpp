@@ -30,7 +30,7 @@ SolveReport sweep_until(const RadiositySystem& s, std::span<Spectrum> b, const S
         report.residual = surface_norm(residual_of(s, b), s.area) / scale;
         report.converged = report.residual <= stop.residual;
         report.interrupted = !report.converged && stop.request && stop.request->requested();
-        if (report.converged || report.interrupted || !(report.residual < hopeless_residual)) break;
+        if (report.converged || report.interrupted || !(report.residual < diverged_residual)) break;
     }
     return report;
 }

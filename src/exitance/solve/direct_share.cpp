@@ -21,13 +21,13 @@ struct Moments {
 /// Those are in E_dir but are not hit by rays, so that H M would not be E_dir.
 bool emitters_are_large(const Scene& scene) {
     if (scene.has_light_apart()) return false;
-    constexpr double least_share = 0.05;
+    constexpr double min_share = 0.05;
     double all = 0, emitting = 0;
     for (const Region& region : scene.regions()) {
         all += region.area;
         if (scene.materials()[region.material].emits()) emitting += region.area;
     }
-    return emitting >= least_share * all;
+    return emitting >= min_share * all;
 }
 
 /// Moments of the light that rays from the centre of a leaf meet.
@@ -77,10 +77,10 @@ Spectrum find_direct_share(const Stage& stage, const GlobalLight& light, const E
         const std::uint64_t key = hash(seed, static_cast<std::uint64_t>(Stream::rows), k, chosen[k].value);
         return moments_at(stage, light, locator, chosen[k], key);
     });
-    constexpr double least_share = 0.75;
+    constexpr double min_share = 0.75;
     Spectrum c;
     for (std::size_t k = 0; k < bands; ++k)
-        if (sum.both[k] < 0 && sum.both[k] * sum.both[k] >= least_share * sum.b[k] * sum.M[k])
+        if (sum.both[k] < 0 && sum.both[k] * sum.both[k] >= min_share * sum.b[k] * sum.M[k])
             c[k] = -sum.both[k] / sum.M[k];
     return c;
 }

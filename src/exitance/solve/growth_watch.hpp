@@ -30,7 +30,7 @@ class GrowthWatch {
 
 /// Residual, relative to the light that enters, at which a relaxation is stopped as divergent: it is at most 1
 /// initially, and over-relaxed sweeps increase it by less.
-inline constexpr double hopeless_residual = 10;
+inline constexpr double diverged_residual = 10;
 
 /// True if a solve ended with a residual of at least 1, no better than zero light. Divergent series end this way.
 inline bool has_diverged(const SolveReport& report) {

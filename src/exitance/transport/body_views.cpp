@@ -123,7 +123,7 @@ BodyNeeds::BodyNeeds(const Stage& stage, const BodyViews& views, const DirectPro
         room_light_[b] = light_of_room[stage.rooms.at(region, centroid(stage.scene.outline(first)))];
     }
     for (std::size_t b = 0; b < allowed_.size(); ++b) {
-        const double reference = std::max(allowed_[b], least_body_light * room_light_[b]);
+        const double reference = std::max(allowed_[b], min_body_light * room_light_[b]);
         allowed_[b] = reference > 0 ? tolerance[b] * reference : unlimited;
     }
     find_limits(light.tree);
@@ -167,13 +167,13 @@ void BodyNeeds::find_limits(const ElementTree& tree) {
     if (!hits.empty()) first.push_back(static_cast<std::uint32_t>(hits.size()));
     std::vector<std::vector<ElementLimits>> found(first.size() - 1);
     parallel_for(found.size(), 1, [&](std::size_t k) { found[k] = limits_of_body(tree, first[k], first[k + 1]); });
-    most_ = Field<ElementId, Limits>(tree.size());
+    max_ = Field<ElementId, Limits>(tree.size());
     const auto lower = [](double& limit, double to) { limit = std::min(limit, to); };
     for (const std::vector<ElementLimits>& of_body : found)
         for (const auto& [e, limits] : of_body) {
-            lower(most_[e].everywhere, limits.everywhere);
-            lower(most_[e].in_a_cell, limits.in_a_cell);
-            lower(most_[e].in_a_near_cell, limits.in_a_near_cell);
+            lower(max_[e].everywhere, limits.everywhere);
+            lower(max_[e].in_a_cell, limits.in_a_cell);
+            lower(max_[e].in_a_near_cell, limits.in_a_near_cell);
         }
 }
 
@@ -215,11 +215,11 @@ std::vector<BodyNeeds::ElementLimits> BodyNeeds::limits_of_body(const ElementTre
 }
 
 double BodyNeeds::allowed_squared(ElementId e) const {
-    return e.value < most_.size() ? most_[e].everywhere * most_[e].everywhere : unlimited;
+    return e.value < max_.size() ? max_[e].everywhere * max_[e].everywhere : unlimited;
 }
 
 bool BodyNeeds::hides_too_much(ElementId e, const DirectFit& fit, const Spectrum& weight) const {
-    return e.value < most_.size() && (mean(weight * fit.mean) > most_[e].in_a_cell || most_[e].in_a_near_cell < 1);
+    return e.value < max_.size() && (mean(weight * fit.mean) > max_[e].in_a_cell || max_[e].in_a_near_cell < 1);
 }
 
 }  // namespace exitance

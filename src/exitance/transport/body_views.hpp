@@ -87,7 +87,7 @@ class BodyNeeds {
         ElementId e;
         Limits limits;
     };
-    Field<ElementId, Limits> most_;
+    Field<ElementId, Limits> max_;
 };
 
 }  // namespace exitance

@@ -173,7 +173,7 @@ namespace {
 /// Light at a random place of an element by few rays. `number`: of the place.
 PlaceLight::Estimate rough_light(const FittedLight& light, const ElementTree& tree, ElementId e, std::uint64_t number,
                                  DirectFitRoom& room) {
-    constexpr LightAccuracy rough{.relative = 0.5, .most_rays = rays_an_element};
+    constexpr LightAccuracy rough{.relative = 0.5, .max_rays = rays_an_element};
     const RegionId region = tree.region(e);
     const Patch& patch = tree.patch(e);
     const ScrambledSobol random(hash(RayLight::key_of(patch.at(tree.centre(e)), region), number));

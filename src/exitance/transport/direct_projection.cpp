@@ -166,18 +166,18 @@ class Projector {
 
     NoiseAllowed noise_on(ElementId e) const {
         const double of_area =
-            share_ * std::min(1.0, stage_.area / (ErrorShare::most_even * out_.tree.area(e))) / mean_area_;
+            share_ * std::min(1.0, stage_.area / (ErrorShare::max_even_count * out_.tree.area(e))) / mean_area_;
         const double even = allowed_on(e) / out_.tree.area(e);
         if (!is_crowd_) return {even};
         return {std::max(even, of_area), std::sqrt(share_ / mean_area_) / options_.tolerance,
-                stage_.area / ErrorShare::least_count};
+                stage_.area / ErrorShare::min_count};
     }
 
     /// Number of rays to weak sources. The estimated flux is most accurate if rays are spread evenly over all area.
     unsigned rays_of(ElementId e) const {
-        constexpr double most_rays = 1024;
+        constexpr double max_rays = 1024;
         const double rays = rays_an_element * out_.tree.area(e) / mean_area_;
-        return static_cast<unsigned>(std::clamp(rays, static_cast<double>(rays_an_element), most_rays));
+        return static_cast<unsigned>(std::clamp(rays, static_cast<double>(rays_an_element), max_rays));
     }
 
     DirectFit fit(ElementId e, int depth, DirectFitRoom& room) const {
@@ -218,7 +218,7 @@ class Projector {
             const double error = is_crowd_ ? error_of_shape(out_, e) : area * out_.fit[e].misfit_squared,
                          allowed = std::min(std::max(least, allowed_on(e)), of_bodies);
             if (error <= allowed && !hides_too_much(e)) continue;
-            if (options_.least_area && area < 2 * *options_.least_area) continue;
+            if (options_.min_area && area < 2 * *options_.min_area) continue;
             const Cut only =
                 error > allowed ? sufficient_cut(error / area, out_.fit[e].misfit_along, allowed / area) : Cut::none;
             for (ElementId child : refine_element(out_.tree, e, only)) fresh.push_back(child);

@@ -16,7 +16,7 @@ struct DirectProjectionOptions {
     double tolerance = 0;  ///< RMS error of rho E_dir over all surfaces, relative to the mean of rho E_dir.
     int max_depth = 8;     ///< Levels of refinement below the initial mesh.
     /// Smallest area of an element that is split, m^2; empty: only `tolerance` limits splitting.
-    std::optional<double> least_area = {};
+    std::optional<double> min_area = {};
     /// On a stop request: if true, return an empty tree at once; if false, estimate the remaining elements by rays, so
     /// that there is a result.
     bool may_give_up = false;

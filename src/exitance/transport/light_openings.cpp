@@ -140,14 +140,14 @@ std::size_t best_cut(const Cuts& cuts) {
 /// a cut, where they would be judged by the light of the other room. The sky belongs to the side that sends more light
 /// to it. Returns nullopt if a side has no leaves left.
 std::optional<OpeningBetween> by_what_is_seen(const Flow& flow, OpeningBetween sides, std::uint16_t part) {
-    constexpr int most_sweeps = 8;
+    constexpr int max_sweeps = 8;
     std::vector<std::uint8_t> is_large(flow.area.size());
     for (std::uint32_t i : sides.large) is_large[i] = 1;
     const int sky = !flow.has_sky ? 0 : sent_to_sky(flow, sides.large) > sent_to_sky(flow, sides.small) ? 1 : -1;
     LeafNumbers all = sides.small;
     all.insert(all.end(), sides.large.begin(), sides.large.end());
     std::sort(all.begin(), all.end());
-    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    for (int sweep = 0; sweep < max_sweeps; ++sweep) {
         std::vector<std::uint8_t> next = is_large;
         for (std::uint32_t i : all) {
             int towards_large = 0;

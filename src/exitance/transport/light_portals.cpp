@@ -13,12 +13,12 @@
 namespace exitance {
 namespace {
 
-constexpr unsigned most_portal_rays = 1 << 18;  ///< Rays that search for openings, in total.
-constexpr unsigned ray_batch = 1 << 10;         ///< Rays of a room that are cast in succession.
+constexpr unsigned max_portal_rays = 1 << 18;  ///< Rays that search for openings, in total.
+constexpr unsigned ray_batch = 1 << 10;        ///< Rays of a room that are cast in succession.
 /// The search stops after this number of rays through a room's openings, since more rays rarely find other openings.
 constexpr std::size_t enough_ways = 64;
-constexpr std::size_t most_openings = 8;  ///< Maximum number of openings between two rooms.
-constexpr std::size_t most_cells = 16;    ///< Maximum number of parallelograms at which rays of one room are aimed.
+constexpr std::size_t max_openings = 8;  ///< Maximum number of openings between two rooms.
+constexpr std::size_t max_cells = 16;    ///< Maximum number of parallelograms at which rays of one room are aimed.
 
 /// A ray from one room into another.
 struct Way {
@@ -191,14 +191,14 @@ PortalFinder::OpenPoints PortalFinder::first_points(std::size_t room, std::size_
 PortalCell PortalFinder::surrounded(std::size_t room, std::size_t other, const Crossing& crossing, OpenPoints& open,
                                     std::uint64_t key) const {
     constexpr unsigned lines = 512;
-    constexpr int most_searches = 8;
+    constexpr int max_searches = 8;
     constexpr std::size_t min_points = 8;  // number of points from which a rectangle can be found
     constexpr double around = 0.25;        // neighbourhood on each side, as a share of the rectangle's size
     constexpr double grows =
         1.02;  // factor on the area below which it counts as unchanged: derived from 512 random lines
     if (open.points.empty()) return {};
     PortalCell out;
-    for (int i = 0; i < most_searches; ++i) {
+    for (int i = 0; i < max_searches; ++i) {
         const PortalCell before = std::exchange(out, rectangle_around(crossing.at, crossing.frame, open.points));
         if (i > 1 && out.area <= grows * before.area) break;
         const Vec2 u = crossing.in_plane(out.u), v = crossing.in_plane(out.v);
@@ -234,9 +234,9 @@ PortalFinder::Crossing PortalFinder::straightened(std::size_t room, std::size_t 
     const Point a = middle_at(first), b = middle_at(last);
     const Vec3 u = normalized(b - a);
     // Both middles are within the opening unless an object is in it. The plane then turns; limit its angle.
-    constexpr double least_cosine = 0.9;
+    constexpr double min_cosine = 0.9;
     const Vec3 n = crossing.frame.n - dot(crossing.frame.n, u) * u;
-    if (!(norm(n) > least_cosine) || !(std::abs(dot(u, normalized(along))) > least_cosine)) return crossing;
+    if (!(norm(n) > min_cosine) || !(std::abs(dot(u, normalized(along))) > min_cosine)) return crossing;
     return {a + 0.5 * (b - a), Frame(normalized(n))};
 }
 
@@ -319,7 +319,7 @@ std::shared_ptr<const LightPortals> find_light_portals(const Stage& stage, const
                                                        std::span<const double> light, std::uint64_t seed,
                                                        const StopRequest& stop) {
     const PortalFinder finder(stage, rooms, tree, numbering, seed);
-    const auto most = std::max(ray_batch, static_cast<unsigned>(most_portal_rays / rooms.count()));
+    const auto most = std::max(ray_batch, static_cast<unsigned>(max_portal_rays / rooms.count()));
     std::vector<std::vector<PortalCell>> by_room(rooms.count());
     for (std::size_t room = rooms.count(); room-- > 1 && !stop.requested();) {
         std::vector<Way> ways = finder.ways(room, most, stop);
@@ -327,7 +327,7 @@ std::shared_ptr<const LightPortals> find_light_portals(const Stage& stage, const
         while (!ways.empty() && !stop.requested()) {
             const Way way = ways.back();
             ways.pop_back();
-            if (openings[way.into] == most_openings) continue;
+            if (openings[way.into] == max_openings) continue;
             PortalCell found = finder.opening(room, way);
             if (!(found.area > 0)) continue;
             ++openings[way.into];
@@ -339,7 +339,7 @@ std::shared_ptr<const LightPortals> find_light_portals(const Stage& stage, const
             // The ratio of light is limited by the light that comes in through the opening.
             const double more = bright > 0 ? bright / std::max(light[darker], share * bright) : 0;
             found.light = more;
-            if (is_worth_aiming(share, more)) add_portal_cells(found, most_cells, by_room[darker]);
+            if (is_worth_aiming(share, more)) add_portal_cells(found, max_cells, by_room[darker]);
         }
     }
     auto out = std::make_shared<const LightPortals>(std::move(by_room));

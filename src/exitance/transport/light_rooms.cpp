@@ -23,9 +23,9 @@ namespace {
 // by trial and not measured by a command.
 
 /// A part of the scene is a room if it has at least this share of all area, or of the area that is not outdoors.
-constexpr double least_share = 0.05;
+constexpr double min_share = 0.05;
 /// A smaller part can be a room, below a sky or above a large ground, if it has at least this share of all elements.
-constexpr double least_detail = 0.001;
+constexpr double min_detail = 0.001;
 /// An element is outdoors if at least this share of its rays reaches the sky. Under an open sky, half of the rays of a
 /// facade reach it, and most of those of a ground.
 constexpr double outdoors = 0.25;
@@ -34,11 +34,11 @@ constexpr double outdoors = 0.25;
 constexpr double far_larger = 20;
 constexpr double flattest = 0.1;                ///< Smallest over largest extent of a room. A flatter part is a gap.
 constexpr double thinnest = 0.03;               ///< Volume of a room over area^(3/2). A part with less volume is a gap.
-constexpr std::size_t fewest_walls = 4;         ///< Minimum number of walls of a room.
-constexpr std::size_t most_rooms = 64;          ///< Maximum number of rooms. Further parts stay joined to others.
+constexpr std::size_t min_walls = 4;            ///< Minimum number of walls of a room.
+constexpr std::size_t max_rooms = 64;           ///< Maximum number of rooms. Further parts stay joined to others.
 constexpr double mean_rays = 24;                ///< Rays of an element of mean area.
-constexpr unsigned least_rays = 16;             ///< Minimum per element; sufficient if no part is outdoors.
-constexpr unsigned most_room_rays = 256;        ///< Maximum per element. Outdoors, a room may have few elements.
+constexpr unsigned min_rays = 16;               ///< Minimum per element; sufficient if no part is outdoors.
+constexpr unsigned max_room_rays = 256;         ///< Maximum per element. Outdoors, a room may have few elements.
 constexpr std::size_t rays_outdoors = 1 << 18;  ///< Maximum of rays of all elements together, if there is a sky.
 
 /// Starting values that differ between rooms: by position along a line, by distance from the centre, and a small random
@@ -77,7 +77,7 @@ struct Part {
     /// False if the part is a gap, several gaps, or a single wall.
     bool may_be_room() const {
         const Vec3 size = box.size();
-        return leaves.size() >= fewest_walls && volume >= thinnest * std::pow(area, 1.5) &&
+        return leaves.size() >= min_walls && volume >= thinnest * std::pow(area, 1.5) &&
                std::min({size.x, size.y, size.z}) >= flattest * std::max({size.x, size.y, size.z});
     }
 };
@@ -99,7 +99,7 @@ class RoomFinder {
     /// Returns the rooms in descending order of area. Each leaf belongs to one of them.
     std::vector<Part> find(const StopRequest& stop) {
         std::vector<Part> open = joined_by_light();
-        while (!open.empty() && parts_.size() + open.size() < most_rooms && !stop.requested()) {
+        while (!open.empty() && parts_.size() + open.size() < max_rooms && !stop.requested()) {
             Part part = std::move(open.back());
             open.pop_back();
             Part rest;
@@ -186,10 +186,10 @@ class RoomFinder {
         }
         out.back().add(outer);
         for (std::size_t k = 0; k < out.size(); ++k) {
-            for (std::uint32_t i : out[k].leaves) flow_.part[i] = static_cast<std::uint16_t>(std::min(k, most_rooms));
+            for (std::uint32_t i : out[k].leaves) flow_.part[i] = static_cast<std::uint16_t>(std::min(k, max_rooms));
             if (k + 1 < out.size()) inner_.add(out[k].box.lo), inner_.add(out[k].box.hi);
         }
-        fresh_ = static_cast<std::uint16_t>(std::min(out.size(), most_rooms) + 1);
+        fresh_ = static_cast<std::uint16_t>(std::min(out.size(), max_rooms) + 1);
         total_ = outer.area;
         for (const Part& part : out) total_ += part.area;
         whole_ = out.back().box;
@@ -207,7 +207,7 @@ class RoomFinder {
             if (const auto at = outside.find(region_of(i)); at != outside.end()) ++at->second;
         const auto own =
             std::count_if(outside.begin(), outside.end(), [](const auto& wall) { return wall.second == 0; });
-        return own >= static_cast<std::ptrdiff_t>(fewest_walls);
+        return own >= static_cast<std::ptrdiff_t>(min_walls);
     }
 
     /// True if the sky is above a part. Such a part is judged separately, independent of its shape and size.
@@ -220,11 +220,10 @@ class RoomFinder {
     /// True if a part is large enough to be a room of its own.
     bool counts(const Part& part) const {
         if (!part.may_be_room()) return false;
-        if (part.area >= least_share * total_) return true;
-        if (static_cast<double>(part.leaves.size()) < least_detail * static_cast<double>(flow_.area.size()))
-            return false;
+        if (part.area >= min_share * total_) return true;
+        if (static_cast<double>(part.leaves.size()) < min_detail * static_cast<double>(flow_.area.size())) return false;
         if (!has_own_walls(part)) return false;
-        if (flow_.has_sky && part.area >= least_share * indoor_area_) return true;
+        if (flow_.has_sky && part.area >= min_share * indoor_area_) return true;
         Box inner = inner_;
         inner.add(part.box.lo), inner.add(part.box.hi);
         return whole_.diagonal() >= far_larger * inner.diagonal();
@@ -446,12 +445,11 @@ LightRooms find_light_rooms(const Stage& stage, std::uint64_t seed, const StopRe
     const std::size_t leaves = numbering.leaves.size();
     const double fewer = ErrorShare::is_crowd(leaves, pieces.size()) ? fewer_rays_in_crowd(leaves) : 1;
     RayBudget rays{.average = fewer * mean_rays,
-                   .least = static_cast<unsigned>(fewer * least_rays),
-                   .most = most_room_rays,
+                   .min = static_cast<unsigned>(fewer * min_rays),
+                   .max = max_room_rays,
                    .front_alone = true};
     if (has_sky)
-        while (rays.least < most_room_rays && 2 * rays.least * numbering.leaves.size() <= rays_outdoors)
-            rays.least *= 2;
+        while (rays.min < max_room_rays && 2 * rays.min * numbering.leaves.size() <= rays_outdoors) rays.min *= 2;
     const RayRows rows(stage, tree, numbering, *locator, rays, seed, Dealing::by_element, RowsHeld::everywhere, &stop);
     const std::vector<Part> parts = find_parts(stage, rows, tree, numbering, seed, has_sky, stop);
     LightRooms out;

@@ -15,7 +15,7 @@ TEST(LinearRows, ReturnTheReflectanceInAFurnace) {
     const DirectProjection direct = project_direct_light(stage, {.mesh = {0.5, 1}, .tolerance = 0.1}, stop);
     const LeafNumbering numbering(direct.tree);
     const ElementLocator locator(direct.tree, scene.regions().size());
-    const LinearRows H(stage, direct, numbering, locator, {.average = 32, .least = 16, .most = 64}, 1);
+    const LinearRows H(stage, direct, numbering, locator, {.average = 32, .min = 16, .max = 64}, 1);
     std::vector<Spectrum> ones(H.size(), Spectrum(1.0)), out(H.size());
     H.gather(ones, out);
     // Every row sums to 1, up to single precision of the corner weights.
@@ -37,7 +37,7 @@ TEST(LinearRows, ReproduceALinearFunctionAtCornersAndInTheMean) {
     const DirectProjection direct = project_direct_light(stage, {.mesh = {1.1, 0}, .tolerance = 10}, stop);
     const LeafNumbering numbering(direct.tree);
     const ElementLocator locator(direct.tree, scene.regions().size());
-    const LinearRows H(stage, direct, numbering, locator, {.average = 16, .least = 16, .most = 16}, 1);
+    const LinearRows H(stage, direct, numbering, locator, {.average = 16, .min = 16, .max = 16}, 1);
     ASSERT_EQ(H.size(), 24u);  // six squares with four nodes each
     const double g = 0.5 / std::sqrt(3.0);
     // f = 1 + u + 2 v at the nodes (0.5 -+ g, 0.5 -+ g), in the order of the rule, u first.

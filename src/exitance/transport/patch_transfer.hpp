@@ -41,7 +41,7 @@ class PatchTransfer {
     PatchTransfer(const Stage& stage, const ElementTree& tree, unsigned samples, std::uint64_t seed)
         : stage_(stage),
           tree_(tree),
-          samples_(std::clamp((samples + 15) / 16 * 16, 16u, most_samples)),
+          samples_(std::clamp((samples + 15) / 16 * 16, 16u, max_samples)),
           joins_middles_(samples == 1),
           seed_(seed) {
         update_places();
@@ -50,7 +50,7 @@ class PatchTransfer {
     /// Creates sample points for elements that were added to the tree since the last call.
     void update_places();
 
-    static constexpr unsigned most_samples = 256;  ///< Limit on the rays per pair.
+    static constexpr unsigned max_samples = 256;  ///< Limit on the rays per pair.
 
     struct Workspace {
         ReceiverBatch batch;

@@ -12,7 +12,7 @@ namespace exitance {
 
 unsigned RayBudget::rays(double area, double mean_area) const {
     const double wanted = average * std::sqrt(area / mean_area);
-    const double clamped = std::clamp(wanted, static_cast<double>(least), static_cast<double>(most));
+    const double clamped = std::clamp(wanted, static_cast<double>(min), static_cast<double>(max));
     return std::bit_floor(static_cast<unsigned>(clamped * std::numbers::sqrt2));  // rounds to the nearer power of two
 }
 

@@ -12,8 +12,8 @@ namespace exitance {
 /// Number of rays per element: larger elements, which contribute more to the error, get more rays.
 struct RayBudget {
     double average = 64;  ///< Rays of an element of mean area.
-    unsigned least = 16;
-    unsigned most = 4096;
+    unsigned min = 16;
+    unsigned max = 4096;
     /// For diffusing panes: true if rays leave only by the front, as emitted light does; false if they represent
     /// gathered light.
     bool front_alone = false;

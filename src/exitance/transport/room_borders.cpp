@@ -131,9 +131,9 @@ std::vector<std::size_t> given_to_brighter(const RayRows& rows, const ElementTre
     }
     // A room that would lose most of its area keeps it. Such a room is a gap, for example behind furniture, and nearly
     // all of its light is at its mouth. Without the mouth, the rest would be nearly dark, and its relative error large.
-    constexpr double most_moved = 0.5;
+    constexpr double max_moved = 0.5;
     for (const std::size_t i : between)
-        if (moved[room_of[i]] > most_moved * area[room_of[i]]) out[i] = room_of[i];
+        if (moved[room_of[i]] > max_moved * area[room_of[i]]) out[i] = room_of[i];
     return out;
 }
 

@@ -10,7 +10,7 @@
 
 namespace exitance {
 Rooms find_rooms(const Stage& stage, const ElementTree& tree, std::uint64_t seed) {
-    constexpr std::size_t rays_each = 8, most_rooms = 64;
+    constexpr std::size_t rays_each = 8, max_rooms = 64;
     const std::vector<ElementId>& roots = tree.roots();
     Field<ElementId, std::uint32_t> root(tree.size());
     for (std::size_t i = 0; i < roots.size(); ++i) root[roots[i]] = static_cast<std::uint32_t>(i);
@@ -38,7 +38,7 @@ Rooms find_rooms(const Stage& stage, const ElementTree& tree, std::uint64_t seed
     std::iota(by_area.begin(), by_area.end(), 0u);
     std::stable_sort(by_area.begin(), by_area.end(), [&](auto a, auto b) { return area[a] > area[b]; });
     for (std::size_t i = 0; i < by_area.size(); ++i)
-        number[by_area[i]] = static_cast<std::uint32_t>(std::min(i, most_rooms - 1));
+        number[by_area[i]] = static_cast<std::uint32_t>(std::min(i, max_rooms - 1));
     for (std::size_t i = 0; i < roots.size(); ++i) out.of_root[i] = number[rooms.root(static_cast<std::uint32_t>(i))];
     return out;
 }

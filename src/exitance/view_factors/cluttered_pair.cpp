@@ -198,7 +198,7 @@ bool ClutteredExchange::add_halves(Cell& cell, const SourcePart& source) {
     for (const double sign : {1.0, -1.0}) {
         SourcePart half{{}, {}, source.depth + 1};
         clip(source.outline, Plane{sign * n, sign * offset}, half.outline);
-        if (half.outline.size() < 3 || half.outline.size() > SightTables::most_corners) return false;
+        if (half.outline.size() < 3 || half.outline.size() > SightTables::max_corners) return false;
         const auto outlook = visible_.set(frame_, cell.corners(), half.outline, source.blockers);
         if (outlook == VisibleFromMany::Outlook::partly) half.blockers = seen_blockers();
         blockers += half.blockers.size();
@@ -223,7 +223,7 @@ void ClutteredExchange::add_source(Cell& cell, const SourcePart& source) {
         return;
     }
     part.blockers = seen_blockers();
-    if (part.blockers.size() > SightTables::most_blockers) {
+    if (part.blockers.size() > SightTables::max_blockers) {
         if (part.depth < max_halvings && add_halves(cell, part)) return;
         visible_.set(frame_, cell.corners(), part.outline, part.blockers);
     }
@@ -320,7 +320,7 @@ double ClutteredExchange::operator()(const OccludedPair& pair, const Allowance& 
     cut_along_contacts(slack);
     find_edges(slack);
     cut_under_edges(slack);
-    const std::size_t enough = evaluations + allowance.most_evaluations;
+    const std::size_t enough = evaluations + allowance.max_evaluations;
     add_cells(sources);
     for (const Cell& cell : heap_) squared_error_ += cell.error * cell.error;
     std::make_heap(heap_.begin(), heap_.end());

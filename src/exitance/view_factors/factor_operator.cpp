@@ -10,8 +10,8 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t rows_a_task = 256, rows_a_block = 16384;
-constexpr int threshold_steps = 10;             ///< Bisections of the logarithm of a row's threshold.
-constexpr double least_threshold_share = 1e-4;  ///< Smallest threshold, as a share of the largest.
+constexpr int threshold_steps = 10;           ///< Bisections of the logarithm of a row's threshold.
+constexpr double min_threshold_share = 1e-4;  ///< Smallest threshold, as a share of the largest.
 
 /// Sum of the values of all faces of each node, after the values themselves.
 std::vector<double> with_sums(const FaceTree& tree, std::vector<double> of_faces) {
@@ -75,7 +75,7 @@ class RowMerger {
     /// The largest limit on T_iC with sqrt(sum_C T_iC^2) <= `error`.
     double largest_threshold(double error) const {
         const auto is_within = [&](double limit) { return merge(0, entries_, limit, nullptr) <= error * error; };
-        double low = least_threshold_share * error, high = error;
+        double low = min_threshold_share * error, high = error;
         if (is_within(high)) return high;
         for (int step = 0; step < threshold_steps; ++step) {
             const double middle = std::sqrt(low * high);

@@ -46,7 +46,7 @@ bool OccludedExchange::cut(const Part& part, const CriticalLine& line, Part& fro
 /// Cuts a part of the receiver along the critical lines where visibility changes, and adds triangles and quadrilaterals
 /// to cells_. A part with too many lines is halved first, since each half has fewer.
 void OccludedExchange::cut_into_cells(const Part& part, int depth) {
-    if (cells_.size() > most_cells_) return;
+    if (cells_.size() > max_cells_) return;
     finder_.find(frame_, part.corners(), pair_.source, visible_.seen_edges(), nearest_line * size_, max_lines, lines_);
     Part front, back;
     if (lines_.size() >= max_lines && depth < max_cell_halvings) {

@@ -331,11 +331,11 @@ std::optional<double> OccludedExchange::operator()(const OccludedPair& pair, con
     const auto outlook = visible_.set(frame_, whole.corners(), pair.source, pair.blockers);
     if (outlook == VisibleFromMany::Outlook::hidden) return 0;
     if (outlook == VisibleFromMany::Outlook::clear) return unoccluded = true, 0;
-    most_cells_ = demand.most_cells;
+    max_cells_ = demand.max_cells;
     size_ = diameter(whole.corners());
     cells_.clear();
     cut_into_cells(whole, 0);
-    if (cells_.size() > most_cells_) return std::nullopt;
+    if (cells_.size() > max_cells_) return std::nullopt;
     looking_.clear();
     for (Cell& cell : cells_) looking_.push_back(&cell);
     look_at_cells(looking_);

@@ -39,7 +39,7 @@ struct Demand {
     double large = 0;        ///< m^2; larger exchange areas are integrated more carefully.
     double dominating = 0;   ///< m^2; larger exchange areas largely determine the error of their row.
     /// Limit on the cells of the receiver: with more, critical lines are not worthwhile.
-    std::size_t most_cells = SIZE_MAX;
+    std::size_t max_cells = SIZE_MAX;
 };
 
 /// Integrates the exact visible part of a source over a receiver. The receiver is cut along the critical lines at which
@@ -50,7 +50,7 @@ class OccludedExchange {
     /// After a stop request the results are meaningless.
     explicit OccludedExchange(const StopRequest& stop) : stop_(stop) {}
 
-    /// A_i F_ij, m^2; empty if critical lines would cut the receiver into more than demand.most_cells cells. Sets
+    /// A_i F_ij, m^2; empty if critical lines would cut the receiver into more than demand.max_cells cells. Sets
     /// `unoccluded` if no blocker is between the faces after all; the value is then 0 and must be computed otherwise.
     std::optional<double> operator()(const OccludedPair& pair, const Demand& demand, bool& unoccluded);
 
@@ -151,7 +151,7 @@ class OccludedExchange {
     double brightest_seen_ = 0;  ///< Largest form factor found, or a bound on the one that may have been missed.
     double relative_ = 0;
     bool matters_ = false, dominates_ = false;
-    std::size_t most_cells_ = 0;
+    std::size_t max_cells_ = 0;
     /// Number of evaluations after which cells are not halved any more: limits the worst pairs.
     std::size_t enough_ = 0;
 };

@@ -44,7 +44,7 @@ TEST(OccludedExchange, GivesUpIfLinesCutTheReceiverIntoTooManyCells) {
     OccludedExchange lines(stop);
     bool unoccluded = true;
     Demand demand{.relative = 1e-3};
-    demand.most_cells = 0;
+    demand.max_cells = 0;
     EXPECT_FALSE(lines(legs.pair, demand, unoccluded));
     EXPECT_EQ(lines.evaluations, 0U);
 }

@@ -33,9 +33,9 @@ constexpr std::uint32_t max_repeats = 4;
 /// Lower limit of the factor on a row's tolerance, derived from errors that fall with the root of the number of rays: a
 /// repeat takes at most about 16 times as many. If a row misses 1 by more than that, chance is not the only cause, and
 /// more rays would not help.
-constexpr double least_factor = 0.25;
+constexpr double min_factor = 0.25;
 /// Rows that miss 1 by at least this share of their last defect, on the same side, are not repeated again. Derived from
-/// least_factor: had chance caused the defect, about a quarter of it would be left.
+/// min_factor: had chance caused the defect, about a quarter of it would be left.
 constexpr double persistent_share = 0.5;
 
 class RowRun {
@@ -85,7 +85,7 @@ class RowRun {
             const bool is_persistent = std::abs(before) > options_.error && missing / before > persistent_share;
             if (is_persistent && limits[i] - out.dropped[i] <= options_.error) continue;
             is_pooled_[i] = std::abs(missing) <= options_.error;
-            shares_[i] *= std::max(least_factor, repeated_share * options_.error / error);
+            shares_[i] *= std::max(min_factor, repeated_share * options_.error / error);
             faces.push_back(i);
         }
         return faces;

@@ -62,17 +62,17 @@ Scene furnished_room() {
 class StoppingStore final : public RawRowStore {
   public:
     StoppingStore(std::vector<RawRow>& rows, StopRequest& stop, std::size_t most)
-        : rows_(rows), stop_(stop), most_(most) {}
+        : rows_(rows), stop_(stop), max_(most) {}
     std::vector<RawRow> resumed() override { return rows_; }
     void keep(const RawRow& row) override {
         rows_.push_back(row);
-        if (++kept_ == most_) stop_.interrupt();
+        if (++kept_ == max_) stop_.interrupt();
     }
 
   private:
     std::vector<RawRow>& rows_;
     StopRequest& stop_;
-    std::size_t most_, kept_ = 0;
+    std::size_t max_, kept_ = 0;
 };
 
 SparseFactors factors_of(const Scene& scene, const RowFactorOptions& options) {

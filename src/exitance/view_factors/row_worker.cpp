@@ -32,18 +32,18 @@ constexpr double entry_contour_share = 1e-4;
 /// pair and one of 60 pairs missed the tolerance; halving alone took four times as long and missed ten.
 constexpr double cells_at_a_thousandth = 300, power_of_halving = 0.75;
 
-std::size_t most_cells(double tolerance) {
+std::size_t max_cells(double tolerance) {
     return static_cast<std::size_t>(cells_at_a_thousandth * std::pow(1e-3 / tolerance, power_of_halving));
 }
 
 }  // namespace
 
-/// Number of Gauss points per side for an unoccluded receiver; above most_points if the pair is too near. The integrand
+/// Number of Gauss points per side for an unoccluded receiver; above max_points if the pair is too near. The integrand
 /// is analytic except at the source, which is g receiver sizes away.
 int RowWorker::points_for(const ViewFace& receiver, const ViewFace& source) const {
     const Vec3 apart = max(max(source.box.lo - receiver.box.hi, receiver.box.lo - source.box.hi), Vec3{});
     const double g = norm(apart) / receiver.diameter, rho = 1 + 2 * g + 2 * std::sqrt(g + g * g);
-    if (rho < 1.5) return most_points + 1;
+    if (rho < 1.5) return max_points + 1;
     // A source near a large receiver is brighter somewhere than on average, by about the receiver's area over the
     // squared distance, which requires that many more digits.
     const double peak = std::max(1.0, receiver.area / std::max(dot(apart, apart), 1e-300));
@@ -52,8 +52,8 @@ int RowWorker::points_for(const ViewFace& receiver, const ViewFace& source) cons
 
 void RowWorker::add_unoccluded(std::size_t i, std::size_t j, bool cut) {
     const ViewFace &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
-    const int points = cut || !source.is_quad ? most_points + 1 : points_for(receiver, source);
-    if (points > most_points) {
+    const int points = cut || !source.is_quad ? max_points + 1 : points_for(receiver, source);
+    if (points > max_points) {
         exact_.push_back(static_cast<std::uint32_t>(j));
         return;
     }
@@ -121,7 +121,7 @@ double RowWorker::occluded_pieces(const ViewFace& receiver, const ViewFace& sour
     if (!is_cluttered_ && larger * source.area >= receiver.area) {
         Demand demand{.relative = tolerance_, .absolute = tolerance_ * smallest, .ignored = smallest};
         demand.large = large_entry * receiver.area, demand.dominating = dominating_entry * receiver.area;
-        demand.most_cells = most_cells(tolerance_);
+        demand.max_cells = max_cells(tolerance_);
         if (const std::optional<double> found = exchange_(straight, demand, unoccluded)) return *found;
     }
     // If both faces have a similar size, the one with fewer nearby blockers is the receiver.
@@ -130,7 +130,7 @@ double RowWorker::occluded_pieces(const ViewFace& receiver, const ViewFace& sour
                                     crowding(receiver.plane, receiver.diameter, standing_between_)
                               : source.area < receiver.area;
     const ClutteredExchange::Allowance allowance{0.5 * tolerance_, tolerance_ * smallest, is_alone_ ? 0 : smallest,
-                                                 most_evaluations_};
+                                                 max_evaluations_};
     return turned ? cluttered_exchange_(back, allowance, true, unoccluded)
                   : cluttered_exchange_(straight, allowance, false, unoccluded);
 }
@@ -202,7 +202,7 @@ double RowWorker::entry(std::size_t i, std::size_t j, double tolerance, Means me
     if (i == j || pairs_.is_hidden(i, j) || !pairs_.face_each_other(i, j, cut)) return 0;
     const double usual = std::exchange(tolerance_, tolerance);
     is_alone_ = true;
-    most_evaluations_ = means == Means::patient ? patient_evaluations : usual_evaluations;
+    max_evaluations_ = means == Means::patient ? patient_evaluations : usual_evaluations;
     pairs_.find_blockers(i, of_row_);
     pairs_.find_blockers(i, j, of_row_, of_pair_);
     is_cluttered_ = of_pair_.size() > many_blockers || means != Means::usual;
@@ -211,7 +211,7 @@ double RowWorker::entry(std::size_t i, std::size_t j, double tolerance, Means me
     const ViewFace &receiver = pairs_.faces()[i], &source = pairs_.faces()[j];
     if (unoccluded)
         F = exchange_area(receiver.outline, source.outline, entry_contour_share * tolerance_) / receiver.area;
-    tolerance_ = usual, is_alone_ = false, most_evaluations_ = usual_evaluations;
+    tolerance_ = usual, is_alone_ = false, max_evaluations_ = usual_evaluations;
     return std::clamp(F, 0.0, 1.0);
 }
 

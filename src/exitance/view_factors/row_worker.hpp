@@ -33,7 +33,7 @@ class RowWorker {
     double entry(std::size_t i, std::size_t j, double tolerance, Means means);
 
   private:
-    static constexpr int most_points = 8;  ///< Gauss points per side, at most; nearer pairs use the contour integral.
+    static constexpr int max_points = 8;  ///< Gauss points per side, at most; nearer pairs use the contour integral.
 
     int points_for(const ViewFace& receiver, const ViewFace& source) const;
     double occluded(std::size_t i, std::size_t j, std::span<const std::uint32_t> blockers, bool& unoccluded);
@@ -57,7 +57,7 @@ class RowWorker {
     double tolerance_;
     const StopRequest& stop_;
     std::vector<std::uint32_t> of_row_, of_pair_;
-    std::array<Batch, most_points + 1> batches_;
+    std::array<Batch, max_points + 1> batches_;
     std::vector<std::uint32_t> exact_;  ///< Unoccluded pairs that use the contour integral.
     std::vector<Node> nodes_;
     std::vector<double> values_;
@@ -68,7 +68,7 @@ class RowWorker {
     ClutteredExchange cluttered_exchange_;
     /// Limit on the evaluations of a pair with many blockers.
     static constexpr std::size_t usual_evaluations = 20'000;
-    std::size_t most_evaluations_ = usual_evaluations;
+    std::size_t max_evaluations_ = usual_evaluations;
     bool is_alone_ = false;      ///< True while entry() computes a single entry.
     bool is_cluttered_ = false;  ///< True if many blockers may hide parts of the current pair.
 };

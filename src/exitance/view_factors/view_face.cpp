@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_corners = 12;  ///< Limit on the corners of a convex piece.
+constexpr std::size_t max_corners = 12;  ///< Limit on the corners of a convex piece.
 /// Limits on the distance of stacked faces, as shares of the scene's size and of a face's box, and on the cosine of
 /// their normals; derived from ConvexPiece::thickness and Occluders::is_covered().
 constexpr double stacked_share = 2e-6, stacked_share_of_face = 2e-3, stacked_cosine = -0.999;
@@ -21,10 +21,10 @@ ViewFace make_face(const Scene& scene, SurfaceId s) {
     face.diameter = face.box.diagonal();
     face.thickness = std::min(stacked_share * scene.size(), stacked_share_of_face * face.diameter);
     for (const auto& piece : convex_pieces(face.outline, surface.normal))
-        for (std::size_t first = 1; first + 1 < piece.size(); first += most_corners - 2) {
+        for (std::size_t first = 1; first + 1 < piece.size(); first += max_corners - 2) {
             std::vector<Point>& part = face.pieces.emplace_back();
             part.push_back(face.outline[piece[0]]);
-            for (std::size_t k = first; k < piece.size() && k < first + most_corners - 1; ++k)
+            for (std::size_t k = first; k < piece.size() && k < first + max_corners - 1; ++k)
                 part.push_back(face.outline[piece[k]]);
         }
     face.is_quad = face.pieces.size() == 1 && face.outline.size() <= 4;

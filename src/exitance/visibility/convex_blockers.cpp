@@ -34,7 +34,7 @@ class Bodies {
             const bool sound = std::none_of(group.begin(), group.end(), [&](RegionId r) { return spoilt_[r.value]; });
             const auto open = open_.find(first);
             const bool is_open = open != open_.end();
-            if (!sound || group.size() + is_open < 4 || group.size() + is_open > ConvexBlocker::most_faces) continue;
+            if (!sound || group.size() + is_open < 4 || group.size() + is_open > ConvexBlocker::max_faces) continue;
             ConvexBlocker body = make_body(group, is_open ? open->second : std::vector<Side>());
             if (body.points.empty() || !is_convex_body(body)) continue;
             if (is_open && holds_a_face(body, group)) continue;
@@ -245,7 +245,7 @@ bool clip_body(const ConvexBlocker& body, const Plane& plane, double slack, Conv
     }
     if (!any_in) return true;
     if (!any_out) return part = body, true;
-    if (body.faces.size() + 1 >= ConvexBlocker::most_faces) return false;
+    if (body.faces.size() + 1 >= ConvexBlocker::max_faces) return false;
 
     // Key: a corner of the body (twice), or the ends of a cut edge.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> numbers;

@@ -17,7 +17,7 @@ struct ConvexBlocker {
         std::int32_t left = 0, right = no_face;  ///< The two faces that share the edge.
     };
     static constexpr std::int32_t no_face = -1;
-    static constexpr std::size_t most_faces = 32;
+    static constexpr std::size_t max_faces = 32;
 
     std::vector<Point> points;
     std::vector<Plane> faces;

@@ -65,7 +65,7 @@ void CriticalLineFinder::add_faces(const PlaneFrame& frame, std::span<const Poin
             over |= d > nearness_, under |= d < -nearness_;
         }
         const double x = dot(face.n, frame.u), y = dot(face.n, frame.v), length = std::sqrt(x * x + y * y);
-        if (!over || !under || length < 1e-12 || lines.size() >= most_) continue;
+        if (!over || !under || length < 1e-12 || lines.size() >= max_) continue;
         const CriticalLine line{
             {x / length, y / length}, -face.signed_distance(frame.origin) / length, -HUGE_VAL, HUGE_VAL};
         if (crosses_receiver(line)) keep(line, lines);
@@ -83,7 +83,7 @@ bool CriticalLineFinder::crosses_receiver(const CriticalLine& line) const {
 
 /// Keeps the line through the projections of an edge's ends, if it crosses the receiver within that projection.
 void CriticalLineFinder::add(const Shadow& a, const Shadow& b, std::vector<CriticalLine>& lines) const {
-    if (lines.size() >= most_ || (a.weight <= 0 && b.weight <= 0)) return;
+    if (lines.size() >= max_ || (a.weight <= 0 && b.weight <= 0)) return;
     // The line joins them in homogeneous coordinates, even if one is at infinity.
     const double x = a.y * b.weight - a.weight * b.y, y = a.weight * b.x - a.x * b.weight, z = a.x * b.y - a.y * b.x;
     double lowest = HUGE_VAL, highest = -HUGE_VAL;
@@ -188,7 +188,7 @@ void CriticalLineFinder::add_sights(const PlaneFrame& frame, std::span<const Poi
 void CriticalLineFinder::find(const PlaneFrame& frame, std::span<const Vec2> receiver, std::span<const Point> source,
                               std::span<const SeenEdges> blockers, double nearness, std::size_t most,
                               std::vector<CriticalLine>& lines) {
-    receiver_ = receiver, nearness_ = nearness, most_ = most;
+    receiver_ = receiver, nearness_ = nearness, max_ = most;
     lines.clear();
     for (const SeenEdges& seen : blockers) {
         find_corners(seen);

@@ -79,7 +79,7 @@ class CriticalLineFinder {
 
     std::span<const Vec2> receiver_;
     double nearness_ = 0;
-    std::size_t most_ = 0;
+    std::size_t max_ = 0;
     std::vector<std::uint8_t> in_front_, is_seen_;
     std::vector<std::uint32_t> corners_;  ///< End points of the edges of the current blocker.
 };

@@ -17,7 +17,7 @@ constexpr double coplanar_share = 1e-6;  ///< Share of the scene's size: planes 
 /// Distance by which a piece is raised off its plane above the pieces that it covers, metres. All levels stay within
 /// half of the thickness, so that other code treats the stack as one plane.
 double stack_height(std::uint8_t level, double thickness) {
-    return level * thickness / (2 * most_stacked);
+    return level * thickness / (2 * max_stacked);
 }
 
 Box box_of(std::span<const Point> corners) {

@@ -27,7 +27,7 @@ void PortalAim::set(std::span<const PortalCell> cells, const Point& x, const Nor
     count_ = 0, n_ = n;
     double sum = 0;
     for (const PortalCell& cell : cells) {
-        if (count_ == most_targets || !can_be_aimed_at(cell, x, n)) continue;
+        if (count_ == max_targets || !can_be_aimed_at(cell, x, n)) continue;
         const Vec3 offset = cell.corner - x;
         // Rays are aimed at a parallelogram in proportion to its light. The even part below covers parallelograms whose
         // centre is below the horizon or whose plane is seen edge-on.

@@ -19,7 +19,7 @@ namespace exitance {
 class PortalAim {
   public:
     /// Maximum number of parallelograms at which rays of a place are aimed.
-    static constexpr std::size_t most_targets = 32;
+    static constexpr std::size_t max_targets = 32;
 
     /// Returns the share of rays of density cos / pi about n that lead to a parallelogram; 0 if it is behind x, or too
     /// near to be aimed at.
@@ -50,7 +50,7 @@ class PortalAim {
     };
     double density(const Vec3& direction) const;
 
-    std::array<Target, most_targets> targets_;
+    std::array<Target, max_targets> targets_;
     std::size_t count_ = 0;
     Normal n_;
 };

@@ -59,11 +59,11 @@ PortalCell rectangle_around(const Point& at, const Frame& frame, std::span<const
 }
 
 void add_portal_cells(const PortalCell& opening, std::size_t most, std::vector<PortalCell>& cells) {
-    constexpr double most_pieces = 8;
+    constexpr double max_pieces = 8;
     PortalCell piece = opening;
     Vec3& longer = squared_norm(piece.u) > squared_norm(piece.v) ? piece.u : piece.v;
     const Vec3& shorter = &longer == &piece.u ? piece.v : piece.u;
-    const double pieces = std::clamp(std::round(norm(longer) / norm(shorter)), 1.0, most_pieces);
+    const double pieces = std::clamp(std::round(norm(longer) / norm(shorter)), 1.0, max_pieces);
     longer *= 1 / pieces, piece.area /= pieces;
     for (int k = 0; k < static_cast<int>(pieces) && cells.size() < most; ++k) {
         cells.push_back(piece);

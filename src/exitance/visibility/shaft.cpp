@@ -121,9 +121,9 @@ bool Shaft::reaches_in(PieceId p) {
 bool Shaft::blocks_all(PieceId p) {
     const ConvexPiece& piece = occluders_->pieces()[p];
     if (occluders_->pieces(piece.region).size() > 1) {
-        if (std::find(in_vain_.begin(), in_vain_.end(), piece.region) != in_vain_.end()) return false;
+        if (std::find(not_covering_.begin(), not_covering_.end(), piece.region) != not_covering_.end()) return false;
         if (blocks_all(piece.region)) return true;
-        in_vain_.push_back(piece.region);
+        not_covering_.push_back(piece.region);
         return false;
     }
     const std::span<const Point> corners = occluders_->corners(p);
@@ -159,7 +159,7 @@ bool Shaft::blocks_all(RegionId r) {
 
 View Shaft::classify(std::vector<PieceId>& candidates, std::size_t most) {
     candidates.clear();
-    in_vain_.clear();
+    not_covering_.clear();
     if (receiver_.empty() || source_.empty()) return View::none;
     if (are_in_scene() && occluders_->has_nothing_inside()) return View::open;
     bool blocked = false;
@@ -181,13 +181,13 @@ View Shaft::classify(std::vector<PieceId>& candidates, std::size_t most) {
 }
 
 bool Shaft::is_blocked_by(PieceId p) {
-    in_vain_.clear();
+    not_covering_.clear();
     return !receiver_.empty() && !source_.empty() && reaches_in(p) && blocks_all(p);
 }
 
 View Shaft::classify(std::span<const PieceId> from, std::vector<PieceId>& candidates) {
     candidates.clear();
-    in_vain_.clear();
+    not_covering_.clear();
     if (receiver_.empty() || source_.empty()) return View::none;
     for (PieceId p : from) {
         if (!reaches_in(p)) continue;

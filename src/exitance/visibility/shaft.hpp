@@ -74,7 +74,7 @@ class Shaft {
     Plane receiver_plane_, source_plane_;
     std::vector<Plane> planes_;
     RegionCover cover_;
-    std::vector<RegionId> in_vain_;  ///< Regions of several pieces already found not to block everything.
+    std::vector<RegionId> not_covering_;  ///< Regions of several pieces already found not to block everything.
     ConvexRegion region_;
 };
 

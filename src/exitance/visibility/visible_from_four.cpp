@@ -12,12 +12,12 @@ using namespace four;
 
 /// Sine of an angle that counts as zero, equal to the limit for single points.
 constexpr double zero_sine_of_four = 1e-12;
-constexpr std::size_t most_corners = 20, most_planes = 160, most_fragments = 160;
+constexpr std::size_t max_corners = 20, max_planes = 160, max_fragments = 160;
 
 /// A convex polygon relative to each of the four points.
 struct Polygon {
     std::size_t count;
-    Vec corner[most_corners];
+    Vec corner[max_corners];
 };
 
 EXITANCE_INLINE Vec spread(const Vec3& p) {
@@ -87,7 +87,7 @@ class VisibleFromFour::Work {
     /// other points get a plane that cuts nothing off the source. Returns false if only some of the points are inside
     /// the blocker, or if the array of planes is full.
     bool add_pyramid(const ConvexBlocker& blocker, bool& inside) {
-        std::array<int, ConvexBlocker::most_faces + 1> in_front;
+        std::array<int, ConvexBlocker::max_faces + 1> in_front;
         int any_front = 0;
         for (std::size_t k = 0; k < blocker.faces.size(); ++k) {
             in_front[k] = bits(dot(blocker.faces[k].n, x_) - blocker.faces[k].offset > 0);
@@ -96,7 +96,7 @@ class VisibleFromFour::Work {
         inside = blocker.is_solid() && any_front == 0;
         if (inside) return true;
         if (blocker.is_solid() && any_front != 15) return false;
-        if (plane_count_ + blocker.edges.size() > most_planes || pyramid_count_ == pyramids_.size()) return false;
+        if (plane_count_ + blocker.edges.size() > max_planes || pyramid_count_ == pyramids_.size()) return false;
         const std::size_t first = plane_count_;
         for (const ConvexBlocker::Edge& e : blocker.edges) {
             const int left = in_front[static_cast<std::size_t>(e.left)];
@@ -148,8 +148,8 @@ class VisibleFromFour::Work {
     /// not, `cuts` receives the planes that cross it.
     bool is_beside(const Polygon& fragment, const Pyramid& pyramid, std::array<std::size_t, 40>& cuts,
                    std::size_t& count) {
-        Real heights[most_corners];
-        int signs[most_corners], beside = 0;
+        Real heights[max_corners];
+        int signs[max_corners], beside = 0;
         bool alike = true;
         count = 0;
         for (std::size_t k = pyramid.first; k < pyramid.last; ++k) {
@@ -170,7 +170,7 @@ class VisibleFromFour::Work {
         out.count = 0;
         for (std::size_t i = 0; i < polygon.count; ++i) {
             const std::size_t j = i + 1 == polygon.count ? 0 : i + 1;
-            if (out.count + 2 > most_corners) return false;
+            if (out.count + 2 > max_corners) return false;
             if (sign * signs[i] >= 0) out.corner[out.count++] = polygon.corner[i];
             if (signs[i] * signs[j] < 0) {
                 const Real t = heights[i] / (heights[i] - heights[j]);
@@ -203,7 +203,7 @@ class VisibleFromFour::Work {
             return;
         }
         const std::size_t mark = fragments_;
-        if (fragments_ + cut_count + 2 > most_fragments) {
+        if (fragments_ + cut_count + 2 > max_fragments) {
             alike_ = false;
             return;
         }
@@ -213,8 +213,8 @@ class VisibleFromFour::Work {
         const Polygon* polygon = &fragment;
         bool beside = false;
         for (std::size_t c = 0; alike_ && !beside && c < cut_count; ++c) {
-            Real heights[most_corners];
-            int signs[most_corners];
+            Real heights[max_corners];
+            int signs[max_corners];
             const Standing standing = measure(*polygon, planes_[cuts[c]], heights, signs);
             beside = standing.inside == 0;
             alike_ &= standing.alike;
@@ -244,9 +244,9 @@ class VisibleFromFour::Work {
     Real size_, total_;
     bool alike_, lit_, hidden_, hidden_by_one_;
     std::size_t plane_count_ = 0, pyramid_count_ = 0, fragments_ = 0;
-    std::array<Vec, most_planes> planes_;
+    std::array<Vec, max_planes> planes_;
     std::array<Pyramid, 64> pyramids_;
-    std::array<Polygon, most_fragments> pool_;
+    std::array<Polygon, max_fragments> pool_;
 };
 
 VisibleFromFour::VisibleFromFour() : work_(new Work) {}

@@ -213,7 +213,7 @@ VisibleFromMany::Kept VisibleFromMany::add_blocker(const ConvexBlocker& shape) {
         tables_.faces.resize(blocker.first_face);
         return is_beside ? Kept::nothing : Kept::hides_all;
     }
-    is_crowded_ |= blocker.last - blocker.first > SightTables::most_lines;
+    is_crowded_ |= blocker.last - blocker.first > SightTables::max_lines;
     tables_.blockers.push_back(blocker);
     seen_edges_.push_back({&shape, {}, {}, {}});
     return Kept::some;
@@ -222,7 +222,7 @@ VisibleFromMany::Kept VisibleFromMany::add_blocker(const ConvexBlocker& shape) {
 /// Adds the heights of the ends of blocker k's lines over the lines of blocker j.
 void VisibleFromMany::join(std::size_t k, std::size_t j) {
     const SightTables::Blocker &mine = tables_.blockers[k], &other = tables_.blockers[j];
-    tables_.between[k * SightTables::most_blockers + j] = static_cast<std::uint32_t>(tables_.heights.size());
+    tables_.between[k * SightTables::max_blockers + j] = static_cast<std::uint32_t>(tables_.heights.size());
     for (std::uint32_t i = mine.first; i < mine.last; ++i)
         for (std::uint32_t l = other.first; l < other.last; ++l) {
             const Line &e = tables_.lines[i], &f = tables_.lines[l];
@@ -269,7 +269,7 @@ VisibleFromMany::Outlook VisibleFromMany::set(const PlaneFrame& frame, std::span
     for (const Point& p : source) largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
     one_line_ = std::max(
         one_line, roundings_on_one_line * std::numeric_limits<double>::epsilon() * largest / std::max(reach_, 1e-300));
-    is_crowded_ = source.size() > SightTables::most_corners;
+    is_crowded_ = source.size() > SightTables::max_corners;
     for (const ConvexBlocker* shape : blockers)
         if (add_blocker(*shape) == Kept::hides_all) return Outlook::hidden;
     if (tables_.blockers.empty()) return Outlook::clear;
@@ -282,7 +282,7 @@ VisibleFromMany::Outlook VisibleFromMany::set(const PlaneFrame& frame, std::span
         seen.corners_over_edges = std::span(corners_crossed_).subspan(corners, seen.body->points.size());
         corners += seen.body->points.size();
     }
-    is_crowded_ |= tables_.blockers.size() > SightTables::most_blockers || tables_.faces.size() > max_turning_faces;
+    is_crowded_ |= tables_.blockers.size() > SightTables::max_blockers || tables_.faces.size() > max_turning_faces;
     for (std::size_t k = 0; !is_crowded_ && k < tables_.blockers.size(); ++k)
         for (std::size_t j = 0; j < tables_.blockers.size(); ++j)
             if (j != k) join(k, j);

@@ -55,7 +55,7 @@ void compare(double x, double y, double half, std::span<const ConvexBlocker* con
         } else {
             EXPECT_NEAR(F[k], exact, 2e-14) << what << ' ' << x << ' ' << y << ' ' << half;
             EXPECT_EQ(seen[k], how) << what << ' ' << F[k];
-            if (blockers.size() > SightTables::most_blockers || source.size() > SightTables::most_corners) continue;
+            if (blockers.size() > SightTables::max_blockers || source.size() > SightTables::max_corners) continue;
             // Groups of fewer than five points use registers of four; the result must be bitwise the same.
             double by_itself = 0;
             many(std::span(points).subspan(k, 1), std::array{std::size_t{1}}, std::span(&by_itself, 1),

@@ -17,8 +17,8 @@ namespace exitance {
 /// function of x with three coefficients. These suffice to test, from any point of the receiver, whether a corner of
 /// the source is inside the pyramid over a blocker's silhouette.
 struct SightTables {
-    static constexpr std::size_t most_corners = 12, most_lines = 12, lanes = 8;
-    static constexpr std::size_t most_blockers = 4;
+    static constexpr std::size_t max_corners = 12, max_lines = 12, lanes = 8;
+    static constexpr std::size_t max_blockers = 4;
 
     /// c + u x + v y, m^3 (m for face planes).
     struct Affine {
@@ -61,7 +61,7 @@ struct SightTables {
     /// lines of the other. Pairs of lines that coincide from everywhere have `on_one_line` as `u`; `c` > 0 if their
     /// directions agree.
     static constexpr double on_one_line = HUGE_VAL;
-    std::array<std::uint32_t, most_blockers * most_blockers> between;
+    std::array<std::uint32_t, max_blockers * max_blockers> between;
 };
 
 /// Results for up to eight points. Masks have one bit per point.

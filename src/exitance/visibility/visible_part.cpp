@@ -265,7 +265,7 @@ double part_among_all(const Occluders& occluders, const Receiver& at, PieceId so
         return hides || scratch.gave_up();
     };
     // With limited work the search is always the same: otherwise earlier calls would decide whether it ends in time.
-    if (!likely.is_none() && scratch.most_work == HUGE_VAL) {
+    if (!likely.is_none() && scratch.max_work == HUGE_VAL) {
         if (hides_everything(likely)) return 0;
         scratch.planes.clear();
         scratch.shadows.clear();

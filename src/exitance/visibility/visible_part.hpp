@@ -61,9 +61,9 @@ class VisibilityWorkspace {
     Shaft shaft;
 
     /// Work done by visible_form_factor() so far, in units of about 0.2 us (a possible blocker, a fragment that is
-    /// cut). Above `most_work` it gives up and returns any value; the work depends on its arguments alone.
-    double work = 0, most_work = HUGE_VAL;
-    bool gave_up() const { return work > most_work; }
+    /// cut). Above `max_work` it gives up and returns any value; the work depends on its arguments alone.
+    double work = 0, max_work = HUGE_VAL;
+    bool gave_up() const { return work > max_work; }
 
     /// The last piece that hid a source completely. It is tested first because it will probably hide the source again.
     /// If it does not, the usual search follows, so the result does not depend on it. A workspace may be reused with

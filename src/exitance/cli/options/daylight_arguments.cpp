@@ -21,12 +21,12 @@ constexpr std::array<std::pair<std::optional<MatrixFormat>, std::string_view>, 4
 
 /// Reads a part of the sensors, such as "3/8".
 DaylightPart read_part(const std::string& word) {
-    constexpr unsigned most_parts = 99'999;  // five digits in the names of folders
+    constexpr unsigned max_parts = 99'999;  // five digits in the names of folders
     DaylightPart out;
     unsigned part = 0, parts = 0;
     char rest = 0;
     if (std::sscanf(word.c_str(), "%5u/%5u%c", &part, &parts, &rest) != 2 || part < 1 || part > parts ||
-        parts > most_parts)
+        parts > max_parts)
         throw CLI::ValidationError("--part", fmt::format("'{}' is not a part such as 3/8", word));
     out.part = part, out.parts = parts;
     return out;
@@ -134,8 +134,8 @@ void declare_en_17037(CLI::App& app, DaylightArguments& arguments) {
     app.add_option_function<std::string>(
            "--sun-altitude",
            [&arguments](const std::string& w) {
-               arguments.sun_day.least_altitude = read_number("--sun-altitude", w);
-               if (!(arguments.sun_day.least_altitude >= 0 && arguments.sun_day.least_altitude < 90))
+               arguments.sun_day.min_altitude = read_number("--sun-altitude", w);
+               if (!(arguments.sun_day.min_altitude >= 0 && arguments.sun_day.min_altitude < 90))
                    throw CLI::ValidationError("--sun-altitude", fmt::format("must be from 0 to 90, not {}", w));
            },
            "Lowest altitude of the sun that counts for these hours, degrees. Default 0")

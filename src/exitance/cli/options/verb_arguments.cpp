@@ -84,12 +84,12 @@ namespace {
 
 /// Reads a grid of light probes, "ox,oy,oz dx,dy,dz nx,ny,nz".
 ProbeGrid read_probe_grid(const std::string& words) {
-    constexpr double most_probes = 1e8;  ///< derived from 256 bytes per probe: 26 GB
+    constexpr double max_probes = 1e8;  ///< derived from 256 bytes per probe: 26 GB
     const std::vector<double> n = read_numbers("--grid", words);
     bool is_grid = n.size() == 9;
     double probes = 1;
     for (std::size_t k = 6; k < 9 && is_grid; ++k) is_grid = n[k] >= 1 && n[k] == std::floor(n[k]), probes *= n[k];
-    if (!is_grid || probes > most_probes)
+    if (!is_grid || probes > max_probes)
         throw CLI::ValidationError(
             "--grid", fmt::format("'{}' is not 'ox,oy,oz dx,dy,dz nx,ny,nz' with at most 1e8 points", words));
     return {{n[0], n[1], n[2]},

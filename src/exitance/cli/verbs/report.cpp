@@ -31,11 +31,11 @@ constexpr int picture_samples = 2;  ///< Rays per pixel; derived from pages that
 
 /// The requested views; by default an automatic one and up to three cameras of the scene.
 std::vector<RenderArguments> views(const ReportArguments& arguments, const Scene& scene) {
-    constexpr std::size_t most_cameras = 3;
+    constexpr std::size_t max_cameras = 3;
     std::vector<RenderArguments> out = arguments.views;
     if (out.empty()) {
         out.emplace_back();
-        for (std::size_t i = 0; i < std::min(most_cameras, scene.cameras().size()); ++i)
+        for (std::size_t i = 0; i < std::min(max_cameras, scene.cameras().size()); ++i)
             out.emplace_back().camera_name = std::to_string(i + 1);
     }
     for (RenderArguments& view : out) view.size = arguments.size;
@@ -71,12 +71,12 @@ void add_pictures(const ReportArguments& arguments, const RadiosityFunction& lig
 
 /// The 1000 largest faces. Sets `left_out` to the number of the others.
 std::vector<SurfaceId> largest_faces(const Scene& scene, std::size_t& left_out) {
-    constexpr std::size_t most_rows = 1000;
+    constexpr std::size_t max_rows = 1000;
     std::vector<SurfaceId> faces;
     for (SurfaceId s : scene.surfaces().ids()) faces.push_back(s);
     std::stable_sort(faces.begin(), faces.end(),
                      [&](SurfaceId a, SurfaceId b) { return scene.surfaces()[a].area > scene.surfaces()[b].area; });
-    left_out = faces.size() > most_rows ? faces.size() - most_rows : 0;
+    left_out = faces.size() > max_rows ? faces.size() - max_rows : 0;
     faces.resize(faces.size() - left_out);
     return faces;
 }
@@ -84,9 +84,9 @@ std::vector<SurfaceId> largest_faces(const Scene& scene, std::size_t& left_out) 
 /// Bakes light maps for the embedded viewer, if the scene is small enough for a page that can be mailed.
 void add_viewer(const RadiosityFunction& light, ReportContent& content, Terminal& terminal, const StopRequest& stop) {
     constexpr double many_texels = 8000, few_texels = 2000;  // derived from the size of a page, about a megabyte
-    constexpr std::size_t most_faces = 20000;
+    constexpr std::size_t max_faces = 20000;
     const Scene& scene = light.solution().scene;
-    if (scene.surfaces().size() > most_faces) return;
+    if (scene.surfaces().size() > max_faces) return;
     double area = 0;
     for (const Region& region : scene.regions()) area += region.area;
     // The cost of a texel is proportional to the number of emitters. Directed emitters cost about eight times as much.

@@ -22,8 +22,8 @@ constexpr double finest_rows = 1e-3;
 /// Up to this number of faces, entries to a tolerance take seconds at any eps.
 constexpr std::size_t few_faces = 40;
 constexpr double default_eps = 1e-4;
-constexpr double least_tolerance = 1e-7;  ///< derived from the 24 bits of a number in a binary result
-constexpr double most_tolerance = 1e-2;
+constexpr double min_tolerance = 1e-7;  ///< derived from the 24 bits of a number in a binary result
+constexpr double max_tolerance = 1e-2;
 
 /// True if rows by rays would miss eps, View3D's limit on the error of a factor, and entries to a tolerance are
 /// affordable or a finer eps than View3D's default demands them.
@@ -41,14 +41,14 @@ SparseFactors compute_factors(const View3dArguments& arguments, double eps, cons
             terminal.note(fmt::format(
                 "eps={:g}: each factor is computed to this tolerance; --error R, such as 1e-3, is faster", eps));
         EntryFactorOptions options;
-        options.tolerance = std::max(eps, least_tolerance);
+        options.tolerance = std::max(eps, min_tolerance);
         SparseFactors table = compute_entry_factors(scene, options, nullptr, terminal.progress(), stop);
         if (table.unsettled > 0)
             terminal.note(fmt::format("warning: the factors of {} pairs of faces are known to less than eps={:g}",
                                       table.unsettled, eps));
         return table;
     }
-    const double error = arguments.error.value_or(std::clamp(eps, finest_rows, most_tolerance));
+    const double error = arguments.error.value_or(std::clamp(eps, finest_rows, max_tolerance));
     if (!arguments.error && error > eps)
         terminal.note(
             fmt::format("eps={:g} with {} faces: the error of rows is {:g}; --error R sets it", eps, faces, error));

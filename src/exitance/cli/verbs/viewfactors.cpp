@@ -52,10 +52,10 @@ ViewFactorFacts facts_of(const SparseFactors& table, double seconds) {
         if (!table.finished[i]) continue;
         if (!table.row_errors.empty()) facts.row_error = std::max(facts.row_error, table.row_errors[i]);
         if (!table.dropped.empty()) facts.dropped = std::max(facts.dropped, table.dropped[i]);
-        facts.least_row_sum = std::min(facts.least_row_sum, table.row_sums[i]);
-        facts.most_row_sum = std::max(facts.most_row_sum, table.row_sums[i]);
+        facts.min_row_sum = std::min(facts.min_row_sum, table.row_sums[i]);
+        facts.max_row_sum = std::max(facts.max_row_sum, table.row_sums[i]);
     }
-    if (facts.finished_rows == 0) facts.least_row_sum = 0;
+    if (facts.finished_rows == 0) facts.min_row_sum = 0;
     return facts;
 }
 
@@ -122,8 +122,8 @@ std::string words_of_entries(const ViewFactorFacts& facts) {
 }
 
 std::string words_of(const ViewFactorFacts& facts) {
-    return fmt::format("{} surfaces, row sums from {:.6f} to {:.6f}, {:.3g} s\n", facts.surfaces, facts.least_row_sum,
-                       facts.most_row_sum, facts.seconds) +
+    return fmt::format("{} surfaces, row sums from {:.6f} to {:.6f}, {:.3g} s\n", facts.surfaces, facts.min_row_sum,
+                       facts.max_row_sum, facts.seconds) +
            (facts.tolerance ? words_of_entries(facts) : words_of_rows(facts));
 }
 
@@ -300,8 +300,8 @@ class ViewFactorRun {
         if (arguments_.tolerance) {
             warn(facts.unsettled > 0, fmt::format("the entries of {} pairs of faces still disagree by more than {:g}",
                                                   facts.unsettled, *arguments_.tolerance));
-            warn(facts.most_row_sum > 1 + *arguments_.tolerance,
-                 fmt::format("a row adds up to {:.6g}, which exceeds 1 by more than {:g}", facts.most_row_sum,
+            warn(facts.max_row_sum > 1 + *arguments_.tolerance,
+                 fmt::format("a row adds up to {:.6g}, which exceeds 1 by more than {:g}", facts.max_row_sum,
                              *arguments_.tolerance));
             warn(facts.check.wrong > 0, fmt::format("{} of {} entries that rays checked are off by more than {:g}",
                                                     facts.check.wrong, facts.check.entries, *arguments_.tolerance));

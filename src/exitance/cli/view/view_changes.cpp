@@ -46,7 +46,7 @@ Result<std::shared_ptr<const Viewed>> ViewChanges::find(const Viewed& base, cons
     if (!changed) return changed.error();
     auto viewed = std::make_shared<const Viewed>(std::move(solution), base.camera);
     kept_.emplace_back(words, viewed);
-    if (kept_.size() > most_kept) kept_.erase(kept_.begin());
+    if (kept_.size() > max_kept) kept_.erase(kept_.begin());
     return std::shared_ptr<const Viewed>(viewed);
 }
 

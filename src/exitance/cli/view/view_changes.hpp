@@ -45,7 +45,7 @@ class ViewChanges {
     Result<std::shared_ptr<const Viewed>> find(const Viewed& base, const ViewServer::Parameters& parameters);
 
   private:
-    static constexpr std::size_t most_kept = 3;
+    static constexpr std::size_t max_kept = 3;
     LightGroups groups_;
     std::mutex mutex_;
     std::vector<std::pair<std::string, std::shared_ptr<const Viewed>>> kept_;

@@ -6,7 +6,7 @@
 namespace exitance {
 
 ViewAnswer ViewFrames::take(const RadiosityFunction& light, const ViewServer::Parameters& parameters) {
-    constexpr double most_side = 8192, most_pixels = 1 << 24, most_samples = 64;
+    constexpr double max_side = 8192, max_pixels = 1 << 24, max_samples = 64;
     const auto numbers = view_numbers(parameters, "camera", 7), size = view_numbers(parameters, "size", 2),
                samples = view_numbers(parameters, "samples", 1);
     if (!numbers || !size || !samples) return view_misunderstood;
@@ -15,8 +15,8 @@ ViewAnswer ViewFrames::take(const RadiosityFunction& light, const ViewServer::Pa
     PictureOptions options;
     options.camera = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}, n[6]};
     if (options.camera.eye == options.camera.target || !(n[6] >= 1 && n[6] <= 170) || !(width >= 1 && height >= 1) ||
-        width > most_side || height > most_side || width * height > most_pixels || !((*samples)[0] >= 1) ||
-        (*samples)[0] > most_samples)
+        width > max_side || height > max_side || width * height > max_pixels || !((*samples)[0] >= 1) ||
+        (*samples)[0] > max_samples)
         return view_misunderstood;
     options.size = {static_cast<int>(width), static_cast<int>(height)};
     options.samples = static_cast<int>((*samples)[0]);

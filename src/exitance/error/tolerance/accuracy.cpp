@@ -35,9 +35,9 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     const std::size_t elements =
         std::max(count(c::solve_elements), pieces.size() + count(c::solve_elements_beyond_pieces));
     knobs.solve_mesh = {edge_for_elements(pieces, elements), round_up(strips + further)};
-    knobs.solve_rays = {.average = std::clamp(c::row_rays / error, c::least_row_average, c::most_row_average),
-                        .least = static_cast<unsigned>(c::least_rays),
-                        .most = static_cast<unsigned>(c::most_row_rays)};
+    knobs.solve_rays = {.average = std::clamp(c::row_rays / error, c::min_row_average, c::max_row_average),
+                        .min = static_cast<unsigned>(c::min_rays_per_sample),
+                        .max = static_cast<unsigned>(c::max_row_rays)};
     // The projected direct light is only used for gathering, and its means are exact, so that a large misfit is
     // acceptable; unless it is itself delivered.
     const bool is_delivered = options.visibility == VisibilityKind::fractional;
@@ -53,8 +53,8 @@ Knobs knobs_for_error(double error, const std::vector<Piece>& pieces, const Solv
     knobs.gather_mesh = {edge_for_elements(pieces, count(curved ? of_curved : c::straight_gather_elements)),
                          round_up(strips)};
     const double rays = (curved ? c::curved_gather_rays : c::straight_gather_rays) * std::pow(0.5 / error, 4.0 / 3);
-    const double least = std::max(curved ? c::least_curved_rays : c::least_rays, rays / 4);
-    knobs.gather_rays = {.average = rays, .least = static_cast<unsigned>(least), .most = 16384};
+    const double least = std::max(curved ? c::min_curved_rays : c::min_rays_per_sample, rays / 4);
+    knobs.gather_rays = {.average = rays, .min = static_cast<unsigned>(least), .max = 16384};
     // Features missed by all points of an element matter more when the noise is lower.
     knobs.gather_noise =
         c::gather_noise * error * std::pow(std::min(1.0, error / c::finer_gather_below), c::quieter_exponent);
@@ -82,7 +82,7 @@ Knobs knobs_for_fine_sums(const Knobs& knobs, double error, const std::vector<Pi
     // The strips are split into squares at open ends, and get enough rays that their noise is not visible from the
     // strip across the edge.
     out.solve_mesh.longest_end = out.gather_mesh.longest_end = c::fine_longest_end;
-    out.solve_rays.least = static_cast<unsigned>(c::fine_least_rays);
+    out.solve_rays.min = static_cast<unsigned>(c::min_fine_rays);
     out.gather_tolerance = c::fine_sum_tolerance * error;
     // At least 15 element shares. A tighter tolerance would refine the error of the sum itself and never end.
     out.gather_relative_tolerance = c::fine_relative_tolerance * error;
@@ -118,7 +118,7 @@ Knobs between(const Knobs& a, const Knobs& b, double t) {
     Knobs out = a;
     out.solve_mesh = mesh(a.solve_mesh, b.solve_mesh), out.gather_mesh = mesh(a.gather_mesh, b.gather_mesh);
     out.solve_rays.average = of(a.solve_rays.average, b.solve_rays.average);
-    out.solve_rays.least = static_cast<unsigned>(of(a.solve_rays.least, b.solve_rays.least));
+    out.solve_rays.min = static_cast<unsigned>(of(a.solve_rays.min, b.solve_rays.min));
     out.gather_tolerance = of(a.gather_tolerance, b.gather_tolerance);
     out.gather_relative_tolerance = b.gather_relative_tolerance / t;
     out.gather_element_share = of(a.gather_element_share, b.gather_element_share);
@@ -156,7 +156,9 @@ void tighten_local(Tightened& out, const ErrorParts& parts, double allowed) {
     if (std::hypot(parts.noise, parts.interpolation) <= allowed) return;
     // Each part has its own share: a part that is within its share is not tightened because of the other.
     const auto share_of = [&](double part, double share) {
-        return part > share * allowed ? std::clamp(share * allowed / part, c::least_tightening, c::least_step) : 1.0;
+        return part > share * allowed
+                   ? std::clamp(share * allowed / part, c::min_attempt_factor, c::max_tightening_factor)
+                   : 1.0;
     };
     const double noise = share_of(parts.noise, c::part_aim),
                  interpolation = share_of(parts.interpolation, c::interpolation_share);
@@ -186,10 +188,10 @@ Tightened tightened(const Knobs& knobs, const ErrorParts& parts, double target, 
     out.method = method > methods_share * target || std::hypot(method, local) <= target;
     if (out.method) {
         const double factor =
-            std::clamp(c::part_aim * methods_share * target / method, c::least_tightening, c::most_method_tightening);
+            std::clamp(c::part_aim * methods_share * target / method, c::min_attempt_factor, c::max_method_factor);
         out.knobs.solve_mesh.edge *= std::sqrt(factor);
         out.knobs.solve_mesh.grading_levels += 1;
-        out.knobs.solve_rays.average = std::min(knobs.solve_rays.average / factor, c::most_row_rays);
+        out.knobs.solve_rays.average = std::min(knobs.solve_rays.average / factor, c::max_row_rays);
         out.knobs.direct_tolerance *= factor;
         out.knobs.residual *= factor;
         out.knobs.link_error *= factor;

@@ -17,8 +17,8 @@ double ToleranceLaw::factor(double error, double allowed) {
     }
     ++round_;
     last_error_ = error;
-    last_factor_ = error > allowed ? std::clamp(std::pow(aim * allowed / error, exponent),
-                                                calibrated::largest_tolerance_step, calibrated::least_step)
+    last_factor_ = error > allowed ? std::clamp(std::pow(aim * allowed / error, exponent), calibrated::min_round_factor,
+                                                calibrated::max_tightening_factor)
                                    : 1;
     return last_factor_;
 }

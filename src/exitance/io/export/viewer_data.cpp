@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 
 /// Limit on the links that are drawn for a selected element.
-constexpr std::size_t most_links = 400;
+constexpr std::size_t max_links = 400;
 
 json json_numbers(const Point& p) {
     return {p.x, p.y, p.z};
@@ -52,7 +52,7 @@ json links_at(const Solution& solution, RegionId region, const Point& x) {
     }
     std::stable_sort(found.begin(), found.end(),
                      [](const KeptLink& a, const KeptLink& b) { return a.form_factor > b.form_factor; });
-    if (found.size() > most_links) found.resize(most_links);
+    if (found.size() > max_links) found.resize(max_links);
     for (const KeptLink& link : found) {
         json outline = json::array();
         for (const Point& p : tree.outline(link.source)) outline.push_back(json_numbers(p));

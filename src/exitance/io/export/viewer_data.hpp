@@ -14,7 +14,7 @@ namespace exitance {
 std::string viewer_scene_json(const Solution& solution, const Camera& camera, const LightUnit& unit);
 
 /// Formats the light at a surface point as JSON: `irradiance, radiosity, direct, indirect` (W/m^2 per band), `surface,
-/// line, group, material, element, links [{outline, form_factor}]`. Only the strongest `most_links` links are included.
+/// line, group, material, element, links [{outline, form_factor}]`. Only the strongest `max_links` links are included.
 std::string viewer_point_json(const RadiosityFunction& light, const ProbePoint& point);
 
 /// Formats irradiance at `count` points on the line between two points, in a plane with normal `n`, as JSON, with all

@@ -98,7 +98,7 @@ bool is_program(const std::string& name) {
     return false;
 }
 
-ProgramRun run_program(const std::vector<std::string>& words, const std::string& folder, double most_seconds,
+ProgramRun run_program(const std::vector<std::string>& words, const std::string& folder, double max_seconds,
                        const StopRequest& stop, const std::string& input) {
     ProgramRun run;
     const File in(std::fopen(input.empty() ? "/dev/null" : input.c_str(), "r"), &std::fclose);
@@ -112,7 +112,7 @@ ProgramRun run_program(const std::vector<std::string>& words, const std::string&
     bool ended = false;
     for (int glance = first_poll_ms; !(ended = child.has_ended()); glance = std::min(2 * glance, max_poll_ms)) {
         run.stopped |= stop.requested();
-        run.out_of_time |= watch.seconds() > most_seconds;
+        run.out_of_time |= watch.seconds() > max_seconds;
         if (asked_at < 0 && (run.stopped || run.out_of_time)) child.ask_to_end(), asked_at = watch.seconds();
         if (asked_at >= 0 && watch.seconds() > asked_at + kill_delay) break;
         ::poll(nullptr, 0, glance);
@@ -126,12 +126,12 @@ ProgramRun run_program(const std::vector<std::string>& words, const std::string&
 
 Result<void> run_into_file(const std::string& path,
                            const std::function<std::vector<std::string>(const std::string& part)>& words_for,
-                           double most_seconds, const StopRequest& stop) {
+                           double max_seconds, const StopRequest& stop) {
     namespace fs = std::filesystem;
     const fs::path target = fs::absolute(path);
     const fs::path part =
         target.parent_path() / fmt::format(".{}.part{}", target.stem().string(), target.extension().string());
-    const ProgramRun run = run_program(words_for(part.string()), "", most_seconds, stop);
+    const ProgramRun run = run_program(words_for(part.string()), "", max_seconds, stop);
     std::error_code failed;
     if (run.status == 0 && fs::exists(part)) {
         fs::rename(part, target, failed);

@@ -58,9 +58,9 @@ struct ProgramRun {
     std::string out, err;  ///< Standard output and error stream, at most 16 MB each.
 };
 
-/// Runs a program until it ends. After `most_seconds`, or when a stop is requested, the program gets SIGTERM, and two
+/// Runs a program until it ends. After `max_seconds`, or when a stop is requested, the program gets SIGTERM, and two
 /// seconds later SIGKILL. `input` is the path of a file for its standard input; empty: no input.
-ProgramRun run_program(const std::vector<std::string>& words, const std::string& folder, double most_seconds,
+ProgramRun run_program(const std::vector<std::string>& words, const std::string& folder, double max_seconds,
                        const StopRequest& stop, const std::string& input = "");
 
 /// Runs a program that writes the file `path`, which appears whole or not at all. On failure the message of the error
@@ -68,6 +68,6 @@ ProgramRun run_program(const std::vector<std::string>& words, const std::string&
 /// words_for  the program and its arguments, for the path of a part file in the same folder
 Result<void> run_into_file(const std::string& path,
                            const std::function<std::vector<std::string>(const std::string& part)>& words_for,
-                           double most_seconds, const StopRequest& stop);
+                           double max_seconds, const StopRequest& stop);
 
 }  // namespace exitance

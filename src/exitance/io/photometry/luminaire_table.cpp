@@ -122,7 +122,7 @@ Result<PlacedLuminaire> TableReader::luminaire_of(const Row& row) {
 }
 
 Result<std::vector<PlacedLuminaire>> TableReader::read() {
-    constexpr std::size_t most_luminaires = 1'000'000;
+    constexpr std::size_t max_luminaires = 1'000'000;
     std::vector<PlacedLuminaire> out;
     bool is_header = true;
     while (const auto line = lines_.next_content()) {
@@ -139,7 +139,7 @@ Result<std::vector<PlacedLuminaire>> TableReader::read() {
         Result<PlacedLuminaire> luminaire = luminaire_of(row);
         if (!luminaire) return luminaire.error();
         out.push_back(std::move(*luminaire));
-        if (out.size() > most_luminaires) return lines_.error("there are more than a million luminaires");
+        if (out.size() > max_luminaires) return lines_.error("there are more than a million luminaires");
     }
     if (lines_.failed()) return lines_.read_error();
     if (is_header) return lines_.error("is empty: there is no header line", "begin with file,x,y,z");

@@ -54,7 +54,7 @@ bool decode_rows(png_structp png, png_infop info, Source& source, std::vector<st
     png_set_read_fn(png, &source, take);
     png_read_info(png, info);
     const png_uint_32 width = png_get_image_width(png, info), height = png_get_image_height(png, info);
-    if (std::uint64_t(width) * height > most_texture_pixels) return false;
+    if (std::uint64_t(width) * height > max_texture_pixels) return false;
     png_set_expand(png);
     png_set_scale_16(png);
     png_set_gray_to_rgb(png);
@@ -122,7 +122,7 @@ Result<TexturePixels> decode_png(std::span<const std::uint8_t> file) {
     png_image image{};
     image.version = PNG_IMAGE_VERSION;
     if (!png_image_begin_read_from_memory(&image, file.data(), file.size())) return unreadable;
-    if (std::uint64_t(image.width) * image.height > most_texture_pixels) return png_image_free(&image), unreadable;
+    if (std::uint64_t(image.width) * image.height > max_texture_pixels) return png_image_free(&image), unreadable;
     image.format = PNG_FORMAT_RGBA;
     std::vector<std::uint8_t> rgba(std::size_t(4) * image.width * image.height);
     if (!png_image_finish_read(&image, nullptr, rgba.data(), 0, nullptr)) return unreadable;

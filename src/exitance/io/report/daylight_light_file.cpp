@@ -50,7 +50,7 @@ std::string fingerprint_of(const Scene& scene, const DaylightTask& task) {
     hash.add(c.target, c.useful[0], c.useful[1], c.useful[2], c.dimmed_power);
     for (std::size_t h = 0; h < task.hours.size(); ++h) hash.add(c.is_occupied(task.hours[h], h));
     hash.add(task.division, task.error);
-    if (task.sun_day) hash.add(task.sun_day->month, task.sun_day->day, task.sun_day->least_altitude);
+    if (task.sun_day) hash.add(task.sun_day->month, task.sun_day->day, task.sun_day->min_altitude);
     return hash.finish();
 }
 

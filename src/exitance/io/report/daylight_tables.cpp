@@ -163,7 +163,7 @@ void add_provision(const DaylightSummary& summary, std::span<const ViewOut> view
     add("", p.by_illuminance);
     out.emplace_back("EN17037_median_diffuse", p.median_diffuse);
     add("_factor", p.by_factor);
-    out.emplace_back("EN17037_sunlight_hours_most", summary.most_sunlight);
+    out.emplace_back("EN17037_sunlight_hours_most", summary.max_sunlight);
     if (!views.empty()) out.emplace_back("EN17037_view_level", view_level(views));
     if (!summary.glare) return;
     const GlareSummary& glare = *summary.glare;

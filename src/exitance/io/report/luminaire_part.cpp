@@ -106,12 +106,12 @@ std::string layout(const ReportContent& content, const LuminaireSchedule& schedu
 }
 
 std::string places_table(const ReportContent& content, const LuminaireSchedule& schedule) {
-    constexpr std::size_t most_rows = 60;  // derived from the two columns of a page
+    constexpr std::size_t max_rows = 60;  // derived from the two columns of a page
     if (schedule.items.empty()) return "";
     std::string html =
         "<h3>Positions</h3>\n<div class=\"columns\"><table>\n<thead><tr><th class=\"text\">Luminaire</th><th>x "
         "m</th><th>y m</th><th>z m</th><th class=\"text\">Name</th></tr></thead>\n";
-    const std::size_t count = std::min(most_rows, schedule.items.size());
+    const std::size_t count = std::min(max_rows, schedule.items.size());
     for (std::size_t i = 0; i < count; ++i) {
         const LuminaireSchedule::Item& item = schedule.items[i];
         const Point& p = item.facts->position;

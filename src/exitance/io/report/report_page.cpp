@@ -233,8 +233,8 @@ std::string surfaces(const ReportContent& content, const ReportFigures& figures)
         "{0}</th><th>Minimum</th><th>Maximum</th><th>Uniformity</th><th>Radiosity "
         "{0}</th></tr></thead>\n",
         symbol(content.unit));
-    constexpr std::size_t most_rows = 20;  // derived from the rows that fill half a page
-    for (const ReportFigures::Face& face : std::span(figures.faces).first(std::min(most_rows, figures.faces.size()))) {
+    constexpr std::size_t max_rows = 20;  // derived from the rows that fill half a page
+    for (const ReportFigures::Face& face : std::span(figures.faces).first(std::min(max_rows, figures.faces.size()))) {
         const Levels& l = face.irradiance;
         const std::string light =
             l.count == 0 ? "<td colspan=\"5\" class=\"text\">covered</td>"
@@ -248,7 +248,7 @@ std::string surfaces(const ReportContent& content, const ReportFigures& figures)
         "</table></div>\n<p class=\"note\">Light of the full function at 16 to 1024 points of a surface, those that "
         "lie "
         "in the open. Uniformity is the minimum over the mean.</p>\n";
-    const std::size_t others = figures.faces.size() - std::min(most_rows, figures.faces.size());
+    const std::size_t others = figures.faces.size() - std::min(max_rows, figures.faces.size());
     if (others + content.surfaces_left_out > 0)
         html += fmt::format("<p class=\"note\">{} smaller surfaces are not listed.</p>\n",
                             others + content.surfaces_left_out);

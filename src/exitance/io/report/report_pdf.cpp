@@ -29,7 +29,7 @@ Result<void> find_page_printer(const std::string& path) {
 }
 
 Result<void> print_page(const std::string& page, const std::string& path, const StopRequest& stop) {
-    constexpr double most_seconds = 120;  // printing a page takes a few seconds; the limit ends a browser that hangs
+    constexpr double max_seconds = 120;  // printing a page takes a few seconds; the limit ends a browser that hangs
     const auto words_for = [&](const std::string& part) {
         std::vector<std::string> words{page_printer(), "--headless", "--disable-gpu", "--no-pdf-header-footer",
                                        "--print-to-pdf=" + part};
@@ -37,7 +37,7 @@ Result<void> print_page(const std::string& page, const std::string& path, const 
         words.push_back("file://" + std::filesystem::absolute(page).string());
         return words;
     };
-    const Result<void> printed = run_into_file(path, words_for, most_seconds, stop);
+    const Result<void> printed = run_into_file(path, words_for, max_seconds, stop);
     if (printed) return {};
     return Error{ErrorCode::cannot_write, fmt::format("the browser printed no PDF: {:.200}", printed.error().message),
                  path, "the page itself is written; print it from a browser"};

@@ -170,7 +170,7 @@ LightGroups read_light_groups(Hdf5Reader& file, const std::string& group, const 
     LightGroups out;
     std::istringstream names(file.read_text(in("names")));
     for (std::string name; std::getline(names, name);) out.groups.emplace_back().emitters.name = name;
-    if (out.groups.empty() || out.groups.size() > most_light_groups)
+    if (out.groups.empty() || out.groups.size() > max_light_groups)
         return file.fail(in("names"), "names no light groups, or too many"), LightGroups();
     read_facts(file, group, out.groups);
     read_emitters(file, group, scene, out);

@@ -53,12 +53,12 @@ std::uint32_t fletcher32(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-std::size_t Hdf5Filters::most_packed(std::size_t chunk_bytes) const {
+std::size_t Hdf5Filters::max_packed(std::size_t chunk_bytes) const {
     return deflates ? compressBound(chunk_bytes) : chunk_bytes + checksum_bytes;
 }
 
 void Hdf5Filters::pack(std::span<const std::byte> chunk, std::vector<std::byte>& packed) const {
-    packed.resize(most_packed(chunk.size()));
+    packed.resize(max_packed(chunk.size()));
     if (!deflates) {
         const std::uint32_t sum = fletcher32(chunk);
         std::copy(chunk.begin(), chunk.end(), packed.begin());
@@ -142,7 +142,7 @@ bool read_hdf5_chunks(std::int64_t set, Hdf5Type type, std::size_t columns, std:
     const std::optional<Stored> stored = stored_as(set, type, columns);
     if (!stored) return false;
     const std::size_t row_bytes = columns * stored->filters.item_bytes, chunk_bytes = stored->together * row_bytes,
-                      most = stored->filters.most_packed(chunk_bytes);
+                      most = stored->filters.max_packed(chunk_bytes);
     const std::size_t chunks = (stored->rows + stored->together - 1) / stored->together;
     if (out.size() != stored->rows * row_bytes) return false;
     std::array<std::vector<std::byte>, hdf5_chunks_together> packed;

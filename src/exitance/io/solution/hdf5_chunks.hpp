@@ -24,7 +24,7 @@ struct Hdf5Filters {
     /// wrong.
     bool unpack(std::span<const std::byte> packed, std::span<std::byte> chunk) const;
     /// Upper bound of the packed size of a chunk, bytes.
-    std::size_t most_packed(std::size_t chunk_bytes) const;
+    std::size_t max_packed(std::size_t chunk_bytes) const;
 };
 
 /// Number of chunks that are held in memory and packed or unpacked at a time.

@@ -277,7 +277,7 @@ struct RegionColumns {
                 region.loops.emplace_back(first, first + loop_corners[loop]);
                 point += loop_corners[loop++];
             }
-            region.level = std::min(level[i], most_stacked);
+            region.level = std::min(level[i], max_stacked);
             if (behind[i] != RegionId::none_value) region.behind = RegionId(behind[i]);
             out.add(std::move(region));
         }

@@ -18,7 +18,7 @@ std::vector<Point> square_in(const Plane& plane, const Point& near, double reach
 }  // namespace
 
 MergedVolumes::MergedVolumes(const Box& space, double thickness, std::size_t most)
-    : thickness_(thickness), reach_(2 * space.diagonal() + 4 * thickness), most_(most), nodes_(1) {
+    : thickness_(thickness), reach_(2 * space.diagonal() + 4 * thickness), max_(most), nodes_(1) {
     const Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     // ensures that a flat box has a volume
     const Vec3 margin = Vec3{1, 1, 1} * (0.01 * space.diagonal() + 2 * thickness);
@@ -111,7 +111,7 @@ void MergedVolumes::grow_leaf(std::uint32_t leaf, const Body& body, std::uint32_
 void MergedVolumes::add(const ShadowVolume& volume) {
     const std::uint32_t number = count_++;
     if (volume.is_empty()) return;
-    if (nodes_.size() >= most_) {
+    if (nodes_.size() >= max_) {
         rest_.push_back({number, volume});
         return;
     }

@@ -15,16 +15,16 @@ namespace exitance {
 /// the separate volumes, but are exact for polygons that pass a corner of a volume, for which ShadowVolume returns
 /// `partly`. Source: [Chin92], [Gatenby95].
 ///
-/// Overlapping volumes make O(planes^3) leaves. Once the tree has `most_nodes` nodes no more volumes are merged; the
+/// Overlapping volumes make O(planes^3) leaves. Once the tree has `max_nodes` nodes no more volumes are merged; the
 /// remaining ones are tested one by one.
 class MergedVolumes {
   public:
-    static constexpr std::size_t most_nodes = 1u << 16;
+    static constexpr std::size_t max_nodes = 1u << 16;
 
     /// space  bounds of all polygons that will be classified, metres; volumes are clipped to it
     /// thickness  metres: points nearer to a plane than this are in the plane
     /// most  limit on the number of nodes; the volume during which it is exceeded is still merged
-    MergedVolumes(const Box& space, double thickness, std::size_t most = most_nodes);
+    MergedVolumes(const Box& space, double thickness, std::size_t most = max_nodes);
 
     /// Adds the next volume. Volumes are numbered in the order of the calls; empty ones get a number, too.
     void add(const ShadowVolume& volume);
@@ -75,7 +75,7 @@ class MergedVolumes {
 
     double thickness_, reach_;
     Body space_;
-    std::size_t most_;
+    std::size_t max_;
     std::vector<Node> nodes_;
     std::vector<Label> labels_;
     std::vector<Unmerged> rest_;

@@ -32,7 +32,7 @@ std::vector<ShadowVolume> some_volumes(std::uint64_t seed, int count) {
     return out;
 }
 
-MergedVolumes merged(std::span<const ShadowVolume> volumes, std::size_t most = MergedVolumes::most_nodes) {
+MergedVolumes merged(std::span<const ShadowVolume> volumes, std::size_t most = MergedVolumes::max_nodes) {
     MergedVolumes out({{-2, -2, 0}, {2, 2, 2}}, thickness, most);
     for (const ShadowVolume& v : volumes) out.add(v);
     return out;
@@ -48,7 +48,7 @@ TEST(MergedVolumes, ClassifyPointsLikeSeparateVolumes) {
     std::size_t in_umbra = 0, in_penumbra = 0;
     for (std::uint64_t seed = 1; seed <= 6; ++seed)
         for (const std::size_t most :
-             {MergedVolumes::most_nodes, std::size_t(200)}) {  // the second limit leaves some unmerged
+             {MergedVolumes::max_nodes, std::size_t(200)}) {  // the second limit leaves some unmerged
             const std::vector<ShadowVolume> volumes = some_volumes(seed, 8);
             const MergedVolumes tree = merged(volumes, most);
             EXPECT_EQ(tree.unmerged() > 0, most == 200);

@@ -8,7 +8,7 @@
 namespace exitance {
 namespace {
 
-constexpr std::size_t most_corners = 64;  // bits of a mask
+constexpr std::size_t max_corners = 64;  // bits of a mask
 
 /// A rectangle in the plane of the points that contains all of them.
 std::vector<Point> rectangle_around(std::span<const Point> points, const Normal& n) {
@@ -47,7 +47,7 @@ MinimumLists::MinimumLists(const Occluders& occluders, std::span<const std::vect
                            std::span<const Normal> normals)
     : occluders_(&occluders), tree_(occluders) {
     for (std::size_t s = 0; s < sources.size(); ++s) {
-        has_own_corners_.push_back(sources[s].size() <= most_corners);
+        has_own_corners_.push_back(sources[s].size() <= max_corners);
         orderings_.emplace_back(tree_, has_own_corners_.back() ? sources[s] : rectangle_around(sources[s], normals[s]));
     }
     find_places();

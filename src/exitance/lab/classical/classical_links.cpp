@@ -70,7 +70,7 @@ class LinkedElements {
         for (ElementId e : tree_.roots()) set_light(e);
         B_ = rhs_;
         const double whole = input.stage.area;
-        least_area_ = input.options.min_area.value_or(by_oracle() ? default_min_share * whole : 0);
+        min_area_ = input.options.min_area.value_or(by_oracle() ? default_min_share * whole : 0);
         longest_edge_ = by_oracle() ? input.options.mesh_size.value_or(0) : input.knobs.solve_mesh.edge;
     }
 
@@ -128,7 +128,7 @@ class LinkedElements {
     InteractionKernel::Workspace work_;
     std::size_t initial_links_ = 0, link_count_ = 0, rays_ = 0, form_factors_ = 0;
     /// Limits of refinement: area (m^2) below which and edge (m) up to which elements are not cut.
-    double least_area_ = 0, longest_edge_ = 0;
+    double min_area_ = 0, longest_edge_ = 0;
     bool out_of_memory_ = false;
 };
 
@@ -150,7 +150,7 @@ void LinkedElements::set_light(ElementId e) {
 bool LinkedElements::may_cut(ElementId e) const {
     if (!tree_.is_leaf(e)) return true;
     const Patch& patch = tree_.patch(e);
-    if (patch.area() / (way_to_cut(patch) == Cut::both ? 4 : 2) < least_area_) return false;
+    if (patch.area() / (way_to_cut(patch) == Cut::both ? 4 : 2) < min_area_) return false;
     const double edge = std::max({norm(patch.a), norm(patch.b), patch.is_triangle() ? norm(patch.a - patch.b) : 0.0});
     return edge > longest_edge_ * (1 + rounding);
 }
@@ -442,7 +442,7 @@ GlobalLight solve_over_classical_links(const MethodInput& input, HierarchyBasis 
             return so_far;
         });
         light.report.interrupted = input.stop.requested();
-        if (light.report.interrupted || !(change < hopeless_residual) || elements.out_of_memory()) break;
+        if (light.report.interrupted || !(change < diverged_residual) || elements.out_of_memory()) break;
         if (input.options.max_iterations && light.report.iterations >= *input.options.max_iterations) break;
         if (cut || change > input.knobs.residual) continue;
         if (grid >= grids) break;

@@ -26,7 +26,7 @@ class Shooting {
     std::vector<Spectrum> first_light() const;
     void add_vertices(std::span<const ElementId> elements);
     void note_change(const Spectrum& sent, std::span<const float> column);
-    double least_area() const { return input_.options.min_area.value_or(default_min_share * input_.stage.area); }
+    double min_area() const { return input_.options.min_area.value_or(default_min_share * input_.stage.area); }
     std::size_t refine();
     void gather_new(std::size_t first);
     void gather_new_at_centres(std::size_t first);
@@ -92,7 +92,7 @@ void Shooting::add_receivers(std::size_t first_element) {
         patch_of_.push_back(patch_of_element_[e]);
         reflectance_.push_back(material_of(input_, mesh_.tree, e).reflectance);
         if (input_.options.classical.refine_gradient)
-            steps_.add(mesh_.tree.region(e), mesh_.tree.patch(e), mesh_.area.back() / 4 >= least_area());
+            steps_.add(mesh_.tree.region(e), mesh_.tree.patch(e), mesh_.area.back() / 4 >= min_area());
     }
     direct_.resize(mesh_.receivers.size()), irradiance_.resize(mesh_.receivers.size());
     leaf_count_ += mesh_.receivers.size() - first;

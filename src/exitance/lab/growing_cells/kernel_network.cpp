@@ -77,9 +77,9 @@ double KernelNetwork::kernel(const Sample& s) const {
 }
 Spectrum KernelNetwork::flow(const Sample& s) const {
     double G = s.visible ? kernel(s) : 0;
-    if (G > 0 && options_.least_area > 0) {
+    if (G > 0 && options_.min_area > 0) {
         const double disc = pi * squared_norm(pool_[s.x].at - pool_[s.y].at);
-        G *= disc / (disc + options_.least_area);
+        G *= disc / (disc + options_.min_area);
     }
     return G * radiosity_[s.y];
 }

@@ -29,7 +29,7 @@ struct KernelNetworkOptions {
     double uniform_sources = 0.2;
     /// For flow: kernels are taken between discs of this area instead of points, m^2, so that targets are bounded where
     /// surfaces touch. A network of few units could not fit larger values. 0: points, as published.
-    double least_area = 0;
+    double min_area = 0;
     std::uint64_t seed = 1;
 };
 

@@ -250,7 +250,7 @@ LearnedLight learn_flow(const MethodInput& input, const SurfacePool& pool) {
     emitted.restrict_to(everything, emits);
     // Kernels of touching surfaces are unbounded, so they are taken between discs as large as a unit's share of the
     // surface.
-    options.least_area = stage.area / std::sqrt(static_cast<double>(units));
+    options.min_area = stage.area / std::sqrt(static_cast<double>(units));
     options.uniform_sources = 0.2;
     KernelNetwork reflected(stage, pool, options, M);
     reflected.restrict_to(everything, [&](const PoolPoint& p) { return !emits(p); });

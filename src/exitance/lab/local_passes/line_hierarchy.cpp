@@ -35,7 +35,7 @@ LineHierarchy::LineHierarchy(const Stage& stage, const LineHierarchyOptions& opt
     }
     emitted = max(flux);
     threshold_ = options.threshold * emitted;
-    least_area_ = options.min_area * area;
+    min_area_ = options.min_area * area;
 }
 
 const Normal& LineHierarchy::normal(std::uint32_t node) const {
@@ -143,7 +143,7 @@ double LineHierarchy::visibility(std::uint32_t p, std::uint32_t q) const {
 
 bool LineHierarchy::can_cut(std::uint32_t node) const {
     const LineTree::Node& n = tree_.nodes()[node];
-    return !n.is_leaf() || (n.area > 2 * least_area_ && !whole_[node]);
+    return !n.is_leaf() || (n.area > 2 * min_area_ && !whole_[node]);
 }
 
 LineHierarchy::Judged LineHierarchy::judge(std::uint32_t p, std::uint32_t q) const {

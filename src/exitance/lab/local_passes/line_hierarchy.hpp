@@ -38,7 +38,7 @@ class LineHierarchy {
     };
 
     /// Limit on the pieces of a scene: all pairs are tested, which would take too much memory and time.
-    static constexpr std::size_t most_pieces = 5'000;
+    static constexpr std::size_t max_pieces = 5'000;
 
     /// `stage` must outlive this object.
     LineHierarchy(const Stage& stage, const LineHierarchyOptions& options);
@@ -109,7 +109,7 @@ class LineHierarchy {
     std::vector<Link> links_;
     std::vector<std::size_t> first_link_;
     Pairs dark_;  ///< Pairs that are too dark at present.
-    double threshold_ = 0, least_area_ = 0, darkest_ = 0;
+    double threshold_ = 0, min_area_ = 0, darkest_ = 0;
     std::size_t rays_ = 0, form_factors_ = 0, iterations_ = 0;
     double change_ = 0;
 };

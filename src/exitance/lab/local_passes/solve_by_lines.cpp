@@ -66,10 +66,10 @@ void record(const LineHierarchy& hierarchy, const LocalPassWork& work, GlobalLig
 
 /// Returns an error if the scene has too many polygons.
 std::optional<Error> refusal(const Stage& stage) {
-    if (stage.pieces.size() <= LineHierarchy::most_pieces) return {};
+    if (stage.pieces.size() <= LineHierarchy::max_pieces) return {};
     return Error{ErrorCode::bad_input,
                  fmt::format("has {} convex polygons; --local-pass a to d examines all pairs and supports at most {}",
-                             stage.pieces.size(), LineHierarchy::most_pieces),
+                             stage.pieces.size(), LineHierarchy::max_pieces),
                  stage.scene.file(), "--local-pass e has no such limit"};
 }
 
@@ -80,7 +80,7 @@ LineHierarchyOptions line_options(const SolveOptions& options, double error) {
     constexpr double share = 0.5;
     LineHierarchyOptions out;
     out.threshold = share * error * error;
-    out.min_area = calibrated::least_line_area * error * error;
+    out.min_area = calibrated::min_line_area * error * error;
     out.rays = options.visibility_samples.value_or(out.rays);
     out.seed = options.seed;
     return out;

@@ -36,7 +36,7 @@ PeerScene peer_scene(const Scene& scene, const ReferencePoints& reference) {
         out.faces.push_back(
             {outline, triangulate(outline, scene.surfaces()[s].normal), material.reflectance, material.exitance});
         for (const Point& p : outline) box.add(p);
-        out.most_light = std::max(out.most_light, max(material.exitance));
+        out.max_light = std::max(out.max_light, max(material.exitance));
     }
     out.size = box.diagonal();
     const Locator locator(scene);
@@ -47,7 +47,7 @@ PeerScene peer_scene(const Scene& scene, const ReferencePoints& reference) {
         out.places.back().reflectance = scene.material(s).reflectance;
         out.places.back().exitance = scene.material(s).exitance;
     }
-    for (const Spectrum& light : reference.irradiance) out.most_light = std::max(out.most_light, max(light));
+    for (const Spectrum& light : reference.irradiance) out.max_light = std::max(out.max_light, max(light));
     return out;
 }
 

@@ -29,8 +29,8 @@ struct PeerScene {
     };
     std::vector<Face> faces;
     std::vector<Place> places;
-    double size = 0;        ///< Diagonal of its bounding box, metres.
-    double most_light = 0;  ///< At least the largest radiosity at the places, W/m^2.
+    double size = 0;       ///< Diagonal of its bounding box, metres.
+    double max_light = 0;  ///< At least the largest radiosity at the places, W/m^2.
 };
 
 /// Input of a peer's run.

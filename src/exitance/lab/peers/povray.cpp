@@ -11,7 +11,7 @@ namespace {
 
 /// Factor by which light is divided by its expected maximum: POV-Ray stops light rays below a fixed limit.
 double scale(const PeerScene& scene) {
-    return 1 / std::max(scene.most_light, 1e-30);
+    return 1 / std::max(scene.max_light, 1e-30);
 }
 
 /// Size of scenes in POV-Ray's units: it ignores hits closer than a ten-thousandth of a unit.

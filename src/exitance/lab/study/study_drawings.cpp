@@ -25,28 +25,28 @@ class DrawingFrame {
             for (std::size_t k = 0; k < coordinate_columns.size(); ++k) {
                 const double at = table.number(row, coordinate_columns[k]);
                 if (!std::isfinite(at)) continue;
-                least_[k % 2] = std::min(least_[k % 2], at), most_[k % 2] = std::max(most_[k % 2], at);
+                min_[k % 2] = std::min(min_[k % 2], at), max_[k % 2] = std::max(max_[k % 2], at);
             }
             if (table.text(row, "shape") != "circle") continue;
             const double x = table.number(row, "x1"), y = table.number(row, "y1");
             const double radius = std::abs(table.number(row, "x2") - x);
-            least_ = {std::min(least_[0], x - radius), std::min(least_[1], y - radius)};
-            most_ = {std::max(most_[0], x + radius), std::max(most_[1], y + radius)};
+            min_ = {std::min(min_[0], x - radius), std::min(min_[1], y - radius)};
+            max_ = {std::max(max_[0], x + radius), std::max(max_[1], y + radius)};
         }
         const std::array<double, 2> room{picture_width - 2 * picture_margin, picture_height - 2 * picture_margin};
-        for (std::size_t k = 0; k < 2; ++k) scale_[k] = most_[k] > least_[k] ? room[k] / (most_[k] - least_[k]) : 1;
+        for (std::size_t k = 0; k < 2; ++k) scale_[k] = max_[k] > min_[k] ? room[k] / (max_[k] - min_[k]) : 1;
         if (equal_axes) scale_[0] = scale_[1] = std::min(scale_[0], scale_[1]);
-        if (most_[0] > least_[0]) first_x_ += 0.5 * (room[0] - scale_[0] * (most_[0] - least_[0]));
+        if (max_[0] > min_[0]) first_x_ += 0.5 * (room[0] - scale_[0] * (max_[0] - min_[0]));
     }
 
-    double x(double at) const { return first_x_ + scale_[0] * (at - least_[0]); }
-    double y(double at) const { return picture_height - picture_margin - scale_[1] * (at - least_[1]); }
-    double least(std::size_t axis) const { return least_[axis]; }
-    double most(std::size_t axis) const { return most_[axis]; }
+    double x(double at) const { return first_x_ + scale_[0] * (at - min_[0]); }
+    double y(double at) const { return picture_height - picture_margin - scale_[1] * (at - min_[1]); }
+    double least(std::size_t axis) const { return min_[axis]; }
+    double most(std::size_t axis) const { return max_[axis]; }
 
   private:
     double first_x_ = picture_margin;  ///< Pixel of the smallest x; it centres the shapes in the picture.
-    std::array<double, 2> least_{HUGE_VAL, HUGE_VAL}, most_{-HUGE_VAL, -HUGE_VAL}, scale_{1, 1};
+    std::array<double, 2> min_{HUGE_VAL, HUGE_VAL}, max_{-HUGE_VAL, -HUGE_VAL}, scale_{1, 1};
 };
 
 std::string svg_of_shape(const Table& table, std::size_t row, const DrawingFrame& frame) {

@@ -136,9 +136,9 @@ std::string linear_axis(char axis, Range data, double room) {
 
 /// Range of a logarithmic axis. If it spans few powers of ten, digits between them are marked as well.
 std::string log_axis(char axis, Range data, double room) {
-    constexpr double share = 0.05, least_margin = 1.1, few = 100, fewest = 10;
-    const double ratio = data.hi / data.lo, margin = std::max(least_margin, std::pow(ratio, share));
-    const double lo = data.lo / margin, hi = data.hi * margin * std::pow(std::max(ratio, least_margin), room);
+    constexpr double share = 0.05, min_margin = 1.1, few = 100, fewest = 10;
+    const double ratio = data.hi / data.lo, margin = std::max(min_margin, std::pow(ratio, share));
+    const double lo = data.lo / margin, hi = data.hi * margin * std::pow(std::max(ratio, min_margin), room);
     std::string text =
         fmt::format("set logscale {0}\nset format {0} '%g'\nset {0}range [{1:.6g}:{2:.6g}]\n", axis, lo, hi);
     if (hi / lo > few) return text;

@@ -36,7 +36,7 @@ std::array<Point, 4> receiving_points(const Patch& shape) {
 }  // namespace
 
 PatchPool::PatchPool(const Stage& stage, std::uint64_t seed)
-    : stage_(stage), seed_(seed), chunks_(std::make_unique<std::atomic<TaskPatch*>[]>(most_chunks)) {
+    : stage_(stage), seed_(seed), chunks_(std::make_unique<std::atomic<TaskPatch*>[]>(max_chunks)) {
     root_count_ = static_cast<std::uint32_t>(stage.pieces.size());
     for (std::uint32_t i = 0; i < root_count_; ++i) {
         TaskPatch& patch = (*this)[allocate(1)];
@@ -47,12 +47,12 @@ PatchPool::PatchPool(const Stage& stage, std::uint64_t seed)
 }
 
 PatchPool::~PatchPool() {
-    for (std::size_t i = 0; i < most_chunks; ++i) delete[] chunks_[i].load();
+    for (std::size_t i = 0; i < max_chunks; ++i) delete[] chunks_[i].load();
 }
 
 std::uint32_t PatchPool::allocate(std::uint32_t count) {
     const std::uint32_t first = size_.fetch_add(count, std::memory_order_acq_rel);
-    EXI_CHECK((first + count) / chunk < most_chunks);
+    EXI_CHECK((first + count) / chunk < max_chunks);
     for (std::uint32_t c = first / chunk; c <= (first + count - 1) / chunk; ++c) {
         if (chunks_[c].load(std::memory_order_acquire)) continue;
         auto fresh = std::make_unique<TaskPatch[]>(chunk);

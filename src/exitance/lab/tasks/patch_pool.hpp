@@ -79,7 +79,7 @@ class PatchPool {
 
   private:
     static constexpr std::uint32_t chunk = 1024;
-    static constexpr std::size_t most_chunks = 1u << 16;
+    static constexpr std::size_t max_chunks = 1u << 16;
     std::uint32_t allocate(std::uint32_t count);
     void set_up(TaskPatch& patch, RegionId region, const Patch& shape);
     unsigned turn(const TaskPatch& p, const TaskPatch& q, std::size_t group) const;

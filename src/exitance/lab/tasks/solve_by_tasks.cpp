@@ -79,7 +79,7 @@ GlobalLight light_with_counts(const TaskEngine& engine, const TaskReport& report
 TaskOptions task_options(const Scene& scene, const SolveOptions& options) {
     // Defaults: share of the power emitted in the brightest band; share of the area; F_eps; relative change of total
     // radiosity, which takes six or seven iterations in rooms of reflectance 0.5.
-    constexpr double power_share = 1e-5, area_share = 2e-6, least_form_factor = 0.02, change = 0.01;
+    constexpr double power_share = 1e-5, area_share = 2e-6, min_form_factor = 0.02, change = 0.01;
     constexpr std::size_t default_max_iterations = 100;
     TaskOptions out;
     out.by_power = options.oracle != LinkOracle::form_factor;
@@ -89,7 +89,7 @@ TaskOptions task_options(const Scene& scene, const SolveOptions& options) {
         emitted += scene.regions()[r].area * scene.material(r).exitance;
         area += scene.regions()[r].area;
     }
-    out.threshold = options.threshold.value_or(out.by_power ? power_share * max(emitted) : least_form_factor);
+    out.threshold = options.threshold.value_or(out.by_power ? power_share * max(emitted) : min_form_factor);
     out.min_area = options.min_area.value_or(area_share * area);
     out.change = options.residual.value_or(change);
     out.max_iterations = options.max_iterations.value_or(default_max_iterations);

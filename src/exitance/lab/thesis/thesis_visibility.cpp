@@ -51,8 +51,8 @@ void add_points(const Occluders& occluders, std::span<const Point> outline, cons
 void candidates(const char* name, const Scene& scene, CsvText& out) {
     const Occluders occluders(scene);
     const BspTree tree(occluders);
-    constexpr std::size_t most_nodes = 400;
-    const std::size_t step = std::max<std::size_t>(1, tree.nodes().size() / most_nodes);
+    constexpr std::size_t max_nodes = 400;
+    const std::size_t step = std::max<std::size_t>(1, tree.nodes().size() / max_nodes);
     enum { penumbra, shadowed, lists };
     Mean bsp[lists], facing[lists], shaft_list[lists];
     Mean points;

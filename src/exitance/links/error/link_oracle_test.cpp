@@ -23,7 +23,7 @@ struct Room {
 
     double light(RegionId region) const { return region.value == 2 ? bright : dark; }
 
-    Outcome linked(LinkOracle oracle, double threshold, std::size_t most_links) const {
+    Outcome linked(LinkOracle oracle, double threshold, std::size_t max_links) const {
         ElementTree tree = stage.make_elements({10, 0});
         const NodalBasis basis(HierarchyBasis::haar);
         LinkSites sites(stage, tree, basis);
@@ -35,8 +35,8 @@ struct Room {
         refiner.refine(b, {},
                        {.error = threshold,
                         .interpolation = threshold,
-                        .most_links = most_links,
-                        .least_area = 0.05,
+                        .max_links = max_links,
+                        .min_area = 0.05,
                         .oracle = oracle,
                         .strongest = threshold},
                        silent, never);

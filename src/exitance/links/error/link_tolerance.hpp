@@ -22,8 +22,8 @@ struct LinkTolerance {
     /// Weight of the error of the source's polynomial, for a receiver at a distance equal to the source's size.
     double residual_weight = 0.5;
     /// Maximum number of links. Once it is exceeded, no more elements are split.
-    std::size_t most_links = std::numeric_limits<std::size_t>::max();
-    double least_area = 0;    ///< Elements smaller than this are not split, m^2.
+    std::size_t max_links = std::numeric_limits<std::size_t>::max();
+    double min_area = 0;      ///< Elements smaller than this are not split, m^2.
     bool fractional = false;  ///< Use one unoccluded share for all nodes of a link instead of one per pair of nodes.
     bool quadrature = false;  ///< Test visibility by one ray from each node to each node, instead of several.
     /// True if rays later correct the mean of the received light. Links with a small contribution may then be constants

@@ -75,17 +75,17 @@ class Undersampling {
 
     /// Returns the error due to a steep fall of the light. `allowed`: smaller errors are not computed, W/m^2.
     double fall(double allowed) const {
-        // A fall counts if the polynomial is at least `least_factor` times the exact value and the error is at least
+        // A fall counts if the polynomial is at least `min_factor` times the exact value and the error is at least
         // half of the brightest point; it covers about `fall_area` of the receiver.
         const double area_share = calibrated::fall_area;
-        constexpr double least_factor = 4, least_share = 0.5;
+        constexpr double min_factor = 4, min_share = 0.5;
         if (source_.nodes == 1 || std::sqrt(area_share) * transfer_.brightest <= allowed) return 0;
         double most = 0;
         for (const Point& corner : sites_.tree().outline(receiver_)) {
             const Point x = corner + calibrated::fall_border * (sites_.centre(receiver_) - corner);
             const double exact = light_at(x), polynomial = rule_.interpolated(transfer_, receiver_, x),
                          error = std::abs(polynomial - exact);
-            if (std::abs(polynomial) > least_factor * std::abs(exact) && error > least_share * transfer_.brightest)
+            if (std::abs(polynomial) > min_factor * std::abs(exact) && error > min_share * transfer_.brightest)
                 most = std::max(most, error);
         }
         return std::sqrt(area_share) * most;
@@ -99,10 +99,10 @@ class Undersampling {
     /// RMS error over the receiver from a peak at point x, `gap` metres from the source. 0 if x is not brighter than
     /// the check points by a factor.
     double error_at(const Point& x, double gap, const FrontPart& source) const {
-        const double least_factor = source_.nodes == 1 ? 8
-                                    : certainly_open_  ? 4
-                                                       : calibrated::peak_factor_hidden,
-                     least = least_factor * transfer_.brightest;
+        const double min_factor = source_.nodes == 1 ? 8
+                                  : certainly_open_  ? 4
+                                                     : calibrated::peak_factor_hidden,
+                     least = min_factor * transfer_.brightest;
         const double F = rule_.form_factor(x, sites_.normal(receiver_), source.outline),
                      residual = F * source_.roughness;
         if (F * std::abs(source_.mean) + residual < least) return 0;

@@ -67,7 +67,7 @@ std::pair<double, double> texels_along(double begin, double end, double density)
 /// Upper outline of the packed rectangles: heights over intervals of the map's width.
 class Skyline {
   public:
-    Skyline(int width, int most) : width_(width), most_(most), steps_{{0, 0}} {}
+    Skyline(int width, int most) : width_(width), max_(most), steps_{{0, 0}} {}
 
     struct Place {
         int x = 0, y = -1;
@@ -82,7 +82,7 @@ class Skyline {
             int y = 0;
             for (std::size_t k = i; k < steps_.size() && steps_[k].x < steps_[i].x + width; ++k)
                 y = std::max(y, steps_[k].y);
-            if (y + height <= most_ && (best.is_none() || y < best.y)) best = {steps_[i].x, y};
+            if (y + height <= max_ && (best.is_none() || y < best.y)) best = {steps_[i].x, y};
         }
         return best;
     }
@@ -106,7 +106,7 @@ class Skyline {
     struct Step {
         int x, y;
     };
-    int width_, most_, height_ = 0;
+    int width_, max_, height_ = 0;
     std::vector<Step> steps_;  ///< Sorted by x; each extends to the next one.
 };
 

@@ -14,7 +14,7 @@ constexpr unsigned node_rays = 512;
 constexpr int max_steps = 256;
 /// Maximum number of rays of direct light at a place. Derived from the number for a pixel of a flat texel
 /// (measure/pictures/tile_cells.cpp).
-constexpr unsigned most_rays = 1024;
+constexpr unsigned max_rays = 1024;
 constexpr double alike = 0.01;  ///< Relative difference of light that counts as linear; derived from TileLight::alike.
 
 constexpr std::size_t node_count(int steps) {
@@ -48,7 +48,7 @@ CurvedLight::CurvedLight(const RadiosityFunction& light, const CurvedFaces& face
     : light_(light),
       faces_(faces),
       accuracy_(point_accuracy(light.solution().statistics.relative_error_estimate.value_or(1))) {
-    accuracy_.most_rays = most_rays;
+    accuracy_.max_rays = max_rays;
     std::size_t nodes = 0;
     for (const NormalTriangle& t : faces.triangles()) {
         const double steps = std::clamp(std::ceil(longest_side(t) / spacing), 1.0, 1.0 * max_steps);

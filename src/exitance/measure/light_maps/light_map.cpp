@@ -66,7 +66,7 @@ Result<LightMaps> make_empty_maps(const Scene& scene, const BakeOptions& options
     double texels = 0;
     for (const Chart& chart : *charts)
         texels += (chart.width + 2.0 * options.padding) * (chart.height + 2.0 * options.padding);
-    if (texels > most_texels)
+    if (texels > max_texels)
         return Error{ErrorCode::usage,
                      "the maps would have " + std::to_string(std::llround(texels / 1e6)) +
                          " million texels; the limit is 134 million",

@@ -14,7 +14,7 @@
 
 namespace exitance {
 
-inline constexpr double most_texels = 134217728;  ///< 2^27 texels, up to 6 GB while they are baked.
+inline constexpr double max_texels = 134217728;  ///< 2^27 texels, up to 6 GB while they are baked.
 
 /// A part of a chart that is baked as a unit.
 struct ChartTile {

@@ -96,7 +96,7 @@ DirectedIrradiance TiltedLight::reflected(int x, int y, const MeasuredPlace& pla
 
 DirectedIrradiance TiltedLight::at(int x, int y, std::span<const MeasuredPlace> open, const Spectrum& irradiance,
                                    Workspace& workspace) const {
-    constexpr std::size_t most_points = 4;
+    constexpr std::size_t max_points = 4;
     constexpr double alike = 0.1;  ///< Relative difference without a shadow edge; derived from slopes of a few percent.
 
     const ProbePoint first = above(open.front());
@@ -106,7 +106,7 @@ DirectedIrradiance TiltedLight::at(int x, int y, std::span<const MeasuredPlace> 
         straight = direct(first, workspace);
         const double found = mean((out.at(first.n) + straight.at(first.n)));
         if (std::abs(found - mean(irradiance)) > alike * mean(irradiance)) {
-            const std::size_t count = std::min(most_points, open.size());
+            const std::size_t count = std::min(max_points, open.size());
             for (const MeasuredPlace& place : open.subspan(1, count - 1)) straight += direct(above(place), workspace);
             straight *= 1.0 / static_cast<double>(count);
         }

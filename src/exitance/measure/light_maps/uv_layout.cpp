@@ -116,10 +116,10 @@ void move_charts(const UvSet& set, UvLayout& out) {
 class TriangleGrid {
   public:
     explicit TriangleGrid(const UvLayout& layout) : layout_(layout) {
-        constexpr int most_cells = 1024;
-        constexpr double most_entries = 1e8;  ///< 400 MB
-        side_ = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(layout.places.size()))), 1, most_cells);
-        while (side_ > 1 && entries() > most_entries) side_ /= 2;
+        constexpr int max_cells = 1024;
+        constexpr double max_entries = 1e8;  ///< 400 MB
+        side_ = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(layout.places.size()))), 1, max_cells);
+        while (side_ > 1 && entries() > max_entries) side_ /= 2;
         begin_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_) + 1, 0);
         visit_entries([&](std::size_t cell, std::uint32_t) { ++begin_[cell + 1]; });
         std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());

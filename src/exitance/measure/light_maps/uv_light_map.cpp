@@ -198,14 +198,14 @@ Result<void> make_empty_maps(const Scene& scene, const UvBakeOptions& options, U
     std::vector<double> area(out.layout.maps), map_area(out.layout.maps);
     for (const UvObject& object : out.layout.objects)
         area[object.map] += object.area, map_area[object.map] += object.map_area;
-    constexpr int most_automatic = 4096;
+    constexpr int max_automatic = 4096;
     double texels = 0, covered = 0;
     for (std::size_t m = 0; m < out.layout.maps; ++m) {
         MapSize size = options.size;
         if (size.width == 0) {
             const bool is_given = options.density > 0;
             const double density = is_given ? options.density : automatic_density(scene);
-            const int side = side_of(density, area[m], map_area[m], is_given ? 2 * options.most : most_automatic);
+            const int side = side_of(density, area[m], map_area[m], is_given ? 2 * options.most : max_automatic);
             if (side > options.most)
                 return Error{ErrorCode::usage,
                              "map " + std::to_string(m) + " needs more than " + std::to_string(options.most) +
@@ -214,11 +214,11 @@ Result<void> make_empty_maps(const Scene& scene, const UvBakeOptions& options, U
             size = {side, side};
         }
         texels += static_cast<double>(size.texels());
-        if (texels > most_texels)
+        if (texels > max_texels)
             return Error{ErrorCode::usage, "the maps would have more than the limit of 134 million texels", "--density",
                          "choose a smaller one, or a smaller --size"};
         covered += static_cast<double>(size.texels()) * map_area[m];
-        if (covered > most_texels)
+        if (covered > max_texels)
             return Error{ErrorCode::usage,
                          "charts overlap so often that " + std::to_string(std::llround(covered / 1e6)) +
                              " million texels would be baked; the limit is 134 million",

@@ -40,7 +40,7 @@ class Scout {
         double power = 0, area = 0;
         for (const ElementId leaf : leaves()) power += power_of(leaf), area += solution.interpolant.tree.area(leaf);
         constexpr double worth_seeing = 0.03;  // share of the mean radiosity; darker surfaces appear black
-        least_light_ = area > 0 ? worth_seeing * power / area : 0;
+        min_light_ = area > 0 ? worth_seeing * power / area : 0;
     }
 
     Outlook look(const Camera& camera, PictureSize coarse) const {
@@ -70,7 +70,7 @@ class Scout {
             if (hits[i].distance < near) view.blocked += 1;
             const double light = light_at(hits[i].surface, origins[i] + hits[i].distance * directions[i]);
             const double emitted = mean(solution_.scene.material(hits[i].surface).exitance);
-            if (light + emitted > least_light_) view.lit += 1;
+            if (light + emitted > min_light_) view.lit += 1;
             if (light > 0) lit += 1, sum += std::log(light), squares += std::log(light) * std::log(light);
         }
         view.planes = static_cast<double>(regions.size());
@@ -143,7 +143,7 @@ class Scout {
     const Solution& solution_;
     const RayTracer& tracer_;
     ElementLocator locator_;
-    double least_light_ = 0;  ///< W/m^2
+    double min_light_ = 0;  ///< W/m^2
 };
 
 /// Returns the best camera in a closed room: near the four vertical edges of the scene's box, at eye level or higher,
@@ -151,7 +151,7 @@ class Scout {
 /// fronts, with light on a third of them.
 std::optional<Camera> camera_inside(const Scene& scene, const Scout& scout, PictureSize size) {
     constexpr double min_fronts = 0.95;  // share of fronts in a room: the rest may be windows and open doors
-    constexpr double least_lit = 1.0 / 3;
+    constexpr double min_lit = 1.0 / 3;
     const Box& box = scene.box();
     const Vec3 extent = box.size();
     const double height = std::min(extent.z, 3.0);  // metres; limited, so that a high hall is viewed like a room
@@ -160,7 +160,7 @@ std::optional<Camera> camera_inside(const Scene& scene, const Scout& scout, Pict
     double best_quality = 0;
     const auto consider = [&](const Camera& camera) {
         const Outlook view = scout.look(camera, {24, 15});
-        if (view.fronts >= min_fronts && view.lit >= least_lit && view.quality() > best_quality)
+        if (view.fronts >= min_fronts && view.lit >= min_lit && view.quality() > best_quality)
             best = camera, best_quality = view.quality();
     };
     for (const double inset : {0.06, 0.15, 0.25, 0.35}) {  // a room may not extend into the corners of its box

@@ -39,8 +39,8 @@ bool TileLight::rays_are_cheaper(std::span<const Spot> spots, const ReceiverLigh
 
 /// Required accuracy of direct light at a pixel that also has other light `rest`, W/m^2.
 LightAccuracy TileLight::accuracy(double rest) const {
-    constexpr unsigned most_rays = 1024;
-    return {pixel_error, pixel_error * (rest + dim * brightness_), most_rays};
+    constexpr unsigned max_rays = 1024;
+    return {pixel_error, pixel_error * (rest + dim * brightness_), max_rays};
 }
 
 const Spot* TileLight::spot_at(std::span<const Spot> spots, int x, int y) const {

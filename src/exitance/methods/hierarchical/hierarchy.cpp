@@ -98,7 +98,7 @@ void Hierarchy::refine_panes_alike() {
     if (!scene.has_diffusing_panes()) return;
     NodalField* const also[] = {&reflected_direct};
     constexpr double max_area_ratio = 0.75;  // share of the area behind; derived from cuts, which leave a half or less
-    const double least = input.options.min_area.value_or(calibrated::least_link_area * input.stage.area);
+    const double least = input.options.min_area.value_or(calibrated::min_link_area * input.stage.area);
     while (!input.stop.requested()) {
         const std::vector<ElementId> ends = sites.ends();
         const PassedLight passed(scene, light.tree, ends);

@@ -47,7 +47,7 @@ double share_of_links(const Hierarchy& h) {
 }
 
 /// Number of links that fit into memory.
-std::size_t most_links(const Hierarchy& h) {
+std::size_t max_links(const Hierarchy& h) {
     constexpr std::size_t default_memory = 8'000'000'000;  // bytes; default limit
     const std::size_t used = peak_memory_bytes(),
                       limit = h.input.options.memory_limit_bytes.value_or(used + default_memory);
@@ -171,8 +171,8 @@ LinkTolerance link_tolerance(const Hierarchy& h, double error) {
     return {.error = error,
             .interpolation = error,
             .systematic = systematic_weight(h),
-            .most_links = most_links(h),
-            .least_area = o.min_area.value_or(calibrated::least_link_area * h.input.stage.area),
+            .max_links = max_links(h),
+            .min_area = o.min_area.value_or(calibrated::min_link_area * h.input.stage.area),
             .fractional = o.visibility == VisibilityKind::fractional,
             .quadrature = o.visibility == VisibilityKind::quadrature,
             .gives_up = h.input.may_give_up,

@@ -17,7 +17,7 @@ RayBudget dealt_out(RayBudget rays) {
     constexpr double share = 0.5;
     constexpr unsigned min_rays = 8;
     rays.average *= share;
-    rays.least = std::min(rays.least, min_rays);
+    rays.min = std::min(rays.min, min_rays);
     return rays;
 }
 

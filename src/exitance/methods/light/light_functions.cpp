@@ -289,7 +289,7 @@ std::vector<double> light_of_bodies(const Stage& stage, const GlobalLight& light
         const std::uint32_t body = bodies.of(stage.scene, region);
         area[body] += light.tree.area(e), flux[body] += light.tree.area(e) * mean(light.reflected[i]);
         const double of_room = mean_light * (light_in.empty() ? 1 : light_in[stage.rooms.of(light.tree, e)]);
-        least[body] = std::max(least[body], least_body_light * of_room);
+        least[body] = std::max(least[body], min_body_light * of_room);
     }
     std::vector<double> out(bodies.all.size(), mean_light);
     for (std::size_t body = 0; body < out.size(); ++body)

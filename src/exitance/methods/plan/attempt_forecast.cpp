@@ -31,7 +31,9 @@ AttemptForecast forecast_attempt(const AttemptFacts& facts) {
 std::vector<double> attempt_aims(double asked, double error) {
     std::vector<double> out = {asked};
     const double max_aim = calibrated::part_aim * error;
-    for (double aim = asked / calibrated::least_step; aim <= max_aim; aim /= calibrated::least_step) out.push_back(aim);
+    for (double aim = asked / calibrated::max_tightening_factor; aim <= max_aim;
+         aim /= calibrated::max_tightening_factor)
+        out.push_back(aim);
     return out;
 }
 

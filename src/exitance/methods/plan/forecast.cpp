@@ -122,9 +122,8 @@ Pilot run_pilot(const Stage& stage, const Plan& plan, const DirectProjection& di
         // The error of scrambled points falls like n^-3/4. Four degrees of freedom are fitted to nine places.
         const double wanted =
             mean_light > 0 ? pilot_rays * std::pow(2.0 / 3 * n / (k.gather_noise * mean_light), 4.0 / 3) : 0;
-        out.rays +=
-            std::clamp(wanted, static_cast<double>(k.gather_rays.least), static_cast<double>(k.gather_rays.most)) /
-            static_cast<double>(points.size());
+        out.rays += std::clamp(wanted, static_cast<double>(k.gather_rays.min), static_cast<double>(k.gather_rays.max)) /
+                    static_cast<double>(points.size());
     }
     return out;
 }
@@ -138,12 +137,12 @@ double cut_patches(const Stage& stage, const Plan& plan, const DirectProjection&
         return mean(stage.scene.material(direct.tree.region(leaf)).reflectance * E);
     };
     const double threshold = steep_step(plan.options.error_target(), mean_light);
-    const double least_area = plan.options.min_area.value_or(calibrated::least_patch_element * stage.area);
+    const double min_area = plan.options.min_area.value_or(calibrated::min_patch_element * stage.area);
     double elements = 0;
     for (const ElementId leaf : direct.tree.leaves()) {
         double step = steepest_step(direct.tree, locator, leaf, light), pieces = 1;
         for (int sweep = 0; sweep < patch_sweeps && step > threshold; ++sweep, step /= 2)
-            if (direct.tree.area(leaf) > 2 * least_area * pieces) pieces *= 4;
+            if (direct.tree.area(leaf) > 2 * min_area * pieces) pieces *= 4;
         elements += pieces;
     }
     return elements;
@@ -218,7 +217,7 @@ Result<Forecast> forecast_solve(const Scene& scene, const SolveOptions& asked) {
         mesh = {calibrated::patch_edge * mesh.edge, std::max(0, mesh.grading_levels - 1)};
     const DirectProjection direct = project_direct_light(
         stage,
-        {.mesh = mesh, .tolerance = (patches ? 2 : 1) * plan.knobs.direct_tolerance, .least_area = options.min_area},
+        {.mesh = mesh, .tolerance = (patches ? 2 : 1) * plan.knobs.direct_tolerance, .min_area = options.min_area},
         never);
 
     Forecast out{.method = name_in(method_names, plan.options.method),

@@ -62,7 +62,8 @@ Result<bool> fit_into_memory(Knobs& knobs, const Stage& stage, const SolveOption
         knobs.gather_mesh.edge *= calibrated::coarsening;
         knobs.solve_mesh.grading_levels = std::max(0, knobs.solve_mesh.grading_levels - 1);
         knobs.gather_mesh.grading_levels = std::max(0, knobs.gather_mesh.grading_levels - 1);
-        knobs.solve_rays.average = std::max(calibrated::least_rays, knobs.solve_rays.average / calibrated::coarsening);
+        knobs.solve_rays.average =
+            std::max(calibrated::min_rays_per_sample, knobs.solve_rays.average / calibrated::coarsening);
     }
     return unchanged;
 }

@@ -109,7 +109,7 @@ double further_attempts(double spread, double error, const Counts& counts, doubl
     const double method = spread / std::sqrt(counts.elements);
     if (method <= methods_share * error) return 0;
     const double wanted = methods_share * c::attempt_aim * error;
-    const double finer = std::clamp(c::part_aim * wanted / method, c::least_tightening, c::most_method_tightening);
+    const double finer = std::clamp(c::part_aim * wanted / method, c::min_attempt_factor, c::max_method_factor);
     return forecast_attempt({.row_rays = counts.row_rays,
                              .gather_rays = gather,
                              .certificate_rays = late_light_rays * counts.elements,

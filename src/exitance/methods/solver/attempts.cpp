@@ -73,13 +73,13 @@ void Solver::solve_indirect_light() {
 bool Solver::refines_bodies(double demand, double last_seconds) {
     // One attempt is made for bodies, or two if the first one halved the excess error. Others would cost more than the
     // whole solve, for the sake of bodies whose errors are uncertain themselves.
-    constexpr int most_for_bodies = 2;
+    constexpr int max_for_bodies = 2;
     // Errors that are above the limit only by their noise are no reason for another attempt.
     const double limit = max_body_errors * demand, worst = certificate_.worst_body.value_or(0);
     const bool is_above = std::any_of(statistics().bodies.begin(), statistics().bodies.end(),
                                       [&](const BodyError& body) { return body.error && body.at_least > limit; });
     const bool helps = worst_body_before_ == 0 || worst - limit < 0.5 * (worst_body_before_ - limit);
-    if (!holds_bodies() || !gathers() || sums_ || !is_above || !helps || body_attempts_ == most_for_bodies ||
+    if (!holds_bodies() || !gathers() || sums_ || !is_above || !helps || body_attempts_ == max_for_bodies ||
         attempt_ == attempt_limit() || (options_.error && *options_.error > requested_error_) ||
         as_first(last_seconds) > common_seconds_left(stop_))
         return false;
@@ -132,10 +132,10 @@ void Solver::show_light() {
 
 std::optional<Solver::NextAttempt> Solver::next_in_time(double demand, double last_seconds) const {
     // An attempt that cannot finish in time would be discarded. All processes use the first one's clock.
-    const double most_work = common_seconds_left(stop_) / as_first(last_seconds);
+    const double max_work = common_seconds_left(stop_) / as_first(last_seconds);
     for (const double aim : attempt_aims(demand, certificate_.largest())) {
         NextAttempt next = next_attempt(aim);
-        if (next.finer.work <= most_work) return next;
+        if (next.finer.work <= max_work) return next;
     }
     return {};
 }
@@ -203,7 +203,7 @@ void Solver::project_direct() {
     DirectProjection fresh = project_direct_light(stage_,
                                                   {.mesh = knobs_.solve_mesh,
                                                    .tolerance = knobs_.direct_tolerance,
-                                                   .least_area = options_.min_area,
+                                                   .min_area = options_.min_area,
                                                    .may_give_up = direct_.tree.size() > 0,
                                                    .bodies = views ? &*views : nullptr,
                                                    .body_tolerance = tolerance_of},

@@ -7,7 +7,7 @@
 
 #include "exitance/calibration/numbers.hpp"
 #include "exitance/error/direct_light_noise.hpp"
-#include "exitance/error/further_looks.hpp"
+#include "exitance/error/further_measurements.hpp"
 #include "exitance/evaluate/energy.hpp"
 #include "exitance/methods/importance.hpp"
 #include "exitance/methods/light/light_functions.hpp"
@@ -50,8 +50,8 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
     if (!light_->holds_direct()) options.projected = {&delivered.projected(), direct_weight, misfit};
     // A tenth of the rays so far, but at least about 30 ms of work, and 2 ms for each body, so that the errors of
     // bodies can be measured.
-    constexpr std::size_t least_check_rays = 1 << 17, least_rays_of_body = 1 << 13;
-    options.check_rays = std::max({statistics().rays / 10, least_check_rays, least_rays_of_body * bodies().all.size()});
+    constexpr std::size_t min_check_rays = 1 << 17, min_rays_of_body = 1 << 13;
+    options.check_rays = std::max({statistics().rays / 10, min_check_rays, min_rays_of_body * bodies().all.size()});
     SummedLight summed{.delivered = {}, .gathered = gathered, .share = calibrated::certified_share * options.error};
     if (sums_) {
         for (const ElementFunction& part : delivered_functions(stage_.scene, indirect, direct_, direct_weight, c))
@@ -63,8 +63,8 @@ void Solver::certify_solution(CertificateOptions options, std::optional<double> 
     // The number of further points is chosen once. Points that are added until an estimate is small enough would make
     // it too small.
     const auto more = [&] {
-        return further_looks({certificate_.largest(), certificate_.largest_uncertainty()},
-                             margin(certificate_.points) * *demand, *demand);
+        return further_measurements({certificate_.largest(), certificate_.largest_uncertainty()},
+                                    margin(certificate_.points) * *demand, *demand);
     };
     for (std::size_t left = demand ? more() : 0; left > 0 && !stop_.requested(); --left)
         certificate_ = certifier.measure();

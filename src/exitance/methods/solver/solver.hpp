@@ -56,8 +56,8 @@ class Solver {
     /// Records that a stop was requested, as an interrupt or a time limit.
     void stop_as_requested() { stop_early(stop_.interrupted() ? StopReason::interrupt : StopReason::time_limit); }
 
-    static constexpr int most_attempts = 9, most_published_attempts = 4;
-    int attempt_limit() const { return is_published() ? most_published_attempts : most_attempts + shown_; }
+    static constexpr int max_attempts = 9, max_published_attempts = 4;
+    int attempt_limit() const { return is_published() ? max_published_attempts : max_attempts + shown_; }
 
     // Interactive display of intermediate solutions.
     /// Lowers the target error of the attempts if it has been reached. Certifies the present solution again with the

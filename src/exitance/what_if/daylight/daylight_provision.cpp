@@ -76,7 +76,7 @@ SunlightHours::SunlightHours(const Occluders& occluders, const DaylightSite& sit
     for (int step = 0; step < 24 * steps_per_hour; ++step) {
         const double hour = (step + 0.5) / steps_per_hour;
         const SunPosition at = sun_position({year, day.month, day.day, hour, site.zone}, site.place);
-        if (at.altitude > std::max(0.0, day.least_altitude))
+        if (at.altitude > std::max(0.0, day.min_altitude))
             suns_.push_back(sky_direction(at.altitude, at.azimuth, site.north));
     }
 }

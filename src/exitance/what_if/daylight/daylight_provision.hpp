@@ -9,7 +9,7 @@ namespace exitance {
 /// A day for which sunlight is evaluated.
 struct SunDay {
     int month = 3, day = 21;
-    double least_altitude = 0;  ///< Minimum altitude, degrees; a lower sun is ignored.
+    double min_altitude = 0;  ///< Minimum altitude, degrees; a lower sun is ignored.
 };
 
 /// Daylight provision of a plane over a year according to EN 17037; all sensors have equal weight. Levels: 0 none, 1

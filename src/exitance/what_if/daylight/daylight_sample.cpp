@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t bias_sensors = 32;  ///< Enough for a relative standard error of the bias of 1 / sqrt(2 * 32).
 constexpr std::size_t compared_hours = 64;
-constexpr std::size_t most_of_a_grid = 256, fewest_of_a_grid = 8;  ///< Sensors of the sample.
-constexpr std::size_t most_sensors = 2048;  ///< Sensors of the sample together, unless there are very many grids.
+constexpr std::size_t max_of_a_grid = 256, min_of_a_grid = 8;  ///< Sensors of the sample.
+constexpr std::size_t max_sensors = 2048;  ///< Sensors of the sample together, unless there are very many grids.
 
 /// Returns up to `most` different ones of `count` indices, in order: one at random from each of as many equal ranges.
 std::vector<std::size_t> random_indices(std::size_t count, std::size_t most, RandomStream random) {
@@ -117,7 +117,7 @@ DaylightSample::DaylightSample(const DaylightSetting& setting, const DaylightTra
 
 void DaylightSample::choose_sensors(const DaylightTransport& transport) {
     const std::size_t most =
-        std::clamp(most_sensors / std::max<std::size_t>(1, setting_.grids.size()), fewest_of_a_grid, most_of_a_grid);
+        std::clamp(max_sensors / std::max<std::size_t>(1, setting_.grids.size()), min_of_a_grid, max_of_a_grid);
     std::vector<ProbePoint> points;
     std::size_t first = 0;
     for (std::size_t g = 0; g < setting_.grids.size(); ++g) {
@@ -229,7 +229,7 @@ double DaylightSample::bias_of_elements(double error, Progress& progress, const 
     for (const std::size_t k : for_bias_) points.push_back(setting_.sensors[sensors_[k].number]);
     PooledPaths exact(std::move(scene), points);
     const double n = static_cast<double>(points.size());
-    constexpr std::size_t first_paths = 1024, most_paths = std::size_t{1} << 22;
+    constexpr std::size_t first_paths = 1024, max_paths = std::size_t{1} << 22;
     for (;;) {
         // A stopped run has no result, and the caller discards the bias.
         if (!exact.add(std::max(first_paths, exact.paths()), setting_.seed, progress, stop)) return 0;
@@ -244,7 +244,7 @@ double DaylightSample::bias_of_elements(double error, Progress& progress, const 
         if (!(mean > 0)) return 0;
         const double bound = mean_square(excess).bound() / mean;
         const bool is_small = bound <= error / 2, is_accurate = noise <= error * error * mean * mean / 9;
-        if (is_small || is_accurate || exact.paths() >= most_paths) return bound;
+        if (is_small || is_accurate || exact.paths() >= max_paths) return bound;
     }
 }
 

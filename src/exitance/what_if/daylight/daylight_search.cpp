@@ -18,12 +18,12 @@ unsigned more_rays(double noise, double wanted) {
 
 DaylightLight find_daylight_light(const DaylightSetting& setting, DaylightTransport& transport, DaylightSample& sample,
                                   double error, Progress& progress, const StopRequest& stop) {
-    constexpr int most_attempts = 7;
+    constexpr int max_attempts = 7;
     const double share = std::sqrt(0.5);  // noise and bias may each have half of the squared error
     // A first attempt that suffices for a simple room at 2%.
     DaylightLight out{{.elements = 1500, .rays_an_element = 64, .rays_a_sensor = 1024, .seed = setting.seed}, {}, {}};
     transport.make_elements(out.options.elements);
-    for (int k = 0; k < most_attempts && !stop.requested(); ++k) {
+    for (int k = 0; k < max_attempts && !stop.requested(); ++k) {
         progress.phase("rays");
         transport.cast_rows(out.options.rays_an_element);
         sample.evaluate(transport, out.options.rays_a_sensor);
@@ -36,7 +36,7 @@ DaylightLight find_daylight_light(const DaylightSetting& setting, DaylightTransp
         }
         out.bias = sample.measure_bias(error, progress, stop);
         if (worst_of(sample.errors(out.bias)).largest() <= error || out.bias.elements <= share * error) break;
-        if (k + 1 == most_attempts) break;
+        if (k + 1 == max_attempts) break;
         out.options.elements *= 4;
         transport.make_elements(out.options.elements);
         sample.forget_rays();

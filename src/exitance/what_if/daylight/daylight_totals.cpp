@@ -20,7 +20,7 @@ void DaylightTotals::add(const SensorResults& sensor) {
     sums_.spatial_autonomy += sensor.metrics.autonomy >= required_autonomy;
     sums_.sunlight_exposure += sensor.metrics.sunny_hours > max_sunny_hours;
     sums_.continuous_autonomy += sensor.metrics.continuous, sums_.electric_hours += sensor.metrics.electric_hours;
-    sums_.most_sunlight = std::max(sums_.most_sunlight, sensor.sunlight);
+    sums_.max_sunlight = std::max(sums_.max_sunlight, sensor.sunlight);
     for_each_value(factor_, sensor.factor, [](double& sum, double v) { sum += v; });
     for_each_value(reached_, sensor.autonomy, [](double& count, double v) { count += v >= required_autonomy; });
     provision_.add(sensor.reached, sensor.metrics.daylight_factor);

@@ -28,7 +28,7 @@ struct DaylightSummary {
     double electric_hours = 0;         ///< Hours at full power of dimmed electric light, mean of the sensors.
     Interval mean_factor;              ///< 95% interval of the mean daylight factor, per cent.
     Interval spatial_autonomy_bounds;  ///< 95% interval of sDA.
-    double most_sunlight = 0;          ///< Largest number of hours of sunlight on the cloudless day.
+    double max_sunlight = 0;           ///< Largest number of hours of sunlight on the cloudless day.
     DaylightProvision provision;
     DaylightBias bias;
     std::vector<DaylightError> errors;  ///< Errors of each grid.

@@ -238,7 +238,7 @@ void DaylightTransport::cast_rows(double rays_an_element) {
     for (const double a : area) all += a;
     const double mean = all / static_cast<double>(area.size());
     // A replicate has few rays of its own; more than its share would make small elements expensive.
-    const RayBudget budget{.average = rays_an_element / static_cast<double>(daylight_replicates), .least = 2};
+    const RayBudget budget{.average = rays_an_element / static_cast<double>(daylight_replicates), .min = 2};
     do_own_share([&] {
         for (std::size_t replicate = own_process(); replicate < daylight_replicates; replicate += processes()) {
             std::vector<RayCounts>& rows = rows_[replicate];

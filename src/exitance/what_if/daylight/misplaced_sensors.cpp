@@ -45,10 +45,10 @@ class SensorSurroundings {
 
     bool is_outdoors(const Receiver& sensor) const {
         if (!is_open(sensor, Vec3{0, 0, 1})) return false;
-        constexpr double least_open = 0.3;  // share of directions; derived from the foot of a high wall, which sees 0.5
+        constexpr double min_open = 0.3;  // share of directions; derived from the foot of a high wall, which sees 0.5
         std::size_t open = 0;
         for (const Vec3& way : directions_) open += is_open(sensor, way);
-        return static_cast<double>(open) >= least_open * static_cast<double>(directions_.size());
+        return static_cast<double>(open) >= min_open * static_cast<double>(directions_.size());
     }
 
   private:

@@ -9,7 +9,7 @@ namespace exitance {
 namespace {
 
 /// Blinds close if more than this share of the points has at least this direct sunlight, lx [LM83].
-constexpr double max_sunny_share = 0.02, least_sunlight = 1000;
+constexpr double max_sunny_share = 0.02, min_sunlight = 1000;
 
 /// Finds the sunlight through groups of panes that more than 2% of the sensors of a grid have.
 class CommonSunlight {
@@ -55,7 +55,7 @@ class CommonSunlight {
         for (std::size_t first = 0; first < places.size(); first += together) {
             const std::size_t n = std::min(together, places.size() - first);
             parallel_for(n, 1, [&](std::size_t i) {
-                suns_.find_through(occluders, groups_, places[first + i], least_sunlight,
+                suns_.find_through(occluders, groups_, places[first + i], min_sunlight,
                                    std::span(sun).subspan(i * hours_, hours_));
             });
             for (std::size_t k = 0; k < n * hours_; ++k)
@@ -166,7 +166,7 @@ std::vector<std::uint8_t> StateChooser::by_sunlight(std::size_t group, double fa
     std::vector<std::uint8_t> out(hours_, 0);
     const auto closed = static_cast<std::uint8_t>(states_.groups[group].states.size() - 1);
     for (std::size_t h = 0; h < hours_; ++h)
-        if (factor * double(sunlight_[group][h]) >= least_sunlight) out[h] = closed;
+        if (factor * double(sunlight_[group][h]) >= min_sunlight) out[h] = closed;
     return out;
 }
 

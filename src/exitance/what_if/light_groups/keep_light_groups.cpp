@@ -7,10 +7,10 @@ namespace exitance {
 
 Result<void> check_light_groups(const Scene& scene) {
     const std::size_t count = find_emitter_groups(scene).size();
-    if (count <= most_light_groups) return {};
+    if (count <= max_light_groups) return {};
     return Error{ErrorCode::usage,
                  "there are " + std::to_string(count) + " groups that emit, at most " +
-                     std::to_string(most_light_groups) + " are solved one by one",
+                     std::to_string(max_light_groups) + " are solved one by one",
                  "--light-groups", "give lamps that are switched together the same group name"};
 }
 

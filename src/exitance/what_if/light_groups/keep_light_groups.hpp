@@ -4,7 +4,7 @@
 
 namespace exitance {
 
-/// Error (usage) if the scene has more than `most_light_groups` groups that emit.
+/// Error (usage) if the scene has more than `max_light_groups` groups that emit.
 Result<void> check_light_groups(const Scene& scene);
 
 /// Solves the light groups of a solution and records their size and time in its statistics. The solution loses its

@@ -54,10 +54,10 @@ struct LightGroups {
 /// once, by about as many rays as the solution took. The difference between the groups' sum and the solution is
 /// distributed in proportion to their light, so that noise of the rays only affects the groups' shares. Each group's
 /// error is estimated from its residual, at points and by rays that all groups share. The scene's emitters must be
-/// separated by group, with at most `most_light_groups` groups. Error: limit, after a request to stop.
+/// separated by group, with at most `max_light_groups` groups. Error: limit, after a request to stop.
 Result<LightGroups> solve_light_groups(const Solution& solution, const SolveOptions& options, Progress& progress,
                                        const StopRequest& stop);
-constexpr std::size_t most_light_groups = 64;
+constexpr std::size_t max_light_groups = 64;
 
 /// The requested changes.
 struct LightChange {

@@ -92,9 +92,9 @@ class TriangleVisitor {
         : model_(model), visit_(visit), seen_(model.nodes.size()) {}
 
     void descend(int number, const Affine& parent, int depth) {
-        constexpr int most_depth = 1000;
+        constexpr int max_depth = 1000;
         const auto at = static_cast<std::size_t>(number);
-        if (seen_[at] || depth > most_depth) return;
+        if (seen_[at] || depth > max_depth) return;
         seen_[at] = true;
         const GltfModel::Node& node = model_.nodes[at];
         const Affine to_world = parent * node.to_parent;

@@ -188,8 +188,8 @@ void RadianceReader::read_copies(const std::vector<CommandWords>& stages, int li
 void RadianceReader::read_text(std::string_view text, const RadCall& call) {
     open_.push_back(call.name);
     RadWords words(text);
-    constexpr std::size_t most_errors = 100;
-    while (findings_.error_count() <= most_errors) {
+    constexpr std::size_t max_errors = 100;
+    while (findings_.error_count() <= max_errors) {
         const std::optional<std::string_view> word = words.next();
         if (!word && words.is_open_quote())
             findings_.error({*call.name, words.line()}, "a quoted word does not end on its line");

@@ -44,8 +44,8 @@ struct Stretch {
 
 class XformParser {
   public:
-    XformParser(const std::vector<std::string>& words, std::size_t most_copies)
-        : words_(words), most_copies_(most_copies) {}
+    XformParser(const std::vector<std::string>& words, std::size_t max_copies)
+        : words_(words), max_copies_(max_copies) {}
     Result<Xform> parse();
 
   private:
@@ -62,7 +62,7 @@ class XformParser {
     void lay_out(std::vector<Affine>& copies) const;
 
     const std::vector<std::string>& words_;
-    std::size_t most_copies_, at_ = 0, count_ = 1;
+    std::size_t max_copies_, at_ = 0, count_ = 1;
     std::vector<Stretch> stretches_{1};
 };
 
@@ -82,11 +82,10 @@ std::optional<Affine> XformParser::transform(const std::string& option) {
 
 bool XformParser::start_stretch(bool is_array) {
     const auto times = number();
-    if (!times || *times < 1 || *times != std::floor(*times) || *times > static_cast<double>(most_copies_))
-        return false;
+    if (!times || *times < 1 || *times != std::floor(*times) || *times > static_cast<double>(max_copies_)) return false;
     stretches_.push_back({{}, static_cast<std::size_t>(*times), is_array});
     if (is_array) count_ *= stretches_.back().times;
-    return count_ <= most_copies_;
+    return count_ <= max_copies_;
 }
 
 void XformParser::lay_out(std::vector<Affine>& copies) const {
@@ -114,7 +113,7 @@ Result<Xform> XformParser::parse() {
             stretches_.back().once = *step * stretches_.back().once;
         } else if (word == "-i" || word == "-a") {
             if (!start_stretch(word == "-a"))
-                return bad(fmt::format("xform's {} needs a count from 1 to {}", word, most_copies_));
+                return bad(fmt::format("xform's {} needs a count from 1 to {}", word, max_copies_));
         } else if (word == "-n" || word == "-m") {
             if (at_ >= words_.size()) return bad(fmt::format("xform's {} lacks a name", word));
             (word == "-n" ? out.name : out.material) = words_[at_++];
@@ -134,8 +133,8 @@ Result<Xform> XformParser::parse() {
 
 }  // namespace
 
-Result<Xform> parse_xform(const std::vector<std::string>& words, std::size_t most_copies) {
-    return XformParser(words, most_copies).parse();
+Result<Xform> parse_xform(const std::vector<std::string>& words, std::size_t max_copies) {
+    return XformParser(words, max_copies).parse();
 }
 
 Result<Affine> parse_transform(const std::vector<std::string>& words) {

@@ -20,8 +20,8 @@ struct Xform {
 /// Parses the words after `xform`: -t x y z, -rx, -ry, -rz degrees, -s factor, -mx, -my, -mz, -i times, -a copies, -n
 /// name, -m material; -c and -e have no effect. Transforms are applied in the given order. Those after -i are repeated;
 /// those after -a are applied once for the second copy, twice for the third, and so on. Several -a make a grid of at
-/// most `most_copies` copies. Error: everything else.
-Result<Xform> parse_xform(const std::vector<std::string>& words, std::size_t most_copies);
+/// most `max_copies` copies. Error: everything else.
+Result<Xform> parse_xform(const std::vector<std::string>& words, std::size_t max_copies);
 
 /// Parses a single transform, without files and copies.
 Result<Affine> parse_transform(const std::vector<std::string>& words);

@@ -42,7 +42,7 @@ bool decode_rows(jpeg_decompress_struct& info, Failure& failure, std::span<const
     jpeg_mem_src(&info, file.data(), static_cast<unsigned long>(file.size()));
     jpeg_read_header(&info, TRUE);
     const std::uint64_t pixels = std::uint64_t(info.image_width) * info.image_height;
-    if (pixels > most_texture_pixels) return false;
+    if (pixels > max_texture_pixels) return false;
     // Pictures with several scans are held in memory, two bytes per coefficient, and every scan passes over all of
     // them. A file with less than 0.001 bits per pixel is rejected: no program compresses that much.
     const std::uint64_t held = pixels * 2 * static_cast<unsigned>(info.num_components);

@@ -60,6 +60,6 @@ Result<TexturePixels> decode_png(std::span<const std::uint8_t> file);
 Result<TexturePixels> decode_jpeg(std::span<const std::uint8_t> file);
 
 /// Larger pictures are rejected: a small file can claim any size.
-inline constexpr std::uint64_t most_texture_pixels = std::uint64_t(1) << 26;
+inline constexpr std::uint64_t max_texture_pixels = std::uint64_t(1) << 26;
 
 }  // namespace exitance

@@ -10,7 +10,7 @@
 namespace exitance {
 namespace {
 
-constexpr double most_reflected = 0.95;
+constexpr double max_reflectance = 0.95;
 
 /// A picture of grey pixels with linear values from `value(x, y)`, 0 to 1.
 template <class Value>
@@ -50,7 +50,7 @@ struct Wall {
         return out;
     }
     void cut(const TextureArea& picture, std::optional<std::size_t> parts = {}, double repeats = 1) {
-        TexturedFaces textured(d, most_reflected, parts);
+        TexturedFaces textured(d, max_reflectance, parts);
         const std::size_t count = d.faces.size();
         for (std::size_t f = 0; f < count; ++f) textured.show(f, colours(f, picture, repeats));
         textured.finish();
@@ -171,7 +171,7 @@ TEST(TexturedFaces, AConcaveFaceIsCutWithoutGaps) {
     wall.d.points.push_back({3, 0, 1});  // a corner that makes the upper border concave
     wall.d.faces.push_back({{0, 1, 2, 4, 3}, 0, 0, 1});
     const double area = wall.total_area();
-    TexturedFaces textured(wall.d, most_reflected, {});
+    TexturedFaces textured(wall.d, max_reflectance, {});
     FaceColours colours;
     colours.reflectance.picture = &tones;
     for (const std::uint32_t c : wall.d.faces[0].corners)
@@ -191,7 +191,7 @@ TEST(TexturedFaces, EmittersGetFewParts) {
     wall.add({0, 1, 2, 3});
     wall.d.materials[0].exitance = Spectrum(100 * sky.mean()[0]);
     wall.d.materials[0].reflectance = Spectrum(0.1);
-    TexturedFaces textured(wall.d, most_reflected, 100'000);
+    TexturedFaces textured(wall.d, max_reflectance, 100'000);
     FaceColours colours;
     colours.exitance = wall.colours(0, sky).reflectance;
     textured.show(0, colours);
@@ -208,7 +208,7 @@ TEST(TexturedFaces, ColoursThatVaryBetweenCornersAreCut) {
     const TextureArea white = grey_picture(1, 1, [](std::size_t, std::size_t) { return 1.0; });
     Wall wall(white);
     wall.add({0, 1, 2});
-    TexturedFaces textured(wall.d, most_reflected, {});
+    TexturedFaces textured(wall.d, max_reflectance, {});
     FaceColours colours;
     colours.corner_factors = {Spectrum(0.0), Spectrum(1.0), Spectrum(1.0)};
     textured.show(0, colours);
@@ -229,7 +229,7 @@ TEST(TexturedFaces, ManySmallFacesAreNotCut) {
             wall.d.points.push_back({x + 4 * c.x / side, 0.01 * (k % 2), y + 3 * c.y / side});
         wall.d.faces.push_back({{first, first + 1, first + 2, first + 3}, 0, 0, 1});
     }
-    TexturedFaces textured(wall.d, most_reflected, {});
+    TexturedFaces textured(wall.d, max_reflectance, {});
     for (std::size_t f = 0; f < side * side; ++f) {
         FaceColours colours;
         colours.reflectance = {&tones, {{0, 1}, {1, 1}, {1, 0}, {0, 0}}};
@@ -255,7 +255,7 @@ TEST(TexturedFaces, CoordinatesFarFromThePictureAreCutAsNearOnes) {
     for (const double far : {0.0, 20'000.0, -300'000.0}) {
         Wall wall(tones);
         wall.add({0, 1, 2, 3});
-        TexturedFaces textured(wall.d, most_reflected, {});
+        TexturedFaces textured(wall.d, max_reflectance, {});
         FaceColours colours = wall.colours(0, tones);
         for (Vec2& place : colours.reflectance.places) place.x += far;
         textured.show(0, colours);
@@ -271,7 +271,7 @@ TEST(TexturedFaces, BothSidesOfASheetAreCutAlikeWithinAnyBudget) {
         Wall wall(dots);
         wall.d.materials[0].reflectance = Spectrum(0.5);
         wall.add({0, 1, 2, 3}), wall.add({3, 2, 1, 0});
-        TexturedFaces textured(wall.d, most_reflected, budget);
+        TexturedFaces textured(wall.d, max_reflectance, budget);
         for (std::size_t f = 0; f < 2; ++f) {
             FaceColours colours;
             colours.coverage = wall.colours(f, dots).reflectance;
@@ -294,7 +294,7 @@ TEST(TexturedFaces, HolesAreCutOutAndTheAreaIsBalanced) {
     Wall wall(ring);
     wall.d.materials[0].reflectance = Spectrum(0.5);
     wall.add({0, 1, 2, 3}), wall.add({3, 2, 1, 0});  // a face and its back
-    TexturedFaces textured(wall.d, most_reflected, {});
+    TexturedFaces textured(wall.d, max_reflectance, {});
     for (std::size_t f = 0; f < 2; ++f) {
         FaceColours colours;
         colours.coverage = wall.colours(f, ring).reflectance;
@@ -316,7 +316,7 @@ TEST(TexturedFaces, OfManyFacesWithHolesAsManyStayAsThePicturesCover) {
     Wall wall(leaf);
     constexpr std::size_t count = 1000;
     for (std::size_t f = 0; f < count; ++f) wall.add({0, 1, 2, 3});
-    TexturedFaces textured(wall.d, most_reflected, 0);
+    TexturedFaces textured(wall.d, max_reflectance, 0);
     for (std::size_t f = 0; f < count; ++f) {
         FaceColours colours;
         colours.coverage = wall.colours(f, leaf).reflectance;

@@ -13,6 +13,6 @@ struct UncertainError {
 /// limit. The error is measured again in two cases: if the estimate is above `limit` by at most two standard errors,
 /// and if it is below `limit` but less than one standard error below the requested error `demand`, which happens if a
 /// few points have most of the error. Measuring again is cheaper than another attempt.
-std::size_t further_looks(const UncertainError& error, double limit, double demand);
+std::size_t further_measurements(const UncertainError& error, double limit, double demand);
 
 }  // namespace exitance
